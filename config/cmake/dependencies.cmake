@@ -1,0 +1,47 @@
+# Every package the project stands on, in one place. All are Debian's; scripts/install-packages.sh installs them.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(nlohmann_json REQUIRED)
+find_package(TBB REQUIRED)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs highgui)
+pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
+pkg_check_modules(spdlog REQUIRED IMPORTED_TARGET spdlog)
+pkg_check_modules(libav REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
+pkg_check_modules(libusb IMPORTED_TARGET libusb-1.0)
+pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)
+find_package(CLI11 REQUIRED)
+# Debian's dnnl-config.cmake insists on OpenCL headers that the CPU engine does not need.
+find_library(DNNL_LIBRARY dnnl)
+find_path(DNNL_INCLUDE_DIR oneapi/dnnl/dnnl.hpp)
+if(DNNL_LIBRARY AND DNNL_INCLUDE_DIR)
+  set(dnnl_FOUND TRUE)
+  add_library(eventide_dnnl INTERFACE)
+  target_include_directories(eventide_dnnl SYSTEM INTERFACE ${DNNL_INCLUDE_DIR})
+  target_link_libraries(eventide_dnnl INTERFACE ${DNNL_LIBRARY})
+endif()
+find_package(Torch QUIET)
+
+# Header-only, without a CMake package in Debian 12.
+find_path(CONCURRENTQUEUE_DIR concurrentqueue.h PATH_SUFFIXES concurrentqueue moodycamel REQUIRED)
+add_library(eventide_concurrentqueue INTERFACE)
+target_include_directories(eventide_concurrentqueue SYSTEM INTERFACE ${CONCURRENTQUEUE_DIR})
+
+# OpenCV 4.6 headers warn under C++20; they are system headers to us.
+add_library(eventide_opencv INTERFACE)
+target_include_directories(eventide_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+target_link_libraries(eventide_opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs)
+
+if(EVENTIDE_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(EVENTIDE_BENCH)
+  find_package(benchmark REQUIRED)
+endif()
+
+eventide_feature(EVENTIDE_ONEDNN "fast convolutions" CHECK dnnl_FOUND)
+eventide_feature(EVENTIDE_USB "USB event cameras" CHECK libusb_FOUND)
+eventide_feature(EVENTIDE_EMULATOR "software DAVIS for tests" CHECK umockdev_FOUND)
+eventide_feature(EVENTIDE_TRAIN "training with libtorch" CHECK Torch_FOUND)

@@ -1,0 +1,27 @@
+// Where frames go.
+#pragma once
+
+#include "src/core/frame_data.h"
+
+#include <span>
+
+namespace eventide {
+
+/// A sink looks at a frame and does not keep it. Throws Error when it cannot write.
+class Sink {
+public:
+    virtual ~Sink() = default;
+
+    /// Render thread.
+    virtual void write(const Frame& frame) = 0;
+
+    /// Render thread, once, after the last frame, also after an error or SIGINT: complete and close
+    /// what was written.
+    virtual void close() {}
+
+    /// False when nobody wants more frames (a reader of a pipe went away, a window was closed): the
+    /// run ends cleanly.
+    virtual bool wants_more() const { return true; }
+};
+
+}  // namespace eventide

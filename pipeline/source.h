@@ -1,0 +1,43 @@
+// Where bytes come from.
+#pragma once
+
+#include "src/codec/parser.h"
+#include "src/core/packet.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace eventide {
+
+enum class ReadStatus {
+    data,     ///< `into` holds bytes
+    timeout,  ///< live sources only: nothing came for a while (at most 20 ms); `into.bytes` is
+              ///< empty
+    end       ///< nothing will come any more
+};
+
+struct SensorInfo {
+    std::string name;    ///< "DAVIS346", or what the recording says; may be empty
+    std::string serial;  ///< may be empty
+    std::string format;  ///< "aedat4", "evt3", "davis", "text", ...
+    int width = 0, height = 0;
+};
+
+/// Where bytes come from: a camera or a recording. The pipeline owns the thread.
+class Source {
+public:
+    virtual ~Source() = default;
+    virtual const SensorInfo& info() const = 0;
+    virtual bool is_live() const noexcept = 0;  ///< a live source may not be made to wait
+
+    /// Source thread. Fills `into.bytes` (whose capacity is reused) and `into.arrived`; live
+    /// sources may set `into.gap_before`. Throws Error of kind device when a camera is lost, of
+    /// kind input when a file cannot be read.
+    virtual ReadStatus read(RawPacket& into) = 0;
+
+    virtual void stop() noexcept = 0;  ///< any thread; a waiting read() returns end soon
+    virtual std::unique_ptr<Parser> make_parser() const = 0;
+};
+
+}  // namespace eventide

@@ -1,0 +1,26 @@
+// A source that is a file: it can say how long it is and jump.
+#pragma once
+
+#include "pipeline/source.h"
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace eventide {
+
+class Recording : public Source {
+public:
+    bool is_live() const noexcept override { return false; }
+
+    /// Goes to a byte from which every event at or after `t` will be read (earlier ones may come
+    /// too). Formats without an index go to the beginning. Source thread, between reads; the parser
+    /// has to resync().
+    virtual void seek(SensorTime t) = 0;
+
+    /// Bytes of the whole recording, for progress; 0 where not known (standard input).
+    virtual std::uint64_t size_bytes() const = 0;
+    virtual std::uint64_t position_bytes() const = 0;
+};
+
+}  // namespace eventide

@@ -1,0 +1,54 @@
+// What flows between the stages after the parser: slices, voxel grids, latent maps, frames.
+#pragma once
+
+#include "src/core/array.h"
+#include "src/core/event.h"
+#include "src/core/sensor_time.h"
+
+#include <cstdint>
+#include <span>
+
+namespace eventide {
+
+/// The events of one event frame, in time order. Borrowed from the slicer until its next call.
+struct Slice {
+    Window window;
+    std::span<const Event> events;
+    bool gap_before = false;  ///< bytes were lost since the slice before
+    HostTime arrived{};       ///< of the last packet that gave an event or moved the clock
+};
+
+/// One event frame as numbers (reconstruction.md section 2).
+struct VoxelGrid {
+    Window window;
+    /// [y][x][channel], channels 4 b + {0 polarity, 1 mean, 2 std, 3 count} for bin b < B, then 4 B
+    /// = frames since the pixel's last event, clamped at 8, divided by 8 (0 = has events in this
+    /// frame).
+    Array3<float> values;
+    std::uint64_t events = 0;
+    bool gap_before = false;
+    HostTime arrived{};
+};
+
+/// What the encoder knows after one event frame, one code per sensor pixel.
+struct LatentMap {
+    Window window;
+    Array3<float> values;  ///< [y][x][D]
+    std::uint64_t events = 0;
+    HostTime arrived{};
+};
+
+/// One rendered picture.
+struct Frame {
+    SensorTime t{};  ///< the instant it shows
+    Window window;   ///< of the event frame t lies in
+    std::uint64_t index =
+        0;  ///< number on the frame clock: t = t0 + index / fps; a jump is a skipped frame
+    std::uint64_t events = 0;  ///< in that event frame
+    Array2<float> intensity;   ///< [y][x], 0 black to 1 white; may lie a little outside
+    Array2<float>
+        sigma;  ///< [y][x], standard deviation, in units of intensity; empty where not asked for
+    HostTime arrived{};  ///< of the last packet the frame saw; now minus this is the latency
+};
+
+}  // namespace eventide

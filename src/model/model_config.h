@@ -1,0 +1,34 @@
+// The shape of a network, as a model file's metadata states it. docs/model.md says what each number
+// means.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+enum class EncoderKind { gated, thesis };
+enum class SigmaRule { log_blend, mixture };
+
+struct ModelConfig {
+    EncoderKind encoder = EncoderKind::gated;
+    int bins = 5;                             ///< B
+    std::vector<int> widths{16, 32, 64, 64};  ///< channels per level
+    std::vector<int> recurrent{1, 1, 1, 1};   ///< per level: 1 ConvGRU, 0 held features
+    int res_blocks = 2;
+    int gate_radius = 4;                   ///< px
+    int latent = 16;                       ///< D
+    int latent_stride = 1;                 ///< 1 or 2
+    std::vector<int> mlp{64, 64, 64};      ///< hidden widths
+    std::vector<int> lookaheads{0, 1, 2};  ///< those the model was trained for
+    float log_sigma_min = -6, log_sigma_max = 1;
+    float sigma_scale = 1;  ///< calibration: rendered sigma is multiplied by it
+    SigmaRule sigma_rule = SigmaRule::log_blend;
+    std::string window = "50ms";  ///< the event frames it was trained for
+    std::string card;             ///< data, budget, scores, limits
+
+    int input_channels() const { return 4 * bins + 1; }
+    int levels() const { return int(widths.size()); }
+};
+
+}  // namespace eventide
