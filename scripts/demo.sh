@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# From a fresh Debian 12 to video from events: installs what is missing, builds, simulates a recording, reconstructs it.
+#   scripts/demo.sh [folder]         the result goes to out/demo unless told otherwise
+# Makes frames as PNG, sigma as TIFF, an MP4, and one contact sheet: events, intensity, sigma and truth side by side.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=${1:-out/demo}
+
+scripts/install-packages.sh
+echo "building (preset release) ..."
+cmake --preset release >/dev/null
+cmake --build --preset release --target eventide
+eventide=build/release/src/app/eventide
+
+mkdir -p "$out"
+echo "simulating a camera before a moving scene ..."
+"$eventide" simulate --scene demo --seconds 4 --size 240x180 --overwrite --out "$out/recording.aedat4"
+"$eventide" info "$out/recording.aedat4"
+echo "reconstructing it ..."
+"$eventide" run "$out/recording.aedat4" --fps 60 --overwrite \
+  --out "$out/reconstruction/" --out "$out/reconstruction.mp4" --uncertainty side
+"$eventide" run "$out/recording.aedat4" --window aps --overwrite --out "sheet:$out/contact_sheet.png" --quiet
+echo
+echo "frames:         $out/reconstruction/frames/"
+echo "sigma:          $out/reconstruction/uncertainty/"
+echo "video:          $out/reconstruction.mp4   (intensity left, sigma right)"
+echo "contact sheet:  $out/contact_sheet.png    (events, intensity, sigma, truth)"

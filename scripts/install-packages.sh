@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Installs what a fresh Debian 12 lacks to build, run and test eventide. As root or through sudo; asks nothing.
+#   scripts/install-packages.sh            to build and run
+#   scripts/install-packages.sh --tests    also what the tests, benchmarks and training need
+set -euo pipefail
+
+build=(
+  g++ cmake ninja-build ccache pkg-config
+  libopencv-dev libeigen3-dev nlohmann-json3-dev libtbb-dev libhwy-dev libdnnl-dev
+  libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler
+  libcli11-dev libtomlplusplus-dev libspdlog-dev
+  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
+  libusb-1.0-0-dev
+)
+tests=(
+  libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev
+  libtorch-dev ffmpeg
+  clang clang-format clang-tidy libclang-rt-14-dev git
+)
+wanted=("${build[@]}")
+[ "${1:-}" = "--tests" ] && wanted+=("${tests[@]}")
+
+missing=()
+for package in "${wanted[@]}"; do
+  state=$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true)
+  [ "$state" = "install ok installed" ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  echo "packages: all ${#wanted[@]} are installed"
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "packages: missing ${missing[*]}; run this as root, or install sudo" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "packages: installing ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"

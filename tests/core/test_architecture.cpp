@@ -1,0 +1,112 @@
+// Holds the arrows of the architecture: which folder may include what.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Include {
+    std::string file;    // relative to the project's root
+    std::string target;  // between the quotes or brackets
+};
+
+/// The target of an #include line, or empty.
+std::string include_target(std::string_view line) {
+    const auto start = line.find_first_not_of(" \t");
+    if (start == line.npos || !line.substr(start).starts_with("#include")) return {};
+    const auto open = line.find_first_of("<\"", start);
+    if (open == line.npos) return {};
+    const auto close = line.find_first_of(">\"", open + 1);
+    return close == line.npos ? "" : std::string{line.substr(open + 1, close - open - 1)};
+}
+
+std::vector<Include> includes_below(const std::vector<std::string>& folders) {
+    std::vector<Include> found;
+    const fs::path root{EVENTIDE_SOURCE_DIR};
+    for (const std::string& folder : folders)
+        for (const auto& entry : fs::recursive_directory_iterator{root / folder}) {
+            const auto extension = entry.path().extension();
+            if (extension != ".h" && extension != ".cpp" && extension != ".inl") continue;
+            std::ifstream file{entry.path()};
+            for (std::string line; std::getline(file, line);)
+                if (std::string target = include_target(line); !target.empty())
+                    found.push_back({fs::relative(entry.path(), root).string(), target});
+        }
+    return found;
+}
+
+/// A header that only some folders (or files) may include.
+struct Rule {
+    std::string_view target_prefix;
+    std::vector<std::string_view> allowed;  // prefixes of files
+};
+
+const std::vector<Rule> kRules{
+    {"thread", {"src/app/", "src/train/", "pipeline/", "replay/", "drivers/"}},
+    {"opencv2/",
+     {"pipeline/sinks/", "src/app/", "src/simulate/", "src/evaluate/", "src/train/",
+      "replay/image_file"}},
+    {"libusb", {"drivers/usb/"}},
+    {"concurrentqueue.h", {"pipeline/link.h", "pipeline/pool.h"}},
+    {"torch/", {"src/train/"}},
+    {"oneapi/dnnl", {"src/nn/", "src/kernels/", "src/evaluate/"}},
+    {"src/app/", {"src/app/"}},
+    {"src/train/", {"src/train/"}},
+    {"src/simulate/",
+     {"src/simulate/", "src/app/", "src/train/", "src/evaluate/", "drivers/simulated/"}},
+    {"src/evaluate/", {"src/evaluate/", "src/app/", "src/train/"}},
+    {"src/model/", {"src/model/", "src/app/", "src/train/", "src/evaluate/", "pipeline/"}},
+    {"src/nn/", {"src/nn/", "src/model/", "src/train/", "src/evaluate/"}},
+    {"src/kernels/", {"src/kernels/", "src/nn/", "src/model/", "src/binning/", "src/codec/"}},
+    {"drivers/", {"drivers/", "src/app/"}},
+    {"replay/", {"replay/", "src/app/", "src/evaluate/", "src/train/"}},
+    {"pipeline/", {"pipeline/", "replay/", "drivers/", "src/app/", "src/evaluate/"}},
+};
+
+bool allowed(const Rule& rule, std::string_view file) {
+    for (const std::string_view prefix : rule.allowed)
+        if (file.starts_with(prefix)) return true;
+    return false;
+}
+
+std::vector<Include> violations(const std::vector<Include>& includes) {
+    std::vector<Include> bad;
+    for (const Include& include : includes)
+        for (const Rule& rule : kRules) {
+            // "thread" is a whole name, not the beginning of one.
+            const bool hit = rule.target_prefix == "thread"
+                                 ? include.target == "thread"
+                                 : include.target.starts_with(rule.target_prefix);
+            if (hit && !allowed(rule, include.file)) bad.push_back(include);
+        }
+    return bad;
+}
+
+TEST(Architecture, ArrowsPointOneWay) {
+    const auto includes = includes_below({"src", "pipeline", "drivers", "replay"});
+    ASSERT_GT(includes.size(), 50U) << "the sources were not found";
+    for (const Include& bad : violations(includes))
+        ADD_FAILURE() << bad.file << " may not include " << bad.target;
+}
+
+TEST(Architecture, TheDetectorSeesAViolation) {
+    EXPECT_EQ(violations({{"src/core/a.h", "opencv2/core.hpp"}}).size(), 1U);
+    EXPECT_EQ(violations({{"src/binning/a.cpp", "thread"}}).size(), 1U);
+    EXPECT_TRUE(violations({{"pipeline/pipeline.h", "thread"}}).empty());
+    EXPECT_EQ(include_target("  #include <libusb-1.0/libusb.h> // x"), "libusb-1.0/libusb.h");
+}
+
+TEST(Architecture, IncludesStartAtTheRoot) {
+    const fs::path root{EVENTIDE_SOURCE_DIR};
+    for (const Include& include : includes_below({"src", "pipeline", "drivers", "replay"}))
+        EXPECT_FALSE(include.target.starts_with("../") || include.target.starts_with("./"))
+            << include.file << " includes " << include.target;
+}
+
+}  // namespace

@@ -1,0 +1,54 @@
+// The containers everything flows in.
+#include "src/core/array.h"
+#include "src/core/damage.h"
+#include "src/core/sensor_time.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace eventide {
+namespace {
+
+TEST(Array3, KeepsThePixelsNumbersTogether) {
+    Array3<int> map{2, 3, 4};
+    int n = 0;
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x)
+            for (int c = 0; c < 4; ++c) map(y, x, c) = n++;
+    for (int i = 0; i < 24; ++i) EXPECT_EQ(map.values()[std::size_t(i)], i);
+    EXPECT_EQ(map.pixel(1, 2)[3], 23);
+}
+
+TEST(Array2, StartsOnACacheLine) {
+    for (int width : {1, 7, 64}) {
+        const Array2<float> plane{3, width};
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(plane.values().data()) % 64, 0U);
+    }
+}
+
+TEST(Array2, RowsAreItsValuesInOrder) {
+    Array2<int> plane{2, 3};
+    plane(1, 0) = 7;
+    EXPECT_EQ(plane.row(1)[0], 7);
+    EXPECT_EQ(plane.values()[3], 7);
+    EXPECT_EQ(plane.row(1).size(), 3U);
+}
+
+TEST(SensorTime, CarriesEpochStampsInMicroseconds) {
+    const std::int64_t epoch_us = 1'700'000'000'123'456;
+    EXPECT_EQ(to_us(from_us(epoch_us)), epoch_us);
+    EXPECT_EQ((Window{from_us(epoch_us), from_us(epoch_us + 50)}).width().count(), 50);
+}
+
+TEST(Damage, IsCountedByReasonAndEveryReasonHasAName) {
+    Damage damage;
+    damage.count(DamageReason::truncated);
+    damage.count(DamageReason::unknown_word, 4);
+    EXPECT_EQ(damage[DamageReason::unknown_word], 4U);
+    EXPECT_EQ(damage.total(), 5U);
+    for (std::size_t i = 0; i < kDamageReasons; ++i) EXPECT_FALSE(name_of(DamageReason(i)).empty());
+}
+
+}  // namespace
+}  // namespace eventide
