@@ -1,0 +1,251 @@
+#include "src/codec/davis.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+constexpr std::int64_t kWrapUs = 1 << 15;
+constexpr std::uint16_t kTimestampBit = 0x8000;
+constexpr std::uint16_t kDataMask = 0x0FFF;
+
+/// Bits 14-12 of a data word (A.9).
+enum Code : std::uint16_t {
+    special_code = 0,
+    y_code,
+    x_off_code,
+    x_on_code,
+    adc_code,
+    misc8_code,
+    misc10_code,
+    wrap_code
+};
+
+std::uint16_t word_at(std::span<const std::byte> bytes, std::size_t at) {
+    return std::uint16_t(std::uint16_t(bytes[at]) |
+                         std::uint16_t(std::uint16_t(bytes[at + 1]) << 8));
+}
+
+}  // namespace
+
+DavisParser::DavisParser(const DavisSensor& sensor)
+    : sensor_(sensor), frame_(sensor), imu_(sensor) {}
+
+void DavisParser::parse(std::span<const std::byte> bytes, Batch& into) {
+    if (odd_byte_ && !bytes.empty()) {
+        word(std::uint16_t(std::uint16_t(*odd_byte_) | std::uint16_t(std::uint16_t(bytes[0]) << 8)),
+             into);
+        odd_byte_.reset();
+        bytes = bytes.subspan(1);
+    }
+    parse_words(bytes.first(bytes.size() & ~std::size_t{1}), into);
+    if (bytes.size() % 2 != 0) odd_byte_ = bytes.back();
+}
+
+/// Rows, events and timestamps are all but a few of the words, so they are read here and the rest
+/// in word().
+void DavisParser::parse_words(std::span<const std::byte> bytes, Batch& into) {
+    for (std::size_t at = 0; at < bytes.size(); at += 2) {
+        const std::uint16_t w = word_at(bytes, at);
+        if ((w & kTimestampBit) != 0) {
+            timestamp(std::uint16_t(w & ~kTimestampBit));
+            continue;
+        }
+        const std::uint16_t data = w & kDataMask;
+        switch (w >> 12) {
+            case y_code:
+                y_ = data;
+                y_known_ = true;
+                break;
+            case x_off_code:
+                event(data, Polarity::off, into);
+                break;
+            case x_on_code:
+                event(data, Polarity::on, into);
+                break;
+            default:
+                word(w, into);
+        }
+    }
+}
+
+void DavisParser::word(std::uint16_t w, Batch& into) {
+    if ((w & kTimestampBit) != 0) return timestamp(std::uint16_t(w & ~kTimestampBit));
+    const std::uint16_t data = w & kDataMask;
+    switch (w >> 12) {
+        case special_code:
+            return special(data, into);
+        case y_code:
+            y_ = data;
+            y_known_ = true;
+            return;
+        case x_off_code:
+            return event(data, Polarity::off, into);
+        case x_on_code:
+            return event(data, Polarity::on, into);
+        case adc_code:
+            return frame_.sample(data & 0x3FF, from_us(time_));
+        case misc8_code:
+            return misc8(data);
+        case misc10_code:
+            if ((data >> 10) == 0) return frame_.exposure_chunk(data);
+            return damage_.count(DamageReason::unknown_word);
+        case wrap_code:
+            return wrap(data);
+        default:
+            return damage_.count(DamageReason::unknown_word);
+    }
+}
+
+void DavisParser::misc8(std::uint16_t data) {
+    const auto value = std::uint8_t(data & 0xFF);
+    switch (data >> 8) {
+        case 0:
+            return imu_.byte(value);
+        case 1:
+            return frame_.roi_byte(true, value);
+        case 2:
+            return frame_.roi_byte(false, value);
+        case 3:
+            return imu_.scale(value);
+        default:
+            return damage_.count(DamageReason::unknown_word);
+    }
+}
+
+void DavisParser::event(std::uint16_t x, Polarity polarity, Batch& into) {
+    if (!time_known_ || !y_known_) return;  // after a loss, until the words it needs came again
+    if (x >= sensor_.dvs_columns || y_ >= sensor_.dvs_rows)
+        return damage_.count(DamageReason::out_of_range);
+    into.events.push_back(sensor_.dvs_swapped ? Event{from_us(time_), y_, x, polarity}
+                                              : Event{from_us(time_), x, y_, polarity});
+}
+
+void DavisParser::move_to(std::int64_t time) {
+    if (time < time_) return damage_.count(DamageReason::time_backwards);
+    time_ = time;
+    time_known_ = true;
+}
+
+/// After a loss, whole wraps may be missing: adds as many as bring `candidate` nearest to the
+/// expected time.
+void DavisParser::catch_up(std::int64_t candidate) {
+    if (!expected_) return;
+    const double wraps = std::round(double(*expected_ - candidate) / double(kWrapUs));
+    if (wraps > 0) wrap_add_ += std::int64_t(wraps) * kWrapUs;
+    expected_.reset();
+}
+
+void DavisParser::timestamp(std::uint16_t low15) {
+    if (expected_) catch_up(wrap_add_ + low15);
+    move_to(wrap_add_ + low15);
+}
+
+void DavisParser::wrap(std::uint16_t multiplier) {
+    if (multiplier == 0) return damage_.count(DamageReason::bad_record);
+    facts_.wraps += multiplier;
+    wrap_add_ += kWrapUs * multiplier;
+    catch_up(wrap_add_);
+    move_to(wrap_add_);
+}
+
+void DavisParser::timestamp_reset(Batch& into) {
+    ++facts_.timestamp_resets;
+    wrap_add_ = time_;  // the device counts from zero again, the stream goes on
+    time_known_ = true;
+    expected_.reset();
+    frame_.abandon();
+    imu_.abandon();
+    trigger(Trigger::Kind::timestamp_reset, 0, into);
+}
+
+void DavisParser::trigger(Trigger::Kind kind, std::uint8_t source, Batch& into) {
+    if (time_known_) into.triggers.push_back({from_us(time_), kind, source});
+}
+
+void DavisParser::special(std::uint16_t data, Batch& into) {
+    using Frame = DavisFrameAssembler;
+    constexpr std::uint8_t kInput = 0, kGenerator = 1;
+    const SensorTime now = from_us(time_);
+    switch (data) {
+        case 0:
+            return;
+        case 1:
+            return timestamp_reset(into);
+        case 2:
+            return trigger(Trigger::Kind::falling, kInput, into);
+        case 3:
+            return trigger(Trigger::Kind::rising, kInput, into);
+        case 4:
+            return trigger(Trigger::Kind::pulse, kInput, into);
+        case 5:
+            return imu_.begin();
+        case 7: {
+            ImuSample sample;
+            const auto end = imu_.end(now, sample);
+            if (end == DavisImuAssembler::End::complete) into.imu.push_back(sample);
+            if (end == DavisImuAssembler::End::incomplete) {
+                ++facts_.imu_incomplete;
+                damage_.count(DamageReason::bad_record);
+            }
+            return;
+        }
+        case 8:
+            return frame_.begin(Frame::Shutter::global, now);
+        case 9:
+            return frame_.begin(Frame::Shutter::rolling, now);
+        case 10: {
+            ReferenceImage image;
+            const auto end = frame_.end(now, image);
+            if (end == Frame::End::complete) {
+                facts_.exposure_us = frame_.measured_exposure_us();
+                into.images.push_back(std::move(image));
+            }
+            if (end == Frame::End::incomplete) {
+                ++facts_.frames_incomplete;
+                damage_.count(DamageReason::bad_record);
+            }
+            return;
+        }
+        case 11:
+            return frame_.column_begin(Frame::Read::reset, now);
+        case 12:
+            return frame_.column_begin(Frame::Read::signal, now);
+        case 13:
+            return frame_.column_end();
+        case 14:
+            return frame_.exposure_begin(now);
+        case 15:
+            return frame_.exposure_end(now);
+        case 16:
+            return trigger(Trigger::Kind::falling, kGenerator, into);
+        case 17:
+            return trigger(Trigger::Kind::rising, kGenerator, into);
+        default:
+            return damage_.count(DamageReason::unknown_word);
+    }
+}
+
+void DavisParser::finish(Batch&) {
+    if (odd_byte_) damage_.count(DamageReason::truncated);
+    odd_byte_.reset();
+}
+
+void DavisParser::resync() {
+    odd_byte_.reset();
+    time_known_ = y_known_ = false;
+    frame_.abandon();
+    imu_.abandon();
+}
+
+void DavisParser::expect_passed(SensorDuration passed) {
+    expected_ = time_ + passed.count();
+}
+
+std::optional<SensorTime> DavisParser::clock() const {
+    if (!time_known_) return std::nullopt;
+    return from_us(time_);
+}
+
+}  // namespace eventide

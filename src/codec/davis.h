@@ -1,0 +1,75 @@
+// DAVIS USB words <-> events, APS frames, IMU samples, triggers (drivers-and-formats.md A.9 to
+// A.11).
+#pragma once
+
+#include "src/codec/davis_frame.h"
+#include "src/codec/davis_imu.h"
+#include "src/codec/davis_sensor.h"
+#include "src/codec/parser.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace eventide {
+
+/// What came through besides data, for the driver's counters.
+struct DavisStreamFacts {
+    std::uint64_t timestamp_resets = 0;  ///< reset markers: the first one proves that data flow
+    std::uint64_t wraps = 0;             ///< of the 15-bit time
+    std::uint64_t frames_incomplete =
+        0;  ///< APS frames left out because columns or samples were missing
+    std::uint64_t imu_incomplete = 0;
+    std::uint32_t exposure_us = 0;  ///< of the last frame, as the device measured it; 0 before
+};
+
+/// Parses the 16-bit little-endian words of DAVIS240 and DAVIS346 (logic 18).
+///
+/// Time is 64 bits here, so the 2^31 us overflow of older readers does not exist. A timestamp reset
+/// sets the time back to zero on the device; here it goes on: the time before the reset is kept as
+/// an offset, so that the stream never steps back, and a Trigger of kind timestamp_reset says where
+/// it happened.
+class DavisParser final : public Parser {
+public:
+    explicit DavisParser(const DavisSensor& sensor);
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override;
+    void finish(Batch& into) override;
+    void resync() override;
+    std::optional<SensorTime> clock() const override;
+    const Damage& damaged() const override { return damage_; }
+    const DavisStreamFacts& facts() const { return facts_; }
+
+    /// After a loss: how much host time passed since the last good bytes. Lost wrap words would
+    /// leave sensor time behind for ever, so the next timestamp is taken as the one nearest to this
+    /// guess (right while the guess is better than half a wrap, 16 ms).
+    void expect_passed(SensorDuration passed);
+
+private:
+    void parse_words(std::span<const std::byte> bytes, Batch& into);
+    void word(std::uint16_t word, Batch& into);
+    void misc8(std::uint16_t data);
+    void move_to(std::int64_t time);
+    void catch_up(std::int64_t candidate);
+    void timestamp(std::uint16_t low15);
+    void wrap(std::uint16_t multiplier);
+    void special(std::uint16_t data, Batch& into);
+    void event(std::uint16_t x, Polarity polarity, Batch& into);
+    void trigger(Trigger::Kind kind, std::uint8_t source, Batch& into);
+    void timestamp_reset(Batch& into);
+
+    DavisSensor sensor_;
+    DavisFrameAssembler frame_;
+    DavisImuAssembler imu_;
+    Damage damage_;
+    DavisStreamFacts facts_;
+    std::optional<std::byte> odd_byte_;  ///< the first half of a word cut by the end of a transfer
+    std::int64_t wrap_add_ = 0;          ///< us
+    std::int64_t time_ = 0;              ///< us
+    bool time_known_ = false;            ///< a timestamp word came since the start or the last loss
+    std::optional<std::int64_t> expected_;  ///< see expect_passed(), us
+    std::uint16_t y_ = 0;
+    bool y_known_ = false;
+};
+
+}  // namespace eventide
