@@ -152,7 +152,10 @@ void DavisParser::wrap(std::uint16_t multiplier) {
 
 void DavisParser::timestamp_reset(Batch& into) {
     ++facts_.timestamp_resets;
-    wrap_add_ = time_;  // the device counts from zero again, the stream goes on
+    // The device counts from zero again, the stream goes on (after an unplugging, by the host's
+    // clock).
+    wrap_add_ = std::max(time_, expected_.value_or(time_));
+    time_ = wrap_add_;
     time_known_ = true;
     expected_.reset();
     frame_.abandon();

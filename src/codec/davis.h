@@ -40,10 +40,9 @@ public:
     const Damage& damaged() const override { return damage_; }
     const DavisStreamFacts& facts() const { return facts_; }
 
-    /// After a loss: how much host time passed since the last good bytes. Lost wrap words would
-    /// leave sensor time behind for ever, so the next timestamp is taken as the one nearest to this
-    /// guess (right while the guess is better than half a wrap, 16 ms).
-    void expect_passed(SensorDuration passed);
+    /// Lost wrap words would leave sensor time behind for ever, so the next timestamp is taken as
+    /// the one nearest to this guess (right while the guess is better than half a wrap, 16 ms).
+    void expect_passed(SensorDuration passed) override;
 
 private:
     void parse_words(std::span<const std::byte> bytes, Batch& into);

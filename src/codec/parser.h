@@ -29,6 +29,11 @@ public:
     /// word. Counters stay.
     virtual void resync() = 0;
 
+    /// With resync() on a live source: how much host time passed since the last good bytes. A
+    /// parser whose wire format tells only part of the time finds the rest from it; others need
+    /// nothing.
+    virtual void expect_passed(SensorDuration) {}
+
     /// The newest time the stream has told, by an event or otherwise (time-high words, wraps,
     /// images, IMU): the clock that goes on while nothing moves. Empty before the first.
     virtual std::optional<SensorTime> clock() const = 0;
