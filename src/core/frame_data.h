@@ -16,6 +16,9 @@ struct Slice {
     std::span<const Event> events;
     bool gap_before = false;  ///< bytes were lost since the slice before
     HostTime arrived{};       ///< of the last packet that gave an event or moved the clock
+    /// The camera's clock was reset: a new stream begins, times may be earlier than before, and
+    /// recurrent state means nothing any more.
+    bool reset_before = false;
 };
 
 /// One event frame as numbers (reconstruction.md section 2).
@@ -28,6 +31,7 @@ struct VoxelGrid {
     std::uint64_t events = 0;
     bool gap_before = false;
     HostTime arrived{};
+    bool reset_before = false;  ///< as in Slice
 };
 
 /// What the encoder knows after one event frame, one code per sensor pixel.
@@ -36,6 +40,7 @@ struct LatentMap {
     Array3<float> values;  ///< [y][x][D]
     std::uint64_t events = 0;
     HostTime arrived{};
+    bool gap_before = false, reset_before = false;  ///< as in Slice
 };
 
 /// One rendered picture.
@@ -48,7 +53,10 @@ struct Frame {
     Array2<float> intensity;   ///< [y][x], 0 black to 1 white; may lie a little outside
     Array2<float>
         sigma;  ///< [y][x], standard deviation, in units of intensity; empty where not asked for
-    HostTime arrived{};  ///< of the last packet the frame saw; now minus this is the latency
+    HostTime arrived{};       ///< of the last packet the frame saw; now minus this is the latency
+    bool gap_before = false;  ///< bytes were lost before or in that event frame
+    Array2<float> event_preview;  ///< [y][x], sum of polarities of that event frame, sensor size;
+                                  ///< empty where not asked for
 };
 
 }  // namespace eventide

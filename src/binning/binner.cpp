@@ -1,0 +1,151 @@
+// event frame -> voxel grid.
+#include "src/binning/binner.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+namespace eventide {
+namespace {
+
+__extension__ using Wide = unsigned __int128;
+
+constexpr int kTickBits = 19;
+constexpr std::uint8_t kOldest = 8;  // where the age channel is clamped
+constexpr std::uint64_t kOn = (std::uint64_t{1} << 32) + 1, kOff = 1 - (std::uint64_t{1} << 32);
+
+/// n sum d^2 - (sum d)^2, exact before it becomes a double. It is n^2 times the variance.
+double scaled_variance(std::uint64_t n, std::uint64_t sum, std::uint64_t squares) {
+    if (n < (1U << 16) && squares < (std::uint64_t{1} << 47))  // (sum)^2 <= n squares < 2^63
+        return double(std::int64_t(n * squares - sum * sum));
+    return double(Wide{n} * squares - Wide{sum} * sum);
+}
+
+bool in_time_order(std::span<const Event> events) {
+    return std::is_sorted(events.begin(), events.end(),
+                          [](const Event& a, const Event& b) { return a.t < b.t; });
+}
+
+/// Of events in time order: how many are at most dt us after `begin`.
+std::size_t first_after(std::span<const Event> events, SensorTime begin, std::int64_t dt) {
+    const SensorTime last = begin + SensorDuration{dt};
+    const auto after = std::upper_bound(events.begin(), events.end(), last,
+                                        [](SensorTime t, const Event& e) { return t < e.t; });
+    return std::size_t(after - events.begin());
+}
+
+}  // namespace
+
+Binner::Binner(int bins, int height, int width) : bins_(bins), height_(height), width_(width) {
+    if (bins < 1 || height < 1 || width < 1)
+        throw Error(ErrorKind::usage,
+                    "voxel grid: bins, height and width must be at least 1, found " +
+                        std::to_string(bins) + ", " + std::to_string(height) + ", " +
+                        std::to_string(width));
+    const std::size_t pixels = std::size_t(height) * std::size_t(width);
+    moments_.resize(pixels);
+    touched_.resize((pixels + 63) / 64);
+    touched_in_frame_.resize(touched_.size());
+    ages_.assign(pixels, kOldest);
+}
+
+VoxelGrid Binner::make_output() const {
+    VoxelGrid grid;
+    grid.values = Array3<float>(height_, width_, 4 * bins_ + 1);
+    return grid;
+}
+
+void Binner::reset() noexcept {
+    std::fill(ages_.begin(), ages_.end(), kOldest);
+}
+
+void Binner::process(const Slice& slice, VoxelGrid& grid) noexcept {
+    assert(grid.values.height() == height_ && grid.values.width() == width_ &&
+           grid.values.channels() == 4 * bins_ + 1);
+    grid.window = slice.window;
+    grid.events = slice.events.size();
+    grid.gap_before = slice.gap_before;
+    grid.reset_before = slice.reset_before;
+    grid.arrived = slice.arrived;
+    std::fill(grid.values.values().begin(), grid.values.values().end(), 0.0F);
+
+    const std::int64_t width_us = slice.window.width().count();
+    const bool ordered = in_time_order(slice.events);
+    std::span<const Event> rest = slice.events;
+    for (int bin = 0; bin < bins_ && width_us > 0 && !rest.empty(); ++bin) {
+        const BinTicks ticks = ticks_of(bin, width_us);
+        if (ordered) {
+            const std::size_t n = first_after(rest, slice.window.begin, ticks.last_dt);
+            add(rest.first(n), slice.window.begin, ticks);
+            rest = rest.subspan(n);
+        } else {  // every bin looks at all events
+            add(rest, slice.window.begin, ticks);
+        }
+        write(bin, std::ldexp(double(width_us), -ticks.shift), grid);
+    }
+    write_ages(grid);
+}
+
+Binner::BinTicks Binner::ticks_of(int bin, std::int64_t width_us) const {
+    const std::int64_t origin = bin * width_us;
+    const int bits = int(std::bit_width(std::uint64_t(width_us)));
+    return {origin / bins_ + 1, (origin + width_us) / bins_, origin, std::max(0, bits - kTickBits)};
+}
+
+/// Sums those of the events that are in the bin.
+void Binner::add(std::span<const Event> events, SensorTime begin, const BinTicks& bin) noexcept {
+    for (const Event& event : events) {
+        const std::int64_t dt = (event.t - begin).count();
+        if (dt < bin.first_dt || dt > bin.last_dt || event.x >= width_ || event.y >= height_)
+            continue;
+        const std::size_t pixel = std::size_t(event.y) * std::size_t(width_) + event.x;
+        const std::uint64_t d = std::uint64_t(dt * bins_ - bin.origin) >> bin.shift;
+        Moments& moments = moments_[pixel];
+        moments.counts += event.polarity == Polarity::on ? kOn : kOff;
+        moments.sum += d;
+        moments.squares += d * d;
+        touched_[pixel / 64] |= std::uint64_t{1} << (pixel % 64);
+    }
+}
+
+/// The touched pixels' moments as four numbers, and all moments zero again.
+void Binner::write(int bin, double ticks_per_bin, VoxelGrid& grid) noexcept {
+    const std::size_t channels = std::size_t(grid.values.channels());
+    float* const out = grid.values.values().data() + 4 * bin;
+    for (std::size_t word = 0; word < touched_.size(); ++word) {
+        touched_in_frame_[word] |= touched_[word];
+        for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
+            const std::size_t pixel = 64 * word + std::size_t(std::countr_zero(bits));
+            Moments& moments = moments_[pixel];
+            const std::uint64_t n = moments.counts & 0xFFFF'FFFF;
+            const double scale = 1 / (double(n) * ticks_per_bin);
+            float* const values = out + pixel * channels;
+            values[0] = float(std::int32_t(moments.counts >> 32));
+            values[1] = float(double(moments.sum) * scale);
+            values[2] =
+                n < 2 ? 0.0F
+                      : float(std::sqrt(scaled_variance(n, moments.sum, moments.squares)) * scale);
+            values[3] = float(n);
+            moments = {};
+        }
+        touched_[word] = 0;
+    }
+}
+
+void Binner::write_ages(VoxelGrid& grid) noexcept {
+    const std::size_t channels = std::size_t(grid.values.channels());
+    float* out = grid.values.values().data() + channels - 1;
+    for (std::size_t pixel = 0; pixel < ages_.size(); ++pixel, out += channels) {
+        const bool touched = touched_in_frame_[pixel / 64] >> (pixel % 64) & 1;
+        const int age = touched ? 0 : std::min(ages_[pixel] + 1, int(kOldest));
+        ages_[pixel] = std::uint8_t(age);
+        *out = float(age) / float(kOldest);
+    }
+    std::fill(touched_in_frame_.begin(), touched_in_frame_.end(), 0);
+}
+
+}  // namespace eventide

@@ -1,0 +1,229 @@
+// stream of events -> event frames.
+#include "src/binning/slicer.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace eventide {
+namespace {
+
+constexpr SensorDuration kMicrosecond{1};
+
+std::uint64_t events_per_frame(const SlicerSettings& settings, int width, int height) {
+    if (settings.rule != SliceRule::count) return settings.max_events;
+    const double pixels = double(width) * double(height);
+    const std::uint64_t wanted =
+        settings.events_per_pixel > 0
+            ? std::uint64_t(std::llround(std::max(1.0, settings.events_per_pixel * pixels)))
+            : settings.events;
+    return std::min(wanted, settings.max_events);
+}
+
+void check(bool good, const char* name, std::int64_t found) {
+    if (!good)
+        throw Error(ErrorKind::usage, std::string{"event frames: "} + name +
+                                          " must be at least 1, found " + std::to_string(found));
+}
+
+}  // namespace
+
+Slicer::Slicer(const SlicerSettings& settings, int width, int height)
+    : settings_(settings),
+      step_(settings.rule == SliceRule::duration ? settings.width : settings.max_width),
+      most_events_(events_per_frame(settings, width, height)) {
+    check(step_ >= kMicrosecond, "the (maximum) width in us", step_.count());
+    check(most_events_ >= 1, "the number of events", std::int64_t(most_events_));
+    check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
+    check(width >= 1 && height >= 1, "the sensor's size", std::min(width, height));
+    reset();
+}
+
+void Slicer::reset() {
+    pending_.clear();
+    seams_.clear();
+    references_.clear();
+    head_ = 0;
+    begin_.reset();
+    newest_ = newest_event_ = SensorTime::min();
+    same_time_ = 0;
+    silent_ = 0;
+    gap_ = reset_ = finished_ = past_end_ = false;
+    first_stream_ = true;
+    if (settings_.begin) begin_at(*settings_.begin);
+}
+
+void Slicer::begin_at(SensorTime begin) {
+    begin_ = origin_ = begin;
+    newest_ = std::max(newest_, begin);
+}
+
+void Slicer::push(std::span<const Event> events, HostTime arrived) {
+    assert(!finished_);
+    drop_consumed();
+    if (!events.empty()) arrived_ = arrived;
+    for (const Event& event : events) push_one(event);
+}
+
+void Slicer::push_one(const Event& event) {
+    if (event.t < newest_event_) {  // the parser keeps order, so the camera's clock was reset
+        if (past_end_) {
+            ++counters_.after_end;
+            return;
+        }
+        ++counters_.time_resets;
+        seams_.push_back({pending_.size(), std::max(newest_, newest_event_)});
+        first_stream_ = false;
+        newest_ = newest_event_ = SensorTime::min();
+        same_time_ = 0;
+    }
+    if (first_stream_ && settings_.begin && event.t <= *settings_.begin) {
+        ++counters_.before_begin;
+        return;
+    }
+    same_time_ = event.t == newest_event_ ? same_time_ + 1 : 1;
+    newest_event_ = event.t;
+    note_time(event.t);
+    if (past_end_) {
+        ++counters_.after_end;
+        return;
+    }
+    if (same_time_ > settings_.max_events) {
+        ++counters_.too_many;
+        return;
+    }
+    if (!begin_) begin_at(event.t - kMicrosecond);
+    pending_.push_back(event);
+    if (seams_.empty() && event.t <= *begin_) {  // only after advance() promised too much
+        ++counters_.late;
+        pending_.back().t = *begin_ + kMicrosecond;
+    }
+}
+
+void Slicer::note_time(SensorTime t) {
+    if (first_stream_ && settings_.end && t > *settings_.end) {
+        past_end_ = true;
+        t = *settings_.end;
+    }
+    newest_ = std::max(newest_, t);
+}
+
+void Slicer::advance(SensorTime now, HostTime arrived) {
+    assert(!finished_);
+    if (!begin_) begin_at(now - kMicrosecond);
+    if (now <= newest_) return;
+    arrived_ = arrived;
+    note_time(now);
+}
+
+void Slicer::push_reference(SensorTime t) {
+    if (settings_.rule != SliceRule::reference) return;
+    if (begin_ && t <= *begin_) {
+        ++counters_.late_references;
+        return;
+    }
+    references_.insert(std::upper_bound(references_.begin(), references_.end(), t), t);
+}
+
+/// Slices are borrowed until the next call, so events leave only here.
+void Slicer::drop_consumed() {
+    if (head_ == 0) return;
+    pending_.erase(pending_.begin(), pending_.begin() + std::ptrdiff_t(head_));
+    for (Seam& seam : seams_) seam.index -= head_;
+    head_ = 0;
+}
+
+std::size_t Slicer::segment_end() const {
+    return seams_.empty() ? pending_.size() : seams_.front().index;
+}
+
+/// Every event at or before this time is known.
+SensorTime Slicer::passed() const {
+    if (!seams_.empty()) return seams_.front().final;
+    if (finished_ || past_end_) return newest_;
+    return newest_ - kMicrosecond;  // more events of the newest microsecond may come
+}
+
+std::optional<SensorTime> Slicer::next_reference() {
+    const auto first = std::upper_bound(references_.begin(), references_.end(), *begin_);
+    references_.erase(references_.begin(), first);
+    if (references_.empty()) return std::nullopt;
+    return references_.front();
+}
+
+SensorTime Slicer::natural_edge() const {
+    if (settings_.rule != SliceRule::duration) return *begin_ + step_;
+    return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
+}
+
+/// Whole empty frames in a long silence become one (SlicerSettings::silent_frames).
+SensorTime Slicer::stretched(SensorTime edge, SensorTime passed, SensorTime limit) const {
+    if (silent_ < settings_.silent_frames) return edge;
+    SensorTime upto = std::min(passed, limit);
+    if (head_ < segment_end()) upto = std::min(upto, pending_[head_].t - kMicrosecond);
+    return upto > edge ? edge + (upto - edge) / step_ * step_ : edge;
+}
+
+/// The end of the open frame, where it is known.
+std::optional<SensorTime> Slicer::cut() {
+    const SensorTime passed = this->passed();
+    SensorTime edge = natural_edge(), known_at = edge, limit = SensorTime::max();
+    if (settings_.rule == SliceRule::reference) {
+        if (const auto reference = next_reference()) {
+            edge = known_at = std::min(edge, *reference);
+            limit = *reference;
+        } else if (!is_ended()) {
+            known_at = edge + settings_.reference_wait;
+        }
+    }
+    edge = stretched(edge, passed - (known_at - edge), limit);
+    if (segment_end() - head_ >= most_events_) {
+        const SensorTime last = pending_[head_ + most_events_ - 1].t;
+        if (last <= edge) edge = known_at = last;
+    }
+    if (passed >= std::max(edge, known_at)) return edge;
+    if (is_ended() && *begin_ < passed) return passed;
+    return std::nullopt;
+}
+
+void Slicer::emit(SensorTime end, Slice& slice) {
+    const auto first = pending_.begin() + std::ptrdiff_t(head_);
+    const auto last =
+        std::upper_bound(first, pending_.begin() + std::ptrdiff_t(segment_end()), end,
+                         [](SensorTime t, const Event& event) { return t < event.t; });
+    slice.window = {*begin_, end};
+    slice.events = {pending_.data() + head_, std::size_t(last - first)};
+    slice.gap_before = std::exchange(gap_, false);
+    slice.reset_before = std::exchange(reset_, false);
+    slice.arrived = arrived_;
+    silent_ = slice.events.empty() ? std::min(silent_ + 1, settings_.silent_frames) : 0;
+    head_ += slice.events.size();
+    begin_ = end;
+}
+
+void Slicer::cross_seam() {
+    assert(head_ == seams_.front().index);
+    seams_.erase(seams_.begin());
+    references_.clear();
+    silent_ = 0;
+    reset_ = true;
+    begin_ = origin_ = pending_[head_].t - kMicrosecond;
+}
+
+bool Slicer::next(Slice& slice) {
+    while (begin_) {
+        if (const auto end = cut()) {
+            emit(*end, slice);
+            return true;
+        }
+        if (seams_.empty()) return false;
+        cross_seam();
+    }
+    return false;
+}
+
+}  // namespace eventide

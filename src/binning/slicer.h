@@ -1,0 +1,104 @@
+// stream of events -> event frames: consecutive windows (begin, end] without holes.
+#pragma once
+
+#include "src/binning/slicer_settings.h"
+#include "src/core/frame_data.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace eventide {
+
+/// Events taken in that are in no slice, or not at their own time; by reason.
+struct SlicerCounters {
+    std::uint64_t before_begin = 0;     ///< left out: before SlicerSettings::begin
+    std::uint64_t after_end = 0;        ///< left out: after SlicerSettings::end
+    std::uint64_t too_many = 0;         ///< left out: more than max_events in one microsecond
+    std::uint64_t late = 0;             ///< moved to the open frame's first microsecond
+    std::uint64_t late_references = 0;  ///< images before the open frame: no edge was cut there
+    std::uint64_t time_resets = 0;      ///< time went back: a new stream began
+};
+
+/// Give it what the stream says, then take slices until there is none:
+///
+///     slicer.push(events);
+///     for (Slice slice; slicer.next(slice);) ...
+///
+/// A frame is cut at T when the stream is past T. However the stream is split into calls, the
+/// slices are the same (with the exception that SlicerSettings::silent_frames states).
+///
+/// Time that goes back (events are in order, so the camera's clock was reset) ends the open frame
+/// and begins anew; that slice carries reset_before.
+class Slicer {
+public:
+    /// Sensor of width x height px. Throws Error (usage) for settings out of range.
+    Slicer(const SlicerSettings& settings, int width, int height);
+
+    /// Events in the order of the stream; `arrived` of the packet they came in.
+    void push(std::span<const Event> events, HostTime arrived = {});
+
+    /// The time of a reference image; before or after the events around it. Other rules ignore it.
+    void push_reference(SensorTime t);
+
+    /// The stream's clock says `now`: no event before it will come any more.
+    void advance(SensorTime now, HostTime arrived = {});
+
+    /// Bytes were lost here. The next slice carries gap_before.
+    void mark_gap() { gap_ = true; }
+
+    /// Nothing more will come: what is open ends at the newest time known.
+    void finish() { finished_ = true; }
+
+    /// The next complete slice, borrowed until the next call of anything here.
+    bool next(Slice& slice);
+
+    bool has_begun() const { return begin_.has_value(); }
+    bool is_past_end() const { return past_end_; }  ///< SlicerSettings::end was reached
+    const SlicerCounters& counters() const { return counters_; }
+
+    /// As constructed; counters stay.
+    void reset();
+
+private:
+    /// Where time went back: events from `index` on are a new stream; the old one ends at `final`.
+    struct Seam {
+        std::size_t index;
+        SensorTime final;
+    };
+    void push_one(const Event& event);
+    void begin_at(SensorTime begin);
+    void note_time(SensorTime t);
+    void drop_consumed();
+    bool is_ended() const { return finished_ || past_end_ || !seams_.empty(); }
+    SensorTime passed() const;
+    std::size_t segment_end() const;
+    std::optional<SensorTime> cut();
+    std::optional<SensorTime> next_reference();
+    SensorTime natural_edge() const;
+    SensorTime stretched(SensorTime edge, SensorTime passed, SensorTime limit) const;
+    void emit(SensorTime end, Slice& slice);
+    void cross_seam();
+
+    SlicerSettings settings_;
+    SensorDuration step_;        // width of a frame without events
+    std::uint64_t most_events_;  // per frame
+
+    std::vector<Event> pending_;  // from head_ on not yet in a slice
+    std::size_t head_ = 0;
+    std::vector<Seam> seams_;
+    std::vector<SensorTime> references_;  // ascending
+    std::optional<SensorTime> begin_;     // of the open frame
+    SensorTime origin_{};                 // rule duration: edges are at origin_ + k width
+    SensorTime newest_ = SensorTime::min(), newest_event_ = SensorTime::min();
+    std::uint64_t same_time_ = 0;  // events at newest_event_
+    int silent_ = 0;               // empty frames in a row
+    HostTime arrived_{};
+    bool gap_ = false, reset_ = false, finished_ = false, past_end_ = false;
+    bool first_stream_ = true;  // settings_.begin and end are times of the first stream only
+    SlicerCounters counters_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,109 @@
+// "--window": text <-> settings.
+#include "src/binning/slicer_settings.h"
+
+#include "src/core/error.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+constexpr double kUsPerDay = 24.0 * 3600.0 * 1e6;
+constexpr double kMostEvents = 1e9;
+/// Images come 5 to 50 times a second; a frame between two of them must not be cut in two.
+constexpr SensorDuration kReferenceMaxWidth{1'000'000};
+
+[[noreturn]] void refuse(std::string_view text, const std::string& why) {
+    throw Error(ErrorKind::usage,
+                "window '" + std::string{text} + "': " + why +
+                    "; expected for example 50ms, 20000ev, 0.35epp, aps, or with a maximum width "
+                    "20000ev,200ms");
+}
+
+struct Quantity {
+    double value;
+    std::string_view unit;
+};
+
+Quantity quantity(std::string_view part, std::string_view text) {
+    double value = 0;
+    const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc{} || !std::isfinite(value)) refuse(text, "no number");
+    return {value, part.substr(std::size_t(rest - part.data()))};
+}
+
+std::optional<SensorDuration> duration(Quantity q, std::string_view text) {
+    const double us_per_unit = q.unit == "us"   ? 1.0
+                               : q.unit == "ms" ? 1e3
+                               : q.unit == "s"  ? 1e6
+                                                : 0.0;
+    if (us_per_unit == 0.0) return std::nullopt;
+    const double us = std::round(q.value * us_per_unit);
+    if (us < 1 || us > kUsPerDay) refuse(text, "a width is 1 us to one day");
+    return SensorDuration{std::int64_t(us)};
+}
+
+std::string text_of(SensorDuration width) {
+    const auto us = width.count();
+    if (us % 1'000'000 == 0) return std::to_string(us / 1'000'000) + "s";
+    if (us % 1'000 == 0) return std::to_string(us / 1'000) + "ms";
+    return std::to_string(us) + "us";
+}
+
+void parse_rule(std::string_view rule, std::string_view text, SlicerSettings& settings) {
+    if (rule == "aps") {
+        settings.rule = SliceRule::reference;
+        settings.max_width = kReferenceMaxWidth;
+        return;
+    }
+    const Quantity q = quantity(rule, text);
+    if (q.unit == "ev") {
+        settings.rule = SliceRule::count;
+        if (q.value < 1 || q.value > kMostEvents || q.value != std::floor(q.value))
+            refuse(text, "a number of events is a whole number from 1 to 1e9");
+        settings.events = std::uint64_t(q.value);
+    } else if (q.unit == "epp") {
+        settings.rule = SliceRule::count;
+        if (q.value <= 0 || q.value > 1000)
+            refuse(text, "events per pixel are more than 0 and at most 1000");
+        settings.events_per_pixel = q.value;
+    } else if (const auto width = duration(q, text)) {
+        settings.rule = SliceRule::duration;
+        settings.width = *width;
+    } else {
+        refuse(text, "unknown unit '" + std::string{q.unit} + "'");
+    }
+}
+
+}  // namespace
+
+SlicerSettings parse_window(std::string_view text) {
+    SlicerSettings settings;
+    const auto comma = text.find(',');
+    parse_rule(text.substr(0, comma), text, settings);
+    if (comma == text.npos) return settings;
+    if (settings.rule == SliceRule::duration) refuse(text, "a constant width has no maximum");
+    const auto widest = duration(quantity(text.substr(comma + 1), text), text);
+    if (!widest) refuse(text, "the maximum width is a duration");
+    settings.max_width = *widest;
+    return settings;
+}
+
+std::string window_text(const SlicerSettings& settings) {
+    const std::string widest = "," + text_of(settings.max_width);
+    switch (settings.rule) {
+        case SliceRule::duration:
+            return text_of(settings.width);
+        case SliceRule::reference:
+            return "aps" + widest;
+        case SliceRule::count:
+            break;
+    }
+    if (settings.events_per_pixel <= 0) return std::to_string(settings.events) + "ev" + widest;
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, settings.events_per_pixel).ptr;
+    return std::string{digits, end} + "epp" + widest;
+}
+
+}  // namespace eventide

@@ -1,0 +1,57 @@
+// How the stream of events is cut into event frames, and the text that says so ("--window").
+#pragma once
+
+#include "src/core/sensor_time.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace eventide {
+
+enum class SliceRule : std::uint8_t {
+    duration,  ///< constant width
+    count,     ///< constant number of events, ended early at max_width
+    reference  ///< from reference image to reference image, ended early at max_width
+};
+
+struct SlicerSettings {
+    SliceRule rule = SliceRule::duration;
+    SensorDuration width{50'000};   ///< of each frame, rule duration; >= 1 us
+    std::uint64_t events = 20'000;  ///< per frame, rule count; >= 1
+    double events_per_pixel = 0;    ///< rule count: where > 0, `events` is this times the pixels
+
+    /// Rules count and reference: no frame is wider, so that a still scene ends its frames too.
+    SensorDuration max_width{100'000};
+
+    /// Rule reference: where no image is known, a frame ends at max_width only when the stream is
+    /// this much further, because images come after the events around their time (a DAVIS sends
+    /// one when it is read out, files store it in a later packet).
+    SensorDuration reference_wait{1'000'000};
+
+    /// All rules: a frame ends early after so many events, which bounds memory (16 bytes each).
+    /// Events of the same microsecond stay together; past so many of one microsecond the rest are
+    /// left out and counted.
+    std::uint64_t max_events = std::uint64_t{1} << 24;
+
+    /// After so many empty frames in a row, the rest of a silence that is known to be over (or has
+    /// passed at one step) comes as one wide empty frame: a jump of hours gives a handful of
+    /// frames. By then every input of the network has stopped changing.
+    int silent_frames = 16;
+
+    /// The first frame's begin: earlier events are left out. Empty: 1 us before the first event or
+    /// clock, so that the first event is inside.
+    std::optional<SensorTime> begin;
+    /// Later events are left out and the last frame ends here. Empty: at the stream's end.
+    std::optional<SensorTime> end;
+};
+
+/// "50ms", "20000ev", "0.35epp" (events per pixel) or "aps" (reference images); durations in us,
+/// ms or s; after a comma the maximum width: "20000ev,200ms". Throws Error (usage).
+SlicerSettings parse_window(std::string_view text);
+
+/// What parse_window() reads back.
+std::string window_text(const SlicerSettings& settings);
+
+}  // namespace eventide
