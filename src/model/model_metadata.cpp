@@ -1,0 +1,204 @@
+// One table says which keys there are, how each is written, and what it may be.
+#include "src/model/model_metadata.h"
+
+#include "src/core/error.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+[[noreturn]] void refuse(const std::string& file, const std::string& key,
+                         const std::string& expected, const std::string& found) {
+    throw Error(ErrorKind::input, file + ": metadata '" + key + "': expected " + expected +
+                                      ", found '" + found + "'");
+}
+
+/// The whole text as a number, or nothing of it.
+template <typename T>
+bool parse_number(const std::string& text, T& value) {
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc{} && stop == end;
+}
+
+bool parse_list(const std::string& text, std::vector<int>& values) {
+    values.clear();
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        int value = 0;
+        if (!parse_number(text.substr(at, comma - at), value)) return false;
+        values.push_back(value);
+        at = comma + 1;
+    }
+    return true;
+}
+
+std::string list_text(const std::vector<int>& values) {
+    std::string text;
+    for (const int value : values) text += (text.empty() ? "" : ",") + std::to_string(value);
+    return text;
+}
+
+std::string number_text(float value) {
+    std::array<char, 32> buffer{};
+    return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+struct Key {
+    std::string name, expected;
+    std::function<std::string(const ModelConfig&)> format;
+    std::function<bool(const std::string&, ModelConfig&)> parse;
+};
+
+Key whole_number(const char* name, int ModelConfig::*member) {
+    return {name, "a whole number",
+            [=](const ModelConfig& config) { return std::to_string(config.*member); },
+            [=](const std::string& text, ModelConfig& config) {
+                return parse_number(text, config.*member);
+            }};
+}
+
+Key number(const char* name, float ModelConfig::*member) {
+    return {name, "a finite number",
+            [=](const ModelConfig& config) { return number_text(config.*member); },
+            [=](const std::string& text, ModelConfig& config) {
+                return parse_number(text, config.*member) && std::isfinite(config.*member);
+            }};
+}
+
+Key list(const char* name, std::vector<int> ModelConfig::*member) {
+    return {name, "whole numbers with commas",
+            [=](const ModelConfig& config) { return list_text(config.*member); },
+            [=](const std::string& text, ModelConfig& config) {
+                return parse_list(text, config.*member);
+            }};
+}
+
+Key text(const char* name, std::string ModelConfig::*member) {
+    return {name, "text", [=](const ModelConfig& config) { return config.*member; },
+            [=](const std::string& value, ModelConfig& config) {
+                config.*member = value;
+                return true;
+            }};
+}
+
+Key constant(const char* name, const char* value) {
+    return {name, value, [=](const ModelConfig&) { return std::string{value}; },
+            [=](const std::string& found, ModelConfig&) { return found == value; }};
+}
+
+/// One of two words.
+template <typename Enum>
+Key choice(const char* name, Enum ModelConfig::*member, std::array<Enum, 2> values,
+           std::array<std::string, 2> words) {
+    return {name, words[0] + " or " + words[1],
+            [=](const ModelConfig& config) { return words[config.*member == values[1]]; },
+            [=](const std::string& word, ModelConfig& config) {
+                config.*member = values[word == words[1]];
+                return word == words[0] || word == words[1];
+            }};
+}
+
+const std::vector<Key>& keys() {
+    static const std::vector<Key> kKeys{
+        constant("format", "eventide-model"),
+        constant("version", "1"),
+        choice("encoder", &ModelConfig::encoder, {EncoderKind::gated, EncoderKind::thesis},
+               {"gated", "thesis"}),
+        whole_number("bins", &ModelConfig::bins),
+        list("widths", &ModelConfig::widths),
+        list("recurrent", &ModelConfig::recurrent),
+        whole_number("res_blocks", &ModelConfig::res_blocks),
+        whole_number("gate_radius", &ModelConfig::gate_radius),
+        whole_number("latent", &ModelConfig::latent),
+        whole_number("latent_stride", &ModelConfig::latent_stride),
+        list("mlp", &ModelConfig::mlp),
+        list("lookaheads", &ModelConfig::lookaheads),
+        number("log_sigma_min", &ModelConfig::log_sigma_min),
+        number("log_sigma_max", &ModelConfig::log_sigma_max),
+        number("sigma_scale", &ModelConfig::sigma_scale),
+        choice("sigma_rule", &ModelConfig::sigma_rule, {SigmaRule::log_blend, SigmaRule::mixture},
+               {"log_blend", "mixture"}),
+        text("window", &ModelConfig::window),
+        text("card", &ModelConfig::card),
+    };
+    return kKeys;
+}
+
+/// Limits far beyond any network that makes sense, so that a damaged file cannot ask for the moon.
+constexpr int kMaxWidth = 1024, kMaxLevels = 8, kMaxBins = 64, kMaxLayers = 16, kMaxRadius = 64;
+
+void check_range(const std::string& file, const char* key, int value, int low, int high) {
+    if (value < low || value > high)
+        refuse(file, key, std::to_string(low) + " to " + std::to_string(high),
+               std::to_string(value));
+}
+
+void check_list(const std::string& file, const char* key, const std::vector<int>& values,
+                int max_length, int low, int high) {
+    if (values.empty() || int(values.size()) > max_length)
+        refuse(file, key, "1 to " + std::to_string(max_length) + " numbers", list_text(values));
+    for (const int value : values) check_range(file, key, value, low, high);
+}
+
+}  // namespace
+
+std::map<std::string, std::string> format_metadata(const ModelConfig& config) {
+    std::map<std::string, std::string> metadata;
+    for (const Key& key : keys()) metadata[key.name] = key.format(config);
+    return metadata;
+}
+
+ModelConfig parse_metadata(const std::map<std::string, std::string>& metadata,
+                           const std::string& file) {
+    ModelConfig config;
+    for (const Key& key : keys()) {
+        const auto found = metadata.find(key.name);
+        if (found == metadata.end())
+            throw Error(ErrorKind::input, file + ": metadata '" + key.name +
+                                              "' is missing: not a model file of this project");
+        if (!key.parse(found->second, config)) refuse(file, key.name, key.expected, found->second);
+    }
+    for (const auto& [name, value] : metadata) {
+        bool known = false;
+        for (const Key& key : keys()) known = known || key.name == name;
+        if (!known) refuse(file, name, "no such key", value);
+    }
+    check_config(config, file);
+    return config;
+}
+
+void check_config(const ModelConfig& config, const std::string& file) {
+    check_range(file, "bins", config.bins, 1, kMaxBins);
+    check_list(file, "widths", config.widths, kMaxLevels, 1, kMaxWidth);
+    check_list(file, "recurrent", config.recurrent, kMaxLevels, 0, 1);
+    check_range(file, "res_blocks", config.res_blocks, 0, kMaxLayers);
+    check_range(file, "gate_radius", config.gate_radius, 0, kMaxRadius);
+    check_range(file, "latent", config.latent, 1, kMaxWidth);
+    check_range(file, "latent_stride", config.latent_stride, 1, 2);
+    check_list(file, "mlp", config.mlp, kMaxLayers, 1, kMaxWidth);
+    check_list(file, "lookaheads", config.lookaheads, 3, 0, 2);
+    if (config.log_sigma_min > config.log_sigma_max)
+        refuse(file, "log_sigma_min", "at most log_sigma_max", number_text(config.log_sigma_min));
+    if (!(config.sigma_scale > 0))
+        refuse(file, "sigma_scale", "a number above 0", number_text(config.sigma_scale));
+    if (config.encoder == EncoderKind::thesis) {
+        if (config.levels() != 1)
+            refuse(file, "widths", "one width for the thesis encoder", list_text(config.widths));
+        if (config.latent_stride != 1)
+            refuse(file, "latent_stride", "1 for the thesis encoder", "2");
+        return;
+    }
+    if (config.recurrent.size() != config.widths.size())
+        refuse(file, "recurrent", std::to_string(config.levels()) + " numbers, as many as widths",
+               list_text(config.recurrent));
+    if (config.levels() < config.latent_stride)
+        refuse(file, "latent_stride", "a level of that resolution in widths", "2");
+}
+
+}  // namespace eventide

@@ -1,0 +1,51 @@
+// Named blocks of float numbers in a safetensors file: read with every bound checked, and written.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+/// Row-major: the last index of `shape` is contiguous. An empty shape is a single number.
+struct Tensor {
+    std::vector<std::int64_t> shape;
+    std::vector<float> values;  ///< as many as the product of `shape`
+
+    friend bool operator==(const Tensor&, const Tensor&) = default;
+};
+
+using Tensors = std::map<std::string, Tensor>;
+
+struct TensorFile {
+    std::map<std::string, std::string> metadata;
+    Tensors tensors;
+
+    friend bool operator==(const TensorFile&, const TensorFile&) = default;
+};
+
+/// How many numbers a shape holds; throws Error(input) where that is negative or overflows.
+std::size_t element_count(std::span<const std::int64_t> shape);
+
+/// "[16, 21, 3, 3]"
+std::string shape_text(std::span<const std::int64_t> shape);
+
+/// The file's bytes as tensors. `name` stands for the file in messages. Throws Error(input) where
+/// the bytes are not a whole safetensors file of finite float32 tensors; the message names the
+/// tensor. Never reads outside `bytes` nor allocates more than a small multiple of their number.
+TensorFile parse_safetensors(std::span<const std::byte> bytes, const std::string& name);
+
+/// As parse_safetensors, from a file.
+TensorFile read_safetensors(const std::filesystem::path& path);
+
+std::vector<std::byte> format_safetensors(const TensorFile& file);
+
+/// Writes beside `path` first and renames, so that no reader ever sees half a file. Throws
+/// Error(failed) where it cannot be written.
+void write_safetensors(const std::filesystem::path& path, const TensorFile& file);
+
+}  // namespace eventide
