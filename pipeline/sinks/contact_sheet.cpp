@@ -1,0 +1,122 @@
+// One picture of a whole run: rows of events, intensity, sigma and truth.
+#include "pipeline/sinks/contact_sheet.h"
+
+#include "pipeline/sinks/new_file.h"
+#include "src/core/error.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+namespace eventide {
+
+namespace {
+
+constexpr int kGap = 4, kCaption = 22;  // px
+const cv::Scalar kPaper{255, 255, 255}, kInk{40, 40, 40};
+
+/// As colour, at the given size; nearest neighbour keeps single events visible.
+cv::Mat fitted(const cv::Mat& picture, cv::Size size) {
+    cv::Mat coloured = picture, scaled;
+    if (picture.channels() == 1) cv::cvtColor(picture, coloured, cv::COLOR_GRAY2BGR);
+    cv::resize(coloured, scaled, size, 0, 0, cv::INTER_NEAREST);
+    return scaled;
+}
+
+void caption(cv::Mat& sheet, const std::string& text, int x, int y) {
+    cv::putText(sheet, text, {x + 2, y + 16}, cv::FONT_HERSHEY_SIMPLEX, 0.5, kInk, 1, cv::LINE_AA);
+}
+
+}  // namespace
+
+ContactSheetSink::ContactSheetSink(ContactSheetSettings settings) : settings_{std::move(settings)} {
+    refuse_existing(settings_.path, settings_.overwrite);
+    if (!cv::haveImageWriter(settings_.path.string()))
+        throw Error(ErrorKind::usage, settings_.path.string() +
+                                          ": expected the name of a picture, such as sheet.png");
+}
+
+void ContactSheetSink::write(const Frame& frame) {
+    if (frames_ == 0) first_ = frame.t;
+    if (frames_++ % stride_ != 0) return;
+    kept_.push_back(row_of(frame));
+    if (kept_.size() > 4 * std::size_t(settings_.rows)) drop_every_other();
+}
+
+void ContactSheetSink::drop_every_other() {
+    for (std::size_t i = 0; 2 * i < kept_.size(); ++i) std::swap(kept_[i], kept_[2 * i]);
+    kept_.resize((kept_.size() + 1) / 2);
+    stride_ *= 2;
+}
+
+ContactSheetSink::Row ContactSheetSink::row_of(const Frame& frame) const {
+    const cv::Size size{frame.intensity.width(), frame.intensity.height()};
+    Row row;
+    row.seconds = std::chrono::duration<double>(frame.t - first_).count();
+    cv::Mat picture;
+    draw(frame, Uncertainty::none, 1.0f, picture);
+    row.intensity = fitted(picture, size);
+    if (!frame.sigma.empty()) {
+        draw_sigma(frame, settings_.sigma_white, picture);
+        row.sigma = fitted(picture, size);
+    }
+    if (settings_.draw_events) {
+        settings_.draw_events(frame, picture);
+        row.events = fitted(picture, size);
+    }
+    if (settings_.draw_truth) {
+        cv::Mat truth;
+        settings_.draw_truth(frame, truth);
+        if (!truth.empty()) row.truth = fitted(truth, size);
+    }
+    return row;
+}
+
+cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
+    using Column = std::pair<const char*, cv::Mat Row::*>;
+    std::vector<Column> columns;
+    for (const Column& column : {Column{"events", &Row::events},
+                                 {"intensity", &Row::intensity},
+                                 {"sigma", &Row::sigma},
+                                 {"truth", &Row::truth}})
+        for (const Row& row : rows)
+            if (!(row.*column.second).empty()) {
+                columns.push_back(column);
+                break;
+            }
+    const cv::Size cell = rows.front().intensity.size();
+    const int width = int(columns.size()) * (cell.width + kGap) + kGap;
+    const int height = kCaption + int(rows.size()) * (cell.height + kCaption);
+    cv::Mat sheet(height, width, CV_8UC3, kPaper);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const int x = kGap + int(c) * (cell.width + kGap);
+        caption(sheet, columns[c].first, x, 0);
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            const int y = kCaption + int(r) * (cell.height + kCaption);
+            const cv::Mat& picture = rows[r].*columns[c].second;
+            if (!picture.empty()) picture.copyTo(sheet(cv::Rect({x, y}, cell)));
+            char text[32];
+            std::snprintf(text, sizeof text, "%.3f s", rows[r].seconds);
+            if (c == 0) caption(sheet, text, x, y + cell.height);
+        }
+    }
+    return sheet;
+}
+
+void ContactSheetSink::close() {
+    if (std::exchange(closed_, true) || kept_.empty()) return;
+    const std::size_t count = std::min(kept_.size(), std::size_t(settings_.rows));
+    std::vector<Row> rows;
+    // Middles of equal parts: the first frames, before the network has seen much, do not stand for
+    // the run.
+    for (std::size_t i = 0; i < count; ++i)
+        rows.push_back(kept_[(2 * i + 1) * kept_.size() / (2 * count)]);
+    if (!cv::imwrite(settings_.path.string(), lay_out(rows)))
+        throw Error(ErrorKind::failed, settings_.path.string() + ": cannot be written");
+}
+
+}  // namespace eventide

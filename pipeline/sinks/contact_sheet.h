@@ -1,0 +1,52 @@
+// One picture of a whole run: rows of events, intensity, sigma and truth.
+#pragma once
+
+#include "pipeline/sink.h"
+#include "pipeline/sinks/picture.h"
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace eventide {
+
+struct ContactSheetSettings {
+    std::filesystem::path path;  ///< .png or whatever else OpenCV writes
+    bool overwrite = false;
+    float sigma_white = kSigmaWhite;
+    int rows = 4;  ///< frames on the sheet, >= 1
+    /// Draws the events of a frame's window, CV_8UC3; may be empty: then the column is left out.
+    std::function<void(const Frame&, cv::Mat&)> draw_events;
+    /// Draws the reference image of a frame, CV_8UC1, or leaves the picture empty where there is
+    /// none; may be empty.
+    std::function<void(const Frame&, cv::Mat&)> draw_truth;
+};
+
+/// Spreads its rows evenly over the run, whose length it does not know: it keeps every 2^n-th frame
+/// and forgets every other one when there are too many. Written at close.
+class ContactSheetSink : public Sink {
+public:
+    /// Throws Error (usage) for an existing file without overwrite.
+    explicit ContactSheetSink(ContactSheetSettings settings);
+
+    void write(const Frame& frame) override;
+    void close() override;
+
+private:
+    /// One frame's pictures, all of one size, CV_8UC3; an empty one where there is nothing to show.
+    struct Row {
+        double seconds = 0;
+        cv::Mat events, intensity, sigma, truth;
+    };
+    Row row_of(const Frame& frame) const;
+    void drop_every_other();
+    cv::Mat lay_out(const std::vector<Row>& rows) const;
+
+    ContactSheetSettings settings_;
+    std::vector<Row> kept_;
+    std::uint64_t frames_ = 0, stride_ = 1;
+    SensorTime first_{};
+    bool closed_ = false;
+};
+
+}  // namespace eventide

@@ -1,0 +1,55 @@
+// Frames as PNG and sigma as float TIFF in a folder, with their times beside them.
+#pragma once
+
+#include "pipeline/sink.h"
+#include "pipeline/sinks/picture.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+
+namespace eventide {
+
+struct FolderSettings {
+    std::filesystem::path path;
+    bool overwrite = false;  ///< a folder that holds something is refused, or its old run removed
+    /// none leaves out the TIFFs; side, alpha and overlay change the PNGs and keep the TIFFs.
+    Uncertainty uncertainty = Uncertainty::automatic;
+    float sigma_white = kSigmaWhite;
+    /// Packets lost until now, for the column `lost`; may be empty. Any thread.
+    std::function<std::uint64_t()> lost;
+    /// The text of run.json, asked for once, at close; may be empty.
+    std::function<std::string()> run_json;
+};
+
+/// Writes
+///   frames/frame_%010d.png        8 bit; numbered by this sink from 0, without holes
+///   uncertainty/unc_%010d.tiff    sigma, float32, in units of intensity, exact
+///   timestamps.txt                seconds of each frame, one a line, as E2VID writes it
+///   timestamps.csv                frame, index, t_us, window_begin_us, window_end_us, events,
+///   lost;
+///                                 a jump of `index` is a skipped frame
+///   run.json                      at close
+/// What is written is complete after each frame: a killed run loses at most the frame in work.
+class FolderSink : public Sink {
+public:
+    /// Makes the folder. Throws Error (usage) when it holds something and overwrite is not set,
+    /// (failed) when it cannot be made.
+    explicit FolderSink(FolderSettings settings);
+
+    void write(const Frame& frame) override;
+    void close() override;
+
+private:
+    void write_times(const Frame& frame);
+
+    FolderSettings settings_;
+    std::ofstream seconds_, table_;
+    cv::Mat picture_;
+    std::uint64_t frames_ = 0;
+    bool closed_ = false;
+};
+
+}  // namespace eventide

@@ -1,0 +1,117 @@
+// Floats to bytes, and the four ways of showing sigma in one picture.
+#include "pipeline/sinks/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace eventide {
+
+namespace {
+
+/// Written so that NaN compares false and ends at 0, and so that compilers turn it into vectors.
+template <typename T>
+void quantise(std::span<const float> values, float white, std::span<T> into, float top) {
+    const float scale = top / white;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float scaled = values[i] * scale;
+        const float low = scaled > 0.0f ? scaled : 0.0f;
+        const float clamped = low < top ? low : top;
+        into[i] = T(clamped + 0.5f);
+    }
+}
+
+std::span<std::uint8_t> row_of(cv::Mat& picture, int y) {
+    return {picture.ptr<std::uint8_t>(y), std::size_t(picture.cols) * picture.elemSize()};
+}
+
+/// sigma of one row as 0..255; zeros where the frame has none.
+void sigma_row(const Frame& frame, int y, float white, std::span<std::uint8_t> into) {
+    if (frame.sigma.empty())
+        std::ranges::fill(into, std::uint8_t{0});
+    else
+        to_grey8(frame.sigma.row(y), white, into);
+}
+
+/// a b / 255, rounded.
+std::uint8_t scaled(int a, int b) {
+    return std::uint8_t((a * b + 127) / 255);
+}
+
+void draw_overlay(const Frame& frame, float white, cv::Mat& picture) {
+    const int width = frame.intensity.width();
+    std::vector<std::uint8_t> grey(std::size_t(width), 0), doubt(std::size_t(width), 0);
+    for (int y = 0; y < frame.intensity.height(); ++y) {
+        to_grey8(frame.intensity.row(y), 1.0f, grey);
+        sigma_row(frame, y, white, doubt);
+        const auto row = row_of(picture, y);
+        for (std::size_t x = 0; x < grey.size(); ++x) {
+            const std::uint8_t kept = scaled(grey[x], 255 - doubt[x]);
+            row[3 * x] = row[3 * x + 1] = kept;
+            row[3 * x + 2] = std::uint8_t(kept + doubt[x]);
+        }
+    }
+}
+
+void draw_alpha(const Frame& frame, float white, cv::Mat& picture) {
+    const int width = frame.intensity.width();
+    std::vector<std::uint8_t> grey(std::size_t(width), 0), doubt(std::size_t(width), 0);
+    for (int y = 0; y < frame.intensity.height(); ++y) {
+        to_grey8(frame.intensity.row(y), 1.0f, grey);
+        sigma_row(frame, y, white, doubt);
+        const auto row = row_of(picture, y);
+        for (std::size_t x = 0; x < grey.size(); ++x) {
+            row[4 * x] = row[4 * x + 1] = row[4 * x + 2] = grey[x];
+            row[4 * x + 3] = std::uint8_t(255 - doubt[x]);
+        }
+    }
+}
+
+}  // namespace
+
+std::string_view name_of(Uncertainty uncertainty) {
+    constexpr std::array<std::string_view, 6> kNames{"auto", "none",  "separate",
+                                                     "side", "alpha", "overlay"};
+    return kNames[std::size_t(uncertainty)];
+}
+
+void to_grey8(std::span<const float> values, float white, std::span<std::uint8_t> into) {
+    quantise(values, white, into, 255.0f);
+}
+
+void to_grey16(std::span<const float> values, float white, std::span<std::uint16_t> into) {
+    quantise(values, white, into, 65535.0f);
+}
+
+void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& picture) {
+    const int height = frame.intensity.height(), width = frame.intensity.width();
+    switch (how) {
+        case Uncertainty::overlay:
+            picture.create(height, width, CV_8UC3);
+            return draw_overlay(frame, sigma_white, picture);
+        case Uncertainty::alpha:
+            picture.create(height, width, CV_8UC4);
+            return draw_alpha(frame, sigma_white, picture);
+        case Uncertainty::side:
+            picture.create(height, 2 * width, CV_8UC1);
+            for (int y = 0; y < height; ++y) {
+                const auto row = row_of(picture, y);
+                to_grey8(frame.intensity.row(y), 1.0f, row.first(std::size_t(width)));
+                sigma_row(frame, y, sigma_white, row.last(std::size_t(width)));
+            }
+            return;
+        case Uncertainty::automatic:
+        case Uncertainty::none:
+        case Uncertainty::separate:
+            picture.create(height, width, CV_8UC1);
+            for (int y = 0; y < height; ++y)
+                to_grey8(frame.intensity.row(y), 1.0f, row_of(picture, y));
+    }
+}
+
+void draw_sigma(const Frame& frame, float sigma_white, cv::Mat& picture) {
+    picture.create(frame.intensity.height(), frame.intensity.width(), CV_8UC1);
+    for (int y = 0; y < picture.rows; ++y) sigma_row(frame, y, sigma_white, row_of(picture, y));
+}
+
+}  // namespace eventide

@@ -1,0 +1,55 @@
+// Frames as H.264 in MP4 or Matroska, each with its own exact time.
+#pragma once
+
+#include "pipeline/sink.h"
+#include "pipeline/sinks/picture.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace eventide {
+
+class VideoFile;
+
+struct VideoSettings {
+    std::filesystem::path path;  ///< .mp4 or .mkv
+    bool overwrite = false;      ///< an existing file that is not empty is refused without
+    /// separate writes a second file, x.sigma.mp4; alpha is refused, H.264 has none.
+    Uncertainty uncertainty = Uncertainty::automatic;
+    float sigma_white = kSigmaWhite;
+    std::string preset = "veryfast";  ///< x264's
+    int crf = 18;                     ///< 0 lossless to 51 worst; 18 looks lossless
+    double fps = 30;  ///< nominal, > 0: for the last frame's length and players' displays
+};
+
+/// Time stamps are the frames' sensor times minus the first one's, in microseconds (time base
+/// 1/10^6; Matroska rounds them to 1 ms). Should sensor time go back, the frame follows the one
+/// before after 1/fps, and so do the next ones.
+///
+/// MP4 is written in fragments of 30 frames, so that a killed run leaves a file that plays
+/// up to the last fragment. H.264 with 4:2:0 chroma needs even sizes: an odd row or column is added
+/// by repeating the last.
+class VideoSink : public Sink {
+public:
+    /// Creates the file. Throws Error (usage) for what the sink cannot do, (failed) when the file
+    /// or the encoder cannot be opened.
+    explicit VideoSink(VideoSettings settings);
+    ~VideoSink() override;
+
+    void write(const Frame& frame) override;
+    /// A file without a frame would not be a video: it is removed.
+    void close() override;
+
+private:
+    std::int64_t microseconds_after_first(SensorTime t);
+
+    VideoSettings settings_;
+    cv::Mat picture_;
+    std::unique_ptr<VideoFile> intensity_, sigma_;
+    SensorTime origin_{};        // shown at 0
+    std::int64_t last_us_ = -1;  // of the frame before; -1 before the first
+};
+
+}  // namespace eventide

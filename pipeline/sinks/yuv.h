@@ -1,0 +1,33 @@
+// 8-bit pictures as Y, U and V planes with 4:2:0 chroma (BT.709): what H.264 players and Y4M
+// readers take.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace eventide {
+
+/// One plane of bytes; rows are `stride` bytes apart.
+struct Plane {
+    std::uint8_t* data = nullptr;
+    std::ptrdiff_t stride = 0;
+};
+
+enum class YuvRange {
+    full,    ///< black 0, white 255: grey values stay as they are
+    limited  ///< black 16, white 235: what players assume of video files
+};
+
+/// The next even number: 4:2:0 has no half pixels.
+constexpr int even(int size) {
+    return size + (size & 1);
+}
+
+/// `picture` is CV_8UC1 or CV_8UC3 (BGR). The Y plane is even(cols) x even(rows), U and V half of
+/// that in both directions; an added column or row repeats the last.
+void to_yuv420(const cv::Mat& picture, YuvRange range, const std::array<Plane, 3>& planes);
+
+}  // namespace eventide
