@@ -160,32 +160,36 @@ SensorTime Slicer::natural_edge() const {
     return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
 }
 
-/// Whole empty frames in a long silence become one (SlicerSettings::silent_frames).
+/// Whole empty frames in a long silence become one (SlicerSettings::silent_frames). Where the
+/// silence has ended in an event, that alone says how far, whatever else is known by now.
 SensorTime Slicer::stretched(SensorTime edge, SensorTime passed, SensorTime limit) const {
     if (silent_ < settings_.silent_frames) return edge;
-    SensorTime upto = std::min(passed, limit);
-    if (head_ < segment_end()) upto = std::min(upto, pending_[head_].t - kMicrosecond);
+    const SensorTime silent_upto =
+        head_ < segment_end() ? pending_[head_].t - kMicrosecond : passed;
+    const SensorTime upto = std::min(silent_upto, limit);
     return upto > edge ? edge + (upto - edge) / step_ * step_ : edge;
 }
 
 /// The end of the open frame, where it is known.
 std::optional<SensorTime> Slicer::cut() {
     const SensorTime passed = this->passed();
-    SensorTime edge = natural_edge(), known_at = edge, limit = SensorTime::max();
+    SensorTime edge = natural_edge(), limit = SensorTime::max();
+    SensorDuration wait{0};
     if (settings_.rule == SliceRule::reference) {
-        if (const auto reference = next_reference()) {
-            edge = known_at = std::min(edge, *reference);
-            limit = *reference;
-        } else if (!is_ended()) {
-            known_at = edge + settings_.reference_wait;
-        }
+        if (const auto reference = next_reference())
+            edge = std::min(edge, limit = *reference);
+        else if (!is_ended())
+            wait = settings_.reference_wait;
     }
-    edge = stretched(edge, passed - (known_at - edge), limit);
+    edge = stretched(edge, passed - wait, limit);
     if (segment_end() - head_ >= most_events_) {
         const SensorTime last = pending_[head_ + most_events_ - 1].t;
-        if (last <= edge) edge = known_at = last;
+        if (last <= edge) {
+            edge = last;
+            wait = SensorDuration{0};
+        }
     }
-    if (passed >= std::max(edge, known_at)) return edge;
+    if (passed - wait >= edge) return edge;
     if (is_ended() && *begin_ < passed) return passed;
     return std::nullopt;
 }

@@ -1,0 +1,84 @@
+// Speed of slicing and binning on one core, whole-grid finalisation included.
+#include "src/binning/binner.h"
+#include "src/binning/slicer.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace eventide;
+
+constexpr std::int64_t kWidth_us = 50'000;
+
+/// Events as a camera gives them: three quarters along moving edges, the rest anywhere.
+std::vector<Event> moving_edges(int width, int height, std::size_t n, std::int64_t begin_us) {
+    std::mt19937 rng{7};
+    std::vector<Event> events(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double phase = double(i) / double(n);
+        Event& event = events[i];
+        event.t = from_us(begin_us + 1 + std::int64_t(phase * double(kWidth_us - 1)));
+        event.x = std::uint16_t(rng() % unsigned(width));
+        event.y = std::uint16_t(rng() % unsigned(height));
+        if (rng() % 4 != 0) {
+            const double edge = width * (double(rng() % 8) / 8 + 0.05 * phase) + event.y * 0.3;
+            event.x = std::uint16_t(std::fmod(edge + double(rng() % 3), width));
+        }
+        event.polarity = rng() % 2 == 0 ? Polarity::on : Polarity::off;
+    }
+    return events;
+}
+
+void bin(benchmark::State& state, int width, int height) {
+    const int bins = int(state.range(0));
+    const auto n = std::size_t(state.range(1));
+    const auto events = moving_edges(width, height, n, 1'700'000'000'000'000);
+    const Slice slice{{from_us(1'700'000'000'000'000), from_us(1'700'000'000'000'000 + kWidth_us)},
+                      events};
+    Binner binner(bins, height, width);
+    // As in the line: a few grids in turn, so that the one written is not the one just read.
+    std::vector<VoxelGrid> grids{binner.make_output(), binner.make_output(), binner.make_output()};
+    std::size_t turn = 0;
+    for (auto _ : state) {
+        binner.process(slice, grids[turn++ % grids.size()]);
+        benchmark::ClobberMemory();
+    }
+    state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(n));
+}
+
+void BM_bin_240x180(benchmark::State& state) {
+    bin(state, 240, 180);
+}
+void BM_bin_1280x720(benchmark::State& state) {
+    bin(state, 1280, 720);
+}
+BENCHMARK(BM_bin_240x180)
+    ->ArgsProduct({{2, 5}, {50'000, 200'000, 500'000, 2'000'000}})
+    ->ArgNames({"B", "events"});
+BENCHMARK(BM_bin_1280x720)->ArgsProduct({{2, 5}, {200'000, 2'000'000}})->ArgNames({"B", "events"});
+
+void slice(benchmark::State& state, SliceRule rule) {
+    const auto events = moving_edges(240, 180, 500'000, 0);
+    constexpr std::size_t kPacket = 4096;  // events of one read
+    SlicerSettings settings;
+    settings.rule = rule;
+    settings.width = SensorDuration{10'000};
+    Slicer slicer(settings, 240, 180);
+    for (auto _ : state) {
+        slicer.reset();
+        for (std::size_t i = 0; i < events.size(); i += kPacket) {
+            slicer.push({events.data() + i, std::min(kPacket, events.size() - i)});
+            for (Slice slice; slicer.next(slice);) benchmark::DoNotOptimize(slice.events.size());
+        }
+    }
+    state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(events.size()));
+}
+BENCHMARK_CAPTURE(slice, duration, SliceRule::duration);
+BENCHMARK_CAPTURE(slice, count, SliceRule::count);
+
+}  // namespace

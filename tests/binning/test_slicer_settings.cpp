@@ -1,0 +1,58 @@
+// What --window takes.
+#include "src/binning/slicer_settings.h"
+#include "src/core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace eventide {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(WindowText, NamesADuration) {
+    EXPECT_EQ(parse_window("50ms").rule, SliceRule::duration);
+    EXPECT_EQ(parse_window("50ms").width, 50ms);
+    EXPECT_EQ(parse_window("0.5s").width, 500ms);
+    EXPECT_EQ(parse_window("33333us").width, SensorDuration{33'333});
+    EXPECT_EQ(parse_window("16.667ms").width, SensorDuration{16'667});
+}
+
+TEST(WindowText, NamesANumberOfEvents) {
+    const SlicerSettings count = parse_window("20000ev");
+    EXPECT_EQ(count.rule, SliceRule::count);
+    EXPECT_EQ(count.events, 20'000U);
+    EXPECT_EQ(count.max_width, 100ms);
+    EXPECT_EQ(parse_window("1ev,200ms").max_width, 200ms);
+    EXPECT_EQ(parse_window("0.35epp").rule, SliceRule::count);
+    EXPECT_EQ(parse_window("0.35epp").events_per_pixel, 0.35);
+}
+
+TEST(WindowText, NamesReferenceImages) {
+    EXPECT_EQ(parse_window("aps").rule, SliceRule::reference);
+    EXPECT_EQ(parse_window("aps").max_width, 1s);
+    EXPECT_EQ(parse_window("aps,2s").max_width, 2s);
+}
+
+TEST(WindowText, IsReadBackAsItWasWritten) {
+    for (const std::string text : {"50ms", "7us", "2s", "20000ev,100ms", "0.35epp,333us", "aps,1s"})
+        EXPECT_EQ(window_text(parse_window(text)), text);
+}
+
+TEST(WindowText, RefusesByName) {
+    for (const std::string text :
+         {"",      "50",    "ms",    "50 ms",      "-5ms",     "0ms",        "0.2us",
+          "1e9s",  "nanms", "infms", "1.5ev",      "0ev",      "2e9ev",      "0epp",
+          "-1epp", "50mss", "aps ",  "50ms,100ms", "20000ev,", "20000ev,5ev"})
+        try {
+            parse_window(text);
+            ADD_FAILURE() << "took '" << text << "'";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_NE(std::string{error.what()}.find("'" + text + "'"), std::string::npos);
+        }
+}
+
+}  // namespace
+}  // namespace eventide
