@@ -1,0 +1,190 @@
+// Zip (PKWARE APPNOTE 6.3, sections 4.3.7, 4.3.12, 4.3.16) around .npy (NumPy format 1 to 3).
+#include "src/evaluate/npz.h"
+
+#include "src/core/error.h"
+
+#include <zlib.h>
+
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+namespace eventide {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "zip and '<f4' are read in place");
+
+constexpr std::uint32_t kEndOfDirectory = 0x06054b50, kDirectoryEntry = 0x02014b50,
+                        kLocalEntry = 0x04034b50;
+constexpr std::size_t kEndBytes = 22, kDirectoryBytes = 46, kLocalBytes = 30;
+constexpr std::uint64_t kLargestArrayBytes = std::uint64_t{1} << 31;
+
+template <typename T>
+T number_at(std::span<const std::byte> bytes, std::size_t offset) {
+    T value;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// What follows `key` in the header of an .npy file, a Python dictionary as text.
+std::string_view value_after(std::string_view header, std::string_view key) {
+    const auto at = header.find(key);
+    if (at == header.npos) return {};
+    const auto start = header.find_first_not_of(": ", at + key.size());
+    return start == header.npos ? std::string_view{} : header.substr(start);
+}
+
+/// "(64, 3, 3, 3), ..." -> {64, 3, 3, 3}; false where it is not such a tuple.
+bool parse_shape(std::string_view text, std::vector<std::int64_t>& shape) {
+    if (!text.starts_with('(')) return false;
+    text.remove_prefix(1);
+    while (!text.empty() && text.front() != ')') {
+        if (text.front() == ' ' || text.front() == ',') {
+            text.remove_prefix(1);
+            continue;
+        }
+        std::int64_t value = 0;
+        std::size_t digits = 0;
+        for (; digits < text.size() && text[digits] >= '0' && text[digits] <= '9'; ++digits)
+            value = value * 10 + (text[digits] - '0');
+        if (digits == 0 || digits > 12 || shape.size() == 8) return false;
+        shape.push_back(value);
+        text.remove_prefix(digits);
+    }
+    return !text.empty();
+}
+
+}  // namespace
+
+NpzFile::NpzFile(const std::filesystem::path& path) : file_(path.string()) {
+    std::ifstream stream{path, std::ios::binary | std::ios::ate};
+    if (!stream) refuse("cannot be opened");
+    bytes_.resize(std::size_t(stream.tellg()));
+    stream.seekg(0);
+    stream.read(reinterpret_cast<char*>(bytes_.data()), std::streamsize(bytes_.size()));
+    if (!stream) refuse("cannot be read");
+    read_directory();
+}
+
+void NpzFile::refuse(const std::string& what) const {
+    throw Error(ErrorKind::input, file_ + ": " + what + " (expected an npz file)");
+}
+
+void NpzFile::read_directory() {
+    const std::span<const std::byte> bytes{bytes_};
+    // The end record is last, but for a comment of at most 65,535 bytes.
+    std::size_t end = bytes.size() < kEndBytes ? 0 : bytes.size() - kEndBytes + 1;
+    const std::size_t lowest = end > 65536 ? end - 65536 : 0;
+    while (end > lowest && number_at<std::uint32_t>(bytes, end - 1) != kEndOfDirectory) --end;
+    if (end == lowest) refuse("no zip directory found");
+    --end;
+    const auto count = number_at<std::uint16_t>(bytes, end + 10);
+    std::size_t at = number_at<std::uint32_t>(bytes, end + 16);
+    for (int i = 0; i < count; ++i) {
+        if (at > end || end - at < kDirectoryBytes ||
+            number_at<std::uint32_t>(bytes, at) != kDirectoryEntry)
+            refuse("the zip directory is damaged at entry " + std::to_string(i));
+        Entry entry;
+        entry.method = number_at<std::uint16_t>(bytes, at + 10);
+        entry.crc = number_at<std::uint32_t>(bytes, at + 16);
+        entry.packed_bytes = number_at<std::uint32_t>(bytes, at + 20);
+        entry.unpacked_bytes = number_at<std::uint32_t>(bytes, at + 24);
+        entry.header_offset = number_at<std::uint32_t>(bytes, at + 42);
+        const std::size_t name_bytes = number_at<std::uint16_t>(bytes, at + 28);
+        const std::size_t rest = name_bytes + number_at<std::uint16_t>(bytes, at + 30) +
+                                 number_at<std::uint16_t>(bytes, at + 32);
+        at += kDirectoryBytes;
+        if (rest > end - at) refuse("the zip directory is cut short");
+        std::string name{text_of(bytes.subspan(at, name_bytes))};
+        if (name.ends_with(".npy")) name.resize(name.size() - 4);
+        entries_.insert_or_assign(std::move(name), entry);
+        at += rest;
+    }
+}
+
+std::vector<std::byte> NpzFile::unpacked(const std::string& name) const {
+    const auto found = entries_.find(name);
+    if (found == entries_.end()) refuse("array '" + name + "' is missing");
+    const Entry& entry = found->second;
+    const std::span<const std::byte> bytes{bytes_};
+    const auto header = std::size_t(entry.header_offset);
+    if (header > bytes.size() || bytes.size() - header < kLocalBytes ||
+        number_at<std::uint32_t>(bytes, header) != kLocalEntry)
+        refuse("array '" + name + "' has no zip entry where the directory says");
+    const std::size_t data = header + kLocalBytes + number_at<std::uint16_t>(bytes, header + 26) +
+                             number_at<std::uint16_t>(bytes, header + 28);
+    if (data > bytes.size() || entry.packed_bytes > bytes.size() - data ||
+        entry.unpacked_bytes > kLargestArrayBytes)
+        refuse("array '" + name + "' is cut short");
+    const auto packed = bytes.subspan(data, std::size_t(entry.packed_bytes));
+
+    std::vector<std::byte> out(std::size_t(entry.unpacked_bytes));
+    if (entry.method == 0) {
+        if (packed.size() != out.size()) refuse("array '" + name + "' has two sizes");
+        std::copy(packed.begin(), packed.end(), out.begin());
+    } else if (entry.method == 8) {
+        z_stream z{};
+        z.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(packed.data()));
+        z.avail_in = uInt(packed.size());
+        z.next_out = reinterpret_cast<Bytef*>(out.data());
+        z.avail_out = uInt(out.size());
+        if (inflateInit2(&z, -MAX_WBITS) != Z_OK) refuse("zlib does not start");
+        const int status = inflate(&z, Z_FINISH);
+        inflateEnd(&z);
+        if (status != Z_STREAM_END || z.total_out != out.size())
+            refuse("array '" + name + "' does not unpack");
+    } else {
+        refuse("array '" + name + "' is packed by method " + std::to_string(entry.method) +
+               ", only 0 (stored) and 8 (deflated) are read");
+    }
+    const auto crc = crc32(0, reinterpret_cast<const Bytef*>(out.data()), uInt(out.size()));
+    if (crc != entry.crc) refuse("array '" + name + "' fails its checksum");
+    return out;
+}
+
+NpzArray NpzFile::array(const std::string& name) const {
+    const std::vector<std::byte> file = unpacked(name);
+    const std::span<const std::byte> bytes{file};
+    if (bytes.size() < 12 || text_of(bytes.first(6)) != "\x93NUMPY")
+        refuse("array '" + name + "' is no .npy file");
+    const bool long_header = std::to_integer<int>(bytes[6]) >= 2;
+    const std::size_t start = long_header ? 12 : 10;
+    const std::size_t length =
+        long_header ? number_at<std::uint32_t>(bytes, 8) : number_at<std::uint16_t>(bytes, 8);
+    if (length > bytes.size() - start) refuse("array '" + name + "' has a header cut short");
+    const std::string_view header = text_of(bytes.subspan(start, length));
+    const std::string_view kind = value_after(header, "'descr'");
+    const bool wide = kind.starts_with("'<f8'");
+    if (!wide && !kind.starts_with("'<f4'"))
+        refuse("array '" + name + "' is of kind " + std::string{kind.substr(0, 8)} +
+               ", expected '<f4' or '<f8'");
+    if (!value_after(header, "'fortran_order'").starts_with("False"))
+        refuse("array '" + name + "' is in Fortran order");
+    NpzArray array;
+    if (!parse_shape(value_after(header, "'shape'"), array.shape))
+        refuse("array '" + name + "' has a shape that cannot be read");
+
+    const auto data = bytes.subspan(start + length);
+    const std::size_t item = wide ? 8 : 4;
+    std::uint64_t count = 1;
+    for (const std::int64_t n : array.shape) {
+        count *= std::uint64_t(n);
+        if (count > kLargestArrayBytes) refuse("array '" + name + "' is too large");
+    }
+    if (count * item != data.size())
+        refuse("array '" + name + "' holds " + std::to_string(data.size()) +
+               " bytes, its shape needs " + std::to_string(count * item));
+    array.values.resize(std::size_t(count));
+    for (std::size_t i = 0; i < array.values.size(); ++i)
+        array.values[i] =
+            wide ? float(number_at<double>(data, i * 8)) : number_at<float>(data, i * 4);
+    return array;
+}
+
+}  // namespace eventide
