@@ -13,15 +13,15 @@
 namespace eventide {
 
 struct FolderSettings {
-    std::filesystem::path path;
+    std::filesystem::path path = {};
     bool overwrite = false;  ///< a folder that holds something is refused, or its old run removed
     /// none leaves out the TIFFs; side, alpha and overlay change the PNGs and keep the TIFFs.
     Uncertainty uncertainty = Uncertainty::automatic;
     float sigma_white = kSigmaWhite;
     /// Packets lost until now, for the column `lost`; may be empty. Any thread.
-    std::function<std::uint64_t()> lost;
+    std::function<std::uint64_t()> lost = {};
     /// The text of run.json, asked for once, at close; may be empty.
-    std::function<std::string()> run_json;
+    std::function<std::string()> run_json = {};
 };
 
 /// Writes

@@ -23,7 +23,7 @@ enum class StreamFormat {
 std::string_view name_of(StreamFormat format);
 
 struct StreamSettings {
-    std::string path;  ///< "-" is standard output
+    std::string path = {};  ///< "-" is standard output
     StreamFormat format = StreamFormat::y4m;
     bool overwrite = false;
     /// Y4M: none, side; overlay in y4m (colour). Raw: none, side, separate (after each intensity
@@ -34,7 +34,7 @@ struct StreamSettings {
     float sigma_white = kSigmaWhite;
     double fps = 30;  ///< nominal, > 0, for the header of Y4M, which has no other times
     /// Asked while a named pipe waits for its reader: true gives up. May be empty.
-    std::function<bool()> give_up;
+    std::function<bool()> give_up = {};
 };
 
 /// SIGPIPE must be ignored by the program. When the reader goes away, wants_more() is false from

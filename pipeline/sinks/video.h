@@ -14,8 +14,8 @@ namespace eventide {
 class VideoFile;
 
 struct VideoSettings {
-    std::filesystem::path path;  ///< .mp4 or .mkv
-    bool overwrite = false;      ///< an existing file that is not empty is refused without
+    std::filesystem::path path = {};  ///< .mp4 or .mkv
+    bool overwrite = false;           ///< an existing file that is not empty is refused without
     /// separate writes a second file, x.sigma.mp4; alpha is refused, H.264 has none.
     Uncertainty uncertainty = Uncertainty::automatic;
     float sigma_white = kSigmaWhite;

@@ -10,8 +10,11 @@ extern "C" {
 #include <libavutil/opt.h>
 }
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace eventide {
@@ -31,6 +34,22 @@ std::string words_of(int error) {
 
 bool is_mp4(const AVFormatContext& container) {
     return std::string_view{container.oformat->name} == "mp4";
+}
+
+/// x264 itself prints to the terminal about these.
+void refuse_wrong(const EncoderSettings& settings, const std::filesystem::path& path) {
+    constexpr std::array<std::string_view, 9> kPresets{"ultrafast", "superfast", "veryfast",
+                                                       "faster",    "fast",      "medium",
+                                                       "slow",      "slower",    "veryslow"};
+    if (std::find(kPresets.begin(), kPresets.end(), settings.preset) == kPresets.end()) {
+        std::string expected;
+        for (const std::string_view preset : kPresets) expected += " " + std::string{preset};
+        throw Error(ErrorKind::usage, path.string() + ": expected one of x264's presets" +
+                                          expected + ", found '" + settings.preset + "'");
+    }
+    if (settings.crf < 0 || settings.crf > 51)
+        throw Error(ErrorKind::usage, path.string() + ": expected a crf from 0 to 51, found " +
+                                          std::to_string(settings.crf));
 }
 
 }  // namespace
@@ -62,20 +81,22 @@ VideoFile::VideoFile(std::filesystem::path path, EncoderSettings settings)
         throw Error(ErrorKind::failed, path_.string() +
                                            ": this libavcodec has no libx264, which "
                                            "eventide's videos need");
-    AVFormatContext* container = nullptr;
-    if (avformat_alloc_output_context2(&container, nullptr, nullptr, path_.c_str()) < 0)
+    refuse_wrong(settings_, path_);
+    const AVOutputFormat* format = av_guess_format(nullptr, path_.c_str(), nullptr);
+    if (format == nullptr || !(path_.extension() == ".mp4" || path_.extension() == ".mkv"))
         throw Error(ErrorKind::usage,
                     path_.string() + ": expected a video file ending in .mp4 or .mkv");
+    AVFormatContext* container = nullptr;
+    check(avformat_alloc_output_context2(&container, format, nullptr, path_.c_str()),
+          "preparing it");
     container_.reset(container);
     encoder_.reset(avcodec_alloc_context3(codec));
     frame_.reset(av_frame_alloc());
     packet_.reset(av_packet_alloc());
     // What goes wrong comes back as a result; x264's own talk is not for the terminal.
     encoder_->log_level_offset = AV_LOG_MAX_OFFSET;
-    if (av_opt_set(encoder_->priv_data, "preset", settings_.preset.c_str(), 0) < 0 ||
-        settings_.crf < 0 || settings_.crf > 51)
-        throw Error(ErrorKind::usage, path_.string() + ": expected a crf from 0 to 51, found " +
-                                          std::to_string(settings_.crf));
+    check(av_opt_set(encoder_->priv_data, "preset", settings_.preset.c_str(), 0),
+          "choosing x264's preset");
     check(avio_open(&container_->pb, path_.c_str(), AVIO_FLAG_WRITE), "creating it");
 }
 
@@ -103,12 +124,8 @@ void VideoFile::open_encoder(const cv::Mat& picture) {
     // A long look ahead would keep that many frames out of the file.
     av_opt_set_int(encoder_->priv_data, "rc-lookahead", 10, 0);
     if (avcodec_open2(encoder_.get(), encoder_->codec, nullptr) < 0)
-        throw Error(ErrorKind::usage,
-                    path_.string() + ": x264 refuses preset '" + settings_.preset + "', crf " +
-                        std::to_string(settings_.crf) + " and size " + std::to_string(width_) +
-                        "x" + std::to_string(height_) +
-                        "; presets are ultrafast, superfast, veryfast, faster, fast, medium, "
-                        "slow, slower, veryslow");
+        throw Error(ErrorKind::failed, path_.string() + ": x264 refuses pictures of " +
+                                           std::to_string(width_) + "x" + std::to_string(height_));
 
     stream_ = avformat_new_stream(container_.get(), nullptr);
     stream_->time_base = kMicroseconds;

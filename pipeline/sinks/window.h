@@ -15,12 +15,12 @@ struct WindowSettings {
         Uncertainty::automatic;  ///< at the beginning; key u goes on from there
     float sigma_white = kSigmaWhite;
     /// Told the new factor when + or - is pressed; may be empty (live sources have one speed).
-    std::function<void(double)> speed_changed;
+    std::function<void(double)> speed_changed = {};
     double speed = 1;  ///< at the beginning
     /// Draws a preview of the frame's events, CV_8UC3, shown left of the picture; may be empty.
-    std::function<void(const Frame&, cv::Mat&)> draw_events;
+    std::function<void(const Frame&, cv::Mat&)> draw_events = {};
     /// Asked while paused: true ends the pause, because the run is being stopped. May be empty.
-    std::function<bool()> give_up;
+    std::function<bool()> give_up = {};
 };
 
 /// What the keys have set. Apart from the window, so that it can be tested without one.

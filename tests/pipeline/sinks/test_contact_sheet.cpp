@@ -1,0 +1,57 @@
+// The contact sheet spreads a run of unknown length over a few rows.
+#include "pipeline/sinks/contact_sheet.h"
+#include "src/core/error.h"
+#include "tests/pipeline/sinks/frames.h"
+#include "tests/system/process.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+using test::TempFolder;
+
+cv::Mat sheet_of(int frames, ContactSheetSettings settings) {
+    const auto path = settings.path;
+    ContactSheetSink sink{std::move(settings)};
+    for (int n = 0; n < frames; ++n) sink.write(test::ramp_frame(40, 30, n, from_us(1000 * n)));
+    sink.close();
+    return cv::imread(path.string());
+}
+
+TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {
+    const TempFolder temp;
+    const cv::Mat two = sheet_of(50, {.path = temp / "two.png", .rows = 3});
+    const auto flat = [](int value) {
+        return [value](const Frame&, cv::Mat& picture) {
+            picture = cv::Mat(30, 40, CV_8UC3, cv::Scalar::all(value));
+        };
+    };
+    const cv::Mat four = sheet_of(
+        50,
+        {.path = temp / "four.png", .rows = 3, .draw_events = flat(10), .draw_truth = flat(200)});
+    ASSERT_FALSE(two.empty());
+    ASSERT_FALSE(four.empty());
+    EXPECT_EQ(two.rows, four.rows);
+    EXPECT_EQ(four.cols - two.cols, two.cols - 4);  // twice the columns, one margin
+    EXPECT_EQ(four.at<cv::Vec3b>(30, 20), cv::Vec3b(10, 10, 10));
+    EXPECT_EQ(four.at<cv::Vec3b>(30, four.cols - 20), cv::Vec3b(200, 200, 200));
+}
+
+TEST(ContactSheet, KeepsOneSizeHoweverLongTheRun) {
+    const TempFolder temp;
+    EXPECT_EQ(sheet_of(5, {.path = temp / "a.png"}).size(),
+              sheet_of(1000, {.path = temp / "b.png"}).size());
+    EXPECT_LT(sheet_of(1, {.path = temp / "c.png"}).rows,
+              sheet_of(5, {.path = temp / "d.png"}).rows);
+}
+
+TEST(ContactSheet, WantsThePictureFormatsName) {
+    const TempFolder temp;
+    EXPECT_THROW((ContactSheetSink{{.path = temp / "a.xyz"}}), Error);
+}
+
+}  // namespace
+}  // namespace eventide

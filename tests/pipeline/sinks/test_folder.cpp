@@ -1,0 +1,100 @@
+// The folder sink reads back as what went in.
+#include "pipeline/sinks/folder.h"
+#include "src/core/error.h"
+#include "tests/pipeline/sinks/frames.h"
+#include "tests/system/process.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+using test::TempFolder;
+
+TEST(FolderSink, WritesPicturesSigmaAndTimesThatReadBack) {
+    const TempFolder temp;
+    const Frame first = test::ramp_frame(31, 17, 4, test::odd_time(0));
+    const Frame second = test::ramp_frame(31, 17, 9, test::odd_time(1));
+    FolderSink sink{
+        {.path = temp / "out", .lost = [] { return 7; }, .run_json = [] { return "{}"; }}};
+    sink.write(first);
+    sink.write(second);
+    sink.close();
+
+    const cv::Mat picture =
+        cv::imread(temp / "out/frames/frame_0000000001.png", cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(picture.type(), CV_8UC1);
+    for (int y = 0; y < 17; ++y)
+        for (int x = 0; x < 31; ++x)
+            EXPECT_EQ(int(picture.at<std::uint8_t>(y, x)),
+                      std::lround(second.intensity(y, x) * 255));
+
+    const cv::Mat sigma =
+        cv::imread(temp / "out/uncertainty/unc_0000000000.tiff", cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(sigma.type(), CV_32FC1);
+    EXPECT_TRUE(
+        std::ranges::equal(first.sigma.values(), std::span{sigma.ptr<float>(), sigma.total()}));
+
+    EXPECT_EQ(test::read_text(temp / "out/timestamps.txt"),
+              "1633953690.975951\n1633953690.979283\n");
+    EXPECT_EQ(test::read_text(temp / "out/timestamps.csv"),
+              "frame,index,t_us,window_begin_us,window_end_us,events,lost\n"
+              "0,4,1633953690975951,1633953690970951,1633953691020951,104,7\n"
+              "1,9,1633953690979283,1633953690974283,1633953691024283,109,7\n");
+    EXPECT_EQ(test::read_text(temp / "out/run.json"), "{}\n");
+}
+
+TEST(FolderSink, RefusesAFolderThatHoldsSomethingAndReplacesOnlyItsOwnFiles) {
+    const TempFolder temp;
+    {
+        FolderSink sink{{.path = temp / "out"}};
+        for (int n = 0; n < 3; ++n) sink.write(test::ramp_frame(8, 8, n, test::odd_time(n)));
+        sink.close();
+    }
+    test::write_text(temp / "out/notes.txt", "mine");
+    try {
+        FolderSink sink{{.path = temp / "out"}};
+        FAIL() << "a folder that holds something was taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string{error.what()}.find("--overwrite"), std::string::npos);
+    }
+    FolderSink sink{{.path = temp / "out", .overwrite = true}};
+    sink.write(test::ramp_frame(8, 8, 0, test::odd_time(0)));
+    sink.close();
+    EXPECT_TRUE(std::filesystem::exists(temp / "out/frames/frame_0000000000.png"));
+    EXPECT_FALSE(std::filesystem::exists(temp / "out/frames/frame_0000000001.png"));
+    EXPECT_FALSE(std::filesystem::exists(temp / "out/uncertainty/unc_0000000001.tiff"));
+    EXPECT_EQ(test::read_text(temp / "out/notes.txt"), "mine");
+}
+
+TEST(FolderSink, NegativeTimesKeepTheirSign) {
+    const TempFolder temp;
+    FolderSink sink{{.path = temp / "out"}};
+    sink.write(test::ramp_frame(8, 8, 0, from_us(-1)));
+    sink.close();
+    EXPECT_EQ(test::read_text(temp / "out/timestamps.txt"), "-0.000001\n");
+}
+
+TEST(FolderSink, LeavesSigmaOutWhenAsked) {
+    const TempFolder temp;
+    FolderSink sink{{.path = temp / "out", .uncertainty = Uncertainty::none}};
+    sink.write(test::ramp_frame(8, 8, 0, test::odd_time(0)));
+    sink.close();
+    EXPECT_FALSE(std::filesystem::exists(temp / "out/uncertainty"));
+}
+
+TEST(FolderSink, SaysWhyItCannotStart) {
+    const TempFolder temp;
+    test::write_text(temp / "file", "x");
+    EXPECT_THROW((FolderSink{{.path = temp / "file"}}), Error);
+    EXPECT_THROW((FolderSink{{.path = "/proc/nowhere/out"}}), Error);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,157 @@
+// Videos: every frame with its exact time, in files that survive a killed program.
+#include "pipeline/sinks/video.h"
+#include "src/core/error.h"
+#include "tests/pipeline/sinks/frames.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <sstream>
+
+namespace eventide {
+namespace {
+
+using test::TempFolder;
+
+std::string probe(const std::string& file, const std::vector<std::string>& what) {
+    std::vector<std::string> arguments{"ffprobe", "-v", "error", "-select_streams", "v:0"};
+    arguments.insert(arguments.end(), what.begin(), what.end());
+    arguments.insert(arguments.end(), {"-of", "csv=p=0", file});
+    const test::Result result = test::run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return result.output;
+}
+
+std::vector<std::int64_t> packet_times(const std::string& file) {
+    std::istringstream lines{probe(file, {"-show_entries", "packet=pts"})};
+    std::vector<std::int64_t> times;
+    for (std::string line; std::getline(lines, line);) times.push_back(std::stoll(line));
+    return times;
+}
+
+TEST(VideoSink, KeepsEachFramesTimeToTheMicrosecond) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mp4", .fps = 300}};
+    std::vector<std::int64_t> expected;
+    for (int n = 0; n < 100; ++n) {
+        sink.write(test::ramp_frame(64, 48, n, test::odd_time(n)));
+        expected.push_back((test::odd_time(n) - test::odd_time(0)).count());
+    }
+    sink.close();
+    EXPECT_EQ(
+        probe(temp / "a.mp4",
+              {"-count_frames", "-show_entries",
+               "stream=codec_name,width,height,pix_fmt,color_range,time_base,nb_read_frames"}),
+        "h264,64,48,yuv420p,tv,1/1000000,100\n");
+    EXPECT_EQ(packet_times(temp / "a.mp4"), expected);
+}
+
+TEST(VideoSink, MatroskaKeepsMilliseconds) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mkv", .fps = 300}};
+    for (int n = 0; n < 40; ++n) sink.write(test::ramp_frame(64, 48, n, test::odd_time(n)));
+    sink.close();
+    const auto times = packet_times(temp / "a.mkv");
+    ASSERT_EQ(times.size(), 40U);
+    for (int n = 0; n < 40; ++n)
+        EXPECT_NEAR(double(times[std::size_t(n)]),
+                    double((test::odd_time(n) - test::odd_time(0)).count()) / 1000, 0.51);
+}
+
+TEST(VideoSink, AFasterRateThanMatroskasClockLosesNoFrame) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mkv", .fps = 3000}};
+    for (int n = 0; n < 60; ++n) sink.write(test::ramp_frame(64, 48, n, from_us(333 * n)));
+    sink.close();
+    EXPECT_EQ(packet_times(temp / "a.mkv").size(), 60U);
+}
+
+TEST(VideoSink, PadsOddSizesAndPutsSigmaBeside) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mp4", .uncertainty = Uncertainty::side}};
+    for (int n = 0; n < 3; ++n) sink.write(test::ramp_frame(33, 17, n, from_us(40'000 * n)));
+    sink.close();
+    EXPECT_EQ(probe(temp / "a.mp4", {"-show_entries", "stream=width,height"}), "66,18\n");
+}
+
+TEST(VideoSink, CanWriteSigmaAsASecondFile) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mp4", .uncertainty = Uncertainty::separate}};
+    for (int n = 0; n < 3; ++n) sink.write(test::ramp_frame(32, 16, n, from_us(40'000 * n)));
+    sink.close();
+    EXPECT_EQ(packet_times(temp / "a.sigma.mp4"), packet_times(temp / "a.mp4"));
+}
+
+TEST(VideoSink, ShowsTheGreysItWasGiven) {
+    const TempFolder temp;
+    Frame frame = test::ramp_frame(64, 64, 0, from_us(0));
+    for (float& v : frame.intensity.values()) v = 0.6f;
+    VideoSink sink{{.path = temp / "a.mp4", .crf = 0}};
+    sink.write(frame);
+    sink.close();
+    const test::Result result = test::run({"ffmpeg", "-v", "error", "-i", temp / "a.mp4", "-f",
+                                           "rawvideo", "-pix_fmt", "gray", temp / "a.gray"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const std::string pixels = test::read_text(temp / "a.gray");
+    ASSERT_EQ(pixels.size(), 64U * 64U);
+    for (const char c : pixels) EXPECT_NEAR(int(std::uint8_t(c)), 153, 1);
+}
+
+TEST(VideoSink, TimeThatGoesBackGoesOnInTheVideo) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mp4", .fps = 100}};
+    for (const std::int64_t t : {5'000'000, 5'010'000, 0, 12'345})
+        sink.write(test::ramp_frame(32, 32, 0, from_us(t)));
+    sink.close();
+    EXPECT_EQ(packet_times(temp / "a.mp4"), (std::vector<std::int64_t>{0, 10'000, 20'000, 32'345}));
+}
+
+TEST(VideoSink, AKilledProgramLeavesAVideoThatPlays) {
+    const TempFolder temp;
+    const pid_t child = fork();
+    if (child == 0) {
+        VideoSink sink{{.path = temp / "a.mp4"}};
+        for (int n = 0; n < 200; ++n) sink.write(test::ramp_frame(64, 48, n, test::odd_time(n)));
+        kill(getpid(), SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_GE(packet_times(temp / "a.mp4").size(), 120U);
+}
+
+TEST(VideoSink, WithoutAFrameThereIsNoFile) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mp4"}};
+    sink.close();
+    EXPECT_FALSE(std::filesystem::exists(temp / "a.mp4"));
+}
+
+TEST(VideoSink, SaysWhatIsWrong) {
+    const TempFolder temp;
+    EXPECT_THROW((VideoSink{{.path = temp / "a.xyz"}}), Error);
+    EXPECT_THROW((VideoSink{{.path = temp / "a.mp4", .crf = 99}}), Error);
+    EXPECT_THROW((VideoSink{{.path = temp / "a.mp4", .uncertainty = Uncertainty::alpha}}), Error);
+    EXPECT_THROW((VideoSink{{.path = "/nowhere/a.mp4"}}), Error);
+    EXPECT_THROW((VideoSink{{.path = temp / "a.mp4", .preset = "quick"}}), Error);
+}
+
+TEST(VideoSink, AnEncoderThatCannotWriteSaysSo) {
+    const TempFolder temp;
+    std::filesystem::create_symlink("/dev/full", temp / "a.mp4");
+    EXPECT_THROW(
+        {
+            VideoSink sink{{.path = temp / "a.mp4"}};
+            for (int n = 0; n < 100; ++n)
+                sink.write(test::ramp_frame(64, 48, n, test::odd_time(n)));
+            sink.close();
+        },
+        Error);
+}
+
+}  // namespace
+}  // namespace eventide
