@@ -1,0 +1,137 @@
+#include "tests/support/davis_model.h"
+
+#include <algorithm>
+
+namespace eventide::testing_support {
+
+using namespace davis;
+
+namespace {
+
+std::uint32_t orientation(bool bit2, bool bit1, bool bit0) {
+    return std::uint32_t(bit2 ? 4 : 0) | std::uint32_t(bit1 ? 2 : 0) | std::uint32_t(bit0 ? 1 : 0);
+}
+
+/// Moves the items of `from` with key(item) <= t, from `next` on, to `to`.
+template <typename Item, typename Key>
+void take_until(const std::vector<Item>& from, std::size_t& next, SensorTime t, Key key,
+                bool wanted, std::vector<Item>& to) {
+    for (; next < from.size() && key(from[next]) <= t; ++next)
+        if (wanted) to.push_back(from[next]);
+}
+
+}  // namespace
+
+// What the registers of a real camera hold after power-up (drivers-and-formats.md A.4 and A.14).
+DavisModel::DavisModel(DavisModelSettings settings) : settings_(std::move(settings)) {
+    const DavisSensor& s = settings_.sensor;
+    registers_ = {{kLogicVersion, settings_.logic},
+                  {kLogicPatch, settings_.patch},
+                  {kChipId, std::uint32_t(s.chip)},
+                  {kIsMaster, 1},
+                  {kLogicMhz, 90},
+                  {kAdcMhz, 30},
+                  {kUsbMhz, 30},
+                  {kClockDeviation, 1000},
+                  {kDvsColumns, std::uint32_t(s.dvs_columns)},
+                  {kDvsRows, std::uint32_t(s.dvs_rows)},
+                  {kDvsOrientation, orientation(s.dvs_swapped, false, false)},
+                  {kDvsHasPixelFilter, 1},
+                  {kDvsHasActivityFilter, 1},
+                  {kDvsHasRoi, 1},
+                  {kDvsHasSkip, 1},
+                  {kDvsHasPolarityFilter, 1},
+                  {kDvsHasStatistics, 1},
+                  {kApsColumns, std::uint32_t(s.aps_columns)},
+                  {kApsRows, std::uint32_t(s.aps_rows)},
+                  {kApsOrientation, orientation(s.aps_swapped, s.aps_flip_x, s.aps_flip_y)},
+                  {kApsHasGlobalShutter, 1},
+                  {kImuType, std::uint32_t(s.imu_type)},
+                  {kImuOrientation, orientation(s.imu_flip_x, s.imu_flip_y, s.imu_flip_z)},
+                  {kExtHasGenerator, 1},
+                  {kMuxHasStatistics, 1}};
+}
+
+void DavisModel::show(Batch scene) {
+    scene_ = std::move(scene);
+}
+
+std::uint32_t DavisModel::read(Register at) const {
+    const auto found = registers_.find(at);
+    return found == registers_.end() ? 0 : found->second;
+}
+
+void DavisModel::write(Write write) {
+    writes_.push_back(write);
+    registers_[write.at] = write.value;
+    if (write.at != kTimestampReset || write.value != 1) return;
+    clear_endpoint();
+    event_ = image_ = imu_ = trigger_ = 0;
+    writer_ = std::make_unique<DavisWriter>(settings_.sensor);
+    StreamHeader header;
+    header.width = settings_.sensor.width();
+    header.height = settings_.sensor.height();
+    writer_->begin(header, words_);
+}
+
+bool DavisModel::is_streaming() const {
+    return read(kRun) == 1 && read(kTimestampRun) == 1 && read(kUsbRun) == 1;
+}
+
+bool DavisModel::is_scene_over() const {
+    return event_ == scene_.events.size() && image_ == scene_.images.size() &&
+           imu_ == scene_.imu.size() && trigger_ == scene_.triggers.size() &&
+           sent_ == words_.size();
+}
+
+std::size_t DavisModel::send(std::span<std::byte> out) {
+    if (!is_streaming() || !writer_) return 0;
+    while (words_.size() - sent_ < out.size()) {
+        const std::size_t before = words_.size();
+        make_more(out.size());
+        if (words_.size() == before) break;
+    }
+    const std::size_t n = std::min(out.size(), words_.size() - sent_);
+    std::copy_n(words_.begin() + std::ptrdiff_t(sent_), n, out.begin());
+    sent_ += n;
+    bytes_sent_ += n;
+    if (sent_ == words_.size()) clear_endpoint();
+    return n;
+}
+
+void DavisModel::make_more(std::size_t bytes) {
+    constexpr std::size_t kFewestBytesPerEvent = 2;
+    std::vector<std::byte> stretch;
+    writer_->write(next_stretch(std::max<std::size_t>(256, bytes / kFewestBytesPerEvent / 2)),
+                   stretch);
+    if (settings_.spoil) settings_.spoil(stretch);
+    words_.erase(words_.begin(), words_.begin() + std::ptrdiff_t(sent_));
+    sent_ = 0;
+    words_.insert(words_.end(), stretch.begin(), stretch.end());
+}
+
+/// The next part of the scene, as far as what is switched on sees it. Images begin in the stretch
+/// their exposure begins in, so a stretch reaches to the end of every exposure in it.
+Batch DavisModel::next_stretch(std::size_t events) {
+    const bool dvs_on = read(kDvsRun) == 1 && read(kRunChip) == 1, aps_on = read(kApsRun) == 1,
+               imu_on = read(kImuRunAccel) == 1, ext_on = read(kExtRun) == 1;
+    SensorTime until = event_ + events < scene_.events.size() ? scene_.events[event_ + events].t
+                                                              : SensorTime::max();
+    for (std::size_t i = image_;
+         i < scene_.images.size() && scene_.images[i].exposure_begin <= until; ++i)
+        until = std::max(until, scene_.images[i].exposure_end);
+    Batch part;
+    take_until(
+        scene_.events, event_, until, [](const Event& e) { return e.t; }, dvs_on, part.events);
+    take_until(
+        scene_.images, image_, until, [](const ReferenceImage& i) { return i.exposure_begin; },
+        aps_on, part.images);
+    take_until(
+        scene_.imu, imu_, until, [](const ImuSample& s) { return s.t; }, imu_on, part.imu);
+    take_until(
+        scene_.triggers, trigger_, until, [](const Trigger& e) { return e.t; }, ext_on,
+        part.triggers);
+    return part;
+}
+
+}  // namespace eventide::testing_support

@@ -1,0 +1,76 @@
+// A DAVIS in software, register by register: what a driver sees at the other end of the cable.
+#pragma once
+
+#include "drivers/usb/davis_registers.h"
+#include "src/codec/davis_sensor.h"
+#include "src/codec/davis_writer.h"
+#include "src/core/event.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace eventide::testing_support {
+
+struct DavisModelSettings {
+    DavisSensor sensor;
+    std::string serial = "00000042";
+    std::uint16_t product = 0x841A;  ///< behind FX3
+    std::uint8_t firmware = 6, board_type = 3;
+    std::uint32_t logic = 18, patch = 1;
+    /// Applied to the words of each stretch of the stream before they are sent: where faults are
+    /// made.
+    std::function<void(std::vector<std::byte>&)> spoil;
+};
+
+/// Registers, and the stream they let flow: words come out only while MUX run, timestamp run and
+/// USB run are 1; events only with DVS run and chip run, images only with APS run, IMU samples only
+/// with its accelerometer on. A timestamp reset drops what was queued, sends the marker, and starts
+/// the scene from its beginning.
+///
+/// Thread: one at a time; the testbed locks.
+class DavisModel {
+public:
+    explicit DavisModel(DavisModelSettings settings);
+
+    /// What the camera will see, in time order; the first thing is seen at the time it says after a
+    /// timestamp reset.
+    void show(Batch scene);
+
+    const DavisModelSettings& settings() const { return settings_; }
+    std::uint32_t read(davis::Register at) const;
+    void write(davis::Write write);
+    const std::vector<davis::Write>& writes() const { return writes_; }  ///< all, in order
+    void clear_endpoint() {
+        words_.clear();
+        sent_ = 0;
+    }
+
+    bool is_streaming() const;
+    /// The next bytes of the stream, at most out.size(); 0 when there are none now.
+    std::size_t send(std::span<std::byte> out);
+    bool is_scene_over() const;
+    std::uint64_t bytes_sent() const { return bytes_sent_; }
+
+private:
+    void make_more(std::size_t bytes);
+    Batch next_stretch(std::size_t events);
+
+    DavisModelSettings settings_;
+    std::map<davis::Register, std::uint32_t> registers_;
+    std::vector<davis::Write> writes_;
+    Batch scene_;
+    std::size_t event_ = 0, image_ = 0, imu_ = 0, trigger_ = 0;  ///< next of the scene
+    std::unique_ptr<DavisWriter> writer_;
+    std::vector<std::byte> words_;
+    std::size_t sent_ = 0;  ///< of words_
+    std::uint64_t bytes_sent_ = 0;
+};
+
+}  // namespace eventide::testing_support
