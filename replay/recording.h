@@ -15,12 +15,16 @@ public:
 
     /// Goes to a byte from which every event at or after `t` will be read (earlier ones may come
     /// too). Formats without an index go to the beginning. Source thread, between reads; the parser
-    /// has to resync().
+    /// has to resync(). Standard input cannot go back: there it does nothing.
     virtual void seek(SensorTime t) = 0;
 
     /// Bytes of the whole recording, for progress; 0 where not known (standard input).
     virtual std::uint64_t size_bytes() const = 0;
     virtual std::uint64_t position_bytes() const = 0;
+
+    /// A parser whose clock() is that of make_parser(), without costly extras (pictures read from
+    /// files): for whoever needs the time of bytes and not the data.
+    virtual std::unique_ptr<Parser> make_clock() const { return make_parser(); }
 };
 
 }  // namespace eventide

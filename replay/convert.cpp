@@ -1,0 +1,91 @@
+// Parser on one side, writer on the other, and the limits between them.
+#include "replay/convert.h"
+
+#include "replay/recording_file.h"
+#include "src/core/error.h"
+
+namespace eventide {
+
+namespace {
+
+// Images and IMU samples come out after the events of their time; beyond this they would be lost
+// anyway.
+constexpr SensorDuration kLatestData = std::chrono::milliseconds(500);
+
+template <typename T>
+void keep_inside(std::vector<T>& items, const ConvertOptions& options) {
+    std::erase_if(items, [&](const T& item) {
+        return (options.from && item.t < *options.from) || (options.to && item.t > *options.to);
+    });
+}
+
+void keep_inside(Batch& batch, const ConvertOptions& options) {
+    if (!options.from && !options.to) return;
+    keep_inside(batch.events, options);
+    keep_inside(batch.images, options);
+    keep_inside(batch.imu, options);
+    keep_inside(batch.triggers, options);
+}
+
+template <typename T>
+void keep_held(std::vector<T>& items, bool held, std::uint64_t& written, std::uint64_t& not_held) {
+    (held ? written : not_held) += items.size();
+    if (!held) items.clear();
+}
+
+void keep_held(Batch& batch, const FormatHolds& holds, ConvertReport& report) {
+    DataCounts &in = report.written, &out = report.not_held;
+    keep_held(batch.events, holds.events, in.events, out.events);
+    keep_held(batch.images, holds.images, in.images, out.images);
+    keep_held(batch.imu, holds.imu, in.imu, out.imu);
+    keep_held(batch.triggers, holds.triggers, in.triggers, out.triggers);
+}
+
+StreamHeader header_of(const Recording& recording, const Format& format) {
+    const SensorInfo& info = recording.info();
+    StreamHeader header;
+    header.format = format.name;
+    header.width = info.width;
+    header.height = info.height;
+    header.sensor_name = info.name;
+    header.serial = info.serial;
+    return header;
+}
+
+}  // namespace
+
+ConvertReport convert(Recording& recording, const std::string& path, const Format& format,
+                      const ConvertOptions& options, const std::function<bool()>& progress) {
+    ConvertReport report;
+    RecordingFile file(path, options.overwrite, open_writer(format.name),
+                       header_of(recording, format));
+    const auto parser = recording.make_parser();
+    if (options.from) {
+        recording.seek(*options.from);
+        parser->resync();
+    }
+    Batch batch;
+    const auto pass_on = [&] {
+        keep_inside(batch, options);
+        keep_held(batch, format.holds, report);
+        if (!batch.empty()) file.write(batch);
+        batch.clear();
+    };
+    RawPacket packet;
+    bool enough = false;
+    while (!enough && recording.read(packet) == ReadStatus::data) {
+        parser->parse(packet.bytes, batch);
+        pass_on();
+        const auto now = parser->clock();
+        enough =
+            (options.to && now && *now - kLatestData > *options.to) || (progress && !progress());
+    }
+    parser->finish(batch);
+    pass_on();
+    file.finish();
+    report.damaged = parser->damaged();
+    report.bytes_written = file.bytes_written();
+    return report;
+}
+
+}  // namespace eventide

@@ -1,0 +1,52 @@
+// A recording in one file, read in chunks of bounded size.
+#pragma once
+
+#include "replay/byte_file.h"
+#include "replay/recording.h"
+#include "src/codec/stream.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace eventide {
+
+/// What a format makes of a file's beginning.
+struct OpenedStream {
+    StreamHeader header;
+    /// Makes a parser for the bytes after header.data_offset. The header given has its geometry
+    /// completed.
+    std::function<std::unique_ptr<Parser>(const StreamHeader&)> make_parser;
+    /// Records start at data_offset plus a multiple of this; a fresh parser put there after
+    /// resync() finds the time. 0: the format does not allow to start in the middle.
+    std::uint64_t seek_alignment = 0;
+    /// A parser after resync() takes up after the next newline.
+    bool records_are_lines = false;
+};
+
+class FileRecording : public Recording {
+public:
+    static constexpr std::size_t kChunkBytes = std::size_t(128) << 10;
+
+    /// `ahead` holds the bytes after the header that were already read from a file that cannot
+    /// seek.
+    FileRecording(ByteFile file, OpenedStream stream, std::vector<std::byte> ahead = {});
+
+    const SensorInfo& info() const override { return info_; }
+    const StreamHeader& header() const { return stream_.header; }
+    ReadStatus read(RawPacket& into) override;
+    void stop() noexcept override { file_.stop(); }
+    std::unique_ptr<Parser> make_parser() const override;
+    void seek(SensorTime t) override;
+    std::uint64_t size_bytes() const override { return file_.size(); }
+    std::uint64_t position_bytes() const override { return file_.position(); }
+
+private:
+    ByteFile file_;
+    OpenedStream stream_;
+    SensorInfo info_;
+    std::vector<std::byte> ahead_;
+    std::uint64_t packets_ = 0;
+};
+
+}  // namespace eventide

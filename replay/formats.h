@@ -1,0 +1,57 @@
+// The formats of recordings, in one table, and how to open one for reading or writing.
+#pragma once
+
+#include "replay/file_recording.h"
+#include "replay/open_options.h"
+#include "replay/recording.h"
+#include "src/codec/stream.h"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace eventide {
+
+/// What kinds of data a format has records for.
+struct FormatHolds {
+    bool events = true, images = false, imu = false, triggers = false;
+};
+
+struct Format {
+    std::string_view name;       ///< as in StreamHeader::format
+    std::string_view title;      ///< for people
+    std::string_view extension;  ///< what files of this kind are usually called, with the dot
+    FormatHolds holds;
+    /// True when a file beginning with these bytes is of this format.
+    bool (*matches)(std::span<const std::byte> first_bytes);
+    /// Reads the header from the first bytes of a file (all of it, or kHeadBytes). Throws Error
+    /// (input) when it is not what it says.
+    OpenedStream (*open)(std::span<const std::byte> first_bytes, const OpenOptions& options);
+    std::unique_ptr<StreamWriter> (*make_writer)();  ///< null: read only
+};
+
+/// No header is longer than this (AEDAT 2.0 files carry the recorder's preferences, 200 kB).
+constexpr std::size_t kHeadBytes = std::size_t(1) << 20;
+
+/// In the order in which they are tried on a file.
+std::span<const Format> all_formats();
+
+/// Null when there is no format of that name.
+const Format* find_format(std::string_view name);
+
+/// The format of a file that begins with these bytes; null when none matches.
+const Format* detect_format(std::span<const std::byte> first_bytes);
+
+/// The format a file of this name is to be written in: by its extension. Null when unknown.
+const Format* format_for_writing(const std::string& path);
+
+/// Opens a recording by its content, whatever it is called: a file, a folder in the manner of the
+/// Event Camera Dataset (or its events.txt), or "-" for standard input. Throws Error (input) naming
+/// the path, what was expected and what was found.
+std::unique_ptr<Recording> open_recording(const std::string& path, const OpenOptions& options = {});
+
+/// Throws Error (usage) for a format that is unknown or read only.
+std::unique_ptr<StreamWriter> open_writer(std::string_view format);
+
+}  // namespace eventide

@@ -1,0 +1,19 @@
+// What a user may state about a recording that its bytes do not say, or say wrongly.
+#pragma once
+
+#include "src/codec/text_layout.h"
+
+#include <string>
+
+namespace eventide {
+
+struct OpenOptions {
+    std::string format;         ///< a name from all_formats(); empty: found from the content
+    int width = 0, height = 0;  ///< px; 0: what the recording says. Both or neither
+    TextOptions text;
+    /// Documents disagree on bit 0 of DVS128 addresses: jAER, which wrote most files, reads 0 as
+    /// on; the vendor's text says 1. Used by AEDAT 1.0 and 2.0.
+    bool dvs128_one_is_on = false;
+};
+
+}  // namespace eventide

@@ -1,0 +1,114 @@
+// From a path to a Recording: reads the first bytes, asks the table, completes the geometry.
+#include "replay/ecd_folder.h"
+#include "replay/formats.h"
+#include "replay/scan_geometry.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace eventide {
+
+namespace {
+
+// A text stream is known from a few rows; waiting for more would hold up whoever types them.
+constexpr std::ptrdiff_t kRowsOfStreamToSee = 3;
+
+/// The beginning of the file. Of a pipe only as much as it takes to know the format.
+std::vector<std::byte> read_head(ByteFile& file) {
+    std::vector<std::byte> head(kHeadBytes);
+    if (file.is_seekable()) {
+        head.resize(file.read_at(0, head));
+        return head;
+    }
+    std::size_t size = 0;
+    while (size < head.size()) {
+        const std::size_t n = file.read_some(std::span(head).subspan(size));
+        if (n == 0) break;
+        size += n;
+        const auto read = std::span(head).first(size);
+        const Format* format = detect_format(read);
+        if (format && format->name == "text" &&
+            std::count(read.begin(), read.end(), std::byte{'\n'}) > kRowsOfStreamToSee)
+            break;
+    }
+    head.resize(size);
+    return head;
+}
+
+const Format& choose_format(const ByteFile& file, std::span<const std::byte> head,
+                            const OpenOptions& options) {
+    if (head.empty())
+        throw Error(ErrorKind::input, file.path() + ": expected a recording, found no bytes");
+    const Format* format =
+        options.format.empty() ? detect_format(head) : find_format(options.format);
+    if (format) return *format;
+    std::string names;
+    for (const Format& each : all_formats())
+        names += (names.empty() ? "" : ", ") + std::string(each.name);
+    if (!options.format.empty())
+        throw Error(ErrorKind::usage,
+                    "format: expected one of " + names + ", found \"" + options.format + "\"");
+    throw Error(ErrorKind::input, file.path() + ": expected a recording (" + names +
+                                      "), found bytes of none of them");
+}
+
+OpenedStream open_stream(const ByteFile& file, const Format& format,
+                         std::span<const std::byte> head, const OpenOptions& options) {
+    try {
+        return format.open(head, options);
+    } catch (const Error& error) {
+        throw Error(error.kind(), file.path() + ": " + error.what());
+    }
+}
+
+void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOptions& options) {
+    StreamHeader& header = stream.header;
+    if ((options.width > 0) != (options.height > 0) || options.width < 0 || options.width > 65536 ||
+        options.height > 65536)
+        throw Error(ErrorKind::usage, "geometry: expected WIDTHxHEIGHT, each 1 to 65536, found " +
+                                          std::to_string(options.width) + "x" +
+                                          std::to_string(options.height));
+    if (options.width > 0) {
+        header.width = options.width;
+        header.height = options.height;
+    }
+    if (header.width > 0 && header.height > 0) return;
+    if (!file.is_seekable())
+        throw Error(ErrorKind::input,
+                    file.path() +
+                        ": expected the size of the sensor, found none in the stream; "
+                        "state it with --geometry WIDTHxHEIGHT, or begin the text with "
+                        "a line \"WIDTH HEIGHT\"");
+    scan_geometry(file, stream);
+}
+
+std::unique_ptr<FileRecording> open_file(const std::string& path, const OpenOptions& options) {
+    ByteFile file(path);
+    std::vector<std::byte> head = read_head(file);
+    OpenedStream stream = open_stream(file, choose_format(file, head, options), head, options);
+    complete_geometry(file, stream, options);
+    const std::size_t header_bytes = std::min<std::size_t>(stream.header.data_offset, head.size());
+    head.erase(head.begin(), head.begin() + std::ptrdiff_t(header_bytes));
+    if (file.is_seekable()) head.clear();
+    return std::make_unique<FileRecording>(std::move(file), std::move(stream), std::move(head));
+}
+
+}  // namespace
+
+std::unique_ptr<Recording> open_recording(const std::string& path, const OpenOptions& options) {
+    if (const auto folder = find_ecd_folder(path)) {
+        OpenOptions completed = options;
+        const EcdImages images = read_ecd_images(*folder);
+        if (options.width == 0 && options.height == 0) {
+            completed.width = images.width;
+            completed.height = images.height;
+        }
+        auto events =
+            open_file((std::filesystem::path(*folder) / "events.txt").string(), completed);
+        return std::make_unique<EcdRecording>(std::move(events), images);
+    }
+    return open_file(path, options);
+}
+
+}  // namespace eventide

@@ -1,0 +1,33 @@
+// What a recording holds, counted by reading all of it.
+#pragma once
+
+#include "replay/recording.h"
+#include "src/core/damage.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace eventide {
+
+struct Summary {
+    std::string format;  ///< as in StreamHeader::format
+    int width = 0, height = 0;
+    std::uint64_t events = 0;
+    std::uint64_t on = 0;  ///< of the events
+    /// Of the events; empty where there are none.
+    std::optional<SensorTime> first, last;
+    std::uint64_t frames = 0, imu = 0, triggers = 0;
+    Damage damaged;
+};
+
+/// Reads the recording to its end, in bounded memory. `progress` is called after each chunk and
+/// may return false to stop there.
+Summary summarize(Recording& recording, const std::function<bool()>& progress = {});
+
+/// One object: format, width, height, events, on, first_us, last_us (null without events), frames,
+/// imu, triggers, damaged (counts by reason, all reasons).
+std::string to_json(const Summary& summary);
+
+}  // namespace eventide

@@ -1,0 +1,233 @@
+// Finds out how a text recording is written from its first lines.
+#include "src/codec/text_layout.h"
+
+#include "src/codec/text_number.h"
+#include "src/codec/text_row.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::size_t kRowsToLookAt = 1000;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+using Fields = std::vector<std::string_view>;
+
+/// The lines that carry something, one after the other, with their place.
+class Lines {
+public:
+    explicit Lines(std::string_view text) : text_(text) {
+        if (text_.starts_with(kByteOrderMark)) position_ = kByteOrderMark.size();
+    }
+
+    std::optional<std::string_view> next() {
+        while (position_ < text_.size()) {
+            const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+            const auto line = text_.substr(position_, end - position_);
+            line_begin_ = position_;
+            position_ = std::min(end + 1, text_.size());
+            if (!is_comment(line)) return line;
+        }
+        return {};
+    }
+    std::size_t line_begin() const { return line_begin_; }  ///< of the line next() gave
+
+private:
+    std::string_view text_;
+    std::size_t position_ = 0, line_begin_ = 0;
+};
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+bool is_number(std::string_view field) {
+    return parse_decimal(field).has_value();
+}
+
+bool is_row(const Fields& fields) {
+    if (fields.size() < 4) return false;
+    const auto numbers = std::count_if(fields.begin(), fields.begin() + 4, is_number);
+    // One of the four may be a polarity in words.
+    const auto is_truth = [](std::string_view field) {
+        return field == "true" || field == "false" || field == "True" || field == "False" ||
+               field == "T" || field == "F" || field == "TRUE" || field == "FALSE";
+    };
+    return numbers == 4 || (numbers == 3 && std::any_of(fields.begin(), fields.end(), is_truth));
+}
+
+/// The "width height" of a first line of two whole numbers.
+std::optional<std::pair<int, int>> geometry_of(const Fields& fields) {
+    if (fields.size() != 2) return {};
+    std::array<int, 2> sides{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto value = parse_decimal(fields[i]);
+        if (!value || value->fractional || value->negative) return {};
+        const auto side = scaled_integer(*value, 0);
+        if (!side || *side < 1 || *side > 65536) return {};
+        sides[i] = int(*side);
+    }
+    return std::pair{sides[0], sides[1]};
+}
+
+struct ColumnName {
+    TextField field = TextField::ignored;
+    TextTimeUnit unit = TextTimeUnit::automatic;
+};
+
+/// What a header row calls a column: "t", "time", "timestamp_us", "t[s]", "x", "pol", ...
+ColumnName column_named(std::string_view title) {
+    std::string name;
+    for (const char c : title)
+        if (c != '"' && c != '\'') name += char(std::tolower(static_cast<unsigned char>(c)));
+    if (name == "x") return {TextField::x, {}};
+    if (name == "y") return {TextField::y, {}};
+    if (name == "p" || name == "pol" || name == "polarity" || name == "on")
+        return {TextField::polarity, {}};
+    const std::size_t end = std::min(name.find_first_of("_[("), name.size());
+    const std::string stem = name.substr(0, end);
+    if (stem != "t" && stem != "ts" && stem != "time" && stem != "timestamp" &&
+        stem != "timestamps")
+        return {};
+    std::string unit;
+    for (const char c : name.substr(end))
+        if (std::isalpha(static_cast<unsigned char>(c))) unit += c;
+    if (unit.empty()) return {TextField::time, {}};
+    if (unit == "s") return {TextField::time, TextTimeUnit::seconds};
+    if (unit == "ms") return {TextField::time, TextTimeUnit::milliseconds};
+    if (unit == "us") return {TextField::time, TextTimeUnit::microseconds};
+    if (unit == "ns") return {TextField::time, TextTimeUnit::nanoseconds};
+    return {};
+}
+
+/// The layout a header row gives; empty when it does not name all four columns.
+std::optional<TextLayout> layout_named(const Fields& titles) {
+    TextLayout layout;
+    layout.unit = TextTimeUnit::automatic;
+    layout.n_columns = 0;
+    std::array<int, 4> seen{};
+    for (std::size_t i = 0; i < std::min(titles.size(), TextLayout::kMostColumns); ++i) {
+        const ColumnName column = column_named(titles[i]);
+        layout.columns[i] = column.field;
+        if (column.field == TextField::ignored) continue;
+        layout.n_columns = i + 1;
+        ++seen[std::size_t(column.field)];
+        if (column.field == TextField::time) layout.unit = column.unit;
+    }
+    const bool once = std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; });
+    return once ? std::optional(layout) : std::nullopt;
+}
+
+TextLayout layout_stated(std::string_view columns) {
+    TextLayout layout;
+    layout.unit = TextTimeUnit::automatic;
+    constexpr std::string_view kLetters = "txyp";
+    std::string sorted(columns);
+    std::sort(sorted.begin(), sorted.end());
+    if (sorted != "ptxy")
+        throw Error(ErrorKind::usage,
+                    "columns of a text recording: expected an order of t, x, y, "
+                    "p such as \"txyp\", found \"" +
+                        std::string(columns) + "\"");
+    for (std::size_t i = 0; i < 4; ++i) layout.columns[i] = TextField(kLetters.find(columns[i]));
+    return layout;
+}
+
+bool is_fractional(std::string_view field) {
+    const auto value = parse_decimal(field);
+    return value && value->fractional;
+}
+
+/// Without names the order is t x y p, unless exactly one other column has fractions: only times
+/// can.
+TextLayout layout_guessed(const std::vector<Fields>& rows) {
+    std::array<bool, 4> fractions{};
+    for (const Fields& row : rows)
+        for (std::size_t i = 0; i < 4; ++i) fractions[i] |= is_fractional(row[i]);
+    const auto n = std::count(fractions.begin(), fractions.end(), true);
+    if (n == 1 && fractions[2]) return layout_stated("xytp");
+    if (n == 1 && fractions[3]) return layout_stated("xypt");
+    return layout_stated("txyp");
+}
+
+TextTimeUnit unit_of(const std::vector<Fields>& rows, const TextLayout& layout) {
+    const auto time =
+        std::size_t(std::find(layout.columns.begin(), layout.columns.end(), TextField::time) -
+                    layout.columns.begin());
+    const bool fractions = std::any_of(rows.begin(), rows.end(), [&](const Fields& row) {
+        return time < row.size() && is_fractional(row[time]);
+    });
+    return fractions ? TextTimeUnit::seconds : TextTimeUnit::microseconds;
+}
+
+bool is_printable(std::string_view text) {
+    return std::none_of(text.begin(), text.end(), [](char c) {
+        const auto code = static_cast<unsigned char>(c);
+        return (code < 0x20 && c != '\t' && c != '\r' && c != '\n' && c != '\f') || code == 0x7F;
+    });
+}
+
+}  // namespace
+
+bool looks_like_text(std::span<const std::byte> first_bytes) {
+    const std::string_view text =
+        as_text(first_bytes.first(std::min<std::size_t>(first_bytes.size(), 65536)));
+    Lines lines(text);
+    auto line = lines.next();
+    if (!line || !is_printable(text.substr(0, std::min<std::size_t>(text.size(), 512))))
+        return false;
+    Fields fields = split_fields(*line);
+    if (geometry_of(fields)) {
+        line = lines.next();
+        if (!line) return true;
+        fields = split_fields(*line);
+    }
+    return is_row(fields) || layout_named(fields);
+}
+
+TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOptions& options) {
+    TextHeader header;
+    header.stream.format = "text";
+    Lines lines(as_text(first_bytes));
+    auto line = lines.next();
+    if (line) {
+        if (const auto geometry = geometry_of(split_fields(*line))) {
+            std::tie(header.stream.width, header.stream.height) = *geometry;
+            line = lines.next();
+        }
+    }
+    std::optional<TextLayout> named;
+    if (line && !is_row(split_fields(*line))) {
+        named = layout_named(split_fields(*line));
+        if (named) line = lines.next();
+    }
+    if (!line || !is_row(split_fields(*line)))
+        throw Error(ErrorKind::input, "text recording: expected rows \"t x y p\", found " +
+                                          (line ? "\"" + std::string(line->substr(0, 60)) + "\""
+                                                : std::string("no row of data")));
+    header.stream.data_offset = lines.line_begin();
+
+    std::vector<Fields> rows;
+    for (; line && rows.size() < kRowsToLookAt; line = lines.next())
+        if (Fields fields = split_fields(*line); is_row(fields)) rows.push_back(std::move(fields));
+
+    if (!options.columns.empty())
+        header.layout = layout_stated(options.columns);
+    else
+        header.layout = named ? *named : layout_guessed(rows);
+    if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
+    if (header.layout.unit == TextTimeUnit::automatic)
+        header.layout.unit = unit_of(rows, header.layout);
+    return header;
+}
+
+}  // namespace eventide

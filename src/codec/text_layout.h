@@ -1,0 +1,54 @@
+// How a text recording is written: which column is what, and the unit of time.
+#pragma once
+
+#include "src/codec/stream.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace eventide {
+
+enum class TextTimeUnit : std::uint8_t {
+    automatic,
+    seconds,
+    milliseconds,
+    microseconds,
+    nanoseconds
+};
+
+/// What the user states. Throws nothing by itself: read_text_header() checks it.
+struct TextOptions {
+    std::string columns;  ///< a permutation of "txyp"; empty: from a header row, else "txyp"
+    /// Automatic: seconds when any time near the beginning has a decimal point or an exponent, else
+    /// microseconds.
+    TextTimeUnit unit = TextTimeUnit::automatic;
+};
+
+enum class TextField : std::uint8_t { time, x, y, polarity, ignored };
+
+struct TextLayout {
+    static constexpr std::size_t kMostColumns = 16;
+
+    std::array<TextField, kMostColumns> columns{TextField::time, TextField::x, TextField::y,
+                                                TextField::polarity};
+    std::size_t n_columns = 4;                  ///< further ones on a line are ignored
+    TextTimeUnit unit = TextTimeUnit::seconds;  ///< never automatic
+};
+
+struct TextHeader {
+    StreamHeader stream;  ///< width and height from a "width height" first line, else 0
+    TextLayout layout;
+};
+
+/// True when the bytes look like a text recording: printable, and the first lines are comments, a
+/// header row, a "width height" line, or rows of at least four numbers.
+bool looks_like_text(std::span<const std::byte> first_bytes);
+
+/// Throws Error (input) when no line of data is among the bytes and `is_whole_file` is false or the
+/// lines are no rows of events; Error (usage) when the options contradict themselves.
+TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOptions& options);
+
+}  // namespace eventide
