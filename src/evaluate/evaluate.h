@@ -1,0 +1,83 @@
+// `eventide evaluate`: how good a model's pictures are, on recordings, simulation, or folders.
+#pragma once
+
+#include "src/core/parallel_for.h"
+#include "src/evaluate/report.h"
+#include "src/model/engine.h"
+#include "src/model/model_config.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+/// What all evaluations of a model share.
+struct EvaluateSettings {
+    std::filesystem::path model;          ///< safetensors
+    std::filesystem::path lpips;          ///< npz; empty: LPIPS is left out
+    int lookahead = 0;                    ///< event frames after the picture's own that may be used
+    std::optional<SigmaRule> sigma_rule;  ///< else the model's own
+    EngineOptions engine;
+    /// Called now and then: which sequence, and how much of it is done (0 to 1).
+    std::function<void(const std::string& sequence, double share)> progress;
+};
+
+/// Recordings with reference images, of any format open_recording() reads.
+struct RecordingSettings {
+    std::vector<std::filesystem::path> recordings;
+    /// "reference": one event frame between consecutive reference images, the first one empty
+    /// (EVREAL); else as parse_window() has it ("50ms", "0.35epp"), and pictures are rendered
+    /// inside the event frames.
+    std::string window = "reference";
+    /// So many images are not scored, because the state is still empty; never more than the first
+    /// half of them.
+    int skip_images = 3;
+    std::optional<double> from_s, to_s;  ///< from the first event; only images inside are scored
+};
+EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how);
+
+/// The project's simulated test set: affine motion as the thesis' test set (reconstruction.md
+/// section 5), fixed seeds.
+struct SimulatedSettings {
+    std::filesystem::path images;  ///< folder of photographs; empty: procedural textures
+    int last_images = 0;           ///< only the last so many by name; 0: all
+    int sequences = 20;
+    int event_frames = 150;         ///< per sequence
+    int width = 240, height = 180;  ///< px, of the sensor
+    double scale = 1;               ///< pictures and truth are so many times larger
+    int skip_frames = 4;            ///< not scored: the state is still empty
+    std::uint64_t seed = 4000;
+};
+EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateSettings& how);
+
+/// Pictures in one folder against those of the same rank (by name) in another; sizes must agree.
+/// Sub-folders are sequences where both have them.
+EvaluateReport evaluate_folders(const std::filesystem::path& frames,
+                                const std::filesystem::path& references,
+                                const std::filesystem::path& lpips);
+
+/// The EVREAL protocol (reconstruction.md section 8) on a folder that holds the sequences of the
+/// Event Camera Dataset, each a folder with events.txt, images.txt and images/: cuts by the
+/// sequence's name, state reset per sequence, inference from 10 s before the cut.
+EvaluateReport evaluate_evreal(const std::filesystem::path& dataset, const EvaluateSettings& how);
+
+/// One factor for sigma, found on held-out data.
+struct Calibration {
+    double factor = 1;  ///< multiplies the model's present sigma_scale
+    double picp80_before = 0, picp80_after = 0;
+    double ll_before = 0, ll_after = 0;
+};
+enum class CalibrationRule {
+    coverage,   ///< PICP80 becomes .8
+    likelihood  ///< LL becomes largest
+};
+Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule);
+
+/// Writes `model` again as `to`, with sigma_scale multiplied and a line in its card.
+void write_calibrated(const std::filesystem::path& model, const std::filesystem::path& to,
+                      const Calibration& calibration);
+
+}  // namespace eventide
