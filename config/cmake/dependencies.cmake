@@ -1,6 +1,7 @@
 # Every package the project stands on, in one place. All are Debian's; scripts/install-packages.sh installs them.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(nlohmann_json REQUIRED)
 find_package(TBB REQUIRED)
