@@ -185,6 +185,8 @@ ReadStatus DavisCamera::read(RawPacket& into) {
     if (!device_) return lost(into);
     if (!stream_) start();
     if (stopped_) return ReadStatus::end;
+    adjust_exposure();
+    adjust_exposure();
     if (first_) {
         into.bytes.swap(*first_);
         first_.reset();
@@ -259,7 +261,58 @@ void DavisCamera::stop_device() noexcept {
 }
 
 std::unique_ptr<Parser> DavisCamera::make_parser() const {
-    return std::make_unique<DavisParser>(sensor_);
+    if (!options_.settings.auto_exposure || !options_.settings.frames)
+        return std::make_unique<DavisParser>(sensor_);
+    return std::make_unique<ExposingDavisParser>(sensor_, options_.settings.exposure_us,
+                                                 exposure_wish_);
+}
+
+/// Between transfers, on the source thread: a control request inside event handling would wait for
+/// itself.
+void DavisCamera::adjust_exposure() {
+    const int wish_us = exposure_wish_->exchange(0, std::memory_order_relaxed);
+    if (wish_us > 0) device_->write_register({kApsExposure, adc_cycles(wish_us, features_)});
+}
+
+namespace {
+
+CameraDescription describe(const UsbIdentity& identity) {
+    CameraDescription camera;
+    camera.name = "DAVIS";
+    camera.serial = identity.serial;
+    camera.bus = identity.bus;
+    camera.address = identity.address;
+    camera.source = "davis:" + (identity.serial.empty() ? std::to_string(identity.bus) + ":" +
+                                                              std::to_string(identity.address)
+                                                        : identity.serial);
+    camera.firmware = std::to_string(identity.firmware);
+    camera.problem = identity.problem;
+    return camera;
+}
+
+}  // namespace
+
+std::vector<CameraDescription> list_davis_cameras() {
+    UsbSelector selector;
+    selector.products = {kDavisFx3, kDavisFx2};
+    std::vector<CameraDescription> cameras;
+    for (const UsbIdentity& identity : list_usb_devices(selector)) {
+        CameraDescription camera = describe(identity);
+        if (camera.problem.empty()) {
+            // Chip and logic are known only to the camera itself, so it is opened for a moment.
+            DavisOptions options;
+            options.bus = identity.bus;
+            options.address = identity.address;
+            try {
+                camera.name = DavisCamera{options}.info().name;
+                camera.logic = std::to_string(kLogicWanted);
+            } catch (const Error& error) {
+                camera.problem = error.what();
+            }
+        }
+        cameras.push_back(std::move(camera));
+    }
+    return cameras;
 }
 
 }  // namespace eventide

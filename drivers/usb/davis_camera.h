@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/camera.h"
+#include "drivers/usb/davis_exposure.h"
 #include "drivers/usb/davis_settings.h"
 #include "drivers/usb/usb_device.h"
 #include "drivers/usb/usb_stream.h"
@@ -9,8 +10,12 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace eventide {
+
+/// Every DAVIS on the bus, with what keeps it from being used.
+std::vector<CameraDescription> list_davis_cameras();
 
 /// USB products that carry a DAVIS: behind FX2 and behind FX3.
 inline constexpr std::uint16_t kDavisFx2 = 0x841B, kDavisFx3 = 0x841A;
@@ -41,6 +46,7 @@ private:
     void open();
     void read_sensor();
     void start();
+    void adjust_exposure();
     void stop_device() noexcept;
     bool wait_for_reset_marker();
     ReadStatus lost(RawPacket& into);
@@ -54,6 +60,7 @@ private:
     std::unique_ptr<UsbDevice> device_;
     std::unique_ptr<UsbStream> stream_;            ///< after device_: it must end first
     std::optional<std::vector<std::byte>> first_;  ///< bytes that came with the reset marker
+    std::shared_ptr<ExposureWish> exposure_wish_ = std::make_shared<ExposureWish>(0);
     bool gap_ = false;
     std::atomic<bool> stopped_{false};
 };

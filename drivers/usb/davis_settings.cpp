@@ -121,19 +121,14 @@ void add_dvs(Writes& writes, const DavisSettings& settings, const DavisSensor& s
         add(writes, kDvsRoiEndRow, roi.y + roi.height - 1);
     }
     if (features.skip) {
-        add(writes, kDvsSkip, 0);
-        add(writes, kDvsSkipEvery, 5);
+        add(writes, kDvsSkip, settings.skip_every > 0 ? 1 : 0);
+        add(writes, kDvsSkipEvery, settings.skip_every > 0 ? settings.skip_every : 5);
     }
     if (features.polarity_filter) {
         add(writes, kDvsPolarityFlatten, 0);
         add(writes, kDvsPolaritySuppress, 0);
         add(writes, kDvsPolarityWhich, 0);
     }
-}
-
-/// Exposure and interval go over the wire in cycles of the ADC's real clock.
-int adc_cycles(int us, const DavisFeatures& features) {
-    return int(std::int64_t(us) * features.adc_mhz * features.deviation / 1000);
 }
 
 void add_aps(Writes& writes, const DavisSettings& settings, const DavisSensor& sensor,
@@ -144,8 +139,8 @@ void add_aps(Writes& writes, const DavisSettings& settings, const DavisSensor& s
     add(writes, kApsStartRow, 0);
     add(writes, kApsEndColumn, sensor.aps_width() - 1);
     add(writes, kApsEndRow, sensor.aps_height() - 1);
-    add(writes, kApsExposure, adc_cycles(settings.exposure_us, features));
-    add(writes, kApsInterval, adc_cycles(settings.frame_interval_us, features));
+    writes.push_back({kApsExposure, adc_cycles(settings.exposure_us, features)});
+    writes.push_back({kApsInterval, adc_cycles(settings.frame_interval_us, features)});
 }
 
 void add_imu(Writes& writes, const DavisSettings& settings) {
@@ -168,6 +163,10 @@ void add_extinput(Writes& writes, const DavisSettings& settings, const DavisFeat
 }
 
 }  // namespace
+
+std::uint32_t adc_cycles(int us, const DavisFeatures& features) {
+    return std::uint32_t(std::int64_t(us) * features.adc_mhz * features.deviation / 1000);
+}
 
 const std::vector<Bias>& default_biases(DavisChip chip) {
     return chip <= DavisChip::davis240c ? kBiases240 : kBiases346;

@@ -32,6 +32,7 @@ struct DavisSettings {
     bool activity_filter = true;  ///< on the camera: drops events without a neighbour
     int activity_time_us = 2000;  ///< in steps of 250
     std::optional<Roi> roi;       ///< of events
+    int skip_every = 0;           ///< on the camera: leaves out one event in so many; 0 none
     bool detect_pulses = true;    ///< on the external input
     bool detect_edges = false;
 
@@ -64,6 +65,9 @@ struct DavisFeatures {
 /// external input, USB. Throws Error (usage) for a bias the chip does not have.
 std::vector<davis::Write> configuration(const DavisSettings& settings, const DavisSensor& sensor,
                                         const DavisFeatures& features);
+
+/// Exposure and interval go over the wire in cycles of the ADC's real clock.
+std::uint32_t adc_cycles(int us, const DavisFeatures& features);
 
 /// Idle: the first writes of a start, and the whole of a stop (A.8).
 std::vector<davis::Write> idle_writes();

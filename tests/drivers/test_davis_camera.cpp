@@ -1,4 +1,5 @@
 // The real driver, through the real libusb, against a DAVIS in software.
+#include "drivers/devices.h"
 #include "drivers/usb/davis_camera.h"
 #include "src/core/error.h"
 #include "tests/support/davis_model.h"
@@ -7,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 namespace eventide {
@@ -150,6 +153,93 @@ TEST(DavisCamera, ComesBackAfterBeingUnpluggedAndMarksTheGap) {
         while (camera->read(packet) != ReadStatus::timeout) continue;
     }
     EXPECT_EQ(camera->counters().reconnects, 4U);
+}
+
+TEST(DavisCamera, ExposureFollowsTheFrames) {
+    UsbTestbed bed;
+    const auto model = std::make_shared<DavisModel>(DavisModelSettings{});
+    Batch dark = scene(model->settings().sensor, 1000);
+    for (auto& image : dark.images)
+        for (auto& pixel : image.pixels.values()) pixel = 64 << 6 | 64 >> 4;
+    model->show(dark);
+    bed.plug_in(model);
+    DavisCamera camera{DavisOptions{}};
+    stream(camera, bed);
+    RawPacket packet;
+    camera.read(packet);
+    bed.look([](DavisModel& m) {
+        EXPECT_EQ(m.read(davis::kApsExposure), 30U * 8000);
+    });  // 4 ms, doubled
+}
+
+TEST(DavisExposure, GoesWhereTheMeanIsRightAndStaysThere) {
+    // A linear sensor: brightness follows exposure until it saturates.
+    for (const double light : {0.00001, 0.0003, 0.01}) {  // full scales per us
+        int exposure_us = 4000;
+        ReferenceImage frame;
+        frame.pixels = Array2<std::uint16_t>{2, 2};
+        int changes = 0;
+        for (int i = 0; i < 40; ++i) {
+            const double value = std::min(1.0, light * exposure_us);
+            for (auto& pixel : frame.pixels.values()) pixel = std::uint16_t(value * 65535);
+            const int next = better_exposure_us(frame, exposure_us);
+            changes += next != exposure_us && i > 30 ? 1 : 0;
+            exposure_us = next;
+        }
+        EXPECT_NEAR(light * exposure_us, 0.4, 0.07);
+        EXPECT_EQ(changes, 0) << "it hunts";
+    }
+}
+
+TEST(DavisSettings, ShippedFileSaysTheDefaults) {
+    const DavisSettings shipped = load_davis_settings(std::filesystem::path{EVENTIDE_SOURCE_DIR} /
+                                                      "config/cameras/davis346.toml");
+    const DavisSensor sensor;
+    EXPECT_EQ(configuration(shipped, sensor, {}), configuration(DavisSettings{}, sensor, {}));
+}
+
+TEST(DavisSettings, RefusesWhatItDoesNotKnowWithItsLine) {
+    const auto refusal = [](const std::string& text) {
+        const auto file = std::filesystem::path{testing::TempDir()} / "camera.toml";
+        std::ofstream{file} << text;
+        try {
+            load_davis_settings(file);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            return std::string{error.what()};
+        }
+        return std::string{"accepted"};
+    };
+    EXPECT_THAT(refusal("imu = true\nexposure = 3\n"),
+                HasSubstr("camera.toml:2: unknown key 'exposure'"));
+    EXPECT_THAT(refusal("accel_range_g = 5"), HasSubstr("one of 2, 4, 8, 16, found 5"));
+    EXPECT_THAT(refusal("exposure_us = -1"), HasSubstr("from 0 to 4194303, found -1"));
+    EXPECT_THAT(refusal("frames = 1"), HasSubstr("true or false"));
+    EXPECT_THAT(refusal("= 1"), HasSubstr("camera.toml:1"));
+    DavisSettings settings;
+    settings.biases["NoSuchBias"] = 1;
+    EXPECT_THROW(configuration(settings, DavisSensor{}, {}), Error);
+}
+
+TEST(Devices, ListsWhatIsPluggedInAndWhyItCannotBeUsed) {
+    UsbTestbed bed;
+    EXPECT_TRUE(list_cameras().empty());
+    bed.plug_in(std::make_shared<DavisModel>(DavisModelSettings{}));
+    auto cameras = list_cameras();
+    ASSERT_EQ(cameras.size(), 1U);
+    EXPECT_EQ(cameras[0].source, "davis:00000042");
+    EXPECT_EQ(cameras[0].name, "DAVIS346B");
+    EXPECT_EQ(cameras[0].problem, "");
+    EXPECT_EQ(open_camera(cameras[0].source, {})->info().serial, "00000042");
+    EXPECT_EQ(open_camera("davis:1:1", {})->info().serial, "00000042");
+    EXPECT_THAT(failure_of([] { open_camera("davis:other", {}); }), HasSubstr("serial 'other'"));
+    bed.unplug();
+    DavisModelSettings old;
+    old.logic = 16;
+    bed.plug_in(std::make_shared<DavisModel>(old));
+    cameras = list_cameras();
+    ASSERT_EQ(cameras.size(), 1U);
+    EXPECT_THAT(cameras[0].problem, HasSubstr("logic 16"));
 }
 
 TEST(DavisCamera, StartsAndStopsAsThisGenerationOfLogicExpects) {

@@ -1,0 +1,33 @@
+// Which cameras there are, and how a name on the command line becomes one.
+#pragma once
+
+#include "drivers/camera.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eventide {
+
+struct CameraOptions {
+    std::filesystem::path settings;  ///< a file of config/cameras; empty: the driver's defaults
+    bool reconnect = false;          ///< wait for an unplugged camera to come back
+};
+
+/// Whether a source on the command line names a camera rather than a file: "davis:", "v4l2:", ...
+bool names_camera(std::string_view source);
+
+/// davis:              the first DAVIS found
+/// davis:SERIAL        the one with this serial number
+/// davis:BUS:ADDRESS   the one at this place (lsusb)
+/// v4l2:/dev/videoN    an event sensor with a V4L2 driver
+/// Throws Error: usage for a name that makes no sense or a driver that was not built, device for a
+/// camera that cannot be used.
+std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options);
+
+/// Every camera that can be seen, usable or not.
+std::vector<CameraDescription> list_cameras();
+
+}  // namespace eventide
