@@ -1,0 +1,83 @@
+// What went through the line, and what did not, by reason.
+#pragma once
+
+#include "pipeline/latency.h"
+#include "src/binning/slicer.h"
+#include "src/core/damage.h"
+#include "src/core/frame_data.h"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace eventide {
+
+/// Counted by one thread, read by any.
+class Counter {
+public:
+    void add(std::uint64_t n = 1) noexcept { set(value() + n); }
+    void set(std::uint64_t n) noexcept { value_.store(n, std::memory_order_relaxed); }
+    std::uint64_t value() const noexcept { return value_.load(std::memory_order_relaxed); }
+
+private:
+    std::atomic<std::uint64_t> value_{0};
+};
+
+/// The counters at one moment. Lost: could not be taken. Skipped: left out on purpose. Damaged:
+/// made no sense.
+struct Snapshot {
+    // read
+    std::uint64_t packets = 0, bytes = 0;            ///< read from the source, also the lost ones
+    std::uint64_t lost_packets = 0, lost_bytes = 0;  ///< of those: every buffer was in use
+
+    // parse, slice, bin
+    std::uint64_t gaps = 0;  ///< places where bytes are missing, here or already at the source
+    std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;  ///< parsed
+    std::uint64_t filtered_events = 0;                            ///< skipped by the event filter
+    Damage damaged;
+    SlicerCounters slicing;
+    std::uint64_t event_frames = 0, silent_frames = 0;  ///< silent: of those, without events
+    Window window{};                                    ///< the newest event frame
+
+    // encode
+    std::uint64_t encoded = 0;  ///< event frames
+    std::uint64_t state_resets = 0;
+
+    // render, write
+    std::uint64_t frames = 0;          ///< written
+    std::uint64_t skipped_frames = 0;  ///< a live source, and rendering could not keep up
+    SensorTime newest_frame{};         ///< t of the last one written; valid where frames > 0
+
+    LatencySummary latency;        ///< from the last packet a frame saw to the frame written
+    LatencySummary bin, encode;    ///< work per event frame
+    LatencySummary render, write;  ///< work per frame
+
+    std::uint64_t lost() const { return lost_packets; }
+};
+
+/// The line's own counters, grouped by the thread that counts so that no cache line is shared.
+struct Counters {
+    struct alignas(64) {
+        Counter packets, bytes, lost_packets, lost_bytes;
+    } read;
+    struct alignas(64) {
+        Counter gaps, events, images, imu, triggers, filtered_events;
+        std::array<Counter, kDamageReasons> damaged;
+        Counter before_begin, after_end, too_many, late, late_references, time_resets;
+        Counter event_frames, silent_frames, window_begin_us, window_end_us;
+        LatencyHistogram work;
+    } bin;
+    struct alignas(64) {
+        Counter encoded, state_resets;
+        LatencyHistogram work;
+    } encode;
+    struct alignas(64) {
+        Counter frames, skipped_frames, newest_us;
+        LatencyHistogram latency, render, write;
+    } present;
+
+    void note(const Damage& damaged, const SlicerCounters& slicing);  ///< bin thread
+    Snapshot snapshot() const;                                        ///< any thread
+};
+
+}  // namespace eventide

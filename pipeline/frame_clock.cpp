@@ -1,0 +1,96 @@
+// When frames are asked for.
+#include "pipeline/frame_clock.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+namespace eventide {
+namespace {
+
+__extension__ using Wide = __int128;
+
+constexpr std::int64_t kUsPerSecond = 1'000'000;
+constexpr std::int64_t kMostPerSecond = 1'000'000;
+constexpr std::size_t kMostDigits = 12;  // of numerator and denominator: products fit 128 bits
+
+[[noreturn]] void refuse(std::string_view text) {
+    throw Error(ErrorKind::usage, "frame rate '" + std::string{text} +
+                                      "': expected more than 0 and at most 1000000 frames per "
+                                      "second, for example 120, 29.97 or 30000/1001");
+}
+
+std::int64_t digits(std::string_view part, std::string_view text) {
+    std::int64_t value = 0;
+    const char* const end = part.data() + part.size();
+    if (part.empty() || part.size() > kMostDigits || part.front() == '-') refuse(text);
+    if (const auto result = std::from_chars(part.data(), end, value);
+        result.ec != std::errc{} || result.ptr != end)
+        refuse(text);
+    return value;
+}
+
+FrameRate fraction(std::string_view text) {
+    if (const auto slash = text.find('/'); slash != text.npos)
+        return {digits(text.substr(0, slash), text), digits(text.substr(slash + 1), text)};
+    const auto point = text.find('.');
+    if (point == text.npos) return {digits(text, text), 1};
+    const std::string_view decimals = text.substr(point + 1);
+    if (decimals.size() > 6) refuse(text);
+    std::int64_t scale = 1;
+    for (std::size_t i = 0; i < decimals.size(); ++i) scale *= 10;
+    const std::int64_t whole = point == 0 ? 0 : digits(text.substr(0, point), text);
+    if (whole > kMostPerSecond) refuse(text);
+    return {whole * scale + digits(decimals, text), scale};
+}
+
+}  // namespace
+
+FrameRate parse_frame_rate(std::string_view text) {
+    const FrameRate rate = fraction(text);
+    if (rate.frames < 1 || rate.seconds < 1) refuse(text);
+    if (rate.frames / rate.seconds > kMostPerSecond - (rate.frames % rate.seconds != 0))
+        refuse(text);
+    const std::int64_t common = std::gcd(rate.frames, rate.seconds);
+    return {rate.frames / common, rate.seconds / common};
+}
+
+SensorTime FrameClock::time_of(std::uint64_t index) const {
+    const Wide us = Wide{index} * rate_.seconds * kUsPerSecond;
+    return t0_ + SensorDuration{std::int64_t((2 * us + rate_.frames) / (2 * Wide{rate_.frames}))};
+}
+
+std::uint64_t FrameClock::count_until(SensorTime t) const {
+    if (t < t0_) return 0;
+    // Rounding moves a frame by half a microsecond at most, so this is one too many or right.
+    const Wide us = (t - t0_).count();
+    auto count = std::uint64_t((us + 1) * rate_.frames / (Wide{rate_.seconds} * kUsPerSecond)) + 1;
+    while (count > 0 && time_of(count - 1) > t) --count;
+    return count;
+}
+
+void FrameSchedule::open(Window window) {
+    window_end_ = window.end;
+    next_ = end_;
+    if (!rate_.is_set()) {
+        if (!from_ || window.end >= *from_) ++end_;
+        return;
+    }
+    if (!clock_) clock_.emplace(rate_, std::max(window.begin, from_.value_or(window.begin)));
+    end_ = std::max(end_, base_ + clock_->count_until(window.end));
+}
+
+DueFrame FrameSchedule::next() {
+    const std::uint64_t index = next_++;
+    return {rate_.is_set() ? clock_->time_of(index - base_) : window_end_, index};
+}
+
+void FrameSchedule::restart() {
+    clock_.reset();
+    from_.reset();  // a time of the old clock
+    base_ = next_ = end_;
+}
+
+}  // namespace eventide

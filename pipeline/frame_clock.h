@@ -1,0 +1,76 @@
+// When frames are asked for: at t0 + k / fps in sensor time, whatever the packets do.
+#pragma once
+
+#include "src/core/sensor_time.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace eventide {
+
+/// Frames per second as a fraction, so that 29.97 or 30000/1001 do not drift.
+struct FrameRate {
+    std::int64_t frames = 0;  ///< 0: no rate, one frame at the end of each event frame
+    std::int64_t seconds = 1;
+
+    bool is_set() const { return frames > 0; }
+    friend bool operator==(const FrameRate&, const FrameRate&) = default;
+};
+
+/// "120", "29.97", "30000/1001": more than 0, at most 1e6 (time has steps of 1 us). Throws Error
+/// (usage).
+FrameRate parse_frame_rate(std::string_view text);
+
+/// t0 + k / fps, rounded to the nearest microsecond: each from k itself, so nothing accumulates.
+class FrameClock {
+public:
+    FrameClock(FrameRate rate, SensorTime t0) : rate_(rate), t0_(t0) {}
+
+    SensorTime time_of(std::uint64_t index) const;
+
+    /// How many frames are at or before t: the index of the first one after it.
+    std::uint64_t count_until(SensorTime t) const;
+
+private:
+    FrameRate rate_;
+    SensorTime t0_;
+};
+
+/// One frame asked for.
+struct DueFrame {
+    SensorTime t;
+    std::uint64_t index;
+};
+
+/// Which frames lie in which event frame. Event frames come one by one and follow each other.
+class FrameSchedule {
+public:
+    /// t0 is the first event frame's begin, or `from` where that is later: no frame is asked for
+    /// before it (event frames before it warm up the encoder's state).
+    explicit FrameSchedule(FrameRate rate, std::optional<SensorTime> from = {})
+        : rate_(rate), from_(from) {}
+
+    /// The frames with begin < t <= end become due; the first event frame's include its begin.
+    void open(Window window);
+
+    /// Of the open event frame: how many are still due, and the next of them.
+    std::uint64_t due() const { return end_ - next_; }
+    DueFrame next();
+
+    /// Leaves out what is due.
+    void skip(std::uint64_t frames) { next_ += frames; }
+
+    /// The sensor's clock begins anew; indices go on.
+    void restart();
+
+private:
+    FrameRate rate_;
+    std::optional<SensorTime> from_;
+    std::optional<FrameClock> clock_;  // counts from base_
+    std::uint64_t base_ = 0, next_ = 0, end_ = 0;
+    SensorTime window_end_{};
+};
+
+}  // namespace eventide

@@ -1,0 +1,13 @@
+// The ParallelFor that programs give to src/: oneTBB behind it.
+#pragma once
+
+#include "src/core/parallel_for.h"
+
+namespace eventide {
+
+/// At most `threads` threads at a time, the caller's included (1: no other thread is used; 0: as
+/// many as the machine has). May be called from several threads at once: they share the threads.
+/// Throws Error (usage) for a negative number.
+ParallelFor parallel_for_with(int threads);
+
+}  // namespace eventide

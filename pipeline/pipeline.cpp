@@ -1,0 +1,273 @@
+// The line: four functions, each one thread.
+#include "pipeline/pipeline.h"
+
+#include "src/core/error.h"
+
+#include <pthread.h>
+
+#include <string>
+#include <utility>
+
+namespace eventide {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::size_t at_least_one(std::size_t n, const char* name) {
+    if (n < 1)
+        throw Error(ErrorKind::usage, std::string{"buffers: "} + name + " must be at least 1");
+    return n;
+}
+
+Presenter::Settings presenter_settings(const PipelineParts& parts,
+                                       const PipelineSettings& settings) {
+    Presenter::Settings s;
+    s.rate = settings.rate;
+    s.from = settings.frames_from;
+    s.lookahead = settings.lookahead;
+    s.live = parts.source.is_live();
+    // One buffer is being rendered and one being filled; were all the others waiting, the encoder
+    // would wait, too, and in the end the camera lose events.
+    s.waits_at_most = settings.buffers.latents > 2 ? settings.buffers.latents - 2 : 1;
+    return s;
+}
+
+void sum_polarities(const VoxelGrid& grid, Array2<float>& picture) {
+    const std::size_t channels = std::size_t(grid.values.channels());
+    const float* pixel = grid.values.values().data();
+    for (float& sum : picture.values()) {
+        sum = 0;
+        for (std::size_t c = 0; c + 1 < channels; c += 4) sum += pixel[c];
+        pixel += channels;
+    }
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
+    : parts_(parts),
+      settings_(settings),
+      event_frames_(parts.source, settings.event_frames, parts.filter, parts.observer, counters_),
+      binner_(settings.bins, parts.source.info().height, parts.source.info().width),
+      packet_pool_(at_least_one(settings.buffers.packets, "packets"), [] { return RawPacket{}; }),
+      grid_pool_(at_least_one(settings.buffers.grids, "grids"),
+                 [this] { return binner_.make_output(); }),
+      latent_pool_(at_least_one(settings.buffers.latents, "latents"),
+                   [this] { return make_encoded(); }),
+      packets_(settings.buffers.packets),
+      grids_(settings.buffers.grids),
+      latents_(settings.buffers.latents),
+      presenter_(
+          parts.renderer, parts.sinks, presenter_settings(parts, settings),
+          [this] { return latents_.waiting(); }, stop_, counters_) {}
+
+// ---- the line --------------------------------------------------------------------------------
+
+void Pipeline::read() {  // bytes
+    bool gap = false;
+    const bool live = parts_.source.is_live();
+    guarded([&] {
+        for (;;) {
+            auto packet = live ? packet_pool_.try_acquire() : packet_pool_.acquire();
+            if (!read_one(packet ? *packet : spill_)) break;
+            if (!packet && (packet = packet_pool_.try_acquire())) std::swap(*packet, spill_);
+            if (!packet) {  // the one place where data are lost
+                counters_.read.lost_packets.add(spill_.bytes.empty() ? 0 : 1);
+                counters_.read.lost_bytes.add(spill_.bytes.size());
+                gap = gap || spill_.gap_before || !spill_.bytes.empty();
+                continue;
+            }
+            packet->gap_before |= std::exchange(gap, false);
+            packets_.push(std::move(packet));
+        }
+    });
+    packets_.close();
+}
+
+void Pipeline::bin() {  // bytes -> events -> grids
+    const auto hand_on = [this](const Slice& slice) {
+        auto grid = grid_pool_.acquire();
+        bin_one(slice, *grid);
+        grids_.push(std::move(grid));
+    };
+    const bool complete = for_each(packets_, [&](const RawPacket& packet) {
+        event_frames_.take(packet);
+        for_each_slice(hand_on);
+    });
+    if (complete)
+        guarded([&] {
+            event_frames_.finish();
+            for_each_slice(hand_on);
+        });
+    grids_.close();
+}
+
+void Pipeline::encode() {  // grids -> latent maps
+    for_each(grids_, [&](const VoxelGrid& grid) {
+        auto encoded = latent_pool_.acquire();
+        encode_one(grid, *encoded);
+        latents_.push(std::move(encoded));
+    });
+    latents_.close();
+}
+
+void Pipeline::present() {  // latent maps -> frames -> sinks
+    const bool complete = for_each(latents_, [&](const Encoded& encoded) { present_one(encoded); });
+    if (complete) guarded([&] { presenter_.finish(); });
+}
+
+// ---- one step of each ------------------------------------------------------------------------
+
+bool Pipeline::read_one(RawPacket& into) {
+    into.gap_before = false;
+    const ReadStatus status = parts_.source.read(into);
+    if (status == ReadStatus::end) return false;
+    if (status == ReadStatus::timeout) {  // an empty packet: only host time passes
+        into.bytes.clear();
+        into.arrived = Clock::now();
+        return true;
+    }
+    counters_.read.packets.add();
+    counters_.read.bytes.add(into.bytes.size());
+    into.sequence = counters_.read.packets.value();
+    return true;
+}
+
+template <typename Body>
+void Pipeline::for_each_slice(Body body) {
+    for (Slice slice; event_frames_.next(slice) && !stop_.is_overdue();) body(slice);
+    if (event_frames_.is_past_end()) parts_.source.stop();
+}
+
+void Pipeline::bin_one(const Slice& slice, VoxelGrid& grid) {
+    const HostTime begun = Clock::now();
+    if (slice.reset_before || (slice.gap_before && settings_.reset_on_gap)) binner_.reset();
+    binner_.process(slice, grid);
+    counters_.bin.event_frames.add();
+    counters_.bin.silent_frames.add(slice.events.empty() ? 1 : 0);
+    counters_.bin.window_begin_us.set(std::uint64_t(to_us(slice.window.begin)));
+    counters_.bin.window_end_us.set(std::uint64_t(to_us(slice.window.end)));
+    counters_.bin.work.record(Clock::now() - begun);
+}
+
+void Pipeline::encode_one(const VoxelGrid& grid, Encoded& encoded) {
+    const HostTime begun = Clock::now();
+    if (grid.reset_before || (grid.gap_before && settings_.reset_on_gap)) {
+        parts_.encoder.reset();
+        counters_.encode.state_resets.add();
+    }
+    LatentMap& latent = encoded.latent;
+    parts_.encoder.encode(grid, latent);
+    latent.window = grid.window;
+    latent.events = grid.events;
+    latent.arrived = grid.arrived;
+    latent.gap_before = grid.gap_before;
+    latent.reset_before = grid.reset_before;
+    if (settings_.event_preview) sum_polarities(grid, encoded.event_preview);
+    counters_.encode.encoded.add();
+    counters_.encode.work.record(Clock::now() - begun);
+}
+
+void Pipeline::present_one(const Encoded& encoded) {
+    if (!presenter_.take(encoded)) stop();
+}
+
+Encoded Pipeline::make_encoded() const {
+    Encoded encoded;
+    encoded.latent = parts_.encoder.make_output();
+    const SensorInfo& info = parts_.source.info();
+    if (settings_.event_preview) encoded.event_preview = Array2<float>(info.height, info.width);
+    return encoded;
+}
+
+// ---- starting, ending, failing ---------------------------------------------------------------
+
+void Pipeline::run() {
+    {
+        std::jthread reading, binning, encoding;
+        start(reading, "eventide-read", &Pipeline::read, packets_);
+        start(binning, "eventide-bin", &Pipeline::bin, grids_);
+        start(encoding, "eventide-encode", &Pipeline::encode, latents_);
+        present();
+    }
+    close_and_report();
+}
+
+void Pipeline::run_sequential() {
+    RawPacket packet;
+    VoxelGrid grid = binner_.make_output();
+    Encoded encoded = make_encoded();
+    bool presenting = true;
+    const auto hand_on = [&](const Slice& slice) {
+        bin_one(slice, grid);
+        encode_one(grid, encoded);
+        presenting = presenting && guarded([&] { present_one(encoded); });
+    };
+    const auto reads = [&] {
+        bool more = false;
+        return guarded([&] { more = read_one(packet); }) && more;
+    };
+    const bool complete = guarded([&] {
+        while (reads()) {
+            event_frames_.take(packet);
+            for_each_slice(hand_on);
+        }
+    });
+    if (complete)
+        guarded([&] {
+            event_frames_.finish();
+            for_each_slice(hand_on);
+        });
+    if (presenting) guarded([&] { presenter_.finish(); });
+    close_and_report();
+}
+
+void Pipeline::stop() noexcept {
+    stop_.set();
+    parts_.source.stop();
+}
+
+/// A thread that cannot start must still close the link it would have closed.
+template <typename Handle>
+void Pipeline::start(std::jthread& thread, const char* name, void (Pipeline::*work)(),
+                     Link<Handle>& out) {
+    const bool started = guarded([&] {
+        thread = std::jthread{[this, name, work] {
+            pthread_setname_np(pthread_self(), name);
+            (this->*work)();
+        }};
+    });
+    if (!started) out.close();
+}
+
+/// Runs `body` on every item. After an error it still empties the link, so that buffers go home and
+/// nothing upstream waits for ever.
+template <typename Handle, typename Body>
+bool Pipeline::for_each(Link<Handle>& link, Body body) {
+    const bool complete = guarded([&] {
+        while (auto item = link.pop()) body(**item);
+    });
+    if (!complete)
+        while (link.pop()) continue;
+    return complete;
+}
+
+/// False where it threw: the error is kept and the source asked to stop.
+template <typename Body>
+bool Pipeline::guarded(Body body) noexcept {
+    try {
+        body();
+        return true;
+    } catch (...) {
+        error_.keep(std::current_exception());
+        parts_.source.stop();
+        return false;
+    }
+}
+
+void Pipeline::close_and_report() {
+    guarded([&] { presenter_.close(); });
+    error_.rethrow_if_any();
+}
+
+}  // namespace eventide

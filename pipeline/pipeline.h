@@ -1,0 +1,115 @@
+// The line: bytes -> events -> grids -> latent maps -> frames, on four threads or on one.
+#pragma once
+
+#include "pipeline/counters.h"
+#include "pipeline/event_frames.h"
+#include "pipeline/first_error.h"
+#include "pipeline/frame_clock.h"
+#include "pipeline/link.h"
+#include "pipeline/pool.h"
+#include "pipeline/presenter.h"
+#include "pipeline/sink.h"
+#include "pipeline/source.h"
+#include "pipeline/stages.h"
+#include "pipeline/stop_request.h"
+#include "src/binning/binner.h"
+
+#include <cstddef>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace eventide {
+
+/// More buffers bridge longer bursts, take more memory and allow more latency: this is the choice
+/// between them.
+struct PipelineBuffers {
+    std::size_t packets = 64, grids = 3, latents = 4;  ///< each at least 1
+};
+
+struct PipelineSettings {
+    int bins = 5;  ///< B of the model
+    EventFrames::Settings event_frames;
+    FrameRate rate;
+    std::optional<SensorTime> frames_from;  ///< earlier event frames only warm up the state
+    int lookahead = 0;                      ///< 0, 1 or 2: event frames a picture waits for
+    bool reset_on_gap = false;              ///< begin with a new state where bytes were lost
+    bool event_preview = false;             ///< fill Frame::event_preview
+    PipelineBuffers buffers;
+};
+
+/// All borrowed for the pipeline's life; filter and observer may be null.
+struct PipelineParts {
+    Source& source;
+    EncodeStage& encoder;
+    RenderStage& renderer;
+    std::vector<Sink*> sinks;
+    EventFilter* filter = nullptr;
+    DataObserver* observer = nullptr;
+};
+
+/// One run from a source to sinks; made once for each. Threaded and sequential runs give the same
+/// frames bit for bit, for any split of the bytes (a live source's losses and skipped frames
+/// excepted, and what host time tells in its silence).
+class Pipeline {
+public:
+    /// Throws Error (usage) for settings out of range.
+    Pipeline(const PipelineParts& parts, const PipelineSettings& settings);
+
+    /// Reads, bins and encodes on threads of its own; renders and writes on the caller's. Returns
+    /// when the source has ended, nobody wants more, or after stop(); throws the first error of any
+    /// thread. Frames in work when a source fails are still written. All sinks are closed, always.
+    void run();
+
+    /// The same, one after the other on the caller's thread.
+    void run_sequential();
+
+    /// Thread: any. What has been read is still finished, for at most about a second.
+    void stop() noexcept;
+
+    Snapshot snapshot() const { return counters_.snapshot(); }  ///< Thread: any, at any time
+
+private:
+    // The four threads.
+    void read();
+    void bin();
+    void encode();
+    void present();
+
+    // One step of each, for both kinds of run.
+    bool read_one(RawPacket& into);
+    void bin_one(const Slice& slice, VoxelGrid& grid);
+    void encode_one(const VoxelGrid& grid, Encoded& encoded);
+    void present_one(const Encoded& encoded);
+    template <typename Body>
+    void for_each_slice(Body body);
+    Encoded make_encoded() const;
+
+    template <typename Handle>
+    void start(std::jthread& thread, const char* name, void (Pipeline::*work)(), Link<Handle>& out);
+    template <typename Handle, typename Body>
+    bool for_each(Link<Handle>& link, Body body);
+    template <typename Body>
+    bool guarded(Body body) noexcept;
+    void close_and_report();
+
+    const PipelineParts parts_;
+    const PipelineSettings settings_;
+    Counters counters_;
+    StopRequest stop_;
+    FirstError error_;
+    RawPacket spill_;           // read thread
+    EventFrames event_frames_;  // bin thread
+    Binner binner_;             // bin thread
+
+    Pool<RawPacket> packet_pool_;  // pools before links: a link may still hold handles when it dies
+    Pool<VoxelGrid> grid_pool_;
+    Pool<Encoded> latent_pool_;
+    Link<Pool<RawPacket>::Handle> packets_;
+    Link<Pool<VoxelGrid>::Handle> grids_;
+    Link<Pool<Encoded>::Handle> latents_;
+
+    Presenter presenter_;  // the caller's thread
+};
+
+}  // namespace eventide

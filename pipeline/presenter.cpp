@@ -1,0 +1,108 @@
+// latent maps -> frames -> sinks.
+#include "pipeline/presenter.h"
+
+#include "src/core/error.h"
+
+#include <exception>
+#include <string>
+#include <utility>
+
+namespace eventide {
+
+using Clock = std::chrono::steady_clock;
+
+Presenter::Presenter(RenderStage& renderer, std::vector<Sink*> sinks, const Settings& settings,
+                     std::function<std::size_t()> waiting, const StopRequest& stop,
+                     Counters& counters)
+    : renderer_(renderer),
+      sinks_(std::move(sinks)),
+      settings_(settings),
+      waiting_(std::move(waiting)),
+      stop_(stop),
+      counters_(counters),
+      schedule_(settings.rate, settings.from),
+      shedder_(settings.waits_at_most),
+      frame_(renderer.make_output()) {
+    if (settings.lookahead < 0 || settings.lookahead > kMostLookahead)
+        throw Error(ErrorKind::usage,
+                    "lookahead: expected 0, 1 or 2, found " + std::to_string(settings.lookahead));
+}
+
+bool Presenter::take(const Encoded& encoded) {
+    const LatentMap& latent = encoded.latent;
+    if (latent.reset_before) {
+        finish();
+        renderer_.reset();
+        schedule_.restart();
+    }
+    renderer_.push(latent);
+    arrived_ = latent.arrived;
+    Waiting& held = held_[(oldest_ + held_count_++) % held_.size()];
+    held.window = latent.window;
+    held.events = latent.events;
+    held.gap_before = latent.gap_before;
+    held.event_preview = encoded.event_preview;
+    if (held_count_ > std::size_t(settings_.lookahead)) present_oldest();
+    return wanted_;
+}
+
+bool Presenter::finish() {
+    while (held_count_ > 0) present_oldest();
+    return wanted_;
+}
+
+void Presenter::present_oldest() {
+    Waiting& held = held_[oldest_];
+    oldest_ = (oldest_ + 1) % held_.size();
+    --held_count_;
+    schedule_.open(held.window);
+    if (settings_.live) shedder_.open(schedule_.due(), Clock::now());
+    while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
+        const DueFrame due = schedule_.next();
+        if (!settings_.live) {
+            present(due, held);
+        } else if (shedder_.keeps_next(waiting_())) {
+            const HostTime begun = Clock::now();
+            present(due, held);
+            shedder_.took(Clock::now() - begun);
+        } else {
+            counters_.present.skipped_frames.add();
+        }
+    }
+}
+
+void Presenter::present(const DueFrame& due, Waiting& from) {
+    const HostTime begun = Clock::now();
+    frame_.t = due.t;
+    frame_.index = due.index;
+    frame_.window = from.window;
+    frame_.events = from.events;
+    frame_.gap_before = from.gap_before;
+    frame_.arrived = arrived_;
+    std::swap(frame_.event_preview, from.event_preview);
+    renderer_.render(due.t, from.window, frame_);
+    const HostTime rendered = Clock::now();
+    for (Sink* sink : sinks_) {
+        sink->write(frame_);
+        wanted_ = wanted_ && sink->wants_more();
+    }
+    std::swap(frame_.event_preview, from.event_preview);
+    const HostTime written = Clock::now();
+    counters_.present.frames.add();
+    counters_.present.newest_us.set(std::uint64_t(to_us(due.t)));
+    counters_.present.render.record(rendered - begun);
+    counters_.present.write.record(written - rendered);
+    counters_.present.latency.record(written - arrived_);
+}
+
+void Presenter::close() {
+    std::exception_ptr first;
+    for (Sink* sink : sinks_) try {
+            sink->close();
+        } catch (...) {
+            if (!first) first = std::current_exception();
+        }
+    if (first) std::rethrow_exception(first);
+}
+
+}  // namespace eventide

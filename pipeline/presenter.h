@@ -1,0 +1,78 @@
+// latent maps -> frames -> sinks: what the frame clock asks for, when its latent maps are there.
+#pragma once
+
+#include "pipeline/counters.h"
+#include "pipeline/frame_clock.h"
+#include "pipeline/frame_shedder.h"
+#include "pipeline/sink.h"
+#include "pipeline/stages.h"
+#include "pipeline/stop_request.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace eventide {
+
+/// What the encode thread hands on.
+struct Encoded {
+    LatentMap latent;
+    Array2<float> event_preview;  ///< empty where not asked for
+};
+
+/// Render thread. A frame whose time lies in event frame k is rendered when latent map k +
+/// lookahead has come; at the end of the stream, and before the camera's clock begins anew, without
+/// those that will not come (the live edge).
+class Presenter {
+public:
+    static constexpr int kMostLookahead = 2;
+
+    struct Settings {
+        FrameRate rate;
+        std::optional<SensorTime> from;  ///< no frame before
+        int lookahead = 0;               ///< 0 to kMostLookahead
+        bool live = false;               ///< may skip frames
+        std::size_t waits_at_most = 1;  ///< event frames behind this one, before frames are skipped
+    };
+
+    /// `waiting()` tells how many event frames stand behind the one at hand.
+    Presenter(RenderStage& renderer, std::vector<Sink*> sinks, const Settings& settings,
+              std::function<std::size_t()> waiting, const StopRequest& stop, Counters& counters);
+
+    /// Throws what a sink throws. False when no more frames are wanted.
+    bool take(const Encoded& encoded);
+
+    /// Nothing more comes: the frames that still wait for later latent maps.
+    bool finish();
+
+    /// Closes all sinks, whatever happened; then throws the first error of those.
+    void close();
+
+private:
+    /// An event frame whose frames are not rendered yet.
+    struct Waiting {
+        Window window;
+        std::uint64_t events = 0;
+        bool gap_before = false;
+        Array2<float> event_preview;
+    };
+    void present_oldest();
+    void present(const DueFrame& due, Waiting& from);
+
+    RenderStage& renderer_;
+    std::vector<Sink*> sinks_;
+    const Settings settings_;
+    std::function<std::size_t()> waiting_;
+    const StopRequest& stop_;
+    Counters& counters_;
+    FrameSchedule schedule_;
+    FrameShedder shedder_;
+    std::array<Waiting, kMostLookahead + 1> held_;  // a ring
+    std::size_t oldest_ = 0, held_count_ = 0;
+    HostTime arrived_{};  // of the newest latent map
+    Frame frame_;
+    bool wanted_ = true;
+};
+
+}  // namespace eventide

@@ -1,0 +1,51 @@
+// What the line asks of a model and of whatever stands between parser and slicer.
+#pragma once
+
+#include "src/core/event.h"
+#include "src/core/frame_data.h"
+
+#include <vector>
+
+namespace eventide {
+
+/// grid + state -> latent map. One at a time; encode thread.
+class EncodeStage {
+public:
+    virtual ~EncodeStage() = default;
+    virtual LatentMap make_output() const = 0;
+    /// Fills `latent.values`; the line fills the rest.
+    virtual void encode(const VoxelGrid& grid, LatentMap& latent) noexcept = 0;
+    virtual void reset() noexcept = 0;  ///< as constructed
+};
+
+/// latent window + time -> picture. One at a time; render thread.
+class RenderStage {
+public:
+    virtual ~RenderStage() = default;
+    virtual Frame make_output() const = 0;
+    /// The next event frame's latent map; its window follows the one before.
+    virtual void push(const LatentMap& latent) noexcept = 0;
+    /// Fills `frame.intensity` and `frame.sigma` for t in window (begin, end] (for the first one
+    /// also its begin), which is the newest one pushed or at most two before it. Every latent map
+    /// pushed may be used: the line has pushed as many as the lookahead says.
+    virtual void render(SensorTime t, const Window& window, Frame& frame) noexcept = 0;
+    virtual void reset() noexcept = 0;  ///< as constructed
+};
+
+/// events -> fewer events, before they are sliced (hot pixels, for example). Bin thread.
+class EventFilter {
+public:
+    virtual ~EventFilter() = default;
+    /// Removes events in place; the order stays.
+    virtual void process(std::vector<Event>& events) = 0;
+};
+
+/// Sees all data the parser gives (images, inertial samples), before the filter. Bin thread; it
+/// holds up the line for as long as it takes.
+class DataObserver {
+public:
+    virtual ~DataObserver() = default;
+    virtual void see(const Batch& batch) = 0;
+};
+
+}  // namespace eventide
