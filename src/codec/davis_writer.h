@@ -29,6 +29,8 @@ public:
     /// Moves the camera's clock without data: the wrap words that a silent camera sends.
     void advance(SensorTime t, std::vector<std::byte>& out) { time_word(to_us(t), out); }
 
+    SensorTime time() const { return from_us(time_); }  ///< said last
+
 private:
     void time_word(std::int64_t t, std::vector<std::byte>& out);
     void event(const Event& event, std::vector<std::byte>& out);

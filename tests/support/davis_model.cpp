@@ -67,6 +67,7 @@ void DavisModel::write(Write write) {
     if (write.at != kTimestampReset || write.value != 1) return;
     clear_endpoint();
     event_ = image_ = imu_ = trigger_ = 0;
+    reset_at_ = settings_.now ? settings_.now() : SensorTime{};
     writer_ = std::make_unique<DavisWriter>(settings_.sensor);
     StreamHeader header;
     header.width = settings_.sensor.width();
@@ -99,27 +100,41 @@ std::size_t DavisModel::send(std::span<std::byte> out) {
     return n;
 }
 
+SensorTime DavisModel::now() const {
+    return SensorTime{settings_.now() - reset_at_};
+}
+
 void DavisModel::make_more(std::size_t bytes) {
-    constexpr std::size_t kFewestBytesPerEvent = 2;
+    constexpr std::size_t kBytesPerEvent = 4, kFewestEvents = 256;
+    constexpr SensorDuration kWrap{1 << 15};
     std::vector<std::byte> stretch;
-    writer_->write(next_stretch(std::max<std::size_t>(256, bytes / kFewestBytesPerEvent / 2)),
-                   stretch);
+    const SensorTime until = end_of_stretch(std::max(kFewestEvents, bytes / kBytesPerEvent));
+    writer_->write(next_stretch(until), stretch);
+    // A silent camera still says how time goes by, once a wrap.
+    if (settings_.now && settings_.now() - writer_->time() >= kWrap)
+        writer_->advance(settings_.now(), stretch);
     if (settings_.spoil) settings_.spoil(stretch);
     words_.erase(words_.begin(), words_.begin() + std::ptrdiff_t(sent_));
     sent_ = 0;
     words_.insert(words_.end(), stretch.begin(), stretch.end());
 }
 
-/// The next part of the scene, as far as what is switched on sees it. Images begin in the stretch
-/// their exposure begins in, so a stretch reaches to the end of every exposure in it.
-Batch DavisModel::next_stretch(std::size_t events) {
-    const bool dvs_on = read(kDvsRun) == 1 && read(kRunChip) == 1, aps_on = read(kApsRun) == 1,
-               imu_on = read(kImuRunAccel) == 1, ext_on = read(kExtRun) == 1;
+/// Images are sent in the stretch their exposure begins in, so it reaches to the end of every
+/// exposure in it.
+SensorTime DavisModel::end_of_stretch(std::size_t events) const {
     SensorTime until = event_ + events < scene_.events.size() ? scene_.events[event_ + events].t
                                                               : SensorTime::max();
+    if (settings_.now) until = std::min(until, now());
     for (std::size_t i = image_;
          i < scene_.images.size() && scene_.images[i].exposure_begin <= until; ++i)
         until = std::max(until, scene_.images[i].exposure_end);
+    return until;
+}
+
+/// The scene up to `until`, as far as what is switched on sees it.
+Batch DavisModel::next_stretch(SensorTime until) {
+    const bool dvs_on = read(kDvsRun) == 1 && read(kRunChip) == 1, aps_on = read(kApsRun) == 1,
+               imu_on = read(kImuRunAccel) == 1, ext_on = read(kExtRun) == 1;
     Batch part;
     take_until(
         scene_.events, event_, until, [](const Event& e) { return e.t; }, dvs_on, part.events);

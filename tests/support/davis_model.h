@@ -27,6 +27,9 @@ struct DavisModelSettings {
     /// Applied to the words of each stretch of the stream before they are sent: where faults are
     /// made.
     std::function<void(std::vector<std::byte>&)> spoil;
+    /// Real time, from any beginning: nothing later than the time since the timestamp reset is
+    /// sent, and in silence its wraps are. Empty: the scene goes by as fast as it is fetched.
+    std::function<SensorTime()> now;
 };
 
 /// Registers, and the stream they let flow: words come out only while MUX run, timestamp run and
@@ -59,14 +62,17 @@ public:
     std::uint64_t bytes_sent() const { return bytes_sent_; }
 
 private:
+    SensorTime now() const;
     void make_more(std::size_t bytes);
-    Batch next_stretch(std::size_t events);
+    SensorTime end_of_stretch(std::size_t events) const;
+    Batch next_stretch(SensorTime until);
 
     DavisModelSettings settings_;
     std::map<davis::Register, std::uint32_t> registers_;
     std::vector<davis::Write> writes_;
     Batch scene_;
     std::size_t event_ = 0, image_ = 0, imu_ = 0, trigger_ = 0;  ///< next of the scene
+    SensorTime reset_at_{};                                      ///< on settings_.now
     std::unique_ptr<DavisWriter> writer_;
     std::vector<std::byte> words_;
     std::size_t sent_ = 0;  ///< of words_
