@@ -64,10 +64,8 @@ ContactSheetSink::Row ContactSheetSink::row_of(const Frame& frame) const {
         draw_sigma(frame, settings_.sigma_white, picture);
         row.sigma = fitted(picture, size);
     }
-    if (settings_.draw_events) {
-        settings_.draw_events(frame, picture);
-        row.events = fitted(picture, size);
-    }
+    draw_events(frame, picture);
+    if (!picture.empty()) row.events = fitted(picture, size);
     if (settings_.draw_truth) {
         cv::Mat truth;
         settings_.draw_truth(frame, truth);

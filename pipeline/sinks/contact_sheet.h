@@ -15,13 +15,13 @@ struct ContactSheetSettings {
     bool overwrite = false;
     float sigma_white = kSigmaWhite;
     int rows = 4;  ///< frames on the sheet, >= 1
-    /// Draws the events of a frame's window, CV_8UC3; may be empty: then the column is left out.
-    std::function<void(const Frame&, cv::Mat&)> draw_events = {};
     /// Draws the reference image of a frame, CV_8UC1, or leaves the picture empty where there is
     /// none; may be empty.
     std::function<void(const Frame&, cv::Mat&)> draw_truth = {};
 };
 
+/// Columns are left out where no frame has anything for them: events need Frame::event_preview.
+///
 /// Spreads its rows evenly over the run, whose length it does not know: it keeps every 2^n-th frame
 /// and forgets every other one when there are too many. Written at close.
 class ContactSheetSink : public Sink {

@@ -52,6 +52,7 @@ void remove_numbered(const fs::path& folder, const std::string& prefix, const ch
 void remove_old_run(const fs::path& folder) {
     remove_numbered(folder / "frames", "frame_", ".png");
     remove_numbered(folder / "uncertainty", "unc_", ".tiff");
+    remove_numbered(folder / "events", "events_", ".png");
     for (const char* name : {"timestamps.txt", "timestamps.csv", "run.json"})
         fs::remove(folder / name);
 }
@@ -116,6 +117,12 @@ void FolderSink::write(const Frame& frame) {
                             const_cast<float*>(frame.sigma.values().data()));
         write_image(settings_.path / "uncertainty" / numbered("unc_", frames_, ".tiff"), sigma,
                     kTiff);
+    }
+    draw_events(frame, picture_);
+    if (!picture_.empty()) {
+        if (frames_ == 0) fs::create_directories(settings_.path / "events");
+        write_image(settings_.path / "events" / numbered("events_", frames_, ".png"), picture_,
+                    kPng);
     }
     write_times(frame);
     ++frames_;

@@ -27,6 +27,7 @@ struct FolderSettings {
 /// Writes
 ///   frames/frame_%010d.png        8 bit; numbered by this sink from 0, without holes
 ///   uncertainty/unc_%010d.tiff    sigma, float32, in units of intensity, exact
+///   events/events_%010d.png       of frames with an event preview
 ///   timestamps.txt                seconds of each frame, one a line, as E2VID writes it
 ///   timestamps.csv                frame, index, t_us, window_begin_us, window_end_us, events,
 ///   lost;

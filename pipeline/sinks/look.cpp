@@ -92,11 +92,16 @@ const Frame& Look::apply(const Frame& frame) {
     shown_.index = frame.index;
     shown_.events = frame.events;
     shown_.arrived = frame.arrived;
+    shown_.gap_before = frame.gap_before;
     crop_and_flip(frame.intensity, settings_.crop_px, settings_.flip, shown_.intensity);
     if (frame.sigma.empty())
         shown_.sigma = {};
     else
         crop_and_flip(frame.sigma, settings_.crop_px, settings_.flip, shown_.sigma);
+    if (frame.event_preview.empty())
+        shown_.event_preview = {};
+    else
+        crop_and_flip(frame.event_preview, 0, settings_.flip, shown_.event_preview);
     if (settings_.auto_hdr) stretch();
     if (settings_.unsharp != 0) sharpen();
     return shown_;

@@ -46,7 +46,8 @@ private:
 };
 
 /// Applies the settings in this order: crop, flip, auto HDR, unsharp. sigma is cropped, flipped and
-/// scaled with intensity, so that it stays in its units; unsharp leaves it alone.
+/// scaled with intensity, so that it stays in its units; unsharp leaves it alone. An event preview
+/// is flipped.
 class Look {
 public:
     explicit Look(LookSettings settings) : settings_{settings} {}

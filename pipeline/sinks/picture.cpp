@@ -109,6 +109,18 @@ void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& pictu
     }
 }
 
+void draw_events(const Frame& frame, cv::Mat& picture) {
+    if (frame.event_preview.empty()) return picture.release();
+    picture.create(frame.event_preview.height(), frame.event_preview.width(), CV_8UC3);
+    const cv::Vec3b on{60, 60, 220}, off{200, 90, 40}, none{255, 255, 255};
+    for (int y = 0; y < picture.rows; ++y) {
+        const auto sums = frame.event_preview.row(y);
+        auto* row = picture.ptr<cv::Vec3b>(y);
+        for (std::size_t x = 0; x < sums.size(); ++x)
+            row[x] = sums[x] > 0 ? on : sums[x] < 0 ? off : none;
+    }
+}
+
 void draw_sigma(const Frame& frame, float sigma_white, cv::Mat& picture) {
     picture.create(frame.intensity.height(), frame.intensity.width(), CV_8UC1);
     for (int y = 0; y < picture.rows; ++y) sigma_row(frame, y, sigma_white, row_of(picture, y));

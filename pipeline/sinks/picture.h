@@ -38,6 +38,10 @@ void to_grey16(std::span<const float> values, float white, std::span<std::uint16
 /// CV_8UC3, both in OpenCV's order (BGR). A frame without sigma is drawn as if sigma were 0.
 void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& picture);
 
+/// Draws Frame::event_preview: CV_8UC3, red where ON events outweigh, blue where OFF, white else.
+/// Leaves `picture` empty where the frame has none.
+void draw_events(const Frame& frame, cv::Mat& picture);
+
 /// Draws sigma alone: CV_8UC1.
 void draw_sigma(const Frame& frame, float sigma_white, cv::Mat& picture);
 

@@ -106,8 +106,8 @@ void WindowSink::write(const Frame& frame) {
 
 void WindowSink::show(const Frame& frame) {
     draw(frame, controls_.uncertainty, settings_.sigma_white, picture_);
-    if (settings_.draw_events) {
-        settings_.draw_events(frame, events_);
+    draw_events(frame, events_);
+    if (!events_.empty()) {
         cv::Mat scaled, coloured = picture_;
         cv::resize(events_, scaled, {frame.intensity.width(), frame.intensity.height()}, 0, 0,
                    cv::INTER_NEAREST);

@@ -17,8 +17,6 @@ struct WindowSettings {
     /// Told the new factor when + or - is pressed; may be empty (live sources have one speed).
     std::function<void(double)> speed_changed = {};
     double speed = 1;  ///< at the beginning
-    /// Draws a preview of the frame's events, CV_8UC3, shown left of the picture; may be empty.
-    std::function<void(const Frame&, cv::Mat&)> draw_events = {};
     /// Asked while paused: true ends the pause, because the run is being stopped. May be empty.
     std::function<bool()> give_up = {};
 };
@@ -34,6 +32,8 @@ struct WindowControls {
     void press(int key);
 };
 
+/// Frames with an event preview show it left of the picture.
+///
 /// Render thread = the program's main thread, as window systems want it. A pause holds the thread:
 /// a recording waits, a live source goes on and its frames are skipped.
 class WindowSink : public Sink {

@@ -13,10 +13,14 @@ namespace {
 
 using test::TempFolder;
 
-cv::Mat sheet_of(int frames, ContactSheetSettings settings) {
+cv::Mat sheet_of(int frames, ContactSheetSettings settings, bool with_events = false) {
     const auto path = settings.path;
     ContactSheetSink sink{std::move(settings)};
-    for (int n = 0; n < frames; ++n) sink.write(test::ramp_frame(40, 30, n, from_us(1000 * n)));
+    for (int n = 0; n < frames; ++n) {
+        Frame frame = test::ramp_frame(40, 30, n, from_us(1000 * n));
+        if (with_events) frame.event_preview = frame.intensity;
+        sink.write(frame);
+    }
     sink.close();
     return cv::imread(path.string());
 }
@@ -24,19 +28,18 @@ cv::Mat sheet_of(int frames, ContactSheetSettings settings) {
 TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {
     const TempFolder temp;
     const cv::Mat two = sheet_of(50, {.path = temp / "two.png", .rows = 3});
-    const auto flat = [](int value) {
-        return [value](const Frame&, cv::Mat& picture) {
-            picture = cv::Mat(30, 40, CV_8UC3, cv::Scalar::all(value));
-        };
-    };
     const cv::Mat four = sheet_of(
         50,
-        {.path = temp / "four.png", .rows = 3, .draw_events = flat(10), .draw_truth = flat(200)});
+        {.path = temp / "four.png",
+         .rows = 3,
+         .draw_truth = [](const Frame&,
+                          cv::Mat& picture) { picture = cv::Mat(30, 40, CV_8UC1, 200.0); }},
+        true);
     ASSERT_FALSE(two.empty());
     ASSERT_FALSE(four.empty());
     EXPECT_EQ(two.rows, four.rows);
-    EXPECT_EQ(four.cols - two.cols, two.cols - 4);  // twice the columns, one margin
-    EXPECT_EQ(four.at<cv::Vec3b>(30, 20), cv::Vec3b(10, 10, 10));
+    EXPECT_EQ(four.cols - two.cols, two.cols - 4);                  // twice the columns, one margin
+    EXPECT_EQ(four.at<cv::Vec3b>(30, 20), cv::Vec3b(60, 60, 220));  // ON events
     EXPECT_EQ(four.at<cv::Vec3b>(30, four.cols - 20), cv::Vec3b(200, 200, 200));
 }
 

@@ -65,6 +65,21 @@ TEST(Picture, AFrameWithoutSigmaIsShownAsCertain) {
     EXPECT_EQ(picture.at<cv::Vec3b>(3, 3)[0], picture.at<cv::Vec3b>(3, 3)[2]);
 }
 
+TEST(Picture, ShowsEventsOnlyWhereThereIsAPreview) {
+    Frame frame = test::ramp_frame(4, 4, 0, from_us(0));
+    cv::Mat picture(1, 1, CV_8UC1);
+    draw_events(frame, picture);
+    EXPECT_TRUE(picture.empty());
+    frame.event_preview = Array2<float>{1, 3};
+    frame.event_preview(0, 0) = 2;
+    frame.event_preview(0, 1) = -1;
+    draw_events(frame, picture);
+    const auto on = picture.at<cv::Vec3b>(0, 0), off = picture.at<cv::Vec3b>(0, 1);
+    EXPECT_GT(on[2], on[0]);
+    EXPECT_GT(off[0], off[2]);
+    EXPECT_EQ(picture.at<cv::Vec3b>(0, 2), cv::Vec3b(255, 255, 255));
+}
+
 TEST(RawPixels, FloatsPassBitForBitInEveryArrangement) {
     const Frame frame = test::ramp_frame(3, 2, 1, from_us(0));
     std::vector<std::byte> separate, side;
