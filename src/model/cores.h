@@ -1,0 +1,52 @@
+// What stands behind Encoder and Renderer: one class per engine.
+#pragma once
+
+#include "src/model/engine.h"
+#include "src/model/latent_window.h"
+#include "src/model/model_file.h"
+#include "src/model/sampling.h"
+
+#include <memory>
+#include <string>
+
+namespace eventide {
+
+class EncoderCore {
+public:
+    virtual ~EncoderCore() = default;
+    virtual std::string description() const = 0;
+    virtual void step(const Array3<float>& grid, Array3<float>& latent) noexcept = 0;
+    virtual void reset() noexcept = 0;
+    /// The hidden maps by name, [height, width, channels].
+    virtual Tensors state() const = 0;
+    /// Of the names and shapes state() has.
+    virtual void restore(const Tensors& state) = 0;
+};
+
+std::unique_ptr<EncoderCore> make_plain_encoder(const Model& model, int height, int width);
+std::unique_ptr<EncoderCore> make_fast_encoder(const Model& model, int height, int width,
+                                               const EngineOptions& options);
+
+/// Which codes a picture reads, and where in time it lies.
+struct CodeChoice {
+    std::int64_t k = 0;   ///< event frame the time lies in
+    double fraction = 0;  ///< within it
+    bool next[2] = {};    ///< whether z_{k+1} and z_{k+2} are known
+};
+
+class RendererCore {
+public:
+    virtual ~RendererCore() = default;
+    virtual std::string description() const = 0;
+    virtual void push(std::int64_t k, const Array3<float>& latent) noexcept = 0;
+    virtual void reset() noexcept = 0;
+    /// `sigma` is null where not asked for.
+    virtual void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
+                        Array2<float>& intensity, Array2<float>* sigma) noexcept = 0;
+};
+
+std::unique_ptr<RendererCore> make_plain_renderer(const Model& model);
+std::unique_ptr<RendererCore> make_fast_renderer(const Model& model, int sensor_width,
+                                                 int sensor_height, const EngineOptions& options);
+
+}  // namespace eventide

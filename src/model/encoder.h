@@ -1,0 +1,56 @@
+// The recurrent network: one voxel grid in, one latent map out, with a state that remembers.
+#pragma once
+
+#include "src/core/frame_data.h"
+#include "src/model/engine.h"
+#include "src/model/model_file.h"
+
+#include <memory>
+#include <string>
+
+namespace eventide {
+
+class EncoderCore;
+
+/// One thread at a time. After construction nothing fails, and with Engine::fast nothing is
+/// allocated once every buffer has been used.
+class Encoder {
+public:
+    using Input = VoxelGrid;
+    using Output = LatentMap;
+
+    /// For a sensor of width x height pixels (1 to 65535 each). Throws Error where the model does
+    /// not hold together or the precision is not there.
+    Encoder(const Model& model, int width, int height, const EngineOptions& options = {});
+    ~Encoder();
+    Encoder(Encoder&&) noexcept;
+    Encoder& operator=(Encoder&&) noexcept;
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// Bins per event frame the grids must have.
+    int bins() const { return bins_; }
+    /// Which kernels and numbers run, for reports: "fast, bf16 (AVX512_BF16)".
+    std::string description() const;
+
+    LatentMap make_output() const;
+    /// `grid` is [height][width][4 bins + 1]; `latent` is from make_output().
+    void encode(const VoxelGrid& grid, LatentMap& latent) noexcept;
+    void process(const VoxelGrid& grid, LatentMap& latent) noexcept { encode(grid, latent); }
+    /// Back to the state after construction.
+    void reset() noexcept;
+
+    /// The hidden state with the identity of the model and the sensor's size, to go on from later
+    /// (write_safetensors keeps it as a file).
+    TensorFile state() const;
+    /// Throws Error(input) naming `name` and what differs, where the state is of another model,
+    /// another sensor size, or damaged; the encoder is then as it was.
+    void restore(const TensorFile& state, const std::string& name);
+
+private:
+    int width_, height_, bins_, latent_height_, latent_width_, latent_channels_;
+    std::string identity_;
+    std::unique_ptr<EncoderCore> core_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,41 @@
+// Times to frame coordinates, and what can be rendered when.
+#include "src/model/latent_window.h"
+
+#include <algorithm>
+
+namespace eventide {
+
+std::int64_t LatentWindow::push(const LatentMap& latent) noexcept {
+    ++newest_;
+    finished_ = false;
+    stamps_[slot(newest_)] = {newest_, latent.window, latent.events, latent.arrived};
+    return newest_;
+}
+
+FramePosition LatentWindow::locate(SensorTime t) const noexcept {
+    const std::int64_t oldest = std::max<std::int64_t>(1, newest_ - kLatentsKept + 1);
+    for (std::int64_t k = oldest; k <= newest_; ++k) {
+        const Window& window = stamp(k).window;
+        if (t > window.end) continue;
+        // The very first instant of the stream belongs to no window; it is the start of the first.
+        if (t < window.begin || (t == window.begin && k > 1)) {
+            if (k == oldest) return {};
+            return {k, 0};  // a hole between two windows: the later one's beginning
+        }
+        const auto width = double(window.width().count());
+        return {k, width > 0 ? double((t - window.begin).count()) / width : 1};
+    }
+    return {newest_ + 1, 0};
+}
+
+Readiness LatentWindow::readiness(SensorTime t, int lookahead) const noexcept {
+    const std::int64_t k = newest_ == 0 ? 1 : locate(t).k;
+    if (k == 0) return Readiness::gone;
+    if (k > newest_) return finished_ ? Readiness::gone : Readiness::later;
+    // Event frame k reads z_{k-1}: its tail must still be kept too.
+    if (k > 1 && !kept(k - 1)) return Readiness::gone;
+    if (k + lookahead > newest_ && !finished_) return Readiness::later;
+    return Readiness::ready;
+}
+
+}  // namespace eventide

@@ -1,0 +1,116 @@
+// Renderer: requests checked, times located, then handed over to the engine that was chosen.
+#include "src/model/renderer.h"
+
+#include "src/core/error.h"
+#include "src/model/cores.h"
+
+#include <algorithm>
+
+namespace eventide {
+namespace {
+
+constexpr int kMaxSide = 65535;
+
+PictureGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height) {
+    PictureGeometry picture;
+    picture.sensor_width = sensor_width;
+    picture.sensor_height = sensor_height;
+    picture.width = request.width != 0 ? request.width : sensor_width;
+    picture.height = request.height != 0 ? request.height : sensor_height;
+    picture.x = request.region.x;
+    picture.y = request.region.y;
+    picture.part_width =
+        request.region.width != 0 ? request.region.width : picture.width - picture.x;
+    picture.part_height =
+        request.region.height != 0 ? request.region.height : picture.height - picture.y;
+    return picture;
+}
+
+void check_axis(const char* name, int size, int at, int part) {
+    if (size < 1 || size > kMaxSide)
+        throw Error(ErrorKind::usage, std::string{"picture "} + name +
+                                          ": expected 1 to 65535 px, found " +
+                                          std::to_string(size));
+    if (at < 0 || part < 1 || at > size - part)
+        throw Error(ErrorKind::usage, std::string{"picture region, "} + name +
+                                          ": expected to lie within " + std::to_string(size) +
+                                          " px, found " + std::to_string(part) + " from " +
+                                          std::to_string(at));
+}
+
+void fit(Array2<float>& map, int height, int width) {
+    if (map.height() != height || map.width() != width) map = {height, width};
+}
+
+}  // namespace
+
+Renderer::Renderer(const Model& model, int sensor_width, int sensor_height,
+                   const EngineOptions& options)
+    : config_(model.config), sensor_width_(sensor_width), sensor_height_(sensor_height) {
+    check_axis("width of the sensor", sensor_width, 0, 1);
+    check_axis("height of the sensor", sensor_height, 0, 1);
+    check_model(model, "renderer");
+    core_ = options.engine == Engine::plain
+                ? make_plain_renderer(model)
+                : make_fast_renderer(model, sensor_width, sensor_height, options);
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+std::string Renderer::description() const {
+    return core_->description();
+}
+
+void Renderer::push(const LatentMap& latent) noexcept {
+    core_->push(window_.push(latent), latent.values);
+}
+
+void Renderer::finish() noexcept {
+    window_.finish();
+}
+
+void Renderer::reset() noexcept {
+    window_.reset();
+    core_->reset();
+}
+
+Readiness Renderer::readiness(SensorTime t, int lookahead) const noexcept {
+    return window_.readiness(t, lookahead);
+}
+
+Frame Renderer::make_output(const RenderRequest& request) const {
+    const PictureGeometry picture = geometry_of(request, sensor_width_, sensor_height_);
+    check_axis("width", picture.width, picture.x, picture.part_width);
+    check_axis("height", picture.height, picture.y, picture.part_height);
+    if (request.lookahead < 0 || request.lookahead > 2)
+        throw Error(ErrorKind::usage,
+                    "lookahead: expected 0, 1 or 2, found " + std::to_string(request.lookahead));
+    Frame frame;
+    frame.intensity = {picture.part_height, picture.part_width};
+    if (request.want_sigma) frame.sigma = {picture.part_height, picture.part_width};
+    return frame;
+}
+
+void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
+    const FramePosition at = window_.locate(request.t);
+    const PictureGeometry picture = geometry_of(request, sensor_width_, sensor_height_);
+    const CodeChoice codes{at.k,
+                           at.fraction,
+                           {window_.known(at.k + 1, at.k, request.lookahead),
+                            window_.known(at.k + 2, at.k, request.lookahead)}};
+    fit(frame.intensity, picture.part_height, picture.part_width);
+    if (request.want_sigma)
+        fit(frame.sigma, picture.part_height, picture.part_width);
+    else
+        frame.sigma = {};
+    core_->render(codes, picture, request.sigma_rule.value_or(config_.sigma_rule), frame.intensity,
+                  request.want_sigma ? &frame.sigma : nullptr);
+    frame.t = request.t;
+    frame.window = window_.stamp(at.k).window;
+    frame.events = window_.stamp(at.k).events;
+    frame.arrived = window_.stamp(std::min(window_.newest(), at.k + request.lookahead)).arrived;
+}
+
+}  // namespace eventide

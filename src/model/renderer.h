@@ -1,0 +1,72 @@
+// The implicit decoder: latent maps in, a picture of any time and any size out.
+#pragma once
+
+#include "src/core/frame_data.h"
+#include "src/model/engine.h"
+#include "src/model/latent_window.h"
+#include "src/model/model_file.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace eventide {
+
+class RendererCore;
+
+/// A part of the output picture.
+struct Region {
+    int x = 0, y = 0;           ///< px, top left corner
+    int width = 0, height = 0;  ///< px; 0: to the picture's edge
+};
+
+struct RenderRequest {
+    SensorTime t{};
+    int width = 0, height = 0;              ///< px, of the whole output picture; 0: the sensor's
+    Region region{};                        ///< the part of it that is wanted
+    int lookahead = 0;                      ///< 0 to 2 event frames
+    std::optional<SigmaRule> sigma_rule{};  ///< else the model's own
+    bool want_sigma = true;
+};
+
+/// One thread at a time. Nothing fails after construction; with Engine::fast nothing is allocated
+/// once warm, as long as frames come in the size make_output() gave.
+class Renderer {
+public:
+    /// Throws Error where the model does not hold together or the precision is not there.
+    Renderer(const Model& model, int sensor_width, int sensor_height,
+             const EngineOptions& options = {});
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    std::string description() const;
+
+    /// The latent map of the next event frame; it is copied. Every picture wanted of event frames
+    /// that only LatentWindow::kLatentsKept kept must be rendered before.
+    void push(const LatentMap& latent) noexcept;
+    /// The stream has ended: what is left is rendered at the live edge.
+    void finish() noexcept;
+    /// Back to the state after construction: a new stream, a jump in time.
+    void reset() noexcept;
+
+    Readiness readiness(SensorTime t, int lookahead) const noexcept;
+    bool ready(SensorTime t, int lookahead) const noexcept {
+        return readiness(t, lookahead) == Readiness::ready;
+    }
+
+    /// A frame of the size the request asks for. Throws Error(usage) where the size, region or
+    /// lookahead is impossible: a request that passes here is safe in render().
+    Frame make_output(const RenderRequest& request) const;
+    /// Only where ready(request.t, request.lookahead). Fills everything but `index`; intensity is
+    /// [y][x] of the region. Resizes the frame where it does not fit.
+    void render(const RenderRequest& request, Frame& frame) noexcept;
+
+private:
+    ModelConfig config_;
+    int sensor_width_, sensor_height_;
+    LatentWindow window_;
+    std::unique_ptr<RendererCore> core_;
+};
+
+}  // namespace eventide

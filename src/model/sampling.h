@@ -1,0 +1,50 @@
+// Which latent samples surround a query, and with which weights and offsets.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace eventide {
+
+/// The one or two samples around a query along one axis. Sample `index + i` lies `offset[i]` before
+/// the query (offset = query - sample) and has weight `weight[i]`; a sample of weight 0 is not
+/// evaluated.
+struct AxisSamples {
+    int index = 0;
+    std::array<double, 2> weight{1, 0};
+    std::array<double, 2> offset{0, -1};
+};
+
+/// Output sample i of out_size, spread align-corners over sensor_size pixels, among samples at
+/// every `stride`-th pixel. Past the last sample only that one is used, with its true offset.
+/// Offsets are in latent pixels.
+inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride) {
+    const int samples = (sensor_size + stride - 1) / stride;
+    if (out_size == 1) return {};
+    // Whole numbers, so that a query on a sample is exactly on it.
+    const std::int64_t numerator = std::int64_t(i) * (sensor_size - 1);
+    const std::int64_t denominator = std::int64_t(out_size - 1) * stride;
+    AxisSamples found;
+    found.index = int(numerator / denominator);
+    double fraction = double(numerator % denominator) / double(denominator);
+    found.offset = {fraction, fraction - 1};
+    if (found.index < samples - 1) found.weight = {1 - fraction, fraction};
+    return found;
+}
+
+/// The one or two codes around a time in event frame k: k and k + 1 (docs/model.md, "Time").
+inline AxisSamples sample_time(double fraction, bool next_known) {
+    AxisSamples found;
+    found.offset = {fraction, fraction - 1};
+    if (next_known) found.weight = {1 - fraction, fraction};
+    return found;
+}
+
+/// The picture a renderer is asked for, in whole numbers.
+struct PictureGeometry {
+    int sensor_width = 0, sensor_height = 0;
+    int width = 0, height = 0;                          ///< px, the whole picture
+    int x = 0, y = 0, part_width = 0, part_height = 0;  ///< px, the wanted part of it
+};
+
+}  // namespace eventide
