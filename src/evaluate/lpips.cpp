@@ -206,4 +206,8 @@ Array2<float> Lpips::distance_map(const Features& a, const Features& b) const {
     return map;
 }
 
+std::unique_ptr<const Lpips> load_lpips(const std::filesystem::path& weights) {
+    return weights.empty() ? nullptr : std::make_unique<const Lpips>(weights);
+}
+
 }  // namespace eventide

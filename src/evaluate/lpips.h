@@ -50,4 +50,7 @@ private:
     std::unique_ptr<const Network> network_;
 };
 
+/// LPIPS from a weights file, or nothing where the path is empty.
+std::unique_ptr<const Lpips> load_lpips(const std::filesystem::path& weights);
+
 }  // namespace eventide

@@ -26,6 +26,9 @@ struct EvaluateReport {
     std::vector<std::string> notes;  ///< what was left out, and why
 };
 
+/// Means over all frames of all sequences, named as the only sequence, or "all".
+SequenceScores overall_scores(const std::vector<SequenceReport>& sequences);
+
 /// A table in plain text: one line per sequence, then all together.
 std::string text_table(const EvaluateReport& report);
 

@@ -123,27 +123,28 @@ std::vector<double> patch_medians(const Array2<float>& map, int size) {
 
 void Reliability::add(const Array2<float>& mu, const Array2<float>& sigma,
                       const Array2<float>& reference) {
-    for_each_error(mu, sigma, reference, [this](double z, double) {
-        for (std::size_t i = 0; i < kLevels; ++i) {
-            inside_[i] += std::abs(z) <= kCentral[i] ? 1 : 0;
-            below_[i] += z <= kQuantile[i] ? 1 : 0;
-        }
+    // Counted by the first level that holds the pixel; sums are formed when asked for.
+    const auto rank = [](const std::array<double, kLevels>& levels, double z) {
+        return std::size_t(std::lower_bound(levels.begin(), levels.end(), z) - levels.begin());
+    };
+    for_each_error(mu, sigma, reference, [&](double z, double) {
+        ++inside_[rank(kCentral, std::abs(z))];
+        ++below_[rank(kQuantile, z)];
         ++pixels_;
     });
 }
 
-double Reliability::inside(int i) const {
-    return double(inside_[std::size_t(i)]) / double(pixels_);
-}
-
-double Reliability::below(int i) const {
-    return double(below_[std::size_t(i)]) / double(pixels_);
+double Reliability::share(const Counts& counts, int i) const {
+    std::uint64_t sum = 0;
+    for (int j = 0; j <= i; ++j) sum += counts[std::size_t(j)];
+    return double(sum) / double(pixels_);
 }
 
 void SigmaScale::add(const Array2<float>& mu, const Array2<float>& sigma,
                      const Array2<float>& reference) {
-    for_each_error(mu, sigma, reference, [this](double z, double) {
+    for_each_error(mu, sigma, reference, [this](double z, double s) {
         squares_ += z * z;
+        log_sigmas_ += std::log(s);
         const double bin = (std::log(std::max(std::abs(z), 1e-12)) + 8) * (kBins / 16.);
         ++bins_[std::size_t(std::clamp(bin, 0., kBins - 1.))];
         ++pixels_;
@@ -162,6 +163,20 @@ double SigmaScale::by_coverage() const {
             return std::exp((i + .5) * (16. / kBins) - 8) / kZ80;
     }
     return 1;
+}
+
+double SigmaScale::coverage_80_after(double factor) const {
+    const double edge = (std::log(kZ80 * factor) + 8) * (kBins / 16.);
+    double inside = 0;
+    for (int i = 0; i < kBins; ++i)
+        inside += double(bins_[std::size_t(i)]) * std::clamp(edge - i, 0., 1.);
+    return pixels_ == 0 ? 0 : inside / double(pixels_);
+}
+
+double SigmaScale::log_likelihood_after(double factor) const {
+    const double n = double(pixels_);
+    return -.5 * std::log(2 * std::numbers::pi) - log_sigmas_ / n - std::log(factor) -
+           .5 * squares_ / n / (factor * factor);
 }
 
 }  // namespace eventide

@@ -36,13 +36,15 @@ public:
 
     void add(const Array2<float>& mu, const Array2<float>& sigma, const Array2<float>& reference);
     /// Share of pixels inside the central interval that promises `level(i)`.
-    double inside(int i) const;
+    double inside(int i) const { return share(inside_, i); }
     /// Share of pixels below the quantile `level(i)`.
-    double below(int i) const;
+    double below(int i) const { return share(below_, i); }
     std::uint64_t pixels() const { return pixels_; }
 
 private:
-    std::array<std::uint64_t, kLevels> inside_{}, below_{};
+    using Counts = std::array<std::uint64_t, kLevels + 1>;  // the last: past every level
+    double share(const Counts& counts, int i) const;
+    Counts inside_{}, below_{};
     std::uint64_t pixels_ = 0;
 };
 
@@ -56,10 +58,16 @@ public:
     /// The .8 quantile of |reference - mu| / sigma, over 1.2816; to about 1 %.
     double by_coverage() const;
 
+    /// What coverage_80() and log_likelihood() are, over all pixels, once sigma is multiplied by
+    /// `factor`. The coverage is read from bins, to about .001.
+    double coverage_80_after(double factor) const;
+    double log_likelihood_after(double factor) const;
+    std::uint64_t pixels() const { return pixels_; }
+
 private:
     static constexpr int kBins = 1600;  ///< of ln(|z|), from -8 to 8
     std::array<std::uint64_t, kBins> bins_{};
-    double squares_ = 0;
+    double squares_ = 0, log_sigmas_ = 0;
     std::uint64_t pixels_ = 0;
 };
 

@@ -1,0 +1,82 @@
+// The EVREAL protocol (Ercan et al. 2023; reconstruction.md section 8).
+#include "src/core/error.h"
+#include "src/evaluate/evaluate_recordings.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace eventide {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Cut {
+    std::string_view sequence;
+    double from_s, to_s;
+};
+
+// Seconds from the recording's first event; sequences not named here count in full.
+constexpr Cut kCuts[] = {
+    {"boxes_6dof", 5, 20},      {"calibration", 5, 20},       {"dynamic_6dof", 5, 20},
+    {"poster_6dof", 5, 20},     {"shapes_6dof", 5, 20},       {"office_zigzag", 5, 12},
+    {"slider_depth", 1, 2.5},   {"indoor_flying1", 10, 70},   {"indoor_flying2", 10, 70},
+    {"indoor_flying3", 10, 70}, {"indoor_flying4", 10, 19.8}, {"outdoor_day1", 0, 60},
+    {"outdoor_day2", 100, 160},
+};
+constexpr double kWarmUpSeconds = 10;
+
+const Cut* cut_of(std::string_view sequence) {
+    const auto found = std::ranges::find(kCuts, sequence, &Cut::sequence);
+    return found == std::end(kCuts) ? nullptr : found;
+}
+
+/// The folder itself where it is a sequence, else its sub-folders that are.
+std::vector<fs::path> sequences_in(const fs::path& dataset) {
+    const auto is_sequence = [](const fs::path& folder) {
+        return fs::exists(folder / "events.txt") && fs::exists(folder / "images.txt");
+    };
+    if (!fs::is_directory(dataset))
+        throw Error(ErrorKind::input, dataset.string() + ": expected a folder of sequences");
+    if (is_sequence(dataset)) return {dataset};
+    std::vector<fs::path> found;
+    bool hdf5 = false;
+    for (const fs::directory_entry& entry : fs::directory_iterator{dataset}) {
+        if (entry.is_directory() && is_sequence(entry.path())) found.push_back(entry.path());
+        const fs::path kind = entry.path().extension();
+        hdf5 = hdf5 || kind == ".h5" || kind == ".hdf5";
+    }
+    std::ranges::sort(found);
+    if (found.empty())
+        throw Error(ErrorKind::input,
+                    dataset.string() +
+                        ": expected folders with events.txt, images.txt and images/" +
+                        (hdf5 ? "; found HDF5 files, which are not read: convert them first" : ""));
+    return found;
+}
+
+}  // namespace
+
+EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& how) {
+    Evaluation evaluation{"EVREAL protocol", how};
+    for (const fs::path& path : sequences_in(dataset)) {
+        const Cut* cut = cut_of(path.filename().string());
+        std::optional<double> from, to;
+        if (cut) {
+            from = std::max(0., cut->from_s - kWarmUpSeconds);
+            to = cut->to_s;
+        }
+        const ReferenceSequence sequence = read_reference_sequence(path, from, to);
+        ScoredImages which;
+        if (cut) which.from = sequence.first + SensorDuration{std::int64_t(cut->from_s * 1e6)};
+        evaluate_sequence(evaluation, sequence, "reference", which);
+    }
+    if (evaluation.lpips() && evaluation.lpips()->name() != "LPIPS-Alex")
+        evaluation.note("EVREAL's tables are in LPIPS-Alex: these LPIPS numbers are " +
+                        evaluation.lpips()->name() + " and must not be compared with them");
+    if (how.lookahead > 0)
+        evaluation.note("EVREAL's tables are without lookahead: these numbers saw " +
+                        std::to_string(how.lookahead) + " event frames more");
+    return evaluation.finish("windows between reference images, no stretch");
+}
+
+}  // namespace eventide

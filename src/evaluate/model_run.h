@@ -1,0 +1,67 @@
+// A model at work without threads: event frames go in, the pictures that were asked for come out.
+#pragma once
+
+#include "src/binning/binner.h"
+#include "src/model/encoder.h"
+#include "src/model/renderer.h"
+
+#include <deque>
+#include <functional>
+
+namespace eventide {
+
+/// One picture to be made, and what it should show.
+struct Query {
+    SensorTime t{};
+    Region region{};            ///< part of the picture; width 0: all of it
+    int width = 0, height = 0;  ///< px, of the whole picture; 0: the sensor's
+    Array2<float> truth;        ///< [y][x] of the region
+    bool scored = true;         ///< else made and thrown away
+};
+
+/// One sequence at a time; reset() between them.
+class ModelRun {
+public:
+    struct Options {
+        int lookahead = 0;
+        std::optional<SigmaRule> sigma_rule;
+        EngineOptions engine;
+    };
+    using Use = std::function<void(const Query&, const Frame&)>;
+
+    /// Throws Error where the model cannot be used for this sensor. `use` gets each picture in the
+    /// order of time.
+    ModelRun(const Model& model, int width, int height, const Options& options, Use use);
+
+    /// Times must not decrease, and must not lie before event frames already pushed.
+    void ask(Query query) { queries_.push_back(std::move(query)); }
+
+    /// Renders whatever this event frame makes possible.
+    void push(const Slice& slice);
+
+    /// No more event frames: renders what is left inside them at the live edge.
+    void finish();
+
+    /// A new sequence; forgets state and queries.
+    void reset();
+
+    /// Queries that lay before the first event frame or after the last.
+    int not_rendered() const { return not_rendered_; }
+    std::string description() const { return encoder_.description(); }
+
+private:
+    void render_what_is_ready();
+
+    Options options_;
+    Use use_;
+    Binner binner_;
+    Encoder encoder_;
+    Renderer renderer_;
+    VoxelGrid grid_;
+    LatentMap latent_;
+    Frame frame_;
+    std::deque<Query> queries_;
+    int not_rendered_ = 0;
+};
+
+}  // namespace eventide

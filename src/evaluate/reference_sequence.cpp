@@ -1,0 +1,146 @@
+// Reading a recording into memory, and cutting it.
+#include "src/evaluate/reference_sequence.h"
+
+#include "replay/formats.h"
+#include "src/binning/slicer.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+SensorDuration seconds(double s) {
+    return SensorDuration{std::int64_t(std::llround(s * 1e6))};
+}
+
+/// Keeps what lies inside the times asked for.
+class Keeper {
+public:
+    Keeper(ReferenceSequence& into, std::optional<double> from_s, std::optional<double> to_s)
+        : into_(into), from_s_(from_s), to_s_(to_s) {}
+
+    void take(Batch& batch) {
+        if (!begun_ && !batch.events.empty()) begin(batch.events.front().t);
+        for (const Event& event : batch.events)
+            if (event.t >= from_ && event.t <= to_) into_.events.push_back(event);
+        for (ReferenceImage& image : batch.images) {
+            if (begun_ && (image.t < from_ || image.t > to_)) continue;
+            into_.images.push_back(std::move(image));
+        }
+        batch.clear();
+    }
+    void finish() {  // images that came before the first event
+        std::erase_if(into_.images, [this](const ReferenceImage& image) {
+            return image.t < from_ || image.t > to_;
+        });
+    }
+    bool past_end(std::optional<SensorTime> clock) const {
+        // Images may come a while after the events around them.
+        return begun_ && to_s_ && clock && *clock > to_ + SensorDuration{1'000'000};
+    }
+
+private:
+    void begin(SensorTime first) {
+        begun_ = true;
+        into_.first = first;
+        if (from_s_) from_ = first + seconds(*from_s_);
+        if (to_s_) to_ = first + seconds(*to_s_);
+    }
+    ReferenceSequence& into_;
+    std::optional<double> from_s_, to_s_;
+    SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
+    bool begun_ = false;
+};
+
+std::string name_of(const std::filesystem::path& path) {
+    const auto plain = path.lexically_normal();
+    return (plain.has_filename() ? plain : plain.parent_path()).stem().string();
+}
+
+}  // namespace
+
+ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
+                                          std::optional<double> from_s,
+                                          std::optional<double> to_s) {
+    const auto recording = open_recording(path.string());
+    const auto parser = recording->make_parser();
+    ReferenceSequence sequence;
+    sequence.name = name_of(path);
+    sequence.width = recording->info().width;
+    sequence.height = recording->info().height;
+    Keeper keeper{sequence, from_s, to_s};
+    RawPacket packet;
+    Batch batch;
+    while (!keeper.past_end(parser->clock()) && recording->read(packet) != ReadStatus::end) {
+        parser->parse(packet.bytes, batch);
+        keeper.take(batch);
+    }
+    parser->finish(batch);
+    keeper.take(batch);
+    keeper.finish();
+
+    const auto refuse = [&](const std::string& what) {
+        throw Error(ErrorKind::input, path.string() + ": " + what);
+    };
+    if (sequence.events.empty()) refuse("expected events, found none in the time asked for");
+    if (sequence.images.empty())
+        refuse("expected reference images to compare with, found none in the time asked for");
+    if (sequence.width <= 0 || sequence.height <= 0) refuse("does not say the sensor's size");
+    std::ranges::stable_sort(sequence.images, {}, &ReferenceImage::t);
+    return sequence;
+}
+
+Array2<float> intensity_of(const ReferenceImage& image) {
+    const int channels = image.channels;
+    Array2<float> out(image.pixels.height(), image.pixels.width() / channels);
+    for (int y = 0; y < out.height(); ++y)
+        for (int x = 0; x < out.width(); ++x) {
+            const auto pixel = image.pixels.row(y).subspan(std::size_t(x * channels));
+            // Rec. 601, as cv::cvtColor: the luma that grey references are made with.
+            const float grey = channels == 1 ? float(pixel[0])
+                                             : .114F * float(pixel[0]) + .587F * float(pixel[1]) +
+                                                   .299F * float(pixel[2]);
+            out(y, x) = grey / 65535;
+        }
+    return out;
+}
+
+void for_each_reference_slice(const ReferenceSequence& sequence,
+                              const std::function<void(const Slice&)>& use) {
+    const std::vector<ReferenceImage>& images = sequence.images;
+    const auto after = [&](SensorTime t) {
+        return std::ranges::upper_bound(sequence.events, t, {}, &Event::t);
+    };
+    // The empty frame before the first image is as wide as the one after it.
+    const SensorDuration first_width =
+        images.size() > 1 ? images[1].t - images[0].t : SensorDuration{50'000};
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const SensorTime end = images[i].t;
+        const SensorTime begin =
+            i == 0 ? end - std::max(first_width, SensorDuration{1}) : images[i - 1].t;
+        if (begin == end) continue;  // an image stored twice
+        Slice slice{.window = {begin, end}, .events = {}};
+        if (i > 0) slice.events = {after(begin), after(end)};
+        use(slice);
+    }
+}
+
+void for_each_window_slice(const ReferenceSequence& sequence, const std::string& window,
+                           const std::function<void(const Slice&)>& use) {
+    Slicer slicer{parse_window(window), sequence.width, sequence.height};
+    for (const ReferenceImage& image : sequence.images) slicer.push_reference(image.t);
+    constexpr std::size_t kAtATime = 1 << 16;
+    const std::span<const Event> events{sequence.events};
+    Slice slice;
+    for (std::size_t at = 0; at < events.size(); at += kAtATime) {
+        slicer.push(events.subspan(at, std::min(kAtATime, events.size() - at)));
+        while (slicer.next(slice)) use(slice);
+    }
+    slicer.advance(std::max(sequence.images.back().t, events.back().t));
+    slicer.finish();
+    while (slicer.next(slice)) use(slice);
+}
+
+}  // namespace eventide

@@ -1,0 +1,43 @@
+// A recording as an evaluation needs it: all events, all reference images, and how they are cut
+// into event frames.
+#pragma once
+
+#include "src/core/event.h"
+#include "src/core/frame_data.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+struct ReferenceSequence {
+    std::string name;  ///< of the folder or file
+    int width = 0, height = 0;
+    SensorTime first{};         ///< of the recording's first event, also where that was not kept
+    std::vector<Event> events;  ///< in order of time
+    std::vector<ReferenceImage> images;  ///< in order of time
+};
+
+/// Reads a recording of any format. Where given, only data in [from, to] (s from the first event)
+/// are kept. Throws Error(input) where there are no events, no images, or no sensor size.
+ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
+                                          std::optional<double> from_s = {},
+                                          std::optional<double> to_s = {});
+
+/// A reference image as intensity: grey, 0 to 1.
+Array2<float> intensity_of(const ReferenceImage& image);
+
+/// One event frame between consecutive images, in order: frame i ends with image i, and the first
+/// has no events. An event belongs to the frame in which begin < t <= end, which is EVREAL's
+/// searchsorted(times, t, right) - 1 as the last event of a frame.
+void for_each_reference_slice(const ReferenceSequence& sequence,
+                              const std::function<void(const Slice&)>& use);
+
+/// Event frames as `window` says (slicer_settings.h).
+void for_each_window_slice(const ReferenceSequence& sequence, const std::string& window,
+                           const std::function<void(const Slice&)>& use);
+
+}  // namespace eventide
