@@ -11,8 +11,8 @@
 
 namespace eventide {
 
-struct SceneSettings;   // scene.h: textures, objects, motion, pauses, illumination, flicker
-struct SensorSettings;  // event_sensor.h: thresholds, mismatch, low-pass, leak, shot noise,
+struct SceneSettings;  // scene_settings.h: textures, objects, motion, pauses, illumination, flicker
+struct SensorSettings;  // sensor_settings.h: thresholds, mismatch, low-pass, leak, shot noise,
                         // refractory, hot pixels, jitter
 class TextureLibrary;   // textures.h: a folder or pack of images, or procedural; read only, any
                         // thread

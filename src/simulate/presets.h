@@ -1,0 +1,28 @@
+// Named scenes and sensors.
+#pragma once
+
+#include "src/simulate/scene_settings.h"
+#include "src/simulate/sensor_settings.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eventide {
+
+struct SimulationPreset {
+    std::string name;
+    std::string what;  ///< one line for --help
+    SceneSettings scene;
+    SensorSettings sensor;
+};
+
+/// thesis_train, thesis_test: the thesis' scenes before a sensor of its threshold, .35.
+/// wide: what our networks are trained on.
+/// demo: few, slow, bright, recognisable objects; a clean sensor.
+const std::vector<SimulationPreset>& simulation_presets();
+
+/// Throws Error (usage), naming the known ones.
+const SimulationPreset& simulation_preset(std::string_view name);
+
+}  // namespace eventide

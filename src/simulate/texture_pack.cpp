@@ -1,0 +1,153 @@
+// The pack's file: a header, and one code per image.
+#include "src/simulate/texture_pack.h"
+
+#include "src/core/error.h"
+#include "src/simulate/grey_code.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::string_view kMagic = "EVTEXTURES1\n";
+constexpr std::uint32_t kLargestSide = 16384;
+
+void put(std::vector<std::byte>& out, std::uint32_t value) {
+    for (int i = 0; i < 4; ++i) out.push_back(std::byte(value >> (8 * i)));
+}
+
+Error bad(const std::filesystem::path& file, const std::string& what) {
+    return {ErrorKind::input, file.string() + ": expected a pack of textures, found " + what};
+}
+
+class PackReader {
+public:
+    explicit PackReader(const std::filesystem::path& file) : file_(file) {
+        std::ifstream stream{file, std::ios::binary | std::ios::ate};
+        if (!stream) throw bad(file, "no file that can be opened");
+        bytes_.resize(std::size_t(stream.tellg()));
+        stream.seekg(0);
+        stream.read(reinterpret_cast<char*>(bytes_.data()), std::streamsize(bytes_.size()));
+        if (!stream) throw bad(file, "a file that cannot be read");
+        if (bytes_.size() < kMagic.size() ||
+            std::memcmp(bytes_.data(), kMagic.data(), kMagic.size()) != 0)
+            throw bad(file, "another beginning");
+        at_ = kMagic.size();
+    }
+    std::span<const std::byte> take(std::size_t n) {
+        if (n > bytes_.size() - at_) throw bad(file_, "an early end");
+        at_ += n;
+        return std::span{bytes_}.subspan(at_ - n, n);
+    }
+    std::uint32_t number() {
+        std::uint32_t value = 0;
+        const auto bytes = take(4);
+        for (std::size_t i = 4; i-- > 0;)
+            value = value << 8 | std::to_integer<std::uint32_t>(bytes[i]);
+        return value;
+    }
+    std::uint32_t side() {
+        const std::uint32_t n = number();
+        if (n < 2 || n > kLargestSide) throw bad(file_, "a side of " + std::to_string(n) + " px");
+        return n;
+    }
+    bool at_end() const { return at_ == bytes_.size(); }
+
+private:
+    std::filesystem::path file_;
+    std::vector<std::byte> bytes_;
+    std::size_t at_ = 0;
+};
+
+/// Calls take(i, height, width, code) for each image.
+template <typename Take>
+void read_pack(const std::filesystem::path& file, Take take) {
+    PackReader reader{file};
+    const std::uint32_t count = reader.number();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const int width = int(reader.side()), height = int(reader.side());
+        const std::uint32_t length = reader.number();
+        const auto code = reader.take(length);
+        // A pixel takes at least a bit: what claims more is damaged, and must not ask for memory.
+        if (std::uint64_t(width) * std::uint64_t(height) > std::uint64_t(length) * 8)
+            throw bad(file, "image " + std::to_string(i) + " larger than its code can be");
+        take(std::size_t(i), height, width, code);
+    }
+    if (!reader.at_end()) throw bad(file, "bytes after the last image");
+}
+
+}  // namespace
+
+void write_texture_pack(const std::filesystem::path& file, const std::vector<GreyImage>& images) {
+    std::vector<std::byte> out;
+    for (const char c : kMagic) out.push_back(std::byte(c));
+    put(out, std::uint32_t(images.size()));
+    for (const GreyImage& image : images) {
+        const std::vector<std::byte> code = encode_grey(image);
+        put(out, std::uint32_t(image.width()));
+        put(out, std::uint32_t(image.height()));
+        put(out, std::uint32_t(code.size()));
+        out.insert(out.end(), code.begin(), code.end());
+    }
+    std::ofstream stream{file, std::ios::binary};
+    stream.write(reinterpret_cast<const char*>(out.data()), std::streamsize(out.size()));
+    stream.close();
+    if (!stream)
+        throw Error(ErrorKind::failed, file.string() + ": the pack of textures cannot be written");
+}
+
+std::vector<GreyImage> read_texture_pack(const std::filesystem::path& file) {
+    std::vector<GreyImage> images;
+    read_pack(file, [&](std::size_t, int height, int width, std::span<const std::byte> code) {
+        images.push_back(decode_grey(code, height, width));
+    });
+    return images;
+}
+
+std::shared_ptr<TextureLibrary> textures_from_pack(const std::filesystem::path& file,
+                                                   const std::function<bool(std::size_t)>& keep) {
+    auto library = std::make_shared<TextureLibrary>();
+    read_pack(file, [&](std::size_t i, int height, int width, std::span<const std::byte> code) {
+        if (!keep || keep(i)) library->add(decode_grey(code, height, width));
+    });
+    return library;
+}
+
+GreyImage shrunk(const GreyImage& image, int longest) {
+    const double factor = double(std::max(image.width(), image.height())) / longest;
+    if (factor <= 1) return image;
+    const auto length = [&](int n) { return std::max(2, int(n / factor + .5)); };
+    GreyImage out(length(image.height()), length(image.width()));
+    // Share of source pixel j that lies below target pixel i of n out of m.
+    const auto overlap = [](int j, int i, int m, int n) {
+        const double step = double(m) / n;
+        return std::max(0.0, std::min(j + 1.0, (i + 1) * step) - std::max(double(j), i * step));
+    };
+    for (int y = 0; y < out.height(); ++y)
+        for (int x = 0; x < out.width(); ++x) {
+            double sum = 0, weights = 0;
+            const auto first = [](int i, int m, int n) { return int(std::int64_t(i) * m / n); };
+            const auto last = [&](int i, int m, int n) {
+                return std::min(m - 1, first(i + 1, m, n));
+            };
+            for (int j = first(y, image.height(), out.height());
+                 j <= last(y, image.height(), out.height()); ++j)
+                for (int i = first(x, image.width(), out.width());
+                     i <= last(x, image.width(), out.width()); ++i) {
+                    const double weight = overlap(j, y, image.height(), out.height()) *
+                                          overlap(i, x, image.width(), out.width());
+                    sum += weight * double(image(j, i));
+                    weights += weight;
+                }
+            out(y, x) = std::uint8_t(sum / weights + .5);
+        }
+    return out;
+}
+
+}  // namespace eventide

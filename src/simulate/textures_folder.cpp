@@ -1,0 +1,57 @@
+// Reads image files with OpenCV.
+#include "src/simulate/textures_folder.h"
+
+#include "src/core/error.h"
+#include "src/simulate/texture_pack.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace eventide {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> image_files(const fs::path& folder) {
+    constexpr std::array<std::string_view, 8> kEndings{".png", ".jpg",  ".jpeg", ".bmp",
+                                                       ".tif", ".tiff", ".webp", ".pgm"};
+    if (!fs::is_directory(folder))
+        throw Error(ErrorKind::input, folder.string() + ": expected a folder of images");
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator{folder}) {
+        std::string ending = entry.path().extension().string();
+        std::ranges::transform(ending, ending.begin(),
+                               [](unsigned char c) { return char(std::tolower(c)); });
+        if (entry.is_regular_file() && std::ranges::count(kEndings, ending) > 0)
+            files.push_back(entry.path());
+    }
+    if (files.empty())
+        throw Error(ErrorKind::input, folder.string() + ": expected images, found none");
+    std::ranges::sort(files);
+    return files;
+}
+
+GreyImage read_grey_image(const fs::path& file) {
+    const cv::Mat read = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+    if (read.empty() || read.rows < 2 || read.cols < 2)
+        throw Error(ErrorKind::input, file.string() + ": expected an image of at least 2 x 2 px");
+    GreyImage image(read.rows, read.cols);
+    for (int y = 0; y < read.rows; ++y)
+        std::copy_n(read.ptr<std::uint8_t>(y), read.cols, image.row(y).begin());
+    return image;
+}
+
+std::shared_ptr<TextureLibrary> textures_from_folder(const fs::path& folder, int longest) {
+    auto library = std::make_shared<TextureLibrary>();
+    for (const fs::path& file : image_files(folder)) {
+        const GreyImage image = read_grey_image(file);
+        library->add(longest > 0 ? shrunk(image, longest) : image);
+    }
+    return library;
+}
+
+}  // namespace eventide

@@ -1,0 +1,23 @@
+// Images of a folder as textures. Apart from the rest because it alone needs OpenCV
+// (eventide::simulate_images).
+#pragma once
+
+#include "src/simulate/textures.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace eventide {
+
+/// Image files (png, jpg, jpeg, bmp, tif, tiff, webp, pgm) below a folder, sorted by path.
+/// Throws Error (input) where there are none.
+std::vector<std::filesystem::path> image_files(const std::filesystem::path& folder);
+
+/// Grey, as stored (gamma-encoded). Throws Error (input) for a file that is no image.
+GreyImage read_grey_image(const std::filesystem::path& file);
+
+/// All images of a folder; longer sides than `longest` px are shrunk, 0 leaves them.
+std::shared_ptr<TextureLibrary> textures_from_folder(const std::filesystem::path& folder,
+                                                     int longest = 1024);
+
+}  // namespace eventide
