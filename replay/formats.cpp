@@ -1,11 +1,16 @@
 // The table of formats. To add one: a parser in src/codec, and a row here.
 #include "replay/formats.h"
 
+#include "src/codec/aedat1.h"
+#include "src/codec/aedat2.h"
+#include "src/codec/aedat3.h"
 #include "src/codec/text.h"
 #include "src/core/error.h"
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <string_view>
 
 namespace eventide {
 
@@ -16,6 +21,41 @@ using Bytes = std::span<const std::byte>;
 template <typename Writer>
 std::unique_ptr<StreamWriter> make() {
     return std::make_unique<Writer>();
+}
+
+bool starts_with(Bytes bytes, std::string_view magic) {
+    return bytes.size() >= magic.size() &&
+           std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+template <const char* kMagic>
+bool has_magic(Bytes first_bytes) {
+    return starts_with(first_bytes, kMagic);
+}
+constexpr char kAedat2Magic[] = "#!AER-DAT2.", kAedat3Magic[] = "#!AER-DAT3.";
+
+OpenedStream open_aedat1(Bytes first_bytes, const OpenOptions& options) {
+    const auto make_parser = [one_is_on = options.dvs128_one_is_on](const StreamHeader&) {
+        return std::make_unique<Aedat1Parser>(one_is_on);
+    };
+    return {read_aedat1_header(first_bytes), make_parser, 6};
+}
+
+OpenedStream open_aedat2(Bytes first_bytes, const OpenOptions& options) {
+    const Aedat2Header header = read_aedat2_header(first_bytes, options.width, options.height);
+    const auto make_parser = [sensor = header.sensor,
+                              one_is_on = options.dvs128_one_is_on](const StreamHeader& stream) {
+        return std::make_unique<Aedat2Parser>(sensor, stream.width, stream.height, one_is_on);
+    };
+    return {header.stream, make_parser, 8};
+}
+
+OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
+    const Aedat3Header header = read_aedat3_header(first_bytes);
+    const auto make_parser = [header](const StreamHeader& stream) {
+        return std::make_unique<Aedat3Parser>(header, stream.width, stream.height);
+    };
+    return {header.stream, make_parser, 1};
 }
 
 OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
@@ -31,6 +71,11 @@ constexpr FormatHolds kEverything{true, true, true, true};
 
 // Formats that say what they are come first, text last.
 const std::array kFormats{
+    Format{"aedat3", "AEDAT 3.1", ".aedat", kEverything, has_magic<kAedat3Magic>, open_aedat3,
+           make<Aedat3Writer>},
+    Format{"aedat2", "AEDAT 2.0", ".aedat2", kEverything, has_magic<kAedat2Magic>, open_aedat2,
+           nullptr},
+    Format{"aedat1", "AEDAT 1.0", ".dat", kOnlyEvents, looks_like_aedat1, open_aedat1, nullptr},
     Format{"text", "lines of \"t x y p\"", ".txt", kOnlyEvents, looks_like_text, open_text,
            make<TextWriter>},
 };

@@ -18,6 +18,10 @@ void scan_geometry(const ByteFile& file, OpenedStream& stream) {
             width = std::max(width, event.x + 1);
             height = std::max(height, event.y + 1);
         }
+        for (const ReferenceImage& image : batch.images) {
+            width = std::max(width, image.x0 + image.pixels.width() / image.channels);
+            height = std::max(height, image.y0 + image.pixels.height());
+        }
         batch.clear();
     };
 

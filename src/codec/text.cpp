@@ -77,7 +77,7 @@ bool to_microseconds(const QuickNumber& number, int shift, std::int64_t& t_us) {
 }  // namespace
 
 TextParser::TextParser(const TextLayout& layout, int width, int height)
-    : layout_(layout), width_(std::uint64_t(width)), height_(std::uint64_t(height)) {
+    : layout_(layout), line_(std::uint64_t(width), std::uint64_t(height)) {
     assert(layout.unit != TextTimeUnit::automatic && width > 0 && height > 0);
     const auto column = [&](TextField field) {
         return std::size_t(std::find(layout.columns.begin(), layout.columns.end(), field) -
@@ -90,25 +90,14 @@ TextParser::TextParser(const TextLayout& layout, int width, int height)
     carried_.reserve(kLongestLineBytes);
 }
 
-void TextParser::add(std::int64_t t_us, std::uint64_t x, std::uint64_t y, bool on, Batch& into) {
-    const SensorTime t = from_us(t_us);
-    if (x >= width_ || y >= height_) {
-        damage_.count(DamageReason::out_of_range);
-    } else if (clock_ && t < *clock_) {
-        damage_.count(DamageReason::time_backwards);
-    } else {
-        into.events.push_back({t, std::uint16_t(x), std::uint16_t(y), Polarity(on)});
-        clock_ = t;
-    }
-}
-
 /// The line [begin, end), without its newline; false when it is damaged. Nothing is counted then.
 bool TextParser::parse_line(const char* begin, const char* end, Batch& into) {
     const std::string_view line(begin, std::size_t(end - begin));
     if (is_comment(line)) return true;
     const auto row = parse_row(line, layout_);
     // A negative coordinate becomes a huge one, outside of every sensor.
-    if (row) add(row->t_us, std::uint64_t(row->x), std::uint64_t(row->y), row->on, into);
+    if (row)
+        line_.add(row->t_us, std::uint64_t(row->x), std::uint64_t(row->y), row->on, into, damage_);
     return row.has_value();
 }
 
@@ -138,7 +127,7 @@ const char* TextParser::parse_quickly(const char* p, const char* end, Batch& int
         if (!to_microseconds(numbers[time_column_], shift, t_us) || polarity.whole > 1 ||
             (x.decimals | y.decimals | polarity.decimals) != 0 || x.negative || y.negative)
             return p;
-        add(t_us, x.whole, y.whole, polarity.whole == 1 && !polarity.negative, into);
+        line_.add(t_us, x.whole, y.whole, polarity.whole == 1 && !polarity.negative, into, damage_);
         p = cursor + 1;
     }
     return p;
@@ -186,6 +175,7 @@ void TextParser::finish(Batch& into) {
     // A last line without a newline is whole when it reads as a row.
     if (!carried_.empty() && !parse_line(carried_.data(), carried_.data() + carried_.size(), into))
         damage_.count(DamageReason::truncated);
+    line_.finish(into);
     carried_.clear();
     skipping_to_line_ = false;
 }
@@ -193,7 +183,12 @@ void TextParser::finish(Batch& into) {
 void TextParser::resync() {
     carried_.clear();
     skipping_to_line_ = true;
-    clock_.reset();
+    line_.resync();
+}
+
+std::optional<SensorTime> TextParser::clock() const {
+    const auto newest = line_.newest_us();
+    return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 
 }  // namespace eventide

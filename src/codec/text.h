@@ -1,6 +1,7 @@
 // Events as lines of text.
 #pragma once
 
+#include "src/codec/event_line.h"
 #include "src/codec/parser.h"
 #include "src/codec/stream.h"
 #include "src/codec/text_layout.h"
@@ -21,22 +22,19 @@ public:
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
     void resync() override;
-    std::optional<SensorTime> clock() const override { return clock_; }
+    std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
 
 private:
-    struct QuickRow;
     const char* parse_quickly(const char* p, const char* end, Batch& into);
     const char* complete_carried_line(const char* p, const char* end, Batch& into);
     bool parse_line(const char* begin, const char* end, Batch& into);
-    void add(std::int64_t t_us, std::uint64_t x, std::uint64_t y, bool on, Batch& into);
 
     TextLayout layout_;
-    std::uint64_t width_, height_;
+    EventLine line_;
     std::size_t time_column_ = 0, x_column_ = 0, y_column_ = 0, polarity_column_ = 0;
     std::string carried_;            ///< the beginning of a line whose end has not come
     bool skipping_to_line_ = false;  ///< in the middle of a line that cannot be used
-    std::optional<SensorTime> clock_;
     Damage damage_;
 };
 

@@ -1,0 +1,43 @@
+// Packet headers of AEDAT 3, and how to tell one from other bytes.
+#include "src/codec/aedat3_packet.h"
+
+#include "src/codec/byte_order.h"
+
+namespace eventide {
+
+Aedat3Packet read_aedat3_packet(const std::byte* p) {
+    return {std::int16_t(load_little<std::uint16_t>(p)),
+            std::int16_t(load_little<std::uint16_t>(p + 2)),
+            load_little<std::uint32_t>(p + 4),
+            load_little<std::uint32_t>(p + 8),
+            load_little<std::uint32_t>(p + 12),
+            load_little<std::uint32_t>(p + 16),
+            load_little<std::uint32_t>(p + 20),
+            load_little<std::uint32_t>(p + 24)};
+}
+
+bool is_plausible(const Aedat3Packet& packet) {
+    constexpr std::uint32_t kMostRecords = 1U << 26;
+    // 2^22 times 36 minutes are 285 years: times since 1970 need a fifth of that.
+    constexpr std::uint32_t kMostOverflow = 1U << 22;
+    if (packet.type < 0 || packet.type > Aedat3Packet::kLastType || packet.source < 0) return false;
+    if (packet.overflow > kMostOverflow || packet.capacity > kMostRecords) return false;
+    if (packet.number > packet.capacity || packet.valid > packet.number) return false;
+    if (packet.record_bytes < 8 || packet.time_offset > packet.record_bytes - 4) return false;
+    switch (Aedat3Type(packet.type)) {
+        case Aedat3Type::special:
+            return packet.record_bytes == Aedat3Packet::kSpecialBytes;
+        case Aedat3Type::polarity:
+            return packet.record_bytes == Aedat3Packet::kPolarityBytes;
+        case Aedat3Type::imu6:
+            return packet.record_bytes == Aedat3Packet::kImu6Bytes;
+        case Aedat3Type::imu9:
+            return packet.record_bytes == Aedat3Packet::kImu9Bytes;
+        case Aedat3Type::frame:
+            return packet.record_bytes >= Aedat3Packet::kFrameHeaderBytes &&
+                   packet.record_bytes <= Aedat3Packet::kMostFrameBytes;
+    }
+    return packet.record_bytes <= 1024 && packet.time_offset > 0;
+}
+
+}  // namespace eventide
