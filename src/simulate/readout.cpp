@@ -17,7 +17,7 @@ void Readout::delay(std::vector<Event>& events) {
 
 /// One event after the other over the bus.
 void Readout::pass(const Event& event, std::vector<Event>& out) {
-    if (traits_.arbiter_hz <= 0) {
+    if (bus_hz_ <= 0) {
         out.push_back(event);
         return;
     }
@@ -26,7 +26,7 @@ void Readout::pass(const Event& event, std::vector<Event>& out) {
         ++dropped_;
         return;
     }
-    bus_free_us_ = start + 1e6 / traits_.arbiter_hz;
+    bus_free_us_ = start + 1e6 / bus_hz_;
     out.push_back(event);
     out.back().t = from_us(std::int64_t(start));
 }

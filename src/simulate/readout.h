@@ -4,6 +4,7 @@
 #include "src/core/event.h"
 #include "src/simulate/sensor_settings.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace eventide {
 /// they were given.
 class Readout {
 public:
-    Readout(const SensorTraits& traits, Random random) : traits_(traits), random_(random) {}
+    Readout(const SensorTraits& traits, std::size_t pixels, Random random)
+        : traits_(traits), bus_hz_(traits.arbiter_hz_per_pixel * double(pixels)), random_(random) {}
 
     /// Takes the events of (begin, end], in any order, and appends those that are certain to have
     /// none before them any more. Delayed ones come with a later step.
@@ -27,6 +29,7 @@ private:
     void pass(const Event& event, std::vector<Event>& out);
 
     SensorTraits traits_;
+    double bus_hz_;  // 0: without limit
     Random random_;
     std::vector<Event> waiting_;  // delayed beyond the steps taken so far
     std::vector<Event> sorted_;

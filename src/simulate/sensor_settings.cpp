@@ -14,8 +14,8 @@ SensorSettings SensorSettings::ideal(double threshold) {
          {&SensorSettings::mismatch, &SensorSettings::dark_lux, &SensorSettings::bandwidth_hz,
           &SensorSettings::bandwidth_hz_per_lux, &SensorSettings::refractory_s,
           &SensorSettings::leak_hz, &SensorSettings::leak_mismatch, &SensorSettings::shot_hz,
-          &SensorSettings::hot_share, &SensorSettings::jitter_s, &SensorSettings::arbiter_hz,
-          &SensorSettings::dropped})
+          &SensorSettings::hot_share, &SensorSettings::jitter_s,
+          &SensorSettings::arbiter_hz_per_pixel, &SensorSettings::dropped})
         s.*effect = {0, 0};
     return s;
 }
@@ -29,6 +29,8 @@ SensorTraits SensorTraits::draw(const SensorSettings& s, Random& random) {
     t.random_phase = s.random_phase;
     t.dark_lux = random.log_uniform(s.dark_lux);
     t.refractory_s = random.log_uniform(s.refractory_s);
+    t.arbiter_hz_per_pixel = random.log_uniform(s.arbiter_hz_per_pixel);
+    t.arbiter_wait_s = s.arbiter_wait_s;
     if (!random.chance(s.ideal_photoreceptor)) {
         t.bandwidth_hz = random.log_uniform(s.bandwidth_hz);
         t.bandwidth_hz_per_lux = random.log_uniform(s.bandwidth_hz_per_lux);
@@ -43,8 +45,6 @@ SensorTraits SensorTraits::draw(const SensorSettings& s, Random& random) {
     }
     if (!random.chance(s.ideal_readout)) {
         t.jitter_s = random.uniform(s.jitter_s);
-        t.arbiter_hz = random.log_uniform(s.arbiter_hz);
-        t.arbiter_wait_s = s.arbiter_wait_s;
         t.dropped = random.uniform(s.dropped);
     }
     return t;

@@ -25,12 +25,15 @@ struct SensorSettings {
     Range hot_share{0, .001};            ///< uniform; share of pixels that fire by themselves
     Range hot_hz{5, 1000};               ///< log-uniform per hot pixel
     Range jitter_s{0, .0002};            ///< uniform; mean of the exponential delay of read-out
-    Range arbiter_hz{5e6, 5e7};          ///< log-uniform; events per second that the bus can carry
-    double arbiter_wait_s = .005;        ///< events that would have to wait longer are dropped
-    Range dropped{0, .02};               ///< uniform; share of events lost on the way
+    /// log-uniform; events per second that the bus can carry, over the number of pixels (a
+    /// DAVIS240: 12e6 / 43200 = 280)
+    Range arbiter_hz_per_pixel{100, 3000};
+    double arbiter_wait_s = .005;  ///< events that would have to wait longer are dropped
+    Range dropped{0, .02};         ///< uniform; share of events lost on the way
 
     // What one camera in several is like: an effect is off with these probabilities.
-    double ideal_photoreceptor = .2, no_noise = .15, ideal_readout = .3;
+    double ideal_photoreceptor = .2, no_noise = .15;
+    double ideal_readout = .3;  ///< neither jitter nor losses; the bus's limit stays
 
     /// Nothing but thresholds, all equal: for tests and comparisons.
     static SensorSettings ideal(double threshold);
@@ -47,7 +50,7 @@ struct SensorTraits {
     double shot_hz = 0, shot_lux = 0;
     double hot_share = 0;
     Range hot_hz;
-    double jitter_s = 0, arbiter_hz = 0, arbiter_wait_s = 0, dropped = 0;
+    double jitter_s = 0, arbiter_hz_per_pixel = 0, arbiter_wait_s = 0, dropped = 0;
 
     static SensorTraits draw(const SensorSettings& settings, Random& random);
 };

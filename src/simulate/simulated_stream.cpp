@@ -30,7 +30,7 @@ struct SimulatedStream::Parts {
           scene(scene_settings, std::move(textures), width, height, random.fork()),
           exposure(scene_settings, random.fork()),
           sensor(SensorTraits::draw(sensor_settings, random), width, height, random.fork()),
-          readout(sensor.traits(), random.fork()),
+          readout(sensor.traits(), std::size_t(width) * std::size_t(height), random.fork()),
           light(height, width) {
         scene.prepare(2 * longest_step_s);
         look(SensorTime{});
@@ -53,6 +53,7 @@ struct SimulatedStream::Parts {
                     events);
         readout.take(reached, next, events, ready);
         reached = next;
+        ++sub_frames;
     }
 
     TargetRule target;
@@ -61,9 +62,10 @@ struct SimulatedStream::Parts {
     Exposure exposure;
     EventSensor sensor;
     Readout readout;
-    Array2<float> light;           // lux at `reached`, without the scene's gain
-    std::vector<Event> events;     // of one sub-frame
-    std::vector<Event> ready;      // in order, beyond now
+    Array2<float> light;        // lux at `reached`, without the scene's gain
+    std::vector<Event> events;  // of one sub-frame
+    std::vector<Event> ready;   // in order, beyond now
+    std::uint64_t sub_frames = 0;
     SensorTime reached{};          // end of the last sub-frame
     SensorTime now{}, previous{};  // ends of the latest two steps
 };
@@ -80,6 +82,10 @@ SimulatedStream& SimulatedStream::operator=(SimulatedStream&&) noexcept = defaul
 
 SensorTime SimulatedStream::now() const {
     return parts_->now;
+}
+
+std::uint64_t SimulatedStream::sub_frames() const {
+    return parts_->sub_frames;
 }
 
 void SimulatedStream::advance(SensorTime end, std::vector<Event>& events) {

@@ -30,6 +30,9 @@ public:
 
     SensorTime now() const;
 
+    /// Sub-frames computed so far; times width x height these are the pixel-steps of its speed.
+    std::uint64_t sub_frames() const;
+
     /// Appends the events in (now(), end], in time order, and moves on to `end`.
     void advance(SensorTime end, std::vector<Event>& events);
 

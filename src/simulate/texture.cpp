@@ -138,41 +138,67 @@ float Texture::detail(const Affine& to_image) const {
     return float(std::clamp(detail, 0.0, double(levels_.size() - 1)));
 }
 
+namespace {
+
+/// What the innermost loop needs of one level, in registers.
+struct LookUp {
+    const std::uint16_t* texels;
+    std::uint32_t log2_width, shift_u, shift_v;
+
+    LookUp(const std::vector<std::uint16_t>& values, int log2_width_, int log2_height)
+        : texels(values.data()),
+          log2_width(std::uint32_t(log2_width_)),
+          shift_u(31 - log2_width),
+          shift_v(31 - std::uint32_t(log2_height)) {}
+
+    lanes::F4 operator()(lanes::U4 u, lanes::U4 v) const {
+        using namespace lanes;
+        u += std::uint32_t(1) << (shift_u - 1);  // half a texel: texels are told by their centres
+        v += std::uint32_t(1) << (shift_v - 1);
+        const U4 i = u >> shift_u, j = v >> shift_v;
+        const std::uint32_t stride = (std::uint32_t(1) << log2_width) + 2;
+        const U4 index = (j << log2_width) + (j + j) + i;  // j stride + i
+        std::uint32_t at[4];
+        std::memcpy(at, &index, sizeof at);
+        const std::uint16_t* next = texels + stride;
+        const U4 above{pair_at(texels + at[0]), pair_at(texels + at[1]), pair_at(texels + at[2]),
+                       pair_at(texels + at[3])};
+        const U4 below{pair_at(next + at[0]), pair_at(next + at[1]), pair_at(next + at[2]),
+                       pair_at(next + at[3])};
+        const F4 fu = fraction(u, shift_u), fv = fraction(v, shift_v);
+        const F4 a = to_float(above & 0xffffu), b = to_float(above >> 16);
+        const F4 c = to_float(below & 0xffffu), d = to_float(below >> 16);
+        const F4 left = a + (c - a) * fv, right = b + (d - b) * fv;
+        return left + (right - left) * fu;
+    }
+
+private:
+    static lanes::F4 fraction(lanes::U4 place, std::uint32_t shift) {
+        const std::uint32_t one = std::uint32_t(1) << shift;
+        return lanes::to_float(place & (one - 1)) * (1.f / float(one));
+    }
+};
+
+}  // namespace
+
 void Texture::sample(const Walk& walk, float detail, std::span<float> out) const {
     using namespace lanes;
     const std::size_t fine = std::size_t(detail);
-    const float share = detail - float(fine);
-    const bool blend = share > 1e-4f && fine + 1 < levels_.size();
-
-    const auto look_up = [](const Level& level, U4 u, U4 v) {
-        const int shift_u = 31 - level.log2_width, shift_v = 31 - level.log2_height;
-        u += std::uint32_t(1) << (shift_u - 1);  // half a texel: texels are told by their centres
-        v += std::uint32_t(1) << (shift_v - 1);
-        const U4 i = u >> std::uint32_t(shift_u), j = v >> std::uint32_t(shift_v);
-        const std::uint32_t stride = std::uint32_t(level.stride());
-        U4 above{}, below{};
-        for (int lane = 0; lane < 4; ++lane) {
-            const std::uint16_t* p = level.texels.data() + j[lane] * stride + i[lane];
-            above[lane] = pair_at(p);
-            below[lane] = pair_at(p + stride);
-        }
-        const F4 fu = to_float(u & ((std::uint32_t(1) << shift_u) - 1)) *
-                      (1.f / float(std::uint32_t(1) << shift_u));
-        const F4 fv = to_float(v & ((std::uint32_t(1) << shift_v) - 1)) *
-                      (1.f / float(std::uint32_t(1) << shift_v));
-        const F4 a = to_float(above & 0xffffu), b = to_float(above >> 16);
-        const F4 c = to_float(below & 0xffffu), d = to_float(below >> 16);
-        const F4 top = a + (b - a) * fu, bottom = c + (d - c) * fu;
-        return (top + (bottom - top) * fv) * (1.f / 65535);
-    };
+    const std::size_t coarse = std::min(fine + 1, levels_.size() - 1);
+    constexpr float kUnit = 1.f / 65535;
+    const float share = (detail - float(fine)) * kUnit;
+    const bool blend = share > 1e-4f * kUnit && coarse > fine;
+    const auto view = [](const Level& l) { return LookUp{l.texels, l.log2_width, l.log2_height}; };
+    const LookUp look_fine = view(levels_[fine]), look_coarse = view(levels_[coarse]);
 
     const U4 ramp{0, 1, 2, 3};
     U4 u = splat(walk.u) + ramp * walk.du, v = splat(walk.v) + ramp * walk.dv;
-    for (std::size_t x = 0; x < out.size(); x += 4) {
+    float* to = out.data();
+    for (float* const end = to + out.size(); to != end; to += 4) {
         const U4 mu = u ^ U4(I4(u) >> 31), mv = v ^ U4(I4(v) >> 31);  // the mirrored half
-        F4 value = look_up(levels_[fine], mu, mv);
-        if (blend) value += share * (look_up(levels_[fine + 1], mu, mv) - value);
-        store(out.data() + x, value);
+        F4 value = look_fine(mu, mv);
+        value = blend ? value * (kUnit - share) + look_coarse(mu, mv) * share : value * kUnit;
+        store(to, value);
         u += 4 * walk.du;
         v += 4 * walk.dv;
     }
