@@ -1,0 +1,148 @@
+// See bf16_kernels.h. Highway has no bf16 product for these processors yet, hence intrinsics; they
+// are compiled for their instruction set function by function and called only where it is there.
+#include "src/kernels/bf16_kernels.h"
+
+#include "src/kernels/vector_kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#define EVENTIDE_BF16 __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16")))
+#define EVENTIDE_BF16_INLINE EVENTIDE_BF16 __attribute__((always_inline)) inline
+#endif
+
+namespace eventide {
+
+std::uint16_t to_bf16(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return std::uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
+}
+
+#if defined(__x86_64__)
+namespace {
+
+/// Register block; see Sums in vector_kernels.cpp.
+template <int P, bool kTwo>
+struct Sums {
+    Sums<P - 1, kTwo> before;
+    __m512 a, b;
+
+    EVENTIDE_BF16_INLINE void start(__m512 bias_a, __m512 bias_b) {
+        before.start(bias_a, bias_b);
+        a = bias_a;
+        if (kTwo) b = bias_b;
+    }
+    EVENTIDE_BF16_INLINE void add(const std::uint32_t* in, std::ptrdiff_t step, __m512i weight_a,
+                                  __m512i weight_b) {
+        before.add(in, step, weight_a, weight_b);
+        const auto pair = (__m512bh)_mm512_set1_epi32(int(in[(P - 1) * step]));
+        a = _mm512_dpbf16_ps(a, pair, (__m512bh)weight_a);
+        if (kTwo) b = _mm512_dpbf16_ps(b, pair, (__m512bh)weight_b);
+    }
+    EVENTIDE_BF16_INLINE void store(float* out, std::ptrdiff_t step, __mmask16 mask_a,
+                                    __mmask16 mask_b, __m512 floor) const {
+        before.store(out, step, mask_a, mask_b, floor);
+        float* to = out + (P - 1) * step;
+        _mm512_mask_storeu_ps(to, mask_a, _mm512_max_ps(a, floor));
+        if (kTwo) _mm512_mask_storeu_ps(to + 16, mask_b, _mm512_max_ps(b, floor));
+    }
+};
+template <bool kTwo>
+struct Sums<0, kTwo> {
+    EVENTIDE_BF16_INLINE void start(__m512, __m512) {}
+    EVENTIDE_BF16_INLINE void add(const std::uint32_t*, std::ptrdiff_t, __m512i, __m512i) {}
+    EVENTIDE_BF16_INLINE void store(float*, std::ptrdiff_t, __mmask16, __mmask16, __m512) const {}
+};
+
+EVENTIDE_BF16_INLINE __mmask16 first_lanes(int n) {
+    return __mmask16(n >= 16 ? 0xffffu : (1u << unsigned(std::max(n, 0))) - 1u);
+}
+
+template <int P, bool kTwo>
+EVENTIDE_BF16 void dot_block(const Bf16DotRows& r, const std::uint32_t* in,
+                             const std::uint32_t* weight, int first, float* out) {
+    constexpr int kWidth = kTwo ? 32 : 16;
+    const float* bias = r.bias + first;
+    Sums<P, kTwo> sums;
+    sums.start(_mm512_loadu_ps(bias), _mm512_loadu_ps(bias + kWidth - 16));
+    for (int s = 0; s < r.stretches; ++s) {
+        const std::uint32_t* from = in + s * r.pitch;
+        for (int k = 0; k < r.length; ++k) {
+            sums.add(from + k, r.step, _mm512_loadu_si512(weight),
+                     _mm512_loadu_si512(weight + kWidth - 16));
+            weight += kWidth;
+        }
+    }
+    const __m512 floor = _mm512_set1_ps(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
+    sums.store(out, r.out_step, first_lanes(r.outputs - first), first_lanes(r.outputs - first - 16),
+               floor);
+}
+
+constexpr int kMaxPixels = 14;
+using Block = void (*)(const Bf16DotRows&, const std::uint32_t*, const std::uint32_t*, int, float*);
+template <bool kTwo, int... P>
+constexpr std::array<Block, sizeof...(P)> blocks(std::integer_sequence<int, P...>) {
+    return {&dot_block<P + 1, kTwo>...};
+}
+
+void dot_rows(const Bf16DotRows& r) {
+    static constexpr auto kOne = blocks<false>(std::make_integer_sequence<int, kMaxPixels>{});
+    static constexpr auto kTwo = blocks<true>(std::make_integer_sequence<int, kMaxPixels>{});
+    const int parts = (r.pixels + kMaxPixels - 1) / kMaxPixels;
+    const std::uint32_t* weight = r.weight;
+    for (int first = 0; first < r.outputs;) {
+        const bool two = r.outputs - first > kBf16Lanes;
+        const int width = two ? 2 * kBf16Lanes : kBf16Lanes;
+        for (int part = 0; part < parts; ++part) {
+            const int begin = r.pixels * part / parts, end = r.pixels * (part + 1) / parts;
+            const Block block = (two ? kTwo : kOne)[std::size_t(end - begin - 1)];
+            block(r, r.in + begin * r.step, weight, first, r.out + begin * r.out_step + first);
+        }
+        weight += std::ptrdiff_t(r.stretches) * r.length * width;
+        first += width;
+    }
+}
+
+EVENTIDE_BF16 void narrow_stretch(const float* in, std::size_t n, std::uint16_t* out) {
+    for (std::size_t i = 0; i < n; i += 16) {
+        const __mmask16 mask = first_lanes(int(std::min<std::size_t>(n - i, 16)));
+        const __m256bh narrow = _mm512_cvtneps_pbh(_mm512_maskz_loadu_ps(mask, in + i));
+        _mm256_mask_storeu_epi16(out + i, mask, (__m256i)narrow);
+    }
+}
+
+void narrow(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
+    auto* numbers = reinterpret_cast<std::uint16_t*>(out);
+    const auto count = std::size_t(channels);
+    if (channels % 2 == 0) {
+        narrow_stretch(in, pixels * count, numbers);
+        return;
+    }
+    for (std::size_t p = 0; p < pixels; ++p) {
+        narrow_stretch(in + p * count, count, numbers + p * (count + 1));
+        numbers[p * (count + 1) + count] = 0;
+    }
+}
+
+}  // namespace
+#endif
+
+const Bf16Kernels* bf16_kernels() {
+#if defined(__x86_64__)
+    static const Bf16Kernels kKernels{dot_rows, narrow};
+    // Compilers' names for processor features are younger than the instruction; avx512bf16 is known
+    // to gcc 12 and clang 14.
+    static const bool kThere =
+        __builtin_cpu_supports("avx512bf16") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+        __builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512dq") != 0;
+    if (kThere && !kernels_limited()) return &kKernels;
+#endif
+    return nullptr;
+}
+
+}  // namespace eventide

@@ -1,0 +1,40 @@
+// Sums of products of bf16 numbers with float32 sums, where the processor has the instruction
+// (AVX512_BF16). Each product takes two numbers at once, so channels go in pairs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace eventide {
+
+/// As DotRows (vector_kernels.h), but `in` holds pairs of bf16 numbers and `length`, `pitch` and
+/// `step` count pairs. Weights: blocks of 32 outputs, then one of 16; [s][pair][output][2].
+struct Bf16DotRows {
+    const std::uint32_t* in = nullptr;
+    std::ptrdiff_t pitch = 0, step = 0;
+    int stretches = 0, length = 0;
+    int pixels = 0;
+    int outputs = 0;
+    const std::uint32_t* weight = nullptr;
+    const float* bias = nullptr;  ///< [outputs rounded up to 16]
+    bool relu = false;
+    float* out = nullptr;
+    std::ptrdiff_t out_step = 0;
+};
+
+struct Bf16Kernels {
+    void (*dot_rows)(const Bf16DotRows&);
+    /// `pixels` times `channels` numbers, one after the other, rounded to nearest even; an odd
+    /// number of channels gets a zero beside the last.
+    void (*narrow)(const float* in, std::size_t pixels, int channels, std::uint32_t* out);
+};
+
+constexpr int kBf16Lanes = 16;  ///< outputs per vector
+
+/// Null where the processor has no such instruction, or limit_kernels_to_avx2() was called.
+const Bf16Kernels* bf16_kernels();
+
+/// One number, rounded to nearest even; finite in, finite out except where it overflows.
+std::uint16_t to_bf16(float value);
+
+}  // namespace eventide

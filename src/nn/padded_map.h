@@ -1,0 +1,46 @@
+// A feature map with a border of zeros, so that a 3x3 convolution needs no special case at edges.
+#pragma once
+
+#include "src/core/array.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide {
+
+/// [y][x][channel], -1 <= y <= height, -1 <= x <= width. The border stays zero: nobody writes it.
+class PaddedMap {
+public:
+    PaddedMap() = default;
+    PaddedMap(int height, int width, int channels)
+        : height_(height), width_(width), padded_(height + 2, width + 2, channels) {}
+
+    int height() const { return height_; }
+    int width() const { return width_; }
+    int channels() const { return padded_.channels(); }
+    /// Numbers from one row to the next.
+    std::ptrdiff_t pitch() const { return std::ptrdiff_t(width_ + 2) * channels(); }
+    float* at(int y, int x) {
+        return padded_.values().data() + (y + 1) * pitch() + (x + 1) * channels();
+    }
+    const float* at(int y, int x) const {
+        return padded_.values().data() + (y + 1) * pitch() + (x + 1) * channels();
+    }
+
+    void clear() { std::ranges::fill(padded_.values(), 0.0F); }
+    /// `from` and `to` are [height][width][channels] without a border.
+    void load(const float* from) {
+        for (int y = 0; y < height_; ++y) std::memcpy(at(y, 0), from + y * row(), row_bytes());
+    }
+    void save(float* to) const {
+        for (int y = 0; y < height_; ++y) std::memcpy(to + y * row(), at(y, 0), row_bytes());
+    }
+
+private:
+    std::ptrdiff_t row() const { return std::ptrdiff_t(width_) * channels(); }
+    std::size_t row_bytes() const { return std::size_t(row()) * sizeof(float); }
+    int height_ = 0, width_ = 0;
+    Array3<float> padded_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,62 @@
+// Maps cut into tiles, and tiles handed to whoever has threads.
+#pragma once
+
+#include "src/core/parallel_for.h"
+#include "src/kernels/mask.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <vector>
+
+namespace eventide {
+
+/// A rectangle of a map: rows y0 <= y < y1, columns x0 <= x < x1.
+struct Tile {
+    int y0 = 0, x0 = 0, y1 = 0, x1 = 0;
+
+    int height() const { return y1 - y0; }
+    int width() const { return x1 - x0; }
+    /// Larger by n on each side, within a map of height x width.
+    Tile grown(int n, int map_height, int map_width) const {
+        return {std::max(y0 - n, 0), std::max(x0 - n, 0), std::min(y1 + n, map_height),
+                std::min(x1 + n, map_width)};
+    }
+    bool any(const Mask& mask) const {
+        for (int y = y0; y < y1; ++y)
+            if (std::memchr(&mask(y, x0), 1, std::size_t(width())) != nullptr) return true;
+        return false;
+    }
+};
+
+/// Tiles of about the same size, at most `side` long: they depend on the map's size alone.
+inline std::vector<Tile> tiles_of(int height, int width, int side) {
+    const int rows = (height + side - 1) / side, columns = (width + side - 1) / side;
+    std::vector<Tile> tiles;
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c)
+            tiles.push_back({height * r / rows, width * c / columns, height * (r + 1) / rows,
+                             width * (c + 1) / columns});
+    return tiles;
+}
+
+/// How many threads one step can use: each lane has its own scratch memory.
+constexpr int kLanes = 16;
+
+/// Calls body(lane, i) once for each 0 <= i < n. At any time a lane runs on one thread only; which
+/// i falls to which lane is left to chance, so results must not depend on the lane.
+template <typename Body>
+void for_each_tile(const ParallelFor& parallel_for, int n, const Body& body) {
+    struct Shared {
+        std::atomic<int> next{0};
+        int n;
+        const Body& body;
+    } shared{{}, n, body};
+    if (n == 0) return;
+    // One reference is small enough for std::function to hold without allocating.
+    parallel_for(std::min(n, kLanes), [&shared](int lane) {
+        for (int i = shared.next++; i < shared.n; i = shared.next++) shared.body(lane, i);
+    });
+}
+
+}  // namespace eventide
