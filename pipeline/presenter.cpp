@@ -47,6 +47,7 @@ bool Presenter::take(const Encoded& encoded) {
 }
 
 bool Presenter::finish() {
+    renderer_.finish();
     while (held_count_ > 0) present_oldest();
     return wanted_;
 }
@@ -73,6 +74,7 @@ void Presenter::present_oldest() {
 
 void Presenter::present(const DueFrame& due, Waiting& from) {
     const HostTime begun = Clock::now();
+    renderer_.render(due.t, from.window, frame_);
     frame_.t = due.t;
     frame_.index = due.index;
     frame_.window = from.window;
@@ -80,7 +82,6 @@ void Presenter::present(const DueFrame& due, Waiting& from) {
     frame_.gap_before = from.gap_before;
     frame_.arrived = arrived_;
     std::swap(frame_.event_preview, from.event_preview);
-    renderer_.render(due.t, from.window, frame_);
     const HostTime rendered = Clock::now();
     for (Sink* sink : sinks_) {
         sink->write(frame_);

@@ -25,9 +25,11 @@ public:
     virtual Frame make_output() const = 0;
     /// The next event frame's latent map; its window follows the one before.
     virtual void push(const LatentMap& latent) noexcept = 0;
-    /// Fills `frame.intensity` and `frame.sigma` for t in window (begin, end] (for the first one
-    /// also its begin), which is the newest one pushed or at most two before it. Every latent map
-    /// pushed may be used: the line has pushed as many as the lookahead says.
+    /// No latent map will come any more, until reset(): the rest is rendered at the live edge.
+    virtual void finish() noexcept = 0;
+    /// Fills `frame.intensity` and `frame.sigma`; the line fills the rest. t lies in `window`,
+    /// (begin, end] and for the first one also its begin, which is the newest one pushed or at most
+    /// two before it. As many latent maps were pushed as the lookahead says, and not one more.
     virtual void render(SensorTime t, const Window& window, Frame& frame) noexcept = 0;
     virtual void reset() noexcept = 0;  ///< as constructed
 };

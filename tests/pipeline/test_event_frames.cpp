@@ -1,0 +1,166 @@
+// What closes event frames: events, the stream's clock, the host's clock in silence; gaps.
+#include "pipeline/event_frames.h"
+#include "tests/support/toy_line.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace test;
+
+using Edges = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+/// A line's beginning over a toy source, fed by hand.
+struct Beginning {
+    explicit Beginning(bool live, std::int64_t width_us = 10, EventFilter* filter = nullptr,
+                       DataObserver* observer = nullptr)
+        : source({}, live), frames(source, settings(width_us), filter, observer, counters) {}
+
+    static EventFrames::Settings settings(std::int64_t width_us) {
+        EventFrames::Settings s;
+        s.slicer.width = SensorDuration{width_us};
+        s.silence_margin = SensorDuration{100};
+        return s;
+    }
+    void give(const std::vector<std::byte>& bytes, std::int64_t host_us, bool gap = false) {
+        RawPacket packet;
+        packet.bytes = bytes;
+        packet.arrived = HostTime{std::chrono::microseconds{host_us}};
+        packet.gap_before = gap;
+        frames.take(packet);
+        take();
+    }
+    void finish() {
+        frames.finish();
+        take();
+    }
+    void take() {
+        for (Slice slice; frames.next(slice);) {
+            edges.emplace_back(to_us(slice.window.begin), to_us(slice.window.end));
+            gaps.push_back(slice.gap_before);
+        }
+    }
+
+    Counters counters;
+    ToySource source;
+    EventFrames frames;
+    Edges edges;
+    std::vector<bool> gaps;
+};
+
+std::vector<std::byte> record(ToyKind kind, std::int64_t t_us) {
+    std::vector<std::byte> bytes;
+    append_record(bytes, kind, t_us);
+    return bytes;
+}
+
+TEST(EventFrames, OfARecordingAreClosedByEventsNotByItsClock) {
+    Beginning b(false);
+    b.give(record(ToyKind::event, 1), 0);
+    b.give(record(ToyKind::clock, 95), 0);
+    b.give({}, 1'000'000);
+    EXPECT_TRUE(b.edges.empty());
+    b.give(record(ToyKind::event, 12), 0);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}}));
+    EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
+    b.finish();
+    EXPECT_EQ(b.edges.back().second, 95) << "the recording's trailing silence is part of it";
+}
+
+TEST(EventFrames, OfALiveSourceAreClosedByItsClockToo) {
+    Beginning b(true);
+    b.give(record(ToyKind::event, 1), 0);
+    b.give(record(ToyKind::clock, 25), 0);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}, {10, 20}}));
+}
+
+TEST(EventFrames, GoOnByTheHostsClockInSilence) {
+    Beginning b(true);
+    b.give(record(ToyKind::event, 1), 5000);
+    b.give({}, 5100);
+    EXPECT_TRUE(b.edges.empty()) << "within the margin the silence may be the cable's";
+    b.give({}, 5125);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}, {10, 20}}));
+    b.give({}, 5145);
+    EXPECT_EQ(b.edges.size(), 4U);
+    b.give(record(ToyKind::event, 46), 5150);
+    b.give(record(ToyKind::event, 61), 5170);
+    EXPECT_EQ(b.edges.size(), 6U);
+    EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
+}
+
+TEST(EventFrames, DoNotBeginByTheHostsClock) {
+    Beginning b(true);
+    b.give({}, 5'000'000);
+    b.finish();
+    EXPECT_TRUE(b.edges.empty());
+}
+
+TEST(EventFrames, OfAStreamWithoutEventsAreNone) {
+    Beginning b(false);
+    b.give(record(ToyKind::clock, 500), 0);
+    b.finish();
+    EXPECT_TRUE(b.edges.empty());
+}
+
+TEST(EventFrames, CarryAGapAndTheParserTakesUpAfterIt) {
+    Beginning b(true);
+    auto half = record(ToyKind::event, 1);
+    const auto more = record(ToyKind::event, 2);
+    half.insert(half.end(), more.begin(), more.begin() + 5);
+    b.give(half, 0);
+    b.give(record(ToyKind::event, 35), 0, true);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}, {10, 20}, {20, 30}}));
+    EXPECT_EQ(b.gaps, (std::vector{true, false, false}));
+    EXPECT_EQ(b.counters.snapshot().gaps, 1U);
+    EXPECT_EQ(b.counters.snapshot().events, 2U)
+        << "half a record is dropped, the next one is whole";
+}
+
+TEST(EventFrames, CountWhatTheParserGivesAndWhatIsDamaged) {
+    Beginning b(false);
+    auto bytes = record(ToyKind::event, 1);
+    const auto image = record(ToyKind::image, 3);
+    bytes.insert(bytes.end(), image.begin(), image.end());
+    bytes.resize(bytes.size() + 3);
+    b.give(bytes, 0);
+    b.finish();
+    const Snapshot s = b.counters.snapshot();
+    EXPECT_EQ(s.events, 1U);
+    EXPECT_EQ(s.images, 1U);
+    EXPECT_EQ(s.damaged[DamageReason::truncated], 1U);
+}
+
+struct DropsOff final : EventFilter, DataObserver {
+    void process(std::vector<Event>& events) override {
+        std::erase_if(events, [](const Event& e) { return e.polarity == Polarity::off; });
+    }
+    void see(const Batch& batch) override { seen += batch.events.size(); }
+    std::size_t seen = 0;
+};
+
+TEST(EventFrames, AreOfWhatTheFilterLeavesAndTheObserverSeesAll) {
+    DropsOff both;
+    Beginning b(false, 10, &both, &both);
+    std::vector<std::byte> bytes;
+    for (int t = 1; t <= 9; ++t) append_record(bytes, ToyKind::event, t, 0, 0, t % 3 == 0);
+    b.give(bytes, 0);
+    EXPECT_EQ(both.seen, 9U);
+    EXPECT_EQ(b.counters.snapshot().events, 9U);
+    EXPECT_EQ(b.counters.snapshot().filtered_events, 6U);
+}
+
+TEST(EventFrames, CanBeginInTheMiddleOfTheBytes) {
+    ToySource source({});
+    Counters counters;
+    EventFrames::Settings settings = Beginning::settings(10);
+    settings.resync_first = true;
+    EXPECT_NO_THROW(EventFrames(source, settings, nullptr, nullptr, counters));
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,114 @@
+// Frames are rendered when the latent maps they need are there, and with no other.
+#include "pipeline/presenter.h"
+#include "src/core/error.h"
+#include "tests/support/toy_line.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <stdexcept>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using namespace test;
+
+/// Event frames of 10 us from `begin_us` on, given one by one.
+struct Ending {
+    explicit Ending(int lookahead, FrameRate rate = {200'000, 1})  // a frame each 5 us
+        : presenter(
+              renderer, {&sink}, {rate, {}, lookahead, false, 1}, [] { return 0; }, stop,
+              counters) {
+        sink.before_write = [this](auto) { pushed.push_back(renderer.pushed()); };
+    }
+    void give(std::int64_t begin_us, bool reset_before = false) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(begin_us), from_us(begin_us + 10)};
+        encoded.latent.reset_before = reset_before;
+        presenter.take(encoded);
+    }
+    std::vector<std::int64_t> times() const {
+        std::vector<std::int64_t> times;
+        for (const auto& seen : sink.seen) times.push_back(seen.t_us);
+        return times;
+    }
+
+    ToyRenderer renderer;
+    ToySink sink;
+    std::vector<std::size_t> pushed;  // latent maps the renderer had, per frame
+    StopRequest stop;
+    Counters counters;
+    Presenter presenter;
+};
+
+TEST(Presenter, RendersEachFrameWithItsLookahead) {
+    for (const int lookahead : {0, 1, 2}) {
+        Ending e(lookahead);
+        for (int k = 0; k < 4; ++k) e.give(10 * k);
+        const auto before_end = e.sink.seen.size();
+        EXPECT_EQ(before_end, std::size_t(1 + 2 * (4 - lookahead)));
+        e.presenter.finish();
+        EXPECT_TRUE(e.renderer.finished);
+        EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 15, 20, 25, 30, 35, 40}));
+        for (std::size_t i = 0; i < before_end; ++i) {
+            const std::size_t k = i == 0 ? 1 : (i + 1) / 2;  // the event frame, from 1
+            EXPECT_EQ(e.pushed[i], k + std::size_t(lookahead)) << i;
+        }
+        for (const auto& seen : e.sink.seen) {
+            EXPECT_LE(seen.t_us, seen.end_us);
+            EXPECT_GE(seen.t_us, seen.begin_us);
+        }
+    }
+}
+
+TEST(Presenter, GivesNoneOneOrManyFramesPerEventFrame) {
+    Ending seldom(0, {40'000, 1});  // each 25 us
+    for (int k = 0; k < 6; ++k) seldom.give(10 * k);
+    EXPECT_EQ(seldom.times(), (std::vector<std::int64_t>{0, 25, 50}));
+    Ending often(0, {1'000'000, 1});
+    for (int k = 0; k < 6; ++k) often.give(10 * k);
+    EXPECT_EQ(often.sink.seen.size(), 61U);
+    Ending without_rate(1, {});
+    for (int k = 0; k < 3; ++k) without_rate.give(10 * k);
+    without_rate.presenter.finish();
+    EXPECT_EQ(without_rate.times(), (std::vector<std::int64_t>{10, 20, 30}));
+}
+
+TEST(Presenter, FinishesTheOldStreamBeforeANewOne) {
+    Ending e(2);
+    for (int k = 0; k < 3; ++k) e.give(1000 + 10 * k);
+    e.give(3, true);
+    EXPECT_EQ(e.times().back(), 1030);
+    EXPECT_EQ(e.renderer.pushed(), 1U);
+    e.presenter.finish();
+    EXPECT_EQ(e.times().back(), 13);
+    for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
+}
+
+TEST(Presenter, ClosesAllSinksThoughOneFails) {
+    ToyRenderer renderer;
+    ToySink bad, good;
+    bad.before_close = [] { throw std::runtime_error("close"); };
+    StopRequest stop;
+    Counters counters;
+    Presenter presenter(
+        renderer, {&bad, &good}, {}, [] { return 0; }, stop, counters);
+    EXPECT_THROW(presenter.close(), std::runtime_error);
+    EXPECT_EQ(good.closed, 1);
+}
+
+TEST(Presenter, StopsWhenASinkWantsNoMore) {
+    Ending e(0);
+    e.sink.wants = 3;
+    for (int k = 0; k < 4; ++k) e.give(10 * k);
+    EXPECT_EQ(e.sink.count, 3U);
+}
+
+TEST(Presenter, RefusesAnImpossibleLookahead) {
+    for (const int lookahead : {-1, 3}) EXPECT_THROW(Ending{lookahead}, Error);
+}
+
+}  // namespace
+}  // namespace eventide
