@@ -40,7 +40,8 @@ std::span<const std::byte> Aedat3Parser::search_header(std::span<const std::byte
     while (true) {
         if (unit_.size() == Aedat3Packet::kHeaderBytes) {
             const Aedat3Packet packet = read_aedat3_packet(unit_.data());
-            if (is_plausible(packet) && packet.number > 0) {
+            const bool of_ours = !source_ || packet.source == *source_;
+            if (is_plausible(packet) && packet.number > 0 && of_ours) {
                 begin_packet(packet);
                 return bytes;
             }

@@ -23,21 +23,27 @@ bool is_plausible(const Aedat3Packet& packet) {
     if (packet.type < 0 || packet.type > Aedat3Packet::kLastType || packet.source < 0) return false;
     if (packet.overflow > kMostOverflow || packet.capacity > kMostRecords) return false;
     if (packet.number > packet.capacity || packet.valid > packet.number) return false;
-    if (packet.record_bytes < 8 || packet.time_offset > packet.record_bytes - 4) return false;
+    constexpr std::uint32_t kTimeOffset = 4;  // behind the word with the valid bit
+    const auto is_record_of = [&](std::uint32_t bytes) {
+        return packet.record_bytes == bytes && packet.time_offset == kTimeOffset;
+    };
     switch (Aedat3Type(packet.type)) {
         case Aedat3Type::special:
-            return packet.record_bytes == Aedat3Packet::kSpecialBytes;
+            return is_record_of(Aedat3Packet::kSpecialBytes);
         case Aedat3Type::polarity:
-            return packet.record_bytes == Aedat3Packet::kPolarityBytes;
+            return is_record_of(Aedat3Packet::kPolarityBytes);
         case Aedat3Type::imu6:
-            return packet.record_bytes == Aedat3Packet::kImu6Bytes;
+            return is_record_of(Aedat3Packet::kImu6Bytes);
         case Aedat3Type::imu9:
-            return packet.record_bytes == Aedat3Packet::kImu9Bytes;
-        case Aedat3Type::frame:
+            return is_record_of(Aedat3Packet::kImu9Bytes);
+        case Aedat3Type::frame:  // any of its four stamps, though the end of the frame is usual
             return packet.record_bytes >= Aedat3Packet::kFrameHeaderBytes &&
-                   packet.record_bytes <= Aedat3Packet::kMostFrameBytes;
+                   packet.record_bytes <= Aedat3Packet::kMostFrameBytes &&
+                   packet.time_offset % 4 == 0 && packet.time_offset >= 4 &&
+                   packet.time_offset <= 16;
     }
-    return packet.record_bytes <= 1024 && packet.time_offset > 0;
+    return packet.record_bytes >= 8 && packet.record_bytes <= 1024 && packet.time_offset >= 4 &&
+           packet.time_offset <= packet.record_bytes - 4;
 }
 
 }  // namespace eventide

@@ -1,0 +1,204 @@
+// Text recordings: layouts found, rows read, damage counted, and back again.
+#include "src/codec/text.h"
+
+#include "src/core/error.h"
+#include "tests/codec/parser_checks.h"
+
+#include <string>
+
+namespace eventide {
+namespace {
+
+constexpr int kWidth = 240, kHeight = 180;
+
+/// Header and data of a text, the way a recording is opened.
+Parsed parse_text(const std::string& text, const TextOptions& options = {}, int width = kWidth,
+                  int height = kHeight) {
+    const Bytes bytes = to_bytes(text);
+    const TextHeader header = read_text_header(bytes, options);
+    return parse_whole([&] { return std::make_unique<TextParser>(header.layout, width, height); },
+                       std::span(bytes).subspan(header.stream.data_offset));
+}
+
+MakeParser default_parser(TextTimeUnit unit = TextTimeUnit::seconds) {
+    return [=] {
+        TextLayout layout;
+        layout.unit = unit;
+        return std::make_unique<TextParser>(layout, kWidth, kHeight);
+    };
+}
+
+const std::vector<Event> kTwo{{from_us(3811), 96, 133, Polarity::off},
+                              {from_us(1003820), 127, 171, Polarity::on}};
+
+TEST(Text, TheSameEventsInEveryLayout) {
+    for (const char* text : {
+             "0.003811 96 133 0\n1.003820 127 171 1\n",
+             "0.003811,96,133,0\n1.003820,127,171,1\n",
+             "0.003811;96;133;0\n1.003820;127;171;1\n",
+             "0.003811\t96\t133\t0\n1.003820\t127\t171\t1\n",
+             "  0.003811  96   133 0  \r\n\r\n1.003820 127 171 1",
+             "# a comment\n0.003811 96 133 -1\n# another\n1.003820 127 171 1\n",
+             "0.003811, 96, 133, False\n1.003820, 127, 171, True\n",
+             "3811 96 133 0\n1003820 127 171 1\n",
+             "240 180\n3811 96 133 0\n1003820 127 171 1\n",
+             "t,x,y,p\n0.003811,96,133,0\n1.003820,127,171,1\n",
+             "x,y,timestamp,polarity\n96,133,0.003811,0\n127,171,1.003820,1\n",
+             "x y p t_us\n96 133 0 3811\n127 171 1 1003820\n",
+             "time_ns,y,x,pol,index\n3811000,133,96,0,5\n1003820000,171,127,1,6\n",
+             "96 133 0.003811 0\n127 171 1.003820 1\n",
+             "96 133 0 0.003811\n127 171 1 1.003820\n",
+             "3.811e-03 9.6e+01 1.33e+02 0e+00\n1.003820e+00 1.27e+02 1.71e+02 1e+00\n",
+             "0.0038105 96 133 0\n1.0038204999 127 171 1\n",
+             "\xEF\xBB\xBF"
+             "0.003811 96 133 0\n1.003820 127 171 1\n",
+         }) {
+        const Parsed parsed = parse_text(text);
+        EXPECT_EQ(parsed.data.events, kTwo) << text;
+        EXPECT_EQ(parsed.damage.total(), 0U) << text;
+    }
+}
+
+TEST(Text, StatedLayoutsAreFollowed) {
+    EXPECT_EQ(parse_text("96 133 0 3811\n127 171 1 1003820\n", {"xypt", {}}).data.events, kTwo);
+    EXPECT_EQ(parse_text("3.811 96 133 0\n1003.820 127 171 1\n", {"", TextTimeUnit::milliseconds})
+                  .data.events,
+              kTwo);
+    EXPECT_EQ(
+        parse_text("3811000 96 133 0\n1003820000 127 171 1\n", {"", TextTimeUnit::nanoseconds})
+            .data.events,
+        kTwo);
+    EXPECT_EQ(parse_text("0 96 133 0\n1 127 171 1\n", {"", TextTimeUnit::seconds}).data.events[1].t,
+              from_us(1000000));
+    EXPECT_THROW(parse_text("0 96 133 0\n", {"txyy", {}}), Error);
+}
+
+TEST(Text, EpochTimesStayExact) {
+    const Parsed parsed = parse_text("1633953690.975950 1 2 1\n1633953690.975951 1 2 1\n");
+    ASSERT_EQ(parsed.data.events.size(), 2U);
+    EXPECT_EQ(to_us(parsed.data.events[0].t), 1633953690975950);
+    EXPECT_EQ(to_us(parsed.data.events[1].t), 1633953690975951);
+}
+
+TEST(Text, TheSizeLineIsRead) {
+    const TextHeader header = read_text_header(to_bytes("346 260\n0.1 1 2 1\n"), {});
+    EXPECT_EQ(header.stream.width, 346);
+    EXPECT_EQ(header.stream.height, 260);
+    EXPECT_EQ(header.stream.data_offset, 8U);
+    EXPECT_EQ(header.layout.unit, TextTimeUnit::seconds);
+}
+
+TEST(Text, OtherBytesDoNotLookLikeText) {
+    for (const char* text :
+         {"0.1 1 2 1\n", "240 180\n1 2 3 0\n", "# c\nt x y p\n1 2 3 0\n", "1,2,3,true\n"})
+        EXPECT_TRUE(looks_like_text(to_bytes(text))) << text;
+    for (const char* text : {"", "\n\n", "hello world\n", "1 2 3\n", "#!AER-DAT2.0\r\n",
+                             "1 2\n3 4\n", "{\"t\": 1}\n", "<xml>\n"})
+        EXPECT_FALSE(looks_like_text(to_bytes(text))) << text;
+    EXPECT_FALSE(looks_like_text(to_bytes(std::string_view("1 2 3 0\n\0\0\1\2", 12))));
+}
+
+TEST(Text, DamageIsCountedByReasonAndReadingGoesOn) {
+    std::string text = "0.1 1 2 1\n";
+    text += "0.2 1 2\n";                     // bad_record
+    text += "0.3 1 2 5\n";                   // bad_record
+    text += "0.4 1.5 2 1\n";                 // bad_record
+    text += "0.5 240 2 1\n";                 // out_of_range
+    text += "0.6 -1 2 1\n";                  // out_of_range
+    text += "0.05 1 2 1\n";                  // time_backwards
+    text += std::string(5000, '1') + "\n";   // bad_length
+    text += "99999999999999999999 1 2 1\n";  // bad_record
+    text += "0.7 239 179 0\n";
+    text += "0.8 1";  // truncated
+    const Parsed parsed = parse_text(text);
+    EXPECT_EQ(parsed.data.events.size(), 2U);
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 4U);
+    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 2U);
+    EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 1U);
+    EXPECT_EQ(parsed.damage[DamageReason::bad_length], 1U);
+    EXPECT_EQ(parsed.damage[DamageReason::truncated], 1U);
+    EXPECT_EQ(parsed.clock, from_us(700000));
+}
+
+TEST(Text, ALoneLeapIsDamageAndAPauseIsNot) {
+    const Parsed leap = parse_text("0.1 1 1 1\n900000.0 1 1 1\n0.2 1 1 1\n0.3 1 1 1\n");
+    EXPECT_EQ(leap.data.events.size(), 3U);
+    EXPECT_EQ(leap.damage[DamageReason::bad_record], 1U);
+    const Parsed pause = parse_text("0.1 1 1 1\n900000.0 1 1 1\n900000.1 1 1 1\n");
+    EXPECT_EQ(pause.data.events.size(), 3U);
+    EXPECT_EQ(pause.damage.total(), 0U);
+    EXPECT_EQ(parse_text("0.1 1 1 1\n900000.0 1 1 1\n").data.events.size(), 2U);
+}
+
+std::string random_text(unsigned seed, std::size_t n) {
+    Batch batch;
+    batch.events = random_events(seed, n, kWidth, kHeight, 999'990);
+    Bytes bytes;
+    TextWriter().write(batch, bytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST(Text, AnySplitGivesTheSame) {
+    expect_same_for_any_split(default_parser(), to_bytes(random_text(1, 500)));
+    expect_same_for_any_split(
+        default_parser(), to_bytes(random_text(2, 20) + "junk\n# c\n" + std::string(3000, 'x') +
+                                   "\n" + std::string(1024, ' ') + "\n" + std::string(1025, ' ') +
+                                   "\n" + random_text(3, 20) + std::string(2000, '7')));
+}
+
+TEST(Text, AnyCutGivesABeginning) {
+    expect_beginnings_for_any_cut(default_parser(), to_bytes(random_text(4, 30)));
+}
+
+TEST(Text, DamageAnywhereIsBorne) {
+    expect_bears_damage(default_parser(), to_bytes(random_text(5, 100)), kWidth, kHeight);
+}
+
+/// The same rows, padded so that only the careful way reads them.
+TEST(Text, TheQuickWayAndTheCarefulWayAgree) {
+    const std::string quick = random_text(6, 2000);
+    std::string careful;
+    for (const char c : quick) careful += c == '\n' ? std::string(" \n") : std::string(1, c);
+    for (std::size_t i = 0; i < careful.size(); ++i)
+        if (i == 0 || careful[i - 1] == '\n') careful.insert(i++, " ");
+    const Parsed a = parse_whole(default_parser(), to_bytes(quick));
+    const Parsed b = parse_whole(default_parser(), to_bytes(careful));
+    EXPECT_EQ(a.data.events.size(), 2000U);
+    expect_same(a, b, "padded");
+}
+
+TEST(Text, WhatIsWrittenIsReadBack) {
+    for (const std::int64_t first :
+         {std::int64_t(0), std::int64_t(-5'000'000), std::int64_t(1'633'953'690'975'950)}) {
+        Batch batch;
+        batch.events = random_events(7, 3000, 1280, 720, first, 2000);
+        StreamHeader header;
+        header.width = 1280;
+        header.height = 720;
+        Bytes bytes;
+        TextWriter writer;
+        writer.begin(header, bytes);
+        writer.write(batch, bytes);
+        writer.finish(bytes);
+        const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        EXPECT_EQ(read_text_header(bytes, {}).stream.width, 1280);
+        const Parsed parsed = parse_text(text, {}, 1280, 720);
+        EXPECT_TRUE(parsed.data.events == batch.events);
+        EXPECT_EQ(parsed.damage.total(), 0U);
+    }
+}
+
+TEST(Text, AfterAJumpReadingGoesOnAtTheNextLine) {
+    const auto parser = default_parser()();
+    Batch batch;
+    parser->parse(to_bytes("5.000000 1 2 1\n5.1 3"), batch);
+    parser->resync();
+    parser->parse(to_bytes("17 20 1\n0.5 7 8 0\n"), batch);
+    parser->finish(batch);
+    ASSERT_EQ(batch.events.size(), 2U);
+    EXPECT_EQ(batch.events[1], (Event{from_us(500000), 7, 8, Polarity::off}));
+    EXPECT_EQ(parser->damaged().total(), 0U);
+}
+
+}  // namespace
+}  // namespace eventide
