@@ -3,6 +3,7 @@
 #include "drivers/usb/davis_camera.h"
 #include "src/core/error.h"
 #include "tests/support/davis_model.h"
+#include "tests/support/preload.h"
 #include "tests/support/usb_testbed.h"
 
 #include <gmock/gmock.h>

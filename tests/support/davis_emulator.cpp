@@ -6,6 +6,7 @@
 #include "replay/formats.h"
 #include "src/core/error.h"
 #include "tests/support/davis_model.h"
+#include "tests/support/preload.h"
 #include "tests/support/usb_testbed.h"
 
 #include <sys/wait.h>

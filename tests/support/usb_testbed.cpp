@@ -1,17 +1,18 @@
 #include "tests/support/usb_testbed.h"
 
+#include "tests/support/glib_owned.h"
+#include "tests/support/preload.h"
+
 #include <sys/ioctl.h>
 
 #include <linux/usbdevice_fs.h>
 #include <umockdev.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <stdexcept>
@@ -20,18 +21,10 @@
 namespace eventide::testing_support {
 namespace {
 
-constexpr const char* kPreload = "libumockdev-preload.so.0";
 constexpr const char* kSysfsPath = "/sys/devices/usb1";
 constexpr const char* kNode = "/dev/bus/usb/001/001";
 constexpr std::uint8_t kDataEndpoint = 0x82;
 constexpr std::uint8_t kSerialString = 3;
-
-struct Unref {
-    void operator()(gpointer object) const { g_object_unref(object); }
-    void operator()(GError* error) const { g_error_free(error); }
-};
-template <typename T>
-using Owned = std::unique_ptr<T, Unref>;
 
 std::string hex(std::span<const std::uint8_t> bytes) {
     std::string text;
@@ -117,19 +110,6 @@ std::uint32_t big32(const std::uint8_t* at) {
 }
 
 }  // namespace
-
-bool runs_in_testbed() {
-    const char* preload = std::getenv("LD_PRELOAD");
-    return preload != nullptr && std::strstr(preload, kPreload) != nullptr;
-}
-
-void enter_testbed(char** argv) {
-    if (runs_in_testbed()) return;
-    const char* before = std::getenv("LD_PRELOAD");
-    const std::string preload = before ? std::string{before} + ":" + kPreload : kPreload;
-    setenv("LD_PRELOAD", preload.c_str(), 1);
-    execv("/proc/self/exe", argv);
-}
 
 struct UsbTestbed::Parts {
     Owned<UMockdevTestbed> testbed;

@@ -10,14 +10,6 @@
 
 namespace eventide::testing_support {
 
-/// True when the process runs under umockdev's preload library, which is what makes libusb see the
-/// testbed.
-bool runs_in_testbed();
-
-/// Starts the program again under the preload library; returns only when that is not possible. Call
-/// it first in main().
-void enter_testbed(char** argv);
-
 /// One bus with at most one camera on it. The camera may be plugged in and out at any time from any
 /// thread.
 class UsbTestbed {

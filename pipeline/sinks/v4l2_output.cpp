@@ -1,0 +1,160 @@
+#include "pipeline/sinks/v4l2_output.h"
+
+#include "src/core/error.h"
+
+#include <fcntl.h>
+#include <linux/videodev2.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+namespace eventide {
+namespace {
+
+constexpr std::uint8_t kNoColour = 128;
+
+struct Packing {
+    V4l2PixelFormat format;
+    std::uint32_t fourcc;
+    std::size_t bytes_per_two_pixels;
+    bool even;  // needs even sides
+};
+// In the order in which they are offered when the user does not say.
+constexpr std::array kPackings{Packing{V4l2PixelFormat::yuyv, V4L2_PIX_FMT_YUYV, 4, true},
+                               Packing{V4l2PixelFormat::grey, V4L2_PIX_FMT_GREY, 2, false},
+                               Packing{V4l2PixelFormat::yu12, V4L2_PIX_FMT_YUV420, 3, true}};
+
+const Packing& packing_of(V4l2PixelFormat format) {
+    return *std::find_if(kPackings.begin(), kPackings.end(),
+                         [&](const Packing& p) { return p.format == format; });
+}
+
+int request(int file, unsigned long what, void* argument) {
+    int result = 0;
+    do result = ::ioctl(file, what, argument);
+    while (result < 0 && errno == EINTR);
+    return result < 0 ? errno : 0;
+}
+
+const char* advice(int error) {
+    switch (error) {
+        case ENOENT:
+            return " (load it with: modprobe v4l2loopback)";
+        case EACCES:
+            return " (no permission: join the group 'video')";
+        case EBUSY:
+            return " (another program writes to it)";
+        default:
+            return "";
+    }
+}
+
+}  // namespace
+
+V4l2OutputSink::V4l2OutputSink(V4l2OutputSettings settings) : settings_(std::move(settings)) {
+    const Uncertainty how = settings_.uncertainty;
+    if (how != Uncertainty::none && how != Uncertainty::automatic && how != Uncertainty::side)
+        throw Error(ErrorKind::usage, "v4l2:" + settings_.node.string() +
+                                          " shows sigma as none or side, not as " +
+                                          std::string{name_of(how)});
+    file_ = ::open(settings_.node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    if (file_ < 0) fail("cannot be opened", errno);
+    v4l2_capability capability{};
+    if (const int error = request(file_, VIDIOC_QUERYCAP, &capability); error != 0)
+        fail("is no video device", error);
+    const std::uint32_t caps = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0
+                                   ? capability.device_caps
+                                   : capability.capabilities;
+    if ((caps & V4L2_CAP_VIDEO_OUTPUT) == 0)
+        fail("takes no video (a camera, or a loopback in use by another writer)", EINVAL);
+}
+
+V4l2OutputSink::~V4l2OutputSink() {
+    if (file_ >= 0) ::close(file_);
+}
+
+void V4l2OutputSink::fail(const char* what, int error) const {
+    throw Error(ErrorKind::device, "v4l2:" + settings_.node.string() + " " + what + ": " +
+                                       std::strerror(error) + advice(error));
+}
+
+bool V4l2OutputSink::try_format(V4l2PixelFormat format, int width, int height) {
+    const Packing& packing = packing_of(format);
+    if (packing.even) {
+        width &= ~1;
+        height &= ~1;
+    }
+    if (width < 2 || height < 2) return false;
+    const std::size_t bytes =
+        std::size_t(width) * std::size_t(height) * packing.bytes_per_two_pixels / 2;
+    v4l2_format wanted{};
+    wanted.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+    wanted.fmt.pix.width = std::uint32_t(width);
+    wanted.fmt.pix.height = std::uint32_t(height);
+    wanted.fmt.pix.pixelformat = packing.fourcc;
+    wanted.fmt.pix.field = V4L2_FIELD_NONE;
+    wanted.fmt.pix.sizeimage = std::uint32_t(bytes);
+    wanted.fmt.pix.colorspace = V4L2_COLORSPACE_SRGB;
+    if (const int error = request(file_, VIDIOC_S_FMT, &wanted); error != 0) {
+        if (error == EBUSY) fail("is held at another size or format by a reader or writer", error);
+        return false;
+    }
+    // Drivers may change what was asked for; only the very same will do.
+    if (wanted.fmt.pix.pixelformat != packing.fourcc || int(wanted.fmt.pix.width) != width ||
+        int(wanted.fmt.pix.height) != height)
+        return false;
+    format_ = format;
+    width_ = width;
+    height_ = height;
+    bytes_.assign(bytes, kNoColour);
+    return true;
+}
+
+void V4l2OutputSink::fix_format(int width, int height) {
+    for (const Packing& packing : kPackings)
+        if ((!settings_.format || *settings_.format == packing.format) &&
+            try_format(packing.format, width, height))
+            return;
+    throw Error(ErrorKind::device,
+                "v4l2:" + settings_.node.string() + " does not take " + std::to_string(width) +
+                    "x" + std::to_string(height) +
+                    (settings_.format ? " in the format asked for" : " as YUYV, GREY or YU12"));
+}
+
+/// Chroma stays at kNoColour.
+void V4l2OutputSink::pack(const cv::Mat& picture) {
+    for (int y = 0; y < height_; ++y) {
+        const std::uint8_t* from = picture.ptr<std::uint8_t>(y);
+        const std::size_t at = std::size_t(y) * std::size_t(width_);
+        if (format_ == V4l2PixelFormat::yuyv)
+            for (int x = 0; x < width_; ++x) bytes_[2 * (at + std::size_t(x))] = from[x];
+        else
+            std::copy_n(from, width_, bytes_.data() + at);
+    }
+}
+
+void V4l2OutputSink::write(const Frame& frame) {
+    draw(frame, settings_.uncertainty, settings_.sigma_white, picture_);
+    if (width_ == 0) fix_format(picture_.cols, picture_.rows);
+    if (picture_.cols < width_ || picture_.rows < height_ || picture_.cols > width_ + 1 ||
+        picture_.rows > height_ + 1)
+        throw Error(ErrorKind::failed, "v4l2:" + settings_.node.string() + " was opened at " +
+                                           std::to_string(width_) + "x" + std::to_string(height_) +
+                                           ", a frame of " + std::to_string(picture_.cols) + "x" +
+                                           std::to_string(picture_.rows) + " does not fit");
+    pack(picture_);
+    ssize_t written = 0;
+    do written = ::write(file_, bytes_.data(), bytes_.size());
+    while (written < 0 && errno == EINTR);
+    if (written < 0 && errno == EAGAIN)
+        ++skipped_;
+    else if (written < 0)
+        fail("takes no more frames", errno);
+}
+
+}  // namespace eventide

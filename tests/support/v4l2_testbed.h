@@ -1,0 +1,63 @@
+// A video node that exists only for this process and its children: an event sensor to capture from,
+// or a loopback to write to (umockdev).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eventide::testing_support {
+
+struct V4l2NodeSettings {
+    bool output = false;  ///< takes frames instead of giving them
+    bool multi_planar = false;
+    std::uint32_t fourcc = 0;   ///< of a capture node
+    int width = 0, height = 0;  ///< of a capture node's format
+    std::size_t buffer_bytes = 64 * 1024;
+    std::vector<std::uint32_t> takes;  ///< formats an output node takes
+    int refuse_format_with = 0;        ///< errno of every S_FMT; 0 none
+    struct Control {
+        std::int32_t minimum = 0, maximum = 0, value = 0;
+        bool read_only = false;
+    };
+    std::map<std::string, Control> controls;
+};
+
+/// /dev/video0 (and the controls on it).
+class V4l2Testbed {
+public:
+    explicit V4l2Testbed(V4l2NodeSettings settings);
+    ~V4l2Testbed();
+    V4l2Testbed(const V4l2Testbed&) = delete;
+    V4l2Testbed& operator=(const V4l2Testbed&) = delete;
+
+    /// Capture: what the sensor gives next, one buffer's content.
+    struct Content {
+        std::vector<std::byte> bytes;
+        std::uint32_t skipped_before = 0;  ///< buffers the driver lost: a jump of the sequence
+        bool error_flag = false;
+    };
+    void give(Content content);
+    bool all_taken() const;
+    /// From now on DQBUF fails with this errno; 0 works again.
+    void fail_with(int error);
+
+    /// Output: what was written, and the names of the ioctls in their order.
+    std::vector<std::vector<std::byte>> written() const;
+    std::vector<std::string> requests() const;
+    /// The next so many writes find the device busy (EAGAIN).
+    void refuse_writes(int count);
+
+    V4l2NodeSettings::Control control(const std::string& name) const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace eventide::testing_support
