@@ -1,0 +1,31 @@
+// A run in one file, so that it goes on as if it had never stopped.
+#pragma once
+
+#include "src/train/batch.h"
+#include "src/train/optimiser.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+struct Checkpoint {
+    std::int64_t window = 0;  ///< the next one; as many steps are done
+    double elapsed_minutes = 0;
+    double best_score = 1e9;       ///< of the validations so far
+    std::string options;           ///< OptionTable::record()
+    std::vector<Memory> memories;  ///< of each thread's lanes
+};
+
+/// Writes whole or not at all. Throws Error(failed).
+void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint,
+                     const Optimiser& optimiser);
+
+/// The options only: they decide what the rest looks like. Throws Error(input).
+std::string checkpoint_options(const std::filesystem::path& path);
+
+/// Throws Error(input) naming what does not fit.
+Checkpoint load_checkpoint(const std::filesystem::path& path, Optimiser& optimiser);
+
+}  // namespace eventide

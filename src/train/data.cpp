@@ -1,0 +1,178 @@
+#include "src/train/data.h"
+
+#include "src/binning/binner.h"
+#include "src/simulate/simulated_stream.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+constexpr std::size_t kWindowsAhead = 3;
+
+std::uint64_t seed_of(const DataSettings& settings, std::uint64_t a, std::uint64_t b) {
+    return Random{settings.seed + 0x9e3779b97f4a7c15ULL * (a + 1)}.bits() ^
+           Random { b + 0xd1b54a32d192ed03ULL }.bits();
+}
+
+}  // namespace
+
+SceneSettings DataSettings::training_scenes() {
+    SceneSettings scene;
+    scene.wander.speed = {6, 600};
+    scene.still_background = .08;
+    scene.objects_max = 16;
+    scene.objects_skew = 3;
+    scene.faint_probability = .05;
+    return scene;
+}
+
+WindowPlan window_plan(const DataSettings& settings, std::int64_t window) {
+    Random random{seed_of(settings, 0, std::uint64_t(window))};
+    WindowPlan plan;
+    plan.first_rendered = random.integer(0, settings.frames - settings.rendered);
+    const double whole = settings.crop - 1;
+    plan.span = whole;
+    if (settings.patch != settings.crop || !random.chance(settings.whole_probability))
+        plan.span = std::min(
+            whole, (settings.patch - 1) / random.log_uniform({1, settings.span_scale_max}));
+    plan.y0 = random.uniform() * (whole - plan.span);
+    plan.x0 = random.uniform() * (whole - plan.span);
+    for (int i = 0; i < settings.rendered; ++i) {
+        const double u = random.uniform();
+        plan.lookahead.push_back(u < .5 ? 0 : u < .7 ? 1 : 2);
+    }
+    return plan;
+}
+
+/// One scene, its camera and its clock.
+struct Lane::Episode {
+    Episode(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
+            std::uint64_t seed)
+        : random(seed),
+          stream(settings.scene, settings.sensor, std::move(textures), settings.crop, settings.crop,
+                 random.bits()),
+          binner(settings.bins, settings.crop, settings.crop),
+          grid(binner.make_output()),
+          width_s(random.log_uniform(settings.frame_s)),
+          jitter(random.chance(settings.jitter_probability) ? settings.frame_jitter : 0) {}
+
+    void advance() {
+        const double s = width_s * std::exp(jitter * (2 * random.uniform() - 1));
+        const SensorDuration width{std::max<std::int64_t>(1, std::llround(s * 1e6))};
+        window = {stream.now(), stream.now() + width};
+        events.clear();
+        stream.advance(window.end, events);
+        binner.process({.window = window, .events = events}, grid);
+        ++frames;
+    }
+
+    Random random;
+    SimulatedStream stream;
+    Binner binner;
+    VoxelGrid grid;
+    double width_s, jitter;
+    Window window;
+    std::vector<Event> events;
+    int frames = 0;
+};
+
+Lane::Lane(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures, int lane,
+           std::int64_t first_window)
+    : settings_(settings), textures_(std::move(textures)), lane_(lane) {
+    // Scenes that are over are skipped; the one under way is simulated again up to the window.
+    start_episode();
+    while (window_ + windows_left_ <= first_window) {
+        window_ += windows_left_;
+        start_episode();
+    }
+    while (window_ < first_window) next();
+}
+
+Lane::~Lane() = default;
+
+void Lane::start_episode() {
+    ++episode_;
+    now_.reset();
+    Random random{seed_of(settings_, std::uint64_t(lane_) + 1, std::uint64_t(episode_))};
+    const double frames = random.log_uniform(settings_.episode);
+    windows_left_ = std::max<std::int64_t>(1, std::llround(frames / settings_.frames));
+}
+
+void Lane::open_episode() {
+    now_ = std::make_unique<Episode>(
+        settings_, textures_,
+        ~seed_of(settings_, std::uint64_t(lane_) + 1, std::uint64_t(episode_)));
+}
+
+LaneWindow Lane::next() {
+    if (windows_left_ == 0) start_episode();
+    LaneWindow out;
+    out.fresh = now_ == nullptr;
+    if (out.fresh) open_episode();
+    const WindowPlan plan = window_plan(settings_, window_);
+    Episode& episode = *now_;
+    for (int k = 0; k < settings_.frames; ++k) {
+        episode.advance();
+        out.grids.push_back(episode.grid.values);
+        if (k < plan.first_rendered || k >= plan.first_rendered + settings_.rendered) continue;
+        const bool edge = episode.random.chance(settings_.edge_probability);
+        const auto width = episode.window.width().count();
+        const auto part = std::clamp<std::int64_t>(
+            edge ? width : std::llround(episode.random.uniform() * double(width)), 1, width);
+        out.f.push_back(float(double(part) / double(width)));
+        out.weight.push_back(episode.frames > settings_.warm_frames ? 1.0F : 0.0F);
+        out.truth.emplace_back(settings_.patch, settings_.patch);
+        episode.stream.truth(episode.window.begin + SensorDuration{part}, plan.y0, plan.x0,
+                             plan.span, plan.span, out.truth.back());
+    }
+    ++window_;
+    --windows_left_;
+    return out;
+}
+
+Feed::Feed(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures, int lanes,
+           std::int64_t first_window)
+    : settings_(settings), textures_(std::move(textures)), slots_(std::size_t(lanes)) {
+    for (int lane = 0; lane < lanes; ++lane)
+        threads_.emplace_back([this, lane, first_window](std::stop_token stop) {
+            simulate(stop, lane, first_window);
+        });
+}
+
+Feed::~Feed() = default;
+
+void Feed::simulate(std::stop_token stop, int lane, std::int64_t first_window) {
+    Slot& slot = slots_[std::size_t(lane)];
+    try {
+        Lane source{settings_, textures_, lane, first_window};
+        while (!stop.stop_requested()) {
+            LaneWindow window = source.next();
+            std::unique_lock lock{mutex_};
+            if (!changed_.wait(lock, stop, [&] { return slot.ready.size() < kWindowsAhead; }))
+                return;
+            slot.ready.push_back(std::move(window));
+            changed_.notify_all();
+        }
+    } catch (...) {
+        const std::lock_guard lock{mutex_};
+        slot.failure = std::current_exception();
+        changed_.notify_all();
+    }
+}
+
+std::vector<LaneWindow> Feed::next() {
+    std::vector<LaneWindow> windows;
+    std::unique_lock lock{mutex_};
+    for (Slot& slot : slots_) {
+        changed_.wait(lock, [&] { return !slot.ready.empty() || slot.failure; });
+        if (slot.ready.empty()) std::rethrow_exception(slot.failure);
+        windows.push_back(std::move(slot.ready.front()));
+        slot.ready.pop_front();
+    }
+    changed_.notify_all();
+    return windows;
+}
+
+}  // namespace eventide

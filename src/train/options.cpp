@@ -1,0 +1,172 @@
+#include "src/train/options.h"
+
+#include "src/core/error.h"
+
+#include <sstream>
+
+namespace eventide {
+namespace {
+
+void read_value(const std::string& text, std::string& value) {
+    value = text;
+}
+template <typename T>
+void read_value(const std::string& text, T& value) {
+    std::istringstream in{text};
+    if (!(in >> value) || !(in >> std::ws).eof()) throw std::invalid_argument{"a number"};
+}
+void read_value(const std::string& text, std::vector<int>& value) {
+    value.clear();
+    std::istringstream in{text};
+    for (std::string part; std::getline(in, part, ',');) read_value(part, value.emplace_back());
+}
+void read_value(const std::string& text, Range& value) {
+    const auto comma = text.find(',');
+    if (comma == text.npos) throw std::invalid_argument{"LOW,HIGH"};
+    read_value(text.substr(0, comma), value.low);
+    read_value(text.substr(comma + 1), value.high);
+}
+void read_value(const std::string& text, EncoderKind& value) {
+    if (text != "gated" && text != "thesis") throw std::invalid_argument{"gated or thesis"};
+    value = text == "gated" ? EncoderKind::gated : EncoderKind::thesis;
+}
+void read_value(const std::string& text, SigmaRule& value) {
+    if (text != "log_blend" && text != "mixture")
+        throw std::invalid_argument{"log_blend or mixture"};
+    value = text == "mixture" ? SigmaRule::mixture : SigmaRule::log_blend;
+}
+
+template <typename T>
+std::string write_value(const T& value) {
+    std::ostringstream out;
+    out << value;
+    return out.str();
+}
+std::string write_value(const std::vector<int>& value) {
+    std::string text;
+    for (const int v : value) text += (text.empty() ? "" : ",") + std::to_string(v);
+    return text;
+}
+std::string write_value(const Range& value) {
+    return write_value(value.low) + "," + write_value(value.high);
+}
+std::string write_value(const EncoderKind& value) {
+    return value == EncoderKind::gated ? "gated" : "thesis";
+}
+std::string write_value(const SigmaRule& value) {
+    return value == SigmaRule::mixture ? "mixture" : "log_blend";
+}
+
+}  // namespace
+
+template <typename T>
+void OptionTable::add(const std::string& name, T& target, const std::string& help) {
+    options_.push_back({name, help,
+                        [&target](const std::string& text) { read_value(text, target); },
+                        [&target] { return write_value(target); }});
+}
+
+OptionTable::OptionTable(TrainOptions& o) {
+    add("out", o.out, "folder for the checkpoint, the logs and the pictures");
+    add("textures", o.textures, "pack of pictures to learn from; none: procedural");
+    add("validation-textures", o.validation_textures, "pack of pictures to judge by");
+    add("lpips", o.lpips, "npz file of LPIPS-Squeeze; none: that loss is left out");
+    add("minutes", o.minutes, "budget of the whole run, resumed parts included");
+    add("steps", o.steps, "budget in steps instead, where not 0");
+    add("resume", o.resume,
+        "checkpoint to go on from; its options are those of its beginning, "
+        "unless given again after this one");
+    add("export", o.export_file, "model file to write at the end");
+    add("card", o.card, "what the model card says first");
+    add("device", o.device, "cpu or cuda");
+    add("precision", o.precision, "of activations: f32, bf16 or auto (bf16 where it is quick)");
+    add("threads", o.threads, "shares of a step computed at the same time");
+    add("lanes", o.lanes, "streams per thread");
+    add("seed", o.data.seed, "of the data and the first weights");
+
+    add("encoder", o.model.encoder, "gated or thesis");
+    add("bins", o.model.bins, "B of the voxel grid");
+    add("widths", o.model.widths, "channels per level");
+    add("recurrent", o.model.recurrent, "per level: 1 recurrent, 0 held");
+    add("res-blocks", o.model.res_blocks, "at the lowest resolution");
+    add("gate-radius", o.model.gate_radius, "px");
+    add("latent", o.model.latent, "D");
+    add("latent-stride", o.model.latent_stride, "1 or 2");
+    add("mlp", o.model.mlp, "hidden widths of the renderer");
+    add("sigma-rule", o.model.sigma_rule, "log_blend or mixture");
+
+    add("crop", o.data.crop, "px, side of the simulated sensor");
+    add("frames", o.data.frames, "event frames that gradients flow through");
+    add("rendered", o.data.rendered, "of them compared with the truth");
+    add("patch", o.data.patch, "px, side of the pictures compared");
+    add("episode", o.data.episode, "event frames of one scene");
+    add("frame-s", o.data.frame_s, "s, width of event frames");
+    add("speed", o.data.scene.wander.speed, "px/s, of scenes");
+    add("still", o.data.scene.still_background, "share of scenes whose camera stands still");
+    add("objects", o.data.scene.objects_max, "moving objects at most");
+    add("faint", o.data.scene.faint_probability, "share of scenes of little contrast");
+    add("threshold", o.data.sensor.threshold, "ln of the light's change");
+
+    add("l1", o.loss.l1, "weight in the loss");
+    add("ssim", o.loss.ssim, "weight in the loss");
+    add("lpips-weight", o.loss.lpips, "weight in the loss");
+    add("nll", o.loss.nll, "weight in the loss");
+    add("temporal", o.loss.temporal, "weight in the loss");
+    add("rate", o.learning_rate, "largest learning rate");
+    add("final-rate", o.final_rate, "last learning rate, as a share of the largest");
+    add("constant-share", o.constant_share, "share of the budget before the rate falls");
+    add("warm-up", o.warm_up, "steps in which the rate rises");
+    add("clip", o.optimiser.clip, "largest norm of a gradient");
+    add("ema", o.optimiser.ema_decay, "decay of the running mean of the weights");
+
+    add("checkpoint-minutes", o.checkpoint_minutes, "between checkpoints");
+    add("validate-minutes", o.validate_minutes, "between validations");
+    add("log-every", o.log_every, "steps per line of the log");
+    add("validation-scenes", o.validation_scenes, "number of scenes to judge by");
+    add("validation-frames", o.validation_frames, "event frames of each");
+    add("validation-crop", o.validation_crop, "px, side of each");
+}
+
+void OptionTable::set(const std::string& name, const std::string& value) {
+    for (const Option& option : options_) {
+        if (option.name != name) continue;
+        try {
+            option.read(value);
+        } catch (const std::invalid_argument& expected) {
+            throw Error(ErrorKind::usage,
+                        "--" + name + ": expected " + expected.what() + ", found '" + value + "'");
+        }
+        return;
+    }
+    throw Error(ErrorKind::usage, "expected one of the options of --help, found '--" + name + "'");
+}
+
+void OptionTable::parse(const std::vector<std::string>& words) {
+    for (std::size_t i = 0; i < words.size(); i += 2) {
+        if (!words[i].starts_with("--"))
+            throw Error(ErrorKind::usage, "expected --NAME, found '" + words[i] + "'");
+        if (i + 1 == words.size())
+            throw Error(ErrorKind::usage, words[i] + ": expected a value, found none");
+        set(words[i].substr(2), words[i + 1]);
+    }
+}
+
+std::string OptionTable::help() const {
+    std::string text = "eventide-train [--NAME VALUE]...\n";
+    for (const Option& option : options_) {
+        std::string line = "  --" + option.name + " ";
+        line.resize(std::max<std::size_t>(line.size(), 24), ' ');
+        text += line + option.help + " (" + option.write() + ")\n";
+    }
+    return text;
+}
+
+std::string OptionTable::record() const {
+    std::string text;
+    for (const Option& option : options_)
+        if (option.name != "resume" && !option.write().empty())
+            text += "--" + option.name + " " + option.write() + "\n";
+    return text;
+}
+
+}  // namespace eventide

@@ -1,0 +1,60 @@
+// The command line of eventide-train: one table that is parsed, printed as help, and recorded.
+#pragma once
+
+#include "src/model/model_config.h"
+#include "src/train/data.h"
+#include "src/train/losses.h"
+#include "src/train/optimiser.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+struct TrainOptions {
+    ModelConfig model;
+    DataSettings data;
+    LossWeights loss;
+    OptimiserSettings optimiser;
+    std::string out = "out/train";
+    std::string textures, validation_textures, lpips;
+    std::string resume, export_file, card;
+    std::string device = "cpu", precision = "auto";
+    double minutes = 60;
+    int steps = 0;  ///< where not 0, the budget instead of `minutes`
+    int threads = 1, lanes = 2;
+    double learning_rate = 1e-3, final_rate = 0.02, constant_share = 0.6;
+    int warm_up = 100;
+    double checkpoint_minutes = 3, validate_minutes = 5;
+    int log_every = 25;
+    int validation_scenes = 12, validation_frames = 40, validation_crop = 96;
+};
+
+/// Words and their meaning: "--name value".
+class OptionTable {
+public:
+    explicit OptionTable(TrainOptions& options);
+
+    /// Throws Error(usage) naming the word, what was expected and what was found.
+    void parse(const std::vector<std::string>& words);
+    void set(const std::string& name, const std::string& value);
+
+    std::string help() const;
+    /// "--name value" of all that decides what is learned, one per line.
+    std::string record() const;
+
+private:
+    struct Option {
+        std::string name, help;
+        std::function<void(const std::string&)> read;
+        std::function<std::string()> write;
+    };
+    template <typename T>
+    void add(const std::string& name, T& target, const std::string& help);
+
+    std::vector<Option> options_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,30 @@
+// The learned numbers of a network as torch tensors, under the names and shapes of the model file.
+#pragma once
+
+#include "src/model/model_file.h"
+#include "src/train/torch.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace eventide {
+
+using Parameters = std::map<std::string, torch::Tensor>;
+
+/// A network that can start to learn: He's uniform for weights, gates that keep, and a renderer
+/// that begins at mid grey with a wide sigma. The same seed gives the same numbers.
+Parameters initial_parameters(const ModelConfig& config, std::uint64_t seed, torch::Device device);
+
+/// Copies of the numbers, float32 on the host.
+Tensors to_tensors(const Parameters& parameters);
+Tensor to_tensor(const torch::Tensor& values);
+
+/// Leaves that want gradients.
+Parameters to_parameters(const Tensors& tensors, torch::Device device);
+torch::Tensor to_torch(const Tensor& tensor, torch::Device device);
+
+/// The same numbers in another type; gradients flow through to the float32 masters.
+Parameters cast(const Parameters& parameters, torch::ScalarType type);
+
+}  // namespace eventide

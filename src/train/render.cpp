@@ -1,0 +1,192 @@
+#include "src/train/render.h"
+
+#include "src/train/networks.h"
+
+#include <array>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+/// One sample index and weight per point along one axis, for the lower or upper neighbour.
+struct Neighbour {
+    torch::Tensor index;   ///< [n] int64
+    torch::Tensor offset;  ///< [n], point minus sample, px
+    torch::Tensor weight;  ///< [n]
+    bool empty = true;     ///< all weights are 0
+};
+
+/// Beyond the last sample only that one is used, with its true offset (docs/model.md).
+std::array<Neighbour, 2> neighbours(const std::vector<double>& points, std::int64_t samples,
+                                    torch::TensorOptions options) {
+    std::array<Neighbour, 2> both;
+    for (int side = 0; side < 2; ++side) {
+        std::vector<std::int64_t> index;
+        std::vector<double> offset, weight;
+        for (const double p : points) {
+            const double low = std::min(std::floor(p), double(samples - 1));
+            const double part = low == double(samples - 1) ? 0 : p - low;
+            const double sample = std::min(low + side, double(samples - 1));
+            index.push_back(std::int64_t(sample));
+            offset.push_back(p - sample);
+            weight.push_back(side == 0 ? 1 - part : part);
+        }
+        for (const double w : weight) both[std::size_t(side)].empty &= w == 0;
+        const auto wide = torch::TensorOptions().dtype(torch::kDouble);
+        both[std::size_t(side)].index = torch::tensor(index).to(options.device());
+        both[std::size_t(side)].offset = torch::tensor(offset, wide).to(options);
+        both[std::size_t(side)].weight = torch::tensor(weight, wide).to(options);
+    }
+    return both;
+}
+
+bool covers_all(const Neighbour& side, std::int64_t samples) {
+    return side.index.size(0) == samples && side.index[0].item<std::int64_t>() == 0 &&
+           side.index[-1].item<std::int64_t>() == samples - 1;
+}
+
+/// The learned function with its first layer taken apart: a convolution of codes plus a linear
+/// function of the offset (reconstruction.md section 4, "the exact way out").
+class Mlp {
+public:
+    Mlp(const ModelConfig& config, const Parameters& parameters) {
+        for (std::size_t i = 0; i <= config.mlp.size(); ++i) {
+            const std::string name = "renderer.mlp." + std::to_string(i);
+            weight_.push_back(parameters.at(name + ".weight"));
+            bias_.push_back(parameters.at(name + ".bias"));
+        }
+        const int D = config.latent, H = int(weight_[0].size(0));
+        // [H][dt][dy][dx][D] -> [H][dt, D][dy][dx]
+        conv_ = weight_[0]
+                    .narrow(1, 0, 27 * D)
+                    .reshape({H, 3, 3, 3, D})
+                    .permute({0, 1, 4, 2, 3})
+                    .reshape({H, 3 * D, 3, 3});
+        offset_ = weight_[0].narrow(1, 27 * D, 3);
+    }
+
+    /// Layer 1 before its offset and rectifier: [M][H_1][h][w] of codes [M][3 D][h][w].
+    torch::Tensor first(const torch::Tensor& codes) const {
+        return torch::conv2d(codes.to(conv_.scalar_type()), conv_, bias_[0], 1, 1);
+    }
+    /// Weights of one coordinate (0 t, 1 x, 2 y) of the offset, [H_1].
+    torch::Tensor offset(int coordinate) const { return offset_.select(1, coordinate).to(wide()); }
+
+    /// The rest: [M][H_1][r][c] -> [M][2][r][c] in float32.
+    torch::Tensor rest(const torch::Tensor& first_layer) const {
+        torch::Tensor x = rectify(first_layer.to(conv_.scalar_type()));
+        for (std::size_t i = 1; i < weight_.size(); ++i) {
+            x = torch::conv2d(x, weight_[i].unsqueeze(-1).unsqueeze(-1), bias_[i]);
+            if (i + 1 < weight_.size()) x = rectify(x);
+        }
+        return x.to(wide());
+    }
+    torch::ScalarType wide() const {
+        return conv_.scalar_type() == torch::kDouble ? torch::kDouble : torch::kFloat;
+    }
+
+private:
+    std::vector<torch::Tensor> weight_, bias_;
+    torch::Tensor conv_, offset_;
+};
+
+/// A centre sample in time: its three codes, the offset and the weight of each picture.
+struct Centre {
+    torch::Tensor codes;   ///< [N][3 D][h][w]
+    torch::Tensor offset;  ///< [N], t - t_v
+    torch::Tensor weight;  ///< [N]
+    std::size_t task;
+};
+
+torch::Tensor or_zero(const torch::Tensor& map, const torch::Tensor& like) {
+    return map.defined() ? map : torch::zeros_like(like);
+}
+
+std::vector<Centre> centres(const std::vector<RenderTask>& tasks) {
+    std::vector<Centre> list;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+        const RenderTask& task = tasks[i];
+        const auto &z = task.current, &next = task.next;
+        list.push_back({torch::cat({or_zero(task.previous, z), z, or_zero(next, z)}, 1), task.f,
+                        next.defined() ? 1 - task.f : torch::ones_like(task.f), i});
+        if (next.defined())
+            list.push_back(
+                {torch::cat({z, next, or_zero(task.after, z)}, 1), task.f - 1, task.f, i});
+    }
+    return list;
+}
+
+template <typename Member>
+torch::Tensor concat(const std::vector<Centre>& list, Member member) {
+    std::vector<torch::Tensor> parts;
+    for (const Centre& centre : list) parts.push_back(centre.*member);
+    return torch::cat(parts, 0);
+}
+
+/// What is blended: mu beside ln sigma, or beside the second moment (docs/model.md, sigma rules).
+torch::Tensor moments(const ModelConfig& config, const torch::Tensor& out) {
+    const auto mu = out.narrow(1, 0, 1);
+    auto second = out.narrow(1, 1, 1).clamp(config.log_sigma_min, config.log_sigma_max);
+    if (config.sigma_rule == SigmaRule::mixture) second = (2 * second).exp() + mu.square();
+    return torch::cat({mu, second}, 1);
+}
+
+/// Sums over the up to 4 neighbours in space: [M][2][r][c].
+torch::Tensor blend_space(const ModelConfig& config, const Mlp& mlp, const torch::Tensor& first,
+                          const PatchGrid& points) {
+    const auto options = first.options().dtype(mlp.wide());
+    const auto column = [](const torch::Tensor& v) { return v.view({1, -1, 1, 1}); };
+    torch::Tensor sum;
+    for (const Neighbour& ny : neighbours(points.y, first.size(2), options)) {
+        if (ny.empty) continue;
+        const torch::Tensor rows =
+            covers_all(ny, first.size(2)) ? first : first.index_select(2, ny.index);
+        for (const Neighbour& nx : neighbours(points.x, first.size(3), options)) {
+            if (nx.empty) continue;
+            torch::Tensor x = covers_all(nx, first.size(3)) ? rows : rows.index_select(3, nx.index);
+            x = x + column(mlp.offset(1)) * nx.offset.view({1, 1, 1, -1}) +
+                column(mlp.offset(2)) * ny.offset.view({1, 1, -1, 1});
+            const auto out = mlp.rest(x.contiguous(torch::MemoryFormat::ChannelsLast));
+            const auto part =
+                moments(config, out) * (ny.weight.view({-1, 1}) * nx.weight.view({1, -1}));
+            sum = sum.defined() ? sum + part : part;
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+PatchGrid patch_grid(double y0, double x0, double span, int size) {
+    PatchGrid grid;
+    for (int i = 0; i < size; ++i) {
+        grid.y.push_back(y0 + span * i / (size - 1));
+        grid.x.push_back(x0 + span * i / (size - 1));
+    }
+    return grid;
+}
+
+Rendered render(const ModelConfig& config, const Parameters& parameters,
+                const std::vector<RenderTask>& tasks, const PatchGrid& points) {
+    const Mlp mlp{config, parameters};
+    const std::vector<Centre> list = centres(tasks);
+    torch::Tensor first = mlp.first(concat(list, &Centre::codes));
+    const torch::Tensor dt = concat(list, &Centre::offset).view({-1, 1, 1, 1});
+    first = first + dt * mlp.offset(0).view({1, -1, 1, 1});
+    const torch::Tensor weight = concat(list, &Centre::weight).view({-1, 1, 1, 1});
+    const torch::Tensor weighted = weight * blend_space(config, mlp, first, points);
+    // Back from centres to pictures: each task has one or two centres of N lanes.
+    const std::int64_t lanes = tasks.front().f.size(0);
+    std::vector<torch::Tensor> pictures(tasks.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const auto part = weighted.narrow(0, std::int64_t(i) * lanes, lanes);
+        torch::Tensor& picture = pictures[list[i].task];
+        picture = picture.defined() ? picture + part : part;
+    }
+    const torch::Tensor out = torch::cat(pictures, 0);
+    const torch::Tensor mu = out.select(1, 0), second = out.select(1, 1);
+    if (config.sigma_rule == SigmaRule::log_blend) return {mu, second};
+    return {mu, 0.5 * (second - mu.square()).clamp_min(1e-6).log()};
+}
+
+}  // namespace eventide

@@ -1,0 +1,267 @@
+#include "src/train/trainer.h"
+
+#include "src/core/error.h"
+#include "src/train/curve.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <thread>
+
+namespace eventide {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+torch::Device device_of(const TrainOptions& options) {
+    if (options.device != "cpu" && options.device != "cuda")
+        throw Error(ErrorKind::usage,
+                    "--device: expected cpu or cuda, found '" + options.device + "'");
+    if (options.device == "cuda" && !torch::cuda::is_available())
+        throw Error(ErrorKind::device, "--device cuda: this libtorch sees no CUDA device");
+    return torch::Device{options.device};
+}
+
+bool processor_has_bf16() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx512bf16") != 0;
+#else
+    return false;
+#endif
+}
+
+void append_row(const std::filesystem::path& path, const std::string& header,
+                const std::string& row) {
+    const bool begin = !std::filesystem::exists(path);
+    std::ofstream out{path, std::ios::app};
+    if (begin) out << header << "\n";
+    out << row << "\n";
+    if (!out) throw Error(ErrorKind::failed, path.string() + ": cannot be written");
+}
+
+std::string csv_of_names() {
+    std::string text;
+    for (const char* name : kLossNames) text += std::string{","} + name;
+    return text;
+}
+
+}  // namespace
+
+torch::ScalarType arithmetic_type(const TrainOptions& options) {
+    if (options.precision == "f32") return torch::kFloat;
+    if (options.precision == "bf16") return torch::kBFloat16;
+    if (options.precision != "auto")
+        throw Error(ErrorKind::usage,
+                    "--precision: expected f32, bf16 or auto, found '" + options.precision + "'");
+    return options.device == "cuda" || processor_has_bf16() ? torch::kBFloat16 : torch::kFloat;
+}
+
+Trainer::Trainer(const TrainOptions& options, std::string record,
+                 std::shared_ptr<const TextureLibrary> textures,
+                 std::shared_ptr<const TextureLibrary> validation_textures, Say say)
+    : options_(options),
+      say_(std::move(say)),
+      device_(device_of(options)),
+      type_(arithmetic_type(options)),
+      optimiser_(options.optimiser, initial_parameters(options.model, options.data.seed, device_)) {
+    // One thread per share: libgomp's barriers cost more than they give where cores are shared.
+    at::set_num_threads(1);
+    options_.data.bins = options.model.bins;
+    std::filesystem::create_directories(options.out);
+    if (!options.lpips.empty())
+        perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
+    if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
+    progress_.options = std::move(record);
+    begin_memories();
+    if (options.validation_scenes > 0)
+        validation_ = std::make_unique<Validation>(
+            ValidationSettings{options.validation_scenes, options.validation_frames,
+                               options.validation_crop, 4242},
+            options_.data, std::move(validation_textures), device_);
+    feed_ = std::make_unique<Feed>(options_.data, std::move(textures),
+                                   options.threads * options.lanes, progress_.window);
+}
+
+/// A run may go on with other lanes or another crop: its states then begin empty.
+void Trainer::begin_memories() {
+    std::vector<Memory>& memories = progress_.memories;
+    const int crop = options_.data.crop;
+    const Memory empty =
+        empty_memory(options_.model, options_.lanes, crop, crop, torch::TensorOptions{device_});
+    const auto threads = std::size_t(options_.threads);
+    if (memories.size() != threads || memories[0].latent.sizes() != empty.latent.sizes())
+        memories.assign(threads, empty);
+}
+
+std::filesystem::path Trainer::file(const char* name) const {
+    return std::filesystem::path{options_.out} / name;
+}
+
+bool Trainer::finished() const {
+    return options_.steps > 0 ? progress_.window >= options_.steps
+                              : progress_.elapsed_minutes >= options_.minutes;
+}
+
+double Trainer::learning_rate() const {
+    const double done = options_.steps > 0 ? double(progress_.window) / options_.steps
+                                           : progress_.elapsed_minutes / options_.minutes;
+    const double rise = std::min(1.0, double(progress_.window + 1) / (options_.warm_up + 1));
+    const double falling =
+        std::clamp((done - options_.constant_share) / (1 - options_.constant_share), 0.0, 1.0);
+    const double cosine = 0.5 * (1 + std::cos(std::numbers::pi * falling));
+    return options_.learning_rate * rise *
+           (options_.final_rate + (1 - options_.final_rate) * cosine);
+}
+
+Trainer::Share Trainer::run_share(std::span<const LaneWindow> windows, const WindowPlan& plan,
+                                  Memory& memory) {
+    at::set_num_threads(1);  // libgomp keeps the number per thread
+    const TrainingBatch batch = to_batch(windows, device_);
+    memory = begin_window(memory, batch.fresh);
+    const Parameters narrow =
+        type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
+    const Pictures pictures =
+        run_window(options_.model, narrow, plan, batch, options_.data.patch, memory);
+    Share share;
+    share.terms = loss(pictures, options_.loss, perceptual_.get(), options_.data.rendered);
+    std::vector<torch::Tensor> leaves;
+    for (const auto& [name, values] : optimiser_.parameters) leaves.push_back(values);
+    const auto gradients = torch::autograd::grad({share.terms.total}, leaves, {}, {}, false,
+                                                 /*allow_unused=*/true);
+    std::size_t i = 0;
+    for (const auto& [name, values] : optimiser_.parameters) {
+        const torch::Tensor& g = gradients[i++];
+        share.gradients[name] = g.defined() ? g : torch::zeros_like(values);
+    }
+    memory = {detach(memory.state), memory.latent.detach()};
+    return share;
+}
+
+void Trainer::step() {
+    const auto start = Clock::now();
+    const WindowPlan plan = window_plan(options_.data, progress_.window);
+    const std::vector<LaneWindow> windows = feed_->next();
+    std::vector<Share> shares(progress_.memories.size());
+    const auto lanes = std::size_t(options_.lanes);
+    {
+        std::vector<std::jthread> threads;
+        const auto work = [&](std::size_t i) {
+            shares[i] = run_share(std::span{windows}.subspan(i * lanes, lanes), plan,
+                                  progress_.memories[i]);
+        };
+        for (std::size_t i = 1; i < shares.size(); ++i) threads.emplace_back(work, i);
+        work(0);
+    }
+    Parameters& gradients = shares[0].gradients;
+    LossTerms& terms = shares[0].terms;
+    for (auto& [name, g] : gradients) {
+        for (std::size_t i = 1; i < shares.size(); ++i) g = g + shares[i].gradients.at(name);
+        g = g / double(shares.size());
+    }
+    for (std::size_t k = 0; k < terms.means.size(); ++k) {
+        for (std::size_t i = 1; i < shares.size(); ++i) terms.means[k] += shares[i].terms.means[k];
+        terms.means[k] /= double(shares.size());
+    }
+    const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
+    if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next windows
+        ++skipped_;
+        for (Memory& memory : progress_.memories)
+            memory = begin_window(memory, std::vector<bool>(lanes, true));
+    }
+    ++progress_.window;
+    const double seconds = seconds_since(start);
+    progress_.elapsed_minutes += seconds / 60;
+    log_step(terms, rate, norm, seconds);
+}
+
+void Trainer::log_step(const LossTerms& terms, double rate, double norm, double seconds) {
+    const std::size_t n = terms.means.size();
+    for (std::size_t k = 0; k < n; ++k) sums_[k] += terms.means[k];
+    sums_[n] += norm;
+    sums_[n + 1] += seconds;
+    if (++summed_ < options_.log_every) return;
+    std::ostringstream row;
+    row << progress_.window << "," << progress_.elapsed_minutes << "," << rate;
+    for (const double sum : sums_) row << "," << sum / summed_;
+    row << "," << skipped_;
+    append_row(file("log.csv"), "step,minutes,rate" + csv_of_names() + ",gradient,seconds,skipped",
+               row.str());
+    say_(row.str());
+    sums_ = {};
+    summed_ = 0;
+}
+
+void Trainer::validate() {
+    if (validation_ == nullptr) return;
+    const Parameters weights = cast(optimiser_.ema, type_);
+    const auto scores =
+        validation_->judge(options_.model, weights, 0, options_.loss, perceptual_.get());
+    std::ostringstream row;
+    row << progress_.window << "," << progress_.elapsed_minutes << "," << scores.score;
+    for (const double mean : scores.means) row << "," << mean;
+    append_row(file("validation.csv"), "step,minutes,score" + csv_of_names(), row.str());
+    say_("validation " + row.str());
+    write_curve(file("learning_curve.svg"), file("log.csv"), file("validation.csv"));
+    validation_->write_sheet(file("sheet.pgm"), options_.model, weights, 0);
+    if (scores.score < progress_.best_score) {
+        progress_.best_score = scores.score;
+        save_model(file("best.safetensors"), {options_.model, to_tensors(optimiser_.ema)});
+    }
+}
+
+void Trainer::checkpoint() {
+    save_checkpoint(file("checkpoint.safetensors"), progress_, optimiser_);
+}
+
+void Trainer::run(const std::atomic<bool>& stop) {
+    const auto due = [](double minutes) { return std::chrono::duration<double>(minutes * 60); };
+    auto saved = Clock::now(), judged = saved;
+    while (!finished() && !stop) {
+        step();
+        if (Clock::now() - judged >= due(options_.validate_minutes)) {
+            validate();
+            judged = Clock::now();
+        }
+        if (Clock::now() - saved >= due(options_.checkpoint_minutes)) {
+            checkpoint();
+            saved = Clock::now();
+        }
+    }
+    if (finished()) validate();
+    checkpoint();
+}
+
+Model Trainer::finished_model() const {
+    Model model{options_.model, to_tensors(optimiser_.ema)};
+    if (std::filesystem::exists(file("best.safetensors")))
+        model.weights = load_model(file("best.safetensors")).weights;
+    std::ostringstream card;
+    card << options_.card << (options_.card.empty() ? "" : " ")
+         << "Trained by eventide-train: " << progress_.window << " steps, "
+         << std::lround(progress_.elapsed_minutes) << " minutes. ";
+    if (validation_ != nullptr) {
+        const Parameters weights = to_parameters(model.weights, device_);
+        model.config.sigma_scale = float(validation_->sigma_scale(options_.model, weights, 0));
+        for (const int lookahead : {0, 2}) {
+            const auto scores = validation_->judge(options_.model, weights, lookahead,
+                                                   options_.loss, perceptual_.get());
+            card << "Held-out simulated scenes, lookahead " << lookahead
+                 << ", sigma not yet scaled:";
+            for (std::size_t k = 0; k < scores.means.size(); ++k)
+                card << " " << kLossNames[k] << " " << scores.means[k];
+            card << ". ";
+        }
+    }
+    card << "Options: " << progress_.options;
+    model.config.card = card.str();
+    return model;
+}
+
+}  // namespace eventide
