@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/core/parallel_for.h"
+#include "src/core/sensor_time.h"
 #include "src/evaluate/report.h"
 #include "src/model/engine.h"
 #include "src/model/model_config.h"
@@ -21,7 +22,10 @@ struct EvaluateSettings {
     int lookahead = 0;                    ///< event frames after the picture's own that may be used
     std::optional<SigmaRule> sigma_rule;  ///< else the model's own
     EngineOptions engine;
-    /// Called now and then: which sequence, and how much of it is done (0 to 1).
+    /// Over sequences; results do not depend on it. Memory grows with those done at once.
+    ParallelFor parallel_for = sequential_for;
+    /// Called now and then: which sequence, and how much of it is done (0 to 1). From whatever
+    /// threads parallel_for has, possibly at once.
     std::function<void(const std::string& sequence, double share)> progress;
 };
 
@@ -46,9 +50,12 @@ struct SimulatedSettings {
     int last_images = 0;           ///< only the last so many by name; 0: all
     int sequences = 20;
     int event_frames = 150;         ///< per sequence
-    int width = 240, height = 180;  ///< px, of the sensor
-    double scale = 1;               ///< pictures and truth are so many times larger
-    int skip_frames = 4;            ///< not scored: the state is still empty
+    int width = 240, height = 160;  ///< px, of the sensor
+    SensorDuration frame_width{50'000};
+    std::vector<double> phases{1};  ///< where in each event frame pictures are compared, (0, 1]
+    std::string preset = "thesis_test";  ///< src/simulate/presets.h
+    double scale = 1;                    ///< pictures and truth are so many times larger
+    int skip_frames = 4;                 ///< not scored: the state is still empty
     std::uint64_t seed = 4000;
 };
 EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateSettings& how);

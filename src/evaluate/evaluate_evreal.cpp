@@ -58,7 +58,9 @@ std::vector<fs::path> sequences_in(const fs::path& dataset) {
 
 EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& how) {
     Evaluation evaluation{"EVREAL protocol", how};
-    for (const fs::path& path : sequences_in(dataset)) {
+    const std::vector<fs::path> sequences = sequences_in(dataset);
+    evaluation.run_sequences(int(sequences.size()), [&](int i) {
+        const fs::path& path = sequences[std::size_t(i)];
         const Cut* cut = cut_of(path.filename().string());
         std::optional<double> from, to;
         if (cut) {
@@ -68,8 +70,8 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
         const ReferenceSequence sequence = read_reference_sequence(path, from, to);
         ScoredImages which;
         if (cut) which.from = sequence.first + SensorDuration{std::int64_t(cut->from_s * 1e6)};
-        evaluate_sequence(evaluation, sequence, "reference", which);
-    }
+        return evaluate_sequence(evaluation, sequence, "reference", which);
+    });
     if (evaluation.lpips() && evaluation.lpips()->name() != "LPIPS-Alex")
         evaluation.note("EVREAL's tables are in LPIPS-Alex: these LPIPS numbers are " +
                         evaluation.lpips()->name() + " and must not be compared with them");

@@ -38,28 +38,28 @@ std::vector<Query> queries_of(const ReferenceSequence& sequence, const ScoredIma
 
 }  // namespace
 
-void evaluate_sequence(Evaluation& evaluation, const ReferenceSequence& sequence,
-                       const std::string& window, const ScoredImages& which) {
+SequenceResult evaluate_sequence(const Evaluation& evaluation, const ReferenceSequence& sequence,
+                                 const std::string& window, const ScoredImages& which) {
     std::vector<Query> queries = queries_of(sequence, which);
     const auto scored = std::ranges::count_if(queries, &Query::scored);
-    ModelRun run = evaluation.make_run(sequence.width, sequence.height);
-    evaluation.begin_sequence(sequence.name, sequence.first, int(scored));
+    SequenceEvaluation judged{
+        evaluation, {sequence.name, sequence.width, sequence.height, sequence.first, int(scored)}};
     for (Query& query : queries)
-        if (query.scored) run.ask(std::move(query));
-    const auto push = [&run](const Slice& slice) { run.push(slice); };
+        if (query.scored) judged.run().ask(std::move(query));
+    const auto push = [&judged](const Slice& slice) { judged.run().push(slice); };
     if (window == "reference")
         for_each_reference_slice(sequence, push);
     else
         for_each_window_slice(sequence, window, push);
-    run.finish();
-    evaluation.end_sequence(run.not_rendered());
+    return judged.finish();
 }
 
 EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how) {
     if (what.recordings.empty())
         throw Error(ErrorKind::usage, "evaluate: expected at least one recording, found none");
     Evaluation evaluation{"recordings", how};
-    for (const std::filesystem::path& path : what.recordings) {
+    evaluation.run_sequences(int(what.recordings.size()), [&](int i) {
+        const std::filesystem::path& path = what.recordings[std::size_t(i)];
         std::optional<double> read_from;
         if (what.from_s) read_from = std::max(0., *what.from_s - kWarmUpSeconds);
         const ReferenceSequence sequence = read_reference_sequence(path, read_from, what.to_s);
@@ -67,8 +67,8 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         which.skip = std::clamp(what.skip_images, 0, int(sequence.images.size()) / 2);
         if (what.from_s)
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
-        evaluate_sequence(evaluation, sequence, what.window, which);
-    }
+        return evaluate_sequence(evaluation, sequence, what.window, which);
+    });
     return evaluation.finish("windows " + what.window + ", first " +
                              std::to_string(what.skip_images) +
                              " images (at most half) not scored");

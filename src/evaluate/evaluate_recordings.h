@@ -12,7 +12,7 @@ struct ScoredImages {
     SensorTime from = SensorTime::min(), to = SensorTime::max();
 };
 
-void evaluate_sequence(Evaluation& evaluation, const ReferenceSequence& sequence,
-                       const std::string& window, const ScoredImages& which);
+SequenceResult evaluate_sequence(const Evaluation& evaluation, const ReferenceSequence& sequence,
+                                 const std::string& window, const ScoredImages& which);
 
 }  // namespace eventide

@@ -5,63 +5,64 @@
 
 namespace eventide {
 
-Evaluation::Evaluation(std::string subject, const EvaluateSettings& settings)
-    : settings_(settings),
-      model_(load_model(settings.model)),
-      lpips_(load_lpips(settings.lpips)),
-      judge_(lpips_.get()) {
-    if (settings.lookahead < 0 || settings.lookahead > 2)
+Evaluation::Evaluation(std::string subject, EvaluateSettings settings)
+    : settings_(std::move(settings)),
+      model_(load_model(settings_.model)),
+      lpips_(load_lpips(settings_.lpips)) {
+    if (settings_.lookahead < 0 || settings_.lookahead > 2)
         throw Error(ErrorKind::usage,
-                    "lookahead: expected 0, 1 or 2, found " + std::to_string(settings.lookahead));
+                    "lookahead: expected 0, 1 or 2, found " + std::to_string(settings_.lookahead));
     report_.subject = std::move(subject);
-    report_.model = settings.model.filename().string();
+    report_.model = settings_.model.filename().string();
     if (lpips_) report_.lpips_name = lpips_->name();
 }
 
-ModelRun Evaluation::make_run(int width, int height) {
-    const ModelRun::Options options{settings_.lookahead, settings_.sigma_rule, settings_.engine};
-    ModelRun run{model_, width, height, options,
-                 [this](const Query& query, const Frame& frame) { judge(query, frame); }};
-    engine_ = run.description();
-    sensor_pixels_ = double(width) * height;
-    return run;
-}
-
-void Evaluation::begin_sequence(const std::string& name, SensorTime t0, int expected_frames) {
-    report_.sequences.emplace_back().scores.sequence = name;
-    t0_ = t0;
-    expected_frames_ = expected_frames;
-    if (settings_.progress) settings_.progress(name, 0);
-}
-
-void Evaluation::judge(const Query& query, const Frame& frame) {
-    SequenceReport& sequence = report_.sequences.back();
-    FrameScores scores = judge_.judge(frame.intensity, frame.sigma, query.truth);
-    scores.time_s = double((query.t - t0_).count()) * 1e-6;
-    scores.events_per_pixel = double(frame.events) / sensor_pixels_;
-    sequence.frames.push_back(scores);
-    if (settings_.progress)
-        settings_.progress(sequence.scores.sequence,
-                           double(sequence.frames.size()) / std::max(1, expected_frames_));
-}
-
-void Evaluation::end_sequence(int not_rendered) {
-    SequenceReport& sequence = report_.sequences.back();
-    sequence.scores = mean_scores(sequence.scores.sequence, sequence.frames);
-    sequence.not_rendered = not_rendered;
-    if (not_rendered > 0)
-        note(sequence.scores.sequence + ": " + std::to_string(not_rendered) +
-             " references lie outside the event frames and were not compared");
+void Evaluation::run_sequences(int n, const std::function<SequenceResult(int)>& evaluate) {
+    std::vector<SequenceResult> results(static_cast<std::size_t>(n));
+    settings_.parallel_for(n, [&](int i) { results[std::size_t(i)] = evaluate(i); });
+    for (SequenceResult& result : results) {
+        report_.sequences.push_back(std::move(result.report));
+        report_.observations += result.observations;
+        report_.notes.insert(report_.notes.end(), result.notes.begin(), result.notes.end());
+    }
 }
 
 EvaluateReport Evaluation::finish(const std::string& settings_text) {
     const SigmaRule rule = settings_.sigma_rule.value_or(model_.config.sigma_rule);
     report_.settings = "lookahead " + std::to_string(settings_.lookahead) + ", " + settings_text +
-                       (rule == SigmaRule::mixture ? ", mixture sigma" : ", blended ln sigma") +
-                       (engine_.empty() ? "" : ", " + engine_);
+                       (rule == SigmaRule::mixture ? ", mixture sigma" : ", blended ln sigma");
     report_.overall = overall_scores(report_.sequences);
-    report_.observations = judge_.observations();
     return std::move(report_);
+}
+
+SequenceEvaluation::SequenceEvaluation(const Evaluation& evaluation, const About& about)
+    : evaluation_(evaluation),
+      about_(about),
+      judge_(evaluation.lpips()),
+      run_(evaluation.model(), about.width, about.height,
+           {evaluation.settings().lookahead, evaluation.settings().sigma_rule,
+            evaluation.settings().engine},
+           [this](const Query& query, const Frame& frame) { judge(query, frame); }) {}
+
+void SequenceEvaluation::judge(const Query& query, const Frame& frame) {
+    FrameScores scores = judge_.judge(frame.intensity, frame.sigma, query.truth);
+    scores.time_s = double((query.t - about_.t0).count()) * 1e-6;
+    scores.events_per_pixel = double(frame.events) / (double(about_.width) * about_.height);
+    result_.report.frames.push_back(scores);
+    if (const auto& progress = evaluation_.settings().progress)
+        progress(about_.name,
+                 double(result_.report.frames.size()) / std::max(1, about_.expected_frames));
+}
+
+SequenceResult SequenceEvaluation::finish() {
+    run_.finish();
+    result_.report.scores = mean_scores(about_.name, result_.report.frames);
+    result_.report.not_rendered = run_.not_rendered();
+    if (run_.not_rendered() > 0)
+        result_.notes.push_back(about_.name + ": " + std::to_string(run_.not_rendered()) +
+                                " references lie outside the event frames and were not compared");
+    result_.observations = judge_.observations();
+    return std::move(result_);
 }
 
 }  // namespace eventide

@@ -4,41 +4,66 @@
 #include "src/evaluate/evaluate.h"
 #include "src/evaluate/model_run.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 
 namespace eventide {
 
+struct SequenceResult {
+    SequenceReport report;
+    Observations observations;
+    std::vector<std::string> notes;
+};
+
 class Evaluation {
 public:
     /// Loads what the settings name. Throws Error.
-    Evaluation(std::string subject, const EvaluateSettings& settings);
+    Evaluation(std::string subject, EvaluateSettings settings);
 
-    /// A run of the model for one sensor size, whose pictures are judged into the open sequence.
-    ModelRun make_run(int width, int height);
-
-    void begin_sequence(const std::string& name, SensorTime t0, int expected_frames);
-    /// `scored` says which queries count; others were asked for to no end.
-    void judge(const Query& query, const Frame& frame);
-    void end_sequence(int not_rendered);
+    /// Calls evaluate(i) for 0 <= i < n, possibly at the same time, and adds what they give to the
+    /// report in their order.
+    void run_sequences(int n, const std::function<SequenceResult(int)>& evaluate);
 
     void note(const std::string& text) { report_.notes.push_back(text); }
     const Model& model() const { return model_; }
     const Lpips* lpips() const { return lpips_.get(); }
+    const EvaluateSettings& settings() const { return settings_; }
 
     /// The report, with the means over everything.
     EvaluateReport finish(const std::string& settings_text);
 
 private:
-    const EvaluateSettings& settings_;
+    EvaluateSettings settings_;
     Model model_;
     std::unique_ptr<const Lpips> lpips_;
-    Judge judge_;
     EvaluateReport report_;
-    std::string engine_;
-    SensorTime t0_{};
-    int expected_frames_ = 0;
-    double sensor_pixels_ = 1;
+};
+
+/// One sequence: a run of the model whose pictures are judged as they come.
+class SequenceEvaluation {
+public:
+    struct About {
+        std::string name;
+        int width = 0, height = 0;  ///< px, of the sensor
+        SensorTime t0{};            ///< times are told from here
+        int expected_frames = 0;    ///< for progress
+    };
+    SequenceEvaluation(const Evaluation& evaluation, const About& about);
+
+    ModelRun& run() { return run_; }
+
+    /// Ends the run.
+    SequenceResult finish();
+
+private:
+    void judge(const Query& query, const Frame& frame);
+
+    const Evaluation& evaluation_;
+    About about_;
+    Judge judge_;
+    SequenceResult result_;
+    ModelRun run_;
 };
 
 }  // namespace eventide

@@ -60,6 +60,28 @@ PictureScores mean_pictures(const std::vector<FrameScores>& frames, Picture pict
 
 }  // namespace
 
+Observations& Observations::operator+=(const Observations& other) {
+    for (std::size_t i = 0; i < kSigmaBins; ++i) {
+        sigma_bins[i].sigma += other.sigma_bins[i].sigma;
+        sigma_bins[i].squared_error += other.sigma_bins[i].squared_error;
+        sigma_bins[i].pixels += other.sigma_bins[i].pixels;
+        patch_bins[i].lpips += other.patch_bins[i].lpips;
+        patch_bins[i].patches += other.patch_bins[i].patches;
+    }
+    if (patch_sizes.empty()) {
+        patch_sizes = other.patch_sizes;
+    } else {
+        for (std::size_t i = 0; i < other.patch_sizes.size(); ++i) {
+            patch_sizes[i].sum += other.patch_sizes[i].sum;
+            patch_sizes[i].squares += other.patch_sizes[i].squares;
+            patch_sizes[i].frames += other.patch_sizes[i].frames;
+        }
+    }
+    reliability += other.reliability;
+    sigma_scale += other.sigma_scale;
+    return *this;
+}
+
 FrameScores Judge::judge(const Array2<float>& intensity, const Array2<float>& sigma,
                          const Array2<float>& truth) {
     const Array2<float> mu = clipped(intensity);

@@ -59,6 +59,8 @@ struct Observations {
     std::vector<PatchSize> patch_sizes;  ///< 8, 12 ... 96 px
     Reliability reliability;
     SigmaScale sigma_scale;
+
+    Observations& operator+=(const Observations& other);
 };
 
 /// Judges pictures one by one. With `lpips` null, LPIPS is left out. One thread at a time.

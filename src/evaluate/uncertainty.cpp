@@ -134,6 +134,15 @@ void Reliability::add(const Array2<float>& mu, const Array2<float>& sigma,
     });
 }
 
+Reliability& Reliability::operator+=(const Reliability& other) {
+    for (std::size_t i = 0; i < inside_.size(); ++i) {
+        inside_[i] += other.inside_[i];
+        below_[i] += other.below_[i];
+    }
+    pixels_ += other.pixels_;
+    return *this;
+}
+
 double Reliability::share(const Counts& counts, int i) const {
     std::uint64_t sum = 0;
     for (int j = 0; j <= i; ++j) sum += counts[std::size_t(j)];
@@ -149,6 +158,14 @@ void SigmaScale::add(const Array2<float>& mu, const Array2<float>& sigma,
         ++bins_[std::size_t(std::clamp(bin, 0., kBins - 1.))];
         ++pixels_;
     });
+}
+
+SigmaScale& SigmaScale::operator+=(const SigmaScale& other) {
+    for (std::size_t i = 0; i < kBins; ++i) bins_[i] += other.bins_[i];
+    squares_ += other.squares_;
+    log_sigmas_ += other.log_sigmas_;
+    pixels_ += other.pixels_;
+    return *this;
 }
 
 double SigmaScale::by_likelihood() const {

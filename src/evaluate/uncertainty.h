@@ -40,6 +40,7 @@ public:
     /// Share of pixels below the quantile `level(i)`.
     double below(int i) const { return share(below_, i); }
     std::uint64_t pixels() const { return pixels_; }
+    Reliability& operator+=(const Reliability& other);
 
 private:
     using Counts = std::array<std::uint64_t, kLevels + 1>;  // the last: past every level
@@ -63,6 +64,7 @@ public:
     double coverage_80_after(double factor) const;
     double log_likelihood_after(double factor) const;
     std::uint64_t pixels() const { return pixels_; }
+    SigmaScale& operator+=(const SigmaScale& other);
 
 private:
     static constexpr int kBins = 1600;  ///< of ln(|z|), from -8 to 8

@@ -4,6 +4,7 @@
 #include "src/evaluate/reference_sequence.h"
 #include "src/model/model_file.h"
 #include "tests/evaluate/pictures.h"
+#include "tests/evaluate/small_model.h"
 
 #include <gtest/gtest.h>
 
@@ -51,21 +52,6 @@ fs::path write_recording(const fs::path& folder, double span_s, double step_s, d
         write_picture(folder / name, picture(kHeight, kWidth, 1 + i % 3));
     }
     return folder;
-}
-
-EvaluateSettings small_model() {
-    ModelConfig config;
-    config.bins = 2;
-    config.widths = {8, 8};
-    config.recurrent = {1, 1};
-    config.res_blocks = 1;
-    config.latent = 8;
-    config.mlp = {16};
-    EvaluateSettings settings;
-    settings.model = fs::path{testing::TempDir()} / "eventide_evaluate_model.safetensors";
-    save_model(settings.model, random_model(config, 1));
-    settings.engine.engine = Engine::plain;
-    return settings;
 }
 
 TEST(ReferenceSlices, HoldEachEventBetweenTheImagesExactlyOnce) {
@@ -185,6 +171,33 @@ TEST(EvaluateFolders, FindNothingBetweenEqualFolders) {
 
     write_picture(folder / "frames" / "one" / "9.png", picture(kHeight, kWidth, 9));
     EXPECT_THROW(evaluate_folders(folder / "frames", folder / "references", {}), Error);
+}
+
+TEST(EvaluateSimulated, GivesTheSameNumbersEveryTimeAndInAnyOrder) {
+    EvaluateSettings how = small_model();
+    const EvaluateReport one = evaluate_simulated(small_simulation(), how);
+    how.parallel_for = [](int n, const std::function<void(int)>& body) {
+        for (int i = n - 1; i >= 0; --i) body(i);
+    };
+    const EvaluateReport two = evaluate_simulated(small_simulation(), how);
+    EXPECT_EQ(one.overall.frames, 12);
+    EXPECT_EQ(json(one), json(two));
+    EXPECT_EQ(frame_csv(one), frame_csv(two));
+    EXPECT_NE(one.sequences[0].scores.raw.mse, one.sequences[1].scores.raw.mse);
+}
+
+TEST(EvaluateSimulated, ComparesAtAnyLookaheadScaleAndTime) {
+    EvaluateSettings how = small_model();
+    how.lookahead = 2;
+    SimulatedSettings what = small_simulation();
+    what.scale = 1.5;
+    what.phases = {.25, 1};
+    const EvaluateReport report = evaluate_simulated(what, how);
+    EXPECT_EQ(report.overall.frames, 24);
+    EXPECT_NEAR(report.sequences[0].frames[0].time_s, 3.25 * .05, 1e-5);
+    EXPECT_EQ(report.sequences[0].not_rendered, 0);
+    what.phases = {0};
+    EXPECT_THROW(evaluate_simulated(what, how), Error);
 }
 
 TEST(Report, IsJsonWithTheAgreedKeysAndNullForWhatWasNotMeasured) {

@@ -11,7 +11,9 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path written(const std::string& bytes) {
-    const fs::path path = fs::path{testing::TempDir()} / "eventide_test.npz";
+    const fs::path path =
+        fs::path{testing::TempDir()} /
+        (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".npz");
     std::ofstream{path, std::ios::binary} << bytes;
     return path;
 }

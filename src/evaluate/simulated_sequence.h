@@ -1,0 +1,27 @@
+// The simulated test set: event frames and their ground truth, sequence by sequence.
+#pragma once
+
+#include "src/core/frame_data.h"
+#include "src/evaluate/evaluate.h"
+#include "src/evaluate/model_run.h"
+#include "src/simulate/simulated_stream.h"
+#include "src/simulate/textures.h"
+
+#include <functional>
+#include <memory>
+
+namespace eventide {
+
+/// The textures the settings name. Throws Error.
+std::shared_ptr<const TextureLibrary> test_textures(const SimulatedSettings& what);
+
+/// Sequence `i`: calls use(slice, stream) after each event frame, when the truth of any time within
+/// it can be asked of the stream. Ends early where `use` returns false.
+void for_each_simulated_slice(const SimulatedSettings& what,
+                              const std::shared_ptr<const TextureLibrary>& textures, int i,
+                              const std::function<bool(const Slice&, const SimulatedStream&)>& use);
+
+/// The truth at t as a picture of width x height px, as a query.
+Query truth_query(const SimulatedStream& stream, SensorTime t, int width, int height);
+
+}  // namespace eventide
