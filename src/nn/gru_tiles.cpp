@@ -1,0 +1,95 @@
+// The fast ConvGRU: [a; h] of a tile and its surroundings stays in cache from gates to new state.
+#include "src/nn/gru_tiles.h"
+
+#include "src/kernels/vector_kernels.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide {
+
+GruTiles::GruTiles(const plain::GruWeights<float>& weights, const std::vector<Tile>& tiles,
+                   int side, bool bf16)
+    : channels_(weights.candidate.out),
+      side_(side),
+      tiles_(tiles),
+      gates_(weights.gates, 1, false, bf16),
+      candidate_(weights.candidate, 1, false, bf16) {
+    for (const Tile& tile : tiles_)
+        next_.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
+                           std::size_t(channels_));
+}
+
+// Scratch: [a; h] of side + 4, then gates of side + 2, then the candidate, then the convolutions'.
+std::size_t GruTiles::scratch_size() const {
+    const auto square = [](int n) { return std::size_t(n) * std::size_t(n); };
+    const auto c = std::size_t(channels_);
+    return square(side_ + 4) * 2 * c + square(side_ + 2) * 2 * c + square(side_) * c +
+           gates_.scratch_size(side_ + 2, side_ + 2);
+}
+
+float* GruTiles::begin(std::size_t i, float* scratch, const Tile& near) const noexcept {
+    const Tile& tile = tiles_[i];
+    const bool inside = near.height() == tile.height() + 4 && near.width() == tile.width() + 4;
+    // What lies outside the map reads as zero.
+    if (!inside)
+        std::memset(scratch, 0,
+                    std::size_t(side_ + 4) * std::size_t(joined_pitch()) * sizeof(float));
+    return scratch;
+}
+
+void GruTiles::finish(const PaddedMap& state, std::size_t i, const Mask* mask, const Tile& near,
+                      float* joined) noexcept {
+    const VectorKernels& kernels = vector_kernels();
+    const Tile& tile = tiles_[i];
+    const std::ptrdiff_t c = channels_;
+    const std::size_t bytes = std::size_t(c) * sizeof(float);
+    float* gates = joined + (side_ + 4) * joined_pitch();
+    const std::ptrdiff_t gates_pitch = (side_ + 2) * 2 * c;
+    float* candidate = gates + (side_ + 2) * gates_pitch;
+    const std::ptrdiff_t candidate_pitch = side_ * c;
+    float* scratch = candidate + side_ * candidate_pitch;
+
+    for (int y = near.y0; y < near.y1; ++y) {
+        const float* from = state.at(y, near.x0);
+        float* to = joined_at(joined, i, y, near.x0) + c;
+        for (int x = near.x0; x < near.x1; ++x, from += c, to += 2 * c)
+            std::memcpy(to, from, bytes);
+    }
+
+    const Tile close = tile.grown(1, state.height(), state.width());
+    const auto gate_at = [&](int y, int x) {
+        return gates + (y - tile.y0 + 1) * gates_pitch + (x - tile.x0 + 1) * 2 * c;
+    };
+    gates_.run({joined_at(joined, i, close.y0 - 1, close.x0 - 1), joined_pitch(),
+                gate_at(close.y0, close.x0), gates_pitch, 2 * c, close.height(), close.width()},
+               scratch);
+    for (int y = close.y0; y < close.y1; ++y)
+        for (int x = close.x0; x < close.x1; ++x)
+            kernels.reset_state(gate_at(y, x) + c, joined_at(joined, i, y, x) + c, channels_);
+
+    candidate_.run({joined_at(joined, i, tile.y0 - 1, tile.x0 - 1), joined_pitch(), candidate,
+                    candidate_pitch, c, tile.height(), tile.width()},
+                   scratch);
+    float* next = next_[i].data();
+    for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x, next += c) {
+            if (mask != nullptr && (*mask)(y, x) == 0)
+                std::memcpy(next, state.at(y, x), bytes);
+            else
+                kernels.update_state(
+                    state.at(y, x), gate_at(y, x),
+                    candidate + (y - tile.y0) * candidate_pitch + (x - tile.x0) * c, next,
+                    channels_);
+        }
+}
+
+void GruTiles::commit(PaddedMap& state, std::size_t i) noexcept {
+    const Tile& tile = tiles_[i];
+    const auto row = std::size_t(tile.width()) * std::size_t(channels_);
+    const float* next = next_[i].data();
+    for (int y = tile.y0; y < tile.y1; ++y, next += row)
+        std::memcpy(state.at(y, tile.x0), next, row * sizeof(float));
+}
+
+}  // namespace eventide
