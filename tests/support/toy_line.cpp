@@ -146,14 +146,14 @@ void ToySink::close() {
 
 LatentMap ToyEncoder::make_output() const {
     LatentMap latent;
-    latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    latent.values = Array3<float>(state_.height(), state_.width(), 2);
     return latent;
 }
 
 void ToyEncoder::encode(const VoxelGrid& grid, LatentMap& latent) noexcept {
     if (before_encode) before_encode();
-    for (int y = 0; y < kToyHeight; ++y)
-        for (int x = 0; x < kToyWidth; ++x) {
+    for (int y = 0; y < state_.height(); ++y)
+        for (int x = 0; x < state_.width(); ++x) {
             float sum = 0;
             for (const float value : grid.values.pixel(y, x)) sum = 0.7F * sum + value;
             state_(y, x, 0) = 0.9F * state_(y, x, 0) + 0.1F * sum;
@@ -169,29 +169,27 @@ void ToyEncoder::reset() noexcept {
 
 Frame ToyRenderer::make_output() const {
     Frame frame;
-    frame.intensity = Array2<float>(kToyHeight, kToyWidth);
-    frame.sigma = Array2<float>(kToyHeight, kToyWidth);
+    frame.intensity = Array2<float>(height_, width_);
+    frame.sigma = Array2<float>(height_, width_);
     return frame;
 }
 
 void ToyRenderer::push(const LatentMap& latent) noexcept {
-    Kept& kept = kept_[count_++ % kept_.size()];
-    kept.window = latent.window;
-    std::copy(latent.values.values().begin(), latent.values.values().end(),
-              kept.values.values().begin());
+    auto kept = kept_[count_++ % kept_.size()].values();
+    std::copy(latent.values.values().begin(), latent.values.values().end(), kept.begin());
 }
 
 void ToyRenderer::render(SensorTime t, const Window& window, Frame& frame) noexcept {
     const float place = float((t - window.begin).count()) / float(window.width().count());
+    const auto latent = [this](std::size_t age) {
+        return kept_[(count_ - 1 - age) % kept_.size()].values();
+    };
     for (std::size_t pixel = 0; pixel < frame.intensity.values().size(); ++pixel) {
         float mu = place;
-        for (std::size_t k = 0; k < std::min(count_, kept_.size()); ++k) {
-            const Kept& kept = kept_[(count_ - 1 - k) % kept_.size()];
-            mu = 0.8F * mu + kept.values.values()[2 * pixel];
-        }
+        for (std::size_t age = 0; age < std::min(count_, kept_.size()); ++age)
+            mu = 0.8F * mu + latent(age)[2 * pixel];
         frame.intensity.values()[pixel] = mu;
-        frame.sigma.values()[pixel] =
-            place + kept_[(count_ - 1) % kept_.size()].values.values()[2 * pixel + 1];
+        frame.sigma.values()[pixel] = place + latent(0)[2 * pixel + 1];
     }
 }
 

@@ -111,6 +111,8 @@ public:
 /// Each pixel's latent remembers all grids before.
 class ToyEncoder final : public EncodeStage {
 public:
+    explicit ToyEncoder(int height = kToyHeight, int width = kToyWidth)
+        : state_(height, width, 2) {}
     LatentMap make_output() const override;
     void encode(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     void reset() noexcept override;
@@ -119,12 +121,16 @@ public:
     int resets = 0;
 
 private:
-    Array3<float> state_{kToyHeight, kToyWidth, 2};
+    Array3<float> state_;
 };
 
 /// Pictures depend on t and on every latent map pushed, so that one too few or too many shows.
 class ToyRenderer final : public RenderStage {
 public:
+    explicit ToyRenderer(int height = kToyHeight, int width = kToyWidth)
+        : height_(height), width_(width) {
+        kept_.fill(Array3<float>(height, width, 2));
+    }
     Frame make_output() const override;
     void push(const LatentMap& latent) noexcept override;
     void finish() noexcept override { finished = true; }
@@ -135,11 +141,8 @@ public:
     std::size_t pushed() const { return count_; }  ///< since the last reset
 
 private:
-    struct Kept {
-        Window window;
-        Array3<float> values{kToyHeight, kToyWidth, 2};
-    };
-    std::array<Kept, 4> kept_;
+    int height_, width_;
+    std::array<Array3<float>, 4> kept_;  // [y][x][2], a ring
     std::size_t count_ = 0;
 };
 
