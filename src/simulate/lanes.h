@@ -50,7 +50,8 @@ inline bool any(I4 mask) {
     return (halves[0] | halves[1]) != 0;
 }
 
-/// e^x for |x| < 80, within 4e-7 of it: 2^n from the exponent bits, the rest from a polynomial.
+/// e^x for |x| < 40, within 3e-6 of it (relative): 2^n from the exponent bits, the rest from a
+/// polynomial.
 inline F4 exp(F4 x) {
     const F4 y = x * 1.44269504f;
     const I4 n = truncate(y + select(y < 0, splat(-.5f), splat(.5f)));
@@ -81,7 +82,7 @@ inline F4 inverse_sqrt(F4 x) {
     return y * (1.5f - .5f * x * y * y);
 }
 
-/// e^-x for x >= 0, within .01 and falling from 1 to 0: good enough for a filter's coefficient.
+/// e^-x for x >= 0, within .012 and falling from 1 to 0: good enough for a filter's coefficient.
 inline F4 decay(F4 x) {
     return 1.f / (1.f + x * (1.f + x * (.5f + x * (1.f / 6 + x * (1.f / 24)))));
 }

@@ -92,6 +92,7 @@ public:
     void prepare(double until_s);
     void forget(double before_s);
     double log_gain(double t_s) const;
+    double steepest() const { return depth_ / step_s_; }  ///< ln per second, at most
 
 private:
     double depth_, step_s_;

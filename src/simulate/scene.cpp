@@ -217,6 +217,10 @@ double Scene::step(double t_s) const {
     constexpr double kPerPulse = 16;
     double step = step_s_.high;
     if (flicker_.depth > 0) step = std::min(step, 1 / (kPerPulse * flicker_.frequency_hz));
+    if (light_) {
+        constexpr double kLogPerStep = .1;  // or the bends between changes would be cut off
+        step = std::min(step, kLogPerStep / light_->steepest());
+    }
     for (const Layer& layer : layers_) {
         if (layer.flicker.depth > 0)
             step = std::min(step, 1 / (kPerPulse * layer.flicker.frequency_hz));

@@ -1,0 +1,286 @@
+// Each effect of the simulated sensor, by its statistics.
+#include "src/simulate/event_sensor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+
+namespace eventide {
+namespace {
+
+constexpr int kSide = 32;
+constexpr double kPixels = kSide * kSide;
+
+SensorTraits plain(double threshold) {
+    SensorTraits traits;
+    traits.threshold_on = traits.threshold_off = threshold;
+    return traits;
+}
+
+/// Events of a sensor whose pixels all see exp(log_lux(t)), in steps of `step_us`.
+std::vector<Event> watch(const SensorTraits& traits, double seconds,
+                         const std::function<double(double)>& log_lux, int step_us = 1000) {
+    EventSensor sensor{traits, kSide, kSide, Random{7}};
+    Array2<float> lux(kSide, kSide);
+    const auto set = [&](double t) {
+        std::ranges::fill(lux.values(), float(std::exp(log_lux(t))));
+    };
+    set(0);
+    sensor.settle(lux, 1);
+    std::vector<Event> events;
+    const int steps = int(std::lround(seconds * 1e6 / step_us));
+    for (int i = 0; i < steps; ++i) {
+        set((i + 1) * step_us * 1e-6);
+        sensor.step(from_us(std::int64_t(i) * step_us), from_us(std::int64_t(i + 1) * step_us), lux,
+                    1, events);
+    }
+    return events;
+}
+
+double still(double) {
+    return std::log(100.0);
+}
+
+std::map<int, std::vector<std::int64_t>> times_by_pixel(const std::vector<Event>& events) {
+    std::map<int, std::vector<std::int64_t>> times;
+    for (const Event& e : events) times[e.y * kSide + e.x].push_back(to_us(e.t));
+    for (auto& [pixel, list] : times) std::ranges::sort(list);
+    return times;
+}
+
+double share_on(const std::vector<Event>& events) {
+    return double(std::ranges::count(events, Polarity::on, &Event::polarity)) /
+           double(events.size());
+}
+
+struct Moments {
+    double mean = 0, deviation = 0;
+};
+Moments moments(const std::vector<double>& values) {
+    Moments m;
+    for (const double v : values) m.mean += v / double(values.size());
+    for (const double v : values)
+        m.deviation += (v - m.mean) * (v - m.mean) / double(values.size());
+    m.deviation = std::sqrt(m.deviation);
+    return m;
+}
+
+TEST(EventSensor, SaysNothingBeforeAStillSceneWhenEveryEffectIsOff) {
+    EXPECT_TRUE(watch(plain(.1), 2, still).empty());
+}
+
+TEST(EventSensor, FiresOnceEveryThresholdAtTheMicrosecondOfTheCrossing) {
+    const double rate = 1.7, threshold = .1;  // ln per second
+    for (const double sign : {1.0, -1.0}) {
+        const auto events =
+            watch(plain(threshold), 1, [&](double t) { return 5 + sign * rate * t; });
+        ASSERT_EQ(double(events.size()), 17 * kPixels);
+        for (const auto& [pixel, times] : times_by_pixel(events))
+            for (std::size_t i = 0; i < times.size(); ++i)
+                ASSERT_NEAR(double(times[i]), double(i + 1) * threshold / rate * 1e6, 10);
+        EXPECT_EQ(share_on(events), sign > 0 ? 1 : 0);
+    }
+}
+
+TEST(EventSensor, GivesTheSameEventsHoweverFineARampIsCut) {
+    const auto ramp = [](double t) { return 3 + 2.3 * t; };
+    const auto coarse = times_by_pixel(watch(plain(.2), 1, ramp, 10000));
+    const auto fine = times_by_pixel(watch(plain(.2), 1, ramp, 500));
+    ASSERT_EQ(coarse.size(), fine.size());
+    for (const auto& [pixel, times] : coarse)
+        for (std::size_t i = 0; i < times.size(); ++i)
+            ASSERT_NEAR(double(times[i]), double(fine.at(pixel)[i]), 20);
+}
+
+TEST(EventSensor, HasSeparateThresholdsForOnAndOff) {
+    SensorTraits traits = plain(.1);
+    traits.threshold_off = .25;
+    const auto up = watch(traits, 1, [](double t) { return 4 + 1.01 * t; });
+    const auto down = watch(traits, 1, [](double t) { return 4 - 1.01 * t; });
+    EXPECT_EQ(double(up.size()), 10 * kPixels);
+    EXPECT_EQ(double(down.size()), 4 * kPixels);
+}
+
+TEST(EventSensor, SpreadsThresholdsOverPixelsByTheMismatch) {
+    SensorTraits traits = plain(.05);
+    traits.mismatch = .1;
+    const auto events = watch(traits, 1, [](double t) { return 10 * t; });
+    std::vector<double> thresholds;
+    for (const auto& [pixel, times] : times_by_pixel(events))
+        thresholds.push_back(10.0 / double(times.size()));
+    const Moments m = moments(thresholds);
+    EXPECT_NEAR(m.mean, .05, .001);
+    EXPECT_NEAR(m.deviation / m.mean, .1, .01);
+}
+
+TEST(EventSensor, NeverHasAThresholdBelowTheSmallest) {
+    SensorTraits traits = plain(.05);
+    traits.mismatch = 3;
+    traits.threshold_min = .04;
+    const auto events = watch(traits, 1, [](double t) { return t; });
+    for (const auto& [pixel, times] : times_by_pixel(events)) EXPECT_LE(times.size(), 25u);
+}
+
+TEST(EventSensor, StartsPixelsAtRandomPhasesWhereAsked) {
+    SensorTraits traits = plain(.2);
+    traits.random_phase = true;
+    const auto events = watch(traits, 1, [](double t) { return .2 * t; });
+    // Between half a threshold above and below zero: half the pixels are at most .2 away for sure.
+    const auto first = times_by_pixel(events);
+    std::vector<double> times;
+    for (const auto& [pixel, list] : first) times.push_back(double(list.front()) * 1e-6);
+    EXPECT_NEAR(double(times.size()), .5 * kPixels, .05 * kPixels);
+    EXPECT_NEAR(moments(times).mean, .5, .04);
+}
+
+TEST(EventSensor, DarkCurrentHidesContrastInTheDark) {
+    SensorTraits traits = plain(.01);
+    traits.dark_lux = 10;
+    const auto count = [&](double lux) {
+        return double(watch(traits, 1, [&](double t) { return std::log(lux) + t; }).size()) /
+               kPixels;
+    };
+    EXPECT_NEAR(count(1e5), 100, 1.1);
+    EXPECT_NEAR(count(1), 100 * std::log((std::exp(1.0) + 10) / 11), 1.1);
+}
+
+/// Time at which a pixel has followed 1 - 1/e of a step of light.
+double step_response(double lux) {
+    SensorTraits traits = plain(.01);
+    traits.bandwidth_hz = 300;
+    traits.bandwidth_hz_per_lux = 1;
+    const auto events = watch(
+        traits, .2, [&](double t) { return std::log(lux) + (t > 1e-9 ? 1 : 0); }, 50);
+    const auto times = times_by_pixel(events).begin()->second;
+    EXPECT_GE(times.size(), 95u);
+    return double(times[62]) * 1e-6;  // the 63rd of 100
+}
+
+TEST(EventSensor, FollowsLightWithTheTimeConstantOfItsBandwidth) {
+    const double bright = 1e6;
+    EXPECT_NEAR(step_response(bright), 1 / (2 * std::numbers::pi * 300), .00005);
+}
+
+TEST(EventSensor, IsSlowerInTheDark) {
+    const double tau_after = 1 / (2 * std::numbers::pi) * (1. / 300 + 1. / (10 * std::exp(1.0)));
+    EXPECT_NEAR(step_response(10), tau_after, .03 * tau_after);
+}
+
+TEST(EventSensor, LeaksOnEventsAtTheRateAskedFor) {
+    SensorTraits traits = plain(.2);
+    traits.leak_hz = 3;
+    const auto events = watch(traits, 10, still, 10000);
+    EXPECT_EQ(share_on(events), 1);
+    EXPECT_NEAR(double(events.size()) / kPixels, 30, 1);
+    const auto times = times_by_pixel(events).begin()->second;
+    for (std::size_t i = 1; i < times.size(); ++i)
+        EXPECT_NEAR(double(times[i] - times[i - 1]), 1e6 / 3, 100);
+}
+
+TEST(EventSensor, LeaksDifferentlyFromPixelToPixel) {
+    SensorTraits traits = plain(.2);
+    traits.leak_hz = 10;
+    traits.leak_mismatch = .2;
+    std::vector<double> rates;
+    for (const auto& [pixel, times] : times_by_pixel(watch(traits, 10, still, 10000)))
+        rates.push_back(double(times.size()) / 10);
+    EXPECT_NEAR(moments(rates).deviation, 2, .2);
+}
+
+TEST(EventSensor, ShotNoiseIsPoissonBothWaysAndFallsWithLight) {
+    SensorTraits traits = plain(.3);
+    traits.shot_hz = 4;
+    traits.shot_lux = 50;
+    const auto rate = [&](double lux) {
+        const auto events = watch(traits, 10, [&](double) { return std::log(lux); });
+        std::vector<double> counts(std::size_t(kPixels), 0.0);
+        for (const Event& e : events) ++counts[std::size_t(e.y * kSide + e.x)];
+        const Moments m = moments(counts);
+        EXPECT_NEAR(m.deviation * m.deviation / m.mean, 1, .15) << "variance over mean";
+        EXPECT_NEAR(share_on(events), .5, .03);
+        return m.mean / 10;
+    };
+    EXPECT_NEAR(rate(.001), 4, .1);
+    EXPECT_NEAR(rate(50), 2, .1);
+    EXPECT_NEAR(rate(450), .4, .05);
+}
+
+TEST(EventSensor, KeepsTheRefractoryTimeBetweenAPixelsEvents) {
+    SensorTraits traits = plain(.01);
+    traits.refractory_s = .003;
+    traits.shot_hz = 50;
+    traits.shot_lux = 1e9;
+    const auto events = watch(traits, 1, [](double t) { return 3 * std::sin(20 * t); });
+    EXPECT_GT(double(events.size()), 100 * kPixels);
+    for (const auto& [pixel, times] : times_by_pixel(events))
+        for (std::size_t i = 1; i < times.size(); ++i) ASSERT_GE(times[i] - times[i - 1], 2999);
+}
+
+TEST(EventSensor, ForgetsChangesDuringRefractoryTime) {
+    SensorTraits traits = plain(.1);
+    traits.refractory_s = .05;
+    // .1 takes 100 ms; then 50 ms pass unseen: an event every 150 ms.
+    const auto times = times_by_pixel(watch(traits, 3, [](double t) { return t; })).begin()->second;
+    ASSERT_EQ(times.size(), 20u);
+    for (std::size_t i = 1; i < times.size(); ++i)
+        EXPECT_NEAR(double(times[i] - times[i - 1]), 150000, 100);
+}
+
+TEST(EventSensor, HasAsManyHotPixelsAsAskedForAndTheyAlwaysFire) {
+    SensorTraits traits = plain(.3);
+    traits.hot_share = .01;
+    traits.hot_hz = {50, 200};
+    const auto times = times_by_pixel(watch(traits, 10, still));
+    EXPECT_NEAR(double(times.size()), .01 * kPixels, 2);
+    for (const auto& [pixel, list] : times) {
+        EXPECT_GT(list.size(), 400u);
+        EXPECT_LT(list.size(), 4400u);  // two may have met in one pixel
+    }
+}
+
+TEST(EventSensor, BoundsTheEventsOfOneStep) {
+    const auto events = watch(
+        plain(.001), .01, [](double t) { return t > 0 ? 10.0 : 0; }, 10000);
+    EXPECT_EQ(double(events.size()), kPixels * EventSensor::kMostPerStep);
+}
+
+TEST(EventSensor, WorksForSizesThatFillNoWholeLane) {
+    EventSensor sensor{plain(.1), 5, 3, Random{1}};
+    Array2<float> lux(3, 5);
+    std::ranges::fill(lux.values(), 1.f);
+    sensor.settle(lux, 1);
+    std::vector<Event> events;
+    sensor.step(from_us(0), from_us(100), lux, std::exp(.15), events);
+    ASSERT_EQ(events.size(), 15u);
+    for (const Event& e : events) EXPECT_TRUE(e.x < 5 && e.y < 3);
+}
+
+TEST(SensorSettings, IdealIsFreeOfEveryEffect) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        Random random{seed};
+        const SensorTraits t = SensorTraits::draw(SensorSettings::ideal(.3), random);
+        EXPECT_DOUBLE_EQ(t.threshold_on, .3);
+        EXPECT_DOUBLE_EQ(t.threshold_off, .3);
+        for (const double off :
+             {t.mismatch, t.dark_lux, t.bandwidth_hz, t.bandwidth_hz_per_lux, t.refractory_s,
+              t.leak_hz, t.shot_hz, t.hot_share, t.jitter_s, t.arbiter_hz_per_pixel, t.dropped})
+            EXPECT_EQ(off, 0);
+    }
+}
+
+TEST(SensorSettings, DrawsThresholdsEvenlyInTheLogarithmOverTheWholeRange) {
+    Random random{3};
+    std::vector<double> logs;
+    for (int i = 0; i < 4000; ++i)
+        logs.push_back(std::log(SensorTraits::draw({}, random).threshold_on));
+    EXPECT_NEAR(std::ranges::min(logs), std::log(.06), .02);
+    EXPECT_NEAR(std::ranges::max(logs), std::log(1.0), .02);
+    EXPECT_NEAR(moments(logs).mean, std::log(.06) / 2, .05);
+}
+
+}  // namespace
+}  // namespace eventide

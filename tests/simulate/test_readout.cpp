@@ -1,0 +1,94 @@
+// The way from the pixels to the bus: delay, order, speed and losses.
+#include "src/simulate/readout.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+/// One event every `every_us`, in steps of 1 ms, given backwards within each step.
+std::vector<Event> read_out(Readout& readout, int milliseconds, int every_us) {
+    std::vector<Event> out, step;
+    std::int64_t number = 0;
+    for (int ms = 0; ms < milliseconds; ++ms) {
+        step.clear();
+        for (int us = every_us; us <= 1000; us += every_us)
+            step.push_back({from_us(ms * 1000 + us), std::uint16_t(number % 60000),
+                            std::uint16_t(number++ / 60000), Polarity::on});
+        std::ranges::reverse(step);
+        readout.take(from_us(ms * 1000), from_us(ms * 1000 + 1000), step, out);
+    }
+    return out;
+}
+
+std::int64_t number_of(const Event& e) {
+    return std::int64_t(e.y) * 60000 + e.x;
+}
+
+TEST(Readout, SortsAndKeepsEverythingWhenEveryEffectIsOff) {
+    Readout readout{SensorTraits{}, 1000, Random{1}};
+    const auto events = read_out(readout, 50, 10);
+    ASSERT_EQ(events.size(), 5000u);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        EXPECT_EQ(to_us(events[i].t), std::int64_t(i + 1) * 10);
+        EXPECT_EQ(number_of(events[i]), std::int64_t(i));
+    }
+}
+
+TEST(Readout, DelaysByAnExponentialOfTheMeanAskedForAndStaysInOrder) {
+    SensorTraits traits;
+    traits.jitter_s = .0004;
+    Readout readout{traits, 1000, Random{2}};
+    const auto events = read_out(readout, 500, 10);
+    EXPECT_TRUE(std::ranges::is_sorted(events, {}, &Event::t));
+    EXPECT_GT(events.size(), 49500u);
+    double mean = 0, square = 0;
+    for (const Event& e : events) {
+        const double delay = double(to_us(e.t) - (number_of(e) + 1) * 10);
+        EXPECT_GE(delay, 0);
+        mean += delay / double(events.size());
+        square += delay * delay / double(events.size());
+    }
+    EXPECT_NEAR(mean, 400, 8);
+    EXPECT_NEAR(std::sqrt(square - mean * mean), 400,
+                12);  // an exponential's deviation is its mean
+}
+
+TEST(Readout, LosesTheShareAskedFor) {
+    SensorTraits traits;
+    traits.dropped = .1;
+    Readout readout{traits, 1000, Random{3}};
+    const auto events = read_out(readout, 500, 10);
+    EXPECT_NEAR(double(events.size()), 45000, 300);
+    EXPECT_EQ(events.size() + readout.dropped(), 50000u);
+}
+
+TEST(Readout, CarriesNoMoreThanTheBusAllowsAndDropsWhatWouldWaitTooLong) {
+    SensorTraits traits;
+    traits.arbiter_hz_per_pixel = 500;
+    traits.arbiter_wait_s = .002;
+    Readout readout{traits, 100, Random{4}};  // 50,000 events/s; twice as many come
+    const auto events = read_out(readout, 100, 10);
+    EXPECT_TRUE(std::ranges::is_sorted(events, {}, &Event::t));
+    for (std::size_t i = 1; i < events.size(); ++i)
+        EXPECT_GE(to_us(events[i].t) - to_us(events[i - 1].t), 20);
+    for (const Event& e : events) EXPECT_LE(to_us(e.t) - (number_of(e) + 1) * 10, 2000);
+    EXPECT_NEAR(double(events.size()), 5000, 120);
+    EXPECT_EQ(events.size() + readout.dropped(), 10000u);
+}
+
+TEST(Readout, LetsASlowStreamPassTheBusUnchanged) {
+    SensorTraits traits;
+    traits.arbiter_hz_per_pixel = 500;
+    traits.arbiter_wait_s = .002;
+    Readout readout{traits, 1000, Random{4}};
+    const auto events = read_out(readout, 20, 10);
+    ASSERT_EQ(events.size(), 2000u);
+    for (const Event& e : events) EXPECT_EQ(to_us(e.t), (number_of(e) + 1) * 10);
+}
+
+}  // namespace
+}  // namespace eventide
