@@ -1,12 +1,8 @@
 #include "src/codec/davis.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace eventide {
 namespace {
 
-constexpr std::int64_t kWrapUs = 1 << 15;
 constexpr std::uint16_t kTimestampBit = 0x8000;
 constexpr std::uint16_t kDataMask = 0x0FFF;
 
@@ -49,7 +45,7 @@ void DavisParser::parse_words(std::span<const std::byte> bytes, Batch& into) {
     for (std::size_t at = 0; at < bytes.size(); at += 2) {
         const std::uint16_t w = word_at(bytes, at);
         if ((w & kTimestampBit) != 0) {
-            timestamp(std::uint16_t(w & ~kTimestampBit));
+            clock_.timestamp(std::uint16_t(w & ~kTimestampBit), damage_);
             continue;
         }
         const std::uint16_t data = w & kDataMask;
@@ -71,7 +67,8 @@ void DavisParser::parse_words(std::span<const std::byte> bytes, Batch& into) {
 }
 
 void DavisParser::word(std::uint16_t w, Batch& into) {
-    if ((w & kTimestampBit) != 0) return timestamp(std::uint16_t(w & ~kTimestampBit));
+    if ((w & kTimestampBit) != 0)
+        return clock_.timestamp(std::uint16_t(w & ~kTimestampBit), damage_);
     const std::uint16_t data = w & kDataMask;
     switch (w >> 12) {
         case special_code:
@@ -85,14 +82,15 @@ void DavisParser::word(std::uint16_t w, Batch& into) {
         case x_on_code:
             return event(data, Polarity::on, into);
         case adc_code:
-            return frame_.sample(data & 0x3FF, from_us(time_));
+            return frame_.sample(data & 0x3FF, clock_.now());
         case misc8_code:
             return misc8(data);
         case misc10_code:
             if ((data >> 10) == 0) return frame_.exposure_chunk(data);
             return damage_.count(DamageReason::unknown_word);
         case wrap_code:
-            return wrap(data);
+            facts_.wraps += data;
+            return clock_.wrap(data, damage_);
         default:
             return damage_.count(DamageReason::unknown_word);
     }
@@ -115,62 +113,30 @@ void DavisParser::misc8(std::uint16_t data) {
 }
 
 void DavisParser::event(std::uint16_t x, Polarity polarity, Batch& into) {
-    if (!time_known_ || !y_known_) return;  // after a loss, until the words it needs came again
+    if (!clock_.is_known() || !y_known_)
+        return;  // after a loss, until the words it needs came again
     if (x >= sensor_.dvs_columns || y_ >= sensor_.dvs_rows)
         return damage_.count(DamageReason::out_of_range);
-    into.events.push_back(sensor_.dvs_swapped ? Event{from_us(time_), y_, x, polarity}
-                                              : Event{from_us(time_), x, y_, polarity});
-}
-
-void DavisParser::move_to(std::int64_t time) {
-    if (time < time_) return damage_.count(DamageReason::time_backwards);
-    time_ = time;
-    time_known_ = true;
-}
-
-/// After a loss, whole wraps may be missing: adds as many as bring `candidate` nearest to the
-/// expected time.
-void DavisParser::catch_up(std::int64_t candidate) {
-    if (!expected_) return;
-    const double wraps = std::round(double(*expected_ - candidate) / double(kWrapUs));
-    if (wraps > 0) wrap_add_ += std::int64_t(wraps) * kWrapUs;
-    expected_.reset();
-}
-
-void DavisParser::timestamp(std::uint16_t low15) {
-    if (expected_) catch_up(wrap_add_ + low15);
-    move_to(wrap_add_ + low15);
-}
-
-void DavisParser::wrap(std::uint16_t multiplier) {
-    if (multiplier == 0) return damage_.count(DamageReason::bad_record);
-    facts_.wraps += multiplier;
-    wrap_add_ += kWrapUs * multiplier;
-    catch_up(wrap_add_);
-    move_to(wrap_add_);
+    into.events.push_back(sensor_.dvs_swapped ? Event{clock_.now(), y_, x, polarity}
+                                              : Event{clock_.now(), x, y_, polarity});
 }
 
 void DavisParser::timestamp_reset(Batch& into) {
     ++facts_.timestamp_resets;
-    // The device counts from zero again, the stream goes on (after an unplugging, by the host's
-    // clock).
-    wrap_add_ = std::max(time_, expected_.value_or(time_));
-    time_ = wrap_add_;
-    time_known_ = true;
-    expected_.reset();
+    clock_.reset();
     frame_.abandon();
     imu_.abandon();
     trigger(Trigger::Kind::timestamp_reset, 0, into);
 }
 
 void DavisParser::trigger(Trigger::Kind kind, std::uint8_t source, Batch& into) {
-    if (time_known_) into.triggers.push_back({from_us(time_), kind, source});
+    if (clock_.is_known()) into.triggers.push_back({clock_.now(), kind, source});
 }
 
 void DavisParser::special(std::uint16_t data, Batch& into) {
     using Frame = DavisFrameAssembler;
     constexpr std::uint8_t kInput = 0, kGenerator = 1;
-    const SensorTime now = from_us(time_);
+    const SensorTime now = clock_.now();
     switch (data) {
         case 0:
             return;
@@ -237,18 +203,15 @@ void DavisParser::finish(Batch&) {
 
 void DavisParser::resync() {
     odd_byte_.reset();
-    time_known_ = y_known_ = false;
+    clock_.forget();
+    y_known_ = false;
     frame_.abandon();
     imu_.abandon();
 }
 
-void DavisParser::expect_passed(SensorDuration passed) {
-    expected_ = time_ + passed.count();
-}
-
 std::optional<SensorTime> DavisParser::clock() const {
-    if (!time_known_) return std::nullopt;
-    return from_us(time_);
+    if (!clock_.is_known()) return std::nullopt;
+    return clock_.now();
 }
 
 }  // namespace eventide

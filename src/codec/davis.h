@@ -5,6 +5,7 @@
 #include "src/codec/davis_frame.h"
 #include "src/codec/davis_imu.h"
 #include "src/codec/davis_sensor.h"
+#include "src/codec/inivation_clock.h"
 #include "src/codec/parser.h"
 
 #include <cstdint>
@@ -40,18 +41,14 @@ public:
     const Damage& damaged() const override { return damage_; }
     const DavisStreamFacts& facts() const { return facts_; }
 
-    /// Lost wrap words would leave sensor time behind for ever, so the next timestamp is taken as
-    /// the one nearest to this guess (right while the guess is better than half a wrap, 16 ms).
-    void expect_passed(SensorDuration passed) override;
+    /// Lost wrap words would leave sensor time behind for ever; with this the next timestamp is the
+    /// one nearest to the guess (right while the guess is better than half a wrap, 16 ms).
+    void expect_passed(SensorDuration passed) override { clock_.expect_passed(passed); }
 
 private:
     void parse_words(std::span<const std::byte> bytes, Batch& into);
     void word(std::uint16_t word, Batch& into);
     void misc8(std::uint16_t data);
-    void move_to(std::int64_t time);
-    void catch_up(std::int64_t candidate);
-    void timestamp(std::uint16_t low15);
-    void wrap(std::uint16_t multiplier);
     void special(std::uint16_t data, Batch& into);
     void event(std::uint16_t x, Polarity polarity, Batch& into);
     void trigger(Trigger::Kind kind, std::uint8_t source, Batch& into);
@@ -63,10 +60,7 @@ private:
     Damage damage_;
     DavisStreamFacts facts_;
     std::optional<std::byte> odd_byte_;  ///< the first half of a word cut by the end of a transfer
-    std::int64_t wrap_add_ = 0;          ///< us
-    std::int64_t time_ = 0;              ///< us
-    bool time_known_ = false;            ///< a timestamp word came since the start or the last loss
-    std::optional<std::int64_t> expected_;  ///< see expect_passed(), us
+    IniVationClock clock_;
     std::uint16_t y_ = 0;
     bool y_known_ = false;
 };

@@ -11,10 +11,13 @@ void DavisImuAssembler::begin() {
     bytes_.fill(0);
 }
 
+/// Parts present 7-5 (accel, gyro, temperature). MPU: accel scale 3-2, gyro scale 1-0; BMI160: 4-3
+/// and 2-0.
 void DavisImuAssembler::scale(std::uint8_t bits) {
     if (!active_) return;
-    gyro_scale_ = bits & 3;
-    accel_scale_ = (bits >> 2) & 3;
+    const bool bmi160 = sensor_.imu_type == kImuBmi160;
+    gyro_scale_ = bmi160 ? bits & 7 : bits & 3;
+    accel_scale_ = bmi160 ? (bits >> 3) & 3 : (bits >> 2) & 3;
     has_accel_ = (bits & 0x80) != 0;
     has_gyro_ = (bits & 0x40) != 0;
     has_temperature_ = (bits & 0x20) != 0;
@@ -38,27 +41,45 @@ int DavisImuAssembler::value(int index) const {
     return std::int16_t(std::uint16_t((bytes_[at] << 8) | bytes_[at + 1]));
 }
 
+float DavisImuAssembler::temperature_c() const {
+    if (!has_temperature_) return 0;
+    switch (sensor_.imu_type) {
+        case kImuMpu6500:
+            return float(value(3)) / 333.87F + 21.F;
+        case kImuBmi160:
+            return float(value(3)) / 512.F + 23.F;
+        default:
+            return float(value(3)) / 340.F + 35.F;
+    }
+}
+
+/// MPU: 250 doubled with the scale; BMI160: 2000 halved with it.
+float DavisImuAssembler::gyro_range_dps() const {
+    return sensor_.imu_type == kImuBmi160 ? 2000.F / float(1 << gyro_scale_)
+                                          : float(250 << gyro_scale_);
+}
+
 DavisImuAssembler::End DavisImuAssembler::end(SensorTime t, ImuSample& into) {
     if (!active_) return End::none;
     active_ = false;
     if (count_ != kBytes) return End::incomplete;
 
-    // Full scale 2 g << s over +-32768, and 250 deg/s << s.
-    const float accel_lsb_per_g = float(65536 / (4 << accel_scale_));
-    const float gyro_lsb_per_dps = 65536.0F / float(500 << gyro_scale_);
+    constexpr float kFullScale = 32768;
+    const float g_per_lsb = float(2 << accel_scale_) / kFullScale;
+    const float dps_per_lsb = gyro_range_dps() / kFullScale;
     const std::array<float, 3> sign{sensor_.imu_flip_x ? -1.F : 1.F,
                                     sensor_.imu_flip_y ? -1.F : 1.F,
                                     sensor_.imu_flip_z ? -1.F : 1.F};
+    // BMI160 sends Y before X.
+    const std::array<int, 3> order =
+        sensor_.imu_type == kImuBmi160 ? std::array{1, 0, 2} : std::array{0, 1, 2};
     into = {};
     into.t = t;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = std::size_t(axis);
-        into.acceleration_g[a] = sign[a] * float(value(axis)) / accel_lsb_per_g;
-        into.gyro_dps[a] = sign[a] * float(value(4 + axis)) / gyro_lsb_per_dps;
+    into.temperature_c = temperature_c();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        into.acceleration_g[axis] = sign[axis] * float(value(order[axis])) * g_per_lsb;
+        into.gyro_dps[axis] = sign[axis] * float(value(4 + order[axis])) * dps_per_lsb;
     }
-    if (has_temperature_)
-        into.temperature_c = sensor_.imu_type == 2 ? float(value(3)) / 333.87F + 21.F
-                                                   : float(value(3)) / 340.F + 35.F;
     return End::complete;
 }
 

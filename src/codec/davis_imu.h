@@ -16,8 +16,7 @@ public:
     explicit DavisImuAssembler(const DavisSensor& sensor) : sensor_(sensor) {}
 
     void begin();
-    void scale(
-        std::uint8_t bits);  ///< misc8 kind 3: gyro scale 1-0, accel scale 3-2, parts present 7-5
+    void scale(std::uint8_t bits);  ///< misc8 kind 3
     void byte(std::uint8_t value);  ///< misc8 kind 0
     End end(SensorTime t, ImuSample& into);
     void abandon() { active_ = false; }
@@ -27,6 +26,8 @@ private:
     static constexpr int kBytes = 14;
     void skip_missing_parts();
     int value(int index) const;
+    float temperature_c() const;
+    float gyro_range_dps() const;
 
     DavisSensor sensor_;
     bool active_ = false;

@@ -19,6 +19,9 @@ enum class DavisChip : std::uint8_t {
     davis346c = 9
 };
 
+/// IMU types as IMU register 0 gives them; the last is our own number for the one in DVXplorer.
+enum ImuType : int { kNoImu = 0, kImuMpu6050 = 1, kImuMpu6500 = 2, kImuBmi160 = 3 };
+
 /// Sizes are in DEVICE axes: registers DVS 0-2 and APS 0-2. DAVIS346 says columns 260, rows 346 and
 /// swapped axes.
 struct DavisSensor {
@@ -27,7 +30,7 @@ struct DavisSensor {
     bool dvs_swapped = true;  ///< orientation bit 2
     int aps_columns = 260, aps_rows = 346;
     bool aps_swapped = true, aps_flip_x = false, aps_flip_y = false;  ///< orientation bits 2, 1, 0
-    int imu_type = 1;  ///< 0 none, 1 MPU-6050/6150, 2 MPU-6500/9250
+    int imu_type = kImuMpu6050;
     bool imu_flip_x = false, imu_flip_y = false,
          imu_flip_z = false;  ///< IMU orientation bits 2, 1, 0
     double adc_mhz =

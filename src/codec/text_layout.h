@@ -21,7 +21,7 @@ enum class TextTimeUnit : std::uint8_t {
 
 /// What the user states. Throws nothing by itself: read_text_header() checks it.
 struct TextOptions {
-    std::string columns;  ///< a permutation of "txyp"; empty: from a header row, else "txyp"
+    std::string columns{};  ///< a permutation of "txyp"; empty: from a header row, else "txyp"
     /// Automatic: seconds when any time near the beginning has a decimal point or an exponent, else
     /// microseconds.
     TextTimeUnit unit = TextTimeUnit::automatic;

@@ -1,0 +1,230 @@
+#include "src/codec/dvxplorer.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide {
+namespace {
+
+constexpr int kRowsPerGroup = 8;
+constexpr std::uint16_t kTimestampBit = 0x8000, kDataMask = 0x0FFF;
+
+DavisSensor imu_of(const DvxplorerSensor& sensor) {
+    DavisSensor imu;
+    imu.imu_type = kImuBmi160;
+    imu.imu_flip_x = sensor.imu_flip_x;
+    imu.imu_flip_y = sensor.imu_flip_y;
+    imu.imu_flip_z = sensor.imu_flip_z;
+    return imu;
+}
+
+}  // namespace
+
+DvxplorerParser::DvxplorerParser(const DvxplorerSensor& sensor)
+    : sensor_(sensor), imu_(imu_of(sensor)) {}
+
+void DvxplorerParser::parse(std::span<const std::byte> bytes, Batch& into) {
+    for (const std::byte byte : bytes) {
+        if (!odd_byte_) {
+            odd_byte_ = byte;
+            continue;
+        }
+        word(std::uint16_t(std::uint16_t(*odd_byte_) | std::uint16_t(std::uint16_t(byte) << 8)),
+             into);
+        odd_byte_.reset();
+    }
+}
+
+void DvxplorerParser::word(std::uint16_t w, Batch& into) {
+    if ((w & kTimestampBit) != 0)
+        return clock_.timestamp(std::uint16_t(w & ~kTimestampBit), damage_);
+    const std::uint16_t data = w & kDataMask;
+    switch (w >> 12) {
+        case 0:
+            return special(data, into);
+        case 1:
+            column_ = data & 0x3FF;
+            if (column_ >= sensor_.width) {
+                damage_.count(DamageReason::out_of_range);
+                column_ = -1;
+            }
+            return;
+        case 2:
+            return group(rows_[1], data, into);
+        case 3:
+            return group(rows_[0], data, into);
+        case 4:
+            return group_addresses(data);
+        case 5:
+            if ((data >> 8) == 0) return imu_.byte(std::uint8_t(data & 0xFF));
+            if ((data >> 8) == 3) return imu_.scale(std::uint8_t(data & 0xFF));
+            return damage_.count(DamageReason::unknown_word);
+        case 7:
+            return clock_.wrap(data, damage_);
+        default:
+            return damage_.count(DamageReason::unknown_word);
+    }
+}
+
+/// Bits 0-5 the first group, 6-10 how far the second is from it, bit 11 set where it is before it.
+void DvxplorerParser::group_addresses(std::uint16_t data) {
+    const int first = data & 0x3F, offset = (data >> 6) & 0x1F;
+    const int second = (data & 0x800) != 0 ? first - offset : first + offset;
+    rows_ = {first * kRowsPerGroup, second * kRowsPerGroup};
+}
+
+/// A bit for each of eight rows; bit 8 clear means ON.
+void DvxplorerParser::group(int first_row, std::uint16_t data, Batch& into) {
+    if (!clock_.is_known() || column_ < 0 || rows_[0] < 0) return;  // after a loss
+    const Polarity polarity = (data & 0x100) != 0 ? Polarity::off : Polarity::on;
+    for (int i = 0; i < kRowsPerGroup; ++i) {
+        if ((data & (1 << i)) == 0) continue;
+        const int y = first_row + i;
+        if (y < 0 || y >= sensor_.height)
+            damage_.count(DamageReason::out_of_range);
+        else
+            into.events.push_back(
+                {clock_.now(), std::uint16_t(column_), std::uint16_t(y), polarity});
+    }
+}
+
+void DvxplorerParser::imu_end(Batch& into) {
+    ImuSample sample;
+    switch (imu_.end(clock_.now(), sample)) {
+        case DavisImuAssembler::End::complete:
+            into.imu.push_back(sample);
+            return;
+        case DavisImuAssembler::End::incomplete:
+            return damage_.count(DamageReason::bad_record);
+        case DavisImuAssembler::End::none:
+            return;
+    }
+}
+
+void DvxplorerParser::special(std::uint16_t data, Batch& into) {
+    const auto trigger = [&](Trigger::Kind kind, std::uint8_t source) {
+        if (clock_.is_known()) into.triggers.push_back({clock_.now(), kind, source});
+    };
+    switch (data) {
+        case 0:
+            return;
+        case 1:
+            clock_.reset();
+            imu_.abandon();
+            return trigger(Trigger::Kind::timestamp_reset, 0);
+        case 2:
+            return trigger(Trigger::Kind::falling, 0);
+        case 3:
+            return trigger(Trigger::Kind::rising, 0);
+        case 4:
+            return trigger(Trigger::Kind::pulse, 0);
+        case 5:
+            return imu_.begin();
+        case 7:
+            return imu_end(into);
+        case 16:
+            return trigger(Trigger::Kind::falling, 1);
+        case 17:
+            return trigger(Trigger::Kind::rising, 1);
+        default:
+            return damage_.count(DamageReason::unknown_word);
+    }
+}
+
+void DvxplorerParser::finish(Batch&) {
+    if (odd_byte_) damage_.count(DamageReason::truncated);
+    odd_byte_.reset();
+}
+
+void DvxplorerParser::resync() {
+    odd_byte_.reset();
+    clock_.forget();
+    imu_.abandon();
+    column_ = -1;
+    rows_ = {-1, -1};
+}
+
+std::optional<SensorTime> DvxplorerParser::clock() const {
+    if (!clock_.is_known()) return std::nullopt;
+    return clock_.now();
+}
+
+void DvxplorerMiniParser::parse(std::span<const std::byte> bytes, Batch& into) {
+    for (const std::byte byte : bytes) {
+        pending_[pending_bytes_++] = byte;
+        if (pending_bytes_ < pending_.size()) continue;
+        pending_bytes_ = 0;
+        std::uint32_t w = 0;
+        for (std::size_t i = 0; i < pending_.size(); ++i)
+            w |= std::uint32_t(pending_[i]) << (8 * i);
+        word(w, into);
+    }
+}
+
+void DvxplorerMiniParser::word(std::uint32_t w, Batch& into) {
+    constexpr std::uint32_t kGroup = 1U << 31, kReference = 0x08000000, kColumn = 0x04000000;
+    if (w == 0) return;  // padding
+    if ((w & kGroup) != 0) {
+        const int first = int((w >> 18) & 0x3F), second = first + int((w >> 26) & 0x1F);
+        group(first * kRowsPerGroup, w & 0xFF, (w & (1U << 16)) != 0, into);
+        group(second * kRowsPerGroup, (w >> 8) & 0xFF, (w & (1U << 17)) != 0, into);
+    } else if ((w & kReference) != 0) {
+        reference(w & 0x3FFFFF);
+    } else if ((w & kColumn) != 0) {
+        const std::int64_t time = reference_ms_ * 1000 + ((w >> 11) & 0x3FF);
+        if (time < time_) return damage_.count(DamageReason::time_backwards);
+        time_ = time;
+        column_ = int(w & 0x3FF);
+        if (column_ >= sensor_.width) {
+            damage_.count(DamageReason::out_of_range);
+            column_ = -1;
+        }
+    } else {
+        damage_.count(DamageReason::unknown_word);
+    }
+}
+
+/// 22 bits of milliseconds wrap after 70 minutes; a small step back is noise, a large one a wrap.
+void DvxplorerMiniParser::reference(std::uint32_t ms) {
+    constexpr std::int64_t kWrapMs = 1 << 22;
+    std::int64_t full = reference_wraps_ * kWrapMs + ms;
+    if (time_known_ && full < reference_ms_ - kWrapMs / 2) {
+        ++reference_wraps_;
+        full += kWrapMs;
+    }
+    if (full < reference_ms_) return damage_.count(DamageReason::time_backwards);
+    reference_ms_ = full;
+    time_ = std::max(time_, full * 1000);
+    time_known_ = true;
+}
+
+void DvxplorerMiniParser::group(int first_row, std::uint32_t mask, bool off, Batch& into) {
+    if (!time_known_ || column_ < 0) return;
+    for (int i = 0; i < kRowsPerGroup; ++i) {
+        if ((mask & (1U << i)) == 0) continue;
+        const int y = first_row + i;
+        if (y >= sensor_.height)
+            damage_.count(DamageReason::out_of_range);
+        else
+            into.events.push_back({from_us(time_), std::uint16_t(column_), std::uint16_t(y),
+                                   off ? Polarity::off : Polarity::on});
+    }
+}
+
+void DvxplorerMiniParser::finish(Batch&) {
+    if (pending_bytes_ != 0) damage_.count(DamageReason::truncated);
+    pending_bytes_ = 0;
+}
+
+void DvxplorerMiniParser::resync() {
+    pending_bytes_ = 0;
+    time_known_ = false;
+    column_ = -1;
+}
+
+std::optional<SensorTime> DvxplorerMiniParser::clock() const {
+    if (!time_known_) return std::nullopt;
+    return from_us(time_);
+}
+
+}  // namespace eventide

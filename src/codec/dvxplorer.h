@@ -1,0 +1,76 @@
+// DVXplorer USB words -> events, IMU samples, triggers (drivers-and-formats.md A.12): the FX3 "red"
+// board and the CX3 Mini.
+#pragma once
+
+#include "src/codec/davis_imu.h"
+#include "src/codec/inivation_clock.h"
+#include "src/codec/parser.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace eventide {
+
+struct DvxplorerSensor {
+    int width = 640, height = 480;  ///< px; Lite and Mini of 320x240 exist
+    bool imu_flip_x = false, imu_flip_y = false,
+         imu_flip_z = false;  ///< IMU orientation bits 2, 1, 0
+};
+
+/// 16-bit words of the FX3 board. A column's events come as masks of eight rows, for two groups of
+/// rows at a time.
+class DvxplorerParser final : public Parser {
+public:
+    explicit DvxplorerParser(const DvxplorerSensor& sensor);
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override;
+    void finish(Batch& into) override;
+    void resync() override;
+    void expect_passed(SensorDuration passed) override { clock_.expect_passed(passed); }
+    std::optional<SensorTime> clock() const override;
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    void word(std::uint16_t word, Batch& into);
+    void special(std::uint16_t data, Batch& into);
+    void group_addresses(std::uint16_t data);
+    void group(int first_row, std::uint16_t data, Batch& into);
+    void imu_end(Batch& into);
+
+    DvxplorerSensor sensor_;
+    DavisImuAssembler imu_;
+    IniVationClock clock_;
+    Damage damage_;
+    std::optional<std::byte> odd_byte_;
+    int column_ = -1;                  ///< -1: not known since the start or a loss
+    std::array<int, 2> rows_{-1, -1};  ///< first row of the two groups
+};
+
+/// 32-bit words of the CX3 board (Mini, Micro).
+class DvxplorerMiniParser final : public Parser {
+public:
+    explicit DvxplorerMiniParser(const DvxplorerSensor& sensor) : sensor_(sensor) {}
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override;
+    void finish(Batch& into) override;
+    void resync() override;
+    std::optional<SensorTime> clock() const override;
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    void word(std::uint32_t word, Batch& into);
+    void reference(std::uint32_t ms);
+    void group(int first_row, std::uint32_t mask, bool off, Batch& into);
+
+    DvxplorerSensor sensor_;
+    Damage damage_;
+    std::array<std::byte, 4> pending_{};
+    std::size_t pending_bytes_ = 0;
+    std::int64_t reference_ms_ = 0, reference_wraps_ = 0;
+    std::int64_t time_ = 0;  ///< us
+    bool time_known_ = false;
+    int column_ = -1;
+};
+
+}  // namespace eventide
