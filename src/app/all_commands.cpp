@@ -1,0 +1,19 @@
+// The subcommands, in the order --help shows them.
+#include "src/app/convert_command.h"
+#include "src/app/devices_command.h"
+#include "src/app/info_command.h"
+#include "src/app/program.h"
+#include "src/app/run_command.h"
+
+namespace eventide::app {
+
+std::vector<std::unique_ptr<Command>> all_commands() {
+    std::vector<std::unique_ptr<Command>> commands;
+    commands.push_back(std::make_unique<RunCommand>());
+    commands.push_back(std::make_unique<InfoCommand>());
+    commands.push_back(std::make_unique<ConvertCommand>());
+    commands.push_back(std::make_unique<DevicesCommand>());
+    return commands;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,86 @@
+// eventide info: reads a recording to its end and says what was in it.
+#include "src/app/info_command.h"
+
+#include "replay/formats.h"
+#include "replay/summary.h"
+#include "src/app/talk.h"
+#include "src/core/error.h"
+
+#include <cstdio>
+#include <iostream>
+
+namespace eventide::app {
+
+namespace {
+
+void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t bytes) {
+    const auto line = [](const char* name, const std::string& value) {
+        std::cout << name << std::string(12 - std::string{name}.size(), ' ') << value << '\n';
+    };
+    const auto whole = [](std::uint64_t n) { return std::to_string(n); };
+    line("format", summary.format);
+    if (!sensor.name.empty())
+        line("sensor", sensor.name + (sensor.serial.empty() ? "" : ", serial " + sensor.serial));
+    line("size",
+         whole(std::uint64_t(summary.width)) + " x " + whole(std::uint64_t(summary.height)));
+    if (bytes > 0) line("bytes", whole(bytes));
+    line("events", whole(summary.events) + " (" + whole(summary.on) + " on)");
+    if (summary.first && summary.last) {
+        const double seconds =
+            std::chrono::duration<double>(*summary.last - *summary.first).count();
+        char text[96];
+        std::snprintf(text, sizeof text, "%lld .. %lld us (%.6f s)",
+                      static_cast<long long>(to_us(*summary.first)),
+                      static_cast<long long>(to_us(*summary.last)), seconds);
+        line("time", text);
+        if (seconds > 0) line("rate", short_count(double(summary.events) / seconds) + " events/s");
+    }
+    line("images", whole(summary.frames));
+    line("imu", whole(summary.imu));
+    line("triggers", whole(summary.triggers));
+    std::string damage = whole(summary.damaged.total());
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        if (const auto n = summary.damaged[DamageReason(i)]; n > 0)
+            damage += ", " + std::string{name_of(DamageReason(i))} + " " + whole(n);
+    line("damaged", damage);
+}
+
+}  // namespace
+
+std::string InfoCommand::examples() const {
+    return "Examples:\n  eventide info recording.aedat4\n  eventide info recording.raw --json | jq "
+           ".events";
+}
+
+std::vector<Positional> InfoCommand::positionals() {
+    return {{"FILE", "Recording, or - for standard input", &file_}};
+}
+
+SettingTable InfoCommand::settings() {
+    SettingTable table{"info", "eventide info: what a recording holds.", {}};
+    table.settings.push_back(flag_setting("json", json_, "One JSON object instead of a table."));
+    table.settings.push_back(
+        flag_setting("strict", strict_, "End with exit code 5 when something is damaged."));
+    input_.add_to(table);
+    return table;
+}
+
+int InfoCommand::run(Program& program) {
+    const auto recording = open_recording(file_, input_.options());
+    ProgressLine line{program.quiet};
+    const Summary summary = summarize(*recording, [&] {
+        if (line.active() && recording->size_bytes() > 0)
+            line.show(progress_bar(double(recording->position_bytes()) /
+                                   double(recording->size_bytes())));
+        return !program.signals.stopping();
+    });
+    line.clear();
+    if (program.signals.stopping()) throw Error(ErrorKind::failed, "stopped before the end");
+    if (json_)
+        std::cout << to_json(summary) << '\n';
+    else
+        print_table(recording->info(), summary, recording->size_bytes());
+    return strict_ && summary.damaged.total() > 0 ? exit_data_lost : exit_done;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,24 @@
+// eventide info: what a recording holds.
+#pragma once
+
+#include "src/app/command.h"
+#include "src/app/input_settings.h"
+
+namespace eventide::app {
+
+class InfoCommand : public Command {
+public:
+    std::string name() const override { return "info"; }
+    std::string summary() const override { return "Say what a recording holds"; }
+    std::string examples() const override;
+    std::vector<Positional> positionals() override;
+    SettingTable settings() override;
+    int run(Program& program) override;
+
+private:
+    std::string file_;
+    InputSettings input_;
+    bool json_ = false, strict_ = false;
+};
+
+}  // namespace eventide::app

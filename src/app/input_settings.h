@@ -1,0 +1,23 @@
+// What the user may say about an input, the same for every command that reads one.
+#pragma once
+
+#include "replay/open_options.h"
+#include "src/app/setting.h"
+#include "src/app/values.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace eventide::app {
+
+struct InputSettings {
+    OpenOptions open;
+    std::optional<Size> size;  ///< of the sensor, where the recording does not say
+
+    /// Appends the settings, all beginning with "input_".
+    void add_to(SettingTable& table);
+    OpenOptions options() const;
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,71 @@
+// A source whose data are also written down.
+#include "src/app/recorded_source.h"
+
+#include "pipeline/sinks/new_file.h"
+#include "src/core/error.h"
+
+namespace eventide::app {
+
+RecordedSource::RecordedSource(Source& source, const std::string& path, bool overwrite)
+    : source_{source}, path_{path} {
+    if (path.ends_with(".bin")) {
+        refuse_existing(path, overwrite);
+        bytes_.reset(std::fopen(path.c_str(), "wb"));
+        if (!bytes_) throw Error(ErrorKind::failed, path + ": cannot be made");
+        return;
+    }
+    format_ = format_for_writing(path);
+    if (format_ == nullptr)
+        throw Error(ErrorKind::usage, "--record " + path +
+                                          ": expected the extension of a format that can be "
+                                          "written (.aedat4, .raw, .txt, ...) or .bin");
+    StreamHeader header;
+    header.format = format_->name;
+    header.width = source.info().width;
+    header.height = source.info().height;
+    header.sensor_name = source.info().name;
+    header.serial = source.info().serial;
+    file_ = std::make_unique<RecordingFile>(path, overwrite, open_writer(format_->name), header);
+    parser_ = source.make_parser();
+}
+
+RecordedSource::~RecordedSource() = default;
+
+ReadStatus RecordedSource::read(RawPacket& into) {
+    const ReadStatus status = source_.read(into);
+    if (status == ReadStatus::data) write(into);
+    return status;
+}
+
+void RecordedSource::write(const RawPacket& packet) {
+    if (bytes_) {
+        if (std::fwrite(packet.bytes.data(), 1, packet.bytes.size(), bytes_.get()) !=
+            packet.bytes.size())
+            throw Error(ErrorKind::failed, path_ + ": cannot be written: is the disk full?");
+        return;
+    }
+    if (packet.gap_before) parser_->resync();
+    parser_->parse(packet.bytes, batch_);
+    write_batch();
+}
+
+void RecordedSource::write_batch() {
+    if (!format_->holds.images) batch_.images.clear();
+    if (!format_->holds.imu) batch_.imu.clear();
+    if (!format_->holds.triggers) batch_.triggers.clear();
+    if (!batch_.empty()) file_->write(batch_);
+    batch_.clear();
+}
+
+void RecordedSource::finish() {
+    if (bytes_) {
+        if (std::fclose(bytes_.release()) != 0)
+            throw Error(ErrorKind::failed, path_ + ": cannot be written: is the disk full?");
+        return;
+    }
+    parser_->finish(batch_);
+    write_batch();
+    file_->finish();
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,146 @@
+// One run of the line.
+#include "src/app/run.h"
+
+#include "src/app/status.h"
+#include "src/app/version.h"
+#include "src/core/error.h"
+#include "src/nn/safetensors.h"
+
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace eventide::app {
+
+void Watch::see(const Batch& batch) {
+    if (references_ != nullptr) references_->see(batch);
+    if (!duration_ || batch.events.empty()) return;
+    if (!first_) first_ = batch.events.front().t;
+    if (batch.events.back().t - *first_ >= *duration_) source_.stop();
+}
+
+namespace {
+
+std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source) {
+    if (settings.record.empty()) return nullptr;
+    return std::make_unique<RecordedSource>(source, settings.record, settings.overwrite);
+}
+
+}  // namespace
+
+Run::Run(Program& program, RunSettings& settings)
+    : program_{program},
+      settings_{settings},
+      speed_{speed_of(settings)},
+      opened_{open_source(settings, speed_)},
+      sensor_{opened_.source->info()},
+      span_{span_of(settings, live())},
+      network_{settings, sensor_},
+      slicer_{slicer_of(settings, network_.config(), span_)},
+      rate_{rate_of(settings, slicer_)},
+      lookahead_{lookahead_of(settings, network_.config(), live())},
+      sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
+      begun_{std::chrono::steady_clock::now()},
+      recorded_{recorder_of(settings, *opened_.source)},
+      filter_{filter_of(settings, sensor_)},
+      watch_{sheet_ ? &references_ : nullptr, live() ? settings.duration : std::nullopt, source()},
+      encode_{network_.encoder()},
+      render_{network_.renderer(), request_of(settings, sensor_, lookahead_)} {
+    if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
+    sinks_ = open_sinks(settings_, sink_plan());
+    pipeline_.emplace(parts(), line());
+}
+
+Source& Run::source() {
+    if (recorded_) return *recorded_;
+    return *opened_.source;
+}
+
+SinkPlan Run::sink_plan() {
+    SinkPlan plan;
+    plan.fps = nominal_fps(rate_, slicer_);
+    plan.speed = speed_ > 0 ? speed_ : 1;
+    plan.sensor = {sensor_.width, sensor_.height};
+    plan.references = sheet_ ? &references_ : nullptr;
+    plan.questions.stopping = [this] { return program_.signals.stopping(); };
+    plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
+    plan.questions.run_json = [this] { return run_json(); };
+    if (opened_.paced != nullptr)
+        plan.questions.speed_changed = [this](double factor) { opened_.paced->set_speed(factor); };
+    return plan;
+}
+
+PipelineParts Run::parts() {
+    PipelineParts parts{source(), encode_, render_, {}, filter_.get(), &watch_};
+    for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
+    return parts;
+}
+
+PipelineSettings Run::line() const {
+    PipelineSettings line;
+    line.bins = network_.config().bins;
+    line.event_frames.slicer = slicer_;
+    line.event_frames.resync_first = opened_.recording != nullptr && span_.begin.has_value();
+    line.rate = rate_;
+    line.frames_from = span_.frames_from;
+    line.lookahead = lookahead_;
+    line.reset_on_gap = settings_.reset_on_gap;
+    line.event_preview = settings_.events || sheet_;
+    line.buffers = {std::size_t(settings_.buffers_packets), std::size_t(settings_.buffers_grids),
+                    std::size_t(settings_.buffers_latents)};
+    return line;
+}
+
+RunProgress Run::progress() const {
+    RunProgress progress;
+    progress.elapsed = std::chrono::steady_clock::now() - begun_;
+    progress.live = live();
+    if (opened_.recording != nullptr) progress.total_bytes = opened_.recording->size_bytes();
+    return progress;
+}
+
+int Run::run() {
+    const Stopper stopper{program_.signals, [this] { pipeline_->stop(); }};
+    Status status{[this] { return pipeline_->snapshot(); }, progress(), settings_.stats,
+                  program_.quiet};
+    if (settings_.sequential)
+        pipeline_->run_sequential();
+    else
+        pipeline_->run();
+    if (recorded_) recorded_->finish();
+    if (!settings_.state_out.empty())
+        write_safetensors(settings_.state_out, network_.encoder().state());
+    const RunProgress end = status.finish();
+    const Snapshot counters = pipeline_->snapshot();
+    spdlog::info("{}", summary_text(counters, end));
+    return settings_.strict && lost_data(counters) ? exit_data_lost : exit_done;
+}
+
+/// What was asked, with what, and what came out.
+std::string Run::run_json() {
+    const RunProgress now = progress();
+    nlohmann::ordered_json json;
+    json["program"] = "eventide " + version();
+    json["arguments"] = program_.arguments;
+    json["source"] = {{"name", settings_.source}, {"format", sensor_.format},
+                      {"sensor", sensor_.name},   {"serial", sensor_.serial},
+                      {"width", sensor_.width},   {"height", sensor_.height}};
+    json["model"] = {{"file", network_.file().string()},
+                     {"encoder", encoder_identity(network_.model())},
+                     {"engine", network_.encoder().description()},
+                     {"card", network_.config().card}};
+    nlohmann::ordered_json values;
+    for (const Setting& setting : settings_.table().settings) {
+        const auto texts = setting.show();
+        if (setting.kind == ValueKind::list)
+            values[setting.key] = texts;
+        else
+            values[setting.key] = texts.back();
+    }
+    json["settings"] = values;
+    json["counters"] = nlohmann::ordered_json::parse(stats_json(pipeline_->snapshot(), now, true));
+    return json.dump(2);
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,76 @@
+// One run of the line: everything that was named is opened, connected, run and closed.
+#pragma once
+
+#include "pipeline/model_stages.h"
+#include "pipeline/pipeline.h"
+#include "src/app/command.h"
+#include "src/app/network.h"
+#include "src/app/open_sinks.h"
+#include "src/app/open_source.h"
+#include "src/app/recorded_source.h"
+#include "src/app/reference_images.h"
+#include "src/app/run_plan.h"
+#include "src/app/run_report.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace eventide::app {
+
+/// Hands reference images on, and ends a live run after so much sensor time. Bin thread.
+class Watch : public DataObserver {
+public:
+    Watch(ReferenceImages* references, std::optional<SensorDuration> duration, Source& source)
+        : references_{references}, duration_{duration}, source_{source} {}
+    void see(const Batch& batch) override;
+
+private:
+    ReferenceImages* references_;
+    std::optional<SensorDuration> duration_;
+    Source& source_;
+    std::optional<SensorTime> first_;
+};
+
+/// Inputs are opened before outputs, so that a wrong input leaves nothing behind.
+class Run {
+public:
+    /// Throws Error.
+    Run(Program& program, RunSettings& settings);
+
+    /// Returns the exit code. Throws Error.
+    int run();
+
+private:
+    Source& source();
+    bool live() const { return opened_.source->is_live(); }
+    SinkPlan sink_plan();
+    PipelineParts parts();
+    PipelineSettings line() const;
+    RunProgress progress() const;
+    std::string run_json();
+
+    Program& program_;
+    RunSettings& settings_;
+    const double speed_;
+    OpenedSource opened_;
+    const SensorInfo sensor_;
+    const Span span_;
+    Network network_;
+    const SlicerSettings slicer_;
+    const FrameRate rate_;
+    const int lookahead_;
+    const bool sheet_;
+    const std::chrono::steady_clock::time_point begun_;
+    ReferenceImages references_;
+    std::unique_ptr<RecordedSource> recorded_;  // null: nothing is recorded
+    std::unique_ptr<EventFilter> filter_;
+    Watch watch_;
+    ModelEncodeStage encode_;
+    ModelRenderStage render_;
+    std::vector<std::unique_ptr<Sink>> sinks_;
+    std::optional<Pipeline> pipeline_;
+};
+
+}  // namespace eventide::app

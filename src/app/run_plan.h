@@ -1,0 +1,44 @@
+// What was asked for becomes what is to be done: spans, windows, rates, sizes.
+#pragma once
+
+#include "pipeline/source.h"
+#include "pipeline/stages.h"
+#include "src/app/run_settings.h"
+#include "src/binning/slicer_settings.h"
+#include "src/model/model_config.h"
+#include "src/model/renderer.h"
+
+#include <memory>
+#include <optional>
+
+namespace eventide::app {
+
+/// Where a recording is to begin and end, in its own time.
+struct Span {
+    std::optional<SensorTime> frames_from, begin, end;
+};
+
+/// May read the beginning of the recording to find its first event. Throws Error (usage) for what
+/// cannot be had: --from of a live source or, relative, of standard input.
+Span span_of(const RunSettings& settings, bool live);
+
+/// Of a recording: 0 is as fast as it goes.
+double speed_of(const RunSettings& settings);
+
+SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span);
+
+FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer);
+
+/// Pictures per second of sensor time, as far as it can be said before the run.
+double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer);
+
+/// What was asked for, else 0 for live sources and 2 for recordings, or the most the model was
+/// trained for.
+int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool live);
+
+/// Null when hot pixels stay.
+std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const SensorInfo& sensor);
+
+RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead);
+
+}  // namespace eventide::app

@@ -1,0 +1,33 @@
+// The counters of a run as people and programs read them.
+#pragma once
+
+#include "pipeline/counters.h"
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace eventide::app {
+
+/// What is needed beside the counters themselves.
+struct RunProgress {
+    std::chrono::duration<double> elapsed{0};
+    std::uint64_t total_bytes = 0;  ///< of a recording; 0 where not known
+    bool live = false;
+    double event_rate = 0;  ///< per second of host time, lately
+};
+
+/// The moving line: "[====>  ]  43 %  1.2 M events/s  ...".
+std::string status_line(const Snapshot& now, const RunProgress& progress);
+
+/// Three or four lines at the end.
+std::string summary_text(const Snapshot& end, const RunProgress& progress);
+
+/// One JSON object in one line. docs/usage.md names the keys.
+std::string stats_json(const Snapshot& now, const RunProgress& progress, bool final);
+
+/// Data were lost or made no sense: what --strict asks.
+bool lost_data(const Snapshot& end);
+
+}  // namespace eventide::app

@@ -1,0 +1,90 @@
+// Everything `eventide run` can be told.
+#pragma once
+
+#include "pipeline/frame_clock.h"
+#include "pipeline/sinks/look.h"
+#include "pipeline/sinks/picture.h"
+#include "src/app/input_settings.h"
+#include "src/app/moment.h"
+#include "src/app/setting.h"
+#include "src/model/engine.h"
+#include "src/model/renderer.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eventide::app {
+
+/// "auto", "frame" (one picture at the end of each event frame) or a rate.
+struct FpsChoice {
+    bool automatic = true;
+    FrameRate rate;
+};
+
+/// "2.5x" of the sensor's size, or "640x480".
+struct SizeChoice {
+    double scale = 1;
+    std::optional<Size> exact;
+
+    /// The output for a sensor of this size. Throws Error (usage) when it is too large.
+    Size of(const Size& sensor) const;
+};
+
+enum class SigmaChoice { model, log_blend, mixture };
+
+struct RunSettings {
+    // what
+    std::string source;
+    InputSettings input;
+    std::string camera;  ///< settings file of a camera
+    bool reconnect = false;
+    std::optional<Moment> from, to;
+    SensorDuration warmup{0};
+    std::optional<SensorDuration> duration;
+    std::string speed = "auto";  ///< auto, max, or a factor
+
+    // how
+    std::string model = "default";
+    std::string window = "auto";
+    FpsChoice fps;
+    SizeChoice size;
+    std::optional<Region> region;
+    std::optional<int> lookahead;
+    SigmaChoice sigma_rule = SigmaChoice::model;
+    Precision precision = Precision::automatic;
+    Engine engine = Engine::fast;
+    int threads = 0;
+    std::string state_in, state_out;
+    bool reset_on_gap = false;
+    std::string hot_pixels = "off";
+
+    // to where
+    std::vector<std::string> out;
+    bool overwrite = false;
+    Uncertainty uncertainty = Uncertainty::automatic;
+    double sigma_white = double(kSigmaWhite);
+    bool events = false;
+    std::string record;
+    std::string stats;
+    bool strict = false;
+
+    // look
+    LookSettings look;
+    double unsharp = 0;
+    std::string video_preset = "veryfast";
+    int video_crf = 18;
+    int sheet_rows = 4;
+
+    // machinery
+    int buffers_packets = 64, buffers_grids = 3, buffers_latents = 4;
+    bool sequential = false;
+
+    RunSettings() = default;
+    RunSettings(const RunSettings&) = delete;  // table() points into it
+    RunSettings& operator=(const RunSettings&) = delete;
+
+    SettingTable table();
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,49 @@
+// While a run goes on: the moving line on a terminal, and the JSON lines of --stats.
+#pragma once
+
+#include "src/app/run_report.h"
+#include "src/app/talk.h"
+
+#include <condition_variable>
+#include <fstream>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace eventide::app {
+
+class Status {
+public:
+    /// `snapshot` may be called from any thread. Throws Error (failed) when `stats` (a file, "-"
+    /// for standard error, or empty) cannot be written.
+    Status(std::function<Snapshot()> snapshot, RunProgress fixed, const std::string& stats,
+           bool quiet);
+    ~Status();
+    Status(const Status&) = delete;
+    Status& operator=(const Status&) = delete;
+
+    /// Ends the line and writes the last JSON line. Once, after the run.
+    RunProgress finish();
+
+private:
+    void tick();
+    RunProgress progress(const Snapshot& now);
+    void write_stats(const Snapshot& now, bool final);
+
+    std::function<Snapshot()> snapshot_;
+    RunProgress fixed_;
+    std::ofstream stats_;
+    ProgressLine line_;
+    std::chrono::steady_clock::time_point begun_;
+    std::uint64_t last_events_ = 0;
+    std::chrono::duration<double> last_elapsed_{0};
+    double event_rate_ = 0;
+
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    bool end_ = false;
+    std::jthread thread_;
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,48 @@
+// What the program says to people: on standard error, in colour and with a moving line only where
+// somebody looks at a terminal.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace eventide::app {
+
+struct TalkSettings {
+    std::string log_level = "info";  ///< trace, debug, info, warning, error or off
+    bool quiet = false;              ///< no progress and no summaries; warnings and errors stay
+};
+
+/// Sets spdlog's default logger; once, before anything is logged.
+void start_talk(const TalkSettings& settings);
+
+/// Standard error is a terminal.
+bool on_terminal();
+
+/// Whether colour may be used: on a terminal, unless NO_COLOR is set to something (no-color.org).
+bool colour_allowed();
+
+/// One line at the bottom of a terminal, redrawn in place. Silent where standard error is no
+/// terminal or when told to be quiet. Thread: one at a time.
+class ProgressLine {
+public:
+    explicit ProgressLine(bool quiet) : active_{!quiet && on_terminal()} {}
+    ~ProgressLine() { clear(); }
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    bool active() const { return active_; }
+    void show(std::string_view text);
+    /// Takes the line away before something else is printed.
+    void clear();
+
+private:
+    bool active_, drawn_ = false;
+};
+
+/// "[=====>    ]  43 %"
+std::string progress_bar(double share);
+
+/// 12,345,678 -> "12.3 M"; for rates and counts in lines people read.
+std::string short_count(double n);
+
+}  // namespace eventide::app
