@@ -101,7 +101,9 @@ void Scene::add_background(const SceneSettings& settings) {
         layer.motion = wander_motion(settings.wander, speed, radius, {}, {}, random_.fork());
         const double seen = std::min(width_, height_) / random_.log_uniform(settings.view_share);
         const double aspect = layer.texture->aspect();
-        const double height_px = seen / std::min(1.0, aspect), width_px = height_px * aspect;
+        const double height_px = std::min(seen / std::min(1.0, aspect),
+                                          settings.magnified_most * layer.texture->height());
+        const double width_px = height_px * aspect;
         layer.texture_in_local = {1 / width_px,     0, random_.uniform(), 0, 1 / height_px,
                                   random_.uniform()};
     }

@@ -92,7 +92,7 @@ std::uint32_t pair_at(const std::uint16_t* p) {
 
 }  // namespace
 
-Texture::Texture(const Array2<std::uint8_t>& grey) {
+Texture::Texture(const Array2<std::uint8_t>& grey) : height_(grey.height()) {
     if (grey.height() < 2 || grey.width() < 2)
         throw Error(ErrorKind::input, "a texture needs at least 2 x 2 pixels, but has " +
                                           std::to_string(grey.width()) + " x " +

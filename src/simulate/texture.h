@@ -20,6 +20,7 @@ public:
     explicit Texture(const Array2<std::uint8_t>& grey);
 
     double aspect() const { return aspect_; }  ///< width over height of the image given
+    int height() const { return height_; }     ///< px, of the image given
 
     /// A straight walk over the image: point i is at (u + i du, v + i dv).
     struct Walk {
@@ -44,6 +45,7 @@ private:
     static Level make_level(const Array2<float>& image);
 
     double aspect_ = 1;
+    int height_ = 0;
     std::vector<Level> levels_;
 };
 
