@@ -12,7 +12,7 @@
 namespace eventide {
 
 struct ConvertOptions {
-    std::optional<SensorTime> from, to;  ///< both included
+    std::optional<SensorTime> from{}, to{};  ///< both included
     bool overwrite = false;
 };
 

@@ -4,12 +4,17 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include <filesystem>
+
 namespace eventide {
 
 namespace {
 
 /// OpenCV throws on pictures it holds to be too large or broken; to us they are unreadable alike.
 cv::Mat read_picture(const std::string& path) {
+    // Otherwise OpenCV prints a warning of its own.
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return {};
     try {
         return cv::imread(path, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception&) {

@@ -8,9 +8,9 @@
 namespace eventide {
 
 struct OpenOptions {
-    std::string format;         ///< a name from all_formats(); empty: found from the content
+    std::string format{};       ///< a name from all_formats(); empty: found from the content
     int width = 0, height = 0;  ///< px; 0: what the recording says. Both or neither
-    TextOptions text;
+    TextOptions text{};
     /// Documents disagree on bit 0 of DVS128 addresses: jAER, which wrote most files, reads 0 as
     /// on; the vendor's text says 1. Used by AEDAT 1.0 and 2.0.
     bool dvs128_one_is_on = false;

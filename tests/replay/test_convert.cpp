@@ -1,0 +1,103 @@
+// From format to format and back: nothing is lost that the formats hold, and what is not is said.
+#include "replay/convert.h"
+
+#include "replay/summary.h"
+#include "src/core/error.h"
+#include "tests/replay/recording_files.h"
+
+#include <nlohmann/json.hpp>
+
+namespace eventide {
+namespace {
+
+TEST(Convert, EventsSurviveEveryWritableFormatAndTheWayBack) {
+    const TestFolder folder;
+    const auto events = some_events(20'000, 5'000'000);
+    const std::string text = write_recording(folder.path("a.txt"), "text", events);
+    for (const Format& format : all_formats()) {
+        if (!format.make_writer) continue;
+        SCOPED_TRACE(format.name);
+        const std::string there = folder.path("b" + std::string(format.extension));
+        const std::string back = folder.path("c.txt");
+        const auto report = convert(*open_recording(text), there, format, {.overwrite = true});
+        EXPECT_EQ(report.written.events, events.size());
+        EXPECT_EQ(report.damaged.total(), 0U);
+        EXPECT_EQ(open_recording(there)->info().format, format.name);
+        convert(*open_recording(there), back, *find_format("text"), {.overwrite = true});
+        EXPECT_TRUE(read_text(text) == read_text(back));
+    }
+}
+
+TEST(Convert, OnlyWhatLiesBetweenTheLimitsIsWritten) {
+    const TestFolder folder;
+    const auto events = some_events(60'000);
+    const std::string source = write_recording(folder.path("a.txt"), "text", events);
+    ConvertOptions options;
+    options.from = events[30'000].t;
+    options.to = events[30'500].t;
+    convert(*open_recording(source), folder.path("b.txt"), *find_format("text"), options);
+    const auto kept = read_everything(*open_recording(folder.path("b.txt"))).events;
+    ASSERT_FALSE(kept.empty());
+    std::vector<Event> expected;
+    for (const Event& event : events)
+        if (event.t >= *options.from && event.t <= *options.to) expected.push_back(event);
+    EXPECT_TRUE(kept == expected);
+}
+
+TEST(Convert, WhatTheTargetCannotHoldIsCounted) {
+    const TestFolder folder;
+    Batch batch;
+    batch.events = some_events(10);
+    ReferenceImage image;
+    image.pixels = Array2<std::uint16_t>(2, 3);
+    batch.images = {image, image};
+    batch.imu = {ImuSample{}};
+    batch.triggers = {Trigger{}};
+    {
+        StreamHeader header;
+        header.width = header.height = 128;
+        RecordingFile file(folder.path("a"), false, open_writer("aedat3"), header);
+        file.write(batch);
+        file.finish();
+    }
+    const auto report =
+        convert(*open_recording(folder.path("a")), folder.path("b.txt"), *find_format("text"));
+    EXPECT_EQ(report.written, (DataCounts{10, 0, 0, 0}));
+    EXPECT_EQ(report.not_held, (DataCounts{0, 2, 1, 1}));
+}
+
+TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {
+    const TestFolder folder;
+    const std::string source = folder.write("a.txt", "240 180\n0.100000 1 2 1\n");
+    const std::string target = folder.write("b.txt", "precious");
+    EXPECT_THROW(convert(*open_recording(source), target, *find_format("text")), Error);
+    EXPECT_EQ(read_text(target), "precious");
+    convert(*open_recording(source), target, *find_format("text"), {.overwrite = true});
+    EXPECT_EQ(read_text(target), read_text(source));
+    EXPECT_THROW(
+        convert(*open_recording(source), folder.path("no/such/folder"), *find_format("text")),
+        Error);
+}
+
+TEST(Summary, IsOneObjectWithTheKnownKeys) {
+    const TestFolder folder;
+    const auto sum = summarize(
+        *open_recording(folder.write("a.txt", "240 180\n0.1 1 2 1\n0.2 1 2 0\njunk\n0.3 1 2 1\n")));
+    const auto json = nlohmann::json::parse(to_json(sum));
+    EXPECT_EQ(json.size(), 11U);
+    EXPECT_EQ(json["format"], "text");
+    EXPECT_EQ(json["width"], 240);
+    EXPECT_EQ(json["height"], 180);
+    EXPECT_EQ(json["events"], 3);
+    EXPECT_EQ(json["on"], 2);
+    EXPECT_EQ(json["first_us"], 100000);
+    EXPECT_EQ(json["last_us"], 300000);
+    EXPECT_EQ(json["frames"], 0);
+    EXPECT_EQ(json["imu"], 0);
+    EXPECT_EQ(json["triggers"], 0);
+    EXPECT_EQ(json["damaged"]["bad_record"], 1);
+    EXPECT_TRUE(nlohmann::json::parse(to_json({}))["first_us"].is_null());
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,80 @@
+// Folders in the manner of the Event Camera Dataset: events with their pictures.
+#include "replay/ecd_folder.h"
+
+#include "replay/formats.h"
+#include "replay/summary.h"
+#include "src/core/error.h"
+#include "tests/replay/recording_files.h"
+
+namespace eventide {
+namespace {
+
+/// A grey picture, as text: netpbm is the one format a test can spell out.
+std::string picture(int width, int height, int value) {
+    return "P5\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" +
+           std::string(std::size_t(width * height), char(value));
+}
+
+void write_folder(const TestFolder& folder) {
+    folder.write("r/events.txt", "0.10 1 2 1\n0.20 3 4 0\n0.30 5 6 1\n0.40 7 8 1\n");
+    folder.write("r/images.txt",
+                 "0.35 images/c.pgm\n0.05 images/a.pgm\n0.20 images/b.pgm\n"
+                 "0.25 images/missing.pgm\nno time\n0.9 images/d.pgm\n");
+    for (const char* name : {"a", "b", "c", "d"})
+        folder.write(std::string("r/images/") + name + ".pgm", picture(20, 10, name[0]));
+}
+
+TEST(EcdFolder, GivesItsPicturesInTimeOrderWithTheEvents) {
+    const TestFolder folder;
+    write_folder(folder);
+    for (const char* name : {"r", "r/events.txt"}) {
+        const auto recording = open_recording(folder.path(name));
+        EXPECT_EQ(recording->info().width, 20);
+        EXPECT_EQ(recording->info().height, 10);
+        const Batch batch = read_everything(*recording);
+        EXPECT_EQ(batch.events.size(), 4U);
+        ASSERT_EQ(batch.images.size(), 4U);
+        EXPECT_EQ(batch.images[1].t, from_us(200000));
+        EXPECT_EQ(batch.images[1].pixels(9, 19), 'b' * 257);
+        EXPECT_EQ(batch.images[3].t, from_us(900000));
+    }
+    // The missing picture and the line without a time.
+    EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 2U);
+}
+
+TEST(EcdFolder, APictureComesOnceTheEventsHavePassedIt) {
+    const TestFolder folder;
+    write_folder(folder);
+    const auto recording = open_recording(folder.path("r"));
+    const auto parser = recording->make_parser();
+    const auto parse = [&](std::string_view text, Batch& into) {
+        parser->parse(std::as_bytes(std::span(text)), into);
+        return into.images.size();
+    };
+    Batch batch;
+    EXPECT_EQ(parse("0.10 1 2 1\n", batch), 1U);
+    EXPECT_EQ(parse("0.19 1 2 1\n", batch), 1U);
+    EXPECT_EQ(parse("0.30 1 2 1\n", batch), 2U);
+    parser->resync();
+    EXPECT_EQ(parse("\n0.06 1 2 1\n", batch), 2U);  // jumped back behind the first
+    EXPECT_EQ(parse("0.21 1 2 1\n", batch), 3U);    // the second once more
+    parser->finish(batch);
+    EXPECT_EQ(batch.images.size(), 5U);
+}
+
+TEST(EcdFolder, AStatedSizeIsTaken) {
+    const TestFolder folder;
+    write_folder(folder);
+    EXPECT_EQ(open_recording(folder.path("r"), {.width = 64, .height = 48})->info().width, 64);
+}
+
+TEST(EcdFolder, WithoutPicturesTheSizeIsThatOfTheEvents) {
+    const TestFolder folder;
+    folder.write("r/events.txt", "0.10 1 2 1\n0.20 3 4 0\n");
+    const auto recording = open_recording(folder.path("r"));
+    EXPECT_EQ(recording->info().width, 4);
+    EXPECT_TRUE(read_everything(*recording).images.empty());
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,169 @@
+// Recordings are opened by what they contain, and refused with a word on why.
+#include "replay/formats.h"
+#include "replay/summary.h"
+#include "src/core/error.h"
+#include "tests/replay/recording_files.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <array>
+#include <thread>
+
+namespace eventide {
+namespace {
+
+using testing::HasSubstr;
+
+/// What opening says; empty when it does not refuse.
+std::string refusal(const std::string& path, const OpenOptions& options = {},
+                    ErrorKind kind = ErrorKind::input) {
+    try {
+        open_recording(path, options);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind) << error.what();
+        return error.what();
+    }
+    return {};
+}
+
+TEST(OpenRecording, TheContentCountsAndNotTheName) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    for (const char* name : {"a.raw", "a.aedat4", "a.txt", "a"}) {
+        for (const char* format : {"text", "aedat3"}) {
+            const auto recording =
+                open_recording(write_recording(folder.path(name), format, events));
+            EXPECT_EQ(recording->info().format, format);
+            EXPECT_EQ(recording->info().width, 128);
+            EXPECT_TRUE(read_everything(*recording).events == events);
+        }
+    }
+}
+
+TEST(OpenRecording, WhatIsNoRecordingIsRefusedByName) {
+    const TestFolder folder;
+    EXPECT_THAT(refusal(folder.path("missing")), HasSubstr("missing: cannot open"));
+    EXPECT_THAT(refusal(folder.write("empty.txt", "")), HasSubstr("found no bytes"));
+    EXPECT_THAT(refusal(folder.path("")), HasSubstr("directory"));
+    EXPECT_THAT(refusal(folder.write("x.aedat4", std::string(5000, '\x91'))),
+                HasSubstr("bytes of none of them"));
+    EXPECT_THAT(refusal(folder.write("zeros.raw", std::string(5000, '\0'))),
+                HasSubstr("bytes of none of them"));
+    EXPECT_THAT(refusal(folder.write("prose.txt", "It was a dark and stormy night.\n")),
+                HasSubstr("none of them"));
+    EXPECT_THAT(refusal(folder.write("chip.aedat", "#!AER-DAT2.0\r\n# AEChip: Other\r\n")),
+                HasSubstr("AEChip"));
+    EXPECT_THAT(
+        refusal(folder.write("t.txt", "1 2 3 0\n"), {.format = "nonsense"}, ErrorKind::usage),
+        HasSubstr("nonsense"));
+    EXPECT_THAT(refusal(folder.write("t.txt", "1 2 3 0\n"), {.format = "aedat3"}),
+                HasSubstr("#!AER-DAT3.1"));
+    EXPECT_THAT(
+        refusal(folder.write("t.txt", "1 2 3 0\n"), {.width = 5, .height = 0}, ErrorKind::usage),
+        HasSubstr("WIDTHxHEIGHT"));
+}
+
+TEST(OpenRecording, TheSizeComesFromTheOptionTheLineOrTheEvents) {
+    const TestFolder folder;
+    const auto size_of = [](const Recording& r) {
+        return std::array{r.info().width, r.info().height};
+    };
+    const std::string with_line = folder.write("a.txt", "240 180\n0.1 5 6 1\n");
+    const std::string without = folder.write("b.txt", "0.1 5 6 1\n0.2 9 2 0\n0.3 60000 2 0\n");
+    EXPECT_EQ(size_of(*open_recording(with_line)), (std::array{240, 180}));
+    EXPECT_EQ(size_of(*open_recording(with_line, {.width = 346, .height = 260})),
+              (std::array{346, 260}));
+    // A coordinate no sensor has is damage and makes no sensor of 60001 px.
+    const auto scanned = open_recording(without);
+    EXPECT_EQ(size_of(*scanned), (std::array{10, 7}));
+    EXPECT_EQ(summarize(*scanned).damaged[DamageReason::out_of_range], 1U);
+    EXPECT_THAT(refusal(folder.write("c.txt", "t x y p\n0.1 5000 0 1\n")), HasSubstr("--geometry"));
+}
+
+/// A pipe whose reading end open_recording() can name.
+class Pipe {
+public:
+    Pipe() { EXPECT_EQ(::pipe(ends_.data()), 0); }
+    ~Pipe() {
+        ::close(ends_[0]);
+        close_writing();
+    }
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+    std::string path() const { return "/dev/fd/" + std::to_string(ends_[0]); }
+    void write(const std::string& text) {
+        EXPECT_EQ(::write(ends_[1], text.data(), text.size()), ssize_t(text.size()));
+    }
+    void close_writing() {
+        if (ends_[1] >= 0) ::close(ends_[1]);
+        ends_[1] = -1;
+    }
+
+private:
+    std::array<int, 2> ends_{-1, -1};
+};
+
+TEST(OpenRecording, APipeOfTextIsReadAsItComes) {
+    Pipe pipe;
+    pipe.write("240 180\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n");
+    const auto recording = open_recording(pipe.path());  // the writer is not done
+    EXPECT_EQ(recording->info().width, 240);
+    EXPECT_EQ(recording->size_bytes(), 0U);
+    pipe.write("0.4 7 8 1\n");
+    pipe.close_writing();
+    recording->seek(from_us(1));  // a pipe cannot: nothing is lost
+    EXPECT_EQ(read_everything(*recording).events.size(), 4U);
+}
+
+TEST(OpenRecording, APipeOfPacketsIsReadToo) {
+    const TestFolder folder;
+    const auto events = some_events(50);
+    Pipe pipe;
+    pipe.write(read_text(write_recording(folder.path("a"), "aedat3", events)));
+    pipe.close_writing();
+    EXPECT_TRUE(read_everything(*open_recording(pipe.path())).events == events);
+}
+
+TEST(OpenRecording, APipeWithoutASizeIsRefusedAndTheOptionNamed) {
+    Pipe pipe;
+    pipe.write("0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n0.4 5 6 1\n");
+    EXPECT_THAT(refusal(pipe.path()), HasSubstr("--geometry"));
+}
+
+TEST(OpenRecording, StopEndsAReadThatWaits) {
+    Pipe pipe;
+    pipe.write("240 180\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n");
+    const auto recording = open_recording(pipe.path());
+    RawPacket packet;
+    ASSERT_EQ(recording->read(packet), ReadStatus::data);
+    std::jthread stopper([&] { recording->stop(); });
+    EXPECT_EQ(recording->read(packet), ReadStatus::end);  // the pipe is open and empty
+}
+
+TEST(OpenRecording, ChunksAreOfBoundedSize) {
+    const TestFolder folder;
+    const auto recording =
+        open_recording(write_recording(folder.path("a.txt"), "text", some_events(50'000)));
+    RawPacket packet;
+    std::uint64_t bytes = 0;
+    while (recording->read(packet) == ReadStatus::data) {
+        EXPECT_LE(packet.bytes.size(), FileRecording::kChunkBytes);
+        bytes += packet.bytes.size();
+        EXPECT_EQ(recording->position_bytes() - 8, bytes);  // behind "128 128\n"
+    }
+    EXPECT_EQ(recording->position_bytes(), recording->size_bytes());
+}
+
+TEST(OpenRecording, FormatsAreKnownByNameAndWritersByExtension) {
+    for (const Format& format : all_formats()) EXPECT_EQ(find_format(format.name), &format);
+    EXPECT_EQ(find_format("nonsense"), nullptr);
+    EXPECT_EQ(format_for_writing("a/b.txt")->name, "text");
+    EXPECT_EQ(format_for_writing("b.aedat")->name, "aedat3");
+    EXPECT_EQ(format_for_writing("b.xyz"), nullptr);
+    EXPECT_THROW(open_writer("aedat2"), Error);
+    EXPECT_THROW(open_writer("nonsense"), Error);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,98 @@
+// A paced recording gives the same bytes, and stops at once when told.
+#include "replay/paced.h"
+
+#include "replay/formats.h"
+#include "src/core/error.h"
+#include "tests/replay/recording_files.h"
+
+#include <limits>
+#include <thread>
+
+namespace eventide {
+namespace {
+
+constexpr double kFasterThanAnyClock = 1e12, kForEver = 1e-9;
+
+using Bytes = std::vector<std::byte>;
+
+Bytes all_bytes(Recording& recording) {
+    Bytes bytes;
+    RawPacket packet;
+    while (recording.read(packet) == ReadStatus::data)
+        bytes.insert(bytes.end(), packet.bytes.begin(), packet.bytes.end());
+    return bytes;
+}
+
+TEST(Paced, GivesTheSameBytes) {
+    const TestFolder folder;
+    for (const char* format : {"text", "aedat3"}) {
+        const std::string path = write_recording(folder.path("a"), format, some_events(30'000));
+        Paced paced(open_recording(path), kFasterThanAnyClock);
+        EXPECT_TRUE(all_bytes(paced) == all_bytes(*open_recording(path)));
+        EXPECT_EQ(paced.position_bytes(), paced.size_bytes());
+    }
+}
+
+TEST(Paced, WhatIsNotDueIsNotGiven) {
+    const TestFolder folder;
+    const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
+    Paced paced(open_recording(path), kForEver);
+    RawPacket packet;
+    ASSERT_EQ(paced.read(packet), ReadStatus::data);
+    EXPECT_LT(packet.bytes.size(), 1000U);  // of a chunk of 128 KiB
+}
+
+TEST(Paced, StopEndsAWait) {
+    const TestFolder folder;
+    const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
+    Paced paced(open_recording(path), kForEver);
+    RawPacket packet;
+    ASSERT_EQ(paced.read(packet), ReadStatus::data);
+    std::jthread stopper([&] { paced.stop(); });
+    EXPECT_EQ(paced.read(packet), ReadStatus::end);
+    EXPECT_EQ(paced.read(packet), ReadStatus::end);
+}
+
+TEST(Paced, AChangeOfSpeedIsHeardByAReadThatWaits) {
+    const TestFolder folder;
+    const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
+    Paced paced(open_recording(path), kForEver);
+    RawPacket packet;
+    ASSERT_EQ(paced.read(packet), ReadStatus::data);
+    std::size_t bytes = packet.bytes.size();
+    std::jthread changer([&] {
+        paced.set_speed(0);
+        paced.set_speed(kFasterThanAnyClock);
+    });
+    bytes += all_bytes(paced).size();
+    EXPECT_EQ(bytes, all_bytes(*open_recording(path)).size());
+    EXPECT_EQ(paced.speed(), kFasterThanAnyClock);
+}
+
+TEST(Paced, AfterASeekWhatLiesBeforeIsNotWaitedFor) {
+    const TestFolder folder;
+    const auto events = some_events(30'000);
+    const std::string path = write_recording(folder.path("a"), "text", events);
+    Paced paced(open_recording(path), kForEver);
+    paced.seek(events[20'000].t);
+    const auto parser = paced.make_parser();
+    parser->resync();
+    Batch batch;
+    RawPacket packet;
+    while (batch.events.empty() || batch.events.back().t < events[20'000].t) {
+        ASSERT_EQ(paced.read(packet), ReadStatus::data);
+        parser->parse(packet.bytes, batch);
+    }
+}
+
+TEST(Paced, OnlyPositiveSpeedsAreTaken) {
+    const TestFolder folder;
+    const std::string path = folder.write("a.txt", "9 9\n0.1 1 2 1\n");
+    for (const double speed : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity()})
+        EXPECT_THROW(Paced(open_recording(path), speed), Error);
+    EXPECT_THROW(Paced(open_recording(path), 1).set_speed(-1), Error);
+}
+
+}  // namespace
+}  // namespace eventide
