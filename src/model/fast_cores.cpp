@@ -2,6 +2,7 @@
 #include "src/core/error.h"
 #include "src/model/cores.h"
 #include "src/model/fast_gated_encoder.h"
+#include "src/model/fast_renderer.h"
 
 namespace eventide {
 namespace {
@@ -22,9 +23,10 @@ std::unique_ptr<EncoderCore> make_fast_encoder(const Model& model, int height, i
         return std::make_unique<FastGatedEncoder>(model, height, width, options, bf16);
     return make_plain_encoder(model, height, width);
 }
-std::unique_ptr<RendererCore> make_fast_renderer(const Model& model, int, int,
-                                                 const EngineOptions&) {
-    return make_plain_renderer(model);
+std::unique_ptr<RendererCore> make_fast_renderer(const Model& model, int sensor_width,
+                                                 int sensor_height, const EngineOptions& options) {
+    return std::make_unique<FastRenderer>(model, sensor_width, sensor_height, options,
+                                          wants_bf16(options.precision));
 }
 
 }  // namespace eventide

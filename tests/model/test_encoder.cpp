@@ -83,7 +83,8 @@ TEST(Encoder, FastAgreesWithPlainAtEveryShape) {
 
 template <typename Network>
 void compare_long(const ModelConfig& config, int steps) {
-    constexpr int kHeight = 26, kWidth = 35;
+    const int kHeight = config.encoder == EncoderKind::thesis ? 9 : 26;
+    const int kWidth = config.encoder == EncoderKind::thesis ? 11 : 35;
     const Model model = random_model(config, 11);
     Network reference{model, kHeight, kWidth};
     Encoder fast{model, kWidth, kHeight, with(Engine::fast)};
