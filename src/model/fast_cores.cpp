@@ -3,6 +3,7 @@
 #include "src/model/cores.h"
 #include "src/model/fast_gated_encoder.h"
 #include "src/model/fast_renderer.h"
+#include "src/model/fast_thesis_encoder.h"
 
 namespace eventide {
 namespace {
@@ -21,7 +22,7 @@ std::unique_ptr<EncoderCore> make_fast_encoder(const Model& model, int height, i
     const bool bf16 = wants_bf16(options.precision);
     if (model.config.encoder == EncoderKind::gated)
         return std::make_unique<FastGatedEncoder>(model, height, width, options, bf16);
-    return make_plain_encoder(model, height, width);
+    return std::make_unique<FastThesisEncoder>(model, height, width, options, bf16);
 }
 std::unique_ptr<RendererCore> make_fast_renderer(const Model& model, int sensor_width,
                                                  int sensor_height, const EngineOptions& options) {

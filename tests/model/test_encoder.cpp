@@ -165,7 +165,7 @@ TEST(Encoder, LeavingOutQuietTilesChangesNoBit) {
             EngineOptions all = with(Engine::fast, precision);
             all.skip_quiet = false;
             expect_same({model, 150, 131, with(Engine::fast, precision)}, {model, 150, 131, all},
-                        c.config, 25);
+                        c.config, 15);
         }
 }
 

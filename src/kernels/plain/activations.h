@@ -69,29 +69,29 @@ struct NormWeights {
 };
 
 /// InstanceNorm2d+ (docs/model.md). One channel alone has no spread of means: its alpha term is 0.
+/// Statistics are double for every T: sums over an image would lose a float's last digits.
 template <typename T>
 Array3<T> norm(const NormWeights<T>& weights, Array3<T> map) {
     const auto channels = std::size_t(map.channels());
-    const auto pixels = T(map.values().size() / channels);
-    std::vector<T> mean(channels), variance(channels);
+    const double pixels = double(map.values().size()) / double(channels);
+    std::vector<double> mean(channels), variance(channels);
     for (std::size_t i = 0; i < map.values().size(); ++i)
-        mean[i % channels] += map.values()[i] / pixels;
+        mean[i % channels] += double(map.values()[i]) / pixels;
     for (std::size_t i = 0; i < map.values().size(); ++i) {
-        const T d = map.values()[i] - mean[i % channels];
+        const double d = double(map.values()[i]) - mean[i % channels];
         variance[i % channels] += d * d / pixels;
     }
-    T grand = 0, spread = 0;
-    for (const T m : mean) grand += m / T(channels);
-    for (const T m : mean) spread += (m - grand) * (m - grand);
-    if (channels > 1) spread /= T(channels - 1);
-    const T epsilon = T(1e-5);
+    double grand = 0, spread = 0;
+    for (const double m : mean) grand += m / double(channels);
+    for (const double m : mean) spread += (m - grand) * (m - grand);
+    if (channels > 1) spread /= double(channels - 1);
+    constexpr double kEpsilon = 1e-5;
     for (std::size_t i = 0; i < map.values().size(); ++i) {
         const std::size_t c = i % channels;
-        T& v = map.values()[i];
-        v = weights.gamma[c] *
-                ((v - mean[c]) / std::sqrt(variance[c] + epsilon) +
-                 weights.alpha[c] * (mean[c] - grand) / std::sqrt(spread + epsilon)) +
-            weights.beta[c];
+        const double own = (double(map.values()[i]) - mean[c]) / std::sqrt(variance[c] + kEpsilon);
+        const double shared = (mean[c] - grand) / std::sqrt(spread + kEpsilon);
+        map.values()[i] = T(double(weights.gamma[c]) * (own + double(weights.alpha[c]) * shared) +
+                            double(weights.beta[c]));
     }
     return map;
 }

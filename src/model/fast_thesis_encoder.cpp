@@ -1,0 +1,246 @@
+// See fast_thesis_encoder.h; docs/model.md has the formulas.
+#include "src/model/fast_thesis_encoder.h"
+
+#include "src/kernels/vector_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace eventide {
+namespace {
+
+constexpr int kSide = 32, kHalfSide = 24;
+
+}  // namespace
+
+FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
+                                     const EngineOptions& options, bool bf16)
+    : options_(options),
+      bf16_(bf16),
+      channels_(model.config.widths[0]),
+      tiles_(tiles_of(height, width, kSide)),
+      half_tiles_(tiles_of((height + 1) / 2, (width + 1) / 2, kHalfSide)) {
+    const Tensors& w = model.weights;
+    const auto conv = [&](const std::string& name, int stride) {
+        return PackedConv{plain::conv_weights<float>(w, "encoder." + name), stride, false, bf16};
+    };
+    in_ = conv("in", 1);
+    down_ = conv("down", 2);
+    for (int i = 0; i < 2; ++i) res_[i] = conv("res." + std::to_string(i), 1);
+    for (int i = 0; i < 3; ++i) head_[i] = conv("head." + std::to_string(i), 1);
+    for (int i = 0; i < 5; ++i)
+        norms_.push_back(plain::norm_weights<float>(w, "encoder.norm" + std::to_string(i)));
+    full_gru_ = {plain::gru_weights<float>(w, "encoder.gru.0"), tiles_, kSide, bf16};
+    half_gru_ = {plain::gru_weights<float>(w, "encoder.gru.1"), half_tiles_, kHalfSide, bf16};
+    states_[0] = {height, width, channels_};
+    states_[1] = {(height + 1) / 2, (width + 1) / 2, channels_};
+    x0_ = inner_ = x2_ = y0_ = y1_ = states_[0];
+    z_ = {height, width, model.config.latent};
+    raw_ = {height, width, channels_};
+    sums_.resize(tiles_.size() * 2 * std::size_t(channels_));
+    scale_.resize(std::size_t(channels_));
+    shift_.resize(std::size_t(channels_));
+
+    const auto area = [](int n) { return std::size_t(n) * std::size_t(n); };
+    const auto inputs = std::size_t(std::max(3 * channels_, model.config.input_channels()));
+    const std::size_t joined = 2 * area(kSide + 2) * (inputs + 1);
+    const std::size_t down = area(2 * kHalfSide + 9) * std::size_t(channels_);
+    scratch_.assign(
+        kLanes,
+        FloatBuffer(std::max({joined, full_gru_.scratch_size(), half_gru_.scratch_size() + down})));
+}
+
+std::string FastThesisEncoder::description() const {
+    return std::string{"fast, "} + (bf16_ ? "bf16 (AVX512_BF16)" : vector_kernels().name);
+}
+
+template <typename Body>
+void FastThesisEncoder::over(const std::vector<Tile>& tiles, const Body& body) noexcept {
+    for_each_tile(options_.parallel_for, int(tiles.size()), [&](int lane, int i) {
+        body(std::size_t(i), tiles[std::size_t(i)], scratch_[std::size_t(lane)].data());
+    });
+}
+
+void FastThesisEncoder::step(const Array3<float>& grid, Array3<float>& latent) noexcept {
+    feed_in(grid);
+    normalise(0, nullptr, x0_);
+    step_full();
+    convolve(res_[0], states_[0]);
+    normalise(1, nullptr, inner_);
+    convolve(res_[1], inner_);
+    normalise(2, &states_[0], x2_);
+    step_half();
+    join_head();
+    normalise(3, nullptr, y0_);
+    convolve(head_[1], y0_);
+    normalise(4, &y0_, y1_);
+    over(tiles_, [&](std::size_t, const Tile& tile, float* scratch) {
+        head_[2].run({y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), z_.at(tile.y0, tile.x0),
+                      z_.pitch(), z_.channels(), tile.height(), tile.width()},
+                     scratch);
+    });
+    z_.save(latent.values().data());
+}
+
+ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,
+                                     std::ptrdiff_t pitch) noexcept {
+    return {in,
+            pitch,
+            raw_.pixel(tile.y0, tile.x0).data(),
+            std::ptrdiff_t(raw_.width()) * channels_,
+            channels_,
+            tile.height(),
+            tile.width()};
+}
+
+void FastThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
+    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+        const Tile near = tile.grown(1, grid.height(), grid.width());
+        const std::ptrdiff_t c = grid.channels(), row = (tile.width() + 2) * c;
+        std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
+        for (int y = near.y0; y < near.y1; ++y)
+            vector_kernels().compress(
+                grid.pixel(y, near.x0).data(),
+                scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * c,
+                std::size_t(near.width()) * std::size_t(c));
+        in_.run(into_raw(tile, scratch, row), scratch + (tile.height() + 2) * row);
+        keep_sums(i);
+    });
+}
+
+void FastThesisEncoder::convolve(const PackedConv& conv, const PaddedMap& from) noexcept {
+    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+        conv.run(into_raw(tile, from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()), scratch);
+        keep_sums(i);
+    });
+}
+
+void FastThesisEncoder::keep_sums(std::size_t i) noexcept {
+    const auto channels = std::size_t(channels_);
+    double* sum = sums_.data() + i * 2 * channels;
+    double* squares = sum + channels;
+    std::fill_n(sum, 2 * channels, 0.0);
+    const Tile& tile = tiles_[i];
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        const float* pixel = raw_.pixel(y, tile.x0).data();
+        for (int x = tile.x0; x < tile.x1; ++x, pixel += channels)
+            for (std::size_t c = 0; c < channels; ++c) {
+                const double v = pixel[c];
+                sum[c] += v;
+                squares[c] += v * v;
+            }
+    }
+}
+
+void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, PaddedMap& to) noexcept {
+    constexpr double kEpsilon = 1e-5;
+    const auto channels = std::size_t(channels_);
+    const double pixels = double(raw_.height()) * raw_.width();
+    const auto total = [&](std::size_t at) {
+        double sum = 0;
+        for (std::size_t i = 0; i < tiles_.size(); ++i) sum += sums_[i * 2 * channels + at];
+        return sum / pixels;
+    };
+    double grand = 0, spread = 0;
+    for (std::size_t c = 0; c < channels; ++c) grand += total(c) / double(channels);
+    for (std::size_t c = 0; c < channels; ++c) spread += std::pow(total(c) - grand, 2);
+    if (channels > 1) spread /= double(channels - 1);
+    const plain::NormWeights<float>& weights = norms_[norm];
+    for (std::size_t c = 0; c < channels; ++c) {
+        const double mean = total(c);
+        const double variance = std::max(total(channels + c) - mean * mean, 0.0);
+        const double scale = weights.gamma[c] / std::sqrt(variance + kEpsilon);
+        scale_[c] = float(scale);
+        shift_[c] = float(weights.beta[c] - mean * scale +
+                          weights.gamma[c] * weights.alpha[c] * (mean - grand) /
+                              std::sqrt(spread + kEpsilon));
+    }
+    over(tiles_, [&](std::size_t, const Tile& tile, float*) {
+        for (int y = tile.y0; y < tile.y1; ++y)
+            vector_kernels().norm_elu(raw_.pixel(y, tile.x0).data(), scale_.data(), shift_.data(),
+                                      skip != nullptr ? skip->at(y, tile.x0) : nullptr,
+                                      to.at(y, tile.x0), std::size_t(tile.width()), channels_);
+    });
+}
+
+/// h0 <- gru.0(x0, h0)
+void FastThesisEncoder::step_full() noexcept {
+    const auto bytes = std::size_t(channels_) * sizeof(float);
+    over(tiles_, [&](std::size_t i, const Tile&, float* scratch) {
+        full_gru_.step(states_[0], i, nullptr, scratch, [&](const GruTiles::Target& target) {
+            const Tile& region = target.region;
+            for (int y = region.y0; y < region.y1; ++y)
+                for (int x = region.x0; x < region.x1; ++x)
+                    std::memcpy(
+                        target.out + (y - region.y0) * target.pitch + (x - region.x0) * target.step,
+                        x0_.at(y, x), bytes);
+        });
+    });
+    over(tiles_, [&](std::size_t i, const Tile&, float*) { full_gru_.commit(states_[0], i); });
+}
+
+/// h1 <- gru.1(elu(down x2), h1)
+void FastThesisEncoder::step_half() noexcept {
+    over(half_tiles_, [&](std::size_t i, const Tile&, float* scratch) {
+        float* narrow = scratch + half_gru_.scratch_size();
+        half_gru_.step(states_[1], i, nullptr, scratch, [&](const GruTiles::Target& target) {
+            const Tile& region = target.region;
+            down_.run({x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), target.out,
+                       target.pitch, target.step, region.height(), region.width()},
+                      narrow);
+            for (int y = 0; y < region.height(); ++y)
+                for (int x = 0; x < region.width(); ++x) {
+                    float* pixel = target.out + y * target.pitch + x * target.step;
+                    vector_kernels().elu(pixel, pixel, std::size_t(channels_));
+                }
+        });
+    });
+    over(half_tiles_, [&](std::size_t i, const Tile&, float*) { half_gru_.commit(states_[1], i); });
+}
+
+/// raw_ = head.0 of [up2(h1); x2; x0]
+void FastThesisEncoder::join_head() noexcept {
+    const PaddedMap& below = states_[1];
+    const std::ptrdiff_t c = channels_, step = 3 * c;
+    const auto bytes = std::size_t(c) * sizeof(float);
+    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+        const Tile near = tile.grown(1, raw_.height(), raw_.width());
+        const std::ptrdiff_t row = (tile.width() + 2) * step;
+        std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
+        for (int y = near.y0; y < near.y1; ++y) {
+            const int y0 = y / 2, y1 = std::min((y + 1) / 2, below.height() - 1);
+            float* to = scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * step;
+            for (int x = near.x0; x < near.x1; ++x, to += step) {
+                const int x0 = x / 2, x1 = std::min((x + 1) / 2, below.width() - 1);
+                vector_kernels().average(below.at(y0, x0), below.at(y0, x1), below.at(y1, x0),
+                                         below.at(y1, x1), to, channels_);
+                std::memcpy(to + c, x2_.at(y, x), bytes);
+                std::memcpy(to + 2 * c, x0_.at(y, x), bytes);
+            }
+        }
+        head_[0].run(into_raw(tile, scratch, row), scratch + (tile.height() + 2) * row);
+        keep_sums(i);
+    });
+}
+
+void FastThesisEncoder::reset() noexcept {
+    for (PaddedMap& state : states_) state.clear();
+}
+
+Tensors FastThesisEncoder::state() const {
+    Tensors state;
+    for (int l = 0; l < 2; ++l) {
+        Tensor& tensor = state["h." + std::to_string(l)];
+        tensor.shape = {states_[l].height(), states_[l].width(), channels_};
+        tensor.values.resize(element_count(tensor.shape));
+        states_[l].save(tensor.values.data());
+    }
+    return state;
+}
+
+void FastThesisEncoder::restore(const Tensors& state) {
+    for (int l = 0; l < 2; ++l) states_[l].load(state.at("h." + std::to_string(l)).values.data());
+}
+
+}  // namespace eventide
