@@ -44,38 +44,79 @@ struct CommonSettings {
 
 using FlagValues = std::map<std::string, std::vector<std::string>>;
 
+/// Lines of at most 78 columns beside CLI11's column of names.
+std::string wrapped(const std::string& text) {
+    constexpr std::size_t kWidth = 48;
+    std::string lines, line;
+    std::istringstream words{text};
+    for (std::string word; words >> word;) {
+        if (!line.empty() && line.size() + 1 + word.size() > kWidth)
+            lines += std::exchange(line, "") + "\n";
+        line += (line.empty() ? "" : " ") + word;
+    }
+    return lines + line;
+}
+
+std::string help_of(const Setting& setting) {
+    const std::vector<std::string> value = setting.show();
+    const bool tell = setting.kind != ValueKind::flag && !value.empty() && !value.back().empty();
+    return wrapped(setting.help + (tell ? " [" + value.back() + "]" : ""));
+}
+
 /// One table's settings as options of a CLI11 command.
 class Options {
 public:
     void add(CLI::App& app, const SettingTable& table) {
-        for (const Setting& setting : table.settings) {
-            const std::string flag = flag_of(setting);
-            const std::string names =
-                setting.short_flag.empty() ? flag : setting.short_flag + "," + flag;
-            CLI::Option* option = nullptr;
-            if (setting.kind == ValueKind::flag) {
-                option = app.add_flag(names + ",!--no-" + flag.substr(2), setting.help);
-            } else {
-                option = app.add_option(names, setting.help);
-                option->type_name(setting.value_name)->allow_extra_args(false);
-                if (setting.kind == ValueKind::list)
-                    option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-                else
-                    option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-            }
-            options_.emplace_back(setting.key, option);
-        }
+        for (const Setting& setting : table.settings)
+            if (setting.kind == ValueKind::flag)
+                add_flag(app, setting);
+            else
+                add_option(app, setting);
     }
 
     FlagValues given() const {
         FlagValues values;
-        for (const auto& [key, option] : options_)
-            if (option->count() > 0) values[key] = option->results();
+        for (const Entry& entry : entries_) {
+            if (entry.option->count() > 0) values[entry.key] = entry.option->results();
+            if (entry.opposite != nullptr && entry.opposite->count() > 0)
+                values[entry.key] = {"false"};
+        }
         return values;
     }
 
 private:
-    std::vector<std::pair<std::string, CLI::Option*>> options_;
+    struct Entry {
+        std::string key;
+        CLI::Option* option = nullptr;
+        CLI::Option* opposite = nullptr;  // --no-x, to overrule file and environment; not in --help
+    };
+
+    void add_flag(CLI::App& app, const Setting& setting) {
+        const std::string flag = flag_of(setting);
+        CLI::Option* opposite = app.add_flag("--no-" + flag.substr(2))->group("");
+        const std::string help = help_of(setting);
+        CLI::Option* option = app.add_flag(flag, help);
+        opposite->excludes(option);
+        entries_.push_back({setting.key, option, opposite});
+    }
+
+    void add_option(CLI::App& app, const Setting& setting) {
+        const std::string flag = flag_of(setting);
+        const std::string names =
+            setting.short_flag.empty() ? flag : setting.short_flag + "," + flag;
+        const std::string help = help_of(setting);
+        CLI::Option* option = app.add_option(names, help);
+        // One value each: `--out a/ b` must not swallow b.
+        option->type_name(setting.value_name)
+            ->expected(1)
+            ->multi_option_policy(setting.kind == ValueKind::list
+                                      ? CLI::MultiOptionPolicy::TakeAll
+                                      : CLI::MultiOptionPolicy::TakeLast);
+        option->allow_extra_args(false);
+        entries_.push_back({setting.key, option, nullptr});
+    }
+
+    std::vector<Entry> entries_;
 };
 
 /// The command line, once it is understood.
@@ -114,9 +155,10 @@ Parsed parse(std::vector<std::string> arguments, CommonSettings& common) {
         ->type_name("FILE")
         ->envname("EVENTIDE_CONFIG");
     app.add_flag("--print-config", invocation.print_config,
-                 "Show each value of the command and where it comes from, and end");
+                 wrapped("Show each value of the command and where it comes from, and end"));
     app.add_flag("--default-config", print_defaults,
-                 "Print a configuration file with all keys, their meaning and defaults, and end");
+                 wrapped("Print a configuration file with all keys, their meaning and defaults, "
+                         "and end"));
     Options common_options;
     common_options.add(app, common.table());
 
@@ -127,9 +169,8 @@ Parsed parse(std::vector<std::string> arguments, CommonSettings& common) {
         CLI::App* sub = app.add_subcommand(commands[i]->name(), commands[i]->summary());
         sub->footer(commands[i]->examples());
         for (const Positional& positional : commands[i]->positionals())
-            sub->add_option(positional.name, *positional.value, positional.help)
-                ->type_name("")
-                ->required(positional.required);
+            sub->add_option(positional.name, *positional.value, wrapped(positional.help))
+                ->type_name("");
         options[i].add(*sub, commands[i]->settings());
         apps.push_back(sub);
     }
@@ -190,6 +231,10 @@ int run_parsed(Signals& signals, std::vector<std::string> arguments) {
         print_config(std::cout, {&shared, &own}, false);
         return exit_done;
     }
+    for (const Positional& positional : invocation->command->positionals())
+        if (positional.required && positional.value->empty())
+            throw Error(ErrorKind::usage,
+                        invocation->command->name() + ": expected " + positional.name + hint());
     Program program{signals, std::move(arguments), common.talk.quiet};
     const int result = invocation->command->run(program);
     std::cout.flush();
