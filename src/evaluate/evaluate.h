@@ -39,7 +39,7 @@ struct RecordingSettings {
     /// So many images are not scored, because the state is still empty; never more than the first
     /// half of them.
     int skip_images = 3;
-    std::optional<double> from_s, to_s;  ///< from the first event; only images inside are scored
+    std::optional<double> from_s, to_s;  ///< from the first event or image; what is scored
 };
 EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how);
 
@@ -66,9 +66,9 @@ EvaluateReport evaluate_folders(const std::filesystem::path& frames,
                                 const std::filesystem::path& references,
                                 const std::filesystem::path& lpips);
 
-/// The EVREAL protocol (reconstruction.md section 8) on a folder that holds the sequences of the
-/// Event Camera Dataset, each a folder with events.txt, images.txt and images/: cuts by the
-/// sequence's name, state reset per sequence, inference from 10 s before the cut.
+/// The EVREAL protocol (reconstruction.md section 8) on one sequence or a folder of them, in the
+/// layouts of evreal_sequence.h: cuts by the sequence's name, state reset per sequence, inference
+/// from 10 s before the cut.
 EvaluateReport evaluate_evreal(const std::filesystem::path& dataset, const EvaluateSettings& how);
 
 /// One factor for sigma, found on held-out data.

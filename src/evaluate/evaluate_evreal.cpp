@@ -1,6 +1,6 @@
 // The EVREAL protocol (Ercan et al. 2023; reconstruction.md section 8).
-#include "src/core/error.h"
 #include "src/evaluate/evaluate_recordings.h"
+#include "src/evaluate/evreal_sequence.h"
 
 #include <algorithm>
 #include <string_view>
@@ -15,7 +15,7 @@ struct Cut {
     double from_s, to_s;
 };
 
-// Seconds from the recording's first event; sequences not named here count in full.
+// Seconds from the recording's first event or image; sequences not named here count in full.
 constexpr Cut kCuts[] = {
     {"boxes_6dof", 5, 20},      {"calibration", 5, 20},       {"dynamic_6dof", 5, 20},
     {"poster_6dof", 5, 20},     {"shapes_6dof", 5, 20},       {"office_zigzag", 5, 12},
@@ -30,45 +30,23 @@ const Cut* cut_of(std::string_view sequence) {
     return found == std::end(kCuts) ? nullptr : found;
 }
 
-/// The folder itself where it is a sequence, else its sub-folders that are.
-std::vector<fs::path> sequences_in(const fs::path& dataset) {
-    const auto is_sequence = [](const fs::path& folder) {
-        return fs::exists(folder / "events.txt") && fs::exists(folder / "images.txt");
-    };
-    if (!fs::is_directory(dataset))
-        throw Error(ErrorKind::input, dataset.string() + ": expected a folder of sequences");
-    if (is_sequence(dataset)) return {dataset};
-    std::vector<fs::path> found;
-    bool hdf5 = false;
-    for (const fs::directory_entry& entry : fs::directory_iterator{dataset}) {
-        if (entry.is_directory() && is_sequence(entry.path())) found.push_back(entry.path());
-        const fs::path kind = entry.path().extension();
-        hdf5 = hdf5 || kind == ".h5" || kind == ".hdf5";
-    }
-    std::ranges::sort(found);
-    if (found.empty())
-        throw Error(ErrorKind::input,
-                    dataset.string() +
-                        ": expected folders with events.txt, images.txt and images/" +
-                        (hdf5 ? "; found HDF5 files, which are not read: convert them first" : ""));
-    return found;
-}
-
 }  // namespace
 
 EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& how) {
     Evaluation evaluation{"EVREAL protocol", how};
-    const std::vector<fs::path> sequences = sequences_in(dataset);
+    const std::vector<fs::path> sequences = evreal_sequences(dataset);
     evaluation.run_sequences(int(sequences.size()), [&](int i) {
         const fs::path& path = sequences[std::size_t(i)];
-        const Cut* cut = cut_of(path.filename().string());
+        const Cut* cut = cut_of(path.stem().string());
         std::optional<double> from, to;
         if (cut) {
             from = std::max(0., cut->from_s - kWarmUpSeconds);
             to = cut->to_s;
         }
-        const ReferenceSequence sequence = read_reference_sequence(path, from, to);
+        const ReferenceSequence sequence = read_evreal_sequence(path, from, to);
         ScoredImages which;
+        // EVREAL's loader never takes a recording's last image.
+        if (!cut && sequence.images.size() > 1) which.to = sequence.images.rbegin()[1].t;
         if (cut) which.from = sequence.first + SensorDuration{std::int64_t(cut->from_s * 1e6)};
         return evaluate_sequence(evaluation, sequence, "reference", which);
     });

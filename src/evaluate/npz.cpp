@@ -1,7 +1,8 @@
-// Zip (PKWARE APPNOTE 6.3, sections 4.3.7, 4.3.12, 4.3.16) around .npy (NumPy format 1 to 3).
+// Zip (PKWARE APPNOTE 6.3, sections 4.3.7, 4.3.12, 4.3.16) around .npy files.
 #include "src/evaluate/npz.h"
 
 #include "src/core/error.h"
+#include "src/evaluate/npy.h"
 
 #include <zlib.h>
 
@@ -30,34 +31,6 @@ T number_at(std::span<const std::byte> bytes, std::size_t offset) {
 
 std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-/// What follows `key` in the header of an .npy file, a Python dictionary as text.
-std::string_view value_after(std::string_view header, std::string_view key) {
-    const auto at = header.find(key);
-    if (at == header.npos) return {};
-    const auto start = header.find_first_not_of(": ", at + key.size());
-    return start == header.npos ? std::string_view{} : header.substr(start);
-}
-
-/// "(64, 3, 3, 3), ..." -> {64, 3, 3, 3}; false where it is not such a tuple.
-bool parse_shape(std::string_view text, std::vector<std::int64_t>& shape) {
-    if (!text.starts_with('(')) return false;
-    text.remove_prefix(1);
-    while (!text.empty() && text.front() != ')') {
-        if (text.front() == ' ' || text.front() == ',') {
-            text.remove_prefix(1);
-            continue;
-        }
-        std::int64_t value = 0;
-        std::size_t digits = 0;
-        for (; digits < text.size() && text[digits] >= '0' && text[digits] <= '9'; ++digits)
-            value = value * 10 + (text[digits] - '0');
-        if (digits == 0 || digits > 12 || shape.size() == 8) return false;
-        shape.push_back(value);
-        text.remove_prefix(digits);
-    }
-    return !text.empty();
 }
 
 }  // namespace
@@ -150,40 +123,18 @@ std::vector<std::byte> NpzFile::unpacked(const std::string& name) const {
 
 NpzArray NpzFile::array(const std::string& name) const {
     const std::vector<std::byte> file = unpacked(name);
-    const std::span<const std::byte> bytes{file};
-    if (bytes.size() < 12 || text_of(bytes.first(6)) != "\x93NUMPY")
-        refuse("array '" + name + "' is no .npy file");
-    const bool long_header = std::to_integer<int>(bytes[6]) >= 2;
-    const std::size_t start = long_header ? 12 : 10;
-    const std::size_t length =
-        long_header ? number_at<std::uint32_t>(bytes, 8) : number_at<std::uint16_t>(bytes, 8);
-    if (length > bytes.size() - start) refuse("array '" + name + "' has a header cut short");
-    const std::string_view header = text_of(bytes.subspan(start, length));
-    const std::string_view kind = value_after(header, "'descr'");
-    const bool wide = kind.starts_with("'<f8'");
-    if (!wide && !kind.starts_with("'<f4'"))
-        refuse("array '" + name + "' is of kind " + std::string{kind.substr(0, 8)} +
-               ", expected '<f4' or '<f8'");
-    if (!value_after(header, "'fortran_order'").starts_with("False"))
-        refuse("array '" + name + "' is in Fortran order");
-    NpzArray array;
-    if (!parse_shape(value_after(header, "'shape'"), array.shape))
-        refuse("array '" + name + "' has a shape that cannot be read");
-
-    const auto data = bytes.subspan(start + length);
-    const std::size_t item = wide ? 8 : 4;
-    std::uint64_t count = 1;
-    for (const std::int64_t n : array.shape) {
-        count *= std::uint64_t(n);
-        if (count > kLargestArrayBytes) refuse("array '" + name + "' is too large");
-    }
-    if (count * item != data.size())
-        refuse("array '" + name + "' holds " + std::to_string(data.size()) +
-               " bytes, its shape needs " + std::to_string(count * item));
-    array.values.resize(std::size_t(count));
+    const NpyHeader header = parse_npy_header(file, file_ + ": array '" + name + "'");
+    if (header.kind != 'f')
+        refuse("array '" + name + "' is of kind '" + header.kind +
+               "', expected numbers of kind 'f'");
+    const std::size_t bytes = file.size() - header.data_offset;
+    const auto item = std::size_t(header.item_bytes);
+    if (header.count > kLargestArrayBytes || std::size_t(header.count) * item != bytes)
+        refuse("array '" + name + "' holds " + std::to_string(bytes) + " bytes, its shape needs " +
+               std::to_string(header.count * item));
+    NpzArray array{header.shape, std::vector<float>(std::size_t(header.count))};
     for (std::size_t i = 0; i < array.values.size(); ++i)
-        array.values[i] =
-            wide ? float(number_at<double>(data, i * 8)) : number_at<float>(data, i * 4);
+        array.values[i] = float(npy_number(header, file.data() + header.data_offset, i));
     return array;
 }
 

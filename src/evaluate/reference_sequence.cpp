@@ -22,19 +22,13 @@ public:
         : into_(into), from_s_(from_s), to_s_(to_s) {}
 
     void take(Batch& batch) {
-        if (!begun_ && !batch.events.empty()) begin(batch.events.front().t);
+        if (!begun_ && !batch.events.empty()) begin(batch);
         for (const Event& event : batch.events)
             if (event.t >= from_ && event.t <= to_) into_.events.push_back(event);
-        for (ReferenceImage& image : batch.images) {
-            if (begun_ && (image.t < from_ || image.t > to_)) continue;
-            into_.images.push_back(std::move(image));
-        }
+        for (ReferenceImage& image : batch.images) into_.images.push_back(std::move(image));
         batch.clear();
-    }
-    void finish() {  // images that came before the first event
-        std::erase_if(into_.images, [this](const ReferenceImage& image) {
-            return image.t < from_ || image.t > to_;
-        });
+        // Images before the first event wait for it to say which are wanted.
+        if (begun_) drop_images();
     }
     bool past_end(std::optional<SensorTime> clock) const {
         // Images may come a while after the events around them.
@@ -42,17 +36,32 @@ public:
     }
 
 private:
-    void begin(SensorTime first) {
+    void begin(const Batch& batch) {
         begun_ = true;
+        SensorTime first = batch.events.front().t;
+        if (!into_.images.empty()) first = std::min(first, into_.images.front().t);
+        if (!batch.images.empty()) first = std::min(first, batch.images.front().t);
         into_.first = first;
         if (from_s_) from_ = first + seconds(*from_s_);
         if (to_s_) to_ = first + seconds(*to_s_);
+    }
+    void drop_images() {
+        std::erase_if(into_.images, [this](const ReferenceImage& image) {
+            return image.t < from_ || image.t > to_;
+        });
     }
     ReferenceSequence& into_;
     std::optional<double> from_s_, to_s_;
     SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
     bool begun_ = false;
 };
+
+void mend_times(std::vector<ReferenceImage>& images) {
+    for (std::size_t i = 1; i + 1 < images.size(); ++i)
+        if (images[i].t > images[i + 1].t)
+            images[i].t = images[i - 1].t + (images[i + 1].t - images[i - 1].t) / 2;
+    std::ranges::stable_sort(images, {}, &ReferenceImage::t);
+}
 
 std::string name_of(const std::filesystem::path& path) {
     const auto plain = path.lexically_normal();
@@ -79,7 +88,7 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     }
     parser->finish(batch);
     keeper.take(batch);
-    keeper.finish();
+    mend_times(sequence.images);
 
     const auto refuse = [&](const std::string& what) {
         throw Error(ErrorKind::input, path.string() + ": " + what);
@@ -88,7 +97,6 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     if (sequence.images.empty())
         refuse("expected reference images to compare with, found none in the time asked for");
     if (sequence.width <= 0 || sequence.height <= 0) refuse("does not say the sensor's size");
-    std::ranges::stable_sort(sequence.images, {}, &ReferenceImage::t);
     return sequence;
 }
 

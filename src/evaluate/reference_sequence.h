@@ -16,13 +16,17 @@ namespace eventide {
 struct ReferenceSequence {
     std::string name;  ///< of the folder or file
     int width = 0, height = 0;
-    SensorTime first{};         ///< of the recording's first event, also where that was not kept
-    std::vector<Event> events;  ///< in order of time
+    /// Of the recording's first event or image, also where that was not kept: times in seconds are
+    /// told from here.
+    SensorTime first{};
+    std::vector<Event> events;           ///< in order of time
     std::vector<ReferenceImage> images;  ///< in order of time
 };
 
-/// Reads a recording of any format. Where given, only data in [from, to] (s from the first event)
-/// are kept. Throws Error(input) where there are no events, no images, or no sensor size.
+/// Reads a recording of any format. Where given, only data in [from, to] (s from `first`)
+/// are kept. A single image time that lies after the next one is taken as the middle of its
+/// neighbours, as EVREAL does (HQF has one). Throws Error(input) where there are no events, no
+/// images, or no sensor size.
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s = {},
                                           std::optional<double> to_s = {});
