@@ -4,6 +4,8 @@
 #include "src/codec/aedat1.h"
 #include "src/codec/aedat2.h"
 #include "src/codec/aedat3.h"
+#include "src/codec/aedat4.h"
+#include "src/codec/aedat4_writer.h"
 #include "src/codec/text.h"
 #include "src/core/error.h"
 
@@ -32,7 +34,8 @@ template <const char* kMagic>
 bool has_magic(Bytes first_bytes) {
     return starts_with(first_bytes, kMagic);
 }
-constexpr char kAedat2Magic[] = "#!AER-DAT2.", kAedat3Magic[] = "#!AER-DAT3.";
+constexpr char kAedat2Magic[] = "#!AER-DAT2.", kAedat3Magic[] = "#!AER-DAT3.",
+               kAedat4FirstLine[] = "#!AER-DAT4.";
 
 OpenedStream open_aedat1(Bytes first_bytes, const OpenOptions& options) {
     const auto make_parser = [one_is_on = options.dvs128_one_is_on](const StreamHeader&) {
@@ -58,6 +61,14 @@ OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
     return {header.stream, make_parser, 1};
 }
 
+OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
+    const Aedat4Header header = read_aedat4_header(first_bytes);
+    const auto make_parser = [header](const StreamHeader& stream) {
+        return std::make_unique<Aedat4Parser>(header, stream.width, stream.height);
+    };
+    return {header.stream, make_parser, 1};
+}
+
 OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
     const TextHeader header = read_text_header(first_bytes, options.text);
     const auto make_parser = [layout = header.layout](const StreamHeader& stream) {
@@ -71,6 +82,8 @@ constexpr FormatHolds kEverything{true, true, true, true};
 
 // Formats that say what they are come first, text last.
 const std::array kFormats{
+    Format{"aedat4", "AEDAT 4", ".aedat4", kEverything, has_magic<kAedat4FirstLine>, open_aedat4,
+           make<Aedat4Writer>},
     Format{"aedat3", "AEDAT 3.1", ".aedat", kEverything, has_magic<kAedat3Magic>, open_aedat3,
            make<Aedat3Writer>},
     Format{"aedat2", "AEDAT 2.0", ".aedat2", kEverything, has_magic<kAedat2Magic>, open_aedat2,

@@ -1,0 +1,46 @@
+// The compression of AEDAT4 packets: each one LZ4 or ZSTD frame, or bare.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace eventide {
+
+/// Numbered as in the file's header.
+enum class Aedat4Compression : std::int32_t { none, lz4, lz4_high, zstd, zstd_high };
+
+/// The largest packet read, packed or not: real ones hold 10 ms or one image. What comes is
+/// unpacked into memory that grows with the data themselves, never with a number in the file.
+constexpr std::size_t kLargestAedat4Packet = std::size_t(256) << 20;  // bytes
+
+bool is_lz4_frame(std::span<const std::byte> bytes);
+bool is_zstd_frame(std::span<const std::byte> bytes);
+
+/// Unpacks one packet after the other; keeps its memory.
+class Aedat4Unpacker {
+public:
+    Aedat4Unpacker();
+    ~Aedat4Unpacker();
+
+    /// The content of an LZ4 or ZSTD frame, or the bytes themselves when they are neither. Borrowed
+    /// until the next call. Empty when the frame is damaged, incomplete, or too large.
+    std::optional<std::span<const std::byte>> unpack(std::span<const std::byte> packed);
+
+private:
+    struct Contexts;
+    std::optional<std::size_t> unpack_lz4(std::span<const std::byte> packed, bool& too_small);
+    std::optional<std::size_t> unpack_zstd(std::span<const std::byte> packed, bool& too_small);
+
+    std::unique_ptr<Contexts> contexts_;
+    std::vector<std::byte> unpacked_;
+};
+
+/// Appends the packed bytes. Throws Error (failed) when there is no memory for it.
+void pack_aedat4(std::span<const std::byte> bytes, Aedat4Compression compression,
+                 std::vector<std::byte>& out);
+
+}  // namespace eventide

@@ -1,0 +1,65 @@
+// The table at the end of an AEDAT4 file: where each packet lies and which times it holds.
+#pragma once
+
+#include "src/codec/aedat4_header.h"
+#include "src/core/sensor_time.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace eventide {
+
+struct Aedat4TableEntry {
+    std::uint64_t position = 0;  ///< of the packet's payload in the file, 8 bytes after its header
+    std::int32_t stream = 0;
+    std::int32_t bytes = 0;     ///< of the payload
+    std::int64_t elements = 0;  ///< 0 where the writer did not say
+    SensorTime first{}, last{};
+};
+
+struct Aedat4Table {
+    std::vector<Aedat4TableEntry> entries;  ///< in the order of the file
+
+    /// Some writers leave the times out.
+    bool has_times() const;
+
+    /// The position of a packet's header from which all data at or after t are read; the end of the
+    /// last packet when there are none. Needs has_times().
+    std::uint64_t position_for(SensorTime t) const;
+};
+
+/// The table from its (packed) bytes; empty when they are damaged.
+std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes);
+
+/// Fills the bytes from a position in the file and returns how many there were.
+using ReadAt = std::function<std::size_t(std::uint64_t position, std::span<std::byte> into)>;
+
+/// The table of a file: its own where it is whole and tells times, else made anew from the packets,
+/// which takes reading and unpacking all of them.
+struct Aedat4FileTable {
+    Aedat4Table table;
+    bool rebuilt = false;
+};
+Aedat4FileTable load_aedat4_table(const Aedat4Header& header, const ReadAt& read_at);
+
+/// The bytes of a table as they go into a file.
+std::vector<std::byte> aedat4_table_bytes(const Aedat4Table& table, Aedat4Compression compression);
+
+/// Packets seen on the way, to be compared with a table without keeping them.
+class Aedat4PacketTrace {
+public:
+    void add(std::int32_t stream, std::int32_t bytes) {
+        // FNV-1a over the two numbers.
+        for (const std::uint32_t n : {std::uint32_t(stream), std::uint32_t(bytes)})
+            hash_ = (hash_ ^ n) * 0x100000001b3;
+    }
+    friend bool operator==(const Aedat4PacketTrace&, const Aedat4PacketTrace&) = default;
+
+private:
+    std::uint64_t hash_ = 0xcbf29ce484222325;
+};
+
+}  // namespace eventide
