@@ -5,6 +5,7 @@
 #include "pipeline/sinks/folder.h"
 #include "pipeline/sinks/null.h"
 #include "pipeline/sinks/stream.h"
+#include "pipeline/sinks/v4l2_output.h"
 #include "pipeline/sinks/video.h"
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
@@ -64,6 +65,14 @@ std::unique_ptr<Sink> open_window(const RunSettings& settings, const SinkPlan& p
     return std::make_unique<WindowSink>(std::move(window));
 }
 
+std::unique_ptr<Sink> open_v4l2(const std::string& node, const RunSettings& settings) {
+    V4l2OutputSettings loopback;
+    loopback.node = node;
+    loopback.uncertainty = settings.uncertainty;
+    loopback.sigma_white = float(settings.sigma_white);
+    return std::make_unique<V4l2OutputSink>(std::move(loopback));
+}
+
 std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& settings,
                                  const SinkPlan& plan) {
     ContactSheetSettings sheet;
@@ -85,6 +94,7 @@ std::unique_ptr<Sink> open_sink(const std::string& sink, const RunSettings& sett
     if (sink == "window") return open_window(settings, plan);
     if (sink == "-") return open_stream(sink, StreamFormat::y4m, settings, plan);
     if (const auto path = after_prefix(sink, "sheet")) return open_sheet(*path, settings, plan);
+    if (const auto node = after_prefix(sink, "v4l2")) return open_v4l2(*node, settings);
     if (const auto path = after_prefix(sink, "folder")) return open_folder(*path, settings, plan);
     for (const StreamFormat format : kStreamFormats)
         if (const auto path = after_prefix(sink, name_of(format)))
@@ -97,7 +107,8 @@ std::unique_ptr<Sink> open_sink(const std::string& sink, const RunSettings& sett
     throw Error(ErrorKind::usage,
                 "--out " + sink +
                     ": expected a folder (ending in /), x.mp4, x.mkv, x.y4m, -, a named pipe, "
-                    "window, null, sheet:x.png, or y4m:, y4m-mono:, gray8:, gray16:, grayf32: and "
+                    "window, null, v4l2:/dev/videoN, sheet:x.png, or y4m:, y4m-mono:, gray8:, "
+                    "gray16:, grayf32: and "
                     "a file, pipe or -");
 }
 

@@ -185,7 +185,7 @@ SettingTable RunSettings::table() {
         "Where pictures go, any number of times: dir/ (PNG, TIFF, times), x.mp4, x.mkv, x.y4m, - "
         "(Y4M on standard output), y4m:, y4m-mono:, gray8:, gray16: or grayf32: and a file, pipe "
         "or "
-        "-, window, sheet:x.png (contact sheet), null.");
+        "-, window, v4l2:/dev/videoN (a virtual camera), sheet:x.png (contact sheet), null.");
     sinks.short_flag = "-o";
     add(std::move(sinks));
     add(flag_setting("overwrite", overwrite, "Replace what is there."));
