@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <filesystem>
 #include <random>
@@ -50,18 +51,15 @@ private:
 class DigestSink final : public Sink {
 public:
     void write(const Frame& frame) override {
-        std::uint64_t hash = 0xCBF29CE484222325;  // FNV-1a
-        const auto mix = [&hash](const auto& value) {
-            const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
-            for (std::size_t i = 0; i < sizeof value; ++i) hash = (hash ^ bytes[i]) * 0x100000001B3;
-        };
-        mix(frame.t);
-        mix(frame.window.begin);
-        mix(frame.window.end);
+        std::uint64_t hash = 0xCBF29CE484222325;  // FNV-1a, on words
+        const auto mix = [&hash](std::uint64_t word) { hash = (hash ^ word) * 0x100000001B3; };
+        mix(std::uint64_t(to_us(frame.t)));
+        mix(std::uint64_t(to_us(frame.window.begin)));
+        mix(std::uint64_t(to_us(frame.window.end)));
         mix(frame.index);
         mix(frame.events);
-        for (const float value : frame.intensity.values()) mix(value);
-        for (const float value : frame.sigma.values()) mix(value);
+        for (const float value : frame.intensity.values()) mix(std::bit_cast<std::uint32_t>(value));
+        for (const float value : frame.sigma.values()) mix(std::bit_cast<std::uint32_t>(value));
         digests.push_back(hash);
     }
     std::vector<std::uint64_t> digests;
@@ -138,12 +136,15 @@ std::string name_of_file(const testing::TestParamInfo<const char*>& instance) {
 
 INSTANTIATE_TEST_SUITE_P(All, RealRecordings,
                          testing::Values("recordings/slider_depth_head", "recordings/davis346_desk",
+                                         "formats/davis346_robotarm.aedat4",
+                                         "formats/davis346_desk.aedat4",
                                          "formats/davis240_imu_rotdisk.aedat2",
                                          "formats/dvs128_short.aedat2"),
                          name_of_file);
 INSTANTIATE_TEST_SUITE_P(All, RealRecordingsWithImages,
-                         testing::Values("recordings/slider_depth_head",
-                                         "recordings/davis346_desk"),
+                         testing::Values("recordings/slider_depth_head", "recordings/davis346_desk",
+                                         "formats/davis346_robotarm.aedat4",
+                                         "formats/davis346_desk.aedat4"),
                          name_of_file);
 
 }  // namespace

@@ -94,12 +94,12 @@ void ToyParser::finish(Batch&) {
     held_.clear();
 }
 
-ToySource::ToySource(std::vector<std::vector<std::byte>> packets, bool live)
+ToySource::ToySource(std::vector<std::vector<std::byte>> packets, bool live, int height, int width)
     : packets_(std::move(packets)), live_(live) {
     info_.name = "toy";
     info_.format = "toy";
-    info_.width = kToyWidth;
-    info_.height = kToyHeight;
+    info_.width = width;
+    info_.height = height;
 }
 
 std::vector<std::vector<std::byte>> ToySource::packets_of(std::span<const std::byte> bytes,

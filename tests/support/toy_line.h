@@ -57,7 +57,8 @@ private:
 /// Gives packets made before. Thread: as Source says; `before_read` runs on the source thread.
 class ToySource final : public Source {
 public:
-    explicit ToySource(std::vector<std::vector<std::byte>> packets, bool live = false);
+    explicit ToySource(std::vector<std::vector<std::byte>> packets, bool live = false,
+                       int height = kToyHeight, int width = kToyWidth);
 
     /// The events in packets of so many bytes, or with `rng` of 0 to 2 n bytes.
     static std::vector<std::vector<std::byte>> packets_of(std::span<const std::byte> bytes,
