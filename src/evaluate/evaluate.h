@@ -36,8 +36,9 @@ struct RecordingSettings {
     /// (EVREAL); else as parse_window() has it ("50ms", "0.35epp"), and pictures are rendered
     /// inside the event frames.
     std::string window = "reference";
-    /// So many images are not scored, because the state is still empty; never more than the first
-    /// half of them.
+    /// So many images are not scored, because the state is still empty, but at least one is.
+    /// kSkipHalf: the first half.
+    static constexpr int kSkipHalf = -1;
     int skip_images = 3;
     std::optional<double> from_s, to_s;  ///< from the first event or image; what is scored
 };

@@ -64,14 +64,19 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         if (what.from_s) read_from = std::max(0., *what.from_s - kWarmUpSeconds);
         const ReferenceSequence sequence = read_reference_sequence(path, read_from, what.to_s);
         ScoredImages which;
-        which.skip = std::clamp(what.skip_images, 0, int(sequence.images.size()) / 2);
+        const int images = int(sequence.images.size());
+        which.skip = what.skip_images == RecordingSettings::kSkipHalf
+                         ? images / 2
+                         : std::min(what.skip_images, images - 1);
         if (what.from_s)
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
         return evaluate_sequence(evaluation, sequence, what.window, which);
     });
     return evaluation.finish("windows " + what.window + ", first " +
-                             std::to_string(what.skip_images) +
-                             " images (at most half) not scored");
+                             (what.skip_images == RecordingSettings::kSkipHalf
+                                  ? std::string{"half of the images"}
+                                  : std::to_string(what.skip_images) + " images") +
+                             " not scored");
 }
 
 }  // namespace eventide

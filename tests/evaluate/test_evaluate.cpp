@@ -81,7 +81,8 @@ TEST(ReferenceSlices, HoldEachEventBetweenTheImagesExactlyOnce) {
 
 TEST(EvaluateRecordings, ScoresEveryImageThatIsNotSkipped) {
     const fs::path folder = write_recording(fresh_folder("recording"), .9, .001, .1);
-    for (const auto& [skip, expected] : {std::pair{0, 9}, {3, 6}, {100, 5}}) {
+    for (const auto& [skip, expected] :
+         {std::pair{0, 9}, {3, 6}, {100, 1}, {RecordingSettings::kSkipHalf, 5}}) {
         RecordingSettings what;
         what.recordings = {folder};
         what.skip_images = skip;
