@@ -55,9 +55,11 @@ SensorSettings thesis_sensor() {
 
 SceneSettings demo_scene() {
     SceneSettings s;
-    s.wander.speed = s.wander.usual_speed = {40, 40};
-    s.wander.leg_s = {.9, .9};
-    s.wander.turn = {.5, .5};
+    s.wander.speed = {10, 150};
+    s.wander.usual_speed = {60, 60};
+    s.wander.usual = 1;
+    s.wander.leg_s = {.7, .7};
+    s.wander.turn = {.8, .8};
     s.wander.linear_probability = 0;
     s.view_share = {.8, .8};
     s.still_background = 0;

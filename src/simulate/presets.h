@@ -15,6 +15,7 @@ struct SimulationPreset {
     std::string what;  ///< one line for --help
     SceneSettings scene;
     SensorSettings sensor;
+    std::uint64_t seed = 1;  ///< the one to show
 };
 
 /// thesis_train, thesis_test: the thesis' scenes before a sensor of its threshold, .35.

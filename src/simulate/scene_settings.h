@@ -82,9 +82,9 @@ struct SceneSettings {
     TargetRule target = TargetRule::exposed;
     // Where real DAVIS images lie: means .20 to .48, deviations .12 to .28 (the five recordings at
     // hand); photographs: .25 to .6 and .11 to .3.
-    Range target_mean{.2, .52};
-    Range target_deviation{.12, .28};
-    Range target_black{-.12, .12};        ///< level that darkness is read out as, at most
+    Range target_mean{.17, .54};
+    Range target_deviation{.14, .32};
+    Range target_black{-.25, .15};        ///< level that darkness is read out as, at most
     Range target_white{.45, 1};           ///< level at which the pixels saturate ...
     double target_white_below_one = .25;  ///< ... with this probability; else 1
     Range target_gamma{1, 2.2};           ///< I ~ L^(1 / gamma); 1 is linear in light as an APS is

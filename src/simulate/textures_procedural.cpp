@@ -1,5 +1,6 @@
 // Textures made from nothing: so that the demo and the tests need no image.
 #include "src/simulate/random.h"
+#include "src/simulate/texture_pack.h"
 #include "src/simulate/textures.h"
 
 #include <algorithm>
@@ -128,7 +129,7 @@ void draw_polygons(Canvas& canvas, Random& random) {
 
 GreyImage procedural_image(std::size_t i, int side, std::uint64_t seed) {
     Random random{seed * 1000003 + i};
-    Canvas canvas(side, side);
+    Canvas canvas(2 * side, 2 * side);  // and then shrunk, which smooths the edges
     switch (i % 5) {
         case 0:
             add_clouds(canvas, 1, float(random.uniform({.5, .85})), random);
@@ -146,7 +147,7 @@ GreyImage procedural_image(std::size_t i, int side, std::uint64_t seed) {
             draw_bars(canvas, random);
             break;
     }
-    return to_grey(canvas);
+    return shrunk(to_grey(canvas), side);
 }
 
 std::shared_ptr<TextureLibrary> procedural_textures(std::size_t count, int side,
