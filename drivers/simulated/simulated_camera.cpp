@@ -12,8 +12,7 @@ namespace eventide {
 namespace {
 
 std::shared_ptr<const TextureLibrary> open_textures(const std::string& path) {
-    constexpr std::size_t kProcedural = 40;
-    if (path.empty()) return procedural_textures(kProcedural);
+    if (path.empty()) return procedural_textures(SimulatedCamera::kProceduralTextures);
     if (std::filesystem::is_directory(path)) return textures_from_folder(path);
     return textures_from_pack(path);
 }

@@ -22,6 +22,8 @@ public:
     static constexpr std::chrono::milliseconds kSilence{15};  ///< until read() says timeout
     static constexpr std::chrono::milliseconds kMostLateness{100};
 
+    static constexpr std::size_t kProceduralTextures = 25;
+
     explicit SimulatedCamera(const SimulatedSourceSettings& settings);
 
     const SensorInfo& info() const override { return info_; }

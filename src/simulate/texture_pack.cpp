@@ -124,29 +124,40 @@ GreyImage shrunk(const GreyImage& image, int longest) {
     if (factor <= 1) return image;
     const auto length = [&](int n) { return std::max(2, int(n / factor + .5)); };
     GreyImage out(length(image.height()), length(image.width()));
-    // Share of source pixel j that lies below target pixel i of n out of m.
-    const auto overlap = [](int j, int i, int m, int n) {
-        const double step = double(m) / n;
-        return std::max(0.0, std::min(j + 1.0, (i + 1) * step) - std::max(double(j), i * step));
+    // Which pixels of m lie below each of n, with the shares of its area.
+    struct Part {
+        int first = 0;
+        std::vector<double> shares;
     };
-    for (int y = 0; y < out.height(); ++y)
-        for (int x = 0; x < out.width(); ++x) {
-            double sum = 0, weights = 0;
-            const auto first = [](int i, int m, int n) { return int(std::int64_t(i) * m / n); };
-            const auto last = [&](int i, int m, int n) {
-                return std::min(m - 1, first(i + 1, m, n));
-            };
-            for (int j = first(y, image.height(), out.height());
-                 j <= last(y, image.height(), out.height()); ++j)
-                for (int i = first(x, image.width(), out.width());
-                     i <= last(x, image.width(), out.width()); ++i) {
-                    const double weight = overlap(j, y, image.height(), out.height()) *
-                                          overlap(i, x, image.width(), out.width());
-                    sum += weight * double(image(j, i));
-                    weights += weight;
-                }
-            out(y, x) = std::uint8_t(sum / weights + .5);
+    const auto parts = [](int m, int n) {
+        std::vector<Part> all;
+        const double step = double(m) / n;
+        for (int i = 0; i < n; ++i) {
+            Part part{.first = int(i * step), .shares = {}};
+            for (int j = part.first; j < m && j < (i + 1) * step; ++j)
+                part.shares.push_back(
+                    (std::min(j + 1.0, (i + 1) * step) - std::max(double(j), i * step)) / step);
+            all.push_back(std::move(part));
         }
+        return all;
+    };
+    const auto rows = parts(image.height(), out.height());
+    const auto columns = parts(image.width(), out.width());
+    std::vector<double> sums(static_cast<std::size_t>(image.width()));
+    for (int y = 0; y < out.height(); ++y) {
+        const Part& row = rows[std::size_t(y)];
+        std::ranges::fill(sums, 0.0);
+        for (std::size_t j = 0; j < row.shares.size(); ++j)
+            for (std::size_t x = 0; x < sums.size(); ++x)
+                sums[x] += row.shares[j] * double(image.row(row.first + int(j))[x]);
+        for (int x = 0; x < out.width(); ++x) {
+            const Part& column = columns[std::size_t(x)];
+            double sum = 0;
+            for (std::size_t i = 0; i < column.shares.size(); ++i)
+                sum += column.shares[i] * sums[std::size_t(column.first) + i];
+            out(y, x) = std::uint8_t(sum + .5);
+        }
+    }
     return out;
 }
 

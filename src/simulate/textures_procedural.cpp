@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace eventide {
 
@@ -25,19 +28,28 @@ GreyImage to_grey(const Canvas& canvas) {
 void add_noise(Canvas& canvas, int cells, float amplitude, Random& random) {
     Array2<float> grid(cells + 1, cells + 1);
     for (float& v : grid.values()) v = float(random.uniform({-1, 1})) * amplitude;
-    const auto place = [cells](int i, int n) {
-        const float s = float(i) * float(cells) / float(n);
-        const float f = s - std::floor(s);
-        return std::pair{int(s), f * f * (3 - 2 * f)};
-    };
-    for (int y = 0; y < canvas.height(); ++y)
-        for (int x = 0; x < canvas.width(); ++x) {
-            const auto [j, v] = place(y, canvas.height());
-            const auto [i, u] = place(x, canvas.width());
-            const float top = std::lerp(grid(j, i), grid(j, i + 1), u);
-            const float bottom = std::lerp(grid(j + 1, i), grid(j + 1, i + 1), u);
-            canvas(y, x) += std::lerp(top, bottom, v);
+    // Cell and share of the way to the next, of each pixel in one direction.
+    const auto places = [cells](int n) {
+        std::vector<std::pair<int, float>> out;
+        for (int i = 0; i < n; ++i) {
+            const float s = float(i) * float(cells) / float(n), f = s - std::floor(s);
+            out.emplace_back(int(s), f * f * (3 - 2 * f));
         }
+        return out;
+    };
+    const auto columns = places(canvas.width()), rows = places(canvas.height());
+    std::vector<float> blended(static_cast<std::size_t>(cells + 1));
+    for (int y = 0; y < canvas.height(); ++y) {
+        const auto [j, v] = rows[std::size_t(y)];
+        for (int i = 0; i <= cells; ++i)
+            blended[std::size_t(i)] = grid(j, i) + v * (grid(j + 1, i) - grid(j, i));
+        const std::span<float> row = canvas.row(y);
+        for (std::size_t x = 0; x < row.size(); ++x) {
+            const auto [i, u] = columns[x];
+            const float left = blended[std::size_t(i)], right = blended[std::size_t(i) + 1];
+            row[x] += left + u * (right - left);
+        }
+    }
 }
 
 /// Every octave a factor `roughness` weaker than the coarser one before it.
@@ -59,17 +71,21 @@ void fill_polygon(Canvas& canvas, Random& random, float value) {
     const double cy = random.uniform({0, double(canvas.height())});
     const double radius = random.log_uniform({.03, .3}) * canvas.width();
     const int corners = random.integer(3, 7);
-    std::vector<std::pair<double, double>> sides;  // direction of the normal, distance
-    for (int i = 0; i < corners; ++i)
-        sides.emplace_back((i + random.uniform({-.3, .3})) * 2 * std::numbers::pi / corners,
-                           radius * random.uniform({.4, 1}));
-    for (int y = std::max(0, int(cy - 2 * radius));
-         y < std::min(canvas.height(), int(cy + 2 * radius)); ++y)
-        for (int x = std::max(0, int(cx - 2 * radius));
-             x < std::min(canvas.width(), int(cx + 2 * radius)); ++x)
-            if (std::ranges::all_of(sides, [&](const auto& side) {
-                    return (x - cx) * std::cos(side.first) + (y - cy) * std::sin(side.first) <
-                           side.second;
+    struct Side {
+        double nx, ny, distance;
+    };
+    std::vector<Side> sides;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = (i + random.uniform({-.3, .3})) * 2 * std::numbers::pi / corners;
+        sides.push_back({std::cos(angle), std::sin(angle), radius * random.uniform({.4, 1})});
+    }
+    const auto clip = [](double v, int n) { return std::clamp(int(v), 0, n); };
+    for (int y = clip(cy - 2 * radius, canvas.height()); y < clip(cy + 2 * radius, canvas.height());
+         ++y)
+        for (int x = clip(cx - 2 * radius, canvas.width());
+             x < clip(cx + 2 * radius, canvas.width()); ++x)
+            if (std::ranges::all_of(sides, [&](const Side& side) {
+                    return (x - cx) * side.nx + (y - cy) * side.ny < side.distance;
                 }))
                 canvas(y, x) = value;
 }

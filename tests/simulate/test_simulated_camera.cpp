@@ -54,7 +54,7 @@ TEST(SimulatedCamera, GivesTheRecordingOfItsSettingsAndEnds) {
     auto settings = parse_simulated_name("sim:demo?size=40x30&seconds=.5&speed=max&seed=4");
     Batch expected;
     simulate_recording(
-        settings.recording, procedural_textures(40),
+        settings.recording, procedural_textures(SimulatedCamera::kProceduralTextures),
         [&](const Batch& b, const std::vector<Truth>&) {
             expected.events.insert(expected.events.end(), b.events.begin(), b.events.end());
             expected.images.insert(expected.images.end(), b.images.begin(), b.images.end());
