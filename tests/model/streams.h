@@ -4,6 +4,8 @@
 #include "src/core/frame_data.h"
 #include "src/model/model_file.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <random>
 

@@ -1,0 +1,287 @@
+// Milliseconds per event frame (encode) and per picture (render), beside oneDNN layer by layer and
+// the processor's own peak. Run with OMP_NUM_THREADS=1, so that oneDNN uses one thread too; add
+// EVENTIDE_BENCH_AVX2=1 and ONEDNN_MAX_CPU_ISA=AVX2 for the figures of a processor without AVX-512.
+#include "pipeline/parallel_tbb.h"
+#include "src/kernels/vector_kernels.h"
+#include "src/model/encoder.h"
+#include "src/model/renderer.h"
+#include "src/nn/packed_layers.h"
+#include "tests/model/streams.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#if EVENTIDE_ONEDNN
+#include <oneapi/dnnl/dnnl.hpp>
+
+#include <unordered_map>
+#endif
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace eventide {
+namespace {
+
+using Kind = test::GridStream::Kind;
+
+struct Layer {
+    int height, width, in, out, stride;
+    double products() const {
+        return 9.0 * in * out * ((height + stride - 1) / stride) * ((width + stride - 1) / stride);
+    }
+};
+
+/// Every 3x3 convolution of an encoder.
+std::vector<Layer> layers_of(const ModelConfig& config, int height, int width) {
+    std::vector<Layer> layers;
+    const auto& c = config.widths;
+    const auto half = [](int n) { return (n + 1) / 2; };
+    if (config.encoder == EncoderKind::thesis) {
+        const int n = c[0], h = height, w = width;
+        layers = {{h, w, config.input_channels(), n, 1},
+                  {h, w, 2 * n, 3 * n, 1},
+                  {h, w, n, 2 * n, 1},
+                  {h, w, n, n, 2},
+                  {half(h), half(w), 2 * n, 3 * n, 1},
+                  {h, w, 3 * n, n, 1},
+                  {h, w, n, n, 1},
+                  {h, w, n, config.latent, 1}};
+        return layers;
+    }
+    int h = height, w = width;
+    for (std::size_t l = 0; l < c.size(); ++l) {
+        if (l == 0) {
+            layers.push_back({h, w, config.input_channels(), c[0], 1});
+        } else {
+            layers.push_back({h, w, c[l - 1], c[l], 2});
+            h = half(h);
+            w = half(w);
+        }
+        if (config.recurrent[l] != 0) {
+            layers.push_back({h, w, 2 * c[l], 2 * c[l], 1});
+            layers.push_back({h, w, 2 * c[l], c[l], 1});
+        }
+        if (l + 1 < c.size()) layers.push_back({h, w, c[l] + c[l + 1], c[l], 1});
+    }
+    for (int i = 0; i < 2 * config.res_blocks; ++i) layers.push_back({h, w, c.back(), c.back(), 1});
+    layers.push_back({height, width, c[0], config.latent, 1});
+    return layers;
+}
+
+double products_of(const std::vector<Layer>& layers) {
+    double sum = 0;
+    for (const Layer& layer : layers) sum += layer.products();
+    return sum;
+}
+
+void report(benchmark::State& state, double products) {
+    state.counters["GFLOP/s"] =
+        benchmark::Counter(2e-9 * products, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+struct Setting {
+    std::string name;
+    ModelConfig config;
+    int width, height, threads;
+    Precision precision;
+
+    EngineOptions options() const {
+        EngineOptions options;
+        options.precision = precision;
+        options.parallel_for = threads > 1 ? parallel_for_with(threads) : sequential_for;
+        return options;
+    }
+    std::string text() const {
+        return name + "/" + std::to_string(width) + "x" + std::to_string(height) +
+               (precision == Precision::bf16 ? "/bf16" : "/f32") +
+               "/threads:" + std::to_string(threads);
+    }
+};
+
+void encode(benchmark::State& state, const Setting& s, Kind kind) {
+    Encoder encoder{random_model(s.config, 1), s.width, s.height, s.options()};
+    test::GridStream stream{s.config, s.height, s.width, 1};
+    LatentMap latent = encoder.make_output();
+    encoder.encode(stream.next(Kind::everywhere), latent);
+    const VoxelGrid grid = stream.next(kind);
+    for (auto _ : state) encoder.encode(grid, latent);
+    if (kind == Kind::everywhere)
+        report(state, products_of(layers_of(s.config, s.height, s.width)));
+    state.SetLabel(encoder.description());
+}
+
+/// One picture at the sensor's size. `fresh`: for each picture a new latent map, wholly changed.
+void render(benchmark::State& state, const Setting& s, int lookahead, double scale, bool fresh) {
+    Renderer renderer{random_model(s.config, 1), s.width, s.height, s.options()};
+    LatentMap latents[2];
+    std::mt19937 random{1};
+    for (LatentMap& latent : latents) {
+        latent.values = {s.height, s.width, s.config.latent};
+        for (float& v : latent.values.values()) v = float(random() % 2001) / 1000 - 1;
+    }
+    std::int64_t k = 0;
+    const auto push = [&] {
+        LatentMap& latent = latents[k & 1];
+        latent.window = {from_us(k * 50'000), from_us((k + 1) * 50'000)};
+        renderer.push(latent);
+        ++k;
+    };
+    for (int i = 0; i < 4; ++i) push();
+    RenderRequest request;
+    request.width = int(s.width * scale);
+    request.height = int(s.height * scale);
+    request.lookahead = lookahead;
+    Frame frame = renderer.make_output(request);
+    for (auto _ : state) {
+        if (fresh) push();
+        request.t = from_us((k - lookahead) * 50'000 - 20'000);
+        renderer.render(request, frame);
+    }
+}
+
+#if EVENTIDE_ONEDNN
+/// What the same convolutions cost when each is one oneDNN call on whole images, and nothing else
+/// is done: no gates, no joining, no up-sampling.
+void onednn(benchmark::State& state, const Setting& s) {
+    using namespace dnnl;
+    const engine cpu{engine::kind::cpu, 0};
+    stream queue{cpu};
+    const auto type =
+        s.precision == Precision::bf16 ? memory::data_type::bf16 : memory::data_type::f32;
+    struct Call {
+        convolution_forward primitive;
+        std::unordered_map<int, memory> arguments;
+    };
+    std::vector<Call> calls;
+    const auto layers = layers_of(s.config, s.height, s.width);
+    for (const Layer& l : layers) {
+        const int h = (l.height + l.stride - 1) / l.stride, w = (l.width + l.stride - 1) / l.stride;
+        const memory::desc in{{1, l.in, l.height, l.width}, type, memory::format_tag::nhwc};
+        const memory::desc weight{{l.out, l.in, 3, 3}, type, memory::format_tag::any};
+        const memory::desc bias{{l.out}, memory::data_type::f32, memory::format_tag::x};
+        const memory::desc out{{1, l.out, h, w}, memory::data_type::f32, memory::format_tag::nhwc};
+        primitive_attr attributes;
+        post_ops ops;
+        ops.append_eltwise(1, algorithm::eltwise_relu, 0, 0);
+        attributes.set_post_ops(ops);
+        const int after_y = (h - 1) * l.stride + 2 - l.height;
+        const int after_x = (w - 1) * l.stride + 2 - l.width;
+        const convolution_forward::primitive_desc description{{prop_kind::forward_inference,
+                                                               algorithm::convolution_direct,
+                                                               in,
+                                                               weight,
+                                                               bias,
+                                                               out,
+                                                               {l.stride, l.stride},
+                                                               {1, 1},
+                                                               {after_y, after_x}},
+                                                              attributes,
+                                                              cpu};
+        const memory packed{description.weights_desc(), cpu};
+        calls.push_back({convolution_forward{description},
+                         {{DNNL_ARG_SRC, memory{in, cpu}},
+                          {DNNL_ARG_WEIGHTS, packed},
+                          {DNNL_ARG_BIAS, memory{bias, cpu}},
+                          {DNNL_ARG_DST, memory{out, cpu}}}});
+        for (auto& [which, argument] : calls.back().arguments)
+            std::memset(argument.get_data_handle(), 0, argument.get_desc().get_size());
+    }
+    for (auto _ : state) {
+        for (Call& call : calls) call.primitive.execute(queue, call.arguments);
+        queue.wait();
+    }
+    report(state, products_of(layers));
+}
+#endif
+
+#if defined(__x86_64__)
+/// Independent fused multiply-adds on registers: what no kernel can pass.
+__attribute__((target("avx512f"))) float peak_avx512(int n) {
+    __m512 sums[16];
+    for (int i = 0; i < 16; ++i) sums[i] = _mm512_set1_ps(float(i));
+    const __m512 factor = _mm512_set1_ps(0.999F);
+    for (int k = 0; k < n; ++k) {
+#pragma GCC unroll 16
+        for (int i = 0; i < 16; ++i) sums[i] = _mm512_fmadd_ps(sums[i], factor, factor);
+    }
+    float total = 0;
+    for (const __m512& sum : sums) total += _mm512_reduce_add_ps(sum);
+    return total;
+}
+__attribute__((target("avx2,fma"))) float peak_avx2(int n) {
+    __m256 sums[12];
+    for (int i = 0; i < 12; ++i) sums[i] = _mm256_set1_ps(float(i));
+    const __m256 factor = _mm256_set1_ps(0.999F);
+    for (int k = 0; k < n; ++k) {
+#pragma GCC unroll 12
+        for (int i = 0; i < 12; ++i) sums[i] = _mm256_fmadd_ps(sums[i], factor, factor);
+    }
+    float total = 0;
+    for (const __m256& sum : sums) total += sum[0];
+    return total;
+}
+void peak(benchmark::State& state, bool wide) {
+    constexpr int kRounds = 100'000;
+    for (auto _ : state) {
+        int rounds = kRounds;
+        benchmark::DoNotOptimize(rounds);  // or the loop would be done once
+        benchmark::DoNotOptimize(wide ? peak_avx512(rounds) : peak_avx2(rounds));
+    }
+    report(state, kRounds * (wide ? 16.0 * 16 : 12.0 * 8));
+}
+#endif
+
+template <typename... Arguments>
+void add(const std::string& name, Arguments... arguments) {
+    benchmark::RegisterBenchmark(name.c_str(), arguments...)
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime()
+        ->MinTime(0.3);
+}
+
+int register_all() {
+    if (std::getenv("EVENTIDE_BENCH_AVX2") != nullptr) limit_kernels_to_avx2();
+    ModelConfig thesis;
+    thesis.encoder = EncoderKind::thesis;
+    thesis.bins = 2;
+    thesis.widths = {24};
+    thesis.recurrent = {1};
+    thesis.mlp = {128, 128, 128, 128};
+#if defined(__x86_64__)
+    add("peak/avx2", peak, false);
+    if (!kernels_limited() && __builtin_cpu_supports("avx512f") != 0)
+        add("peak/avx512", peak, true);
+#endif
+    for (const auto& [width, height] :
+         std::vector<std::pair<int, int>>{{240, 180}, {346, 260}, {640, 480}, {1280, 720}})
+        for (const auto& [name, config] : std::vector<std::pair<std::string, ModelConfig>>{
+                 {"default", ModelConfig{}}, {"thesis", thesis}})
+            for (const Precision precision : {Precision::f32, Precision::bf16}) {
+                if (precision == Precision::bf16 && !bf16_available()) continue;
+                for (const int threads : {1, 2}) {
+                    const Setting s{name, config, width, height, threads, precision};
+                    add("encode/" + s.text(), encode, s, Kind::everywhere);
+                    if (name == "default") {
+                        add("encode_patch/" + s.text(), encode, s, Kind::patch);
+                        add("encode_silence/" + s.text(), encode, s, Kind::silence);
+                    }
+                    add("render/lookahead:0/" + s.text(), render, s, 0, 1.0, false);
+                    add("render/lookahead:0/fresh/" + s.text(), render, s, 0, 1.0, true);
+                    add("render/lookahead:2/" + s.text(), render, s, 2, 1.0, false);
+                    if (width <= 346)
+                        add("render/lookahead:0/2.5x/" + s.text(), render, s, 0, 2.5, false);
+#if EVENTIDE_ONEDNN
+                    if (threads == 1) add("onednn_layers/" + s.text(), onednn, s);
+#endif
+                }
+            }
+    return 0;
+}
+const int kRegistered = register_all();
+
+}  // namespace
+}  // namespace eventide

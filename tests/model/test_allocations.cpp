@@ -1,0 +1,53 @@
+// Once warm, a step and a picture allocate nothing.
+#include "src/model/encoder.h"
+#include "src/model/renderer.h"
+#include "tests/model/streams.h"
+#include "tests/support/allocation_counter.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+std::int64_t allocations_of(const ModelConfig& config, Precision precision) {
+    const Model model = random_model(config, 1);
+    EngineOptions options;
+    options.precision = precision;
+    Encoder encoder{model, 80, 60, options};
+    Renderer renderer{model, 80, 60, options};
+    test::GridStream stream{config, 60, 80, 2};
+    LatentMap latent = encoder.make_output();
+    RenderRequest request;
+    request.width = 100;
+    request.height = 75;
+    Frame frame = renderer.make_output(request);
+    std::int64_t counted = 0;
+    for (int k = 0; k < 30; ++k) {
+        const VoxelGrid& grid = stream.next();
+        request.lookahead = std::min(k, 2) * (k % 2);
+        request.t = grid.window.end - SensorDuration{50'000 * request.lookahead + 10'000};
+        test::AllocationCount count;
+        encoder.encode(grid, latent);
+        renderer.push(latent);
+        renderer.render(request, frame);
+        if (k >= 10) counted += count.stop();
+    }
+    return counted;
+}
+
+TEST(Allocations, NoneOnceWarm) {
+    if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
+    for (const ModelConfig& config : {test::small_config(), test::thesis_config()})
+        for (const Precision precision : {Precision::f32, Precision::automatic})
+            EXPECT_EQ(allocations_of(config, precision), 0);
+}
+
+TEST(Allocations, TheCounterFires) {
+    if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
+    test::AllocationCount count;
+    LatentMap latent = Encoder{random_model(test::small_config(), 1), 8, 8}.make_output();
+    EXPECT_GT(count.stop(), 0);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,51 @@
+// Masks against their definition.
+#include "src/kernels/mask.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace eventide {
+namespace {
+
+Mask random_mask(int height, int width, std::uint32_t seed) {
+    Mask mask{height, width};
+    std::mt19937 random{seed};
+    for (auto& v : mask.values()) v = random() % 17 == 0;
+    return mask;
+}
+
+bool any_near(const Mask& mask, int y, int x, int radius) {
+    for (int j = std::max(0, y - radius); j <= std::min(mask.height() - 1, y + radius); ++j)
+        for (int i = std::max(0, x - radius); i <= std::min(mask.width() - 1, x + radius); ++i)
+            if (mask(j, i) != 0) return true;
+    return false;
+}
+
+TEST(Mask, DilatingIsAnyWithinTheSquare) {
+    for (const auto& [height, width] :
+         std::vector<std::pair<int, int>>{{1, 1}, {1, 9}, {7, 1}, {13, 21}, {64, 3}})
+        for (const int radius : {0, 1, 4, 30}) {
+            const Mask mask = random_mask(height, width, 3);
+            Mask scratch = mask, out = mask;
+            dilate(out, radius, scratch, out);
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x)
+                    EXPECT_EQ(out(y, x) != 0, any_near(mask, y, x, radius));
+        }
+}
+
+TEST(Mask, HalvingIsTheMaximumAroundEverySecondPixel) {
+    for (const auto& [height, width] :
+         std::vector<std::pair<int, int>>{{1, 1}, {2, 9}, {7, 4}, {13, 22}}) {
+        const Mask mask = random_mask(height, width, 5);
+        Mask half{(height + 1) / 2, (width + 1) / 2};
+        halve(mask, half);
+        for (int y = 0; y < half.height(); ++y)
+            for (int x = 0; x < half.width(); ++x)
+                EXPECT_EQ(half(y, x) != 0, any_near(mask, 2 * y, 2 * x, 1));
+    }
+}
+
+}  // namespace
+}  // namespace eventide

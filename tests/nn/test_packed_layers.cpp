@@ -1,0 +1,130 @@
+// The fast convolution against the plain one and against double.
+#include "src/nn/packed_layers.h"
+#include "tests/nn/fills.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+using test::Fill;
+
+template <typename T>
+plain::ConvWeights<T> random_conv(int out, int in, test::Numbers& numbers) {
+    plain::ConvWeights<T> weights{out, in, {}, {}};
+    for (int i = 0; i < out * in * 9; ++i)
+        weights.weight.push_back(T(numbers.next(Fill::ordinary)));
+    for (int i = 0; i < out; ++i) weights.bias.push_back(T(numbers.next(Fill::ordinary)));
+    return weights;
+}
+
+template <typename To, typename From>
+plain::ConvWeights<To> as(const plain::ConvWeights<From>& from) {
+    return {from.out,
+            from.in,
+            {from.weight.begin(), from.weight.end()},
+            {from.bias.begin(), from.bias.end()}};
+}
+
+struct Shape {
+    int height, width, in, out, stride;
+};
+const std::vector<Shape> kShapes{{1, 1, 1, 1, 1},    {1, 1, 5, 3, 2},    {7, 5, 21, 16, 1},
+                                 {9, 30, 16, 32, 1}, {4, 43, 24, 24, 1}, {13, 15, 32, 17, 2},
+                                 {12, 16, 9, 64, 2}, {3, 29, 33, 40, 1}, {2, 2, 64, 1, 1}};
+
+/// What rounding may do: a share of the sum of the products' sizes.
+struct Bound {
+    double float_share = 0, bf16_share = 0;
+};
+/// n products summed one after the other are each rounded at most n times; the mean is far less.
+Bound bound_of(int terms) {
+    return {6e-8 * std::sqrt(double(terms)) * 4, 1.0 / 128};
+}
+
+void check(const Shape& s, Fill fill, bool bf16) {
+    test::Numbers numbers{std::uint32_t(s.height * 1000 + s.width)};
+    const auto weights = random_conv<float>(s.out, s.in, numbers);
+    Array3<float> in{s.height, s.width, s.in};
+    for (float& v : in.values()) v = numbers.next(fill);
+
+    Array3<double> exact_in{s.height, s.width, s.in}, sizes_in = exact_in;
+    for (std::size_t i = 0; i < in.values().size(); ++i) {
+        exact_in.values()[i] = in.values()[i];
+        sizes_in.values()[i] = std::abs(in.values()[i]);
+    }
+    auto size_weights = as<double>(weights);
+    for (double& v : size_weights.weight) v = std::abs(v);
+    for (double& v : size_weights.bias) v = std::abs(v);
+    const Array3<double> exact = plain::conv(as<double>(weights), exact_in, s.stride);
+    const Array3<double> sizes = plain::conv(size_weights, sizes_in, s.stride);
+    const Array3<float> plain = plain::conv(weights, in, s.stride);
+
+    // The input with its border of zeros, and not one number more.
+    const int rows = s.height + 2, columns = s.width + 2;
+    std::vector<float> padded(std::size_t(rows * columns * s.in));
+    for (int y = 0; y < s.height; ++y)
+        std::copy_n(in.pixel(y, 0).data(), s.width * s.in,
+                    padded.data() + ((y + 1) * columns + 1) * s.in);
+    const PackedConv conv{weights, s.stride, false, bf16};
+    test::Guarded out{exact.values().size()},
+        scratch{conv.scratch_size(exact.height(), exact.width())};
+    conv.run({padded.data(), std::ptrdiff_t(columns) * s.in, out.data(),
+              std::ptrdiff_t(exact.width()) * s.out, s.out, exact.height(), exact.width()},
+             scratch.data());
+
+    EXPECT_TRUE(out.intact()) << "written outside";
+    EXPECT_TRUE(scratch.intact()) << "scratch written outside";
+    const Bound bound = bound_of(9 * s.in);
+    for (std::size_t i = 0; i < exact.values().size(); ++i) {
+        const double size = sizes.values()[i] + 1e-37;
+        ASSERT_LE(std::abs(out.data()[i] - exact.values()[i]),
+                  size * (bf16 ? bound.bf16_share : bound.float_share))
+            << s.height << "x" << s.width << " " << s.in << "->" << s.out << " fill " << int(fill);
+        ASSERT_LE(std::abs(plain.values()[i] - exact.values()[i]), size * bound.float_share);
+    }
+}
+
+TEST(PackedConv, AgreesWithDoubleForEveryShapeAndFill) {
+    for (const Shape& shape : kShapes)
+        for (const Fill fill : test::kFills) check(shape, fill, false);
+}
+
+TEST(PackedConv, Bf16AgreesWithDoubleForEveryShapeAndFill) {
+    if (!bf16_available()) GTEST_SKIP() << "this processor has no bf16 products";
+    for (const Shape& shape : kShapes)
+        for (const Fill fill : test::kFills) check(shape, fill, true);
+}
+
+TEST(PackedConv, WhereATileBeginsChangesNoBit) {
+    test::Numbers numbers{1};
+    const auto weights = random_conv<float>(24, 12, numbers);
+    const auto in = numbers.many(std::size_t(34 * 42 * 12), Fill::ordinary);
+    for (const bool bf16 : {false, bf16_available()}) {
+        const PackedConv conv{weights, 1, true, bf16};
+        std::vector<float> whole(std::size_t(32 * 40 * 24)), part(std::size_t(5 * 17 * 24));
+        std::vector<float> scratch(conv.scratch_size(32, 40));
+        conv.run({in.data(), 42 * 12, whole.data(), 40 * 24, 24, 32, 40}, scratch.data());
+        conv.run({in.data() + (7 * 42 + 11) * 12, 42 * 12, part.data(), 17 * 24, 24, 5, 17},
+                 scratch.data());
+        for (int y = 0; y < 5; ++y)
+            for (int i = 0; i < 17 * 24; ++i)
+                ASSERT_EQ(part[std::size_t(y * 17 * 24 + i)],
+                          whole[std::size_t(((y + 7) * 40 + 11) * 24 + i)]);
+    }
+}
+
+TEST(UpSampling, KeepsTheSamplesOfTheStridedConvolution) {
+    Array3<double> a{3, 4, 1};
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 4; ++x) a(y, x, 0) = 10 * y + x;
+    const Array3<double> odd = plain::up2(a, 5, 7), even = plain::up2(a, 6, 8);
+    EXPECT_EQ(odd(4, 6, 0), a(2, 3, 0));
+    EXPECT_EQ(odd(1, 0, 0), 5);
+    EXPECT_EQ(odd(0, 1, 0), 0.5);
+    EXPECT_EQ(odd(3, 5, 0), 15 + 2.5);
+    EXPECT_EQ(even(5, 7, 0), a(2, 3, 0)) << "past the last sample it is repeated";
+}
+
+}  // namespace
+}  // namespace eventide

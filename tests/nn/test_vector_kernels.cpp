@@ -1,0 +1,116 @@
+// The element-wise kernels against double, at every length and with numbers that saturate.
+#include "src/kernels/bf16_kernels.h"
+#include "src/kernels/plain/activations.h"
+#include "src/kernels/vector_kernels.h"
+#include "tests/nn/fills.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+namespace eventide {
+namespace {
+
+using test::Fill;
+
+/// A few units in the last place of numbers up to 1: exp within 1 ulp, one division, one sum.
+constexpr double kGateTolerance = 4e-7;
+
+double limit(double exact, double tolerance) {
+    return tolerance * std::max(1.0, std::abs(exact));
+}
+
+class Lengths : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(VectorKernels, Lengths, testing::Values(1, 3, 8, 15, 16, 17, 24, 64, 85));
+
+TEST_P(Lengths, GatesAndActivationsAgreeWithDouble) {
+    const VectorKernels& k = vector_kernels();
+    const int n = GetParam();
+    const auto count = std::size_t(n);
+    for (const Fill fill : test::kFills) {
+        test::Numbers numbers{7};
+        const auto a = numbers.many(count, fill), b = numbers.many(count, fill);
+        const auto h = numbers.many(count, Fill::ordinary);
+        test::Guarded out{count};
+        const auto expect = [&](auto exact, double tolerance, const char* what) {
+            EXPECT_TRUE(out.intact()) << what;
+            for (std::size_t i = 0; i < count; ++i)
+                ASSERT_LE(std::abs(out.data()[i] - exact(i)), limit(exact(i), tolerance))
+                    << what << " of " << a[i] << ", " << b[i];
+        };
+        k.compress(a.data(), out.data(), count);
+        expect([&](std::size_t i) { return plain::compress(double(a[i])); }, 3e-7, "compress");
+        std::copy(h.begin(), h.end(), out.data());
+        k.reset_state(a.data(), out.data(), n);
+        expect([&](std::size_t i) { return plain::sigmoid(double(a[i])) * h[i]; }, kGateTolerance,
+               "reset");
+        k.update_state(h.data(), a.data(), b.data(), out.data(), n);
+        expect(
+            [&](std::size_t i) {
+                return h[i] + plain::sigmoid(double(a[i])) * (std::tanh(double(b[i])) - h[i]);
+            },
+            2 * kGateTolerance, "update");
+        k.add_relu(a.data(), b.data(), out.data(), count);
+        expect([&](std::size_t i) { return plain::relu(double(a[i]) + b[i]); }, 1e-7, "add");
+        k.elu(a.data(), out.data(), count);
+        expect([&](std::size_t i) { return plain::elu(double(a[i])); }, 3e-7, "elu");
+    }
+}
+
+TEST(VectorKernels, SaturatedGatesAreExact) {
+    const float h = 0.25F, r = 0.5F;
+    float out = 0;
+    for (const float big : {60.0F, 1e30F, std::numeric_limits<float>::max()}) {
+        const float small = -big;
+        vector_kernels().update_state(&h, &big, &big, &out, 1);
+        EXPECT_EQ(out, 1.0F);
+        vector_kernels().update_state(&h, &small, &r, &out, 1);
+        EXPECT_NEAR(out, h, 1e-7) << "a closed gate keeps the state";
+    }
+}
+
+TEST(VectorKernels, TwoOutputsAreTwoSumsOfProducts) {
+    test::Numbers numbers{3};
+    for (const int width : {1, 7, 16, 30, 64, 128}) {
+        const auto n = std::size_t(width);
+        const auto in = numbers.many(5 * n, Fill::ordinary),
+                   weight = numbers.many(2 * n, Fill::ordinary);
+        const float bias[] = {0.5F, -2};
+        test::Guarded out{10};
+        vector_kernels().two_outputs(in.data(), weight.data(), bias, 5, width, out.data());
+        EXPECT_TRUE(out.intact());
+        for (std::size_t p = 0; p < 5; ++p)
+            for (std::size_t o = 0; o < 2; ++o) {
+                double sum = bias[o];
+                for (std::size_t i = 0; i < n; ++i)
+                    sum += double(in[p * n + i]) * weight[o * n + i];
+                EXPECT_NEAR(out.data()[2 * p + o], sum, 1e-5);
+            }
+    }
+}
+
+TEST(Bf16, RoundingIsToTheNearestEven) {
+    const auto back = [](std::uint16_t v) { return std::bit_cast<float>(std::uint32_t(v) << 16); };
+    EXPECT_EQ(back(to_bf16(1.0F)), 1.0F);
+    EXPECT_EQ(back(to_bf16(1.0F + 0x1p-8F)), 1.0F) << "a tie goes to the even one";
+    EXPECT_EQ(back(to_bf16(1.0F + 0x1.8p-7F)), 1.0F + 0x1p-6F);
+    EXPECT_EQ(back(to_bf16(-3.14159F)), -3.140625F);
+    const Bf16Kernels* kernels = bf16_kernels();
+    if (kernels == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+    test::Numbers numbers{2};
+    for (const int channels : {1, 2, 5, 16, 21, 64}) {
+        const auto n = std::size_t(channels), pairs = (n + 1) / 2;
+        const auto in = numbers.many(3 * n, Fill::mixed);
+        std::vector<std::uint32_t> out(3 * pairs + 1, 77);
+        kernels->narrow(in.data(), 3, channels, out.data());
+        EXPECT_EQ(out.back(), 77U);
+        for (std::size_t p = 0; p < 3; ++p)
+            for (std::size_t c = 0; c < n; ++c) {
+                const std::uint32_t pair = out[p * pairs + c / 2];
+                EXPECT_EQ(std::uint16_t(c % 2 == 0 ? pair : pair >> 16), to_bf16(in[p * n + c]));
+            }
+    }
+}
+
+}  // namespace
+}  // namespace eventide
