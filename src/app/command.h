@@ -22,8 +22,8 @@ struct Program {
 /// An argument without a flag.
 struct Positional {
     std::string name, help;
-    std::string* value = nullptr;
-    bool required = true;
+    std::string* value = nullptr;                ///< either one value, which must be given ...
+    std::vector<std::string>* values = nullptr;  ///< ... or any number
 };
 
 class Command {

@@ -4,7 +4,7 @@
 #include "replay/convert.h"
 #include "replay/formats.h"
 #include "src/app/moment.h"
-#include "src/app/talk.h"
+#include "src/app/progress.h"
 #include "src/core/error.h"
 
 #include <spdlog/spdlog.h>
@@ -87,14 +87,13 @@ int ConvertCommand::run(Program& program) {
     how.overwrite = overwrite_;
     if (from_) how.from = moments.time_of(*from_);
     if (to_) how.to = moments.time_of(*to_);
-    ProgressLine line{program.quiet};
+    Progress progress{program.quiet};
     const ConvertReport report = convert(*recording, to_file_, format, how, [&] {
-        if (line.active() && recording->size_bytes() > 0)
-            line.show(progress_bar(double(recording->position_bytes()) /
-                                   double(recording->size_bytes())));
+        if (recording->size_bytes() > 0)
+            progress.show(double(recording->position_bytes()) / double(recording->size_bytes()));
         return !program.signals.stopping();
     });
-    line.clear();
+    progress.clear();
     if (program.signals.stopping())
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(to_file_, report);

@@ -3,7 +3,7 @@
 
 #include "replay/formats.h"
 #include "replay/summary.h"
-#include "src/app/talk.h"
+#include "src/app/progress.h"
 #include "src/core/error.h"
 
 #include <cstdio>
@@ -67,14 +67,13 @@ SettingTable InfoCommand::settings() {
 
 int InfoCommand::run(Program& program) {
     const auto recording = open_recording(file_, input_.options());
-    ProgressLine line{program.quiet};
+    Progress progress{program.quiet};
     const Summary summary = summarize(*recording, [&] {
-        if (line.active() && recording->size_bytes() > 0)
-            line.show(progress_bar(double(recording->position_bytes()) /
-                                   double(recording->size_bytes())));
+        if (recording->size_bytes() > 0)
+            progress.show(double(recording->position_bytes()) / double(recording->size_bytes()));
         return !program.signals.stopping();
     });
-    line.clear();
+    progress.clear();
     if (program.signals.stopping()) throw Error(ErrorKind::failed, "stopped before the end");
     if (json_)
         std::cout << to_json(summary) << '\n';

@@ -29,6 +29,8 @@ class MomentReader {
 public:
     MomentReader(std::string path, OpenOptions options)
         : path_{std::move(path)}, options_{std::move(options)} {}
+    /// For what begins at a time that is known.
+    explicit MomentReader(SensorTime first) : first_{first} {}
 
     /// Reads the beginning of the recording, through an opening of its own, for the first relative
     /// moment. Throws Error: usage for a relative moment of standard input, input where there is no

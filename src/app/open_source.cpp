@@ -2,6 +2,7 @@
 #include "src/app/open_source.h"
 
 #include "drivers/devices.h"
+#include "drivers/simulated/simulated_camera.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
 
@@ -36,7 +37,9 @@ void require_size(const Source& source, const std::string& name) {
 
 OpenedSource open_source(const RunSettings& settings, double speed) {
     OpenedSource opened;
-    if (names_camera(settings.source))
+    if (names_simulation(settings.source))
+        opened.source = open_simulation(settings.source);
+    else if (names_camera(settings.source))
         opened.source = open_camera(settings.source, {settings.camera, settings.reconnect});
     else
         opened = open_file(settings, speed);

@@ -136,6 +136,14 @@ std::string hint() {
     return "; `eventide --help` and `eventide COMMAND --help` show what there is";
 }
 
+void add(CLI::App& app, const Positional& positional) {
+    const std::string help = wrapped(positional.help);
+    CLI::Option* option = positional.value != nullptr
+                              ? app.add_option(positional.name, *positional.value, help)
+                              : app.add_option(positional.name, *positional.values, help);
+    option->type_name("");
+}
+
 Parsed parse(std::vector<std::string> arguments, CommonSettings& common) {
     CLI::App app{"Video with uncertainty from event cameras, in real time.", "eventide"};
     app.footer(
@@ -168,9 +176,7 @@ Parsed parse(std::vector<std::string> arguments, CommonSettings& common) {
     for (std::size_t i = 0; i < commands.size(); ++i) {
         CLI::App* sub = app.add_subcommand(commands[i]->name(), commands[i]->summary());
         sub->footer(commands[i]->examples());
-        for (const Positional& positional : commands[i]->positionals())
-            sub->add_option(positional.name, *positional.value, wrapped(positional.help))
-                ->type_name("");
+        for (const Positional& positional : commands[i]->positionals()) add(*sub, positional);
         options[i].add(*sub, commands[i]->settings());
         apps.push_back(sub);
     }
@@ -232,7 +238,7 @@ int run_parsed(Signals& signals, std::vector<std::string> arguments) {
         return exit_done;
     }
     for (const Positional& positional : invocation->command->positionals())
-        if (positional.required && positional.value->empty())
+        if (positional.value != nullptr && positional.value->empty())
             throw Error(ErrorKind::usage,
                         invocation->command->name() + ": expected " + positional.name + hint());
     Program program{signals, std::move(arguments), common.talk.quiet};

@@ -1,6 +1,7 @@
 // What was asked for becomes what is to be done.
 #include "src/app/run_plan.h"
 
+#include "drivers/simulated/simulated_name.h"
 #include "pipeline/filters/hot_pixels.h"
 #include "src/app/open_sinks.h"
 #include "src/core/error.h"
@@ -19,7 +20,9 @@ Span span_of(const RunSettings& settings, bool live) {
                         "--from and --to are for recordings; --duration ends a live source");
         return span;
     }
-    const MomentReader moments{settings.source, settings.input.options()};
+    const MomentReader moments = names_simulation(settings.source)
+                                     ? MomentReader{SimRecordingSettings{}.begin}
+                                     : MomentReader{settings.source, settings.input.options()};
     if (settings.from) {
         span.frames_from = moments.time_of(*settings.from);
         span.begin = *span.frames_from - settings.warmup;

@@ -1,0 +1,258 @@
+// eventide bench: the line on simulated recordings of several sizes, against their truth.
+#include "src/app/bench_command.h"
+
+#include "drivers/simulated/simulated_camera.h"
+#include "pipeline/model_stages.h"
+#include "pipeline/pipeline.h"
+#include "replay/paced.h"
+#include "src/app/network.h"
+#include "src/app/progress.h"
+#include "src/app/reference_images.h"
+#include "src/app/version.h"
+#include "src/binning/slicer_settings.h"
+#include "src/core/error.h"
+#include "src/evaluate/plot.h"
+
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <map>
+
+namespace eventide::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Event frames of 50 ms, each ending at an image: so there is a truth for each picture.
+constexpr int kImagesPerSecond = 20;
+
+std::shared_ptr<const RecordedPackets> simulate(const std::string& scene, const Size& size,
+                                                double seconds) {
+    SimulatedSourceSettings settings = parse_simulated_name("sim:" + scene);
+    settings.recording.width = size.width;
+    settings.recording.height = size.height;
+    settings.recording.seconds = seconds;
+    settings.recording.images_per_second = kImagesPerSecond;
+    settings.speed = 0;
+    const auto camera = std::make_shared<SimulatedCamera>(settings);
+    auto data = std::make_shared<RecordedPackets>();
+    data->info = camera->info();
+    data->make_parser = [camera] { return camera->make_parser(); };
+    for (RawPacket packet; camera->read(packet) == ReadStatus::data;) {
+        data->bytes += packet.bytes.size();
+        data->packets.push_back(packet.bytes);
+    }
+    return data;
+}
+
+/// Compares each picture with the image of its time. Render thread.
+class ErrorSink : public Sink {
+public:
+    ErrorSink(const ReferenceImages& references, const Size& sensor)
+        : references_{references}, sensor_{sensor} {}
+
+    void write(const Frame& frame) override {
+        cv::Mat truth;
+        references_.draw(frame, sensor_.width, sensor_.height, truth);
+        if (truth.empty() || frame.intensity.width() != truth.cols ||
+            frame.intensity.height() != truth.rows)
+            return;
+        double sum = 0;
+        for (int y = 0; y < truth.rows; ++y) {
+            const auto* row = truth.ptr<std::uint8_t>(y);
+            const auto shown = frame.intensity.row(y);
+            for (std::size_t x = 0; x < shown.size(); ++x) {
+                const double error = std::clamp(double(shown[x]), 0.0, 1.0) - row[x] / 255.0;
+                sum += error * error;
+            }
+        }
+        sum_ += sum / double(truth.total());
+        ++pictures_;
+    }
+    double mse() const { return pictures_ == 0 ? std::nan("") : sum_ / pictures_; }
+
+private:
+    const ReferenceImages& references_;
+    Size sensor_;
+    double sum_ = 0;
+    int pictures_ = 0;
+};
+
+struct Outcome {
+    Snapshot counters;
+    double seconds = 0, mse = 0;
+};
+
+Outcome run_line(Recording& recording, Network& network, const RunSettings& settings, int lookahead,
+                 Program& program) {
+    const Size sensor{recording.info().width, recording.info().height};
+    const Size size = settings.size.of(sensor);
+    RenderRequest request;
+    request.width = size.width;
+    request.height = size.height;
+    request.lookahead = lookahead;
+    network.encoder().reset();
+    network.renderer().reset();
+    ModelEncodeStage encode{network.encoder()};
+    ModelRenderStage render{network.renderer(), request};
+    ReferenceImages references;
+    ErrorSink sink{references, sensor};
+    PipelineSettings line;
+    line.bins = network.config().bins;
+    line.event_frames.slicer = parse_window("aps");
+    line.lookahead = lookahead;
+    Pipeline pipeline{{recording, encode, render, {&sink}, nullptr, &references}, line};
+    const Stopper stopper{program.signals, [&] { pipeline.stop(); }};
+    const auto begun = Clock::now();
+    pipeline.run();
+    return {pipeline.snapshot(), std::chrono::duration<double>(Clock::now() - begun).count(),
+            sink.mse()};
+}
+
+double milliseconds(std::chrono::nanoseconds duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+void print_table(const std::vector<BenchRow>& rows) {
+    std::printf("%-12s %-28s %-10s %11s %9s %9s %7s %16s %8s\n", "model", "engine", "sensor",
+                "events/s", "ms/evfr", "ms/pict", "x real", "latency p50/p99", "MSE");
+    for (const BenchRow& row : rows)
+        std::printf("%-12s %-28s %-10s %11.0f %9.2f %9.2f %7.2f %8.1f/%-7.1f %8.4f\n",
+                    row.model.c_str(), row.engine.c_str(), show_size(row.sensor).c_str(),
+                    row.event_rate, row.encode_ms, row.render_ms, row.times_real_time,
+                    row.latency_p50_ms, row.latency_p99_ms, row.mse);
+}
+
+std::string json_of(const std::vector<BenchRow>& rows) {
+    nlohmann::ordered_json json;
+    json["machine"] = processor_text();
+    json["program"] = "eventide " + version() + ", " + compiler_text();
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const BenchRow& row : rows)
+        json["rows"].push_back({{"model", row.model},
+                                {"engine", row.engine},
+                                {"width", row.sensor.width},
+                                {"height", row.sensor.height},
+                                {"events_per_s", row.event_rate},
+                                {"encode_ms", row.encode_ms},
+                                {"render_ms", row.render_ms},
+                                {"times_real_time", row.times_real_time},
+                                {"latency_p50_ms", row.latency_p50_ms},
+                                {"latency_p99_ms", row.latency_p99_ms},
+                                {"mse", row.mse}});
+    return json.dump(2) + "\n";
+}
+
+/// Error over work, one line per sensor size.
+Plot plot_of(const std::vector<BenchRow>& rows) {
+    Plot plot{.name = "bench",
+              .title = "Error against work per event frame and picture",
+              .x_label = "ms",
+              .y_label = "MSE",
+              .log_x = true};
+    std::map<std::string, Series> by_size;
+    for (const BenchRow& row : rows) {
+        Series& series = by_size[show_size(row.sensor)];
+        series.label = show_size(row.sensor);
+        series.x.push_back(row.encode_ms + row.render_ms);
+        series.y.push_back(row.mse);
+    }
+    for (auto& [size, series] : by_size) plot.series.push_back(std::move(series));
+    return plot;
+}
+
+}  // namespace
+
+std::string BenchCommand::examples() const {
+    return "ms/evfr: the network per event frame of 50 ms, ms/pict: rendering one picture "
+           "(medians);\n"
+           "x real: sensor time over host time as fast as it goes; latency at the pace of the "
+           "camera,\n"
+           "from the last packet a picture saw to the picture written.\n"
+           "Examples:\n"
+           "  eventide bench\n"
+           "  eventide bench --sizes 240x180 --models default --models small --precisions f32 "
+           "--precisions bf16";
+}
+
+SettingTable BenchCommand::settings() {
+    SettingTable table{"bench", "eventide bench: speed against error.", {}};
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(text_setting("scene", scene_, "NAME", "Scene of the simulated recordings."));
+    add(list_setting("sizes", sizes_, "WxH", "Sensor sizes, any number of times."));
+    add(list_setting("models", models_, "NAME|FILE", "Models, any number of times."));
+    add(list_setting("precisions", precisions_, "P", "auto, f32 or bf16, any number of times."));
+    add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
+    add(number_setting("seconds", seconds_, "S", "Length of each recording.", 0.2, 3600));
+    add(number_setting("scale", scale_, "S", "Pictures are so many times the sensor's size.", 0.1,
+                       16));
+    add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
+    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+    add(text_setting("json", json_, "FILE", "Also as JSON."));
+    add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
+    return table;
+}
+
+BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& data,
+                               const std::string& model, Precision precision,
+                               Program& program) const {
+    RunSettings settings;
+    settings.model = model;
+    settings.precision = precision;
+    settings.engine = engine_;
+    settings.threads = threads_;
+    settings.size.scale = scale_;
+    Network network{settings, data->info};
+    MemoryRecording fast{data};
+    const Outcome free = run_line(fast, network, settings, lookahead_, program);
+    Paced paced{std::make_unique<MemoryRecording>(data), 1};
+    const Outcome live = run_line(paced, network, settings, 0, program);
+    return {network.file().stem().string(),
+            network.encoder().description(),
+            {data->info.width, data->info.height},
+            double(free.counters.events) / seconds_,
+            milliseconds(free.counters.encode.p50),
+            milliseconds(free.counters.render.p50),
+            seconds_ / free.seconds,
+            milliseconds(live.counters.latency.p50),
+            milliseconds(live.counters.latency.p99),
+            free.mse};
+}
+
+int BenchCommand::run(Program& program) {
+    std::printf("%s; eventide %s, %s; threads %s; scene %s, %g s, lookahead %d (latency: 0)\n",
+                processor_text().c_str(), version().c_str(), compiler_text().c_str(),
+                threads_ == 0 ? "all" : std::to_string(threads_).c_str(), scene_.c_str(), seconds_,
+                lookahead_);
+    std::vector<BenchRow> rows;
+    Progress progress{program.quiet};
+    for (const std::string& size : sizes_) {
+        progress.show(0, "simulating " + size);
+        const auto data = simulate(scene_, parse_size(size), seconds_);
+        for (const std::string& model : models_)
+            for (const std::string& precision : precisions_) {
+                if (program.signals.stopping()) break;
+                progress.show(0, model + " " + precision + " " + size);
+                rows.push_back(measure(data, model,
+                                       Precision(parse_choice(precision, {"auto", "f32", "bf16"})),
+                                       program));
+            }
+    }
+    progress.clear();
+    print_table(rows);
+    if (!json_.empty()) {
+        std::ofstream file{json_};
+        file << json_of(rows) << std::flush;
+        if (!file) throw Error(ErrorKind::failed, json_ + ": cannot be written");
+    }
+    if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_).string());
+    return exit_done;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,50 @@
+// eventide bench: how fast, and how good, on this machine.
+#pragma once
+
+#include "src/app/command.h"
+#include "src/app/memory_recording.h"
+#include "src/app/run_settings.h"
+#include "src/app/values.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eventide::app {
+
+/// One line of the table.
+struct BenchRow {
+    std::string model, engine;
+    Size sensor;
+    double event_rate = 0;       ///< per second of sensor time
+    double encode_ms = 0;        ///< per event frame, median
+    double render_ms = 0;        ///< per picture, median
+    double times_real_time = 0;  ///< sensor time over host time, everything included
+    double latency_p50_ms = 0, latency_p99_ms = 0;  ///< at the pace of the camera
+    double mse = 0;                                 ///< against the truth at the pictures' times
+};
+
+class BenchCommand : public Command {
+public:
+    std::string name() const override { return "bench"; }
+    std::string summary() const override {
+        return "Speed against error on this machine, one table";
+    }
+    std::string examples() const override;
+    SettingTable settings() override;
+    int run(Program& program) override;
+
+private:
+    BenchRow measure(const std::shared_ptr<const RecordedPackets>& data, const std::string& model,
+                     Precision precision, Program& program) const;
+
+    std::string scene_ = "demo";
+    std::vector<std::string> sizes_{"240x180", "346x260", "640x480"}, models_{"default"},
+        precisions_{"auto"};
+    double seconds_ = 2, scale_ = 1;
+    int threads_ = 0, lookahead_ = 2;
+    Engine engine_ = Engine::fast;
+    std::string json_, plots_;
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,233 @@
+// eventide evaluate: how good a model's pictures and sigma are.
+#include "src/app/evaluate_command.h"
+
+#include "pipeline/parallel_tbb.h"
+#include "src/app/model_path.h"
+#include "src/app/progress.h"
+#include "src/core/error.h"
+
+#include <spdlog/spdlog.h>
+
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+namespace eventide::app {
+
+namespace {
+
+/// To a file, or to standard output for "-".
+void write_text(const std::string& file, const std::string& text) {
+    if (file.empty()) return;
+    if (file == "-") {
+        std::cout << text << std::flush;
+        return;
+    }
+    std::ofstream stream{file};
+    stream << text << std::flush;
+    if (!stream) throw Error(ErrorKind::failed, file + ": cannot be written");
+}
+
+std::optional<double> seconds_of(const std::string& text, const char* open) {
+    if (text == open) return std::nullopt;
+    return std::chrono::duration<double>(parse_duration(text)).count();
+}
+
+Setting seconds_setting(std::string key, std::string& value, std::string help, std::string open) {
+    return parsed_setting<std::string>(
+        std::move(key), value, "TIME", std::move(help),
+        [open](const std::string& text) {
+            if (text != open) parse_duration(text);
+            return text;
+        },
+        [](const std::string& text) { return text; });
+}
+
+}  // namespace
+
+std::string EvaluateCommand::examples() const {
+    return "Tables go to standard output; LPIPS needs --lpips.\n"
+           "Examples:\n"
+           "  eventide evaluate recording.aedat4 ecd/slider_depth --json scores.json\n"
+           "  eventide evaluate ECD/ --protocol evreal --lpips lpips_squeeze_v0.1.npz\n"
+           "  eventide evaluate --protocol simulated --lookahead 2\n"
+           "  eventide evaluate frames/ references/ --protocol folders\n"
+           "  eventide evaluate --protocol simulated --figure reliability --figure spatial --plots "
+           "plots/\n"
+           "  eventide evaluate held_out.aedat4 --calibrated model.safetensors";
+}
+
+std::vector<Positional> EvaluateCommand::positionals() {
+    return {{"INPUT",
+             "Recordings with reference images; a folder of sequences (evreal); two folders of "
+             "pictures (folders); nothing (simulated)",
+             nullptr, &inputs_}};
+}
+
+SettingTable EvaluateCommand::settings() {
+    SettingTable table{"evaluate", "eventide evaluate: measures of a model.", {}};
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(choice_setting("protocol", protocol_,
+                       "recordings: between their reference images; evreal: ECD, MVSEC and HQF as "
+                       "EVREAL does; simulated: the project's test set; folders: pictures against "
+                       "pictures.",
+                       {"recordings", "evreal", "simulated", "folders"}));
+    add(text_setting("model", model_, "NAME|FILE", "As in eventide run."));
+    add(text_setting(
+        "lpips", lpips_, "FILE",
+        "Weights of LPIPS as npz (lpips_squeeze_v0.1.npz); empty: LPIPS is left out."));
+    add(whole_setting("lookahead", lookahead_, "0|1|2",
+                      "Event frames after the picture's own that may be used.", 0, 2));
+    add(text_setting("window", window_, "WINDOW",
+                     "recordings: reference (an event frame between reference images), or as in "
+                     "eventide run."));
+    add(whole_setting("skip", skip_, "N",
+                      "So many first images are not scored: the state is still empty.", 0,
+                      1000000));
+    add(seconds_setting("from", from_,
+                        "recordings: score from here, after the first event; start: "
+                        "all.",
+                        "start"));
+    add(seconds_setting("to", to_, "recordings: score until here; end: all.", "end"));
+    add(choice_setting("sigma_rule", sigma_rule_, "As in eventide run.",
+                       {"model", "log_blend", "mixture"}));
+    add(choice_setting("precision", precision_, "As in eventide run.", {"auto", "f32", "bf16"}));
+    add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
+    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+
+    add(text_setting("images", images_, "FOLDER",
+                     "simulated: photographs to draw scenes from; empty: made-up patterns."));
+    add(whole_setting("last_images", last_images_, "N",
+                      "simulated: only the last so many of them by name; 0: all.", 0, 1000000));
+    add(whole_setting("sequences", sequences_, "N", "simulated: how many.", 1, 100000));
+    add(whole_setting("event_frames", event_frames_, "N", "simulated: in each sequence.", 1,
+                      1000000));
+    add(parsed_setting<Size>("size", size_, "WxH", "simulated: sensor size in pixels.", parse_size,
+                             show_size));
+    add(number_setting("scale", scale_, "S", "simulated: pictures are so many times larger.", 0.1,
+                       16));
+    add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
+
+    add(text_setting("json", json_, "FILE",
+                     "All measures as JSON; -: on standard output, instead of "
+                     "the table."));
+    add(text_setting("csv", csv_, "FILE", "A line per sequence; - as for --json."));
+    add(text_setting("frame_csv", frame_csv_, "FILE", "A line per picture; - as for --json."));
+    std::string names;
+    for (const std::string& figure : figure_names()) names += (names.empty() ? "" : ", ") + figure;
+    add(list_setting(
+        "figure", figures_, "NAME",
+        "Instead of a table, figures as SVG and CSV, from simulated sequences: " + names + "."));
+    add(text_setting("plots", plots_, "FOLDER", "Where figures go."));
+    add(choice_setting("calibration", calibration_,
+                       "What --calibrated fits: coverage (PICP80 becomes .8) or likelihood.",
+                       {"coverage", "likelihood"}));
+    add(text_setting(
+        "calibrated", calibrated_, "FILE",
+        "Fit one factor for sigma on what was evaluated, and write the model with it."));
+    return table;
+}
+
+EvaluateSettings EvaluateCommand::how(Program& program) const {
+    EvaluateSettings how;
+    if (protocol_ != Protocol::folders) how.model = find_model(model_);
+    how.lpips = lpips_;
+    how.lookahead = lookahead_;
+    if (sigma_rule_ != SigmaChoice::model)
+        how.sigma_rule =
+            sigma_rule_ == SigmaChoice::mixture ? SigmaRule::mixture : SigmaRule::log_blend;
+    how.engine.engine = engine_;
+    how.engine.precision = precision_;
+    how.engine.parallel_for = parallel_for_with(threads_);
+    how.progress = [progress = std::make_shared<Progress>(program.quiet),
+                    &signals = program.signals](const std::string& sequence, double share) {
+        progress->show(share, sequence);
+        if (share >= 1) progress->clear();
+        if (signals.stopping()) throw Error(ErrorKind::failed, "stopped before the end");
+    };
+    return how;
+}
+
+SimulatedSettings EvaluateCommand::simulated() const {
+    SimulatedSettings what;
+    what.images = images_;
+    what.last_images = last_images_;
+    what.sequences = sequences_;
+    what.event_frames = event_frames_;
+    what.width = size_.width;
+    what.height = size_.height;
+    what.scale = scale_;
+    what.seed = std::uint64_t(seed_);
+    return what;
+}
+
+void EvaluateCommand::require_inputs() const {
+    const std::size_t n = inputs_.size();
+    const char* expected = nullptr;
+    if (protocol_ == Protocol::recordings && n < 1) expected = "one or more recordings";
+    if (protocol_ == Protocol::evreal && n != 1) expected = "one folder";
+    if (protocol_ == Protocol::folders && n != 2)
+        expected = "two folders: pictures and what they are to be";
+    if (protocol_ == Protocol::simulated && n != 0) expected = "no input";
+    if (expected != nullptr)
+        throw Error(ErrorKind::usage,
+                    std::string{"evaluate: expected "} + expected + ", found " + std::to_string(n));
+}
+
+EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
+    switch (protocol_) {
+        case Protocol::evreal:
+            return evaluate_evreal(inputs_[0], how);
+        case Protocol::simulated:
+            return evaluate_simulated(simulated(), how);
+        case Protocol::folders:
+            return evaluate_folders(inputs_[0], inputs_[1], lpips_);
+        case Protocol::recordings:
+            break;
+    }
+    RecordingSettings what;
+    what.recordings.assign(inputs_.begin(), inputs_.end());
+    what.window = window_;
+    what.skip_images = skip_;
+    what.from_s = seconds_of(from_, "start");
+    what.to_s = seconds_of(to_, "end");
+    return evaluate_recordings(what, how);
+}
+
+void EvaluateCommand::make_figures(const EvaluateSettings& how) const {
+    FigureSettings what;
+    what.simulated = simulated();
+    for (const std::string& figure : figures_)
+        for (const Plot& plot : make_figure(figure, what, how))
+            spdlog::info("{}", write_plot(plot, plots_).string());
+}
+
+void EvaluateCommand::write(const EvaluateReport& report) const {
+    if (json_ != "-" && csv_ != "-" && frame_csv_ != "-") std::cout << text_table(report);
+    write_text(json_, json(report) + "\n");
+    write_text(csv_, csv(report));
+    write_text(frame_csv_, frame_csv(report));
+}
+
+void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSettings& how) const {
+    const Calibration found = eventide::calibrate(report, calibration_);
+    write_calibrated(how.model, calibrated_, found);
+    spdlog::info("{}: sigma times {:.4f}; PICP80 {:.3f} to {:.3f}, LL {:.3f} to {:.3f}",
+                 calibrated_, found.factor, found.picp80_before, found.picp80_after,
+                 found.ll_before, found.ll_after);
+}
+
+int EvaluateCommand::run(Program& program) {
+    if (!figures_.empty()) {
+        make_figures(how(program));
+        return exit_done;
+    }
+    require_inputs();
+    const EvaluateSettings settings = how(program);
+    const EvaluateReport report = evaluate(settings);
+    write(report);
+    if (!calibrated_.empty()) calibrate(report, settings);
+    return exit_done;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,35 @@
+// Progress of long work that is not a run.
+#pragma once
+
+#include "src/app/talk.h"
+
+#include <chrono>
+#include <mutex>
+#include <string>
+
+namespace eventide::app {
+
+/// A bar on a terminal, redrawn a few times a second. Thread: any.
+class Progress {
+public:
+    explicit Progress(bool quiet) : line_{quiet} {}
+
+    void show(double share, const std::string& what = {}) {
+        const std::lock_guard lock{mutex_};
+        const auto now = std::chrono::steady_clock::now();
+        if (!line_.active() || now - shown_ < std::chrono::milliseconds{100}) return;
+        shown_ = now;
+        line_.show(progress_bar(share) + (what.empty() ? "" : "  " + what));
+    }
+    void clear() {
+        const std::lock_guard lock{mutex_};
+        line_.clear();
+    }
+
+private:
+    std::mutex mutex_;
+    ProgressLine line_;
+    std::chrono::steady_clock::time_point shown_{};
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,186 @@
+// eventide simulate: recordings whose truth is known.
+#include "src/app/simulate_command.h"
+
+#include "pipeline/sinks/folder.h"
+#include "replay/formats.h"
+#include "replay/recording_file.h"
+#include "src/app/ecd_writer.h"
+#include "src/app/progress.h"
+#include "src/core/error.h"
+#include "src/simulate/presets.h"
+#include "src/simulate/texture_pack.h"
+#include "src/simulate/textures_folder.h"
+
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <iostream>
+#include <limits>
+
+namespace eventide::app {
+
+namespace {
+
+/// Where a recording goes: a file of some format, or a folder.
+class RecordingOut {
+public:
+    RecordingOut(const std::string& path, bool overwrite, int width, int height) {
+        if (path.ends_with('/')) {
+            folder_ = std::make_unique<EcdWriter>(path, overwrite, width, height);
+            return;
+        }
+        format_ = format_for_writing(path);
+        if (format_ == nullptr)
+            throw Error(ErrorKind::usage, "--out " + path +
+                                              ": expected a folder (ending in /) or the extension "
+                                              "of a format that can be written, such as .aedat4");
+        StreamHeader header;
+        header.format = format_->name;
+        header.width = width;
+        header.height = height;
+        header.sensor_name = "simulated";
+        file_ =
+            std::make_unique<RecordingFile>(path, overwrite, open_writer(format_->name), header);
+    }
+
+    bool holds_images() const { return folder_ || format_->holds.images; }
+
+    void write(const Batch& batch) {
+        if (folder_) return folder_->write(batch);
+        Batch held;
+        held.events = batch.events;
+        if (format_->holds.images) held.images = batch.images;
+        if (!held.empty()) file_->write(held);
+    }
+
+    void finish() { folder_ ? folder_->finish() : file_->finish(); }
+
+private:
+    std::unique_ptr<EcdWriter> folder_;  // either this ...
+    const Format* format_ = nullptr;     // ... or these two
+    std::unique_ptr<RecordingFile> file_;
+};
+
+/// As many procedural ones as give a scene of 30 objects little repetition.
+std::shared_ptr<const TextureLibrary> open_textures(const std::string& path) {
+    if (path.empty()) return procedural_textures(48);
+    if (std::filesystem::is_directory(path)) return textures_from_folder(path);
+    return textures_from_pack(path);
+}
+
+void print_scenes() {
+    for (const SimulationPreset& preset : simulation_presets())
+        std::cout << preset.name << std::string(16 - preset.name.size(), ' ') << preset.what
+                  << '\n';
+}
+
+}  // namespace
+
+std::string SimulateCommand::examples() const {
+    return "The truth is what an ideal camera shows, at any rate and size.\n"
+           "Examples:\n"
+           "  eventide simulate --scene demo --seconds 4 --out recording.aedat4\n"
+           "  eventide simulate --scene wide --seed 7 --size 346x260 --out sequence/ --truth "
+           "truth/ "
+           "--truth-scale 2";
+}
+
+SettingTable SimulateCommand::settings() {
+    SettingTable table{"simulate", "eventide simulate: recordings whose truth is known.", {}};
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(text_setting("scene", scene_, "NAME", "What is simulated; --list shows the names."));
+    add(flag_setting("list", list_, "List the scenes, and end."));
+    Setting out =
+        text_setting("out", out_, "FILE|FOLDER/",
+                     "Where the recording goes: x.aedat4 or another format with images, or "
+                     "a folder/ with events.txt, images.txt and images/.");
+    out.short_flag = "-o";
+    add(std::move(out));
+    add(number_setting("seconds", seconds_, "S", "Length.", 0.001, 1e6));
+    add(parsed_setting<Size>("size", size_, "WxH", "Sensor size in pixels.", parse_size,
+                             show_size));
+    add(parsed_setting<std::string>(
+        "seed", seed_, "N",
+        "Number of the scene: the same number, the same recording; auto: the "
+        "scene's own.",
+        [](const std::string& text) {
+            if (text != "auto") parse_whole(text, 0, std::numeric_limits<int>::max());
+            return text;
+        },
+        [](const std::string& text) { return text; }));
+    add(number_setting("images_per_second", images_per_second_, "N",
+                       "Reference images in the recording; 0: none.", 0, 1e5));
+    add(text_setting("truth", truth_, "FOLDER",
+                     "Also write the truth as pictures, laid out as the "
+                     "folder sink does."));
+    add(number_setting("truths_per_second", truths_per_second_, "N", "Rate of the truth.", 0.001,
+                       1e5));
+    add(number_setting(
+        "truth_scale", truth_scale_, "S",
+        "Size of the truth: (width - 1) S + 1 columns, so that corners stay corners.", 0.1, 16));
+    add(text_setting("textures", textures_, "PATH",
+                     "Folder of images or pack of textures to draw the scene from; empty: patterns "
+                     "made up."));
+    add(flag_setting("overwrite", overwrite_, "Replace what is there."));
+    return table;
+}
+
+SimRecordingSettings SimulateCommand::plan() const {
+    const SimulationPreset& preset = simulation_preset(scene_);
+    SimRecordingSettings plan;
+    plan.scene = preset.scene;
+    plan.sensor = preset.sensor;
+    plan.width = size_.width;
+    plan.height = size_.height;
+    plan.seed = seed_ == "auto" ? preset.seed : std::uint64_t(std::stoull(seed_));
+    plan.seconds = seconds_;
+    plan.images_per_second = images_per_second_;
+    plan.truths_per_second = truth_.empty() ? 0 : truths_per_second_;
+    plan.truth_scale = truth_scale_;
+    return plan;
+}
+
+int SimulateCommand::run(Program& program) {
+    if (list_) {
+        print_scenes();
+        return exit_done;
+    }
+    if (out_.empty())
+        throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
+    const SimRecordingSettings what = plan();
+    const auto textures = open_textures(textures_);
+    RecordingOut out{out_, overwrite_, what.width, what.height};
+    if (!out.holds_images() && what.images_per_second > 0)
+        spdlog::warn("{}: its format has no place for reference images", out_);
+    std::unique_ptr<FolderSink> truth;
+    if (!truth_.empty())
+        truth = std::make_unique<FolderSink>(FolderSettings{
+            .path = truth_, .overwrite = overwrite_, .uncertainty = Uncertainty::none});
+    Progress progress{program.quiet};
+    std::uint64_t events = 0, images = 0, truths = 0;
+    simulate_recording(what, textures, [&](const Batch& batch, const std::vector<Truth>& pictures) {
+        out.write(batch);
+        events += batch.events.size();
+        images += batch.images.size();
+        for (const Truth& picture : pictures) {
+            Frame frame;
+            frame.t = picture.t;
+            frame.index = truths++;
+            frame.window = {picture.t, picture.t};
+            frame.intensity = picture.picture;
+            truth->write(frame);
+        }
+        if (!batch.events.empty())
+            progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));
+        return !program.signals.stopping();
+    });
+    progress.clear();
+    out.finish();
+    if (truth) truth->close();
+    if (program.signals.stopping())
+        spdlog::warn("{}: stopped before the end; it holds what was simulated until then", out_);
+    spdlog::info("{}: {} events, {} images, {} truths", out_, events, images, truths);
+    return exit_done;
+}
+
+}  // namespace eventide::app
