@@ -63,15 +63,16 @@ SceneSettings demo_scene() {
     s.wander.linear_probability = 0;
     s.view_share = {.8, .8};
     s.still_background = 0;
-    s.objects_min = s.objects_max = 7;
-    s.object_size = {.25, .55};
+    s.objects_min = s.objects_max = 6;
+    s.object_reach = -.3;
+    s.object_size = {.3, .55};
     s.object_aspect = {.6, 1};
     s.object_speed = {.7, 2};
     s.object_gain = {.5, 1.6};
     s.edge_softness_px = {0, 1};
-    s.pause_step_s = .8;
-    s.pause_start = .3;
-    s.pause_stay = .2;
+    s.pause_step_s = .6;
+    s.pause_start = .25;
+    s.pause_stay = 0;
     s.object_pauses = 0;
     s.white_lux = {1000, 1000};
     s.dynamic_range = {25, 25};
@@ -111,7 +112,7 @@ const std::vector<SimulationPreset>& simulation_presets() {
         {"wide", "everything at once: what networks are trained on", SceneSettings{},
          SensorSettings{}},
         {"demo", "a few recognisable objects before a moving background, with a pause",
-         demo_scene(), demo_sensor()}};
+         demo_scene(), demo_sensor(), 12}};
     return kPresets;
 }
 

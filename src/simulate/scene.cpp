@@ -119,7 +119,8 @@ void Scene::add_object(const SceneSettings& settings) {
     layer.half_height = length / 2 * random_.uniform(settings.object_aspect);
     const double speed = std::clamp(speed_ * random_.log_uniform(settings.object_speed),
                                     settings.wander.speed.low, settings.wander.speed.high);
-    const Home home{-length / 2, -length / 2, width_ + length / 2, height_ + length / 2};
+    const double reach = settings.object_reach * length;
+    const Home home{-reach, -reach, width_ + reach, height_ + reach};
     const Point start{random_.uniform({0, double(width_)}), random_.uniform({0, double(height_)})};
     layer.motion =
         wander_motion(settings.wander, speed, layer.half_width, start, home, random_.fork());

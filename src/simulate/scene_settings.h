@@ -56,6 +56,7 @@ struct SceneSettings {
     Range object_size{.06, .6};       ///< log-uniform; full length over the sensor's shorter side
     Range object_aspect{.3, 1};       ///< width over length
     Range object_speed{.2, 5};        ///< log-uniform; times the scene's speed, within wander.speed
+    double object_reach = .5;         ///< how far beyond the sensor they roam, in their lengths
     double polygon_probability = .5;  ///< else an ellipse, or a ring
     double ring_probability = .1;
     Range edge_softness_px{0, 2};  ///< width of the blur at an object's edge

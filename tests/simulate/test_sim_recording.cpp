@@ -110,6 +110,21 @@ TEST(SimRecording, StopsWhenToldToAndRunsOnWithoutAnEnd) {
     EXPECT_EQ(batches, 100);
 }
 
+TEST(SimRecording, OfTheDemoMovesAndPausesInItsFourSeconds) {
+    const SimulationPreset& demo = simulation_preset("demo");
+    SimRecordingSettings settings = small();
+    settings.scene = demo.scene;
+    settings.sensor = demo.sensor;
+    settings.seed = demo.seed;
+    settings.seconds = 4;
+    const Whole whole = record(settings);
+    std::vector<int> events(40);
+    for (const Event& e : whole.batch.events) ++events[std::size_t((to_us(e.t) - 1) / 100000)];
+    const auto quiet = std::ranges::count_if(events, [](int n) { return n < 40 * 30 / 50; });
+    EXPECT_GE(quiet, 4);
+    EXPECT_LE(quiet, 12);
+}
+
 TEST(SimRecording, RefusesSettingsOutOfRangeByName) {
     for (const auto& spoil : std::vector<void (*)(SimRecordingSettings&)>{
              [](SimRecordingSettings& s) { s.width = 1; },
