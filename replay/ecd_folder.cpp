@@ -27,20 +27,51 @@ std::optional<std::string> find_ecd_folder(const std::string& path) {
     return {};
 }
 
-EcdImages read_ecd_images(const std::string& folder) {
-    EcdImages images;
-    std::ifstream file(fs::path(folder) / "images.txt");
+namespace {
+
+std::optional<SensorTime> parse_seconds(std::string_view text) {
+    const auto value = parse_decimal(text);
+    const auto us = value ? scaled_integer(*value, 6) : std::nullopt;
+    return us ? std::optional(from_us(*us)) : std::nullopt;
+}
+
+/// Fields of the lines that are no comments.
+std::vector<std::vector<std::string>> read_table(const fs::path& path) {
+    std::vector<std::vector<std::string>> table;
+    std::ifstream file(path);
     for (std::string line; std::getline(file, line);) {
         if (is_comment(line)) continue;
         const auto fields = split_fields(line);
-        const auto time = fields.empty() ? std::nullopt : parse_decimal(fields[0]);
-        const auto us = time ? scaled_integer(*time, 6) : std::nullopt;
-        if (fields.size() < 2 || !us) {
-            ++images.bad_entries;
-            continue;
-        }
-        images.entries.push_back({from_us(*us), (fs::path(folder) / fields[1]).string()});
+        table.emplace_back(fields.begin(), fields.end());
     }
+    return table;
+}
+
+/// Only where they are as many as the images: else there is no telling whose they are.
+void set_exposures(const fs::path& path, EcdImages& images) {
+    const auto table = read_table(path);
+    if (table.size() != images.entries.size() || images.bad_entries > 0) return;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        if (table[i].size() < 2) continue;
+        const auto begin = parse_seconds(table[i][0]), end = parse_seconds(table[i][1]);
+        if (!begin || !end || *end < *begin) continue;
+        images.entries[i].exposure_begin = *begin;
+        images.entries[i].exposure_end = *end;
+    }
+}
+
+}  // namespace
+
+EcdImages read_ecd_images(const std::string& folder) {
+    EcdImages images;
+    for (const auto& fields : read_table(fs::path(folder) / "images.txt")) {
+        const auto t = fields.size() < 2 ? std::nullopt : parse_seconds(fields[0]);
+        if (t)
+            images.entries.push_back({*t, *t, *t, (fs::path(folder) / fields[1]).string()});
+        else
+            ++images.bad_entries;
+    }
+    set_exposures(fs::path(folder) / "exposure.txt", images);
     std::stable_sort(images.entries.begin(), images.entries.end(),
                      [](const auto& a, const auto& b) { return a.t < b.t; });
     for (const auto& entry : images.entries)
@@ -67,7 +98,9 @@ void EcdParser::emit_until(std::optional<SensorTime> t, Batch& into) {
             image_damage_.count(DamageReason::bad_record);
             continue;
         }
-        image->t = image->exposure_begin = image->exposure_end = entry.t;
+        image->t = entry.t;
+        image->exposure_begin = entry.exposure_begin;
+        image->exposure_end = entry.exposure_end;
         into.images.push_back(std::move(*image));
     }
 }

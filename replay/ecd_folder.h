@@ -17,6 +17,7 @@ std::optional<std::string> find_ecd_folder(const std::string& path);
 struct EcdImages {
     struct Entry {
         SensorTime t{};
+        SensorTime exposure_begin{}, exposure_end{};  ///< equal to t where nothing says them
         std::string path;
     };
     std::vector<Entry> entries;     ///< in time order; empty where there is no images.txt
@@ -24,8 +25,8 @@ struct EcdImages {
     std::uint64_t bad_entries = 0;  ///< lines of images.txt that could not be read
 };
 
-/// Reads images.txt ("t file", t in seconds, file relative to the folder), and one picture for the
-/// size.
+/// Reads images.txt ("t file", t in seconds, file relative to the folder), exposure.txt where there
+/// is one ("begin end" in seconds, a line for each of images.txt), and one picture for the size.
 EcdImages read_ecd_images(const std::string& folder);
 
 /// Events with the folder's pictures as reference images: each comes out once the events have

@@ -62,6 +62,22 @@ TEST(EcdFolder, APictureComesOnceTheEventsHavePassedIt) {
     EXPECT_EQ(batch.images.size(), 5U);
 }
 
+TEST(EcdFolder, ExposuresAreReadWhereEachPictureHasOne) {
+    const TestFolder folder;
+    folder.write("r/events.txt", "0.10 1 2 1\n0.90 3 4 0\n");
+    folder.write("r/images.txt", "0.35 a.pgm\n0.05 b.pgm\n");
+    folder.write("r/exposure.txt", "0.30 0.40\n0.04 0.06\n");
+    folder.write("r/a.pgm", picture(20, 10, 1));
+    folder.write("r/b.pgm", picture(20, 10, 2));
+    const auto images = read_everything(*open_recording(folder.path("r"))).images;
+    ASSERT_EQ(images.size(), 2U);
+    EXPECT_EQ(images[0].exposure_begin, from_us(40'000));
+    EXPECT_EQ(images[1].exposure_end, from_us(400'000));
+    folder.write("r/exposure.txt", "0.30 0.40\n");
+    EXPECT_EQ(read_everything(*open_recording(folder.path("r"))).images[1].exposure_end,
+              from_us(350'000));
+}
+
 TEST(EcdFolder, AStatedSizeIsTaken) {
     const TestFolder folder;
     write_folder(folder);

@@ -65,5 +65,12 @@ INSTANTIATE_TEST_SUITE_P(Aedat2, RealRecordings,
                                          Known{"formats/dvs128_short.aedat2", "aedat2", 128, 128,
                                                130114, 74991, 113476330, 119657829, 0, 0, 0}));
 
+INSTANTIATE_TEST_SUITE_P(
+    Aedat4, RealRecordings,
+    testing::Values(Known{"formats/davis346_robotarm.aedat4", "aedat4", 346, 260, 117667, 72363,
+                          1633953690975950, 1633953691105949, 3, 130, 15},
+                    Known{"formats/davis346_desk.aedat4", "aedat4", 346, 260, 6676, 3563,
+                          1589163147368868, 1589163147538809, 4, 160, 17}));
+
 }  // namespace
 }  // namespace eventide
