@@ -4,6 +4,7 @@
 #include "src/codec/text_number.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace eventide {
 
@@ -20,7 +21,11 @@ std::optional<std::int64_t> parse_integer(std::string_view field) {
     if (!value) return {};
     const auto whole = scaled_integer(*value, 0);
     // "9.6e+01" is a whole number, "9.5" is not: a tenth must not change it.
-    if (!whole || scaled_integer(*value, 1) != *whole * 10) return {};
+    if (!whole) return {};
+    if (value->fractional &&
+        scaled_integer(*value, 1) !=
+            scaled_integer({std::uint64_t(std::abs(*whole)), 0, *whole < 0, false}, 1))
+        return {};
     return whole;
 }
 

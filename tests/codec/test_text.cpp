@@ -100,20 +100,21 @@ TEST(Text, OtherBytesDoNotLookLikeText) {
 
 TEST(Text, DamageIsCountedByReasonAndReadingGoesOn) {
     std::string text = "0.1 1 2 1\n";
-    text += "0.2 1 2\n";                     // bad_record
-    text += "0.3 1 2 5\n";                   // bad_record
-    text += "0.4 1.5 2 1\n";                 // bad_record
-    text += "0.5 240 2 1\n";                 // out_of_range
-    text += "0.6 -1 2 1\n";                  // out_of_range
-    text += "0.05 1 2 1\n";                  // time_backwards
-    text += std::string(5000, '1') + "\n";   // bad_length
-    text += "99999999999999999999 1 2 1\n";  // bad_record
+    text += "0.2 1 2\n";                        // bad_record
+    text += "0.3 1 2 5\n";                      // bad_record
+    text += "0.4 1.5 2 1\n";                    // bad_record
+    text += "0.5 240 2 1\n";                    // out_of_range
+    text += "0.6 -1 2 1\n";                     // out_of_range
+    text += "0.05 1 2 1\n";                     // time_backwards
+    text += std::string(5000, '1') + "\n";      // bad_length
+    text += "99999999999999999999 1 2 1\n";     // bad_record
+    text += "0.6 4444444444444444441.0 1 1\n";  // out_of_range
     text += "0.7 239 179 0\n";
     text += "0.8 1";  // truncated
     const Parsed parsed = parse_text(text);
     EXPECT_EQ(parsed.data.events.size(), 2U);
     EXPECT_EQ(parsed.damage[DamageReason::bad_record], 4U);
-    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 2U);
+    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 3U);
     EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 1U);
     EXPECT_EQ(parsed.damage[DamageReason::bad_length], 1U);
     EXPECT_EQ(parsed.damage[DamageReason::truncated], 1U);
