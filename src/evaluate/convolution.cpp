@@ -1,9 +1,7 @@
-// Convolution as a matrix product over gathered neighbourhoods (im2col).
+// Convolution by the fast kernels, a row of pixels at a time.
 #include "src/evaluate/convolution.h"
 
 #include "src/core/error.h"
-
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <limits>
@@ -11,16 +9,18 @@
 namespace eventide {
 namespace {
 
-using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Strided = Eigen::OuterStride<>;
-
-// Neighbourhoods are gathered for about this many numbers at a time: they stay in the cache.
-constexpr std::size_t kGatheredNumbers = 64 * 1024;
-
 std::string shape_text(const std::vector<std::int64_t>& shape) {
     std::string text = "[";
     for (const std::int64_t n : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
     return text + "]";
+}
+
+FeatureMap zero_padded(const FeatureMap& in, int padding) {
+    FeatureMap out(in.height() + 2 * padding, in.width() + 2 * padding, in.channels());
+    const auto row = std::size_t(in.width()) * std::size_t(in.channels());
+    for (int y = 0; y < in.height(); ++y)
+        std::copy_n(in.pixel(y, 0).data(), row, out.pixel(y + padding, padding).data());
+    return out;
 }
 
 }  // namespace
@@ -36,50 +36,28 @@ std::vector<float> weights_of(const NpzFile& file, const std::string& name,
 
 Convolution::Convolution(const NpzFile& file, const std::string& name,
                          const ConvolutionShape& shape)
-    : shape_(shape), bias_(weights_of(file, name + ".bias", {shape.out})) {
+    : shape_(shape) {
     const int k = shape.kernel;
+    const auto bias = weights_of(file, name + ".bias", {shape.out});
     const auto stored = weights_of(file, name + ".weight", {shape.out, shape.in, k, k});
-    weights_.resize(stored.size());
+    std::vector<float> turned(stored.size());  // [y][x][in][out]
     std::size_t at = 0;
     for (int o = 0; o < shape.out; ++o)
         for (int i = 0; i < shape.in; ++i)
             for (int tap = 0; tap < k * k; ++tap)
-                weights_[std::size_t((tap * shape.in + i) * shape.out + o)] = stored[at++];
+                turned[std::size_t((tap * shape.in + i) * shape.out + o)] = stored[at++];
+    weights_ = PackedWeights(k, k, shape.in, shape.out, turned, bias, true, false);
 }
 
 void Convolution::process(const FeatureMap& in, FeatureMap& out, int first_channel) const {
-    const auto [in_channels, out_channels, k, stride, padding] = shape_;
-    const int depth = k * k * in_channels, width = out.width();
-    const int pixels = out.height() * width;
-    const int chunk = std::max(1, int(kGatheredNumbers / std::size_t(depth)));
-    const bool in_place = k == 1 && stride == 1 && padding == 0;
-    std::vector<float> gathered(in_place ? 0 : std::size_t(chunk) * std::size_t(depth));
-
-    const Eigen::Map<const RowMajor> weights(weights_.data(), depth, out_channels);
-    const Eigen::Map<const Eigen::RowVectorXf> bias(bias_.data(), out_channels);
-    for (int begin = 0; begin < pixels; begin += chunk) {
-        const int n = std::min(chunk, pixels - begin);
-        const float* rows = in.values().data() + std::size_t(begin) * std::size_t(depth);
-        if (!in_place) {
-            std::fill(gathered.begin(), gathered.end(), 0.F);
-            float* to = gathered.data();
-            for (int p = begin; p < begin + n; ++p)
-                for (int ky = 0; ky < k; ++ky)
-                    for (int kx = 0; kx < k; ++kx, to += in_channels) {
-                        const int y = p / width * stride + ky - padding;
-                        const int x = p % width * stride + kx - padding;
-                        if (y < 0 || y >= in.height() || x < 0 || x >= in.width()) continue;
-                        std::ranges::copy(in.pixel(y, x), to);
-                    }
-            rows = gathered.data();
-        }
-        Eigen::Map<RowMajor, 0, Strided> result(
-            out.values().data() + std::size_t(begin) * std::size_t(out.channels()) +
-                std::size_t(first_channel),
-            n, out_channels, Strided(out.channels()));
-        result.noalias() = Eigen::Map<const RowMajor>(rows, n, depth) * weights;
-        result = (result.rowwise() + bias).cwiseMax(0.F);
-    }
+    const FeatureMap padded = shape_.padding > 0 ? zero_padded(in, shape_.padding) : FeatureMap{};
+    const FeatureMap& from = shape_.padding > 0 ? padded : in;
+    const std::ptrdiff_t pitch = std::ptrdiff_t{from.width()} * shape_.in;
+    const std::ptrdiff_t out_pitch = std::ptrdiff_t{out.width()} * out.channels();
+    for (int y = 0; y < out.height(); ++y)
+        weights_.run(from.values().data() + y * shape_.stride * pitch, pitch,
+                     std::ptrdiff_t{shape_.stride} * shape_.in, out.width(),
+                     out.values().data() + y * out_pitch + first_channel, out.channels());
 }
 
 Fire::Fire(const NpzFile& file, const std::string& name, int in, int squeezed, int expanded)

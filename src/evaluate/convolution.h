@@ -4,6 +4,7 @@
 
 #include "src/core/array.h"
 #include "src/evaluate/npz.h"
+#include "src/nn/packed_layers.h"
 
 #include <string>
 #include <vector>
@@ -35,8 +36,7 @@ public:
 
 private:
     ConvolutionShape shape_;
-    std::vector<float> weights_;  ///< [y][x][in][out], so that a product reads both in order
-    std::vector<float> bias_;
+    PackedWeights weights_;
 };
 
 /// SqueezeNet: a narrow 1x1 convolution, then 1x1 and 3x3 side by side.

@@ -57,6 +57,8 @@ struct SimulatedSettings {
     std::string preset = "thesis_test";  ///< src/simulate/presets.h
     double scale = 1;                    ///< pictures and truth are so many times larger
     int skip_frames = 4;                 ///< not scored: the state is still empty
+    /// Of the others one in so many is scored: neighbours are too alike to tell more.
+    int score_every = 5;
     std::uint64_t seed = 4000;
 };
 EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateSettings& how);

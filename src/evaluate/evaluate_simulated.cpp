@@ -17,12 +17,17 @@ void check(const SimulatedSettings& what) {
     need(what.sequences >= 1 && what.event_frames >= 1, "at least one sequence and event frame");
     need(what.width >= 16 && what.height >= 16, "a sensor of at least 16x16");
     need(what.scale >= 1 && what.scale <= 8, "a scale of 1 to 8");
+    need(what.score_every >= 1 && what.skip_frames >= 0, "to score one frame in 1 or more");
     need(what.frame_width.count() >= 1000, "event frames of at least 1 ms");
     for (const double phase : what.phases)
         need(phase > 0 && phase <= 1, "times within the event frame, more than 0 and at most 1");
 }
 
 }  // namespace
+
+bool is_scored(const SimulatedSettings& what, int k) {
+    return k >= what.skip_frames && (k - what.skip_frames + 1) % what.score_every == 0;
+}
 
 std::shared_ptr<const TextureLibrary> test_textures(const SimulatedSettings& what) {
     if (what.images.empty()) return procedural_textures(24, 256, what.seed);
@@ -67,7 +72,8 @@ EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateS
     const auto textures = test_textures(what);
     const int width = int(std::lround(what.width * what.scale));
     const int height = int(std::lround(what.height * what.scale));
-    const int scored = std::max(0, what.event_frames - what.skip_frames);
+    int scored = 0;
+    for (int k = 0; k < what.event_frames; ++k) scored += is_scored(what, k) ? 1 : 0;
     evaluation.run_sequences(what.sequences, [&](int i) {
         SequenceEvaluation judged{
             evaluation,
@@ -76,7 +82,7 @@ EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateS
         int k = 0;
         for_each_simulated_slice(
             what, textures, i, [&](const Slice& slice, const SimulatedStream& stream) {
-                if (k++ >= what.skip_frames)
+                if (is_scored(what, k++))
                     for (const double phase : what.phases)
                         judged.run().ask(truth_query(
                             stream,
@@ -89,7 +95,8 @@ EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateS
         return judged.finish();
     });
     return evaluation.finish(std::to_string(what.sequences) + " sequences of " +
-                             std::to_string(what.event_frames) + " event frames, " +
+                             std::to_string(what.event_frames) + " event frames, one in " +
+                             std::to_string(what.score_every) + " scored, " +
                              std::to_string(what.width) + "x" + std::to_string(what.height) +
                              ", pictures " + std::to_string(width) + "x" + std::to_string(height));
 }

@@ -19,15 +19,13 @@ Plot correlation_against_patch_size(const EvaluateReport& report);
 /// how often the truth lies inside the interval that should hold it so often.
 Plot reliability_diagram(const EvaluateReport& report);
 
-/// From simulated runs of their own, one plot per measure. `scored_every` event frames one is
-/// judged: pictures of six times the size take their time.
+/// From simulated runs of their own, one plot per measure.
 struct FigureSettings {
     SimulatedSettings simulated;
-    int scored_every = 10;
     std::vector<double> scales{1, 1.5, 2, 3, 4, 5, 6};
     int phases_max = 6;      ///< pictures per event frame
     int moving_frames = 40;  ///< event frames before the silence
-    std::vector<int> silent_frames{0, 1, 2, 4, 6, 10, 20, 38, 60, 100, 200, 600};
+    std::vector<int> silent_frames{0, 1, 2, 4, 6, 10, 20, 38, 60, 100, 200, 600, 2000, 6000};
 };
 /// Pictures rendered at a multiple of the sensor's size, against those of its size enlarged by
 /// cubic convolution.

@@ -89,11 +89,6 @@ Array2<float> enlarged(const Array2<float>& image, int width, int height) {
     return out;
 }
 
-bool is_scored(const FigureSettings& what, int k) {
-    return k >= what.simulated.skip_frames &&
-           (k - what.simulated.skip_frames + 1) % what.scored_every == 0;
-}
-
 }  // namespace
 
 std::vector<Plot> spatial_super_resolution(const FigureSettings& what,
@@ -116,7 +111,7 @@ std::vector<Plot> spatial_super_resolution(const FigureSettings& what,
         int k = 0;
         for_each_simulated_slice(
             what.simulated, textures, i, [&](const Slice& slice, const SimulatedStream& stream) {
-                if (is_scored(what, k++)) {
+                if (is_scored(what.simulated, k++)) {
                     run.ask(truth_query(stream, slice.window.end, width, height));
                     for (const double scale : what.scales)
                         if (scale > 1)
@@ -182,11 +177,11 @@ std::vector<Plot> temporal_super_resolution(const FigureSettings& what,
         int k = 0;
         for_each_simulated_slice(
             what.simulated, textures, i, [&](const Slice& slice, const SimulatedStream& stream) {
-                if (k > 0 && is_scored(what, k))
+                if (k > 0 && is_scored(what.simulated, k))
                     for (const std::int64_t offset : offsets)
                         run.ask(truth_query(stream, slice.window.begin + SensorDuration{offset},
                                             width, height));
-                if (is_scored(what, ++k)) {
+                if (is_scored(what.simulated, ++k)) {
                     Query last_edge;
                     last_edge.t = slice.window.end;
                     run.ask(std::move(last_edge));

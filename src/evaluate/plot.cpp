@@ -76,7 +76,7 @@ Axes axes_of(const Plot& plot) {
         }
     if (x0 > x1) x0 = plot.log_x ? 1 : 0, x1 = plot.log_x ? 10 : 1, y0 = 0, y1 = 1;
     if (y0 > 0 && y0 < .6 * y1) y0 = 0;  // show zero where it is near
-    if (y1 <= y0) y1 = y0 + 1;
+    if (y1 <= y0) y0 = std::min(0., y0), y1 = y1 > 0 ? 1.25 * y1 : y0 + 1;
     if (x1 <= x0) x1 = x0 + 1;
     const double margin = .04 * (y1 - y0);
     return {{x0, x1, kLeft, kWidth - kRight, plot.log_x},

@@ -15,6 +15,9 @@ namespace eventide {
 /// The textures the settings name. Throws Error.
 std::shared_ptr<const TextureLibrary> test_textures(const SimulatedSettings& what);
 
+/// Whether event frame k, from 0, is one of those that count.
+bool is_scored(const SimulatedSettings& what, int k);
+
 /// Sequence `i`: calls use(slice, stream) after each event frame, when the truth of any time within
 /// it can be asked of the stream. Ends early where `use` returns false.
 void for_each_simulated_slice(const SimulatedSettings& what,

@@ -38,6 +38,7 @@ inline SimulatedSettings small_simulation() {
     what.width = 36;
     what.height = 28;
     what.skip_frames = 3;
+    what.score_every = 1;
     return what;
 }
 

@@ -56,7 +56,7 @@ TEST(Plot, IsWrittenAsPictureAndNumbers) {
 FigureSettings small_figures() {
     FigureSettings what;
     what.simulated = small_simulation();
-    what.scored_every = 3;
+    what.simulated.score_every = 3;
     what.scales = {1, 2};
     what.phases_max = 3;
     what.moving_frames = 4;
