@@ -94,7 +94,12 @@ Frame Renderer::make_output(const RenderRequest& request) const {
 }
 
 void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
-    const FramePosition at = window_.locate(request.t);
+    if (window_.newest() == 0) return;
+    FramePosition at = window_.locate(request.t);
+    // A time that is not ready() shows the nearest event frame kept: wrong, but never unsafe.
+    if (at.k > window_.newest()) at = {window_.newest(), 1};
+    if (at.k == 0)
+        at = {std::max<std::int64_t>(1, window_.newest() - LatentWindow::kLatentsKept + 2), 0};
     const PictureGeometry picture = geometry_of(request, sensor_width_, sensor_height_);
     const CodeChoice codes{at.k,
                            at.fraction,
