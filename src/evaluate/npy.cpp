@@ -125,6 +125,12 @@ NpyFile::NpyFile(const std::filesystem::path& path)
     std::array<std::byte, 4096> begin{};  // headers are one line of text
     file_.read(reinterpret_cast<char*>(begin.data()), std::streamsize(begin.size()));
     header_ = parse_npy_header(std::span{begin}.first(std::size_t(file_.gcount())), name_);
+    const std::uint64_t need =
+        header_.data_offset + header_.count * std::uint64_t(header_.item_bytes);
+    if (std::filesystem::file_size(path) < need)
+        throw Error(ErrorKind::input, name_ + ": expected " + std::to_string(need) +
+                                          " bytes, found " +
+                                          std::to_string(std::filesystem::file_size(path)));
 }
 
 std::uint64_t NpyFile::rows() const {

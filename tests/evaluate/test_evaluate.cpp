@@ -207,6 +207,30 @@ TEST(Evreal, ReadsTheSameFromItsOwnArraysAsFromText) {
     EXPECT_EQ(report.sequences[0].scores.raw.mse, report.sequences[1].scores.raw.mse);
 }
 
+TEST(Evreal, RefusesArraysCutShort) {
+    const fs::path folder = fresh_folder("short");
+    write_npy<double>(folder / "events_ts.npy", "<f8", "1000000000000,", {1, 2});
+    write_npy<std::uint8_t>(folder / "images.npy", "|u1", "1, 28, 36, 1", {0});
+    write_npy<double>(folder / "images_ts.npy", "<f8", "1,", {0});
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+    write_npy(folder / "images.npy", "|u1", "1, 28, 36, 1", std::vector<std::uint8_t>(28 * 36));
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+}
+
+TEST(RealRecordings, HaveTheirImagesScored) {
+    const fs::path folder = shared_data() / "recordings" / "slider_depth_head";
+    if (!fs::exists(folder)) GTEST_SKIP() << "no real recordings: " << folder << " is absent";
+    RecordingSettings what;
+    what.recordings = {folder};
+    EvaluateSettings how = small_model();
+    how.engine.engine = Engine::fast;
+    const EvaluateReport report = evaluate_recordings(what, how);
+    EXPECT_EQ(report.overall.frames, 2);  // of 5, the first 3 are skipped
+    EXPECT_TRUE(report.notes.empty());
+    // 50,000 events in 4 gaps between images.
+    EXPECT_NEAR(report.sequences[0].frames[0].events_per_pixel, 50000. / 4 / (240 * 180), .1);
+}
+
 TEST(Evreal, NamesWhatItCannotRead) {
     const fs::path dataset = fresh_folder("nothing");
     EXPECT_THROW(evaluate_evreal(dataset, small_model()), Error);
