@@ -209,7 +209,7 @@ __attribute__((target("avx512f"))) float peak_avx512(int n) {
         for (int i = 0; i < 16; ++i) sums[i] = _mm512_fmadd_ps(sums[i], factor, factor);
     }
     float total = 0;
-    for (const __m512& sum : sums) total += _mm512_reduce_add_ps(sum);
+    for (const __m512& sum : sums) total += sum[0];
     return total;
 }
 __attribute__((target("avx2,fma"))) float peak_avx2(int n) {
