@@ -6,6 +6,10 @@
 #include "src/codec/aedat3.h"
 #include "src/codec/aedat4.h"
 #include "src/codec/aedat4_writer.h"
+#include "src/codec/dat.h"
+#include "src/codec/evt2.h"
+#include "src/codec/evt3.h"
+#include "src/codec/evt_header.h"
 #include "src/codec/text.h"
 #include "src/core/error.h"
 
@@ -69,6 +73,51 @@ OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
     return {header.stream, make_parser, 1};
 }
 
+template <const char* kName>
+bool is_evt(Bytes first_bytes) {
+    const auto header = find_evt_header(first_bytes);
+    return header && header->stream.format == kName;
+}
+constexpr char kEvt2[] = "evt2", kEvt21[] = "evt21", kEvt3[] = "evt3";
+
+OpenedStream open_evt2(Bytes first_bytes, const OpenOptions&) {
+    const auto make_parser = [](const StreamHeader& stream) {
+        return std::make_unique<Evt2Parser>(stream.width, stream.height);
+    };
+    return {read_evt_header(first_bytes).stream, make_parser, 4};
+}
+
+OpenedStream open_evt21(Bytes first_bytes, const OpenOptions&) {
+    using Order = Evt21Parser::Order;
+    const EvtHeader header = read_evt_header(first_bytes);
+    const Order order = header.halves_swapped ? Order::upper_half_first : Order::lower_half_first;
+    const auto make_parser = [order](const StreamHeader& stream) {
+        return std::make_unique<Evt21Parser>(stream.width, stream.height, order);
+    };
+    return {header.stream, make_parser, 8};
+}
+
+// EVT3 wraps every 17 s and DAT every 72 min: a time in the middle says nothing by itself.
+OpenedStream open_evt3(Bytes first_bytes, const OpenOptions&) {
+    const EvtHeader header = read_evt_header(first_bytes);
+    const auto make_parser = [base_us = header.time_base_us](const StreamHeader& stream) {
+        return std::make_unique<Evt3Parser>(stream.width, stream.height, base_us);
+    };
+    return {header.stream, make_parser, 0};
+}
+
+bool is_dat(Bytes first_bytes) {
+    return find_dat_header(first_bytes).has_value();
+}
+
+OpenedStream open_dat(Bytes first_bytes, const OpenOptions&) {
+    const DatHeader header = read_dat_header(first_bytes);
+    const auto make_parser = [record = header.record](const StreamHeader& stream) {
+        return std::make_unique<DatParser>(record, stream.width, stream.height);
+    };
+    return {header.stream, make_parser, 0};
+}
+
 OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
     const TextHeader header = read_text_header(first_bytes, options.text);
     const auto make_parser = [layout = header.layout](const StreamHeader& stream) {
@@ -78,6 +127,7 @@ OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
 }
 
 constexpr FormatHolds kOnlyEvents{};
+constexpr FormatHolds kEventsAndTriggers{true, false, false, true};
 constexpr FormatHolds kEverything{true, true, true, true};
 
 // Formats that say what they are come first, text last.
@@ -88,6 +138,13 @@ const std::array kFormats{
            make<Aedat3Writer>},
     Format{"aedat2", "AEDAT 2.0", ".aedat2", kEverything, has_magic<kAedat2Magic>, open_aedat2,
            nullptr},
+    Format{"evt3", "Prophesee RAW EVT3", ".raw", kEventsAndTriggers, is_evt<kEvt3>, open_evt3,
+           make<Evt3Writer>},
+    Format{"evt2", "Prophesee RAW EVT2", ".raw", kEventsAndTriggers, is_evt<kEvt2>, open_evt2,
+           nullptr},
+    Format{"evt21", "Prophesee RAW EVT2.1", ".raw", kEventsAndTriggers, is_evt<kEvt21>, open_evt21,
+           nullptr},
+    Format{"dat", "Prophesee DAT", ".dat", kEventsAndTriggers, is_dat, open_dat, nullptr},
     Format{"aedat1", "AEDAT 1.0", ".dat", kOnlyEvents, looks_like_aedat1, open_aedat1, nullptr},
     Format{"text", "lines of \"t x y p\"", ".txt", kOnlyEvents, looks_like_text, open_text,
            make<TextWriter>},

@@ -1,0 +1,39 @@
+// The text before Prophesee's RAW and DAT records: lines of "% key value".
+#pragma once
+
+#include "src/codec/stream.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace eventide {
+
+/// The lines, as far as they are such lines; old files have no "% end".
+struct PercentLines {
+    std::vector<std::pair<std::string, std::string>> values;
+    std::size_t bytes = 0;  ///< of all lines
+
+    std::string_view value(std::string_view key) const;  ///< empty when there is none
+};
+PercentLines read_percent_lines(std::span<const std::byte> first_bytes);
+
+struct EvtHeader {
+    StreamHeader stream;          ///< format "evt2", "evt21" or "evt3"
+    bool halves_swapped = false;  ///< EVT2.1 with the upper half of each word first
+    /// us to add to all times; our own writer's, for times the 24 bits of EVT3 do not reach.
+    std::int64_t time_base_us = 0;
+};
+
+/// Empty when it is no RAW file of a format read here.
+std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes);
+
+/// Throws Error (input) naming what was found.
+EvtHeader read_evt_header(std::span<const std::byte> first_bytes);
+
+}  // namespace eventide
