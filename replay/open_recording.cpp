@@ -78,7 +78,7 @@ void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOpt
         throw Error(ErrorKind::input,
                     file.path() +
                         ": expected the size of the sensor, found none in the stream; "
-                        "state it with --geometry WIDTHxHEIGHT, or begin the text with "
+                        "state it with --input-size WIDTHxHEIGHT, or begin the text with "
                         "a line \"WIDTH HEIGHT\"");
     scan_geometry(file, stream);
 }

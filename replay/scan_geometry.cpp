@@ -39,7 +39,7 @@ void scan_geometry(const ByteFile& file, OpenedStream& stream) {
         throw Error(ErrorKind::input,
                     file.path() +
                         ": expected events, to find the size of the sensor, found none; "
-                        "state it with --geometry WIDTHxHEIGHT");
+                        "state it with --input-size WIDTHxHEIGHT");
     stream.header.width = width;
     stream.header.height = height;
 }

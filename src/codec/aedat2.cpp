@@ -75,7 +75,7 @@ Aedat2Header read_aedat2_header(std::span<const std::byte> first_bytes, int stat
         throw Error(ErrorKind::input,
                     "AEDAT 2.0: expected an AEChip line that names a DVS128 or a DAVIS, found " +
                         (named.empty() ? "none" : "\"" + std::string(named.substr(0, 80)) + "\"") +
-                        "; state the sensor's size with --geometry WIDTHxHEIGHT (128x128 is a "
+                        "; state the sensor's size with --input-size WIDTHxHEIGHT (128x128 is a "
                         "DVS128, any other a DAVIS)");
     }
     return header;
