@@ -78,7 +78,7 @@ TEST(OpenRecording, TheSizeComesFromTheOptionTheLineOrTheEvents) {
     const auto scanned = open_recording(without);
     EXPECT_EQ(size_of(*scanned), (std::array{10, 7}));
     EXPECT_EQ(summarize(*scanned).damaged[DamageReason::out_of_range], 1U);
-    EXPECT_THAT(refusal(folder.write("c.txt", "t x y p\n0.1 5000 0 1\n")), HasSubstr("--geometry"));
+    EXPECT_THAT(refusal(folder.write("c.txt", "t x y p\n0.1 5000 0 1\n")), HasSubstr("--input-size"));
 }
 
 /// A pipe whose reading end open_recording() can name.
@@ -128,7 +128,7 @@ TEST(OpenRecording, APipeOfPacketsIsReadToo) {
 TEST(OpenRecording, APipeWithoutASizeIsRefusedAndTheOptionNamed) {
     Pipe pipe;
     pipe.write("0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n0.4 5 6 1\n");
-    EXPECT_THAT(refusal(pipe.path()), HasSubstr("--geometry"));
+    EXPECT_THAT(refusal(pipe.path()), HasSubstr("--input-size"));
 }
 
 TEST(OpenRecording, StopEndsAReadThatWaits) {
