@@ -43,6 +43,8 @@ if(EVENTIDE_BENCH)
 endif()
 
 eventide_feature(EVENTIDE_ONEDNN "fast convolutions" CHECK dnnl_FOUND)
+find_path(V4L2_HEADERS linux/videodev2.h)
+eventide_feature(EVENTIDE_V4L2 "V4L2 event sensors" CHECK V4L2_HEADERS)
 eventide_feature(EVENTIDE_USB "USB event cameras" CHECK libusb_FOUND)
 eventide_feature(EVENTIDE_EMULATOR "software DAVIS for tests" CHECK umockdev_FOUND)
 eventide_feature(EVENTIDE_TRAIN "training with libtorch" CHECK Torch_FOUND)

@@ -1,0 +1,166 @@
+#include "drivers/v4l2/v4l2_camera.h"
+
+#include "src/codec/evt2.h"
+#include "src/codec/evt3.h"
+#include "src/core/error.h"
+
+#include <fcntl.h>
+#include <linux/videodev2.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+namespace eventide {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Users of such boards report poll() that never returns: nothing here waits longer.
+constexpr auto kReadPatience = 20ms;
+constexpr int kLargestSide = 4096;
+
+struct Coding {
+    std::uint32_t fourcc;
+    EvtEncoding encoding;
+    const char* format;
+};
+// prophesee-ai/linux-sensor-drivers, psee-format.h.
+constexpr std::array kCodings{
+    Coding{v4l2_fourcc('P', 'S', 'E', 'E'), EvtEncoding::evt2, "evt2"},
+    Coding{v4l2_fourcc('P', 'S', 'E', '1'), EvtEncoding::evt21_swapped, "evt21"},
+    Coding{v4l2_fourcc('P', 'S', 'E', '2'), EvtEncoding::evt21, "evt21"},
+    Coding{v4l2_fourcc('P', 'S', 'E', '3'), EvtEncoding::evt3, "evt3"}};
+
+template <typename Word>
+Word word_at(std::span<const std::byte> bytes, std::size_t index) {
+    Word word{};
+    std::memcpy(&word, bytes.data() + index * sizeof(Word), sizeof(Word));
+    return word;
+}
+
+/// Bytes before the first word that `ends`, looked for in whole words.
+template <typename Word, typename Ends>
+std::span<const std::byte> before(std::span<const std::byte> bytes, Ends ends) {
+    for (std::size_t i = 0; i < bytes.size() / sizeof(Word); ++i)
+        if (ends(word_at<Word>(bytes, i))) return bytes.first(i * sizeof(Word));
+    return bytes;
+}
+
+}  // namespace
+
+std::optional<EvtEncoding> encoding_of(std::uint32_t fourcc) {
+    for (const Coding& coding : kCodings)
+        if (coding.fourcc == fourcc) return coding.encoding;
+    return std::nullopt;
+}
+
+std::span<const std::byte> before_end_of_data(std::span<const std::byte> bytes,
+                                              EvtEncoding encoding) {
+    if (encoding == EvtEncoding::evt3)
+        return before<std::uint16_t>(bytes, [](std::uint16_t w) { return w == 0xE019; });
+    return before<std::uint64_t>(
+        bytes, [](std::uint64_t w) { return (w & 0xE00000FF00000000U) == 0xE000001900000000U; });
+}
+
+V4l2Camera::V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool reconnect)
+    : node_(std::move(node)), settings_(std::move(settings)), reconnect_(reconnect) {
+    open();
+}
+
+void V4l2Camera::open() {
+    if (!settings_.controls.empty()) {
+        const auto& holder = settings_.subdevice.empty() ? node_ : settings_.subdevice;
+        const FileDescriptor fd{::open(holder.c_str(), O_RDWR | O_CLOEXEC)};
+        if (fd.get() < 0)
+            throw Error(ErrorKind::device, "the camera " + holder.string() +
+                                               " cannot be opened: " + std::strerror(errno));
+        set_v4l2_controls(fd.get(), holder.string(), settings_.controls);
+    }
+    device_ = std::make_unique<V4l2Device>(node_, settings_.buffers);
+    const auto encoding = settings_.encoding ? settings_.encoding : encoding_of(device_->fourcc());
+    if (!encoding)
+        throw Error(
+            ErrorKind::device,
+            "the camera " + node_.string() + " gives format '" + fourcc_text(device_->fourcc()) +
+                "', expected PSEE, PSE1, PSE2 or PSE3; where it carries events all the same, "
+                "say encoding = \"evt3\" (and the size) in the camera's settings");
+    encoding_ = *encoding;
+    info_.name = device_->card();
+    info_.format = std::find_if(kCodings.begin(), kCodings.end(), [&](const Coding& c) {
+                       return c.encoding == encoding_;
+                   })->format;
+    const auto sensor =
+        settings_.subdevice.empty() ? std::nullopt : subdevice_size(settings_.subdevice);
+    info_.width = settings_.width ? settings_.width : sensor ? sensor->first : device_->width();
+    info_.height = settings_.height ? settings_.height
+                   : sensor         ? sensor->second
+                                    : device_->height();
+    if (info_.width < 1 || info_.width > kLargestSide || info_.height < 1 ||
+        info_.height > kLargestSide)
+        throw Error(ErrorKind::device,
+                    "the camera " + node_.string() + " says its sensor is " +
+                        std::to_string(info_.width) + "x" + std::to_string(info_.height) +
+                        " px: state size = [width, height] in the camera's settings");
+    last_sequence_.reset();
+}
+
+ReadStatus V4l2Camera::read(RawPacket& into) {
+    into.bytes.clear();
+    if (stopped_) return ReadStatus::end;
+    if (!device_) return lost();
+    V4l2Device::Filled filled;
+    switch (device_->read(filled, kReadPatience)) {
+        case V4l2Device::Status::lost:
+            return lost();
+        case V4l2Device::Status::timeout:
+            return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+        case V4l2Device::Status::data:
+            break;
+    }
+    if (last_sequence_ && filled.sequence != *last_sequence_ + 1) {
+        counters_.device_dropped += filled.sequence - *last_sequence_ - 1;
+        gap_ = true;
+    }
+    last_sequence_ = filled.sequence;
+    const auto bytes = before_end_of_data(filled.bytes, encoding_);
+    into.bytes.assign(bytes.begin(), bytes.end());
+    into.arrived = std::chrono::steady_clock::now();
+    into.gap_before = std::exchange(gap_, filled.damaged);  // a damaged buffer may lack its end
+    ++counters_.transfers;
+    counters_.bytes += bytes.size();
+    return ReadStatus::data;
+}
+
+ReadStatus V4l2Camera::lost() {
+    if (device_ && !reconnect_)
+        throw Error(ErrorKind::device,
+                    "the camera " + node_.string() +
+                        " stopped (use --reconnect to open it again when it is back)");
+    device_.reset();
+    try {
+        open();
+        ++counters_.reconnects;
+        gap_ = true;
+    } catch (const Error&) {  // not there yet: the next look will tell
+        device_.reset();
+        std::this_thread::sleep_for(kReadPatience);
+    }
+    return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+}
+
+std::unique_ptr<Parser> V4l2Camera::make_parser() const {
+    const int width = info_.width, height = info_.height;
+    switch (encoding_) {
+        case EvtEncoding::evt2: return std::make_unique<Evt2Parser>(width, height);
+        case EvtEncoding::evt21: return std::make_unique<Evt21Parser>(width, height);
+        case EvtEncoding::evt21_swapped:
+            return std::make_unique<Evt21Parser>(width, height, Evt21Parser::Order::upper_half_first);
+        case EvtEncoding::evt3: break;
+    }
+    return std::make_unique<Evt3Parser>(width, height);
+}
+
+}  // namespace eventide

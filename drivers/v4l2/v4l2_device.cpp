@@ -1,0 +1,229 @@
+#include "drivers/v4l2/v4l2_device.h"
+
+#include "src/core/error.h"
+
+#include <fcntl.h>
+#include <linux/v4l2-subdev.h>
+#include <linux/videodev2.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace eventide {
+namespace {
+
+bool is_multi_planar(std::uint32_t type) {
+    return type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
+}
+
+const char* advice(int error) {
+    switch (error) {
+        case EACCES:
+            return " (no permission: join the group 'video')";
+        case EBUSY:
+            return " (in use by another program)";
+        case ENOENT:
+        case ENODEV:
+            return " (is the driver loaded and the sensor connected?)";
+        default:
+            return "";
+    }
+}
+
+}  // namespace
+
+FileDescriptor::~FileDescriptor() {
+    if (fd_ >= 0) ::close(fd_);
+}
+
+int v4l2_ioctl(int fd, unsigned long request, void* argument) {
+    int result = 0;
+    do result = ::ioctl(fd, request, argument);
+    while (result < 0 && errno == EINTR);
+    return result < 0 ? errno : 0;
+}
+
+std::string fourcc_text(std::uint32_t fourcc) {
+    std::string text;
+    for (int shift = 0; shift < 32; shift += 8) {
+        const char c = char((fourcc >> shift) & 0x7F);
+        text += c >= ' ' ? c : '?';
+    }
+    return text;
+}
+
+V4l2Device::V4l2Device(const std::filesystem::path& node, int buffers)
+    : node_(node), fd_(::open(node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)) {
+    if (fd_.get() < 0) fail("cannot be opened", errno);
+    query();
+    map_buffers(buffers);
+    for (std::uint32_t i = 0; i < buffers_.size(); ++i) queue(i);
+    int type = int(type_);
+    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_STREAMON, &type); error != 0)
+        fail("does not start streaming", error);
+}
+
+V4l2Device::~V4l2Device() {
+    int type = int(type_);
+    v4l2_ioctl(fd_.get(), VIDIOC_STREAMOFF, &type);
+    for (const Buffer& buffer : buffers_) ::munmap(buffer.memory, buffer.length);
+}
+
+void V4l2Device::fail(const std::string& what, int error) const {
+    throw Error(ErrorKind::device, "the camera " + node_.string() + " " + what + ": " +
+                                       std::strerror(error) + advice(error));
+}
+
+void V4l2Device::query() {
+    v4l2_capability capability{};
+    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_QUERYCAP, &capability); error != 0)
+        fail("is not a V4L2 device", error);
+    card_ = reinterpret_cast<const char*>(capability.card);
+    // device_caps is about this node, capabilities about the whole device.
+    const std::uint32_t caps = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0
+                                   ? capability.device_caps
+                                   : capability.capabilities;
+    if ((caps & V4L2_CAP_VIDEO_CAPTURE) != 0)
+        type_ = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    else if ((caps & V4L2_CAP_VIDEO_CAPTURE_MPLANE) != 0)
+        type_ = V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
+    else
+        fail("does not capture (it may be an output or metadata node)", EINVAL);
+    if ((caps & V4L2_CAP_STREAMING) == 0) fail("cannot stream into mapped memory", ENOTSUP);
+
+    v4l2_format format{};
+    format.type = type_;
+    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_G_FMT, &format); error != 0)
+        fail("does not say its format", error);
+    fourcc_ = is_multi_planar(type_) ? format.fmt.pix_mp.pixelformat : format.fmt.pix.pixelformat;
+    width_ = int(is_multi_planar(type_) ? format.fmt.pix_mp.width : format.fmt.pix.width);
+    height_ = int(is_multi_planar(type_) ? format.fmt.pix_mp.height : format.fmt.pix.height);
+}
+
+void V4l2Device::map_buffers(int wanted) {
+    v4l2_requestbuffers request{};
+    request.count = std::uint32_t(wanted);
+    request.type = type_;
+    request.memory = V4L2_MEMORY_MMAP;
+    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_REQBUFS, &request); error != 0)
+        fail("gives no buffers", error);
+    for (std::uint32_t i = 0; i < request.count; ++i) {
+        v4l2_buffer buffer{};
+        v4l2_plane plane{};
+        buffer.index = i;
+        buffer.type = type_;
+        buffer.memory = V4L2_MEMORY_MMAP;
+        if (is_multi_planar(type_)) {
+            buffer.m.planes = &plane;
+            buffer.length = 1;
+        }
+        if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_QUERYBUF, &buffer); error != 0)
+            fail("does not describe its buffers", error);
+        const std::size_t length = is_multi_planar(type_) ? plane.length : buffer.length;
+        const auto offset = off_t(is_multi_planar(type_) ? plane.m.mem_offset : buffer.m.offset);
+        void* memory =
+            ::mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_SHARED, fd_.get(), offset);
+        if (memory == MAP_FAILED) fail("does not map its buffers", errno);
+        buffers_.push_back({memory, length});
+    }
+    if (buffers_.size() < 2) fail("gives fewer than two buffers", ENOMEM);
+}
+
+void V4l2Device::queue(std::uint32_t index) {
+    v4l2_buffer buffer{};
+    v4l2_plane plane{};
+    buffer.index = index;
+    buffer.type = type_;
+    buffer.memory = V4L2_MEMORY_MMAP;
+    if (is_multi_planar(type_)) {
+        plane.length = std::uint32_t(buffers_[index].length);
+        buffer.m.planes = &plane;
+        buffer.length = 1;
+    }
+    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_QBUF, &buffer); error != 0)
+        fail("does not take a buffer back", error);
+}
+
+void V4l2Device::requeue_held() {
+    if (held_) queue(*std::exchange(held_, std::nullopt));
+}
+
+V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds patience) {
+    requeue_held();
+    pollfd poll_fd{fd_.get(), POLLIN, 0};
+    const int ready = ::poll(&poll_fd, 1, int(patience.count()));
+    if (ready == 0 || (ready < 0 && errno == EINTR)) return Status::timeout;
+
+    v4l2_buffer buffer{};
+    v4l2_plane plane{};
+    buffer.type = type_;
+    buffer.memory = V4L2_MEMORY_MMAP;
+    if (is_multi_planar(type_)) {
+        buffer.m.planes = &plane;
+        buffer.length = 1;
+    }
+    switch (v4l2_ioctl(fd_.get(), VIDIOC_DQBUF, &buffer)) {
+        case 0:
+            break;
+        case EAGAIN:
+            return Status::timeout;
+        default:
+            return Status::lost;  // EIO, ENODEV: the sensor stopped or went away
+    }
+    if (buffer.index >= buffers_.size()) return Status::lost;
+    held_ = buffer.index;
+    const Buffer& filled = buffers_[buffer.index];
+    const std::size_t offset = is_multi_planar(type_) ? plane.data_offset : 0;
+    const std::size_t used = is_multi_planar(type_) ? plane.bytesused : buffer.bytesused;
+    const std::size_t end = std::min(used, filled.length), begin = std::min(offset, end);
+    into.bytes = {static_cast<const std::byte*>(filled.memory) + begin, end - begin};
+    into.sequence = buffer.sequence;
+    into.damaged = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0;
+    return Status::data;
+}
+
+void set_v4l2_controls(int fd, const std::string& device,
+                       const std::map<std::string, std::int64_t>& wanted) {
+    auto missing = wanted;
+    v4l2_query_ext_ctrl query{};
+    constexpr std::uint32_t kNext = V4L2_CTRL_FLAG_NEXT_CTRL;
+    for (query.id = kNext; v4l2_ioctl(fd, VIDIOC_QUERY_EXT_CTRL, &query) == 0; query.id |= kNext) {
+        const auto own = missing.extract(query.name);
+        if (own.empty()) continue;
+        const std::string name = "camera settings: control '" + own.key() + "' of " + device;
+        if ((query.flags & (V4L2_CTRL_FLAG_READ_ONLY | V4L2_CTRL_FLAG_DISABLED)) != 0)
+            throw Error(ErrorKind::usage, name + " cannot be written");
+        if (own.mapped() < query.minimum || own.mapped() > query.maximum)
+            throw Error(ErrorKind::usage, name + ": expected " + std::to_string(query.minimum) +
+                                              " to " + std::to_string(query.maximum) + ", found " +
+                                              std::to_string(own.mapped()));
+        v4l2_control control{query.id, std::int32_t(own.mapped())};
+        if (const int error = v4l2_ioctl(fd, VIDIOC_S_CTRL, &control); error != 0)
+            throw Error(ErrorKind::device, name + ": " + std::strerror(error));
+        if (v4l2_ioctl(fd, VIDIOC_G_CTRL, &control) == 0 &&
+            control.value != std::int32_t(own.mapped()))
+            throw Error(ErrorKind::device, name + ": set to " + std::to_string(own.mapped()) +
+                                               ", reads back as " + std::to_string(control.value));
+    }
+    if (!missing.empty())
+        throw Error(ErrorKind::usage, "camera settings: " + device + " has no control '" +
+                                          missing.begin()->first + "'");
+}
+
+std::optional<std::pair<int, int>> subdevice_size(const std::filesystem::path& subdevice) {
+    const FileDescriptor fd{::open(subdevice.c_str(), O_RDWR | O_CLOEXEC)};
+    if (fd.get() < 0) return std::nullopt;
+    v4l2_subdev_selection selection{};
+    selection.which = V4L2_SUBDEV_FORMAT_ACTIVE;
+    selection.target = V4L2_SEL_TGT_CROP_BOUNDS;
+    if (v4l2_ioctl(fd.get(), VIDIOC_SUBDEV_G_SELECTION, &selection) != 0) return std::nullopt;
+    return std::pair{int(selection.r.width), int(selection.r.height)};
+}
+
+}  // namespace eventide

@@ -1,0 +1,92 @@
+// A V4L2 capture node: format, controls, and buffers in mapped memory. Facts:
+// drivers-and-formats.md part C.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace eventide {
+
+/// A file descriptor that closes itself.
+class FileDescriptor {
+public:
+    explicit FileDescriptor(int fd = -1) : fd_(fd) {}
+    FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+        std::swap(fd_, other.fd_);
+        return *this;
+    }
+    ~FileDescriptor();
+    int get() const { return fd_; }
+
+private:
+    int fd_;
+};
+
+/// ioctl() that goes on after a signal. Returns 0 or errno.
+int v4l2_ioctl(int fd, unsigned long request, void* argument);
+
+class V4l2Device {
+public:
+    enum class Status { data, timeout, lost };
+    struct Filled {
+        std::span<const std::byte> bytes;  ///< borrowed until the next read
+        std::uint32_t sequence = 0;        ///< of the driver: a jump is a loss
+        bool damaged = false;              ///< the driver says that the buffer may be incomplete
+    };
+
+    /// Opens the node and starts streaming into `buffers` mapped buffers. Throws Error (device):
+    /// not there, no permission, no capture device, no streaming, busy.
+    V4l2Device(const std::filesystem::path& node, int buffers);
+    ~V4l2Device();
+    V4l2Device(const V4l2Device&) = delete;
+    V4l2Device& operator=(const V4l2Device&) = delete;
+
+    const std::string& card() const { return card_; }
+    std::uint32_t fourcc() const { return fourcc_; }
+    int width() const { return width_; }  ///< of the format; event drivers may say 0 or nonsense
+    int height() const { return height_; }
+
+    /// Waits at most `patience`, whatever the driver does.
+    Status read(Filled& into, std::chrono::milliseconds patience);
+
+private:
+    struct Buffer {
+        void* memory = nullptr;
+        std::size_t length = 0;
+    };
+    void query();
+    void map_buffers(int wanted);
+    void queue(std::uint32_t index);
+    void requeue_held();
+    [[noreturn]] void fail(const std::string& what, int error) const;
+
+    std::filesystem::path node_;
+    FileDescriptor fd_;
+    std::string card_;
+    std::uint32_t type_ = 0;  ///< single or multi-planar capture
+    std::uint32_t fourcc_ = 0;
+    int width_ = 0, height_ = 0;
+    std::vector<Buffer> buffers_;
+    std::optional<std::uint32_t> held_;  ///< the buffer whose bytes are lent out
+};
+
+/// Sets controls by the name the driver gives them ("bias_fo", "erc_enable"), and reads each back.
+/// Throws Error (usage) naming the control that is unknown, read-only or out of range.
+void set_v4l2_controls(int fd, const std::string& device,
+                       const std::map<std::string, std::int64_t>& wanted);
+
+/// Size of the sensor from its subdevice (CROP_BOUNDS); empty where it does not say.
+std::optional<std::pair<int, int>> subdevice_size(const std::filesystem::path& subdevice);
+
+std::string fourcc_text(std::uint32_t fourcc);
+
+}  // namespace eventide

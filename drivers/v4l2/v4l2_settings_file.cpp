@@ -1,0 +1,51 @@
+// config/cameras/*.toml -> V4l2Settings.
+#include "drivers/settings_file.h"
+#include "drivers/v4l2/v4l2_camera.h"
+
+#include <string>
+
+namespace eventide {
+
+V4l2Settings load_v4l2_settings(const std::filesystem::path& file) {
+    V4l2Settings settings;
+    SettingsFile reader{file};
+    reader.custom("encoding", [&](const toml::node& node) {
+        const std::string name = node.value_or(std::string{});
+        if (name == "evt2")
+            settings.encoding = EvtEncoding::evt2;
+        else if (name == "evt21")
+            settings.encoding = EvtEncoding::evt21;
+        else if (name == "evt21_swapped")
+            settings.encoding = EvtEncoding::evt21_swapped;
+        else if (name == "evt3")
+            settings.encoding = EvtEncoding::evt3;
+        else
+            reader.refuse(node,
+                          "encoding: expected \"evt2\", \"evt21\", \"evt21_swapped\" or \"evt3\"");
+    });
+    reader.custom("size", [&](const toml::node& node) {
+        const toml::array* numbers = node.as_array();
+        if (numbers == nullptr || numbers->size() != 2)
+            reader.refuse(node, "size: expected [width, height]");
+        settings.width = int(reader.checked(*numbers->get(0), "size", 1, 4096));
+        settings.height = int(reader.checked(*numbers->get(1), "size", 1, 4096));
+    });
+    reader.custom("subdevice", [&](const toml::node& node) {
+        const auto path = node.value_exact<std::string>();
+        if (!path) reader.refuse(node, "subdevice: expected a path such as \"/dev/v4l-subdev0\"");
+        settings.subdevice = *path;
+    });
+    reader.custom("controls", [&](const toml::node& node) {
+        const toml::table* controls = node.as_table();
+        if (controls == nullptr)
+            reader.refuse(node, "controls: expected a table of names and whole numbers");
+        for (const auto& [name, value] : *controls)
+            settings.controls[std::string{name.str()}] =
+                reader.checked(value, "controls." + std::string{name.str()}, INT32_MIN, INT32_MAX);
+    });
+    reader.number("buffers", settings.buffers, 2, 256);
+    reader.read();
+    return settings;
+}
+
+}  // namespace eventide

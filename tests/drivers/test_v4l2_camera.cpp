@@ -1,0 +1,241 @@
+// The V4L2 source against an event sensor in software: mapped memory, EVT words across buffers,
+// loss, silence, return.
+#include "drivers/devices.h"
+#include "drivers/v4l2/v4l2_camera.h"
+#include "replay/formats.h"
+#include "src/core/error.h"
+#include "tests/support/preload.h"
+#include "tests/support/v4l2_testbed.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <linux/videodev2.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+namespace eventide {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::V4l2NodeSettings;
+using testing_support::V4l2Testbed;
+
+constexpr std::uint32_t kEvt2 = v4l2_fourcc('P', 'S', 'E', 'E'),
+                        kEvt3 = v4l2_fourcc('P', 'S', 'E', '3');
+
+std::vector<std::byte> bytes_of(std::initializer_list<unsigned> words) {
+    std::vector<std::byte> bytes;
+    for (const unsigned w : words) {
+        bytes.push_back(std::byte(w & 0xFF));
+        bytes.push_back(std::byte(w >> 8));
+    }
+    return bytes;
+}
+// EVT3 (drivers-and-formats.md D.4).
+constexpr unsigned time_high(unsigned t) {
+    return 0x8000 | t;
+}
+constexpr unsigned time_low(unsigned t) {
+    return 0x6000 | t;
+}
+constexpr unsigned row(unsigned y) {
+    return y;
+}
+constexpr unsigned column(unsigned x) {
+    return 0x2800 | x;
+}
+constexpr unsigned kEndOfData = 0xE019;
+
+V4l2NodeSettings sensor(std::uint32_t fourcc = kEvt3) {
+    V4l2NodeSettings settings;
+    settings.fourcc = fourcc;
+    settings.width = 320;
+    settings.height = 320;
+    return settings;
+}
+
+V4l2Camera open(V4l2Settings settings = {}, bool reconnect = false) {
+    return V4l2Camera{"/dev/video0", std::move(settings), reconnect};
+}
+
+std::string failure_of(const std::function<void()>& what) {
+    try {
+        what();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+/// Until everything given was taken.
+Batch read_all(V4l2Camera& camera, const V4l2Testbed& bed) {
+    const auto parser = camera.make_parser();
+    Batch data;
+    for (RawPacket packet;;) {
+        const ReadStatus status = camera.read(packet);
+        if (status == ReadStatus::data) parser->parse(packet.bytes, data);
+        if (status == ReadStatus::end || (status == ReadStatus::timeout && bed.all_taken())) break;
+    }
+    return data;
+}
+
+class V4l2Planes : public testing::TestWithParam<bool> {};
+
+TEST_P(V4l2Planes, EventsGoOnAcrossBuffers) {
+    V4l2NodeSettings settings = sensor();
+    settings.multi_planar = GetParam();
+    V4l2Testbed bed{settings};
+    auto camera = open();
+    EXPECT_EQ(camera.info().format, "evt3");
+    EXPECT_EQ(camera.info().width, 320);
+    // The row and the time are told in the first buffer, the column in the second; more buffers
+    // than there are memory.
+    bed.give({bytes_of({time_high(1), time_low(5), row(7)})});
+    for (unsigned x = 0; x < 20; ++x) bed.give({bytes_of({column(x)})});
+    const Batch data = read_all(camera, bed);
+    ASSERT_EQ(data.events.size(), 20U);
+    EXPECT_EQ(data.events[3], (Event{from_us(4096 + 5), 3, 7, Polarity::on}));
+}
+
+INSTANTIATE_TEST_SUITE_P(SingleAndMultiPlanar, V4l2Planes, testing::Bool());
+
+/// The words of a Prophesee file without its header, in buffers of one size.
+void give_file(V4l2Testbed& bed, const std::filesystem::path& file) {
+    std::ifstream stream{file, std::ios::binary};
+    while (stream.peek() == '%') {
+        std::string line;
+        std::getline(stream, line);
+    }
+    std::vector<char> piece(60'000);
+    while (stream.read(piece.data(), std::streamsize(piece.size())) || stream.gcount() > 0) {
+        const auto* begin = reinterpret_cast<const std::byte*>(piece.data());
+        bed.give({{begin, begin + stream.gcount()}});
+    }
+}
+
+TEST(V4l2Camera, GivesWhatTheFileHolds) {
+    const std::filesystem::path folder =
+        std::filesystem::path{EVENTIDE_SOURCE_DIR} / "../shared/data/formats";
+    for (const auto& [name, fourcc, width, height] :
+         {std::tuple{"evt2_640x480.raw", kEvt2, 640, 480},
+          std::tuple{"evt3_1280x720_5000.raw", kEvt3, 1280, 720}}) {
+        if (!std::filesystem::exists(folder / name))
+            GTEST_SKIP() << "no recordings beside the project";
+        V4l2NodeSettings settings = sensor(fourcc);
+        settings.width = width;
+        settings.height = height;
+        V4l2Testbed bed{settings};
+        give_file(bed, folder / name);
+        auto camera = open();
+        const Batch live = read_all(camera, bed);
+
+        Batch file;
+        const auto recording = open_recording((folder / name).string());
+        const auto parser = recording->make_parser();
+        for (RawPacket packet; recording->read(packet) == ReadStatus::data;)
+            parser->parse(packet.bytes, file);
+        EXPECT_EQ(live.events, file.events) << name;
+        EXPECT_FALSE(live.events.empty());
+    }
+}
+
+TEST(V4l2Camera, RaspberryPisPicturesEndAtTheMarker) {
+    V4l2Testbed bed{sensor(V4L2_PIX_FMT_GREY)};
+    EXPECT_THAT(failure_of([] { open(); }), HasSubstr("gives format 'GREY', expected PSEE"));
+    V4l2Settings settings;
+    settings.encoding = EvtEncoding::evt3;
+    auto camera = open(settings);
+    bed.give({bytes_of(
+        {time_high(0), time_low(1), row(1), column(1), kEndOfData, column(2), column(3)})});
+    EXPECT_EQ(read_all(camera, bed).events.size(), 1U);
+}
+
+TEST(V4l2Camera, LostBuffersMarkAGap) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open();
+    bed.give({bytes_of({time_high(0)})});
+    bed.give({bytes_of({time_low(1)}), 3});
+    bed.give({bytes_of({time_low(2)}), 0, true});
+    bed.give({bytes_of({time_low(3)})});
+    std::vector<bool> gaps;
+    for (RawPacket packet; gaps.size() < 4;)
+        if (camera.read(packet) == ReadStatus::data) gaps.push_back(packet.gap_before);
+    EXPECT_EQ(gaps, (std::vector<bool>{false, true, false,
+                                       true}));  // after the loss, after the damaged buffer
+    EXPECT_EQ(camera.counters().device_dropped, 3U);
+}
+
+TEST(V4l2Camera, SilenceIsATimeoutAndStopEnds) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open();
+    RawPacket packet;
+    EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+}
+
+TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
+    V4l2Testbed bed{sensor()};
+    RawPacket packet;
+    {
+        auto camera = open();
+        bed.fail_with(EIO);
+        EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("--reconnect"));
+        bed.fail_with(0);
+    }
+    auto camera = open({}, true);
+    bed.fail_with(EIO);
+    EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    bed.fail_with(0);
+    bed.give({bytes_of({time_high(0)})});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_GE(camera.counters().reconnects, 1U);
+}
+
+TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
+    V4l2NodeSettings settings = sensor();
+    settings.controls = {{"bias_fo", {-10, 10, 0}}, {"serial", {0, 100, 7, true}}};
+    V4l2Testbed bed{settings};
+    const auto with = [](const std::string& name, int value) {
+        V4l2Settings wanted;
+        wanted.controls[name] = value;
+        return failure_of([&] { open(wanted); });
+    };
+    EXPECT_EQ(with("bias_fo", 5), "nothing was thrown");
+    EXPECT_EQ(bed.control("bias_fo").value, 5);
+    EXPECT_THAT(with("bias_fo", 50), HasSubstr("expected -10 to 10, found 50"));
+    EXPECT_THAT(with("bias_hpf", 1), HasSubstr("no control 'bias_hpf'"));
+    EXPECT_THAT(with("serial", 1), HasSubstr("cannot be written"));
+}
+
+TEST(V4l2Camera, SaysWhyItCannotBeUsed) {
+    EXPECT_THAT(failure_of([] { open(); }), HasSubstr("is the driver loaded"));
+    V4l2NodeSettings output;
+    output.output = true;
+    V4l2Testbed bed{output};
+    EXPECT_THAT(failure_of([] { open(); }), HasSubstr("does not capture"));
+}
+
+TEST(V4l2Settings, ShippedFileReadsAndUnknownKeysAreRefused) {
+    const auto shipped = load_v4l2_settings(std::filesystem::path{EVENTIDE_SOURCE_DIR} /
+                                            "config/cameras/v4l2-imx636.toml");
+    EXPECT_EQ(shipped.encoding, EvtEncoding::evt3);
+    EXPECT_EQ(shipped.width, 1280);
+    const auto file = std::filesystem::path{testing::TempDir()} / "v4l2.toml";
+    std::ofstream{file} << "size = [1280, 720]\nencodng = \"evt3\"\n";
+    EXPECT_THAT(failure_of([&] { load_v4l2_settings(file); }),
+                HasSubstr("v4l2.toml:2: unknown key 'encodng'"));
+}
+
+}  // namespace
+}  // namespace eventide
+
+int main(int argc, char** argv) {
+    eventide::testing_support::enter_testbed(argv);
+    testing::InitGoogleTest(&argc, argv);
+    return RUN_ALL_TESTS();
+}
