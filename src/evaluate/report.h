@@ -38,7 +38,7 @@ std::string frame_csv(const EvaluateReport& report);
 
 /// One object with the keys sequence, frames, raw: {mse, ssim, lpips}, affine: {mse, ssim, lpips},
 /// picp80, ll, lpips_corr over everything, and the same keys per sequence in "sequences". What was
-/// not measured is null.
+/// not measured is null. No line break at the end.
 std::string json(const EvaluateReport& report);
 
 }  // namespace eventide
