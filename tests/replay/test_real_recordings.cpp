@@ -72,5 +72,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Known{"formats/davis346_desk.aedat4", "aedat4", 346, 260, 6676, 3563,
                           1589163147368868, 1589163147538809, 4, 160, 17}));
 
+INSTANTIATE_TEST_SUITE_P(Prophesee, RealRecordings,
+                         testing::Values(Known{"formats/evt2_640x480.raw", "evt2", 640, 480, 539481,
+                                               367855, 1317888, 1367888, 0, 0, 0},
+                                         Known{"formats/ncars_4407_td.dat", "dat", 54, 61, 4407,
+                                               1671, 0, 99937, 0, 0, 0}));
+
 }  // namespace
 }  // namespace eventide
