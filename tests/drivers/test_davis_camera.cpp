@@ -94,6 +94,25 @@ TEST(DavisCamera, GivesTheEventsImagesAndSamplesThatTheCameraSaw) {
     }
 }
 
+TEST(DavisCamera, ACameraInRealTimeLosesNothingAndTellsTheTimeInSilence) {
+    UsbTestbed bed;
+    DavisModelSettings settings;
+    // A clock that moves on 1 ms each time it is looked at, and does not begin at zero.
+    settings.now = [t = std::int64_t{5'000'000}]() mutable { return from_us(t += 1000); };
+    const auto model = std::make_shared<DavisModel>(settings);
+    const Batch seen = scene(model->settings().sensor, 20'000);
+    model->show(seen);
+    bed.plug_in(model);
+    DavisCamera camera{DavisOptions{}};
+    const auto parser = camera.make_parser();
+    Batch got;
+    const SensorTime last = seen.events.back().t;
+    for (RawPacket packet; !parser->clock() || *parser->clock() < last + SensorDuration{100'000};)
+        if (camera.read(packet) == ReadStatus::data) parser->parse(packet.bytes, got);
+    EXPECT_EQ(got.events, seen.events);
+    EXPECT_EQ(got.images, seen.images);
+}
+
 TEST(DavisCamera, SaysWhatToDoWhenItCannotStart) {
     UsbTestbed bed;
     EXPECT_THAT(failure_of([] { DavisCamera{DavisOptions{}}; }), HasSubstr("no camera"));

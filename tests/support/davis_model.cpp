@@ -108,11 +108,12 @@ void DavisModel::make_more(std::size_t bytes) {
     constexpr std::size_t kBytesPerEvent = 4, kFewestEvents = 256;
     constexpr SensorDuration kWrap{1 << 15};
     std::vector<std::byte> stretch;
-    const SensorTime until = end_of_stretch(std::max(kFewestEvents, bytes / kBytesPerEvent));
+    const SensorTime clock = settings_.now ? now() : SensorTime::max();
+    const SensorTime until = end_of_stretch(std::max(kFewestEvents, bytes / kBytesPerEvent), clock);
     writer_->write(next_stretch(until), stretch);
     // A silent camera still says how time goes by, once a wrap.
-    if (settings_.now && settings_.now() - writer_->time() >= kWrap)
-        writer_->advance(settings_.now(), stretch);
+    if (until == clock && settings_.now && clock - writer_->time() >= kWrap)
+        writer_->advance(clock, stretch);
     if (settings_.spoil) settings_.spoil(stretch);
     words_.erase(words_.begin(), words_.begin() + std::ptrdiff_t(sent_));
     sent_ = 0;
@@ -121,10 +122,10 @@ void DavisModel::make_more(std::size_t bytes) {
 
 /// Images are sent in the stretch their exposure begins in, so it reaches to the end of every
 /// exposure in it.
-SensorTime DavisModel::end_of_stretch(std::size_t events) const {
+SensorTime DavisModel::end_of_stretch(std::size_t events, SensorTime clock) const {
     SensorTime until = event_ + events < scene_.events.size() ? scene_.events[event_ + events].t
                                                               : SensorTime::max();
-    if (settings_.now) until = std::min(until, now());
+    until = std::min(until, clock);
     for (std::size_t i = image_;
          i < scene_.images.size() && scene_.images[i].exposure_begin <= until; ++i)
         until = std::max(until, scene_.images[i].exposure_end);

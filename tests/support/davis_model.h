@@ -64,7 +64,7 @@ public:
 private:
     SensorTime now() const;
     void make_more(std::size_t bytes);
-    SensorTime end_of_stretch(std::size_t events) const;
+    SensorTime end_of_stretch(std::size_t events, SensorTime clock) const;
     Batch next_stretch(SensorTime until);
 
     DavisModelSettings settings_;
