@@ -76,7 +76,8 @@ SensorDuration parse_duration(const std::string& text, bool negative) {
         }
     double value = 0;
     // 1e12 s: far past every clock, and exact to the microsecond up to 9e9 s.
-    if (!read(number, value) || std::abs(value * us_per_unit) > 1e18 || (value < 0 && !negative))
+    if (!read(number, value) || !(std::abs(value * us_per_unit) <= 1e18) ||
+        (value < 0 && !negative))
         complain("a time such as 1.5s, 20ms or 250us", text);
     return SensorDuration{std::llround(value * us_per_unit)};
 }

@@ -30,11 +30,11 @@ std::string read_text(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
 struct ProcessSettings {
-    std::map<std::string, std::string> environment;  ///< added to ours; an empty value removes
-    std::string input;                               ///< on standard input
-    std::string folder;                              ///< to run in; empty = here
-    bool output_to_pipe = false;                     ///< standard output is read by read_output()
-    bool error_to_terminal = false;                  ///< standard error is a (pseudo) terminal
+    std::map<std::string, std::string> environment = {};  ///< added to ours; an empty value removes
+    std::string input = {};                               ///< on standard input
+    std::string folder = {};                              ///< to run in; empty = here
+    bool output_to_pipe = false;     ///< standard output is read by read_output()
+    bool error_to_terminal = false;  ///< standard error is a (pseudo) terminal
 };
 
 struct Result {

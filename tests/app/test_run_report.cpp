@@ -1,0 +1,75 @@
+// The counters of a run, as JSON and as words.
+#include "src/app/run_report.h"
+#include "src/app/talk.h"
+
+#include <nlohmann/json.hpp>
+
+#include <gtest/gtest.h>
+
+namespace eventide::app {
+namespace {
+
+Snapshot busy() {
+    Snapshot now;
+    now.events = 1'234'567;
+    now.bytes = 500;
+    now.frames = 42;
+    now.skipped_frames = 3;
+    now.lost_packets = 2;
+    now.damaged.count(DamageReason::unknown_word, 5);
+    now.window = {from_us(1'000'000), from_us(1'050'000)};
+    now.newest_frame = from_us(1'040'000);
+    now.latency.p50 = std::chrono::milliseconds{12};
+    return now;
+}
+
+TEST(RunReport, JsonIsOneLineWithEveryCounter) {
+    const std::string line = stats_json(busy(), {}, true);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    const auto json = nlohmann::json::parse(line);
+    EXPECT_EQ(json["final"], true);
+    EXPECT_EQ(json["events"], 1'234'567);
+    EXPECT_EQ(json["lost_packets"], 2);
+    EXPECT_EQ(json["damaged"]["unknown_word"], 5);
+    EXPECT_EQ(json["damaged"].size(), kDamageReasons);
+    EXPECT_EQ(json["latency_ms"]["p50"], 12.0);
+    EXPECT_EQ(json["newest_frame_us"], 1'040'000);
+    EXPECT_TRUE(nlohmann::json::parse(stats_json({}, {}, false))["newest_frame_us"].is_null());
+}
+
+TEST(RunReport, StatusFitsALineAndNamesWhatIsWrong) {
+    RunProgress progress;
+    progress.total_bytes = 1000;
+    progress.event_rate = 2.5e6;
+    const std::string line = status_line(busy(), progress);
+    EXPECT_LT(line.size(), 140U);
+    for (const char* part :
+         {"50 %", "2.5 M events/s", "frames 42", "lost 2", "skipped 3", "damaged 5"})
+        EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
+    progress.live = true;
+    EXPECT_NE(status_line(busy(), progress).find("latency 12.0/0.0 ms"), std::string::npos);
+}
+
+TEST(RunReport, SummaryNamesTheReasonsOfDamage) {
+    EXPECT_NE(summary_text(busy(), {}).find("unknown_word: 5"), std::string::npos);
+}
+
+TEST(RunReport, StrictMeansLossAndDamageAndNotSkippedFrames) {
+    Snapshot now;
+    now.skipped_frames = 9;
+    EXPECT_FALSE(lost_data(now));
+    now.gaps = 1;
+    EXPECT_TRUE(lost_data(now));
+    EXPECT_TRUE(lost_data(busy()));
+}
+
+TEST(RunReport, ShortCountsKeepTheirSize) {
+    EXPECT_EQ(short_count(0), "0");
+    EXPECT_EQ(short_count(999), "999");
+    EXPECT_EQ(short_count(1234), "1.2 k");
+    EXPECT_EQ(short_count(999'700), "1.0 M");
+    EXPECT_EQ(short_count(123.4e6), "123 M");
+}
+
+}  // namespace
+}  // namespace eventide::app

@@ -1,0 +1,60 @@
+// Every setting of every command: what it shows it reads back, and its names are its own.
+#include "src/app/config.h"
+#include "src/app/program.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace eventide::app {
+namespace {
+
+TEST(Settings, ReadBackWhatTheyShow) {
+    for (const auto& command : all_commands())
+        for (Setting& setting : command->settings().settings) {
+            const auto shown = setting.show();
+            if (shown.empty()) continue;
+            ASSERT_NO_THROW(setting.set(shown)) << command->name() << " " << setting.key;
+            EXPECT_EQ(setting.show(), shown) << command->name() << " " << setting.key;
+        }
+}
+
+TEST(Settings, HaveOneNameEachAndAMeaning) {
+    for (const auto& command : all_commands()) {
+        std::set<std::string> keys;
+        for (const Setting& setting : command->settings().settings) {
+            EXPECT_TRUE(keys.insert(setting.key).second) << setting.key;
+            EXPECT_GE(setting.help.size(), 7U) << setting.key;
+            EXPECT_EQ(setting.kind == ValueKind::flag, setting.value_name.empty()) << setting.key;
+            EXPECT_EQ(setting.key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"),
+                      std::string::npos);
+        }
+    }
+}
+
+TEST(Settings, DefaultTomlIsWhatTheCodeSays) {
+    EXPECT_EQ(test::read_text(EVENTIDE_SOURCE_DIR "/config/default.toml"), default_config())
+        << "config/default.toml is made by: eventide --default-config > config/default.toml";
+}
+
+TEST(Settings, DefaultTomlIsAConfigurationFile) {
+    const ConfigFile file = read_config_file(EVENTIDE_SOURCE_DIR "/config/default.toml");
+    for (const auto& command : all_commands()) {
+        SettingTable table = command->settings();
+        const auto before = command->settings();
+        resolve_settings(table, file, {});
+        for (std::size_t i = 0; i < table.settings.size(); ++i) {
+            EXPECT_EQ(table.settings[i].show(), before.settings[i].show());
+            EXPECT_TRUE(table.settings[i].origin.starts_with("file ")) << table.settings[i].key;
+        }
+    }
+}
+
+TEST(Settings, CommandsHaveExamplesThatNameThem) {
+    for (const auto& command : all_commands())
+        EXPECT_NE(command->examples().find("eventide " + command->name()), std::string::npos);
+}
+
+}  // namespace
+}  // namespace eventide::app

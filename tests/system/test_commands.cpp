@@ -1,0 +1,148 @@
+// info, convert, simulate, evaluate, bench and devices, as a user runs them.
+#include "tests/system/program_test.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace eventide::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Commands : public ProgramTest {
+protected:
+    Json info(const std::string& file) const {
+        const Result result = eventide({"info", file, "--json"});
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return Json::parse(result.output);
+    }
+    void expect_same_events(const Json& a, const Json& b) const {
+        for (const char* key : {"events", "on", "first_us", "last_us", "width", "height"})
+            EXPECT_EQ(a[key], b[key]) << key;
+    }
+};
+
+TEST_F(Commands, InfoSaysTheSameInJsonAndInWords) {
+    const Json json = info(recording());
+    EXPECT_EQ(json["format"], "aedat4");
+    EXPECT_EQ(json["frames"], 11);
+    const Result words = eventide({"info", recording()});
+    EXPECT_NE(words.output.find(std::to_string(json["events"].get<int>())), std::string::npos);
+    EXPECT_EQ(words.error, "");
+}
+
+TEST_F(Commands, ConvertLosesNoEventAndSaysWhatHasNoPlace) {
+    const Json original = info(recording());
+    std::string from = recording();
+    for (const char* to : {"a.txt", "b.raw", "c.aedat4"}) {
+        const Result result = eventide({"convert", from, to});
+        ASSERT_EQ(result.exit_code, 0) << to << result.error;
+        expect_same_events(info(temp_ / to), original);
+        from = to;
+    }
+    const Result result = eventide({"convert", recording(), "d.raw", "--strict"});
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_NE(result.error.find("11 images"), std::string::npos) << result.error;
+    EXPECT_EQ(eventide({"convert", recording(), "d.raw"}).exit_code, 2) << "it exists already";
+}
+
+TEST_F(Commands, ConvertWritesTextToStandardOutput) {
+    const Result result =
+        eventide({"convert", recording(), "-", "--to-format", "text", "--to", "10ms"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.output.substr(0, 6), "64 48\n");
+}
+
+TEST_F(Commands, ConvertTakesAPart) {
+    ASSERT_EQ(eventide({"convert", recording(), "a.aedat4", "--from", "100ms", "--to", "200ms"})
+                  .exit_code,
+              0);
+    const Json part = info(temp_ / "a.aedat4"), whole = info(recording());
+    EXPECT_GE(part["first_us"].get<long long>(), whole["first_us"].get<long long>() + 100'000);
+    EXPECT_LE(part["last_us"].get<long long>(), whole["first_us"].get<long long>() + 200'000);
+    EXPECT_GT(part["events"].get<int>(), 0);
+}
+
+TEST_F(Commands, SimulateIsTheSameForTheSameSeed) {
+    const auto simulate = [&](const std::string& seed, const std::string& file) {
+        EXPECT_EQ(eventide({"simulate", "--seconds", "0.1", "--size", "32x24", "--seed", seed,
+                            "--out", file})
+                      .exit_code,
+                  0);
+        return read_text(temp_ / file);
+    };
+    EXPECT_EQ(simulate("3", "a.aedat4"), simulate("3", "b.aedat4"));
+    EXPECT_NE(simulate("4", "c.aedat4"), read_text(temp_ / "a.aedat4"));
+    const Result list = eventide({"simulate", "--list"});
+    EXPECT_NE(list.output.find("demo"), std::string::npos);
+}
+
+TEST_F(Commands, SimulateWritesAFolderWithImagesAndTruthThatInfoAndRunRead) {
+    const Result result =
+        eventide({"simulate", "--seconds", "0.2", "--size", "32x24", "--out", "ecd/", "--truth",
+                  "truth/", "--truth-scale", "2", "--truths-per-second", "50"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(info(temp_ / "ecd")["frames"], 6);
+    EXPECT_EQ(column(temp_ / "truth/timestamps.csv", 2).size(), 11U);
+    EXPECT_EQ(probe(temp_ / "truth/frames/frame_0000000000.png", "width,height"), "63,47\n");
+    EXPECT_EQ(eventide({"run", "ecd", "--window", "aps", "--out", "a/"}).exit_code, 0);
+}
+
+TEST_F(Commands, EvaluateMeasuresARecordingAndFolders) {
+    const Result result = eventide({"evaluate", recording(), "--json", "scores.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.output.find("recording"), std::string::npos);
+    const Json scores = Json::parse(read_text(temp_ / "scores.json"));
+    EXPECT_GT(scores["frames"].get<int>(), 0);
+    EXPECT_GT(scores["raw"]["mse"].get<double>(), 0);
+
+    ASSERT_EQ(
+        eventide({"simulate", "--seconds", "0.2", "--size", "32x24", "--out", "a/"}).exit_code, 0);
+    const Result same =
+        eventide({"evaluate", "a/images", "a/images", "--protocol", "folders", "--json", "-"});
+    ASSERT_EQ(same.exit_code, 0) << same.error;
+    EXPECT_EQ(Json::parse(same.output)["raw"]["mse"], 0.0);
+}
+
+TEST_F(Commands, BenchPrintsTheMachineAndARowForEachSize) {
+    const Result result = eventide({"bench", "--seconds", "0.3", "--sizes", "32x24", "--sizes",
+                                    "48x32", "--json", "bench.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.output.find("48x32"), std::string::npos);
+    const Json json = Json::parse(read_text(temp_ / "bench.json"));
+    ASSERT_EQ(json["rows"].size(), 2U);
+    EXPECT_GT(json["rows"][0]["mse"].get<double>(), 0);
+    EXPECT_GT(json["rows"][0]["times_real_time"].get<double>(), 0);
+}
+
+TEST_F(Commands, DevicesListsWhatThereIs) {
+    const Result result = eventide({"devices", "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(Json::parse(result.output).is_array());
+}
+
+TEST_F(Commands, RealRecordingsGoThroughTheWholeLine) {
+    const std::string data = EVENTIDE_SOURCE_DIR "/../shared/data/formats";
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "the real recordings are not here";
+    struct Known {
+        const char* file;
+        int events, on;
+    };
+    for (const Known& known :
+         {Known{"davis346_desk.aedat4", 6676, 3563}, Known{"evt3_1280x720_5000.raw", 5000, -1},
+          Known{"ncars_4407_td.dat", 4407, 1671}}) {
+        const Json json = info(data + "/" + known.file);
+        EXPECT_EQ(json["events"], known.events) << known.file;
+        if (known.on >= 0) {
+            EXPECT_EQ(json["on"], known.on) << known.file;
+        }
+    }
+    const Result result = eventide({"run", data + "/davis346_desk.aedat4", "--fps", "25", "--size",
+                                    "1.5x", "--lookahead", "1", "--out", "a/"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_GE(column(temp_ / "a/timestamps.csv", 2).front(), 1'589'163'147'368'867);
+}
+
+}  // namespace
+}  // namespace eventide::test

@@ -1,0 +1,172 @@
+// eventide run, as a user runs it: what is in the files afterwards.
+#include "tests/system/program_test.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/stat.h>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace eventide::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Run : public ProgramTest {};
+
+/// All files below a folder with their bytes, run.json left out: it tells the time it took.
+std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator{folder})
+        if (entry.is_regular_file() && entry.path().filename() != "run.json")
+            files[std::filesystem::relative(entry.path(), folder).string()] =
+                read_text(entry.path());
+    return files;
+}
+
+TEST_F(Run, WritesAFolderAVideoAndASheetInOneGo) {
+    const Result result =
+        eventide({"run", recording(), "--fps", "100", "--out", "frames/", "--out", "video.mp4",
+                  "--out", "sheet:sheet.png", "--uncertainty", "side", "--stats", "stats.jsonl"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.output, "") << "data go where they were sent, and talk to standard error";
+    EXPECT_NE(result.error.find("frames"), std::string::npos);
+
+    const auto times = column(temp_ / "frames/timestamps.csv", 2);
+    ASSERT_GE(times.size(), 38U);
+    std::vector<long long> since_first;
+    for (const long long t : times) since_first.push_back(t - times.front());
+    EXPECT_EQ(packet_times(temp_ / "video.mp4"), since_first);
+    EXPECT_EQ(since_first[1], 10'000);
+    EXPECT_EQ(probe(temp_ / "video.mp4", "width,height"), "128,48\n");
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "frames/uncertainty/unc_0000000037.tiff"));
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "sheet.png"));
+
+    const Json json = Json::parse(read_text(temp_ / "frames/run.json"));
+    EXPECT_EQ(json["arguments"][0], "run");
+    EXPECT_EQ(json["source"]["width"], 64);
+    EXPECT_EQ(json["counters"]["frames"], times.size());
+    EXPECT_EQ(json["settings"]["fps"], "100");
+
+    std::ifstream stats{temp_ / "stats.jsonl"};
+    Json last;
+    for (std::string line; std::getline(stats, line);) last = Json::parse(line);
+    EXPECT_EQ(last["final"], true);
+    EXPECT_EQ(last["frames"], times.size());
+    EXPECT_EQ(last["images"], 11);
+}
+
+TEST_F(Run, OnOneThreadGivesTheSameFilesBitForBit) {
+    ASSERT_EQ(eventide({"run", recording(), "--fps", "60", "--out", "a/"}).exit_code, 0);
+    ASSERT_EQ(eventide({"run", recording(), "--fps", "60", "--sequential", "--threads", "1",
+                        "--out", "b/"})
+                  .exit_code,
+              0);
+    EXPECT_EQ(contents(temp_ / "a"), contents(temp_ / "b"));
+}
+
+TEST_F(Run, StreamsY4mToStandardOutputAndFfmpegReadsIt) {
+    const Result result =
+        run({"bash", "-c",
+             std::string{EVENTIDE_PROGRAM} + " run " + recording() + " --model " + model() +
+                 " --fps 200 --out - | ffprobe -v error -count_frames " +
+                 "-show_entries stream=nb_read_frames,r_frame_rate,width -of " + "csv=p=0 -"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(result.output == "64,200/1,80\n" || result.output == "64,200/1,81\n")
+        << result.output;
+}
+
+TEST_F(Run, RawNumbersHaveTheSizeThatIsDocumented) {
+    const Result result = eventide({"run", recording(), "--fps", "20", "--size", "33x17", "--out",
+                                    "grayf32:raw", "--uncertainty", "separate", "--out", "a/"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const std::size_t frames = column(temp_ / "a/timestamps.csv", 0).size();
+    EXPECT_EQ(std::filesystem::file_size(temp_ / "raw"), frames * 2 * 33 * 17 * 4);
+}
+
+TEST_F(Run, ReadsTextFromStandardInput) {
+    std::string text = "16 16\n";
+    for (int i = 0; i < 2000; ++i)
+        text += "0." + std::to_string(100'000 + 50 * i) + " " + std::to_string(i % 16) + " " +
+                std::to_string(i / 16 % 16) + " " + std::to_string(i % 2) + "\n";
+    const Result result =
+        eventide({"run", "-", "--fps", "50", "--out", "gray8:-"}, {.input = text});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.output.size() % 256, 0U);
+    EXPECT_GE(result.output.size(), 256U * 4);
+}
+
+TEST_F(Run, BeginsAndEndsWhereItIsTold) {
+    ASSERT_EQ(eventide({"run", recording(), "--from", "100ms", "--to", "200ms", "--warmup", "50ms",
+                        "--fps", "100", "--out", "a/"})
+                  .exit_code,
+              0);
+    const auto times = column(temp_ / "a/timestamps.csv", 2);
+    ASSERT_FALSE(times.empty());
+    EXPECT_NEAR(double(times.front()), 100'000, 1000) << "the first event may be a little late";
+    EXPECT_NEAR(double(times.size()), 11, 1);
+}
+
+TEST_F(Run, GoesThroughANamedPipe) {
+    ASSERT_EQ(mkfifo((temp_ / "pipe").c_str(), 0600), 0);
+    Process process = start({"run", recording(), "--fps", "20", "--out", "gray8:pipe"});
+    const std::string bytes = read_text(temp_ / "pipe");
+    EXPECT_EQ(process.wait().exit_code, 0);
+    EXPECT_GE(bytes.size(), 7U * 64 * 48);
+    EXPECT_EQ(bytes.size() % (64 * 48), 0U);
+}
+
+TEST_F(Run, KeepsItsStateInAFileOfThisModelOnly) {
+    ASSERT_EQ(eventide({"run", recording(), "--out", "null", "--state-out", "state"}).exit_code, 0);
+    const std::vector<std::string> common{"run", recording(), "--to", "60ms", "--out"};
+    const auto with = [&](std::vector<std::string> more) {
+        std::vector<std::string> all = common;
+        all.insert(all.end(), more.begin(), more.end());
+        return eventide(all);
+    };
+    EXPECT_EQ(with({"a/"}).exit_code, 0);
+    EXPECT_EQ(with({"b/", "--state-in", "state"}).exit_code, 0);
+    EXPECT_NE(contents(temp_ / "a"), contents(temp_ / "b"));
+    const Result wrong = with({"c/", "--state-in", "state", "--model", wrong_model()});
+    EXPECT_EQ(wrong.exit_code, 3) << wrong.error;
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "c")) << "a wrong input leaves nothing behind";
+}
+
+TEST_F(Run, RecordsWhatItReads) {
+    ASSERT_EQ(eventide({"run", recording(), "--out", "null", "--record", "again.aedat4"}).exit_code,
+              0);
+    const auto info = [&](const std::string& file) {
+        return Json::parse(eventide({"info", file, "--json"}).output);
+    };
+    const Json original = info(recording()), again = info(temp_ / "again.aedat4");
+    for (const char* key : {"events", "on", "first_us", "last_us", "frames", "width"})
+        EXPECT_EQ(original[key], again[key]) << key;
+}
+
+TEST_F(Run, LookAndHotPixelsAreAppliedWhenAskedFor) {
+    const Result result =
+        eventide({"run", recording(), "--auto-hdr", "--unsharp", "0.3", "--flip", "both", "--crop",
+                  "4", "--hot-pixels", "learn", "--events", "--out", "a/"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "a/events/events_0000000000.png"));
+    EXPECT_EQ(probe(temp_ / "a/frames/frame_0000000000.png", "width,height"), "56,40\n");
+}
+
+TEST_F(Run, RendersOneRegionOnly) {
+    ASSERT_EQ(eventide({"run", recording(), "--size", "2x", "--roi", "10,20,30x16", "--out", "a/",
+                        "--to", "60ms"})
+                  .exit_code,
+              0);
+    EXPECT_EQ(probe(temp_ / "a/frames/frame_0000000000.png", "width,height"), "30,16\n");
+}
+
+TEST_F(Run, TakesASimulationInPlaceOfACamera) {
+    const Result result = eventide(
+        {"run", "sim:demo?size=64x48&seconds=0.2&speed=max", "--fps", "50", "--out", "a/"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_GE(column(temp_ / "a/timestamps.csv", 0).size(), 9U);
+}
+
+}  // namespace
+}  // namespace eventide::test

@@ -1,0 +1,71 @@
+// Signals, readers that go away, and the end nobody can catch.
+#include "tests/system/program_test.h"
+
+#include <signal.h>
+
+#include <filesystem>
+
+namespace eventide::test {
+namespace {
+
+constexpr std::size_t kPixels = 64 * 48;
+constexpr const char* kEndless = "sim:demo?size=64x48";
+
+class Signals : public ProgramTest {};
+
+TEST_F(Signals, TheFirstSigintDrainsAndClosesEverything) {
+    Process process = start({"run", kEndless, "--fps", "100", "--out", "gray8:-", "--out",
+                             "video.mp4", "--out", "frames/", "--stats", "stats.jsonl"},
+                            {.output_to_pipe = true});
+    ASSERT_EQ(process.read_output(5 * kPixels).size(), 5 * kPixels);
+    process.signal(SIGINT);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    const auto times = column(temp_ / "frames/timestamps.csv", 2);
+    EXPECT_GE(times.size(), 5U);
+    EXPECT_EQ(packet_times(temp_ / "video.mp4").size(), times.size());
+    EXPECT_NE(read_text(temp_ / "stats.jsonl").find("\"final\":true"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "frames/run.json"));
+    EXPECT_NE(result.error.find("frames from"), std::string::npos) << "the summary";
+}
+
+TEST_F(Signals, ASecondSignalQuitsAtOnce) {
+    // Nobody reads the pipe, so the first signal cannot finish its work.
+    Process process =
+        start({"run", kEndless, "--fps", "1000", "--out", "grayf32:-"}, {.output_to_pipe = true});
+    ASSERT_EQ(process.read_output(4 * kPixels).size(), 4 * kPixels);
+    process.signal(SIGINT);
+    process.signal(SIGTERM);
+    // Reading now would let it end properly: only its end is waited for.
+    while (process.running()) process.signal(SIGTERM);
+    EXPECT_EQ(process.wait().exit_code, 128 + SIGTERM);
+}
+
+TEST_F(Signals, AReaderThatGoesAwayIsAProperEnd) {
+    Process process = start({"run", kEndless, "--out", "-"}, {.output_to_pipe = true});
+    EXPECT_EQ(process.read_output(9), "YUV4MPEG2");
+    process.read_output(2 * kPixels);
+    process.close_output();
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error.find("error"), std::string::npos) << result.error;
+}
+
+TEST_F(Signals, AKilledRunLeavesAVideoThatPlaysAndFilesThatAreWhole) {
+    Process process = start({"run", kEndless, "--fps", "200", "--out", "video.mp4", "--out",
+                             "frames/", "--out", "gray8:-"},
+                            {.output_to_pipe = true});
+    ASSERT_EQ(process.read_output(150 * kPixels).size(), 150 * kPixels);
+    process.signal(SIGKILL);
+    EXPECT_EQ(process.wait().exit_code, 128 + SIGKILL);
+    EXPECT_GE(packet_times(temp_ / "video.mp4").size(), 60U);
+    EXPECT_GE(column(temp_ / "frames/timestamps.csv", 2).size(), 149U);
+}
+
+TEST_F(Signals, ALiveRunEndsByItself) {
+    const Result result = eventide({"run", kEndless, "--duration", "100ms", "--out", "null"});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+}
+
+}  // namespace
+}  // namespace eventide::test
