@@ -15,7 +15,7 @@ struct Checkpoint {
     double elapsed_minutes = 0;
     double best_score = 1e9;       ///< of the validations so far
     std::string options;           ///< OptionTable::record()
-    std::vector<Memory> memories;  ///< of each thread's lanes
+    std::vector<Memory> memories;  ///< of each group's and thread's lanes
 };
 
 /// Writes whole or not at all. Throws Error(failed).

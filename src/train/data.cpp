@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace eventide {
 namespace {
@@ -78,16 +79,18 @@ struct Lane::Episode {
     int frames = 0;
 };
 
-Lane::Lane(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures, int lane,
-           std::int64_t first_window)
-    : settings_(settings), textures_(std::move(textures)), lane_(lane) {
+Lane::Lane(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
+           LanePlace place, std::int64_t first_window)
+    : settings_(settings), textures_(std::move(textures)), place_(place) {
+    // Turns of this lane before the run's window `first_window`.
+    const std::int64_t first = (first_window - place.group + place.groups - 1) / place.groups;
     // Scenes that are over are skipped; the one under way is simulated again up to the window.
     start_episode();
-    while (window_ + windows_left_ <= first_window) {
+    while (window_ + windows_left_ <= first) {
         window_ += windows_left_;
         start_episode();
     }
-    while (window_ < first_window) next();
+    while (window_ < first) next();
 }
 
 Lane::~Lane() = default;
@@ -95,7 +98,7 @@ Lane::~Lane() = default;
 void Lane::start_episode() {
     ++episode_;
     now_.reset();
-    Random random{seed_of(settings_, std::uint64_t(lane_) + 1, std::uint64_t(episode_))};
+    Random random{seed_of(settings_, std::uint64_t(place_.lane) + 1, std::uint64_t(episode_))};
     const double frames = random.log_uniform(settings_.episode);
     windows_left_ = std::max<std::int64_t>(1, std::llround(frames / settings_.frames));
 }
@@ -103,7 +106,7 @@ void Lane::start_episode() {
 void Lane::open_episode() {
     now_ = std::make_unique<Episode>(
         settings_, textures_,
-        ~seed_of(settings_, std::uint64_t(lane_) + 1, std::uint64_t(episode_)));
+        ~seed_of(settings_, std::uint64_t(place_.lane) + 1, std::uint64_t(episode_)));
 }
 
 LaneWindow Lane::next() {
@@ -111,7 +114,7 @@ LaneWindow Lane::next() {
     LaneWindow out;
     out.fresh = now_ == nullptr;
     if (out.fresh) open_episode();
-    const WindowPlan plan = window_plan(settings_, window_);
+    const WindowPlan plan = window_plan(settings_, window_ * place_.groups + place_.group);
     Episode& episode = *now_;
     for (int k = 0; k < settings_.frames; ++k) {
         episode.advance();
@@ -133,20 +136,27 @@ LaneWindow Lane::next() {
 }
 
 Feed::Feed(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures, int lanes,
-           std::int64_t first_window)
-    : settings_(settings), textures_(std::move(textures)), slots_(std::size_t(lanes)) {
-    for (int lane = 0; lane < lanes; ++lane)
-        threads_.emplace_back([this, lane, first_window](std::stop_token stop) {
-            simulate(stop, lane, first_window);
+           int groups, std::int64_t first_window)
+    : settings_(settings),
+      textures_(std::move(textures)),
+      lanes_(lanes),
+      groups_(groups),
+      window_(first_window),
+      slots_(std::size_t(lanes * groups)) {
+    for (int lane = 0; lane < lanes * groups; ++lane) {
+        const LanePlace place{lane, lane / lanes, groups};
+        threads_.emplace_back([this, place, first_window](std::stop_token stop) {
+            simulate(stop, place, first_window);
         });
+    }
 }
 
 Feed::~Feed() = default;
 
-void Feed::simulate(std::stop_token stop, int lane, std::int64_t first_window) {
-    Slot& slot = slots_[std::size_t(lane)];
+void Feed::simulate(std::stop_token stop, LanePlace place, std::int64_t first_window) {
+    Slot& slot = slots_[std::size_t(place.lane)];
     try {
-        Lane source{settings_, textures_, lane, first_window};
+        Lane source{settings_, textures_, place, first_window};
         while (!stop.stop_requested()) {
             LaneWindow window = source.next();
             std::unique_lock lock{mutex_};
@@ -165,7 +175,8 @@ void Feed::simulate(std::stop_token stop, int lane, std::int64_t first_window) {
 std::vector<LaneWindow> Feed::next() {
     std::vector<LaneWindow> windows;
     std::unique_lock lock{mutex_};
-    for (Slot& slot : slots_) {
+    const auto group = std::size_t(window_++ % groups_), lanes = std::size_t(lanes_);
+    for (Slot& slot : std::span{slots_}.subspan(group * lanes, lanes)) {
         changed_.wait(lock, [&] { return !slot.ready.empty() || slot.failure; });
         if (slot.ready.empty()) std::rethrow_exception(slot.failure);
         windows.push_back(std::move(slot.ready.front()));

@@ -56,11 +56,19 @@ struct LaneWindow {
     std::vector<Array2<float>> truth;  ///< per rendered frame, patch x patch
 };
 
-/// Windows of one lane, one after the other; the same for the same settings and lane number.
+/// Which lane, and how often its turn comes: window w of the run is made of the lanes of group
+/// w % groups. Neighbouring steps then see other scenes, and scenes may be long all the same.
+struct LanePlace {
+    int lane = 0;
+    int group = 0, groups = 1;
+};
+
+/// Windows of one lane, one after the other; the same for the same settings and place.
 class Lane {
 public:
-    Lane(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures, int lane,
-         std::int64_t first_window);
+    /// Goes on where the run is at `first_window`.
+    Lane(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
+         LanePlace place, std::int64_t first_window);
     ~Lane();
 
     LaneWindow next();
@@ -72,7 +80,7 @@ private:
 
     DataSettings settings_;
     std::shared_ptr<const TextureLibrary> textures_;
-    int lane_;
+    LanePlace place_;
     std::int64_t window_ = 0, episode_ = -1, windows_left_ = 0;
     std::unique_ptr<Episode> now_;
 };
@@ -80,11 +88,12 @@ private:
 /// Lanes that simulate ahead on threads of their own, a bounded number of windows.
 class Feed {
 public:
+    /// `lanes` in each of `groups`.
     Feed(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures, int lanes,
-         std::int64_t first_window);
+         int groups, std::int64_t first_window);
     ~Feed();
 
-    /// The next window of all lanes; waits for it. Rethrows what a lane threw.
+    /// The next window of the lanes whose turn it is; waits. Rethrows what a lane threw.
     std::vector<LaneWindow> next();
 
 private:
@@ -92,10 +101,12 @@ private:
         std::deque<LaneWindow> ready;
         std::exception_ptr failure;
     };
-    void simulate(std::stop_token stop, int lane, std::int64_t first_window);
+    void simulate(std::stop_token stop, LanePlace place, std::int64_t first_window);
 
     DataSettings settings_;
     std::shared_ptr<const TextureLibrary> textures_;
+    int lanes_, groups_;
+    std::int64_t window_;
     std::mutex mutex_;
     std::condition_variable_any changed_;
     std::vector<Slot> slots_;            // by mutex_

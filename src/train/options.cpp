@@ -81,7 +81,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("device", o.device, "cpu or cuda");
     add("precision", o.precision, "of activations: f32, bf16 or auto (bf16 where it is quick)");
     add("threads", o.threads, "shares of a step computed at the same time");
-    add("lanes", o.lanes, "streams per thread");
+    add("lanes", o.lanes, "streams per thread and step");
+    add("groups", o.groups, "of streams, that take turns from step to step");
     add("seed", o.data.seed, "of the data and the first weights");
 
     add("encoder", o.model.encoder, "gated or thesis");

@@ -24,7 +24,7 @@ struct TrainOptions {
     std::string device = "cpu", precision = "auto";
     double minutes = 60;
     int steps = 0;  ///< where not 0, the budget instead of `minutes`
-    int threads = 1, lanes = 2;
+    int threads = 1, lanes = 2, groups = 4;
     double learning_rate = 1e-3, final_rate = 0.02, constant_share = 0.6;
     int warm_up = 100;
     double checkpoint_minutes = 3, validate_minutes = 5;

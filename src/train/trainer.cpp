@@ -85,8 +85,9 @@ Trainer::Trainer(const TrainOptions& options, std::string record,
             ValidationSettings{options.validation_scenes, options.validation_frames,
                                options.validation_crop, 4242},
             options_.data, std::move(validation_textures), device_);
-    feed_ = std::make_unique<Feed>(options_.data, std::move(textures),
-                                   options.threads * options.lanes, progress_.window);
+    feed_ =
+        std::make_unique<Feed>(options_.data, std::move(textures), options.threads * options.lanes,
+                               options.groups, progress_.window);
 }
 
 /// A run may go on with other lanes or another crop: its states then begin empty.
@@ -95,9 +96,9 @@ void Trainer::begin_memories() {
     const int crop = options_.data.crop;
     const Memory empty =
         empty_memory(options_.model, options_.lanes, crop, crop, torch::TensorOptions{device_});
-    const auto threads = std::size_t(options_.threads);
-    if (memories.size() != threads || memories[0].latent.sizes() != empty.latent.sizes())
-        memories.assign(threads, empty);
+    const auto count = std::size_t(options_.threads * options_.groups);
+    if (memories.size() != count || memories[0].latent.sizes() != empty.latent.sizes())
+        memories.assign(count, empty);
 }
 
 std::filesystem::path Trainer::file(const char* name) const {
@@ -148,13 +149,14 @@ void Trainer::step() {
     const auto start = Clock::now();
     const WindowPlan plan = window_plan(options_.data, progress_.window);
     const std::vector<LaneWindow> windows = feed_->next();
-    std::vector<Share> shares(progress_.memories.size());
+    std::vector<Share> shares(std::size_t(options_.threads));
+    const std::span<Memory> memories = std::span{progress_.memories}.subspan(
+        std::size_t(progress_.window % options_.groups) * shares.size(), shares.size());
     const auto lanes = std::size_t(options_.lanes);
     {
         std::vector<std::jthread> threads;
         const auto work = [&](std::size_t i) {
-            shares[i] = run_share(std::span{windows}.subspan(i * lanes, lanes), plan,
-                                  progress_.memories[i]);
+            shares[i] = run_share(std::span{windows}.subspan(i * lanes, lanes), plan, memories[i]);
         };
         for (std::size_t i = 1; i < shares.size(); ++i) threads.emplace_back(work, i);
         work(0);
@@ -172,7 +174,7 @@ void Trainer::step() {
     const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
     if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next windows
         ++skipped_;
-        for (Memory& memory : progress_.memories)
+        for (Memory& memory : memories)
             memory = begin_window(memory, std::vector<bool>(lanes, true));
     }
     ++progress_.window;

@@ -19,7 +19,7 @@ Validation::Validation(const ValidationSettings& settings, DataSettings data,
     data_.seed = settings.seed;
     plan_ = window_plan(data_, 0);
     for (int scene = 0; scene < settings.scenes; ++scene) {
-        const LaneWindow window = Lane{data_, textures, scene, 0}.next();
+        const LaneWindow window = Lane{data_, textures, {.lane = scene}, 0}.next();
         scenes_.push_back(to_batch({&window, 1}, device));
     }
 }
