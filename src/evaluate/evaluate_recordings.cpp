@@ -11,46 +11,58 @@ namespace {
 // With a cut, inference starts this much before it (EVREAL).
 constexpr double kWarmUpSeconds = 10;
 
-/// The images as queries: the part of the sensor each covers, at its time.
-std::vector<Query> queries_of(const ReferenceSequence& sequence, const ScoredImages& which) {
-    std::vector<Query> queries;
-    for (std::size_t i = 0; i < sequence.images.size(); ++i) {
-        const ReferenceImage& image = sequence.images[i];
-        Query query;
-        query.t = image.t;
-        query.scored = int(i) >= which.skip && image.t >= which.from && image.t <= which.to;
-        if (query.scored) {
-            query.truth = intensity_of(image);
-            query.region = {image.x0, image.y0, query.truth.width(), query.truth.height()};
-            if (image.x0 < 0 || image.y0 < 0 || image.x0 + query.region.width > sequence.width ||
-                image.y0 + query.region.height > sequence.height)
-                throw Error(ErrorKind::input, sequence.name + ": image " + std::to_string(i) +
-                                                  " of " + std::to_string(query.region.width) +
-                                                  "x" + std::to_string(query.region.height) +
-                                                  " does not lie inside the sensor of " +
-                                                  std::to_string(sequence.width) + "x" +
-                                                  std::to_string(sequence.height));
-        }
-        queries.push_back(std::move(query));
+/// Image `i` as a query: the part of the sensor it covers, at its time.
+Query query_of(const ReferenceSequence& sequence, std::size_t i) {
+    const ReferenceImage& image = sequence.images[i];
+    Query query;
+    query.t = image.t;
+    query.truth = intensity_of(image);
+    query.region = {image.x0, image.y0, query.truth.width(), query.truth.height()};
+    if (image.x0 < 0 || image.y0 < 0 || image.x0 + query.region.width > sequence.width ||
+        image.y0 + query.region.height > sequence.height)
+        throw Error(ErrorKind::input, sequence.name + ": image " + std::to_string(i) + " of " +
+                                          std::to_string(query.region.width) + "x" +
+                                          std::to_string(query.region.height) +
+                                          " does not lie inside the sensor of " +
+                                          std::to_string(sequence.width) + "x" +
+                                          std::to_string(sequence.height));
+    return query;
+}
+
+/// Which images count, by number, in order of time.
+std::vector<std::size_t> scored_images(const ReferenceSequence& sequence,
+                                       const ScoredImages& which) {
+    std::vector<std::size_t> scored;
+    for (auto i = std::size_t(which.skip); i < sequence.images.size(); ++i) {
+        const SensorTime t = sequence.images[i].t;
+        if (t >= which.from && t <= which.to) scored.push_back(i);
     }
-    return queries;
+    return scored;
 }
 
 }  // namespace
 
 SequenceResult evaluate_sequence(const Evaluation& evaluation, const ReferenceSequence& sequence,
                                  const std::string& window, const ScoredImages& which) {
-    std::vector<Query> queries = queries_of(sequence, which);
-    const auto scored = std::ranges::count_if(queries, &Query::scored);
+    const std::vector<std::size_t> scored = scored_images(sequence, which);
     SequenceEvaluation judged{
-        evaluation, {sequence.name, sequence.width, sequence.height, sequence.first, int(scored)}};
-    for (Query& query : queries)
-        if (query.scored) judged.run().ask(std::move(query));
-    const auto push = [&judged](const Slice& slice) { judged.run().push(slice); };
+        evaluation,
+        {sequence.name, sequence.width, sequence.height, sequence.first, int(scored.size())}};
+    // Asked for one event frame at a time, so that a long recording's truth is not all in memory.
+    auto next = scored.begin();
+    const auto ask_until = [&](SensorTime end) {
+        for (; next != scored.end() && sequence.images[*next].t <= end; ++next)
+            judged.run().ask(query_of(sequence, *next));
+    };
+    const auto push = [&](const Slice& slice) {
+        ask_until(slice.window.end);
+        judged.run().push(slice);
+    };
     if (window == "reference")
         for_each_reference_slice(sequence, push);
     else
         for_each_window_slice(sequence, window, push);
+    ask_until(SensorTime::max());
     return judged.finish();
 }
 
@@ -67,7 +79,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         const int images = int(sequence.images.size());
         which.skip = what.skip_images == RecordingSettings::kSkipHalf
                          ? images / 2
-                         : std::min(what.skip_images, images - 1);
+                         : std::clamp(what.skip_images, 0, images - 1);
         if (what.from_s)
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
         return evaluate_sequence(evaluation, sequence, what.window, which);

@@ -43,7 +43,6 @@ void ModelRun::render_what_is_ready() {
             ++not_rendered_;
             continue;
         }
-        if (!query.scored) continue;
         const RenderRequest request{.t = query.t,
                                     .width = query.width,
                                     .height = query.height,

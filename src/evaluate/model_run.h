@@ -16,7 +16,6 @@ struct Query {
     Region region{};            ///< part of the picture; width 0: all of it
     int width = 0, height = 0;  ///< px, of the whole picture; 0: the sensor's
     Array2<float> truth;        ///< [y][x] of the region
-    bool scored = true;         ///< else made and thrown away
 };
 
 /// One sequence at a time; reset() between them.
