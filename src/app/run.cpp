@@ -13,13 +13,6 @@
 
 namespace eventide::app {
 
-void Watch::see(const Batch& batch) {
-    if (references_ != nullptr) references_->see(batch);
-    if (!duration_ || batch.events.empty()) return;
-    if (!first_) first_ = batch.events.front().t;
-    if (batch.events.back().t - *first_ >= *duration_) source_.stop();
-}
-
 namespace {
 
 std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source) {
@@ -44,7 +37,7 @@ Run::Run(Program& program, RunSettings& settings)
       begun_{std::chrono::steady_clock::now()},
       recorded_{recorder_of(settings, *opened_.source)},
       filter_{filter_of(settings, sensor_)},
-      watch_{sheet_ ? &references_ : nullptr, live() ? settings.duration : std::nullopt, source()},
+      watch_{sheet_ ? &references_ : nullptr},
       encode_{network_.encoder()},
       render_{network_.renderer(), request_of(settings, sensor_, lookahead_)} {
     if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);

@@ -19,18 +19,16 @@
 
 namespace eventide::app {
 
-/// Hands reference images on, and ends a live run after so much sensor time. Bin thread.
+/// Hands reference images on. Bin thread.
 class Watch : public DataObserver {
 public:
-    Watch(ReferenceImages* references, std::optional<SensorDuration> duration, Source& source)
-        : references_{references}, duration_{duration}, source_{source} {}
-    void see(const Batch& batch) override;
+    explicit Watch(ReferenceImages* references) : references_{references} {}
+    void see(const Batch& batch) override {
+        if (references_ != nullptr) references_->see(batch);
+    }
 
 private:
     ReferenceImages* references_;
-    std::optional<SensorDuration> duration_;
-    Source& source_;
-    std::optional<SensorTime> first_;
 };
 
 /// Inputs are opened before outputs, so that a wrong input leaves nothing behind.

@@ -18,6 +18,7 @@ Span span_of(const RunSettings& settings, bool live) {
         if (settings.from || settings.to)
             throw Error(ErrorKind::usage,
                         "--from and --to are for recordings; --duration ends a live source");
+        span.duration = settings.duration;
         return span;
     }
     const MomentReader moments = names_simulation(settings.source)
@@ -49,6 +50,7 @@ SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, 
         parse_window(settings.window == "auto" ? model.window : settings.window);
     slicer.begin = span.begin;
     slicer.end = span.end;
+    slicer.duration = span.duration;
     return slicer;
 }
 

@@ -13,9 +13,10 @@
 
 namespace eventide::app {
 
-/// Where a recording is to begin and end, in its own time.
+/// Where a recording is to begin and end, in its own time; of a live source only how long it runs.
 struct Span {
     std::optional<SensorTime> frames_from, begin, end;
+    std::optional<SensorDuration> duration;
 };
 
 /// May read the beginning of the recording to find its first event. Throws Error (usage) for what

@@ -60,6 +60,8 @@ void Slicer::reset() {
 void Slicer::begin_at(SensorTime begin) {
     begin_ = origin_ = begin;
     newest_ = std::max(newest_, begin);
+    if (first_stream_ && settings_.duration && !settings_.end)
+        settings_.end = begin + *settings_.duration;
 }
 
 void Slicer::push(std::span<const Event> events, HostTime arrived) {

@@ -45,6 +45,9 @@ struct SlicerSettings {
     std::optional<SensorTime> begin;
     /// Later events are left out and the last frame ends here. Empty: at the stream's end.
     std::optional<SensorTime> end;
+    /// Where a live stream's times are not known before: the end is this long after the first
+    /// frame's begin, in silence too.
+    std::optional<SensorDuration> duration;
 };
 
 /// "50ms", "20000ev", "0.35epp" (events per pixel) or "aps" (reference images); durations in us,

@@ -327,6 +327,21 @@ TEST(Slicer, KeepsToTheAskedSpan) {
     EXPECT_EQ(slicer.counters().after_end, 2U);
 }
 
+TEST(Slicer, EndsAStreamOfUnknownTimesAfterADurationInSilenceToo) {
+    SlicerSettings settings = by_duration(100);
+    settings.duration = SensorDuration{250};
+    Slicer slicer{settings, 240, 180};
+    std::vector<Kept> slices;
+    slicer.push(std::vector{at(1001, 1)});
+    slicer.advance(from_us(1200));
+    take(slicer, slices);
+    EXPECT_FALSE(slicer.is_past_end());
+    slicer.advance(from_us(5000));
+    take(slicer, slices);
+    EXPECT_TRUE(slicer.is_past_end());
+    EXPECT_EQ(edges_of(slices), (Edges{{1000, 1100}, {1100, 1200}, {1200, 1250}}));
+}
+
 TEST(Slicer, MovesAnEventThatComesAfterItsFrameWasClosed) {
     Slicer slicer(by_duration(10), 240, 180);
     std::vector<Kept> slices;

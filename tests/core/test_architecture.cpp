@@ -62,7 +62,7 @@ const std::vector<Rule> kRules{
      {"src/simulate/", "src/app/", "src/train/", "src/evaluate/", "drivers/simulated/"}},
     {"src/evaluate/", {"src/evaluate/", "src/app/", "src/train/"}},
     {"src/model/", {"src/model/", "src/app/", "src/train/", "src/evaluate/", "pipeline/"}},
-    {"src/nn/", {"src/nn/", "src/model/", "src/train/", "src/evaluate/"}},
+    {"src/nn/", {"src/nn/", "src/model/", "src/train/", "src/evaluate/", "src/app/"}},
     {"src/kernels/", {"src/kernels/", "src/nn/", "src/model/", "src/binning/", "src/codec/"}},
     {"drivers/", {"drivers/", "src/app/"}},
     {"replay/", {"replay/", "src/app/", "src/evaluate/", "src/train/"}},
