@@ -86,7 +86,7 @@ void parse(benchmark::State& state, std::span<const std::byte> bytes, const Make
         if (parser->damaged().total() != 0) state.SkipWithError("damage");
     }
     state.SetItemsProcessed(std::int64_t(events));
-    state.SetBytesProcessed(std::int64_t(state.iterations() * bytes.size()));
+    state.SetBytesProcessed(state.iterations() * std::int64_t(bytes.size()));
 }
 
 template <typename Writer>

@@ -63,7 +63,7 @@ inline void expect_same(const Parsed& a, const Parsed& b, const std::string& wha
 /// The same bytes give the same data for any split.
 inline void expect_same_for_any_split(const MakeParser& make, std::span<const std::byte> bytes) {
     const Parsed whole = parse_whole(make, bytes);
-    for (const std::size_t size : {1, 2, 3, 7, 8, 27, 64, 1000})
+    for (const std::size_t size : {1U, 2U, 3U, 7U, 8U, 27U, 64U, 1000U})
         expect_same(whole, parse_in_pieces(make, bytes, [&] { return size; }),
                     "pieces of " + std::to_string(size));
     for (unsigned seed = 0; seed < 5; ++seed) {
