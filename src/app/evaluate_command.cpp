@@ -64,6 +64,7 @@ std::vector<Positional> EvaluateCommand::positionals() {
              nullptr, &inputs_}};
 }
 
+// Long, because it is a list: one line per option.
 SettingTable EvaluateCommand::settings() {
     SettingTable table{"evaluate", "eventide evaluate: measures of a model.", {}};
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
@@ -139,6 +140,8 @@ EvaluateSettings EvaluateCommand::how(Program& program) const {
     how.engine.engine = engine_;
     how.engine.precision = precision_;
     how.engine.parallel_for = parallel_for_with(threads_);
+    // Of recordings each is long: they come one by one, and the network takes all threads.
+    if (protocol_ == Protocol::simulated) how.parallel_for = how.engine.parallel_for;
     how.progress = [progress = std::make_shared<Progress>(program.quiet),
                     &signals = program.signals](const std::string& sequence, double share) {
         progress->show(share, sequence);

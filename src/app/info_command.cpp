@@ -5,6 +5,10 @@
 #include "replay/summary.h"
 #include "src/app/progress.h"
 #include "src/core/error.h"
+#include "src/model/model_file.h"
+#include "src/model/model_metadata.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <iostream>
@@ -47,13 +51,32 @@ void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t
 
 }  // namespace
 
+/// What a model is, from its own metadata.
+int InfoCommand::describe_model() const {
+    const Model model = load_model(file_);
+    std::size_t weights = 0;
+    for (const auto& [name, tensor] : model.weights) weights += tensor.values.size();
+    std::map<std::string, std::string> facts = format_metadata(model.config);
+    facts["weights"] = std::to_string(weights);
+    facts["identity"] = encoder_identity(model);
+    if (json_) {
+        std::cout << nlohmann::json(facts).dump(2) << '\n';
+        return exit_done;
+    }
+    for (const auto& [key, value] : facts)
+        std::cout << key << std::string(key.size() < 16 ? 16 - key.size() : 1, ' ') << value
+                  << '\n';
+    return exit_done;
+}
+
 std::string InfoCommand::examples() const {
-    return "Examples:\n  eventide info recording.aedat4\n  eventide info recording.raw --json | jq "
+    return "Examples:\n  eventide info recording.aedat4\n  eventide info model.safetensors\n  "
+           "eventide info recording.raw --json | jq "
            ".events";
 }
 
 std::vector<Positional> InfoCommand::positionals() {
-    return {{"FILE", "Recording, or - for standard input", &file_}};
+    return {{"FILE", "Recording, - for standard input, or a model", &file_}};
 }
 
 SettingTable InfoCommand::settings() {
@@ -66,6 +89,7 @@ SettingTable InfoCommand::settings() {
 }
 
 int InfoCommand::run(Program& program) {
+    if (file_.ends_with(".safetensors")) return describe_model();
     const auto recording = open_recording(file_, input_.options());
     Progress progress{program.quiet};
     const Summary summary = summarize(*recording, [&] {

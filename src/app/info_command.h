@@ -1,4 +1,4 @@
-// eventide info: what a recording holds.
+// eventide info: what a recording or a model holds.
 #pragma once
 
 #include "src/app/command.h"
@@ -9,13 +9,15 @@ namespace eventide::app {
 class InfoCommand : public Command {
 public:
     std::string name() const override { return "info"; }
-    std::string summary() const override { return "Say what a recording holds"; }
+    std::string summary() const override { return "Say what a recording or a model holds"; }
     std::string examples() const override;
     std::vector<Positional> positionals() override;
     SettingTable settings() override;
     int run(Program& program) override;
 
 private:
+    int describe_model() const;
+
     std::string file_;
     InputSettings input_;
     bool json_ = false, strict_ = false;

@@ -50,9 +50,7 @@ void RecordedSource::write(const RawPacket& packet) {
 }
 
 void RecordedSource::write_batch() {
-    if (!format_->holds.images) batch_.images.clear();
-    if (!format_->holds.imu) batch_.imu.clear();
-    if (!format_->holds.triggers) batch_.triggers.clear();
+    remove_not_held(batch_, format_->holds);
     if (!batch_.empty()) file_->write(batch_);
     batch_.clear();
 }

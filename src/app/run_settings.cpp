@@ -107,8 +107,18 @@ Size SizeChoice::of(const Size& sensor) const {
 
 SettingTable RunSettings::table() {
     SettingTable table{"run", "eventide run: a recording or camera in, frames and sigma out.", {}};
-    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add_times(table);
+    add_network(table);
+    add_outputs(table);
+    add_look(table);
+    input.add_to(table);
+    add_machinery(table);
+    return table;
+}
 
+/// Which pictures of which part of the recording.
+void RunSettings::add_times(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(parsed_setting<FpsChoice>(
         "fps", fps, "RATE",
         "Pictures per second of sensor time: 120, 29.97, 30000/1001; frame: one at the end of each "
@@ -153,7 +163,11 @@ SettingTable RunSettings::table() {
         "duration", duration, "TIME", "Stop after so much sensor time; all: at the end.", "all",
         [](const std::string& text) { return parse_duration(text); },
         [](const SensorDuration& d) { return show_duration(d); }));
+}
 
+/// With which network, and what it remembers.
+void RunSettings::add_network(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(text_setting(
         "model", model, "NAME|FILE",
         "A name from the models folder (default, small, thesis) or a safetensors file."));
@@ -179,7 +193,11 @@ SettingTable RunSettings::table() {
         "Leave out pixels that fire by themselves: learn finds them while it runs, a file lists "
         "them, one x,y a line.",
         check_hot_pixels, same));
+}
 
+/// To where.
+void RunSettings::add_outputs(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     Setting sinks = list_setting(
         "out", out, "SINK",
         "Where pictures go, any number of times: dir/ (PNG, TIFF, times), x.mp4, x.mkv, x.y4m, - "
@@ -207,7 +225,11 @@ SettingTable RunSettings::table() {
     add(text_setting("stats", stats, "FILE",
                      "Counters as JSON, a line each second and a last one with \"final\": true."));
     add(flag_setting("strict", strict, "End with exit code 5 when data were lost or damaged."));
+}
 
+/// How it is to look.
+void RunSettings::add_look(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(flag_setting("auto_hdr", look.auto_hdr,
                      "Stretch the range the picture uses to black and white, smoothed in time; "
                      "sigma is scaled with it."));
@@ -221,8 +243,11 @@ SettingTable RunSettings::table() {
     add(whole_setting("video_crf", video_crf, "CRF",
                       "x264's quality: 0 is lossless, 18 looks so, 51 is worst.", 0, 51));
     add(whole_setting("sheet_rows", sheet_rows, "N", "Rows of the contact sheet.", 1, 100));
+}
 
-    input.add_to(table);
+/// Cameras, and the numbers of buffers.
+void RunSettings::add_machinery(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(text_setting("camera", camera, "FILE", "Settings of a camera, as in config/cameras."));
     add(flag_setting("reconnect", reconnect, "Wait for an unplugged camera to come back."));
     add(whole_setting("buffers_packets", buffers_packets, "N",
@@ -236,7 +261,6 @@ SettingTable RunSettings::table() {
                       1, 1024));
     add(flag_setting("sequential", sequential,
                      "Everything on one thread: the same pictures, for comparison."));
-    return table;
 }
 
 }  // namespace eventide::app

@@ -85,6 +85,13 @@ struct RunSettings {
     RunSettings& operator=(const RunSettings&) = delete;
 
     SettingTable table();
+
+private:
+    void add_times(SettingTable& table);
+    void add_network(SettingTable& table);
+    void add_outputs(SettingTable& table);
+    void add_look(SettingTable& table);
+    void add_machinery(SettingTable& table);
 };
 
 }  // namespace eventide::app

@@ -32,6 +32,13 @@ TEST_F(Commands, InfoSaysTheSameInJsonAndInWords) {
     EXPECT_EQ(words.error, "");
 }
 
+TEST_F(Commands, InfoDescribesAModel) {
+    const Result words = eventide({"info", model()});
+    EXPECT_EQ(words.exit_code, 0) << words.error;
+    EXPECT_NE(words.output.find("random weights, for tests"), std::string::npos);
+    EXPECT_EQ(Json::parse(eventide({"info", model(), "--json"}).output)["bins"], "2");
+}
+
 TEST_F(Commands, ConvertLosesNoEventAndSaysWhatHasNoPlace) {
     const Json original = info(recording());
     std::string from = recording();

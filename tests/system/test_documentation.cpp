@@ -1,13 +1,25 @@
 // Every command in the documentation does what it says: the shell blocks of docs/usage.md are run.
 #include "tests/system/program_test.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 
 namespace eventide::test {
 namespace {
 
-class Documentation : public ProgramTest {};
+class Documentation : public ProgramTest {
+protected:
+    /// With the program in the path and the small model as its default.
+    Result run_in_shell(const std::string& script) const {
+        const std::filesystem::path program = EVENTIDE_PROGRAM;
+        const std::string path = program.parent_path().string() + ":" + std::getenv("PATH");
+        const std::string models = std::filesystem::path{model()}.parent_path();
+        return run(
+            {"bash", "-euo", "pipefail", "-c", script},
+            {.environment = {{"PATH", path}, {"EVENTIDE_MODELS", models}}, .folder = temp_.path()});
+    }
+};
 
 /// The ```sh blocks of a page; others (```text) are not for running.
 std::vector<std::string> shell_blocks(const std::string& page) {
@@ -28,17 +40,34 @@ std::vector<std::string> shell_blocks(const std::string& page) {
 TEST_F(Documentation, EveryShellBlockOfTheUsagePageRuns) {
     const auto blocks = shell_blocks(read_text(EVENTIDE_SOURCE_DIR "/docs/usage.md"));
     ASSERT_GT(blocks.size(), 5U);
-    const std::string program = EVENTIDE_PROGRAM;
-    const std::string path =
-        std::filesystem::path{program}.parent_path().string() + ":" + std::getenv("PATH");
     std::filesystem::copy_file(recording(), temp_ / "recording.aedat4");
     for (const std::string& block : blocks) {
-        const Result result =
-            run({"bash", "-euo", "pipefail", "-c", block},
-                {.environment = {{"PATH", path},
-                                 {"EVENTIDE_MODELS", std::filesystem::path{model()}.parent_path()}},
-                 .folder = temp_.path()});
+        const Result result = run_in_shell(block);
         EXPECT_EQ(result.exit_code, 0) << block << result.error;
+    }
+}
+
+/// The lines of code blocks that call the program.
+std::vector<std::string> program_lines(const std::string& page) {
+    std::vector<std::string> found;
+    bool inside = false;
+    std::istringstream lines{page};
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("```")) inside = !inside;
+        if (inside && line.starts_with("eventide ")) found.push_back(line);
+    }
+    return found;
+}
+
+TEST_F(Documentation, EveryCommandOfTheReadmeRuns) {
+    const std::string readme = EVENTIDE_SOURCE_DIR "/README.md";
+    if (!std::filesystem::exists(readme)) GTEST_SKIP() << "there is no README.md yet";
+    const auto lines = program_lines(read_text(readme));
+    EXPECT_GE(lines.size(), 3U);
+    std::filesystem::copy_file(recording(), temp_ / "recording.aedat4");
+    for (const std::string& line : lines) {
+        const Result result = run_in_shell(line);
+        EXPECT_EQ(result.exit_code, 0) << line << "\n" << result.error;
     }
 }
 

@@ -122,6 +122,17 @@ TEST_F(ExitCodes, AConfigurationFileIsHeldToItsKeys) {
         EXPECT_NE(shown.output.find(part), std::string::npos) << part << "\n" << shown.output;
 }
 
+TEST_F(ExitCodes, TheMovingLineIsForTerminalsThatAreNotToldToBeQuiet) {
+    const std::vector<std::string> run{"run", "sim:demo?size=64x48", "--duration", "700ms", "--out",
+                                       "null"};
+    EXPECT_NE(eventide(run, {.error_to_terminal = true}).error.find(" events/s  window"),
+              std::string::npos);
+    EXPECT_EQ(eventide(run).error.find('\r'), std::string::npos);
+    std::vector<std::string> quiet = run;
+    quiet.push_back("--quiet");
+    EXPECT_EQ(eventide(quiet, {.error_to_terminal = true}).error, "");
+}
+
 TEST_F(ExitCodes, ColourIsForTerminalsAndNoColorIsRespected) {
     const auto complain = [&](ProcessSettings settings) {
         return eventide({"run", "nothing.raw", "--out", "null"}, std::move(settings)).error;
