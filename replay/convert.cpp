@@ -27,18 +27,15 @@ void keep_inside(Batch& batch, const ConvertOptions& options) {
     keep_inside(batch.triggers, options);
 }
 
-template <typename T>
-void keep_held(std::vector<T>& items, bool held, std::uint64_t& written, std::uint64_t& not_held) {
-    (held ? written : not_held) += items.size();
-    if (!held) items.clear();
+DataCounts counts_of(const Batch& batch) {
+    return {batch.events.size(), batch.images.size(), batch.imu.size(), batch.triggers.size()};
 }
 
-void keep_held(Batch& batch, const FormatHolds& holds, ConvertReport& report) {
-    DataCounts &in = report.written, &out = report.not_held;
-    keep_held(batch.events, holds.events, in.events, out.events);
-    keep_held(batch.images, holds.images, in.images, out.images);
-    keep_held(batch.imu, holds.imu, in.imu, out.imu);
-    keep_held(batch.triggers, holds.triggers, in.triggers, out.triggers);
+void add(DataCounts& sum, const DataCounts& more) {
+    sum.events += more.events;
+    sum.images += more.images;
+    sum.imu += more.imu;
+    sum.triggers += more.triggers;
 }
 
 StreamHeader header_of(const Recording& recording, const Format& format) {
@@ -67,7 +64,8 @@ ConvertReport convert(Recording& recording, const std::string& path, const Forma
     Batch batch;
     const auto pass_on = [&] {
         keep_inside(batch, options);
-        keep_held(batch, format.holds, report);
+        add(report.not_held, remove_not_held(batch, format.holds));
+        add(report.written, counts_of(batch));
         if (!batch.empty()) file.write(batch);
         batch.clear();
     };

@@ -16,11 +16,6 @@ struct ConvertOptions {
     bool overwrite = false;
 };
 
-struct DataCounts {
-    std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;
-    friend bool operator==(const DataCounts&, const DataCounts&) = default;
-};
-
 struct ConvertReport {
     DataCounts written;
     DataCounts not_held;  ///< left out because the target has no record for them

@@ -5,6 +5,7 @@
 #include "src/codec/aedat2.h"
 #include "src/codec/aedat3.h"
 #include "src/codec/aedat4.h"
+#include "src/codec/aedat4_records.h"
 #include "src/codec/aedat4_writer.h"
 #include "src/codec/dat.h"
 #include "src/codec/evt2.h"
@@ -129,16 +130,19 @@ OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
 constexpr FormatHolds kOnlyEvents{};
 constexpr FormatHolds kEventsAndTriggers{true, false, false, true};
 constexpr FormatHolds kEverything{true, true, true, true};
+constexpr FormatHolds kAedat4Holds{true, true, true, true,
+                                   [](const Trigger& t) { return aedat4_trigger_number(t) >= 0; }};
+constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds};
 
 // Formats that say what they are come first, text last.
 const std::array kFormats{
-    Format{"aedat4", "AEDAT 4", ".aedat4", kEverything, has_magic<kAedat4FirstLine>, open_aedat4,
+    Format{"aedat4", "AEDAT 4", ".aedat4", kAedat4Holds, has_magic<kAedat4FirstLine>, open_aedat4,
            make<Aedat4Writer>},
     Format{"aedat3", "AEDAT 3.1", ".aedat", kEverything, has_magic<kAedat3Magic>, open_aedat3,
            make<Aedat3Writer>},
     Format{"aedat2", "AEDAT 2.0", ".aedat2", kEverything, has_magic<kAedat2Magic>, open_aedat2,
            nullptr},
-    Format{"evt3", "Prophesee RAW EVT3", ".raw", kEventsAndTriggers, is_evt<kEvt3>, open_evt3,
+    Format{"evt3", "Prophesee RAW EVT3", ".raw", kEvt3Holds, is_evt<kEvt3>, open_evt3,
            make<Evt3Writer>},
     Format{"evt2", "Prophesee RAW EVT2", ".raw", kEventsAndTriggers, is_evt<kEvt2>, open_evt2,
            nullptr},
@@ -150,7 +154,26 @@ const std::array kFormats{
            make<TextWriter>},
 };
 
+template <typename T>
+std::uint64_t remove_unless(std::vector<T>& items, bool held) {
+    const std::uint64_t n = held ? 0 : items.size();
+    if (!held) items.clear();
+    return n;
+}
+
 }  // namespace
+
+DataCounts remove_not_held(Batch& batch, const FormatHolds& holds) {
+    DataCounts removed;
+    removed.events = remove_unless(batch.events, holds.events);
+    removed.images = remove_unless(batch.images, holds.images);
+    removed.imu = remove_unless(batch.imu, holds.imu);
+    removed.triggers = remove_unless(batch.triggers, holds.triggers);
+    if (holds.trigger)
+        removed.triggers +=
+            std::erase_if(batch.triggers, [&](const Trigger& t) { return !holds.trigger(t); });
+    return removed;
+}
 
 std::span<const Format> all_formats() {
     return kFormats;

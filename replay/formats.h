@@ -6,6 +6,7 @@
 #include "replay/recording.h"
 #include "src/codec/stream.h"
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,7 +17,17 @@ namespace eventide {
 /// What kinds of data a format has records for.
 struct FormatHolds {
     bool events = true, images = false, imu = false, triggers = false;
+    /// Where it has records for some kinds of triggers only: which. Null: for all.
+    bool (*trigger)(const Trigger&) = nullptr;
 };
+
+struct DataCounts {
+    std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;
+    friend bool operator==(const DataCounts&, const DataCounts&) = default;
+};
+
+/// Takes out what a format has no record for; returns how much that was.
+DataCounts remove_not_held(Batch& batch, const FormatHolds& holds);
 
 struct Format {
     std::string_view name;       ///< as in StreamHeader::format

@@ -14,7 +14,7 @@ build=(
 )
 tests=(
   libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev
-  libtorch-dev ffmpeg
+  libtorch-dev libsqlite3-dev ffmpeg
   clang clang-format clang-tidy libclang-rt-14-dev git
 )
 wanted=("${build[@]}")

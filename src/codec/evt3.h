@@ -51,6 +51,9 @@ private:
     static constexpr std::uint32_t kNoRow = 1U << 16, kNoColumn = 1U << 16;
 };
 
+/// Whether the writer has a word for it: rising and falling edges of sources 0 to 15.
+bool evt3_holds(const Trigger& trigger);
+
 /// Writes RAW files. Events of one row and time go as vectors where that takes fewer words, always
 /// in the order 12, 12, 8 at multiples of 32 as cameras send them and OpenEB demands (openeb#111).
 /// Times beyond 24 bits are kept by a header line "% time_base_us" that other readers ignore.

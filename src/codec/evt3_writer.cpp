@@ -88,10 +88,14 @@ void Evt3Writer::time(SensorTime t, std::vector<std::byte>& out) {
     time_written_ = true;
 }
 
-void Evt3Writer::trigger(const Trigger& trigger, std::vector<std::byte>& out) {
+bool evt3_holds(const Trigger& trigger) {
     const bool edge =
         trigger.kind == Trigger::Kind::rising || trigger.kind == Trigger::Kind::falling;
-    if (!edge || trigger.source > 15)
+    return edge && trigger.source <= 15;
+}
+
+void Evt3Writer::trigger(const Trigger& trigger, std::vector<std::byte>& out) {
+    if (!evt3_holds(trigger))
         throw cannot_hold("a trigger of kind " + std::to_string(int(trigger.kind)) +
                           " from source " + std::to_string(trigger.source));
     time(trigger.t, out);

@@ -66,6 +66,27 @@ TEST(Convert, WhatTheTargetCannotHoldIsCounted) {
     EXPECT_EQ(report.not_held, (DataCounts{0, 2, 1, 1}));
 }
 
+TEST(Convert, TriggersOfAKindTheTargetLacksAreLeftOutAndTheOthersKept) {
+    const TestFolder folder;
+    Batch batch;
+    batch.events = some_events(10);
+    const SensorTime t = batch.events.back().t;
+    batch.triggers = {{t, Trigger::Kind::rising, 0},
+                      {t, Trigger::Kind::frame_begin, 0},
+                      {t, Trigger::Kind::exposure_end, 0}};
+    {
+        StreamHeader header;
+        header.width = header.height = 128;
+        RecordingFile file(folder.path("a.aedat4"), false, open_writer("aedat4"), header);
+        file.write(batch);
+        file.finish();
+    }
+    const auto report = convert(*open_recording(folder.path("a.aedat4")), folder.path("b.raw"),
+                                *find_format("evt3"));
+    EXPECT_EQ(report.written, (DataCounts{10, 0, 0, 1}));
+    EXPECT_EQ(report.not_held, (DataCounts{0, 0, 0, 2}));
+}
+
 TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {
     const TestFolder folder;
     const std::string source = folder.write("a.txt", "240 180\n0.100000 1 2 1\n");
