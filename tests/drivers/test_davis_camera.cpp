@@ -156,14 +156,20 @@ TEST(DavisCamera, BeingUnpluggedIsAnErrorThatNamesTheWayOut) {
                 HasSubstr("--reconnect"));
 }
 
-TEST(DavisCamera, ComesBackAfterBeingUnpluggedAndMarksTheGap) {
+std::ptrdiff_t open_files() {
+    return std::distance(std::filesystem::directory_iterator{"/proc/self/fd"},
+                         std::filesystem::directory_iterator{});
+}
+
+TEST(DavisCamera, AHundredTimesUnpluggedItComesBackMarksTheGapAndLeaksNothing) {
     UsbTestbed bed;
     DavisOptions options;
     options.reconnect = true;
     std::optional<DavisCamera> camera;
-    for (int cycle = 0; cycle < 5; ++cycle) {
+    std::ptrdiff_t files = 0;
+    for (int cycle = 0; cycle < 100; ++cycle) {
         const auto model = std::make_shared<DavisModel>(DavisModelSettings{});
-        model->show(scene(model->settings().sensor, 20'000));
+        model->show(scene(model->settings().sensor, 2'000));
         bed.plug_in(model);
         if (!camera) camera.emplace(options);
         RawPacket packet;
@@ -171,8 +177,10 @@ TEST(DavisCamera, ComesBackAfterBeingUnpluggedAndMarksTheGap) {
         EXPECT_EQ(packet.gap_before, cycle > 0);
         bed.unplug();
         while (camera->read(packet) != ReadStatus::timeout) continue;
+        if (cycle == 1) files = open_files();
     }
-    EXPECT_EQ(camera->counters().reconnects, 4U);
+    EXPECT_EQ(camera->counters().reconnects, 99U);
+    EXPECT_EQ(open_files(), files);
 }
 
 TEST(DavisCamera, ExposureFollowsTheFrames) {
