@@ -102,7 +102,8 @@ private:
             const Array3<T>* z = codes[std::size_t(1 + dk + dt)];
             if (z == nullptr || y < 0 || y >= z->height() || x < 0 || x >= z->width()) continue;
             const auto code = z->pixel(y, x);
-            std::copy(code.begin(), code.end(), input.begin() + std::ptrdiff_t(n * depth));
+            std::copy(code.begin(), code.end(),
+                      input.begin() + std::ptrdiff_t(std::size_t(n) * depth));
         }
     }
 
