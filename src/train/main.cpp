@@ -1,11 +1,12 @@
 // eventide-train: makes the models that eventide runs. docs/training.md tells how.
 #include "src/core/error.h"
-#include "src/train/picture_pack.h"
+#include "src/simulate/texture_pack.h"
 #include "src/train/trainer.h"
 
 #include <csignal>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 namespace {
 
@@ -21,7 +22,7 @@ void ask_to_stop(int signal) {
 
 std::shared_ptr<const TextureLibrary> library(const std::string& pack, std::uint64_t seed) {
     if (pack.empty()) return procedural_textures(200, 256, seed);
-    return load_picture_pack(pack);
+    return textures_from_pack(pack);
 }
 
 /// Options of a checkpoint come first, so that those given on the command line win.
@@ -42,8 +43,7 @@ void read_options(const std::vector<std::string>& words, OptionTable& table,
 void train(const TrainOptions& options, const std::string& record) {
     std::filesystem::create_directories(options.out);
     std::ofstream{std::filesystem::path{options.out} / "options.txt"} << record;
-    Trainer trainer{options, record, library(options.textures, 1),
-                    library(options.validation_textures, 2),
+    Trainer trainer{options, library(options.textures, 1), library(options.validation_textures, 2),
                     [](const std::string& line) { std::cout << line << std::endl; }};
     trainer.run(stop_asked);
     if (!options.export_file.empty()) save_model(options.export_file, trainer.finished_model());

@@ -60,25 +60,26 @@ std::string write_value(const SigmaRule& value) {
 }  // namespace
 
 template <typename T>
-void OptionTable::add(const std::string& name, T& target, const std::string& help) {
-    options_.push_back({name, help,
+void OptionTable::add(const std::string& name, T& target, const std::string& help, Use use) {
+    options_.push_back({name, help, use,
                         [&target](const std::string& text) { read_value(text, target); },
                         [&target] { return write_value(target); }});
 }
 
 OptionTable::OptionTable(TrainOptions& o) {
-    add("out", o.out, "folder for the checkpoint, the logs and the pictures");
-    add("textures", o.textures, "pack of pictures to learn from; none: procedural");
-    add("validation-textures", o.validation_textures, "pack of pictures to judge by");
-    add("lpips", o.lpips, "npz file of LPIPS-Squeeze; none: that loss is left out");
-    add("minutes", o.minutes, "budget of the whole run, resumed parts included");
-    add("steps", o.steps, "budget in steps instead, where not 0");
+    add("out", o.out, "folder for the checkpoint, the logs and the pictures", Use::run);
+    add("textures", o.textures, "pack of pictures to learn from; none: procedural", Use::run);
+    add("validation-textures", o.validation_textures, "pack of pictures to judge by", Use::run);
+    add("lpips", o.lpips, "npz file of LPIPS-Squeeze; none: that loss is left out", Use::run);
+    add("minutes", o.minutes, "budget of the whole run, resumed parts included", Use::run);
+    add("steps", o.steps, "budget in steps instead, where not 0", Use::run);
     add("resume", o.resume,
         "checkpoint to go on from; its options are those of its beginning, "
-        "unless given again after this one");
-    add("export", o.export_file, "model file to write at the end");
-    add("card", o.card, "what the model card says first");
-    add("device", o.device, "cpu or cuda");
+        "unless given again after this one",
+        Use::once);
+    add("export", o.export_file, "model file to write at the end", Use::once);
+    add("card", o.card, "what the model card says first", Use::run);
+    add("device", o.device, "cpu or cuda", Use::run);
     add("precision", o.precision, "of activations: f32, bf16 or auto (bf16 where it is quick)");
     add("threads", o.threads, "shares of a step computed at the same time");
     add("lanes", o.lanes, "streams per thread and step");
@@ -106,6 +107,11 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("still", o.data.scene.still_background, "share of scenes whose camera stands still");
     add("objects", o.data.scene.objects_max, "moving objects at most");
     add("faint", o.data.scene.faint_probability, "share of scenes of little contrast");
+    add("pauses", o.data.scene.pause_start, "probability that a pause begins, per 50 ms");
+    add("light", o.data.scene.white_lux, "lux on the chip where the scene is white");
+    add("range", o.data.scene.dynamic_range, "white over black of scenes");
+    add("light-changes", o.data.scene.light_change_probability, "share of scenes");
+    add("flicker", o.data.scene.flicker_probability, "share of scenes under mains light");
     add("threshold", o.data.sensor.threshold, "ln of the light's change");
 
     add("l1", o.loss.l1, "weight in the loss");
@@ -120,9 +126,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("clip", o.optimiser.clip, "largest norm of a gradient");
     add("ema", o.optimiser.ema_decay, "decay of the running mean of the weights");
 
-    add("checkpoint-minutes", o.checkpoint_minutes, "between checkpoints");
-    add("validate-minutes", o.validate_minutes, "between validations");
-    add("log-every", o.log_every, "steps per line of the log");
+    add("checkpoint-minutes", o.checkpoint_minutes, "between checkpoints", Use::run);
+    add("validate-minutes", o.validate_minutes, "between validations", Use::run);
+    add("log-every", o.log_every, "steps per line of the log", Use::run);
     add("validation-scenes", o.validation_scenes, "number of scenes to judge by");
     add("validation-frames", o.validation_frames, "event frames of each");
     add("validation-crop", o.validation_crop, "px, side of each");
@@ -165,8 +171,16 @@ std::string OptionTable::help() const {
 std::string OptionTable::record() const {
     std::string text;
     for (const Option& option : options_)
-        if (option.name != "resume" && !option.write().empty())
+        if (option.use != Use::once && !option.write().empty())
             text += "--" + option.name + " " + option.write() + "\n";
+    return text;
+}
+
+std::string OptionTable::settings() const {
+    std::string text;
+    for (const Option& option : options_)
+        if (option.use == Use::learning && !option.write().empty())
+            text += (text.empty() ? "--" : " --") + option.name + " " + option.write();
     return text;
 }
 

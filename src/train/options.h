@@ -42,17 +42,23 @@ public:
     void set(const std::string& name, const std::string& value);
 
     std::string help() const;
-    /// "--name value" of all that decides what is learned, one per line.
+    /// "--name value", one per line: all that a resumed run has to know.
     std::string record() const;
 
+    /// "--name value" in one line: all that decides what is learned, without names of files.
+    std::string settings() const;
+
 private:
+    /// What a value decides: what is learned; where things lie and for how long; one call only.
+    enum class Use { learning, run, once };
     struct Option {
         std::string name, help;
+        Use use;
         std::function<void(const std::string&)> read;
         std::function<std::string()> write;
     };
     template <typename T>
-    void add(const std::string& name, T& target, const std::string& help);
+    void add(const std::string& name, T& target, const std::string& help, Use use = Use::learning);
 
     std::vector<Option> options_;
 };

@@ -1,64 +1,54 @@
 // eventide-pack-pictures: photographs into the one file that eventide-train reads.
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include "src/core/error.h"
+#include "src/simulate/texture_pack.h"
+#include "src/simulate/textures_folder.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace {
 
-namespace fs = std::filesystem;
+using namespace eventide;
 
-cv::Mat shrink(const cv::Mat& image, int side) {
-    const double scale = double(side) / std::max(image.rows, image.cols);
-    cv::Mat small;
-    if (scale >= 1) return image;
-    cv::resize(image, small, {}, scale, scale, cv::INTER_AREA);
-    return small;
-}
+constexpr const char* kUsage =
+    "eventide-pack-pictures OUT LONGEST (FOLDER FIRST COUNT)...\n"
+    "Pictures FIRST .. FIRST + COUNT - 1 of each folder, by name (COUNT 0: all from FIRST on),\n"
+    "as grey images of at most LONGEST px.\n";
 
-std::vector<fs::path> pictures_below(const fs::path& folder) {
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator{folder})
-        if (entry.is_regular_file()) files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    return files;
+std::vector<GreyImage> pictures(const std::vector<std::string>& words) {
+    const int longest = std::stoi(words[1]);
+    std::vector<GreyImage> images;
+    for (std::size_t i = 2; i < words.size(); i += 3) {
+        const auto files = image_files(words[i]);
+        const std::size_t first = std::stoul(words[i + 1]), count = std::stoul(words[i + 2]);
+        const std::size_t end = count == 0 ? files.size() : std::min(files.size(), first + count);
+        for (std::size_t k = first; k < end; ++k)
+            images.push_back(shrunk(read_grey_image(files[k]), longest));
+    }
+    return images;
 }
 
 }  // namespace
 
-/// eventide-pack-pictures OUT.pgm SIDE (FOLDER FIRST COUNT)...: pictures FIRST .. FIRST + COUNT - 1
-/// of each folder, by name (COUNT 0: all from FIRST on), at most SIDE px large.
 int main(int argc, char** argv) {
-    if (argc < 6 || (argc - 3) % 3 != 0) {
-        std::cerr << "eventide-pack-pictures OUT.pgm SIDE (FOLDER FIRST COUNT)...\n";
-        return 2;
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.size() < 5 || (words.size() - 2) % 3 != 0) {
+        std::cerr << kUsage;
+        return int(ErrorKind::usage);
     }
-    std::ofstream out{argv[1], std::ios::binary};
-    int written = 0;
-    for (int a = 3; a < argc; a += 3) {
-        const std::vector<fs::path> files = pictures_below(argv[a]);
-        const auto first = std::size_t(std::atoi(argv[a + 1]));
-        const auto count = std::size_t(std::atoi(argv[a + 2]));
-        const std::size_t end = count == 0 ? files.size() : std::min(files.size(), first + count);
-        for (std::size_t i = first; i < end; ++i) {
-            const cv::Mat image = cv::imread(files[i].string(), cv::IMREAD_GRAYSCALE);
-            if (image.empty()) {
-                std::cerr << files[i].string() << ": not a picture, left out\n";
-                continue;
-            }
-            const cv::Mat small = shrink(image, std::atoi(argv[2]));
-            out << "P5\n" << small.cols << " " << small.rows << "\n255\n";
-            for (int y = 0; y < small.rows; ++y)
-                out.write(reinterpret_cast<const char*>(small.ptr(y)), small.cols);
-            ++written;
-        }
+    try {
+        const auto images = pictures(words);
+        write_texture_pack(words[0], images);
+        std::cout << images.size() << " pictures\n";
+    } catch (const std::logic_error&) {
+        std::cerr << "eventide-pack-pictures: a number is not one\n" << kUsage;
+        return int(ErrorKind::usage);
+    } catch (const Error& error) {
+        std::cerr << "eventide-pack-pictures: " << error.what() << "\n";
+        return int(error.kind());
     }
-    std::cout << written << " pictures\n";
-    return out ? 0 : 1;
+    return 0;
 }

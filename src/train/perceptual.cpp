@@ -9,15 +9,16 @@ namespace {
 
 constexpr int kLayers = 7;
 
-/// Grey enters as three equal channels, so the first layer's three input planes can be added up
-/// once, and 2 x - 1, shift and scale folded in; the pictures then stay one channel wide.
+/// 2 x - 1, shift and scale are folded into the first layer. Grey enters as three equal channels,
+/// so for it the three input planes are added up once and pictures stay one channel wide.
 void fold_input(std::map<std::string, torch::Tensor>& weights) {
     const torch::Tensor weight = weights.at("core.net.slice1.0.weight");  // [64][3][3][3]
     const torch::Tensor scale = weights.at("core.scaling_layer.scale").view({1, 3, 1, 1});
     const torch::Tensor shift = weights.at("core.scaling_layer.shift").view({1, 3, 1, 1});
     const torch::Tensor constant = (-1 - shift) / scale * weight;
     weights["bias"] = weights.at("core.net.slice1.0.bias") + constant.sum({1, 2, 3});
-    weights["weight"] = (2 / scale * weight).sum(1, true);
+    weights["colour"] = 2 / scale * weight;
+    weights["grey"] = weights.at("colour").sum(1, true);
 }
 
 }  // namespace
@@ -59,8 +60,10 @@ std::vector<torch::Tensor> Perceptual::features(const torch::Tensor& image) cons
         return torch::max_pool2d(x, 3, 2, 0, 1, /*ceil_mode=*/true);
     };
     std::vector<torch::Tensor> f;
-    f.push_back(rectify(torch::conv2d(image.unsqueeze(1).to(type_), weights_.at("weight"),
-                                      weights_.at("bias"), 2)));
+    const bool grey = image.dim() == 3;
+    const torch::Tensor planes = (grey ? image.unsqueeze(1) : image).to(type_);
+    f.push_back(rectify(
+        torch::conv2d(planes, weights_.at(grey ? "grey" : "colour"), weights_.at("bias"), 2)));
     f.push_back(fire("slice2.4", fire("slice2.3", pooled(f.back()))));
     f.push_back(fire("slice3.7", fire("slice3.6", pooled(f.back()))));
     f.push_back(fire("slice4.9", pooled(f.back())));

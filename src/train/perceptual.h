@@ -16,8 +16,8 @@ public:
     Perceptual(const std::filesystem::path& npz, torch::Device device,
                torch::ScalarType type = torch::kFloat);
 
-    /// Distances [M] of grey pictures [M][h][w] in [0, 1], at least 17x17. Gradients flow into
-    /// `image` only.
+    /// Distances [M] of pictures in [0, 1], at least 17x17: grey [M][h][w], or red, green and blue
+    /// [M][3][h][w]. Gradients flow into `image` only.
     torch::Tensor distance(const torch::Tensor& image, const torch::Tensor& truth) const;
 
 private:

@@ -63,8 +63,7 @@ torch::ScalarType arithmetic_type(const TrainOptions& options) {
     return options.device == "cuda" || processor_has_bf16() ? torch::kBFloat16 : torch::kFloat;
 }
 
-Trainer::Trainer(const TrainOptions& options, std::string record,
-                 std::shared_ptr<const TextureLibrary> textures,
+Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
                  std::shared_ptr<const TextureLibrary> validation_textures, Say say)
     : options_(options),
       say_(std::move(say)),
@@ -78,7 +77,7 @@ Trainer::Trainer(const TrainOptions& options, std::string record,
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
-    progress_.options = std::move(record);
+    progress_.options = OptionTable{options_}.record();
     begin_memories();
     if (options.validation_scenes > 0)
         validation_ = std::make_unique<Validation>(
@@ -261,7 +260,8 @@ Model Trainer::finished_model() const {
             card << ". ";
         }
     }
-    card << "Options: " << progress_.options;
+    TrainOptions options = options_;
+    card << "Options: " << OptionTable{options}.settings();
     model.config.card = card.str();
     return model;
 }

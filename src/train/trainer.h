@@ -22,8 +22,7 @@ public:
     using Say = std::function<void(const std::string&)>;  ///< a line for whoever watches
 
     /// Starts anew, or where options.resume says. Throws Error.
-    Trainer(const TrainOptions& options, std::string record,
-            std::shared_ptr<const TextureLibrary> textures,
+    Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
             std::shared_ptr<const TextureLibrary> validation_textures, Say say);
 
     /// Trains until the budget is spent or `stop` is set, then writes a checkpoint. Files in the

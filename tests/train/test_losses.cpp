@@ -1,0 +1,102 @@
+// The measures that training makes small are those that evaluation reports.
+#include "src/evaluate/image_measures.h"
+#include "src/train/losses.h"
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include <filesystem>
+
+namespace eventide {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kPerceptual = fs::path{EVENTIDE_SOURCE_DIR} / "../shared/data/perceptual";
+
+torch::Tensor picture(int height, int width, int seed) {
+    torch::manual_seed(seed);
+    return torch::rand({1, height, width});
+}
+
+Array2<float> as_array(const torch::Tensor& image) {
+    Array2<float> array{int(image.size(1)), int(image.size(2))};
+    std::copy_n(image.contiguous().data_ptr<float>(), array.values().size(),
+                array.values().begin());
+    return array;
+}
+
+TEST(Losses, SsimIsThatOfEvaluation) {
+    const auto a = picture(40, 53, 1), b = 0.7 * a + 0.3 * picture(40, 53, 2);
+    EXPECT_NEAR(ssim(a, b).item<double>(), structural_similarity(as_array(a), as_array(b)), 1e-4);
+    EXPECT_NEAR(ssim(a, a).item<double>(), 1, 1e-5);
+}
+
+TEST(Losses, APerfectPictureCostsNothingButSigma) {
+    const auto truth = picture(32, 32, 3);
+    const Pictures pictures{truth.clone(), torch::full({1, 32, 32}, -2.0), truth, torch::ones({1})};
+    const LossTerms terms = loss(pictures, {}, nullptr, 1);
+    EXPECT_NEAR(terms.means[0], 0, 1e-6);   // L1
+    EXPECT_NEAR(terms.means[1], 0, 1e-5);   // 1 - SSIM
+    EXPECT_NEAR(terms.means[3], -2, 1e-6);  // ln sigma
+    EXPECT_EQ(terms.means[6], 1);           // all within 1.28 sigma
+}
+
+TEST(Losses, SigmaLearnsTheSizeOfErrorsAndNeverMovesThePicture) {
+    const auto truth = torch::zeros({1, 32, 32});
+    const auto mu = torch::full({1, 32, 32}, 0.25).set_requires_grad(true);
+    const auto s = torch::full({1, 32, 32}, std::log(0.25)).set_requires_grad(true);
+    LossWeights only_nll{0, 0, 0, 1, 0};
+    loss({mu, s, truth, torch::ones({1})}, only_nll, nullptr, 1).total.backward();
+    EXPECT_NEAR(s.grad().abs().max().item<double>(), 0, 1e-9) << "sigma = |error| is the best";
+    EXPECT_TRUE(!mu.grad().defined() || mu.grad().abs().max().item<double>() == 0);
+}
+
+TEST(Losses, PicturesOfNoWeightCountNothing) {
+    auto truth = torch::cat({picture(32, 32, 4), picture(32, 32, 5)});
+    auto mu = truth.clone();
+    mu[0] = 0;
+    const auto s = torch::full_like(mu, -1);
+    const auto cost = [&](std::vector<float> weight) {
+        return loss({mu, s, truth, torch::tensor(weight)}, {1, 1, 0, 0, 0}, nullptr, 1)
+            .total.item<double>();
+    };
+    EXPECT_NEAR(cost({0, 1}), 0, 1e-5);
+    EXPECT_GT(cost({1, 0}), 0.1);
+}
+
+TEST(Losses, FlickerIsSeenByTheTemporalTerm) {
+    const auto still = picture(32, 32, 6);
+    const auto truth = torch::cat({still, still, still});
+    const auto shift = torch::tensor({0.1F, -0.1F, 0.1F}).view({3, 1, 1});
+    const auto s = torch::full_like(truth, -1);
+    const auto temporal = [&](const torch::Tensor& mu) {
+        return loss({mu, s, truth, torch::ones({3})}, {}, nullptr, 1).means[4];
+    };
+    EXPECT_NEAR(temporal(truth + 0.1), 0, 1e-6);
+    EXPECT_NEAR(temporal(truth + shift), 0.2, 1e-5);
+}
+
+TEST(Losses, LpipsHasTheAuthorsValues) {
+    const fs::path npz = kPerceptual / "lpips_squeeze_v0.1.npz";
+    if (!fs::exists(npz)) GTEST_SKIP() << "needs " << npz;
+    const torch::NoGradGuard none;
+    const Perceptual perceptual{npz, torch::kCPU};
+    const auto read = [](const char* name) {
+        const cv::Mat bgr = cv::imread((kPerceptual / name).string(), cv::IMREAD_COLOR);
+        const auto bytes =
+            torch::from_blob(bgr.data, {bgr.rows, bgr.cols, 3}, torch::kByte).clone();
+        return bytes.to(torch::kFloat).flip(2).permute({2, 0, 1}).unsqueeze(0) / 255;
+    };
+    const auto reference = read("ex_ref.png");
+    EXPECT_NEAR(perceptual.distance(read("ex_p0.png"), reference).item<double>(), .7110, 1e-3);
+    EXPECT_NEAR(perceptual.distance(read("ex_p1.png"), reference).item<double>(), .1479, 1e-3);
+    const auto grey = reference.mean(1), other = read("ex_p0.png").mean(1);
+    const auto repeated = [](const torch::Tensor& x) {
+        return x.unsqueeze(1).expand({-1, 3, -1, -1});
+    };
+    EXPECT_NEAR(perceptual.distance(grey, other).item<double>(),
+                perceptual.distance(repeated(grey), repeated(other)).item<double>(), 1e-4);
+}
+
+}  // namespace
+}  // namespace eventide

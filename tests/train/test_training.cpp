@@ -1,0 +1,196 @@
+// The loop as a whole, at a size that takes seconds.
+#include "src/core/error.h"
+#include "src/train/trainer.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+namespace eventide {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path empty_folder(const std::string& name) {
+    const fs::path folder = fs::path{testing::TempDir()} / ("eventide_train_" + name);
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    return folder;
+}
+
+TrainOptions tiny_options(const fs::path& out) {
+    TrainOptions o;
+    o.model.bins = 2;
+    o.model.widths = {8, 8};
+    o.model.recurrent = {1, 1};
+    o.model.res_blocks = 1;
+    o.model.latent = 4;
+    o.model.mlp = {16};
+    o.data.crop = o.data.patch = 32;
+    o.data.frames = 4;
+    o.data.rendered = 3;
+    o.data.episode = {8, 24};
+    o.precision = "f32";
+    o.threads = 2;
+    o.lanes = 1;
+    o.groups = 2;
+    o.validation_scenes = 0;
+    o.log_every = 5;
+    o.warm_up = 5;
+    o.learning_rate = 3e-3;
+    o.steps = 100;
+    o.out = out.string();
+    return o;
+}
+
+std::shared_ptr<const TextureLibrary> textures() {
+    static const auto library = procedural_textures(8, 64, 1);
+    return library;
+}
+
+std::unique_ptr<Trainer> trainer(TrainOptions options) {
+    return std::make_unique<Trainer>(options, textures(), textures(), [](const std::string&) {});
+}
+
+void train(Trainer& trainer) {
+    const std::atomic<bool> stop{false};
+    trainer.run(stop);
+}
+
+std::vector<double> logged(const fs::path& folder, std::size_t column) {
+    std::ifstream in{folder / "log.csv"};
+    std::vector<double> values;
+    std::string line;
+    for (std::getline(in, line); std::getline(in, line);) {
+        std::istringstream cells{line};
+        std::string cell;
+        for (std::size_t i = 0; i <= column; ++i) std::getline(cells, cell, ',');
+        values.push_back(std::stod(cell));
+    }
+    return values;
+}
+
+TEST(Training, AFewStepsMakeTheErrorSmaller) {
+    const fs::path out = empty_folder("learns");
+    train(*trainer(tiny_options(out)));
+    const auto l1 = logged(out, 3), nll = logged(out, 6);
+    ASSERT_EQ(l1.size(), 20U);
+    const auto mean = [](const std::vector<double>& v, std::size_t from) {
+        return std::accumulate(v.begin() + long(from), v.begin() + long(from) + 6, 0.0) / 6;
+    };
+    EXPECT_LT(mean(l1, 14) + 0.1 * mean(nll, 14), mean(l1, 0) + 0.1 * mean(nll, 0));
+    EXPECT_TRUE(fs::exists(out / "checkpoint.safetensors"));
+}
+
+TEST(Training, ARunThatStoppedGoesOnAsIfItHadNot) {
+    const fs::path whole = empty_folder("whole"), parts = empty_folder("parts");
+    TrainOptions options = tiny_options(whole);
+    options.steps = 12;
+    options.constant_share = 1;  // the rate must not depend on how often the run stops
+    const auto expected = trainer(options);
+    train(*expected);
+
+    options.out = parts.string();
+    options.steps = 5;
+    train(*trainer(options));
+    options.resume = (parts / "checkpoint.safetensors").string();
+    options.steps = 12;
+    const auto resumed = trainer(options);
+    EXPECT_EQ(resumed->steps(), 5);
+    train(*resumed);
+    for (const auto& [name, values] : expected->parameters())
+        EXPECT_TRUE(torch::equal(values, resumed->parameters().at(name))) << name;
+}
+
+TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
+    const fs::path out = empty_folder("exports");
+    TrainOptions options = tiny_options(out);
+    options.steps = 3;
+    options.validation_scenes = 2;
+    options.validation_frames = 8;
+    options.validation_crop = 32;
+    const auto run = trainer(options);
+    train(*run);
+    save_model(out / "model.safetensors", run->finished_model());
+    const Model model = load_model(out / "model.safetensors");
+    EXPECT_GT(model.config.sigma_scale, 0);
+    EXPECT_NE(model.config.card.find("3 steps"), std::string::npos);
+    EXPECT_NE(model.config.card.find("--widths 8,8"), std::string::npos);
+    EXPECT_EQ(model.config.card.find(out.string()), std::string::npos) << "no names of files";
+    EXPECT_TRUE(fs::exists(out / "learning_curve.svg"));
+    EXPECT_TRUE(fs::exists(out / "best.safetensors"));
+}
+
+TEST(Training, ACheckpointOfAnotherNetworkIsRefusedByName) {
+    const fs::path out = empty_folder("refuses");
+    TrainOptions options = tiny_options(out);
+    options.steps = 1;
+    train(*trainer(options));
+    options.resume = (out / "checkpoint.safetensors").string();
+    options.model.widths = {8, 12};
+    try {
+        trainer(options);
+        FAIL() << "a checkpoint of other widths was taken";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string{error.what()}.find("encoder."), std::string::npos) << error.what();
+    }
+}
+
+TEST(Lane, IsTheSameHoweverOftenTheRunStops) {
+    DataSettings settings = tiny_options({}).data;
+    const LanePlace place{.lane = 3, .group = 1, .groups = 2};
+    Lane whole{settings, textures(), place, 0};
+    std::vector<LaneWindow> windows;
+    for (int i = 0; i < 12; ++i) windows.push_back(whole.next());
+    int fresh = 0;
+    for (const int at : {0, 1, 5, 9}) {
+        // The lane's window i is the run's window 2 i + 1.
+        LaneWindow again = Lane{settings, textures(), place, 2 * at}.next();
+        const LaneWindow& expected = windows[std::size_t(at)];
+        EXPECT_EQ(again.fresh, expected.fresh);
+        EXPECT_EQ(again.f, expected.f);
+        EXPECT_EQ(again.grids, expected.grids);
+        EXPECT_EQ(again.truth, expected.truth);
+    }
+    for (const LaneWindow& window : windows) fresh += window.fresh;
+    EXPECT_GT(fresh, 1) << "scenes end";
+    EXPECT_LT(fresh, 12) << "scenes last longer than a window";
+}
+
+TEST(Options, WhatIsRecordedCanBeReadBack) {
+    TrainOptions first, second;
+    OptionTable table{first}, other{second};
+    table.parse(
+        {"--widths", "8,16", "--rate", "0.002", "--episode", "10,20", "--encoder", "thesis"});
+    std::istringstream lines{table.record()};
+    std::vector<std::string> words;
+    for (std::string line; std::getline(lines, line);) {
+        const auto space = line.find(' ');
+        words.insert(words.end(), {line.substr(0, space), line.substr(space + 1)});
+    }
+    other.parse(words);
+    EXPECT_EQ(other.record(), table.record());
+    EXPECT_EQ(second.model.widths, (std::vector{8, 16}));
+    EXPECT_EQ(second.model.encoder, EncoderKind::thesis);
+}
+
+TEST(Options, AWrongWordIsRefusedByName) {
+    TrainOptions options;
+    OptionTable table{options};
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"--lanes", "many"}, {"--nonsense", "1"}, {"--rate"}}) {
+        try {
+            table.parse(words);
+            ADD_FAILURE() << words[0] << " was taken";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_NE(std::string{error.what()}.find(words[0]), std::string::npos) << error.what();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace eventide
