@@ -1,5 +1,7 @@
 #include "src/codec/davis.h"
 
+#include "src/codec/byte_order.h"
+
 namespace eventide {
 namespace {
 
@@ -18,32 +20,20 @@ enum Code : std::uint16_t {
     wrap_code
 };
 
-std::uint16_t word_at(std::span<const std::byte> bytes, std::size_t at) {
-    return std::uint16_t(std::uint16_t(bytes[at]) |
-                         std::uint16_t(std::uint16_t(bytes[at + 1]) << 8));
-}
-
 }  // namespace
 
 DavisParser::DavisParser(const DavisSensor& sensor)
     : sensor_(sensor), frame_(sensor), imu_(sensor) {}
 
 void DavisParser::parse(std::span<const std::byte> bytes, Batch& into) {
-    if (odd_byte_ && !bytes.empty()) {
-        word(std::uint16_t(std::uint16_t(*odd_byte_) | std::uint16_t(std::uint16_t(bytes[0]) << 8)),
-             into);
-        odd_byte_.reset();
-        bytes = bytes.subspan(1);
-    }
-    parse_words(bytes.first(bytes.size() & ~std::size_t{1}), into);
-    if (bytes.size() % 2 != 0) odd_byte_ = bytes.back();
+    words_.feed(bytes, [&](std::span<const std::byte> whole) { parse_words(whole, into); });
 }
 
 /// Rows, events and timestamps are all but a few of the words, so they are read here and the rest
-/// in word().
+/// in other_word().
 void DavisParser::parse_words(std::span<const std::byte> bytes, Batch& into) {
     for (std::size_t at = 0; at < bytes.size(); at += 2) {
-        const std::uint16_t w = word_at(bytes, at);
+        const std::uint16_t w = load_little<std::uint16_t>(&bytes[at]);
         if ((w & kTimestampBit) != 0) {
             clock_.timestamp(std::uint16_t(w & ~kTimestampBit), damage_);
             continue;
@@ -61,26 +51,16 @@ void DavisParser::parse_words(std::span<const std::byte> bytes, Batch& into) {
                 event(data, Polarity::on, into);
                 break;
             default:
-                word(w, into);
+                other_word(w, into);
         }
     }
 }
 
-void DavisParser::word(std::uint16_t w, Batch& into) {
-    if ((w & kTimestampBit) != 0)
-        return clock_.timestamp(std::uint16_t(w & ~kTimestampBit), damage_);
+void DavisParser::other_word(std::uint16_t w, Batch& into) {
     const std::uint16_t data = w & kDataMask;
     switch (w >> 12) {
         case special_code:
             return special(data, into);
-        case y_code:
-            y_ = data;
-            y_known_ = true;
-            return;
-        case x_off_code:
-            return event(data, Polarity::off, into);
-        case x_on_code:
-            return event(data, Polarity::on, into);
         case adc_code:
             return frame_.sample(data & 0x3FF, clock_.now());
         case misc8_code:
@@ -101,10 +81,9 @@ void DavisParser::misc8(std::uint16_t data) {
     switch (data >> 8) {
         case 0:
             return imu_.byte(value);
-        case 1:
-            return frame_.roi_byte(true, value);
+        case 1:  // high and low bytes come in turn
         case 2:
-            return frame_.roi_byte(false, value);
+            return frame_.roi_byte(value);
         case 3:
             return imu_.scale(value);
         default:
@@ -178,9 +157,9 @@ void DavisParser::special(std::uint16_t data, Batch& into) {
             return;
         }
         case 11:
-            return frame_.column_begin(Frame::Read::reset, now);
+            return frame_.column_begin(Frame::Read::reset);
         case 12:
-            return frame_.column_begin(Frame::Read::signal, now);
+            return frame_.column_begin(Frame::Read::signal);
         case 13:
             return frame_.column_end();
         case 14:
@@ -197,12 +176,12 @@ void DavisParser::special(std::uint16_t data, Batch& into) {
 }
 
 void DavisParser::finish(Batch&) {
-    if (odd_byte_) damage_.count(DamageReason::truncated);
-    odd_byte_.reset();
+    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
+    words_.drop();
 }
 
 void DavisParser::resync() {
-    odd_byte_.reset();
+    words_.drop();
     clock_.forget();
     y_known_ = false;
     frame_.abandon();

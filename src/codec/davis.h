@@ -7,6 +7,7 @@
 #include "src/codec/davis_sensor.h"
 #include "src/codec/inivation_clock.h"
 #include "src/codec/parser.h"
+#include "src/codec/whole_words.h"
 
 #include <cstdint>
 #include <optional>
@@ -47,7 +48,7 @@ public:
 
 private:
     void parse_words(std::span<const std::byte> bytes, Batch& into);
-    void word(std::uint16_t word, Batch& into);
+    void other_word(std::uint16_t word, Batch& into);
     void misc8(std::uint16_t data);
     void special(std::uint16_t data, Batch& into);
     void event(std::uint16_t x, Polarity polarity, Batch& into);
@@ -59,7 +60,7 @@ private:
     DavisImuAssembler imu_;
     Damage damage_;
     DavisStreamFacts facts_;
-    std::optional<std::byte> odd_byte_;  ///< the first half of a word cut by the end of a transfer
+    WholeWords<2> words_;
     IniVationClock clock_;
     std::uint16_t y_ = 0;
     bool y_known_ = false;

@@ -43,7 +43,7 @@ void DavisFrameAssembler::begin(Shutter shutter, SensorTime t) {
     exposure_shift_ = 0;
 }
 
-void DavisFrameAssembler::roi_byte(bool, std::uint8_t value) {
+void DavisFrameAssembler::roi_byte(std::uint8_t value) {
     if (!active_ || roi_count_ >= kRoiBytes) return;
     roi_bytes_[std::size_t(roi_count_++)] = value;
     if (roi_count_ < kRoiBytes) return;
@@ -53,7 +53,7 @@ void DavisFrameAssembler::roi_byte(bool, std::uint8_t value) {
     use_roi(number(0), number(1), number(2), number(3));
 }
 
-void DavisFrameAssembler::column_begin(Read read, SensorTime) {
+void DavisFrameAssembler::column_begin(Read read) {
     if (!active_) return;
     read_ = read;
     row_ = 0;

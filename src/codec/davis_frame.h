@@ -21,8 +21,8 @@ public:
     explicit DavisFrameAssembler(const DavisSensor& sensor);
 
     void begin(Shutter shutter, SensorTime t);
-    void roi_byte(bool high, std::uint8_t value);  ///< misc8 kinds 1 and 2
-    void column_begin(Read read, SensorTime t);
+    void roi_byte(std::uint8_t value);  ///< misc8 kinds 1 and 2
+    void column_begin(Read read);
     void sample(std::uint16_t adc, SensorTime t);  ///< 10 bits
     void column_end();
     void exposure_begin(SensorTime t) { exposure_begin_ = t; }

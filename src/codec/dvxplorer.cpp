@@ -1,5 +1,7 @@
 #include "src/codec/dvxplorer.h"
 
+#include "src/codec/byte_order.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -24,15 +26,10 @@ DvxplorerParser::DvxplorerParser(const DvxplorerSensor& sensor)
     : sensor_(sensor), imu_(imu_of(sensor)) {}
 
 void DvxplorerParser::parse(std::span<const std::byte> bytes, Batch& into) {
-    for (const std::byte byte : bytes) {
-        if (!odd_byte_) {
-            odd_byte_ = byte;
-            continue;
-        }
-        word(std::uint16_t(std::uint16_t(*odd_byte_) | std::uint16_t(std::uint16_t(byte) << 8)),
-             into);
-        odd_byte_.reset();
-    }
+    words_.feed(bytes, [&](std::span<const std::byte> whole) {
+        for (std::size_t at = 0; at < whole.size(); at += 2)
+            word(load_little<std::uint16_t>(&whole[at]), into);
+    });
 }
 
 void DvxplorerParser::word(std::uint16_t w, Batch& into) {
@@ -132,12 +129,12 @@ void DvxplorerParser::special(std::uint16_t data, Batch& into) {
 }
 
 void DvxplorerParser::finish(Batch&) {
-    if (odd_byte_) damage_.count(DamageReason::truncated);
-    odd_byte_.reset();
+    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
+    words_.drop();
 }
 
 void DvxplorerParser::resync() {
-    odd_byte_.reset();
+    words_.drop();
     clock_.forget();
     imu_.abandon();
     column_ = -1;
@@ -150,15 +147,10 @@ std::optional<SensorTime> DvxplorerParser::clock() const {
 }
 
 void DvxplorerMiniParser::parse(std::span<const std::byte> bytes, Batch& into) {
-    for (const std::byte byte : bytes) {
-        pending_[pending_bytes_++] = byte;
-        if (pending_bytes_ < pending_.size()) continue;
-        pending_bytes_ = 0;
-        std::uint32_t w = 0;
-        for (std::size_t i = 0; i < pending_.size(); ++i)
-            w |= std::uint32_t(pending_[i]) << (8 * i);
-        word(w, into);
-    }
+    words_.feed(bytes, [&](std::span<const std::byte> whole) {
+        for (std::size_t at = 0; at < whole.size(); at += 4)
+            word(load_little<std::uint32_t>(&whole[at]), into);
+    });
 }
 
 void DvxplorerMiniParser::word(std::uint32_t w, Batch& into) {
@@ -212,12 +204,12 @@ void DvxplorerMiniParser::group(int first_row, std::uint32_t mask, bool off, Bat
 }
 
 void DvxplorerMiniParser::finish(Batch&) {
-    if (pending_bytes_ != 0) damage_.count(DamageReason::truncated);
-    pending_bytes_ = 0;
+    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
+    words_.drop();
 }
 
 void DvxplorerMiniParser::resync() {
-    pending_bytes_ = 0;
+    words_.drop();
     time_known_ = false;
     column_ = -1;
 }

@@ -5,6 +5,7 @@
 #include "src/codec/davis_imu.h"
 #include "src/codec/inivation_clock.h"
 #include "src/codec/parser.h"
+#include "src/codec/whole_words.h"
 
 #include <array>
 #include <cstdint>
@@ -42,7 +43,7 @@ private:
     DavisImuAssembler imu_;
     IniVationClock clock_;
     Damage damage_;
-    std::optional<std::byte> odd_byte_;
+    WholeWords<2> words_;
     int column_ = -1;                  ///< -1: not known since the start or a loss
     std::array<int, 2> rows_{-1, -1};  ///< first row of the two groups
 };
@@ -65,8 +66,7 @@ private:
 
     DvxplorerSensor sensor_;
     Damage damage_;
-    std::array<std::byte, 4> pending_{};
-    std::size_t pending_bytes_ = 0;
+    WholeWords<4> words_;
     std::int64_t reference_ms_ = 0, reference_wraps_ = 0;
     std::int64_t time_ = 0;  ///< us
     bool time_known_ = false;

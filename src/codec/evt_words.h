@@ -1,6 +1,7 @@
-// What EVT2, EVT2.1 and EVT3 share: whole words out of cut bytes, high times, events in blocks.
+// What EVT2, EVT2.1 and EVT3 share: high times, events in blocks.
 #pragma once
 
+#include "src/codec/whole_words.h"
 #include "src/core/damage.h"
 #include "src/core/event.h"
 
@@ -13,34 +14,6 @@
 #include <vector>
 
 namespace eventide {
-
-/// Calls use(span of whole words) at most twice for each piece of the stream.
-template <std::size_t kBytes>
-class WholeWords {
-public:
-    template <typename Use>
-    void feed(std::span<const std::byte> bytes, Use&& use) {
-        if (carried_ > 0) {
-            const std::size_t n = std::min(kBytes - carried_, bytes.size());
-            std::copy_n(bytes.begin(), n, carry_.begin() + std::ptrdiff_t(carried_));
-            carried_ += n;
-            bytes = bytes.subspan(n);
-            if (carried_ < kBytes) return;
-            carried_ = 0;
-            use(std::span<const std::byte>(carry_));
-        }
-        const std::size_t whole = bytes.size() / kBytes * kBytes;
-        if (whole > 0) use(bytes.first(whole));
-        carried_ = bytes.size() - whole;
-        std::copy_n(bytes.begin() + std::ptrdiff_t(whole), carried_, carry_.begin());
-    }
-    bool is_half_read() const { return carried_ > 0; }
-    void drop() { carried_ = 0; }
-
-private:
-    std::array<std::byte, kBytes> carry_{};
-    std::size_t carried_ = 0;
-};
 
 /// The upper bits of the time, which come in words of their own and wrap.
 ///
