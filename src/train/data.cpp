@@ -22,6 +22,7 @@ std::uint64_t seed_of(const DataSettings& settings, std::uint64_t a, std::uint64
 SceneSettings DataSettings::training_scenes() {
     SceneSettings scene;
     scene.wander.speed = {6, 600};
+    scene.wander.usual = 0;  // every scene's speed is drawn from that range
     scene.still_background = .08;
     scene.objects_max = 16;
     scene.objects_skew = 3;

@@ -72,6 +72,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("validation-textures", o.validation_textures, "pack of pictures to judge by", Use::run);
     add("lpips", o.lpips, "npz file of LPIPS-Squeeze; none: that loss is left out", Use::run);
     add("minutes", o.minutes, "budget of the whole run, resumed parts included", Use::run);
+    add("clock", o.clock, "that --minutes go by: wall, or cpu (all threads; for fair comparisons)",
+        Use::run);
     add("steps", o.steps, "budget in steps instead, where not 0", Use::run);
     add("resume", o.resume,
         "checkpoint to go on from; its options are those of its beginning, "

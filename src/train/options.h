@@ -23,6 +23,7 @@ struct TrainOptions {
     std::string resume, export_file, card;
     std::string device = "cpu", precision = "auto";
     double minutes = 60;
+    std::string clock = "wall";  ///< that minutes go by: wall, or cpu
     int steps = 0;  ///< where not 0, the budget instead of `minutes`
     int threads = 1, lanes = 2, groups = 4;
     double learning_rate = 1e-3, final_rate = 0.02, constant_share = 0.6;

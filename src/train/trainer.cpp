@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <fstream>
+#include <limits>
 #include <numbers>
 #include <sstream>
 #include <thread>
@@ -27,6 +29,13 @@ torch::Device device_of(const TrainOptions& options) {
     if (options.device == "cuda" && !torch::cuda::is_available())
         throw Error(ErrorKind::device, "--device cuda: this libtorch sees no CUDA device");
     return torch::Device{options.device};
+}
+
+/// Processor time of the whole process, simulation included.
+double cpu_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 bool processor_has_bf16() {
@@ -76,6 +85,9 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     std::filesystem::create_directories(options.out);
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
+    if (options.clock != "wall" && options.clock != "cpu")
+        throw Error(ErrorKind::usage,
+                    "--clock: expected wall or cpu, found '" + options.clock + "'");
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
     progress_.options = OptionTable{options_}.record();
     begin_memories();
@@ -146,6 +158,7 @@ Trainer::Share Trainer::run_share(std::span<const LaneWindow> windows, const Win
 
 void Trainer::step() {
     const auto start = Clock::now();
+    const double cpu_start = cpu_seconds();
     const WindowPlan plan = window_plan(options_.data, progress_.window);
     const std::vector<LaneWindow> windows = feed_->next();
     std::vector<Share> shares(std::size_t(options_.threads));
@@ -178,7 +191,8 @@ void Trainer::step() {
     }
     ++progress_.window;
     const double seconds = seconds_since(start);
-    progress_.elapsed_minutes += seconds / 60;
+    progress_.elapsed_minutes +=
+        (options_.clock == "cpu" ? cpu_seconds() - cpu_start : seconds) / 60;
     log_step(terms, rate, norm, seconds);
 }
 
@@ -224,6 +238,12 @@ void Trainer::checkpoint() {
 void Trainer::run(const std::atomic<bool>& stop) {
     const auto due = [](double minutes) { return std::chrono::duration<double>(minutes * 60); };
     auto saved = Clock::now(), judged = saved;
+    // A resumed run may be judged by other scenes than before: its best begins with what it
+    // resumes.
+    if (!options_.resume.empty() && !finished()) {
+        progress_.best_score = std::numeric_limits<double>::infinity();
+        validate();
+    }
     while (!finished() && !stop) {
         step();
         if (Clock::now() - judged >= due(options_.validate_minutes)) {
