@@ -59,7 +59,7 @@ std::string failure_of(const std::function<void()>& what) {
 }
 
 /// Reads until the model's scene is over and nothing more comes.
-Batch stream(DavisCamera& camera, UsbTestbed& bed) {
+Batch stream(DavisCamera& camera, UsbTestbed& bed, const DavisModel& model) {
     const auto parser = camera.make_parser();
     Batch data;
     RawPacket packet;
@@ -67,8 +67,7 @@ Batch stream(DavisCamera& camera, UsbTestbed& bed) {
         const ReadStatus status = camera.read(packet);
         if (status == ReadStatus::end) break;
         if (status == ReadStatus::data) parser->parse(packet.bytes, data);
-        if (status == ReadStatus::timeout)
-            bed.look([&](DavisModel& model) { over = model.is_scene_over(); });
+        if (status == ReadStatus::timeout) bed.look([&] { over = model.is_scene_over(); });
     }
     EXPECT_EQ(parser->damaged().total(), 0U);
     return data;
@@ -87,7 +86,7 @@ TEST(DavisCamera, GivesTheEventsImagesAndSamplesThatTheCameraSaw) {
         DavisCamera camera{options};
         EXPECT_EQ(camera.info().width, 346);
         EXPECT_EQ(camera.info().serial, "00000042");
-        const Batch got = stream(camera, bed);
+        const Batch got = stream(camera, bed, *model);
         EXPECT_EQ(got.events, seen.events) << "transfers of " << bytes;
         EXPECT_EQ(got.images, seen.images);
         EXPECT_EQ(got.imu.size(), seen.imu.size());
@@ -192,12 +191,10 @@ TEST(DavisCamera, ExposureFollowsTheFrames) {
     model->show(dark);
     bed.plug_in(model);
     DavisCamera camera{DavisOptions{}};
-    stream(camera, bed);
+    stream(camera, bed, *model);
     RawPacket packet;
     camera.read(packet);
-    bed.look([](DavisModel& m) {
-        EXPECT_EQ(m.read(davis::kApsExposure), 30U * 8000);
-    });  // 4 ms, doubled
+    bed.look([&] { EXPECT_EQ(model->read(davis::kApsExposure), 30U * 8000); });  // 4 ms, doubled
 }
 
 TEST(DavisExposure, GoesWhereTheMeanIsRightAndStaysThere) {
@@ -279,13 +276,13 @@ TEST(DavisCamera, StartsAndStopsAsThisGenerationOfLogicExpects) {
     std::size_t configured = 0;
     {
         DavisCamera camera{DavisOptions{}};
-        bed.look([&](DavisModel& m) { configured = m.writes().size(); });
+        bed.look([&] { configured = model->writes().size(); });
         RawPacket packet;
         camera.read(packet);
     }
     std::vector<Write> writes;
-    bed.look([&](DavisModel& m) {
-        writes.assign(m.writes().begin() + std::ptrdiff_t(configured), m.writes().end());
+    bed.look([&] {
+        writes.assign(model->writes().begin() + std::ptrdiff_t(configured), model->writes().end());
     });
     // libcaer's davisDataStart: all off; bias generator; 200 ms; USB, timestamps, multiplexer; 50
     // ms; the data makers; then dv-processing's timestamp reset, whose marker is waited for;

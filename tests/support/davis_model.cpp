@@ -75,6 +75,47 @@ void DavisModel::write(Write write) {
     writer_->begin(header, words_);
 }
 
+UsbModelIdentity DavisModel::identity() const {
+    UsbModelIdentity identity;
+    identity.product = settings_.product;
+    identity.firmware = settings_.firmware;
+    identity.board_type = settings_.board_type;
+    identity.serial = settings_.serial;
+    identity.superspeed = settings_.product == 0x841A;
+    return identity;
+}
+
+/// 0xBF: one register; 0xC2: several, six bytes each (A.3). Values are big-endian.
+int DavisModel::control(const UsbSetup& setup, std::span<std::uint8_t> data) {
+    constexpr std::uint8_t kOut = 0x40, kIn = 0xC0, kOne = 0xBF, kMany = 0xC2;
+    constexpr std::size_t kValueBytes = 4, kWriteBytes = 6;
+    const auto big32 = [&](std::size_t at) {
+        return (std::uint32_t(data[at]) << 24) | (std::uint32_t(data[at + 1]) << 16) |
+               (std::uint32_t(data[at + 2]) << 8) | data[at + 3];
+    };
+    if (setup.request == kOne && setup.type == kIn && data.size() >= kValueBytes) {
+        const std::uint32_t number = read({setup.value, setup.index});
+        for (std::size_t i = 0; i < kValueBytes; ++i)
+            data[i] = std::uint8_t(number >> (24 - 8 * i));
+        return int(kValueBytes);
+    }
+    if (setup.request == kOne && setup.type == kOut && data.size() == kValueBytes) {
+        write({{setup.value, setup.index}, big32(0)});
+        return int(kValueBytes);
+    }
+    if (setup.request == kMany && setup.type == kOut && data.size() == kWriteBytes * setup.value) {
+        for (std::size_t at = 0; at < data.size(); at += kWriteBytes)
+            write({{data[at], data[at + 1]}, big32(at + 2)});
+        return int(data.size());
+    }
+    return -1;
+}
+
+void DavisModel::clear_endpoint() {
+    words_.clear();
+    sent_ = 0;
+}
+
 bool DavisModel::is_streaming() const {
     return read(kRun) == 1 && read(kTimestampRun) == 1 && read(kUsbRun) == 1;
 }
@@ -110,7 +151,9 @@ void DavisModel::make_more(std::size_t bytes) {
     std::vector<std::byte> stretch;
     const SensorTime clock = settings_.now ? now() : SensorTime::max();
     const SensorTime until = end_of_stretch(std::max(kFewestEvents, bytes / kBytesPerEvent), clock);
-    writer_->write(next_stretch(until), stretch);
+    Batch seen = next_stretch(until);
+    if (settings_.fifo_bytes > 0) drop_what_finds_no_room(seen.events);
+    writer_->write(seen, stretch);
     // A silent camera still says how time goes by, once a wrap.
     if (until == clock && settings_.now && clock - writer_->time() >= kWrap)
         writer_->advance(clock, stretch);
@@ -125,11 +168,26 @@ void DavisModel::make_more(std::size_t bytes) {
 SensorTime DavisModel::end_of_stretch(std::size_t events, SensorTime clock) const {
     SensorTime until = event_ + events < scene_.events.size() ? scene_.events[event_ + events].t
                                                               : SensorTime::max();
+    // With little memory the camera cannot put off what it sees until it is fetched.
+    if (settings_.fifo_bytes > 0 && settings_.now) until = SensorTime::max();
     until = std::min(until, clock);
     for (std::size_t i = image_;
          i < scene_.images.size() && scene_.images[i].exposure_begin <= until; ++i)
         until = std::max(until, scene_.images[i].exposure_end);
     return until;
+}
+
+void DavisModel::drop_what_finds_no_room(std::vector<Event>& events) {
+    constexpr std::size_t kBytesPerEvent = 4;
+    constexpr Register kDroppedLow{kMuxDroppedDvs.module, kMuxDroppedDvs.address + 1};
+    const std::size_t queued = std::min(words_.size() - sent_, settings_.fifo_bytes);
+    const std::size_t room = (settings_.fifo_bytes - queued) / kBytesPerEvent;
+    if (events.size() <= room) return;
+    const std::uint64_t dropped =
+        ((std::uint64_t(read(kMuxDroppedDvs)) << 32) | read(kDroppedLow)) + (events.size() - room);
+    registers_[kMuxDroppedDvs] = std::uint32_t(dropped >> 32);
+    registers_[kDroppedLow] = std::uint32_t(dropped);
+    events.resize(room);
 }
 
 /// The scene up to `until`, as far as what is switched on sees it.

@@ -5,6 +5,7 @@
 #include "src/codec/davis_sensor.h"
 #include "src/codec/davis_writer.h"
 #include "src/core/event.h"
+#include "tests/support/usb_model.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,9 @@ struct DavisModelSettings {
     std::uint16_t product = 0x841A;  ///< behind FX3
     std::uint8_t firmware = 6, board_type = 3;
     std::uint32_t logic = 18, patch = 1;
+    /// Of the camera's own memory for words that nobody fetches; 0: endless. Events that find no
+    /// room are dropped and counted (MUX 83); images and IMU samples wait.
+    std::size_t fifo_bytes = 0;
     /// Applied to the words of each stretch of the stream before they are sent: where faults are
     /// made.
     std::function<void(std::vector<std::byte>&)> spoil;
@@ -38,7 +42,7 @@ struct DavisModelSettings {
 /// the scene from its beginning.
 ///
 /// Thread: one at a time; the testbed locks.
-class DavisModel {
+class DavisModel final : public UsbModel {
 public:
     explicit DavisModel(DavisModelSettings settings);
 
@@ -50,14 +54,13 @@ public:
     std::uint32_t read(davis::Register at) const;
     void write(davis::Write write);
     const std::vector<davis::Write>& writes() const { return writes_; }  ///< all, in order
-    void clear_endpoint() {
-        words_.clear();
-        sent_ = 0;
-    }
-
     bool is_streaming() const;
-    /// The next bytes of the stream, at most out.size(); 0 when there are none now.
-    std::size_t send(std::span<std::byte> out);
+
+    UsbModelIdentity identity() const override;
+    int control(const UsbSetup& setup, std::span<std::uint8_t> data) override;
+    std::size_t send(std::span<std::byte> out) override;
+    void clear_endpoint() override;
+
     bool is_scene_over() const;
     std::uint64_t bytes_sent() const { return bytes_sent_; }
 
@@ -66,6 +69,7 @@ private:
     void make_more(std::size_t bytes);
     SensorTime end_of_stretch(std::size_t events, SensorTime clock) const;
     Batch next_stretch(SensorTime until);
+    void drop_what_finds_no_room(std::vector<Event>& events);
 
     DavisModelSettings settings_;
     std::map<davis::Register, std::uint32_t> registers_;

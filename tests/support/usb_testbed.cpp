@@ -2,6 +2,7 @@
 
 #include "tests/support/glib_owned.h"
 #include "tests/support/preload.h"
+#include "tests/support/usb_descriptors.h"
 
 #include <sys/ioctl.h>
 
@@ -9,12 +10,11 @@
 #include <umockdev.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <deque>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -23,91 +23,28 @@ namespace {
 
 constexpr const char* kSysfsPath = "/sys/devices/usb1";
 constexpr const char* kNode = "/dev/bus/usb/001/001";
-constexpr std::uint8_t kDataEndpoint = 0x82;
-constexpr std::uint8_t kSerialString = 3;
-
-std::string hex(std::span<const std::uint8_t> bytes) {
-    std::string text;
-    for (const std::uint8_t b : bytes) {
-        std::array<char, 3> digits{};
-        std::snprintf(digits.data(), digits.size(), "%02X", unsigned(b));
-        text += digits.data();
-    }
-    return text;
-}
-
-/// Device, configuration, interface, bulk IN 0x82, interrupt IN 0x81.
-std::string descriptors(const DavisModelSettings& camera) {
-    const std::array<std::uint8_t, 50> bytes{18,
-                                             1,
-                                             0x00,
-                                             0x02,
-                                             0,
-                                             0,
-                                             0,
-                                             64,
-                                             0x2A,
-                                             0x15,
-                                             std::uint8_t(camera.product & 0xFF),
-                                             std::uint8_t(camera.product >> 8),
-                                             camera.firmware,
-                                             camera.board_type,
-                                             1,
-                                             2,
-                                             kSerialString,
-                                             1,  //
-                                             9,
-                                             2,
-                                             32,
-                                             0,
-                                             1,
-                                             1,
-                                             0,
-                                             0x80,
-                                             250,  //
-                                             9,
-                                             4,
-                                             0,
-                                             0,
-                                             2,
-                                             0xFF,
-                                             0,
-                                             0,
-                                             0,  //
-                                             7,
-                                             5,
-                                             kDataEndpoint,
-                                             2,
-                                             0x00,
-                                             0x02,
-                                             0,  //
-                                             7,
-                                             5,
-                                             0x81,
-                                             3,
-                                             64,
-                                             0,
-                                             8};
-    return hex(bytes);
-}
-
-std::string device_record(const DavisModelSettings& camera) {
-    return "P: /devices/usb1\n"
-           "N: bus/usb/001/001\n"
-           "E: BUSNUM=001\nE: DEVNUM=001\nE: DEVNAME=/dev/bus/usb/001/001\n"
-           "E: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: MAJOR=189\nE: MINOR=0\n"
-           "A: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=1\\n\nA: speed=5000\\n\n"
-           "H: descriptors=" +
-           descriptors(camera) + "\n";
-}
+constexpr int kSetupBytes = 8;
 
 std::uint16_t little16(const std::uint8_t* at) {
     return std::uint16_t(at[0] | (at[1] << 8));
 }
-std::uint32_t big32(const std::uint8_t* at) {
-    return (std::uint32_t(at[0]) << 24) | (std::uint32_t(at[1]) << 16) |
-           (std::uint32_t(at[2]) << 8) | at[3];
-}
+
+/// One transfer of the program under test, in its memory.
+struct Urb {
+    Owned<UMockdevIoctlData> urb, buffer;
+    usbdevfs_urb* operator->() const { return reinterpret_cast<usbdevfs_urb*>(urb->data); }
+    std::size_t room() const { return std::size_t((*this)->buffer_length); }
+    void end(int status, int length = 0) const {
+        (*this)->status = status;
+        (*this)->actual_length = length;
+    }
+};
+
+struct Faults {
+    int control_stalls = 0, control_delay = 0, halts = 0, loses_byte_of_every = 0;
+    int unplug_after = -1;
+    std::size_t transfer_limit = 0, memory = SIZE_MAX;
+};
 
 }  // namespace
 
@@ -115,26 +52,29 @@ struct UsbTestbed::Parts {
     Owned<UMockdevTestbed> testbed;
     Owned<UMockdevIoctlBase> handler;
     std::mutex mutex;  // for all below: requests come on umockdev's thread
-    std::shared_ptr<DavisModel> camera;
-    bool attached = false, gone = true;
-    struct Urb {
-        Owned<UMockdevIoctlData> urb, buffer;
-        usbdevfs_urb* fields() const { return reinterpret_cast<usbdevfs_urb*>(urb->data); }
-    };
+    std::shared_ptr<UsbModel> camera;
+    UsbModelIdentity identity;
+    bool attached = false, gone = true, halted = false;
+    int requests = 0, looks = 0, transfers = 0;
+    std::deque<Urb> controls;  // not yet answered
     std::deque<Urb> waiting, finished;
-    int stalls = 0;
-    std::size_t limit = 0;
+    Faults faults;
 
     static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer parts) {
         return static_cast<Parts*>(parts)->handle(client);
     }
     gboolean handle(UMockdevIoctlClient* client);
+    int answer(gulong request, UMockdevIoctlData* arg);
+    void pull_cable();
+    int tell_capabilities(UMockdevIoctlData* arg) const;
     int submit(UMockdevIoctlData* arg);
     bool reap(UMockdevIoctlData* arg);
     int discard(UMockdevIoctlData* arg);
-    void control(Urb& urb);
-    int answer(const std::uint8_t* setup, std::uint8_t* data, int length);
+    bool discard_from(std::deque<Urb>& urbs, gulong address);
+    void answer_controls();
+    int control(const Urb& urb);
     void fill_transfers();
+    std::size_t in_flight() const;
 };
 
 UsbTestbed::UsbTestbed() : parts_(std::make_unique<Parts>()) {
@@ -150,186 +90,180 @@ UsbTestbed::~UsbTestbed() {
     unplug();
 }
 
-void UsbTestbed::plug_in(std::shared_ptr<DavisModel> camera) {
+// ---- plugging ----------------------------------------------------------------------------------
+
+void UsbTestbed::plug_in(std::shared_ptr<UsbModel> camera) {
+    Parts& p = *parts_;
     {
-        const std::lock_guard lock{parts_->mutex};
-        parts_->camera = std::move(camera);
-        parts_->gone = false;
+        const std::lock_guard lock{p.mutex};
+        p.camera = std::move(camera);
+        p.identity = p.camera->identity();
+        p.gone = p.halted = false;
+        p.requests = p.looks = p.transfers = 0;
     }
     GError* error = nullptr;
-    const std::string record = device_record(parts_->camera->settings());
-    if (!umockdev_testbed_add_from_string(parts_->testbed.get(), record.c_str(), &error) ||
-        !umockdev_testbed_attach_ioctl(parts_->testbed.get(), kNode, parts_->handler.get(),
-                                       &error)) {
+    const std::string record = device_record(p.identity);
+    if (!umockdev_testbed_add_from_string(p.testbed.get(), record.c_str(), &error) ||
+        !umockdev_testbed_attach_ioctl(p.testbed.get(), kNode, p.handler.get(), &error)) {
         const Owned<GError> owned{error};
         throw std::runtime_error(std::string{"umockdev: "} + owned->message);
     }
-    parts_->attached = true;
-    umockdev_testbed_uevent(parts_->testbed.get(), kSysfsPath, "add");
+    p.attached = true;
+    umockdev_testbed_uevent(p.testbed.get(), kSysfsPath, "add");
 }
 
 void UsbTestbed::unplug() {
-    if (!parts_->attached) return;
+    Parts& p = *parts_;
+    if (!p.attached) return;
     {
-        const std::lock_guard lock{parts_->mutex};
-        parts_->gone = true;
-        for (auto& urb : parts_->waiting) {
-            urb.fields()->status = -ESHUTDOWN;
-            urb.fields()->actual_length = 0;
-            parts_->finished.push_back(std::move(urb));
-        }
-        parts_->waiting.clear();
+        const std::lock_guard lock{p.mutex};
+        p.pull_cable();
     }
-    umockdev_testbed_uevent(parts_->testbed.get(), kSysfsPath, "remove");
-    umockdev_testbed_detach_ioctl(parts_->testbed.get(), kNode, nullptr);
-    umockdev_testbed_remove_device(parts_->testbed.get(), kSysfsPath);
-    parts_->attached = false;
+    umockdev_testbed_uevent(p.testbed.get(), kSysfsPath, "remove");
+    umockdev_testbed_detach_ioctl(p.testbed.get(), kNode, nullptr);
+    umockdev_testbed_remove_device(p.testbed.get(), kSysfsPath);
+    p.attached = false;
+}
+
+void UsbTestbed::Parts::pull_cable() {
+    gone = true;
+    faults.unplug_after = -1;
+    for (auto* urbs : {&controls, &waiting}) {
+        for (Urb& urb : *urbs) {
+            urb.end(-ESHUTDOWN);
+            finished.push_back(std::move(urb));
+        }
+        urbs->clear();
+    }
+}
+
+// ---- faults ------------------------------------------------------------------------------------
+
+void UsbTestbed::unplug_after(int requests) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.unplug_after = requests;
+}
+
+int UsbTestbed::requests() const {
+    const std::lock_guard lock{parts_->mutex};
+    return parts_->requests;
 }
 
 void UsbTestbed::stall_control(int requests) {
     const std::lock_guard lock{parts_->mutex};
-    parts_->stalls = requests;
+    parts_->faults.control_stalls = requests;
+}
+
+void UsbTestbed::delay_control(int looks) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.control_delay = looks;
+}
+
+void UsbTestbed::halt_data(int times) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.halts = times;
 }
 
 void UsbTestbed::limit_transfer(std::size_t bytes) {
     const std::lock_guard lock{parts_->mutex};
-    parts_->limit = bytes;
+    parts_->faults.transfer_limit = bytes;
 }
 
-void UsbTestbed::look(const std::function<void(DavisModel&)>& at) {
+void UsbTestbed::lose_last_byte_of_every(int transfers) {
     const std::lock_guard lock{parts_->mutex};
-    at(*parts_->camera);
+    parts_->faults.loses_byte_of_every = transfers;
 }
+
+void UsbTestbed::limit_memory(std::size_t bytes) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.memory = bytes;
+}
+
+void UsbTestbed::look(const std::function<void()>& at) {
+    const std::lock_guard lock{parts_->mutex};
+    at();
+}
+
+// ---- requests ----------------------------------------------------------------------------------
 
 gboolean UsbTestbed::Parts::handle(UMockdevIoctlClient* client) {
     const std::lock_guard lock{mutex};
-    UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
-    const auto complete = [&](long result, int error) {
-        umockdev_ioctl_client_complete(client, result, error);
-        return TRUE;
-    };
-    const auto request = umockdev_ioctl_client_get_request(client);
+    const int error =
+        answer(umockdev_ioctl_client_get_request(client), umockdev_ioctl_client_get_arg(client));
+    umockdev_ioctl_client_complete(client, error == 0 ? 0 : -1, error);
+    return TRUE;
+}
+
+/// 0 or an errno.
+int UsbTestbed::Parts::answer(gulong request, UMockdevIoctlData* arg) {
     // What is finished may still be fetched after the cable was pulled.
     if (request == USBDEVFS_REAPURB || request == USBDEVFS_REAPURBNDELAY) {
-        if (reap(arg)) return complete(0, 0);
-        return complete(-1, gone ? ENODEV : EAGAIN);
+        if (reap(arg)) return 0;
+        return gone ? ENODEV : EAGAIN;
     }
-    if (gone) return complete(-1, ENODEV);
+    if (!gone && faults.unplug_after >= 0 && faults.unplug_after-- == 0) pull_cable();
+    if (gone) return ENODEV;
+    ++requests;
     switch (request) {
-        case USBDEVFS_GET_CAPABILITIES: {
-            const Owned<UMockdevIoctlData> caps{
-                umockdev_ioctl_data_resolve(arg, 0, sizeof(guint32), nullptr)};
-            const guint32 value = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
-                                  USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
-            std::memcpy(caps->data, &value, sizeof value);
-            return complete(0, 0);
-        }
+        case USBDEVFS_GET_CAPABILITIES:
+            return tell_capabilities(arg);
         case USBDEVFS_CLEAR_HALT:
+            halted = false;
             camera->clear_endpoint();
-            return complete(0, 0);
+            return 0;
         case USBDEVFS_CLAIMINTERFACE:
         case USBDEVFS_RELEASEINTERFACE:
         case USBDEVFS_SETCONFIGURATION:
         case USBDEVFS_SETINTERFACE:
         case USBDEVFS_RESET:
-            return complete(0, 0);
+            return 0;
         case USBDEVFS_GETDRIVER:
-            return complete(-1, ENODATA);
-        case USBDEVFS_SUBMITURB: {
-            const int error = submit(arg);
-            return complete(error == 0 ? 0 : -1, error);
-        }
-        case USBDEVFS_DISCARDURB: {
-            const int error = discard(arg);
-            return complete(error == 0 ? 0 : -1, error);
-        }
+            return ENODATA;
+        case USBDEVFS_SUBMITURB:
+            return submit(arg);
+        case USBDEVFS_DISCARDURB:
+            return discard(arg);
         default:
-            return complete(-1, ENOTTY);
+            return ENOTTY;
     }
+}
+
+int UsbTestbed::Parts::tell_capabilities(UMockdevIoctlData* arg) const {
+    const Owned<UMockdevIoctlData> caps{
+        umockdev_ioctl_data_resolve(arg, 0, sizeof(guint32), nullptr)};
+    if (!caps) return EFAULT;
+    const guint32 value = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
+                          USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
+    std::memcpy(caps->data, &value, sizeof value);
+    return 0;
+}
+
+std::size_t UsbTestbed::Parts::in_flight() const {
+    std::size_t bytes = 0;
+    for (const Urb& urb : waiting) bytes += urb.room();
+    return bytes;
 }
 
 int UsbTestbed::Parts::submit(UMockdevIoctlData* arg) {
     Urb urb;
     urb.urb.reset(umockdev_ioctl_data_resolve(arg, 0, sizeof(usbdevfs_urb), nullptr));
     if (!urb.urb) return EFAULT;
+    if (in_flight() + urb.room() > faults.memory) return ENOMEM;
     urb.buffer.reset(umockdev_ioctl_data_resolve(urb.urb.get(), offsetof(usbdevfs_urb, buffer),
-                                                 gsize(urb.fields()->buffer_length), nullptr));
+                                                 urb.room(), nullptr));
     if (!urb.buffer) return EFAULT;
-    if (urb.fields()->type == USBDEVFS_URB_TYPE_CONTROL) {
-        control(urb);
-        finished.push_back(std::move(urb));
+    if (urb->type == USBDEVFS_URB_TYPE_CONTROL) {
+        looks = 0;
+        controls.push_back(std::move(urb));
+        if (faults.control_delay == 0) answer_controls();
     } else {
         waiting.push_back(std::move(urb));
     }
     return 0;
 }
 
-void UsbTestbed::Parts::control(Urb& urb) {
-    constexpr int kSetupBytes = 8;
-    usbdevfs_urb& fields = *urb.fields();
-    if (stalls > 0) {
-        --stalls;
-        fields.status = -EPIPE;
-        return;
-    }
-    const int n = answer(urb.buffer->data, urb.buffer->data + kSetupBytes,
-                         fields.buffer_length - kSetupBytes);
-    fields.status = n < 0 ? -EPIPE : 0;
-    fields.actual_length = std::max(n, 0);
-}
-
-/// Bytes transferred, or -1 for a request the camera does not know.
-int UsbTestbed::Parts::answer(const std::uint8_t* setup, std::uint8_t* data, int length) {
-    const std::uint8_t type = setup[0], request = setup[1];
-    const std::uint16_t value = little16(setup + 2), index = little16(setup + 4);
-    if (type == 0x80 && request == 6 && (value >> 8) == 3) {  // GET_DESCRIPTOR, string
-        std::vector<std::uint8_t> text{0, 3};
-        if ((value & 0xFF) == 0) {
-            text.insert(text.end(), {0x09, 0x04});
-        } else {
-            const std::string words =
-                (value & 0xFF) == kSerialString ? camera->settings().serial : "DAVIS";
-            for (const char c : words) text.insert(text.end(), {std::uint8_t(c), 0});
-        }
-        text[0] = std::uint8_t(text.size());
-        const int n = std::min(length, int(text.size()));
-        std::copy_n(text.begin(), n, data);
-        return n;
-    }
-    if (request == 0xBF && type == 0xC0 && length >= 4) {
-        const std::uint32_t number = camera->read({value, index});
-        for (int i = 0; i < 4; ++i) data[i] = std::uint8_t(number >> (24 - 8 * i));
-        return 4;
-    }
-    if (request == 0xBF && type == 0x40 && length == 4) {
-        camera->write({{value, index}, big32(data)});
-        return 4;
-    }
-    if (request == 0xC2 && type == 0x40 && length == 6 * value) {
-        for (int i = 0; i < value; ++i)
-            camera->write({{data[6 * i], data[6 * i + 1]}, big32(data + 6 * i + 2)});
-        return length;
-    }
-    return -1;
-}
-
-/// Bulk requests are answered in order, when the camera has something to say.
-void UsbTestbed::Parts::fill_transfers() {
-    while (!waiting.empty()) {
-        Urb& urb = waiting.front();
-        if (urb.fields()->endpoint != kDataEndpoint) return;
-        std::size_t room = std::size_t(urb.fields()->buffer_length);
-        if (limit != 0) room = std::min(room, limit);
-        const std::size_t n = camera->send({reinterpret_cast<std::byte*>(urb.buffer->data), room});
-        if (n == 0) return;
-        urb.fields()->status = 0;
-        urb.fields()->actual_length = int(n);
-        finished.push_back(std::move(urb));
-        waiting.pop_front();
-    }
-}
-
 bool UsbTestbed::Parts::reap(UMockdevIoctlData* arg) {
+    if (faults.control_delay != kNever && looks++ >= faults.control_delay) answer_controls();
     if (finished.empty() && !gone) fill_transfers();
     if (finished.empty()) return false;
     const Urb urb = std::move(finished.front());
@@ -342,15 +276,63 @@ bool UsbTestbed::Parts::reap(UMockdevIoctlData* arg) {
 int UsbTestbed::Parts::discard(UMockdevIoctlData* arg) {
     // The argument is the address of the URB in the client.
     const auto address = *reinterpret_cast<gulong*>(arg->data);
-    const auto found = std::find_if(waiting.begin(), waiting.end(), [&](const Urb& urb) {
-        return urb.urb->client_addr == address;
-    });
-    if (found == waiting.end()) return EINVAL;
-    found->fields()->status = -ENOENT;
-    found->fields()->actual_length = 0;
+    return discard_from(waiting, address) || discard_from(controls, address) ? 0 : EINVAL;
+}
+
+bool UsbTestbed::Parts::discard_from(std::deque<Urb>& urbs, gulong address) {
+    const auto found = std::find_if(
+        urbs.begin(), urbs.end(), [&](const Urb& urb) { return urb.urb->client_addr == address; });
+    if (found == urbs.end()) return false;
+    found->end(-ENOENT);
     finished.push_back(std::move(*found));
-    waiting.erase(found);
-    return 0;
+    urbs.erase(found);
+    return true;
+}
+
+void UsbTestbed::Parts::answer_controls() {
+    for (Urb& urb : controls) {
+        const int n = faults.control_stalls > 0 ? (--faults.control_stalls, -1) : control(urb);
+        urb.end(n < 0 ? -EPIPE : 0, std::max(n, 0));
+        finished.push_back(std::move(urb));
+    }
+    controls.clear();
+}
+
+/// Bytes transferred, or -1 for a request the camera does not know.
+int UsbTestbed::Parts::control(const Urb& urb) {
+    constexpr std::uint8_t kStandardIn = 0x80, kGetDescriptor = 6, kString = 3;
+    const std::uint8_t* bytes = urb.buffer->data;
+    const UsbSetup setup{bytes[0], bytes[1], little16(bytes + 2), little16(bytes + 4)};
+    const std::span data{urb.buffer->data + kSetupBytes, urb.room() - kSetupBytes};
+    if (setup.type != kStandardIn) return camera->control(setup, data);
+    if (setup.request != kGetDescriptor || setup.value >> 8 != kString) return -1;
+    const auto text = string_descriptor(identity, std::uint8_t(setup.value & 0xFF));
+    const std::size_t n = std::min(data.size(), text.size());
+    std::copy_n(text.begin(), n, data.begin());
+    return int(n);
+}
+
+/// Bulk requests are answered in order, when the camera has something to say.
+void UsbTestbed::Parts::fill_transfers() {
+    while (!waiting.empty() && !halted) {
+        Urb& urb = waiting.front();
+        if (urb->endpoint != identity.data_endpoint) return;
+        if (faults.halts > 0) {
+            --faults.halts;
+            halted = true;
+            urb.end(-EPIPE);
+        } else {
+            std::size_t room = urb.room();
+            if (faults.transfer_limit != 0) room = std::min(room, faults.transfer_limit);
+            std::size_t n = camera->send({reinterpret_cast<std::byte*>(urb.buffer->data), room});
+            if (n == 0) return;
+            if (faults.loses_byte_of_every > 0 && ++transfers % faults.loses_byte_of_every == 0)
+                --n;
+            urb.end(0, int(n));
+        }
+        finished.push_back(std::move(urb));
+        waiting.pop_front();
+    }
 }
 
 }  // namespace eventide::testing_support
