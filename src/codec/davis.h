@@ -9,6 +9,7 @@
 #include "src/codec/parser.h"
 #include "src/codec/whole_words.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -47,8 +48,11 @@ public:
     void expect_passed(SensorDuration passed) override { clock_.expect_passed(passed); }
 
 private:
+    static constexpr std::size_t kStretchWords = 256;  ///< read at a time by plain_words()
+
     void parse_words(std::span<const std::byte> bytes, Batch& into);
-    void other_word(std::uint16_t word, Batch& into);
+    std::size_t plain_words(std::span<const std::byte> bytes, Batch& into);
+    void word(std::uint16_t word, Batch& into);
     void misc8(std::uint16_t data);
     void special(std::uint16_t data, Batch& into);
     void event(std::uint16_t x, Polarity polarity, Batch& into);
@@ -61,9 +65,10 @@ private:
     Damage damage_;
     DavisStreamFacts facts_;
     WholeWords<2> words_;
-    IniVationClock clock_;
+    IniVationClock<15> clock_;
     std::uint16_t y_ = 0;
     bool y_known_ = false;
+    std::array<Event, kStretchWords + 1> found_;  ///< scratch of plain_words()
 };
 
 }  // namespace eventide

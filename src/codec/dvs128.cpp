@@ -1,75 +1,52 @@
 #include "src/codec/dvs128.h"
 
-#include <algorithm>
-#include <cmath>
+#include "src/codec/byte_order.h"
 
 namespace eventide {
 namespace {
 constexpr int kSide = 128;
-constexpr std::int64_t kWrapUs = 1 << 14;
-constexpr std::uint8_t kWrapBit = 0x80, kResetBit = 0x40;
+constexpr std::uint16_t kWrapBit = 0x8000, kResetBit = 0x4000, kTimeMask = 0x3FFF;  // of the time
+constexpr std::uint16_t kOffBit = 0x0001, kSyncBit = 0x8000;  // of the address
 }  // namespace
 
 void Dvs128Parser::parse(std::span<const std::byte> bytes, Batch& into) {
-    for (const std::byte byte : bytes) {
-        record_[filled_++] = std::uint8_t(byte);
-        if (filled_ < record_.size()) continue;
-        filled_ = 0;
-        record(into);
-    }
+    records_.feed(bytes, [&](std::span<const std::byte> whole) {
+        for (std::size_t at = 0; at < whole.size(); at += 4)
+            record(load_little<std::uint16_t>(&whole[at]),
+                   load_little<std::uint16_t>(&whole[at + 2]), into);
+    });
 }
 
-void Dvs128Parser::catch_up(std::int64_t candidate) {
-    if (!expected_) return;
-    const double wraps = std::round(double(*expected_ - candidate) / double(kWrapUs));
-    if (wraps > 0) wrap_add_ += std::int64_t(wraps) * kWrapUs;
-    expected_.reset();
-}
-
-void Dvs128Parser::record(Batch& into) {
-    if ((record_[3] & kWrapBit) != 0) {
-        wrap_add_ += kWrapUs;
-        catch_up(wrap_add_);
-        time_ = std::max(time_, wrap_add_);
-        time_known_ = true;
+void Dvs128Parser::record(std::uint16_t address, std::uint16_t time, Batch& into) {
+    if ((time & kWrapBit) != 0) return clock_.wrap(1, damage_);
+    if ((time & kResetBit) != 0) {  // the device counts from zero again, the stream goes on
+        clock_.reset();
+        into.triggers.push_back({clock_.now(), Trigger::Kind::timestamp_reset, 0});
         return;
     }
-    if ((record_[3] & kResetBit) != 0) {  // the device counts from zero again, the stream goes on
-        wrap_add_ = time_ = std::max(time_, expected_.value_or(time_));
-        expected_.reset();
-        time_known_ = true;
-        into.triggers.push_back({from_us(time_), Trigger::Kind::timestamp_reset, 0});
+    if (!clock_.timestamp(time & kTimeMask, damage_)) return;
+    if ((address & kSyncBit) != 0) {
+        into.triggers.push_back({clock_.now(), Trigger::Kind::rising, 0});
         return;
     }
-    const std::int64_t low = record_[2] | ((record_[3] & 0x3F) << 8);
-    catch_up(wrap_add_ + low);
-    const std::int64_t time = wrap_add_ + low;
-    if (time < time_) return damage_.count(DamageReason::time_backwards);
-    time_ = time;
-    time_known_ = true;
-    if ((record_[1] & 0x80) != 0) {
-        into.triggers.push_back({from_us(time_), Trigger::Kind::rising, 0});
-        return;
-    }
-    const int x = record_[0] >> 1, y = record_[1] & 0x7F;
-    into.events.push_back({from_us(time_), std::uint16_t(kSide - 1 - x),
-                           std::uint16_t(kSide - 1 - y),
-                           (record_[0] & 1) == 0 ? Polarity::on : Polarity::off});
+    const int x = (address >> 1) & (kSide - 1), y = (address >> 8) & (kSide - 1);
+    into.events.push_back({clock_.now(), std::uint16_t(kSide - 1 - x), std::uint16_t(kSide - 1 - y),
+                           (address & kOffBit) != 0 ? Polarity::off : Polarity::on});
 }
 
 void Dvs128Parser::finish(Batch&) {
-    if (filled_ != 0) damage_.count(DamageReason::truncated);
-    filled_ = 0;
+    if (records_.is_half_read()) damage_.count(DamageReason::truncated);
+    records_.drop();
 }
 
 void Dvs128Parser::resync() {
-    filled_ = 0;
-    time_known_ = false;
+    records_.drop();
+    clock_.forget();
 }
 
 std::optional<SensorTime> Dvs128Parser::clock() const {
-    if (!time_known_) return std::nullopt;
-    return from_us(time_);
+    if (!clock_.is_known()) return std::nullopt;
+    return clock_.now();
 }
 
 }  // namespace eventide

@@ -1,9 +1,10 @@
 // DVS128 USB words -> events and sync triggers (drivers-and-formats.md A.12).
 #pragma once
 
+#include "src/codec/inivation_clock.h"
 #include "src/codec/parser.h"
+#include "src/codec/whole_words.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -17,20 +18,16 @@ public:
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
     void resync() override;
-    void expect_passed(SensorDuration passed) override { expected_ = time_ + passed.count(); }
+    void expect_passed(SensorDuration passed) override { clock_.expect_passed(passed); }
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
 
 private:
-    void record(Batch& into);
-    void catch_up(std::int64_t candidate);
+    void record(std::uint16_t address, std::uint16_t time, Batch& into);
 
     Damage damage_;
-    std::array<std::uint8_t, 4> record_{};
-    std::size_t filled_ = 0;
-    std::int64_t wrap_add_ = 0, time_ = 0;  ///< us
-    bool time_known_ = false;
-    std::optional<std::int64_t> expected_;
+    WholeWords<4> records_;
+    IniVationClock<14> clock_;
 };
 
 }  // namespace eventide

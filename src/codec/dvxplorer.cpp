@@ -3,7 +3,8 @@
 #include "src/codec/byte_order.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
+#include <cstdlib>
 
 namespace eventide {
 namespace {
@@ -20,6 +21,12 @@ DavisSensor imu_of(const DvxplorerSensor& sensor) {
     return imu;
 }
 
+Event event_at(SensorTime t, int column, int row, Polarity polarity,
+               const DvxplorerSensor& sensor) {
+    const auto x = std::uint16_t(column), y = std::uint16_t(row);
+    return sensor.swapped ? Event{t, y, x, polarity} : Event{t, x, y, polarity};
+}
+
 }  // namespace
 
 DvxplorerParser::DvxplorerParser(const DvxplorerSensor& sensor)
@@ -33,15 +40,17 @@ void DvxplorerParser::parse(std::span<const std::byte> bytes, Batch& into) {
 }
 
 void DvxplorerParser::word(std::uint16_t w, Batch& into) {
-    if ((w & kTimestampBit) != 0)
-        return clock_.timestamp(std::uint16_t(w & ~kTimestampBit), damage_);
+    if ((w & kTimestampBit) != 0) {
+        clock_.timestamp(std::uint16_t(w & ~kTimestampBit), damage_);
+        return;
+    }
     const std::uint16_t data = w & kDataMask;
     switch (w >> 12) {
         case 0:
             return special(data, into);
         case 1:
             column_ = data & 0x3FF;
-            if (column_ >= sensor_.width) {
+            if (column_ >= sensor_.columns()) {
                 damage_.count(DamageReason::out_of_range);
                 column_ = -1;
             }
@@ -77,11 +86,10 @@ void DvxplorerParser::group(int first_row, std::uint16_t data, Batch& into) {
     for (int i = 0; i < kRowsPerGroup; ++i) {
         if ((data & (1 << i)) == 0) continue;
         const int y = first_row + i;
-        if (y < 0 || y >= sensor_.height)
+        if (y < 0 || y >= sensor_.rows())
             damage_.count(DamageReason::out_of_range);
         else
-            into.events.push_back(
-                {clock_.now(), std::uint16_t(column_), std::uint16_t(y), polarity});
+            into.events.push_back(event_at(clock_.now(), column_, y, polarity, sensor_));
     }
 }
 
@@ -160,46 +168,72 @@ void DvxplorerMiniParser::word(std::uint32_t w, Batch& into) {
         const int first = int((w >> 18) & 0x3F), second = first + int((w >> 26) & 0x1F);
         group(first * kRowsPerGroup, w & 0xFF, (w & (1U << 16)) != 0, into);
         group(second * kRowsPerGroup, (w >> 8) & 0xFF, (w & (1U << 17)) != 0, into);
-    } else if ((w & kReference) != 0) {
-        reference(w & 0x3FFFFF);
     } else if ((w & kColumn) != 0) {
-        const std::int64_t time = reference_ms_ * 1000 + ((w >> 11) & 0x3FF);
-        if (time < time_) return damage_.count(DamageReason::time_backwards);
-        time_ = time;
-        column_ = int(w & 0x3FF);
-        if (column_ >= sensor_.width) {
-            damage_.count(DamageReason::out_of_range);
-            column_ = -1;
-        }
+        column(w);
+    } else if ((w & kReference) != 0) {
+        constexpr std::int64_t kMs = 1000;
+        reference((w & 0x3FFFFF) * kMs);
     } else {
         damage_.count(DamageReason::unknown_word);
     }
 }
 
-/// 22 bits of milliseconds wrap after 70 minutes; a small step back is noise, a large one a wrap.
-void DvxplorerMiniParser::reference(std::uint32_t ms) {
-    constexpr std::int64_t kWrapMs = 1 << 22;
-    std::int64_t full = reference_wraps_ * kWrapMs + ms;
-    if (time_known_ && full < reference_ms_ - kWrapMs / 2) {
-        ++reference_wraps_;
-        full += kWrapMs;
+constexpr std::int64_t kReferenceWrapUs = (std::int64_t{1} << 22) * 1000;  // 70 minutes
+
+/// A small step back is noise, a large one a wrap.
+void DvxplorerMiniParser::reference(std::int64_t us) {
+    if (reference_ < 0) {
+        settle(us);
+    } else if (us < reference_ - kReferenceWrapUs / 2) {
+        base_ += kReferenceWrapUs;
+    } else if (us < reference_) {
+        return damage_.count(DamageReason::time_backwards);
     }
-    if (full < reference_ms_) return damage_.count(DamageReason::time_backwards);
-    reference_ms_ = full;
-    time_ = std::max(time_, full * 1000);
-    time_known_ = true;
+    reference_ = us;
+    time_ = std::max(time_, base_ + us);
+    begun_ = true;
+}
+
+/// The first reference since the start or a loss. Whole wraps may be missing, or all that was
+/// before.
+void DvxplorerMiniParser::settle(std::int64_t us) {
+    constexpr std::int64_t kBeganAnewUs = 2'000'000;
+    if (!begun_) return;
+    const std::int64_t expected = expected_.value_or(time_);
+    const double wraps = std::round(double(expected - base_ - us) / double(kReferenceWrapUs));
+    base_ += std::max(std::int64_t{0}, std::int64_t(wraps)) * kReferenceWrapUs;
+    const bool far_off = expected_ && std::abs(base_ + us - expected) > kBeganAnewUs;
+    if (far_off || base_ + us < time_) base_ = std::max(time_, expected) - us;
+    expected_.reset();
+}
+
+/// Bits 9-0 x; 20-11 the frame's time after the reference, where bit 21 marks its first column.
+void DvxplorerMiniParser::column(std::uint32_t w) {
+    const int x = int(w & 0x3FF);
+    const bool begins_frame = (w & (1U << 21)) != 0;
+    if (reference_ < 0 || (!begins_frame && column_ < 0)) return;
+    const int before = begins_frame ? -1 : column_;
+    column_ = -1;
+    if (begins_frame) {
+        const std::int64_t time = base_ + reference_ + ((w >> 11) & 0x3FF);
+        if (time < time_) return damage_.count(DamageReason::time_backwards);
+        time_ = time;
+    }
+    if (x >= sensor_.columns()) return damage_.count(DamageReason::out_of_range);
+    if (x <= before) return damage_.count(DamageReason::bad_record);
+    column_ = x;
 }
 
 void DvxplorerMiniParser::group(int first_row, std::uint32_t mask, bool off, Batch& into) {
-    if (!time_known_ || column_ < 0) return;
+    if (reference_ < 0 || column_ < 0) return;
     for (int i = 0; i < kRowsPerGroup; ++i) {
         if ((mask & (1U << i)) == 0) continue;
         const int y = first_row + i;
-        if (y >= sensor_.height)
+        if (y >= sensor_.rows())
             damage_.count(DamageReason::out_of_range);
         else
-            into.events.push_back({from_us(time_), std::uint16_t(column_), std::uint16_t(y),
-                                   off ? Polarity::off : Polarity::on});
+            into.events.push_back(
+                event_at(from_us(time_), column_, y, off ? Polarity::off : Polarity::on, sensor_));
     }
 }
 
@@ -210,12 +244,12 @@ void DvxplorerMiniParser::finish(Batch&) {
 
 void DvxplorerMiniParser::resync() {
     words_.drop();
-    time_known_ = false;
+    reference_ = -1;
     column_ = -1;
 }
 
 std::optional<SensorTime> DvxplorerMiniParser::clock() const {
-    if (!time_known_) return std::nullopt;
+    if (reference_ < 0) return std::nullopt;
     return from_us(time_);
 }
 

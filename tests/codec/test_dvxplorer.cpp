@@ -100,8 +100,11 @@ TEST(Dvxplorer, ImuSendsYBeforeXAndHasItsOwnScales) {
 constexpr std::uint32_t reference(std::uint32_t ms) {
     return 0x08000000U | ms;
 }
-constexpr std::uint32_t column32(std::uint32_t x, std::uint32_t sub_us) {
-    return 0x04000000U | x | (sub_us << 11);
+constexpr std::uint32_t column32(std::uint32_t x) {
+    return 0x04000000U | x;
+}
+constexpr std::uint32_t frame32(std::uint32_t x, std::uint32_t after_us) {  // the first column
+    return column32(x) | (1U << 21) | (after_us << 11);
 }
 constexpr std::uint32_t pair(std::uint32_t first, std::uint32_t offset, std::uint32_t mask_1,
                              std::uint32_t mask_2, bool off_1, bool off_2) {
@@ -111,7 +114,7 @@ constexpr std::uint32_t pair(std::uint32_t first, std::uint32_t offset, std::uin
 
 TEST(DvxplorerMini, ReferenceColumnAndGroupWordsMakeEvents) {
     const auto parsed =
-        parse(DvxplorerMiniParser{{}}, bytes_of<std::uint32_t>({reference(2), column32(7, 30), 0,
+        parse(DvxplorerMiniParser{{}}, bytes_of<std::uint32_t>({reference(2), frame32(7, 30), 0,
                                                                 pair(1, 2, 1, 0x80, false, true)}));
     EXPECT_THAT(parsed.data.events,
                 ElementsAre(event(2030, 7, 8, Polarity::on), event(2030, 7, 31, Polarity::off)));
@@ -120,10 +123,64 @@ TEST(DvxplorerMini, ReferenceColumnAndGroupWordsMakeEvents) {
 TEST(DvxplorerMini, ReferenceTimeWrapsAfterSeventyMinutes) {
     const auto parsed =
         parse(DvxplorerMiniParser{{}},
-              bytes_of<std::uint32_t>({reference((1 << 22) - 1), reference(0), column32(1, 0),
+              bytes_of<std::uint32_t>({reference((1 << 22) - 1), reference(0), frame32(1, 0),
                                        pair(0, 0, 1, 0, false, false)}));
     ASSERT_EQ(parsed.data.events.size(), 1U);
     EXPECT_EQ(to_us(parsed.data.events[0].t), std::int64_t{1 << 22} * 1000);
+}
+
+TEST(DvxplorerMini, ColumnsOfAFrameShareItsTime) {
+    const auto parsed =
+        parse(DvxplorerMiniParser{{}},
+              bytes_of<std::uint32_t>({reference(1), column32(3), pair(0, 0, 1, 0, false, false),
+                                       frame32(5, 700), pair(0, 0, 1, 0, false, false),
+                                       reference(2), column32(9), pair(0, 0, 2, 0, false, false),
+                                       frame32(0, 10), pair(0, 0, 4, 0, false, false)}));
+    // What comes before the first frame has no time; a reference between does not change a frame's.
+    EXPECT_THAT(parsed.data.events,
+                ElementsAre(event(1700, 5, 0, Polarity::on), event(2000, 9, 1, Polarity::on),
+                            event(2010, 0, 2, Polarity::on)));
+    EXPECT_EQ(parsed.damaged.total(), 0U);
+}
+
+TEST(DvxplorerMini, AColumnThatDoesNotRiseTellsOfALossUntilTheNextFrame) {
+    const auto one = pair(0, 0, 1, 0, false, false);
+    const auto parsed =
+        parse(DvxplorerMiniParser{{}},
+              bytes_of<std::uint32_t>({reference(1), frame32(5, 1), one, column32(4), one,
+                                       column32(6), one, frame32(7, 2), one}));
+    EXPECT_THAT(parsed.data.events,
+                ElementsAre(event(1001, 5, 0, Polarity::on), event(1002, 7, 0, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
+}
+
+TEST(DvxplorerMini, ACameraThatCameBackCountsFromZeroAndTimeGoesOn) {
+    DvxplorerMiniParser parser{{}};
+    Batch data;
+    const auto tell = [&](std::uint32_t ms) {
+        parser.parse(
+            bytes_of<std::uint32_t>({reference(ms), frame32(1, 0), pair(0, 0, 1, 0, false, false)}),
+            data);
+        return to_us(data.events.back().t);
+    };
+    EXPECT_EQ(tell(50'000), 50'000'000);
+    parser.resync();
+    parser.expect_passed(SensorDuration{5'000'000});
+    EXPECT_EQ(tell(55'001), 55'001'000);  // it went on all the time
+    parser.resync();
+    parser.expect_passed(SensorDuration{5'000'000});
+    EXPECT_EQ(tell(3), 60'001'000);  // it was plugged in anew
+    EXPECT_EQ(tell(13), 60'011'000);
+}
+
+TEST(Dvxplorer, SwappedAxesAreGivenAsAPersonSeesThem) {
+    DvxplorerSensor sensor;
+    sensor.swapped = true;  // 480 columns of 640 rows
+    const auto parsed =
+        parse(DvxplorerParser{sensor}, bytes_of<std::uint16_t>({time(5), column(479), groups(60, 0),
+                                                                group_1(1, false), column(480)}));
+    EXPECT_THAT(parsed.data.events, ElementsAre(event(5, 480, 479, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::out_of_range], 1U);
 }
 
 // DVS128.
@@ -145,6 +202,17 @@ TEST(Dvs128, TimeGoesOnThroughAReset) {
         bytes_of<std::uint32_t>({dvs128(0, 0, false, 100), 0x40000000U, dvs128(0, 0, false, 1)}));
     EXPECT_EQ(to_us(parsed.data.events.at(1).t), 101);
     EXPECT_EQ(parsed.data.triggers.size(), 1U);
+}
+
+TEST(Dvs128, LostWrapsAreFoundFromTheHostsClock) {
+    Dvs128Parser parser;
+    Batch data;
+    parser.parse(bytes_of<std::uint32_t>({dvs128(0, 0, false, 100)}), data);
+    parser.resync();
+    EXPECT_EQ(parser.clock(), std::nullopt);
+    parser.expect_passed(SensorDuration{10 * 16384 + 7});
+    parser.parse(bytes_of<std::uint32_t>({dvs128(0, 0, false, 101)}), data);
+    EXPECT_EQ(to_us(data.events.at(1).t), 10 * 16384 + 101);
 }
 
 template <typename P>
