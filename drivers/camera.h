@@ -13,8 +13,10 @@ namespace eventide {
 struct CameraCounters {
     std::uint64_t transfers = 0, bytes = 0;
     std::uint64_t reconnects = 0;
+    std::uint64_t halts = 0;          ///< times the data endpoint stalled and went on
+    std::uint64_t odd_transfers = 0;  ///< ended within a word, which was left out
     std::uint64_t device_dropped =
-        0;  ///< events the camera itself dropped, as its own counters say
+        0;  ///< events the camera itself dropped, as its own counters say (after the run)
 };
 
 /// A live source. Constructed open and configured; data flow from the first read() on.

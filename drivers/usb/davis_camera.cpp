@@ -18,8 +18,6 @@ constexpr std::uint32_t kLogicWanted = 18;
 constexpr int kFirmwareFx2 = 4, kFirmwareFx3 = 6;
 constexpr std::uint8_t kSecondGenerationBoard = 5;
 constexpr auto kReadPatience = 20ms;
-// Waits of the start sequence (drivers-and-formats.md A.8): these are the device's, not ours.
-constexpr auto kIdleTime = 10ms, kBiasesSettle = 200ms, kFlowSettles = 50ms;
 constexpr auto kMarkerPatience = 1000ms;
 constexpr std::byte kResetMarker[2] = {std::byte{1}, std::byte{0}};
 
@@ -144,23 +142,28 @@ void DavisCamera::read_sensor() {
 }
 
 void DavisCamera::start() {
+    if (features_.statistics) dropped_before_ = device_->read_counter(kMuxDroppedDvs);
     device_->write_registers(idle_writes());
-    std::this_thread::sleep_for(kIdleTime);
+    std::this_thread::sleep_for(options_.waits.idle);
     device_->clear_halt(kDataEndpoint);
     stream_ = std::make_unique<UsbStream>(device_->context(), device_->handle(), kDataEndpoint,
                                           options_.settings.transfers);
     device_->write_register({kRunChip, 1});
-    std::this_thread::sleep_for(kBiasesSettle);
+    std::this_thread::sleep_for(options_.waits.biases_settle);
     device_->write_registers(flow_writes());
-    std::this_thread::sleep_for(kFlowSettles);
+    std::this_thread::sleep_for(options_.waits.flow_settles);
     device_->write_registers(run_writes(options_.settings));
-    const Write reset[] = {{kTimestampReset, 1}, {kTimestampReset, 0}};
-    device_->write_together(reset);
+    reset_timestamps();
     if (!wait_for_reset_marker() && !stopped_)
         throw Error(ErrorKind::device,
                     "the DAVIS '" + info_.serial +
                         "' was started but no data came within a second: plug it in again, "
                         "and if it is behind a hub, try a port of the computer");
+}
+
+void DavisCamera::reset_timestamps() {
+    const Write reset[] = {{kTimestampReset, 1}, {kTimestampReset, 0}};
+    device_->write_together(reset);
 }
 
 /// The marker in the stream proves that data really flow; what came before it is from another time
@@ -169,7 +172,14 @@ bool DavisCamera::wait_for_reset_marker() {
     const auto deadline = std::chrono::steady_clock::now() + kMarkerPatience;
     std::vector<std::byte> bytes;
     while (!stopped_ && std::chrono::steady_clock::now() < deadline) {
-        if (stream_->read(bytes, kReadPatience) != UsbStream::Status::data) continue;
+        const UsbStream::Status status = stream_->read(bytes, kReadPatience);
+        if (status == UsbStream::Status::lost) throw UsbGone("USB: the camera was unplugged");
+        if (const auto halts = stream_->take_halts();
+            halts > 0) {  // the marker may be lost with them
+            counters_.halts += halts;
+            reset_timestamps();
+        }
+        if (status != UsbStream::Status::data) continue;
         for (std::size_t at = 0; at + 1 < bytes.size(); at += 2) {
             if (bytes[at] != kResetMarker[0] || bytes[at + 1] != kResetMarker[1]) continue;
             first_.emplace(bytes.begin() + std::ptrdiff_t(at), bytes.end());
@@ -181,63 +191,82 @@ bool DavisCamera::wait_for_reset_marker() {
 
 ReadStatus DavisCamera::read(RawPacket& into) {
     into.bytes.clear();
-    if (stopped_) return ReadStatus::end;
-    if (!device_) return lost(into);
-    if (!stream_) start();
-    if (stopped_) return ReadStatus::end;
-    adjust_exposure();
-    adjust_exposure();
+    if (!stopped_ && !device_) return wait_for_return();
+    try {
+        if (!stopped_ && !stream_) start();
+        if (stopped_) {
+            stop_device();
+            return ReadStatus::end;
+        }
+        adjust_exposure();
+        return read_stream(into);
+    } catch (const UsbGone&) {
+        into.bytes.clear();
+        return lost();
+    }
+}
+
+ReadStatus DavisCamera::read_stream(RawPacket& into) {
     if (first_) {
         into.bytes.swap(*first_);
         first_.reset();
     } else {
         switch (stream_->read(into.bytes, kReadPatience)) {
             case UsbStream::Status::lost:
-                return lost(into);
+                throw UsbGone("USB: the camera was unplugged");
             case UsbStream::Status::timeout:
                 into.bytes.clear();
-                return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+                return ReadStatus::timeout;
             case UsbStream::Status::data:
-                break;
+                gap_ = gap_ || stream_->gap_before();
+                counters_.halts += stream_->take_halts();
         }
     }
-    ++counters_.transfers;
-    counters_.bytes += into.bytes.size();
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, false);
+    ++counters_.transfers;
+    counters_.bytes += into.bytes.size();
+    leave_out_half_word(into.bytes);
     return ReadStatus::data;
 }
 
+/// Transfers hold whole packets and packets whole words: where half a word ends one, the rest of it
+/// is lost, and the next begins with a whole word (as libcaer sees it, too).
+void DavisCamera::leave_out_half_word(std::vector<std::byte>& bytes) {
+    if (bytes.size() % 2 == 0) return;
+    bytes.pop_back();
+    ++counters_.odd_transfers;
+    gap_ = true;
+}
+
 /// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.
-ReadStatus DavisCamera::lost(RawPacket& into) {
-    into.bytes.clear();
-    if (device_) {
-        stream_.reset();
-        device_.reset();
-    }
+ReadStatus DavisCamera::lost() {
+    close();
     if (!options_.reconnect)
         throw Error(ErrorKind::device,
                     "the DAVIS '" + info_.serial +
                         "' was unplugged (use --reconnect to wait for it to come back)");
-    if (!try_reopen()) {
-        std::this_thread::sleep_for(kReadPatience);
-        return stopped_ ? ReadStatus::end : ReadStatus::timeout;
-    }
-    ++counters_.reconnects;
-    gap_ = true;
     return ReadStatus::timeout;
 }
 
-bool DavisCamera::try_reopen() {
+ReadStatus DavisCamera::wait_for_return() {
+    if (!options_.reconnect) return lost();
     try {
         open();
         start();
-        return true;
+        ++counters_.reconnects;
+        gap_ = true;
     } catch (const Error&) {  // not there yet, or not yet ready: the next look will tell
-        stream_.reset();
-        device_.reset();
-        return false;
+        close();
+        std::this_thread::sleep_for(kReadPatience);
     }
+    return ReadStatus::timeout;
+}
+
+void DavisCamera::close() {
+    first_.reset();
+    stream_.reset();
+    device_.reset();
 }
 
 /// A waiting read() looks at this within kReadPatience.
@@ -250,18 +279,19 @@ void DavisCamera::stop_device() noexcept {
     try {
         if (stream_) {
             if (features_.statistics)
-                counters_.device_dropped = device_->read_counter(kMuxDroppedDvs);
+                counters_.device_dropped += device_->read_counter(kMuxDroppedDvs) - dropped_before_;
             device_->write_registers(idle_writes());
         }
     } catch (const Error&) {
         // Unplugged meanwhile: there is nothing left to stop.
     }
-    stream_.reset();
-    device_.reset();
+    close();
 }
 
 std::unique_ptr<Parser> DavisCamera::make_parser() const {
-    if (!options_.settings.auto_exposure || !options_.settings.frames)
+    // Of several parsers (the line's, the recorder's) one at a time adjusts the exposure.
+    const bool nobody_adjusts = exposure_wish_.use_count() == 1;
+    if (!options_.settings.auto_exposure || !options_.settings.frames || !nobody_adjusts)
         return std::make_unique<DavisParser>(sensor_);
     return std::make_unique<ExposingDavisParser>(sensor_, options_.settings.exposure_us,
                                                  exposure_wish_);
@@ -271,7 +301,9 @@ std::unique_ptr<Parser> DavisCamera::make_parser() const {
 /// itself.
 void DavisCamera::adjust_exposure() {
     const int wish_us = exposure_wish_->exchange(0, std::memory_order_relaxed);
-    if (wish_us > 0) device_->write_register({kApsExposure, adc_cycles(wish_us, features_)});
+    if (wish_us <= 0) return;
+    options_.settings.exposure_us = wish_us;  // also where the camera has to be opened again
+    device_->write_register({kApsExposure, adc_cycles(wish_us, features_)});
 }
 
 namespace {

@@ -112,12 +112,6 @@ std::string describe(const UsbSelector& selector) {
     return text;
 }
 
-void check(int code, const char* what) {
-    if (code < 0)
-        throw Error(ErrorKind::device,
-                    std::string{"USB: "} + what + ": " + explain_usb_error(code));
-}
-
 /// The second byte order in the protocol: control values are big-endian, data words little-endian.
 std::array<unsigned char, 4> big_endian(std::uint32_t value) {
     return {static_cast<unsigned char>(value >> 24), static_cast<unsigned char>(value >> 16),
@@ -143,6 +137,8 @@ std::string explain_usb_error(int code) {
             return "in use by another program: close it (DV, jAER, another eventide) and try again";
         case LIBUSB_ERROR_NO_DEVICE:
             return "the camera was unplugged";
+        case LIBUSB_ERROR_IO:
+            return "the connection broke off: was the camera unplugged?";
         case LIBUSB_ERROR_TIMEOUT:
             return "the camera did not answer in time: plug it in again";
         case LIBUSB_ERROR_PIPE:
@@ -152,6 +148,13 @@ std::string explain_usb_error(int code) {
         default:
             return libusb_strerror(code);
     }
+}
+
+void check_usb(int code, const std::string& what) {
+    if (code >= 0) return;
+    const std::string message = "USB: " + what + ": " + explain_usb_error(code);
+    if (code == LIBUSB_ERROR_NO_DEVICE || code == LIBUSB_ERROR_IO) throw UsbGone(message);
+    throw Error(ErrorKind::device, message);
 }
 
 std::vector<UsbIdentity> list_usb_devices(const UsbSelector& selector) {
@@ -179,12 +182,12 @@ UsbDevice::UsbDevice(const UsbSelector& selector) : context_(make_context()) {
                         : "the camera " + describe(selector) + " cannot be opened: " + problem);
     }
     int configuration = 0;
-    check(libusb_get_configuration(handle_.get(), &configuration),
-          "the camera does not tell its configuration");
+    check_usb(libusb_get_configuration(handle_.get(), &configuration),
+              "the camera does not tell its configuration");
     if (configuration != kConfiguration)
-        check(libusb_set_configuration(handle_.get(), kConfiguration),
-              "the camera cannot be configured");
-    check(libusb_claim_interface(handle_.get(), kInterface), "the camera cannot be claimed");
+        check_usb(libusb_set_configuration(handle_.get(), kConfiguration),
+                  "the camera cannot be configured");
+    check_usb(libusb_claim_interface(handle_.get(), kInterface), "the camera cannot be claimed");
 }
 
 UsbDevice::~UsbDevice() {
@@ -198,7 +201,7 @@ std::uint32_t UsbDevice::read_register(davis::Register at) {
                                 bytes.data(), std::uint16_t(bytes.size()), kControlTimeoutMs);
     const std::string name =
         "register " + std::to_string(at.module) + "." + std::to_string(at.address);
-    check(got, ("reading " + name).c_str());
+    check_usb(got, "reading " + name);
     if (got != int(bytes.size()))
         throw Error(ErrorKind::device,
                     "USB: reading " + name + ": expected 4 bytes, found " + std::to_string(got));
@@ -211,9 +214,8 @@ void UsbDevice::write_register(davis::Write write) {
     const int sent = libusb_control_transfer(handle_.get(), kOut, kRegisterRequest, write.at.module,
                                              write.at.address, bytes.data(),
                                              std::uint16_t(bytes.size()), kControlTimeoutMs);
-    check(sent, ("writing register " + std::to_string(write.at.module) + "." +
-                 std::to_string(write.at.address))
-                    .c_str());
+    check_usb(sent, "writing register " + std::to_string(write.at.module) + "." +
+                        std::to_string(write.at.address));
 }
 
 void UsbDevice::write_registers(std::span<const davis::Write> writes) {
@@ -228,10 +230,10 @@ void UsbDevice::write_together(std::span<const davis::Write> writes) {
         const auto value = big_endian(write.value);
         bytes.insert(bytes.end(), value.begin(), value.end());
     }
-    check(libusb_control_transfer(handle_.get(), kOut, kManyRegistersRequest,
-                                  std::uint16_t(writes.size()), 0, bytes.data(),
-                                  std::uint16_t(bytes.size()), kControlTimeoutMs),
-          "writing several registers");
+    check_usb(libusb_control_transfer(handle_.get(), kOut, kManyRegistersRequest,
+                                      std::uint16_t(writes.size()), 0, bytes.data(),
+                                      std::uint16_t(bytes.size()), kControlTimeoutMs),
+              "writing several registers");
 }
 
 std::uint64_t UsbDevice::read_counter(davis::Register at) {
@@ -248,13 +250,13 @@ void UsbDevice::vendor_out(std::uint8_t request, std::uint16_t value, std::uint1
     std::vector<unsigned char> bytes(data.size());
     std::transform(data.begin(), data.end(), bytes.begin(),
                    [](std::byte b) { return static_cast<unsigned char>(b); });
-    check(libusb_control_transfer(handle_.get(), kOut, request, value, index, bytes.data(),
-                                  std::uint16_t(bytes.size()), kControlTimeoutMs),
-          "a vendor request");
+    check_usb(libusb_control_transfer(handle_.get(), kOut, request, value, index, bytes.data(),
+                                      std::uint16_t(bytes.size()), kControlTimeoutMs),
+              "a vendor request");
 }
 
 void UsbDevice::clear_halt(std::uint8_t endpoint) {
-    check(libusb_clear_halt(handle_.get(), endpoint), "clearing the data endpoint");
+    check_usb(libusb_clear_halt(handle_.get(), endpoint), "clearing the data endpoint");
 }
 
 }  // namespace eventide

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "drivers/usb/davis_registers.h"
+#include "src/core/error.h"
 
 #include <chrono>
 #include <cstddef>
@@ -79,7 +80,16 @@ private:
     UsbIdentity identity_;
 };
 
+/// The device is not there any more, or the connection to it broke off.
+class UsbGone : public Error {
+public:
+    explicit UsbGone(const std::string& message) : Error(ErrorKind::device, message) {}
+};
+
 /// Text of a libusb error code with what a user can do about it.
 std::string explain_usb_error(int code);
+
+/// Throws for a negative code: UsbGone where the device is gone, else Error (device).
+void check_usb(int code, const std::string& what);
 
 }  // namespace eventide

@@ -1,0 +1,156 @@
+// A DAVIS that is pulled out, at every moment there is, and put in again.
+#include "tests/drivers/davis_streams.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace eventide::test {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing_support::DavisModel;
+using testing_support::DavisModelSettings;
+using testing_support::UsbTestbed;
+
+std::shared_ptr<DavisModel> camera_before(int events) {
+    const auto model = std::make_shared<DavisModel>(DavisModelSettings{});
+    model->show(davis_scene(model->settings().sensor, {.events = events}));
+    return model;
+}
+
+DavisOptions small_transfers(bool reconnect) {
+    DavisOptions options = at_once();
+    options.settings.transfers = {4, 8 << 10};
+    options.reconnect = reconnect;
+    return options;
+}
+
+TEST(DavisUnplugged, IsAnErrorThatNamesTheWayOut) {
+    PluggedIn camera_side;
+    DavisCamera camera{at_once()};
+    RawPacket packet;
+    ASSERT_EQ(camera.read(packet), ReadStatus::data);
+    camera_side.bed.unplug();
+    EXPECT_THAT(failure_of([&] {
+                    while (camera.read(packet) != ReadStatus::end) continue;
+                }),
+                HasSubstr("--reconnect"));
+}
+
+/// Opens, starts, streams to the scene's end, stops; the words of the error, or nothing.
+std::string session(UsbTestbed& bed, const DavisModel& model) {
+    try {
+        DavisCamera camera{small_transfers(false)};
+        stream(camera, bed, model);
+        camera.stop();
+        RawPacket packet;
+        camera.read(packet);
+        return "";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::device);
+        return error.what();
+    }
+}
+
+/// Of the two hundred requests of a session, so many are not tried: each takes a session of its
+/// own.
+constexpr int kStride = 5;
+
+TEST(DavisUnplugged, AtAnyMomentItEndsWithTheRightWordsAndLeaksNothing) {
+    UsbTestbed bed;
+    auto model = camera_before(3'000);
+    bed.plug_in(model);
+    ASSERT_EQ(session(bed, *model), "");
+    const int all = bed.requests();
+    bed.unplug();
+    std::optional<Holdings> first;
+    int ended_well = 0;
+    for (int request = 0; request <= all; request += kStride) {
+        model = camera_before(3'000);
+        bed.plug_in(model);
+        bed.unplug_after(request);
+        const std::string words = session(bed, *model);
+        bed.unplug();
+        if (words.empty())
+            ++ended_well;  // while stopping: nobody needs to know
+        else
+            EXPECT_THAT(words, AnyOf(HasSubstr("unplugged"), HasSubstr("no camera")))
+                << "at request " << request << " of " << all;
+        if (!first) first = holdings();
+    }
+    EXPECT_GT(ended_well, 1) << "the sweep never reached the stop";
+    EXPECT_EQ(holdings().files, first->files);
+    EXPECT_EQ(holdings().threads, first->threads);
+}
+
+TEST(DavisUnplugged, AtAnyMomentAfterOpeningItComesBackWhenToldToWait) {
+    constexpr int kStartAndSomeTransfers = 40;
+    UsbTestbed bed;
+    RawPacket packet;
+    const auto read_until = [&](DavisCamera& camera, ReadStatus wanted) {
+        while (camera.read(packet) != wanted) continue;
+    };
+    for (int request = 0; request < kStartAndSomeTransfers; request += kStride - 1) {
+        bed.plug_in(camera_before(3'000));
+        DavisCamera camera{small_transfers(true)};
+        bed.unplug_after(request);
+        read_until(camera, ReadStatus::timeout);
+        bed.unplug();
+        read_until(camera, ReadStatus::timeout);
+        bed.plug_in(camera_before(3'000));
+        read_until(camera, ReadStatus::data);
+        EXPECT_TRUE(packet.gap_before) << "at request " << request;
+        EXPECT_EQ(camera.counters().reconnects, 1U);
+        bed.unplug();
+    }
+}
+
+TEST(DavisUnplugged, AHundredTimesItComesBackMarksTheGapAndLeaksNothing) {
+    UsbTestbed bed;
+    DavisOptions options = at_once();
+    options.reconnect = true;
+    std::optional<DavisCamera> camera;
+    std::optional<Holdings> early;
+    constexpr int kTimes = 100, kSettled = 10;
+    for (int time = 0; time < kTimes; ++time) {
+        bed.plug_in(camera_before(2'000));
+        if (!camera) camera.emplace(options);
+        RawPacket packet;
+        while (camera->read(packet) != ReadStatus::data) continue;
+        EXPECT_EQ(packet.gap_before, time > 0);
+        bed.unplug();
+        while (camera->read(packet) != ReadStatus::timeout) continue;
+        if (time == kSettled) early = holdings();
+    }
+    const Holdings late = holdings();
+    EXPECT_EQ(camera->counters().reconnects, unsigned(kTimes - 1));
+    EXPECT_EQ(late.files, early->files);
+    EXPECT_EQ(late.threads, early->threads);
+    // A leak of one transfer's buffer in each cycle would be 6 MB.
+    EXPECT_LT(double(late.bytes) - double(early->bytes), 1e6);
+}
+
+TEST(DavisUnplugged, OnlyTheSameCameraIsTakenBack) {
+    UsbTestbed bed;
+    bed.plug_in(camera_before(2'000));
+    DavisOptions options = at_once();
+    options.reconnect = true;
+    DavisCamera camera{options};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    DavisModelSettings other;
+    other.serial = "00000007";
+    bed.plug_in(std::make_shared<DavisModel>(other));
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters().reconnects, 0U);
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+}
+
+}  // namespace
+}  // namespace eventide::test
