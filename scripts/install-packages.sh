@@ -10,7 +10,7 @@ build=(
   libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler
   libcli11-dev libtomlplusplus-dev libspdlog-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
-  libusb-1.0-0-dev
+  libusb-1.0-0-dev libhdf5-dev
 )
 tests=(
   libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev

@@ -8,6 +8,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -118,11 +119,14 @@ SettingTable EvaluateCommand::settings() {
     for (const std::string& figure : figure_names()) names += (names.empty() ? "" : ", ") + figure;
     add(list_setting(
         "figure", figures_, "NAME",
-        "Instead of a table, figures as SVG and CSV, from simulated sequences: " + names + "."));
+        "Figures as SVG and CSV: " + names +
+            "; spatial, temporal and silence from simulated sequences of their own, instead of a "
+            "table; the others beside the table, of what is evaluated."));
     add(text_setting("plots", plots_, "FOLDER", "Where figures go."));
     add(choice_setting("calibration", calibration_,
-                       "What --calibrated fits: coverage (PICP80 becomes .8) or likelihood.",
-                       {"coverage", "likelihood"}));
+                       "What --calibrated fits: coverage (PICP80 becomes .8), cautious (in the "
+                       "sequence that needs it most) or likelihood.",
+                       {"coverage", "likelihood", "cautious"}));
     add(text_setting(
         "calibrated", calibrated_, "FILE",
         "Fit one factor for sigma on what was evaluated, and write the model with it."));
@@ -197,12 +201,15 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
     return evaluate_recordings(what, how);
 }
 
-void EvaluateCommand::make_figures(const EvaluateSettings& how) const {
+void EvaluateCommand::write_plots(const std::vector<Plot>& plots) const {
+    for (const Plot& plot : plots) spdlog::info("{}", write_plot(plot, plots_).string());
+}
+
+void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const {
     FigureSettings what;
     what.simulated = simulated();
     for (const std::string& figure : figures_)
-        for (const Plot& plot : make_figure(figure, what, how))
-            spdlog::info("{}", write_plot(plot, plots_).string());
+        if (!is_report_figure(figure)) write_plots(make_figure(figure, what, how));
 }
 
 void EvaluateCommand::write(const EvaluateReport& report) const {
@@ -221,14 +228,15 @@ void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSett
 }
 
 int EvaluateCommand::run(Program& program) {
-    if (!figures_.empty()) {
-        make_figures(how(program));
-        return exit_done;
-    }
-    require_inputs();
     const EvaluateSettings settings = how(program);
+    make_simulated_figures(settings);
+    const bool table = figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
+    if (!table) return exit_done;
+    require_inputs();
     const EvaluateReport report = evaluate(settings);
     write(report);
+    for (const std::string& figure : figures_)
+        if (is_report_figure(figure)) write_plots(report_figure(figure, report));
     if (!calibrated_.empty()) calibrate(report, settings);
     return exit_done;
 }

@@ -27,7 +27,8 @@ private:
     SimulatedSettings simulated() const;
     EvaluateReport evaluate(const EvaluateSettings& how) const;
     void require_inputs() const;
-    void make_figures(const EvaluateSettings& how) const;
+    void write_plots(const std::vector<Plot>& plots) const;
+    void make_simulated_figures(const EvaluateSettings& how) const;
     void write(const EvaluateReport& report) const;
     void calibrate(const EvaluateReport& report, const EvaluateSettings& how) const;
 

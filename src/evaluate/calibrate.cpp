@@ -3,17 +3,31 @@
 #include "src/evaluate/evaluate.h"
 #include "src/model/model_file.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace eventide {
+namespace {
+
+double factor_by(CalibrationRule rule, const EvaluateReport& held_out) {
+    const SigmaScale& all = held_out.observations.sigma_scale;
+    if (rule == CalibrationRule::likelihood) return all.by_likelihood();
+    if (rule == CalibrationRule::coverage) return all.by_coverage();
+    double largest = 0;
+    for (const SequenceReport& sequence : held_out.sequences)
+        if (sequence.sigma_scale.pixels() > 0)
+            largest = std::max(largest, sequence.sigma_scale.by_coverage());
+    return largest;
+}
+
+}  // namespace
 
 Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule) {
     const SigmaScale& errors = held_out.observations.sigma_scale;
     if (errors.pixels() == 0)
         throw Error(ErrorKind::usage,
                     "calibration: expected an evaluation with sigma, found no pixel with one");
-    const double factor =
-        rule == CalibrationRule::coverage ? errors.by_coverage() : errors.by_likelihood();
+    const double factor = factor_by(rule, held_out);
     return {.factor = factor,
             .picp80_before = errors.coverage_80_after(1),
             .picp80_after = errors.coverage_80_after(factor),

@@ -81,8 +81,9 @@ struct Calibration {
     double ll_before = 0, ll_after = 0;
 };
 enum class CalibrationRule {
-    coverage,   ///< PICP80 becomes .8
-    likelihood  ///< LL becomes largest
+    coverage,    ///< PICP80 becomes .8 over all pixels
+    likelihood,  ///< LL becomes largest
+    cautious     ///< PICP80 becomes .8 in the sequence that needs it most, more in all others
 };
 Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule);
 

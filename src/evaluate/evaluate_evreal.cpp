@@ -25,7 +25,9 @@ constexpr Cut kCuts[] = {
 };
 constexpr double kWarmUpSeconds = 10;
 
+/// By the sequence's name; MVSEC's files are called NAME_data.hdf5.
 const Cut* cut_of(std::string_view sequence) {
+    if (sequence.ends_with("_data")) sequence.remove_suffix(5);
     const auto found = std::ranges::find(kCuts, sequence, &Cut::sequence);
     return found == std::end(kCuts) ? nullptr : found;
 }

@@ -62,6 +62,7 @@ SequenceResult SequenceEvaluation::finish() {
         result_.notes.push_back(about_.name + ": " + std::to_string(run_.not_rendered()) +
                                 " references lie outside the event frames and were not compared");
     result_.observations = judge_.observations();
+    result_.report.sigma_scale = result_.observations.sigma_scale;
     return std::move(result_);
 }
 

@@ -2,6 +2,7 @@
 #include "src/evaluate/evreal_sequence.h"
 
 #include "src/core/error.h"
+#include "src/evaluate/mvsec_file.h"
 #include "src/evaluate/npy.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ bool is_sequence(const fs::path& path) {
     if (fs::is_directory(path))
         return is_npy_folder(path) ||
                (fs::exists(path / "events.txt") && fs::exists(path / "images.txt"));
-    return path.extension() == ".bag" || path.extension() == ".aedat4";
+    return is_hdf5_file(path) || path.extension() == ".aedat4";
 }
 
 SensorTime time_of(double seconds) {
@@ -102,25 +103,27 @@ std::vector<fs::path> evreal_sequences(const fs::path& dataset) {
         throw Error(ErrorKind::input, dataset.string() + ": no such file or folder");
     if (is_sequence(dataset)) return {dataset};
     std::vector<fs::path> found;
-    bool hdf5 = false;
+    bool bags = dataset.extension() == ".bag";
     if (fs::is_directory(dataset))
         for (const fs::directory_entry& entry : fs::directory_iterator{dataset}) {
             if (is_sequence(entry.path())) found.push_back(entry.path());
-            const fs::path kind = entry.path().extension();
-            hdf5 = hdf5 || kind == ".h5" || kind == ".hdf5";
+            bags = bags || entry.path().extension() == ".bag";
         }
     std::ranges::sort(found);
     if (found.empty())
         throw Error(ErrorKind::input,
                     dataset.string() +
-                        ": expected sequences: folders with events.txt and images.txt or with "
-                        "events_ts.npy, or .bag files" +
-                        (hdf5 ? "; found HDF5 files, which are not read" : ""));
+                        ": expected sequences: folders with events.txt and images.txt (ECD), "
+                        "folders with events_ts.npy (EVREAL's arrays), or MVSEC's .hdf5 files; "
+                        "found " +
+                        (bags ? "ROS bags, which are not read: EVREAL's tools turn them into arrays"
+                              : "none of them"));
     return found;
 }
 
 ReferenceSequence read_evreal_sequence(const fs::path& path, std::optional<double> from_s,
                                        std::optional<double> to_s) {
+    if (is_hdf5_file(path)) return read_mvsec_file(path, from_s, to_s);
     if (!is_npy_folder(path)) return read_reference_sequence(path, from_s, to_s);
     // EVREAL's tools have already moved the first event or image to 0.
     const Span span{time_of(from_s.value_or(-1e10)), time_of(to_s.value_or(1e10))};

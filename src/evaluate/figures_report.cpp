@@ -139,11 +139,19 @@ std::vector<Plot> make_figure(std::string_view name, const FigureSettings& what,
     if (name == "spatial") return spatial_super_resolution(what, how);
     if (name == "temporal") return temporal_super_resolution(what, how);
     if (name == "silence") return error_against_silence(what, how);
-    const auto report = [&] { return evaluate_simulated(what.simulated, how); };
-    if (name == "events") return error_against_events(report());
-    if (name == "sigma") return error_against_sigma(report());
-    if (name == "patch-size") return {correlation_against_patch_size(report())};
-    if (name == "reliability") return {reliability_diagram(report())};
+    return report_figure(
+        name, is_report_figure(name) ? evaluate_simulated(what.simulated, how) : EvaluateReport{});
+}
+
+bool is_report_figure(std::string_view name) {
+    return name == "events" || name == "sigma" || name == "patch-size" || name == "reliability";
+}
+
+std::vector<Plot> report_figure(std::string_view name, const EvaluateReport& report) {
+    if (name == "events") return error_against_events(report);
+    if (name == "sigma") return error_against_sigma(report);
+    if (name == "patch-size") return {correlation_against_patch_size(report)};
+    if (name == "reliability") return {reliability_diagram(report)};
     std::string known;
     for (const std::string& one : figure_names()) known += (known.empty() ? "" : ", ") + one;
     throw Error(ErrorKind::usage,

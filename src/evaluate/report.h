@@ -12,7 +12,8 @@ namespace eventide {
 struct SequenceReport {
     SequenceScores scores;
     std::vector<FrameScores> frames;
-    int not_rendered = 0;  ///< references before the first event frame
+    int not_rendered = 0;    ///< references before the first event frame
+    SigmaScale sigma_scale;  ///< what this sequence alone says about sigma
 };
 
 struct EvaluateReport {

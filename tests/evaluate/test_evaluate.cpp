@@ -234,12 +234,12 @@ TEST(RealRecordings, HaveTheirImagesScored) {
 TEST(Evreal, NamesWhatItCannotRead) {
     const fs::path dataset = fresh_folder("nothing");
     EXPECT_THROW(evaluate_evreal(dataset, small_model()), Error);
-    std::ofstream{dataset / "indoor_flying1_data.hdf5"} << "x";
+    std::ofstream{dataset / "bike_bay_hdr.bag"} << "x";
     try {
         evaluate_evreal(dataset, small_model());
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("HDF5"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("ROS bags"), std::string::npos);
     }
 }
 
@@ -324,6 +324,26 @@ TEST(Calibration, BringsTheCoverageToEightTenthsAndIsWrittenIntoTheModel) {
     EXPECT_NEAR(*after.overall.picp80, .8, .02);
     EXPECT_NEAR(*after.overall.ll, found.ll_after, .02);
     EXPECT_NE(load_model(calibrated).config.card.find("calibrated"), std::string::npos);
+}
+
+TEST(Calibration, CautiouslyHoldsInEverySequence) {
+    const fs::path folder = fresh_folder("cautious");
+    RecordingSettings what;
+    what.recordings = {write_recording(folder / "a", .4, .002, .1),
+                       write_recording(folder / "b", .9, .002, .3)};
+    what.skip_images = 0;
+    const EvaluateSettings how = small_model();
+    const EvaluateReport report = evaluate_recordings(what, how);
+    const double cautious = calibrate(report, CalibrationRule::cautious).factor;
+    double largest = 0;
+    for (const fs::path& one : what.recordings) {
+        RecordingSettings alone = what;
+        alone.recordings = {one};
+        largest = std::max(
+            largest, calibrate(evaluate_recordings(alone, how), CalibrationRule::coverage).factor);
+    }
+    EXPECT_EQ(cautious, largest);
+    EXPECT_GE(cautious, calibrate(report, CalibrationRule::coverage).factor);
 }
 
 TEST(Calibration, ByLikelihoodIsNeverLessLikely) {
