@@ -10,7 +10,8 @@ namespace eventide::app {
 Network::Network(const RunSettings& settings, const SensorInfo& sensor)
     : file_{find_model(settings.model)},
       model_{load_model(file_)},
-      engine_{settings.engine, settings.precision, parallel_for_with(settings.threads)},
+      engine_{settings.engine, settings.precision, settings.kernels,
+              parallel_for_with(settings.threads)},
       encoder_{model_, sensor.width, sensor.height, engine_},
       renderer_{model_, sensor.width, sensor.height, engine_} {
     if (!settings.state_in.empty())

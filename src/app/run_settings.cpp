@@ -179,6 +179,11 @@ void RunSettings::add_network(SettingTable& table) {
         "precision", precision,
         "Numbers the network multiplies: auto measures at the start which is faster.",
         {"auto", "f32", "bf16"}));
+    add(choice_setting(
+        "kernels", kernels,
+        "Whose convolutions the fast engine calls: auto takes what pays best on this "
+        "processor; own or onednn fix the last bits, too.",
+        {"auto", "own", "onednn"}));
     add(choice_setting("engine", engine, "plain is the readable reference, fast the usual one.",
                        {"plain", "fast"}));
     add(whole_setting("threads", threads, "N",

@@ -53,6 +53,7 @@ struct RunSettings {
     std::optional<int> lookahead;
     SigmaChoice sigma_rule = SigmaChoice::model;
     Precision precision = Precision::automatic;
+    Kernels kernels = Kernels::automatic;
     Engine engine = Engine::fast;
     int threads = 0;
     std::string state_in, state_out;

@@ -56,6 +56,7 @@ Binner::Binner(int bins, int height, int width) : bins_(bins), height_(height), 
 VoxelGrid Binner::make_output() const {
     VoxelGrid grid;
     grid.values = Array3<float>(height_, width_, 4 * bins_ + 1);
+    grid.touched = {height_, width_};
     return grid;
 }
 
@@ -65,7 +66,7 @@ void Binner::reset() noexcept {
 
 void Binner::process(const Slice& slice, VoxelGrid& grid) noexcept {
     assert(grid.values.height() == height_ && grid.values.width() == width_ &&
-           grid.values.channels() == 4 * bins_ + 1);
+           grid.values.channels() == 4 * bins_ + 1 && grid.touched.values().size() == ages_.size());
     grid.window = slice.window;
     grid.events = slice.events.size();
     grid.gap_before = slice.gap_before;
@@ -143,6 +144,7 @@ void Binner::write_ages(VoxelGrid& grid) noexcept {
         const bool touched = touched_in_frame_[pixel / 64] >> (pixel % 64) & 1;
         const int age = touched ? 0 : std::min(ages_[pixel] + 1, int(kOldest));
         ages_[pixel] = std::uint8_t(age);
+        grid.touched.values()[pixel] = std::uint8_t(touched);
         *out = float(age) / float(kOldest);
     }
     std::fill(touched_in_frame_.begin(), touched_in_frame_.end(), 0);

@@ -22,7 +22,7 @@ public:
     /// Throws Error (usage) unless all are at least 1.
     Binner(int bins, int height, int width);
 
-    VoxelGrid make_output() const;  ///< values of [height][width][4 bins + 1]
+    VoxelGrid make_output() const;  ///< values of [height][width][4 bins + 1], touched
 
     /// `grid` is one from make_output(). Events outside the sensor or the window are left out.
     void process(const Slice& slice, VoxelGrid& grid) noexcept;

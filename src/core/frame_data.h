@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace eventide {
 
@@ -32,6 +33,17 @@ struct VoxelGrid {
     bool gap_before = false;
     HostTime arrived{};
     bool reset_before = false;  ///< as in Slice
+    /// [y][x], 1 where the pixel has events in this frame, else 0; empty where whoever filled the
+    /// values did not keep track.
+    Array2<std::uint8_t> touched;
+};
+
+/// Which parts of a latent map changed when, so that whoever holds an older copy need renew only
+/// these. Whoever writes the values by hand leaves it as it is constructed: nothing is known.
+struct LatentHistory {
+    std::uint64_t source = 0;            ///< which encoder's steps are counted; 0: nothing is known
+    std::uint64_t step = 0;              ///< the step the values are of
+    std::vector<std::uint64_t> changed;  ///< per tile (latent_tiles), the step of its last change
 };
 
 /// What the encoder knows after one event frame, one code per sensor pixel.
@@ -41,6 +53,7 @@ struct LatentMap {
     std::uint64_t events = 0;
     HostTime arrived{};
     bool gap_before = false, reset_before = false;  ///< as in Slice
+    LatentHistory history;
 };
 
 /// One rendered picture.

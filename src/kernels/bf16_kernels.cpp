@@ -23,6 +23,25 @@ std::uint16_t to_bf16(float value) {
     return std::uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
 }
 
+namespace {
+
+template <typename NarrowRow>
+void narrow_pixels(NarrowRow narrow_row, const float* in, std::size_t pixels, int channels,
+                   std::uint32_t* out) {
+    auto* numbers = reinterpret_cast<std::uint16_t*>(out);
+    const auto count = std::size_t(channels);
+    if (channels % 2 == 0) {
+        narrow_row(in, pixels * count, numbers);
+        return;
+    }
+    for (std::size_t p = 0; p < pixels; ++p) {
+        narrow_row(in + p * count, count, numbers + p * (count + 1));
+        numbers[p * (count + 1) + count] = 0;
+    }
+}
+
+}  // namespace
+
 #if defined(__x86_64__)
 namespace {
 
@@ -108,7 +127,7 @@ void dot_rows(const Bf16DotRows& r) {
     }
 }
 
-EVENTIDE_BF16 void narrow_stretch(const float* in, std::size_t n, std::uint16_t* out) {
+EVENTIDE_BF16 void narrow_row(const float* in, std::size_t n, std::uint16_t* out) {
     for (std::size_t i = 0; i < n; i += 16) {
         const __mmask16 mask = first_lanes(int(std::min<std::size_t>(n - i, 16)));
         const __m256bh narrow = _mm512_cvtneps_pbh(_mm512_maskz_loadu_ps(mask, in + i));
@@ -117,16 +136,7 @@ EVENTIDE_BF16 void narrow_stretch(const float* in, std::size_t n, std::uint16_t*
 }
 
 void narrow(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
-    auto* numbers = reinterpret_cast<std::uint16_t*>(out);
-    const auto count = std::size_t(channels);
-    if (channels % 2 == 0) {
-        narrow_stretch(in, pixels * count, numbers);
-        return;
-    }
-    for (std::size_t p = 0; p < pixels; ++p) {
-        narrow_stretch(in + p * count, count, numbers + p * (count + 1));
-        numbers[p * (count + 1) + count] = 0;
-    }
+    narrow_pixels(narrow_row, in, pixels, channels, out);
 }
 
 }  // namespace
@@ -134,7 +144,7 @@ void narrow(const float* in, std::size_t pixels, int channels, std::uint32_t* ou
 
 const Bf16Kernels* bf16_kernels() {
 #if defined(__x86_64__)
-    static const Bf16Kernels kKernels{dot_rows, narrow};
+    static const Bf16Kernels kKernels{dot_rows, narrow, narrow_row};
     // Compilers' names for processor features are younger than the instruction; avx512bf16 is known
     // to gcc 12 and clang 14.
     static const bool kThere =
@@ -145,4 +155,57 @@ const Bf16Kernels* bf16_kernels() {
     return nullptr;
 }
 
+namespace plain {
+namespace {
+
+/// The two numbers of a pair, low half first.
+float first_of(std::uint32_t pair) {
+    return std::bit_cast<float>(pair << 16);
+}
+float second_of(std::uint32_t pair) {
+    return std::bit_cast<float>(pair & 0xffff'0000U);
+}
+
+/// A product of two bf16 numbers is exact in float32, so only the sums round, as in the processor.
+void dot_rows(const Bf16DotRows& r) {
+    const std::uint32_t* weight = r.weight;
+    for (int first = 0; first < r.outputs;) {
+        const int width = r.outputs - first > kBf16Lanes ? 2 * kBf16Lanes : kBf16Lanes;
+        const std::ptrdiff_t packed = std::ptrdiff_t(r.stretches) * r.length * width;
+        for (int p = 0; p < r.pixels; ++p) {
+            std::array<float, 2 * kBf16Lanes> sums{};
+            std::copy_n(r.bias + first, width, sums.begin());
+            const std::uint32_t* w = weight;
+            for (int s = 0; s < r.stretches; ++s)
+                for (int k = 0; k < r.length; ++k, w += width) {
+                    const std::uint32_t pair = r.in[s * r.pitch + p * r.step + k];
+                    const float a = first_of(pair), b = second_of(pair);
+                    for (std::size_t o = 0; o < std::size_t(width); ++o)
+                        sums[o] = (sums[o] + b * second_of(w[o])) + a * first_of(w[o]);
+                }
+            for (int o = 0; o < std::min(width, r.outputs - first); ++o) {
+                const float sum = sums[std::size_t(o)];
+                r.out[p * r.out_step + first + o] = r.relu ? std::max(sum, 0.0F) : sum;
+            }
+        }
+        weight += packed;
+        first += width;
+    }
+}
+
+void narrow_row(const float* in, std::size_t n, std::uint16_t* out) {
+    std::transform(in, in + n, out, to_bf16);
+}
+void narrow(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
+    narrow_pixels(narrow_row, in, pixels, channels, out);
+}
+
+}  // namespace
+
+const Bf16Kernels& bf16_kernels() {
+    static const Bf16Kernels kKernels{dot_rows, narrow, narrow_row};
+    return kKernels;
+}
+
+}  // namespace plain
 }  // namespace eventide

@@ -1,5 +1,5 @@
-// Sums of products of bf16 numbers with float32 sums, where the processor has the instruction
-// (AVX512_BF16). Each product takes two numbers at once, so channels go in pairs.
+// Sums of products of bf16 numbers with float32 sums. The processor's instruction (AVX512_BF16)
+// takes two numbers at once, so channels go in pairs.
 #pragma once
 
 #include <cstddef>
@@ -27,6 +27,8 @@ struct Bf16Kernels {
     /// `pixels` times `channels` numbers, one after the other, rounded to nearest even; an odd
     /// number of channels gets a zero beside the last.
     void (*narrow)(const float* in, std::size_t pixels, int channels, std::uint32_t* out);
+    /// `n` numbers one after the other.
+    void (*narrow_row)(const float* in, std::size_t n, std::uint16_t* out);
 };
 
 constexpr int kBf16Lanes = 16;  ///< outputs per vector
@@ -37,4 +39,10 @@ const Bf16Kernels* bf16_kernels();
 /// One number, rounded to nearest even; finite in, finite out except where it overflows.
 std::uint16_t to_bf16(float value);
 
+namespace plain {
+
+/// The judge of the fast ones: the same numbers on any processor, slowly.
+const Bf16Kernels& bf16_kernels();
+
+}  // namespace plain
 }  // namespace eventide

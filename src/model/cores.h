@@ -15,7 +15,8 @@ class EncoderCore {
 public:
     virtual ~EncoderCore() = default;
     virtual std::string description() const = 0;
-    virtual void step(const Array3<float>& grid, Array3<float>& latent) noexcept = 0;
+    /// Writes latent.values and says in latent.history what is known of it.
+    virtual void step(const VoxelGrid& grid, LatentMap& latent) noexcept = 0;
     virtual void reset() noexcept = 0;
     /// The hidden maps by name, [height, width, channels].
     virtual Tensors state() const = 0;
@@ -38,7 +39,7 @@ class RendererCore {
 public:
     virtual ~RendererCore() = default;
     virtual std::string description() const = 0;
-    virtual void push(std::int64_t k, const Array3<float>& latent) noexcept = 0;
+    virtual void push(std::int64_t k, const LatentMap& latent) noexcept = 0;
     virtual void reset() noexcept = 0;
     /// `sigma` is null where not asked for.
     virtual void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,

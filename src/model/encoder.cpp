@@ -48,7 +48,7 @@ LatentMap Encoder::make_output() const {
 }
 
 void Encoder::encode(const VoxelGrid& grid, LatentMap& latent) noexcept {
-    core_->step(grid.values, latent.values);
+    core_->step(grid, latent);
     latent.window = grid.window;
     latent.events = grid.events;
     latent.arrived = grid.arrived;

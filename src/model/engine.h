@@ -16,12 +16,22 @@ enum class Precision {
     automatic,  ///< bf16 where the processor has it and it measured faster in this process, else
                 ///< f32
     f32,
-    bf16,  ///< Error(usage) where neither the processor nor oneDNN offers it
+    bf16,           ///< Error(usage) where the processor does not offer it
+    bf16_emulated,  ///< the same numbers on any processor, slowly: for judging bf16 without one
+};
+
+/// Whose convolutions the fast engine calls. Which one changes the last bits of the results; each
+/// gives the same bits in every run and with any number of threads.
+enum class Kernels {
+    automatic,  ///< what pays best on this processor (docs/model.md, "Arithmetic")
+    own,        ///< ours: allocation-free
+    onednn,     ///< oneDNN's: a few small allocations per call. Error(usage) where not built in
 };
 
 struct EngineOptions {
     Engine engine = Engine::fast;
     Precision precision = Precision::automatic;
+    Kernels kernels = Kernels::automatic;
     ParallelFor parallel_for = sequential_for;
     /// Leave out tiles in whose reach nothing happened. The results are the same bit for bit; off
     /// only for tests and measurements.

@@ -8,26 +8,40 @@
 namespace eventide {
 namespace {
 
-bool wants_bf16(Precision precision) {
-    if (precision == Precision::bf16 && !bf16_available())
+Arithmetic arithmetic_of(const EngineOptions& options) {
+    if (options.precision == Precision::bf16 && !bf16_available())
         throw Error(ErrorKind::usage,
                     "precision bf16: expected a processor with AVX512_BF16, found none; use f32");
-    return precision == Precision::bf16 || (precision == Precision::automatic && bf16_is_faster());
+    if (options.kernels == Kernels::onednn && !onednn_available())
+        throw Error(ErrorKind::usage,
+                    "kernels onednn: expected a program built with oneDNN (EVENTIDE_ONEDNN), found "
+                    "one without; use own");
+    if (options.precision == Precision::bf16_emulated) return {Products::bf16_emulated, false};
+    const Arithmetic best =
+        best_arithmetic(options.precision != Precision::f32, options.kernels != Kernels::own);
+    Arithmetic chosen = best;
+    if (options.precision == Precision::bf16) chosen.products = Products::bf16;
+    if (options.kernels != Kernels::automatic) chosen.onednn = options.kernels == Kernels::onednn;
+    if (chosen.onednn && chosen.bf16() && !onednn_has_bf16())
+        throw Error(ErrorKind::usage,
+                    "kernels onednn: expected to be allowed AVX512_BF16 for bf16, found "
+                    "ONEDNN_MAX_CPU_ISA below it; use f32 or own");
+    return chosen;
 }
 
 }  // namespace
 
 std::unique_ptr<EncoderCore> make_fast_encoder(const Model& model, int height, int width,
                                                const EngineOptions& options) {
-    const bool bf16 = wants_bf16(options.precision);
+    const Arithmetic arithmetic = arithmetic_of(options);
     if (model.config.encoder == EncoderKind::gated)
-        return std::make_unique<FastGatedEncoder>(model, height, width, options, bf16);
-    return std::make_unique<FastThesisEncoder>(model, height, width, options, bf16);
+        return std::make_unique<FastGatedEncoder>(model, height, width, options, arithmetic);
+    return std::make_unique<FastThesisEncoder>(model, height, width, options, arithmetic);
 }
 std::unique_ptr<RendererCore> make_fast_renderer(const Model& model, int sensor_width,
                                                  int sensor_height, const EngineOptions& options) {
     return std::make_unique<FastRenderer>(model, sensor_width, sensor_height, options,
-                                          wants_bf16(options.precision));
+                                          arithmetic_of(options));
 }
 
 }  // namespace eventide

@@ -26,96 +26,127 @@ std::string named(const char* part, std::size_t i) {
 }  // namespace
 
 FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
-                                   const EngineOptions& options, bool bf16)
-    : config_(model.config), options_(options), bf16_(bf16) {
-    const auto conv = [&](const std::string& name, int stride, bool relu) {
-        return PackedConv{plain::conv_weights<float>(model.weights, name), stride, relu, bf16};
-    };
+                                   const EngineOptions& options, const Arithmetic& arithmetic)
+    : FastEncoder(options, arithmetic), config_(model.config) {
     const auto sizes = plain::level_sizes(height, width, config_.levels());
     const auto last = std::size_t(config_.latent_stride - 1);
-    std::size_t scratch = 0, most_tiles = 0;
-    for (std::size_t l = 0; l < sizes.size(); ++l) {
-        const auto [rows, columns] = sizes[l];
-        const int channels = config_.widths[l];
-        Level& level = levels_.emplace_back();
-        level.side = side_of(int(l));
-        level.tiles = tiles_of(rows, columns, level.side);
-        level.in = l == 0 ? conv("encoder.in", 1, true) : conv(named("down", l), 2, true);
-        level.recurrent = config_.recurrent[l] != 0;
-        if (level.recurrent)
-            level.gru = {plain::gru_weights<float>(model.weights, named("gru", l)), level.tiles,
-                         level.side, bf16};
-        else
-            for (const Tile& tile : level.tiles)
-                level.held.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
-                                        std::size_t(channels));
-        level.state = {rows, columns, channels};
-        level.mask = level.touched = {rows, columns};
-        mask_scratch_.push_back(level.mask);
-        if (l >= last && l + 1 < sizes.size()) {
-            level.up = conv(named("up", l), 1, true);
-            level.decoded = {rows, columns, channels};
-        }
-
-        const int side = level.side;
-        const int inputs = l == 0 ? config_.input_channels() : config_.widths[l - 1];
-        const int joined = channels + (l + 1 < sizes.size() ? config_.widths[l + 1] : channels);
-        const auto area = [](int n) { return std::size_t(n) * std::size_t(n); };
-        // The grid's tile, or [up2; h], or what a convolution narrows; then what the GRU needs.
-        const std::size_t source = 2 * area(2 * side + 10) * std::size_t(inputs);
-        const std::size_t read_out =
-            2 * area(side + 2) * std::size_t(std::max(joined, 2 * channels));
-        scratch = std::max(scratch, source + read_out + level.gru.scratch_size());
-        most_tiles = std::max(most_tiles, level.tiles.size());
-    }
+    std::size_t scratch = 0;
+    for (std::size_t l = 0; l < sizes.size(); ++l)
+        scratch = std::max(scratch, make_level(model, l, {sizes[l].first, sizes[l].second}));
+    const auto conv = [&](const std::string& name, bool relu, std::vector<Extent> extents) {
+        return PackedConv{plain::conv_weights<float>(model.weights, name), 1, relu, arithmetic_,
+                          std::move(extents)};
+    };
+    const auto room_for = [&](const PackedConv& made, int side) {
+        scratch = std::max(scratch, made.scratch_size(side, side));
+    };
     const auto [rows, columns] = sizes.back();
-    for (std::size_t i = 0; i < std::size_t(config_.res_blocks); ++i)
-        blocks_.push_back({conv(named("res", i) + ".0", 1, true),
-                           conv(named("res", i) + ".1", 1, false),
-                           {rows, columns, config_.widths.back()},
-                           {rows, columns, config_.widths.back()}});
-    out_ = conv("encoder.out", 1, false);
-    latent_ = {sizes[last].first, sizes[last].second, config_.latent};
-    out_touched_ = levels_[last].mask;
-    active_.reserve(most_tiles);
-    scratch_.assign(kLanes, FloatBuffer(scratch));
-}
-
-std::string FastGatedEncoder::description() const {
-    return std::string{"fast, "} + (bf16_ ? "bf16 (AVX512_BF16)" : vector_kernels().name);
-}
-
-void FastGatedEncoder::step(const Array3<float>& grid, Array3<float>& latent) noexcept {
-    mark_events(grid);
-    for (std::size_t l = 0; l < levels_.size(); ++l) advance(l, grid);
-    read_out();
-    latent_.save(latent.values().data());
-}
-
-void FastGatedEncoder::mark_events(const Array3<float>& grid) noexcept {
-    Level& top = levels_[0];
-    for (int y = 0; y < grid.height(); ++y) {
-        const float* pixel = grid.pixel(y, 0).data();
-        for (int x = 0; x < grid.width(); ++x, pixel += grid.channels()) {
-            bool any = false;
-            for (int b = 0; b < config_.bins; ++b) any |= pixel[4 * b + 3] != 0;
-            top.mask(y, x) = std::uint8_t(any);
-        }
+    const Level& deepest = levels_.back();
+    for (std::size_t i = 0; i < std::size_t(config_.res_blocks); ++i) {
+        const auto extents = extents_of(deepest.tiles, 0, rows, columns);
+        const Block& block =
+            blocks_.emplace_back(Block{conv(named("res", i) + ".0", true, extents),
+                                       conv(named("res", i) + ".1", false, extents),
+                                       {rows, columns, config_.widths.back()},
+                                       {rows, columns, config_.widths.back()}});
+        room_for(block.first, deepest.side);
+        room_for(block.second, deepest.side);
     }
-    dilate(top.mask, config_.gate_radius, mask_scratch_[0], top.mask);
-    for (std::size_t l = 1; l < levels_.size(); ++l) halve(levels_[l - 1].mask, levels_[l].mask);
+    const auto [latent_height, latent_width] = sizes[last];
+    const auto tiles = latent_tiles(latent_height, latent_width);
+    out_ = conv("encoder.out", false, extents_of(tiles, 0, latent_height, latent_width));
+    room_for(out_, kLatentSide);
+    out_touched_ = levels_[last].mask;
+    make_room(latent_height, latent_width, config_.latent, scratch);
+    std::size_t most_tiles = latent_tiles_.size();
+    for (const Level& level : levels_) most_tiles = std::max(most_tiles, level.tiles.size());
+    active_.reserve(most_tiles);
 }
 
-int FastGatedEncoder::collect(const Level& level, const Mask& mask) noexcept {
+/// Returns the scratch numbers it needs.
+std::size_t FastGatedEncoder::make_level(const Model& model, std::size_t l, Extent size) {
+    const auto [rows, columns] = size;
+    const int channels = config_.widths[l];
+    const bool deepest = l + 1 == config_.widths.size();
+    const auto weights = [&](const std::string& name) {
+        return plain::conv_weights<float>(model.weights, name);
+    };
+    Level& level = levels_.emplace_back();
+    level.number = l;
+    level.side = side_of(int(l));
+    level.tiles = tiles_of(rows, columns, level.side);
+    level.recurrent = config_.recurrent[l] != 0;
+    level.mask = level.touched = {rows, columns};
+    mask_scratch_.push_back(level.mask);
+    states_.emplace_back(rows, columns, channels);
+    // What a GRU's step reads of its input reaches 2 further than its tile.
+    auto fed = extents_of(level.tiles, level.recurrent ? 2 : 0, rows, columns);
+    level.in = {weights(l == 0 ? "encoder.in" : named("down", l)), l == 0 ? 1 : 2, true,
+                arithmetic_, std::move(fed)};
+    if (level.recurrent)
+        level.gru = {plain::gru_weights<float>(model.weights, named("gru", l)), size, level.tiles,
+                     level.side, arithmetic_};
+    else
+        for (const Tile& tile : level.tiles)
+            level.held.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
+                                    std::size_t(channels));
+    const auto area = [](int n) { return std::size_t(n) * std::size_t(n); };
+    const int fed_side = level.side + (level.recurrent ? 4 : 0);
+    const std::size_t grid =
+        l == 0 ? area(fed_side + 2) * std::size_t(config_.input_channels()) : 0;
+    std::size_t scratch =
+        level.gru.scratch_size() + grid + level.in.scratch_size(fed_side, fed_side);
+    if (l >= std::size_t(config_.latent_stride - 1) && !deepest) {
+        level.up = {weights(named("up", l)), 1, true, arithmetic_,
+                    extents_of(level.tiles, 0, rows, columns)};
+        level.decoded = {rows, columns, channels};
+        const auto joined = std::size_t(channels + config_.widths[l + 1]);
+        scratch = std::max(
+            scratch, area(level.side + 2) * joined + level.up.scratch_size(level.side, level.side));
+    }
+    return scratch;
+}
+
+void FastGatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
+    ++history_.step;
+    // Where nothing happens, no state changes, and nothing that follows from them does.
+    if (mark_events(grid) || stale_ || !options_.skip_quiet) {
+        for (std::size_t l = 0; l < levels_.size(); ++l) advance(l, grid.values);
+        read_out();
+    }
+    hand_out(latent);
+}
+
+bool FastGatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
+    Mask& top = levels_[0].mask;
+    if (!grid.touched.empty())
+        std::ranges::copy(grid.touched.values(), top.values().begin());
+    else
+        for (int y = 0; y < top.height(); ++y) {
+            const float* pixel = grid.values.pixel(y, 0).data();
+            for (int x = 0; x < top.width(); ++x, pixel += grid.values.channels()) {
+                bool any = false;
+                for (int b = 0; b < config_.bins; ++b) any |= pixel[4 * b + 3] != 0;
+                top(y, x) = std::uint8_t(any);
+            }
+        }
+    const bool any = std::memchr(top.values().data(), 1, top.values().size()) != nullptr;
+    if (any) dilate(top, config_.gate_radius, mask_scratch_[0], top);
+    for (std::size_t l = 1; l < levels_.size(); ++l) halve(levels_[l - 1].mask, levels_[l].mask);
+    return any;
+}
+
+int FastGatedEncoder::collect(const std::vector<Tile>& tiles, const Mask& mask) noexcept {
     active_.clear();
-    for (std::size_t i = 0; i < level.tiles.size(); ++i)
-        if (!options_.skip_quiet || level.tiles[i].any(mask)) active_.push_back(int(i));
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+        if (!options_.skip_quiet || tiles[i].any(mask)) active_.push_back(int(i));
     return int(active_.size());
 }
 
 void FastGatedEncoder::advance(std::size_t l, const Array3<float>& grid) noexcept {
     Level& level = levels_[l];
-    const int count = collect(level, level.mask);
+    const int count = collect(level.tiles, level.mask);
+    PaddedMap& h = states_[l];
     for_each_tile(options_.parallel_for, count, [&](int lane, int n) {
         advance_tile(level, l, std::size_t(active_[std::size_t(n)]), grid,
                      scratch_[std::size_t(lane)].data());
@@ -123,16 +154,15 @@ void FastGatedEncoder::advance(std::size_t l, const Array3<float>& grid) noexcep
     for_each_tile(options_.parallel_for, count, [&](int, int n) {
         const auto i = std::size_t(active_[std::size_t(n)]);
         if (level.recurrent) {
-            level.gru.commit(level.state, i);
+            level.gru.commit(h, i);
             return;
         }
         const Tile& tile = level.tiles[i];
-        const auto c = std::size_t(level.state.channels());
+        const auto c = std::size_t(h.channels());
         const float* next = level.held[i].data();
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; ++x, next += c)
-                if (level.mask(y, x) != 0)
-                    std::memcpy(level.state.at(y, x), next, c * sizeof(float));
+                if (level.mask(y, x) != 0) std::memcpy(h.at(y, x), next, c * sizeof(float));
     });
 }
 
@@ -140,13 +170,13 @@ void FastGatedEncoder::advance_tile(Level& level, std::size_t l, std::size_t i,
                                     const Array3<float>& grid, float* scratch) noexcept {
     if (level.recurrent) {
         float* source = scratch + level.gru.scratch_size();
-        level.gru.step(level.state, i, &level.mask, scratch, [&](const GruTiles::Target& target) {
+        level.gru.step(states_[l], i, &level.mask, scratch, [&](const GruTiles::Target& target) {
             feed(level, l, target.region, grid, target.out, target.pitch, target.step, source);
         });
         return;
     }
     const Tile& tile = level.tiles[i];
-    const std::ptrdiff_t c = level.state.channels();
+    const std::ptrdiff_t c = states_[l].channels();
     feed(level, l, tile, grid, level.held[i].data(), tile.width() * c, c, scratch);
 }
 
@@ -155,7 +185,7 @@ void FastGatedEncoder::feed(const Level& level, std::size_t l, const Tile& regio
                             const Array3<float>& grid, float* out, std::ptrdiff_t pitch,
                             std::ptrdiff_t step, float* scratch) noexcept {
     if (l > 0) {
-        const PaddedMap& above = levels_[l - 1].state;
+        const PaddedMap& above = states_[l - 1];
         level.in.run({above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch(), out, pitch,
                       step, region.height(), region.width()},
                      scratch);
@@ -176,17 +206,19 @@ void FastGatedEncoder::feed(const Level& level, std::size_t l, const Tile& regio
 }
 
 template <typename Body>
-void FastGatedEncoder::over_touched(const Level& level, Mask& touched, const Body& body) noexcept {
-    if (!stale_) dilate(touched, 1, mask_scratch_[std::size_t(&level - levels_.data())], touched);
-    const int count = collect(level, touched);
+void FastGatedEncoder::over_touched(const std::vector<Tile>& tiles, Mask& touched, Mask& room,
+                                    const Body& body) noexcept {
+    if (!stale_) dilate(touched, 1, room, touched);
+    const int count = collect(tiles, touched);
     for_each_tile(options_.parallel_for, count, [&](int lane, int n) {
-        body(level.tiles[std::size_t(active_[std::size_t(n)])], scratch_[std::size_t(lane)].data());
+        const auto i = std::size_t(active_[std::size_t(n)]);
+        body(i, tiles[i], scratch_[std::size_t(lane)].data());
     });
 }
 
 const PaddedMap& FastGatedEncoder::decoded(std::size_t l) const {
     if (l + 1 < levels_.size()) return levels_[l].decoded;
-    return blocks_.empty() ? levels_[l].state : blocks_.back().out;
+    return blocks_.empty() ? states_[l] : blocks_.back().out;
 }
 
 void FastGatedEncoder::read_out() noexcept {
@@ -201,12 +233,12 @@ void FastGatedEncoder::read_out() noexcept {
                      to.pitch(), to.channels(), tile.height(), tile.width()},
                     scratch);
     };
-    const PaddedMap* d = &deepest.state;
+    const PaddedMap* d = &states_.back();
     for (Block& block : blocks_) {
-        over_touched(deepest, deepest.touched, [&](const Tile& tile, float* scratch) {
+        over_touched(deepest, [&](std::size_t, const Tile& tile, float* scratch) {
             conv(block.first, *d, block.inner, tile, scratch);
         });
-        over_touched(deepest, deepest.touched, [&](const Tile& tile, float* scratch) {
+        over_touched(deepest, [&](std::size_t, const Tile& tile, float* scratch) {
             conv(block.second, block.inner, block.out, tile, scratch);
             const auto row = std::size_t(tile.width()) * std::size_t(d->channels());
             for (int y = tile.y0; y < tile.y1; ++y)
@@ -218,31 +250,25 @@ void FastGatedEncoder::read_out() noexcept {
     for (std::size_t l = levels_.size() - 1; l-- > last;) {
         Level& level = levels_[l];
         const Mask& below = levels_[l + 1].touched;
-        for (int y = 0; y < level.mask.height(); ++y)
-            for (int x = 0; x < level.mask.width(); ++x) {
-                const int y1 = std::min((y + 1) / 2, below.height() - 1);
-                const int x1 = std::min((x + 1) / 2, below.width() - 1);
-                level.touched(y, x) =
-                    std::uint8_t(level.mask(y, x) | below(y / 2, x / 2) | below(y / 2, x1) |
-                                 below(y1, x / 2) | below(y1, x1));
-            }
+        join_doubled(level.mask, below, level.touched);
         const PaddedMap& from = decoded(l + 1);
-        over_touched(level, level.touched, [&](const Tile& tile, float* scratch) {
+        over_touched(level, [&](std::size_t, const Tile& tile, float* scratch) {
             decode_tile(level, from, tile, scratch);
         });
     }
-    Level& level = levels_[last];
-    std::ranges::copy(level.touched.values(), out_touched_.values().begin());
-    over_touched(level, out_touched_, [&](const Tile& tile, float* scratch) {
-        conv(out_, decoded(last), latent_, tile, scratch);
-    });
+    std::ranges::copy(levels_[last].touched.values(), out_touched_.values().begin());
+    over_touched(latent_tiles_, out_touched_, mask_scratch_[last],
+                 [&](std::size_t i, const Tile& tile, float* scratch) {
+                     conv(out_, decoded(last), latent_, tile, scratch);
+                     mark_changed(i);
+                 });
     stale_ = false;
 }
 
 /// d_l = relu(up.l * [up2(d_{l+1}); h_l])
 void FastGatedEncoder::decode_tile(Level& level, const PaddedMap& below, const Tile& tile,
                                    float* scratch) noexcept {
-    const PaddedMap& h = level.state;
+    const PaddedMap& h = states_[level.number];
     const std::ptrdiff_t mine = h.channels(), deeper = below.channels(), step = mine + deeper;
     const std::ptrdiff_t row = (tile.width() + 2) * step;
     const Tile near = tile.grown(1, h.height(), h.width());
@@ -264,25 +290,7 @@ void FastGatedEncoder::decode_tile(Level& level, const PaddedMap& below, const T
 }
 
 void FastGatedEncoder::reset() noexcept {
-    for (Level& level : levels_) level.state.clear();
-    stale_ = true;
-}
-
-Tensors FastGatedEncoder::state() const {
-    Tensors state;
-    for (std::size_t l = 0; l < levels_.size(); ++l) {
-        const PaddedMap& h = levels_[l].state;
-        Tensor& tensor = state["h." + std::to_string(l)];
-        tensor.shape = {h.height(), h.width(), h.channels()};
-        tensor.values.resize(element_count(tensor.shape));
-        h.save(tensor.values.data());
-    }
-    return state;
-}
-
-void FastGatedEncoder::restore(const Tensors& state) {
-    for (std::size_t l = 0; l < levels_.size(); ++l)
-        levels_[l].state.load(state.at("h." + std::to_string(l)).values.data());
+    for (PaddedMap& h : states_) h.clear();
     stale_ = true;
 }
 

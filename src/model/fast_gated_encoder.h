@@ -1,29 +1,24 @@
 // The gated encoder in tiles: what a frame costs follows how much of it moved.
 #pragma once
 
-#include "src/model/cores.h"
-#include "src/nn/gru_tiles.h"
+#include "src/model/fast_encoder.h"
 #include "src/nn/packed_layers.h"
-#include "src/nn/padded_map.h"
-#include "src/nn/tiling.h"
 
 #include <vector>
 
 namespace eventide {
 
-class FastGatedEncoder final : public EncoderCore {
+class FastGatedEncoder final : public FastEncoder {
 public:
     FastGatedEncoder(const Model& model, int height, int width, const EngineOptions& options,
-                     bool bf16);
+                     const Arithmetic& arithmetic);
 
-    std::string description() const override;
-    void step(const Array3<float>& grid, Array3<float>& latent) noexcept override;
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     void reset() noexcept override;
-    Tensors state() const override;
-    void restore(const Tensors& state) override;
 
 private:
     struct Level {
+        std::size_t number = 0;
         int side = 0;  // of its tiles, at most
         std::vector<Tile> tiles;
         PackedConv in;  // from the grid, or from the level above
@@ -31,8 +26,7 @@ private:
         GruTiles gru;
         std::vector<FloatBuffer> held;  // next state of a level that is not recurrent, per tile
         PackedConv up;
-        PaddedMap state,
-            decoded;         // h_l and d_l; the last level's decoded map is that of the blocks
+        PaddedMap decoded;   // d_l; the last level's is that of the blocks
         Mask mask, touched;  // m_l; where anything d_l reads has changed
     };
     struct Block {
@@ -40,7 +34,9 @@ private:
         PaddedMap inner, out;
     };
 
-    void mark_events(const Array3<float>& grid) noexcept;
+    std::size_t make_level(const Model& model, std::size_t l, Extent size);
+    /// Fills the masks; false where nothing happened anywhere.
+    bool mark_events(const VoxelGrid& grid) noexcept;
     void advance(std::size_t l, const Array3<float>& grid) noexcept;
     void advance_tile(Level& level, std::size_t l, std::size_t i, const Array3<float>& grid,
                       float* scratch) noexcept;
@@ -50,23 +46,24 @@ private:
     void decode_tile(Level& level, const PaddedMap& below, const Tile& tile,
                      float* scratch) noexcept;
     const PaddedMap& decoded(std::size_t l) const;
-    /// Grows `touched` by a convolution's reach and calls body for the tiles in it.
+    /// Grows `touched` by a convolution's reach and calls body(i, tile, scratch) for those of the
+    /// tiles it reaches.
     template <typename Body>
-    void over_touched(const Level& level, Mask& touched, const Body& body) noexcept;
-    int collect(const Level& level, const Mask& mask) noexcept;
+    void over_touched(const std::vector<Tile>& tiles, Mask& touched, Mask& room,
+                      const Body& body) noexcept;
+    template <typename Body>
+    void over_touched(Level& level, const Body& body) noexcept {
+        over_touched(level.tiles, level.touched, mask_scratch_[level.number], body);
+    }
+    int collect(const std::vector<Tile>& tiles, const Mask& mask) noexcept;
 
     ModelConfig config_;
-    EngineOptions options_;
-    bool bf16_;
     std::vector<Level> levels_;
     std::vector<Block> blocks_;
     PackedConv out_;
-    PaddedMap latent_;
     Mask out_touched_;
-    std::vector<Mask> mask_scratch_;    // per level
-    std::vector<int> active_;           // numbers of the tiles at work
-    std::vector<FloatBuffer> scratch_;  // per lane
-    bool stale_ = true;                 // the maps behind the states are not those of the states
+    std::vector<Mask> mask_scratch_;  // per level
+    std::vector<int> active_;         // numbers of the tiles at work
 };
 
 }  // namespace eventide

@@ -13,7 +13,7 @@
 namespace eventide {
 namespace {
 
-constexpr int kSide = 32;
+constexpr int kSide = kLatentSide;
 /// Pixels that go through the layers together: two maps of 56 x 64 numbers fill half a first-level
 /// cache; a multiple of the kernels' 14 and near one of their 6.
 constexpr int kBlock = 56;
@@ -51,18 +51,20 @@ bool same_columns(const PictureGeometry& a, const PictureGeometry& b) {
 }  // namespace
 
 FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_height,
-                           const EngineOptions& options, bool bf16)
+                           const EngineOptions& options, const Arithmetic& arithmetic)
     : config_(model.config),
       options_(options),
-      bf16_(bf16),
+      arithmetic_(arithmetic),
       height_((sensor_height + config_.latent_stride - 1) / config_.latent_stride),
       width_((sensor_width + config_.latent_stride - 1) / config_.latent_stride),
       first_(config_.mlp[0]),
       widest_(*std::ranges::max_element(config_.mlp)),
-      past_(hoisted_weights(model, 2), 1, false, bf16),
-      whole_(hoisted_weights(model, 3), 1, false, bf16),
-      tiles_(tiles_of(height_, width_, kSide)),
+      tiles_(latent_tiles(height_, width_)),
       nothing_(height_, width_, config_.latent) {
+    const auto extents = extents_of(tiles_, 0, height_, width_);
+    past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents};
+    whole_ = {hoisted_weights(model, 3), 1, false, arithmetic, extents};
+    tile_columns_ = int(std::ranges::count(tiles_, 0, &Tile::y0));
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const auto inputs = std::size_t(first.shape[1]);
     for (std::size_t o = 0; o < std::size_t(first_); ++o)
@@ -74,7 +76,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
         const std::vector<float>& bias = model.weights.at(name + ".bias").values;
         if (i < config_.mlp.size()) {
             layers_.emplace_back(1, 1, int(weight.shape[1]), int(weight.shape[0]),
-                                 transposed(weight), bias, true, bf16);
+                                 transposed(weight), bias, true, arithmetic.products);
         } else {
             last_weight_ = weight.values;
             last_bias_ = bias;
@@ -84,7 +86,9 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
     const std::size_t area = std::size_t(kSide + 2) * std::size_t(kSide + 2);
-    const std::size_t for_hoisting = 2 * area * 3 * std::size_t(config_.latent);
+    const std::size_t for_hoisting =
+        area * 3 * std::size_t(config_.latent) +
+        std::max(past_.scratch_size(kSide, kSide), whole_.scratch_size(kSide, kSide));
     const std::size_t for_rows =
         std::size_t(first_) + std::size_t(kBlock) * (4 * std::size_t(widest_) + 2);
     scratch_.assign(kLanes, FloatBuffer(std::max(for_hoisting, for_rows)));
@@ -92,7 +96,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
 }
 
 std::string FastRenderer::description() const {
-    return std::string{"fast, "} + (bf16_ ? "bf16 (AVX512_BF16)" : vector_kernels().name);
+    return std::string{"fast, "} + name_of(arithmetic_);
 }
 
 void FastRenderer::reset() noexcept {
@@ -104,25 +108,43 @@ const PaddedMap& FastRenderer::code(std::int64_t k) const noexcept {
     return k >= 1 ? codes_[LatentWindow::slot(k)] : nothing_;
 }
 
-void FastRenderer::push(std::int64_t k, const Array3<float>& latent) noexcept {
+void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
     newest_ = k;
-    PaddedMap& mine = codes_[LatentWindow::slot(k)];
+    const std::size_t slot = LatentWindow::slot(k);
+    PaddedMap& mine = codes_[slot];
     const PaddedMap& before = code(k - 1);
-    std::vector<std::uint8_t>& changed = changed_[std::size_t(k % kChangesKept)];
-    const auto row_numbers = std::size_t(width_) * std::size_t(config_.latent);
-    for_each_tile(options_.parallel_for, height_, [&](int, int y) {
-        std::memcpy(mine.at(y, 0), latent.values().data() + std::size_t(y) * row_numbers,
-                    row_numbers * sizeof(float));
-    });
+    const Outdated outdated{histories_[slot], latent.history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
-        const auto i = std::size_t(n);
-        const Tile near = tiles_[i].grown(1, height_, width_);
-        const auto bytes = std::size_t(near.width()) * std::size_t(config_.latent) * sizeof(float);
-        bool same = k > 1 && options_.skip_quiet;
-        for (int y = near.y0; same && y < near.y1; ++y)
-            same = std::memcmp(mine.at(y, near.x0), before.at(y, near.x0), bytes) == 0;
-        changed[i] = std::uint8_t(!same);
+        if (!outdated(std::size_t(n))) return;
+        const Tile& tile = tiles_[std::size_t(n)];
+        const auto bytes = std::size_t(tile.width()) * std::size_t(config_.latent) * sizeof(float);
+        for (int y = tile.y0; y < tile.y1; ++y)
+            std::memcpy(mine.at(y, tile.x0), latent.values.pixel(y, tile.x0).data(), bytes);
     });
+    histories_[slot] = latent.history;
+
+    std::vector<std::uint8_t>& changed = changed_[std::size_t(k % kChangesKept)];
+    const bool comparable = k > 1 && options_.skip_quiet;
+    const Outdated since{histories_[LatentWindow::slot(k - 1)], latent.history};
+    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
+        const Tile near = tiles_[std::size_t(n)].grown(1, height_, width_);
+        const auto bytes = std::size_t(near.width()) * std::size_t(config_.latent) * sizeof(float);
+        bool same = comparable;
+        const bool may_differ = same && around(n, since);
+        for (int y = near.y0; may_differ && same && y < near.y1; ++y)
+            same = std::memcmp(mine.at(y, near.x0), before.at(y, near.x0), bytes) == 0;
+        changed[std::size_t(n)] = std::uint8_t(!same);
+    });
+}
+
+/// Whether a tile or one beside it may have changed.
+bool FastRenderer::around(int tile, const Outdated& since) const noexcept {
+    const int rows = int(tiles_.size()) / tile_columns_, columns = tile_columns_;
+    const int row = tile / columns, column = tile % columns;
+    for (int r = std::max(0, row - 1); r <= std::min(row + 1, rows - 1); ++r)
+        for (int c = std::max(0, column - 1); c <= std::min(column + 1, columns - 1); ++c)
+            if (since(std::size_t(r * columns + c))) return true;
+    return false;
 }
 
 /// Whether a tile of `from` already holds what event frame k would give: every code it reads is the
@@ -293,9 +315,9 @@ const float* FastRenderer::run_layers(const float* activations, int pixels,
     float* out = room;
     for (const PackedWeights& layer : layers_) {
         const void* numbers = in;
-        if (layer.bf16()) {
+        if (const Bf16Kernels* bf16 = layer.bf16()) {
             auto* narrow = reinterpret_cast<std::uint32_t*>(room + 2 * block);
-            bf16_kernels()->narrow(in, std::size_t(pixels), layer.channels(), narrow);
+            bf16->narrow(in, std::size_t(pixels), layer.channels(), narrow);
             numbers = narrow;
         }
         layer.run(numbers, 0, layer.step(), pixels, out, layer.outputs());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "src/model/cores.h"
+#include "src/model/fast_encoder.h"
 #include "src/nn/gru_tiles.h"
 #include "src/nn/packed_layers.h"
 #include "src/nn/padded_map.h"
@@ -16,10 +17,10 @@ namespace eventide {
 class FastRenderer final : public RendererCore {
 public:
     FastRenderer(const Model& model, int sensor_width, int sensor_height,
-                 const EngineOptions& options, bool bf16);
+                 const EngineOptions& options, const Arithmetic& arithmetic);
 
     std::string description() const override;
-    void push(std::int64_t k, const Array3<float>& latent) noexcept override;
+    void push(std::int64_t k, const LatentMap& latent) noexcept override;
     void reset() noexcept override;
     void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
                 Array2<float>& intensity, Array2<float>* sigma) noexcept override;
@@ -45,6 +46,7 @@ private:
         std::size_t side;   // left or right
     };
 
+    bool around(int tile, const Outdated& since) const noexcept;
     const Hoisted& hoist(std::int64_t k, bool whole, const Hoisted* keep) noexcept;
     bool unchanged(const Hoisted& from, std::int64_t k, bool whole,
                    std::size_t tile) const noexcept;
@@ -62,7 +64,7 @@ private:
 
     ModelConfig config_;
     EngineOptions options_;
-    bool bf16_;
+    Arithmetic arithmetic_;
     int height_, width_;  // of the latent maps
     int first_ = 0, widest_ = 0;
     PackedConv past_, whole_;
@@ -71,7 +73,9 @@ private:
     std::vector<float> last_weight_, last_bias_;  // [2][H], [2]
 
     std::vector<Tile> tiles_;
+    int tile_columns_ = 0;
     std::array<PaddedMap, LatentWindow::kLatentsKept> codes_;
+    std::array<LatentHistory, LatentWindow::kLatentsKept> histories_;  // of the codes
     PaddedMap nothing_;
     /// Per event frame (k % size), per tile: whether z_k differs from z_{k-1} in the tile's reach.
     static constexpr std::int64_t kChangesKept = 16;

@@ -10,49 +10,50 @@
 namespace eventide {
 namespace {
 
-constexpr int kSide = 32, kHalfSide = 24;
+constexpr int kSide = kLatentSide, kHalfSide = 24;
 
 }  // namespace
 
 FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
-                                     const EngineOptions& options, bool bf16)
-    : options_(options),
-      bf16_(bf16),
+                                     const EngineOptions& options, const Arithmetic& arithmetic)
+    : FastEncoder(options, arithmetic),
       channels_(model.config.widths[0]),
-      tiles_(tiles_of(height, width, kSide)),
+      // One way of cutting for all maps of full size: the latent map's.
+      tiles_(latent_tiles(height, width)),
       half_tiles_(tiles_of((height + 1) / 2, (width + 1) / 2, kHalfSide)) {
     const Tensors& w = model.weights;
-    const auto conv = [&](const std::string& name, int stride) {
-        return PackedConv{plain::conv_weights<float>(w, "encoder." + name), stride, false, bf16};
+    const Extent full{height, width}, half{(height + 1) / 2, (width + 1) / 2};
+    const auto conv = [&](const std::string& name) {
+        return PackedConv{plain::conv_weights<float>(w, "encoder." + name), 1, false, arithmetic_,
+                          extents_of(tiles_, 0, height, width)};
     };
-    in_ = conv("in", 1);
-    down_ = conv("down", 2);
-    for (int i = 0; i < 2; ++i) res_[i] = conv("res." + std::to_string(i), 1);
-    for (int i = 0; i < 3; ++i) head_[i] = conv("head." + std::to_string(i), 1);
+    in_ = conv("in");
+    down_ = {plain::conv_weights<float>(w, "encoder.down"), 2, false, arithmetic_,
+             extents_of(half_tiles_, 2, half.height, half.width)};
+    for (int i = 0; i < 2; ++i) res_[i] = conv("res." + std::to_string(i));
+    for (int i = 0; i < 3; ++i) head_[i] = conv("head." + std::to_string(i));
     for (int i = 0; i < 5; ++i)
         norms_.push_back(plain::norm_weights<float>(w, "encoder.norm" + std::to_string(i)));
-    full_gru_ = {plain::gru_weights<float>(w, "encoder.gru.0"), tiles_, kSide, bf16};
-    half_gru_ = {plain::gru_weights<float>(w, "encoder.gru.1"), half_tiles_, kHalfSide, bf16};
-    states_[0] = {height, width, channels_};
-    states_[1] = {(height + 1) / 2, (width + 1) / 2, channels_};
+    full_gru_ = {plain::gru_weights<float>(w, "encoder.gru.0"), full, tiles_, kSide, arithmetic_};
+    half_gru_ = {plain::gru_weights<float>(w, "encoder.gru.1"), half, half_tiles_, kHalfSide,
+                 arithmetic_};
+    states_.emplace_back(height, width, channels_);
+    states_.emplace_back(half.height, half.width, channels_);
     x0_ = inner_ = x2_ = y0_ = y1_ = states_[0];
-    z_ = {height, width, model.config.latent};
     raw_ = {height, width, channels_};
     sums_.resize(tiles_.size() * 2 * std::size_t(channels_));
     scale_.resize(std::size_t(channels_));
     shift_.resize(std::size_t(channels_));
 
-    const auto area = [](int n) { return std::size_t(n) * std::size_t(n); };
+    std::size_t convolving = 0;
+    for (const PackedConv* made : {&in_, &res_[0], &res_[1], &head_[0], &head_[1], &head_[2]})
+        convolving = std::max(convolving, made->scratch_size(kSide, kSide));
     const auto inputs = std::size_t(std::max(3 * channels_, model.config.input_channels()));
-    const std::size_t joined = 2 * area(kSide + 2) * (inputs + 1);
-    const std::size_t down = area(2 * kHalfSide + 9) * std::size_t(channels_);
-    scratch_.assign(
-        kLanes,
-        FloatBuffer(std::max({joined, full_gru_.scratch_size(), half_gru_.scratch_size() + down})));
-}
-
-std::string FastThesisEncoder::description() const {
-    return std::string{"fast, "} + (bf16_ ? "bf16 (AVX512_BF16)" : vector_kernels().name);
+    const std::size_t joined = std::size_t(kSide + 2) * (kSide + 2) * inputs;
+    make_room(
+        height, width, model.config.latent,
+        std::max({joined + convolving, full_gru_.scratch_size(),
+                  half_gru_.scratch_size() + down_.scratch_size(kHalfSide + 4, kHalfSide + 4)}));
 }
 
 template <typename Body>
@@ -62,8 +63,9 @@ void FastThesisEncoder::over(const std::vector<Tile>& tiles, const Body& body) n
     });
 }
 
-void FastThesisEncoder::step(const Array3<float>& grid, Array3<float>& latent) noexcept {
-    feed_in(grid);
+void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
+    ++history_.step;
+    feed_in(grid.values);
     normalise(0, nullptr, x0_);
     step_full();
     convolve(res_[0], states_[0]);
@@ -75,12 +77,13 @@ void FastThesisEncoder::step(const Array3<float>& grid, Array3<float>& latent) n
     normalise(3, nullptr, y0_);
     convolve(head_[1], y0_);
     normalise(4, &y0_, y1_);
-    over(tiles_, [&](std::size_t, const Tile& tile, float* scratch) {
-        head_[2].run({y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), z_.at(tile.y0, tile.x0),
-                      z_.pitch(), z_.channels(), tile.height(), tile.width()},
+    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+        head_[2].run({y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), latent_.at(tile.y0, tile.x0),
+                      latent_.pitch(), latent_.channels(), tile.height(), tile.width()},
                      scratch);
+        mark_changed(i);
     });
-    z_.save(latent.values().data());
+    hand_out(latent);
 }
 
 ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,
@@ -226,21 +229,6 @@ void FastThesisEncoder::join_head() noexcept {
 
 void FastThesisEncoder::reset() noexcept {
     for (PaddedMap& state : states_) state.clear();
-}
-
-Tensors FastThesisEncoder::state() const {
-    Tensors state;
-    for (int l = 0; l < 2; ++l) {
-        Tensor& tensor = state["h." + std::to_string(l)];
-        tensor.shape = {states_[l].height(), states_[l].width(), channels_};
-        tensor.values.resize(element_count(tensor.shape));
-        states_[l].save(tensor.values.data());
-    }
-    return state;
-}
-
-void FastThesisEncoder::restore(const Tensors& state) {
-    for (int l = 0; l < 2; ++l) states_[l].load(state.at("h." + std::to_string(l)).values.data());
 }
 
 }  // namespace eventide

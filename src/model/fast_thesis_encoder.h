@@ -1,26 +1,21 @@
 // The thesis' encoder in tiles. Its norms look at the whole image, so nothing can be left out.
 #pragma once
 
-#include "src/model/cores.h"
-#include "src/nn/gru_tiles.h"
+#include "src/model/fast_encoder.h"
+#include "src/nn/packed_layers.h"
 #include "src/nn/typed_weights.h"
 
-#include <map>
-#include <string>
 #include <vector>
 
 namespace eventide {
 
-class FastThesisEncoder final : public EncoderCore {
+class FastThesisEncoder final : public FastEncoder {
 public:
     FastThesisEncoder(const Model& model, int height, int width, const EngineOptions& options,
-                      bool bf16);
+                      const Arithmetic& arithmetic);
 
-    std::string description() const override;
-    void step(const Array3<float>& grid, Array3<float>& latent) noexcept override;
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     void reset() noexcept override;
-    Tensors state() const override;
-    void restore(const Tensors& state) override;
 
 private:
     /// raw_ = conv of `from`, with each tile's sums for the norm.
@@ -36,19 +31,15 @@ private:
     void over(const std::vector<Tile>& tiles, const Body& body) noexcept;
     ConvCall into_raw(const Tile& tile, const float* in, std::ptrdiff_t pitch) noexcept;
 
-    EngineOptions options_;
-    bool bf16_;
     int channels_;
     std::vector<Tile> tiles_, half_tiles_;
     PackedConv in_, res_[2], down_, head_[3];
     std::vector<plain::NormWeights<float>> norms_;
     GruTiles full_gru_, half_gru_;
-    PaddedMap states_[2];
-    PaddedMap x0_, inner_, x2_, y0_, y1_, z_;
+    PaddedMap x0_, inner_, x2_, y0_, y1_;
     Array3<float> raw_;
     std::vector<double> sums_;          // [tile][sum, sum of squares][C]
     std::vector<float> scale_, shift_;  // [C]
-    std::vector<FloatBuffer> scratch_;  // per lane
 };
 
 }  // namespace eventide

@@ -14,8 +14,9 @@ public:
     PlainEncoder(const Model& model, int height, int width) : network_(model, height, width) {}
 
     std::string description() const override { return "plain, f32"; }
-    void step(const Array3<float>& grid, Array3<float>& latent) noexcept override {
-        latent = network_.step(grid);
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+        latent.values = network_.step(grid.values);
+        latent.history = {};
     }
     void reset() noexcept override {
         for (Array3<float>& h : network_.states()) std::ranges::fill(h.values(), 0.0F);
@@ -44,8 +45,8 @@ public:
     explicit PlainRenderer(const Model& model) : network_(model) {}
 
     std::string description() const override { return "plain, f32"; }
-    void push(std::int64_t k, const Array3<float>& latent) noexcept override {
-        codes_[LatentWindow::slot(k)] = latent;
+    void push(std::int64_t k, const LatentMap& latent) noexcept override {
+        codes_[LatentWindow::slot(k)] = latent.values;
     }
     void reset() noexcept override {}
     void render(const CodeChoice& choice, const PictureGeometry& picture, SigmaRule rule,

@@ -64,7 +64,7 @@ std::string Renderer::description() const {
 }
 
 void Renderer::push(const LatentMap& latent) noexcept {
-    core_->push(window_.push(latent), latent.values);
+    core_->push(window_.push(latent), latent);
 }
 
 void Renderer::finish() noexcept {

@@ -8,13 +8,14 @@
 
 namespace eventide {
 
-GruTiles::GruTiles(const plain::GruWeights<float>& weights, const std::vector<Tile>& tiles,
-                   int side, bool bf16)
+GruTiles::GruTiles(const plain::GruWeights<float>& weights, Extent map,
+                   const std::vector<Tile>& tiles, int side, const Arithmetic& arithmetic)
     : channels_(weights.candidate.out),
       side_(side),
       tiles_(tiles),
-      gates_(weights.gates, 1, false, bf16),
-      candidate_(weights.candidate, 1, false, bf16) {
+      gates_(weights.gates, 1, false, arithmetic, extents_of(tiles, 1, map.height, map.width)),
+      candidate_(weights.candidate, 1, false, arithmetic,
+                 extents_of(tiles, 0, map.height, map.width)) {
     for (const Tile& tile : tiles_)
         next_.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
                            std::size_t(channels_));
@@ -25,7 +26,8 @@ std::size_t GruTiles::scratch_size() const {
     const auto square = [](int n) { return std::size_t(n) * std::size_t(n); };
     const auto c = std::size_t(channels_);
     return square(side_ + 4) * 2 * c + square(side_ + 2) * 2 * c + square(side_) * c +
-           gates_.scratch_size(side_ + 2, side_ + 2);
+           std::max(gates_.scratch_size(side_ + 2, side_ + 2),
+                    candidate_.scratch_size(side_, side_));
 }
 
 float* GruTiles::begin(std::size_t i, float* scratch, const Tile& near) const noexcept {

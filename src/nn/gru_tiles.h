@@ -25,9 +25,9 @@ public:
     };
 
     GruTiles() = default;
-    /// For maps cut into `tiles`, each at most `side` x `side`.
-    GruTiles(const plain::GruWeights<float>& weights, const std::vector<Tile>& tiles, int side,
-             bool bf16);
+    /// For maps of height x width cut into `tiles`, each at most `side` x `side`.
+    GruTiles(const plain::GruWeights<float>& weights, Extent map, const std::vector<Tile>& tiles,
+             int side, const Arithmetic& arithmetic);
 
     /// Scratch numbers step() needs.
     std::size_t scratch_size() const;

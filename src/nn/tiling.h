@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <compare>
 #include <cstring>
 #include <vector>
 
@@ -38,6 +39,29 @@ inline std::vector<Tile> tiles_of(int height, int width, int side) {
             tiles.push_back({height * r / rows, width * c / columns, height * (r + 1) / rows,
                              width * (c + 1) / columns});
     return tiles;
+}
+
+/// How a latent map is cut wherever its changes are kept track of (LatentMap::history).
+constexpr int kLatentSide = 32;
+inline std::vector<Tile> latent_tiles(int height, int width) {
+    return tiles_of(height, width, kLatentSide);
+}
+
+/// How many outputs a region has.
+struct Extent {
+    int height = 0, width = 0;
+    friend auto operator<=>(const Extent&, const Extent&) = default;
+};
+
+/// Of the tiles grown by n within their map.
+inline std::vector<Extent> extents_of(const std::vector<Tile>& tiles, int n, int map_height,
+                                      int map_width) {
+    std::vector<Extent> extents;
+    for (const Tile& tile : tiles) {
+        const Tile grown = tile.grown(n, map_height, map_width);
+        extents.push_back({grown.height(), grown.width()});
+    }
+    return extents;
 }
 
 /// How many threads one step can use: each lane has its own scratch memory.

@@ -6,6 +6,7 @@
 #include "src/model/encoder.h"
 #include "src/model/renderer.h"
 #include "src/nn/packed_layers.h"
+#include "tests/bench/peak.h"
 #include "tests/model/streams.h"
 
 #include <benchmark/benchmark.h>
@@ -18,9 +19,6 @@
 #include <oneapi/dnnl/dnnl.hpp>
 
 #include <unordered_map>
-#endif
-#if defined(__x86_64__)
-#include <immintrin.h>
 #endif
 
 namespace eventide {
@@ -198,43 +196,6 @@ void onednn(benchmark::State& state, const Setting& s) {
 }
 #endif
 
-#if defined(__x86_64__)
-/// Independent fused multiply-adds on registers: what no kernel can pass.
-__attribute__((target("avx512f"))) float peak_avx512(int n) {
-    __m512 sums[16];
-    for (int i = 0; i < 16; ++i) sums[i] = _mm512_set1_ps(float(i));
-    const __m512 factor = _mm512_set1_ps(0.999F);
-    for (int k = 0; k < n; ++k) {
-#pragma GCC unroll 16
-        for (int i = 0; i < 16; ++i) sums[i] = _mm512_fmadd_ps(sums[i], factor, factor);
-    }
-    float total = 0;
-    for (const __m512& sum : sums) total += sum[0];
-    return total;
-}
-__attribute__((target("avx2,fma"))) float peak_avx2(int n) {
-    __m256 sums[12];
-    for (int i = 0; i < 12; ++i) sums[i] = _mm256_set1_ps(float(i));
-    const __m256 factor = _mm256_set1_ps(0.999F);
-    for (int k = 0; k < n; ++k) {
-#pragma GCC unroll 12
-        for (int i = 0; i < 12; ++i) sums[i] = _mm256_fmadd_ps(sums[i], factor, factor);
-    }
-    float total = 0;
-    for (const __m256& sum : sums) total += sum[0];
-    return total;
-}
-void peak(benchmark::State& state, bool wide) {
-    constexpr int kRounds = 100'000;
-    for (auto _ : state) {
-        int rounds = kRounds;
-        benchmark::DoNotOptimize(rounds);  // or the loop would be done once
-        benchmark::DoNotOptimize(wide ? peak_avx512(rounds) : peak_avx2(rounds));
-    }
-    report(state, kRounds * (wide ? 16.0 * 16 : 12.0 * 8));
-}
-#endif
-
 template <typename... Arguments>
 void add(const std::string& name, Arguments... arguments) {
     benchmark::RegisterBenchmark(name.c_str(), arguments...)
@@ -251,11 +212,7 @@ int register_all() {
     thesis.widths = {24};
     thesis.recurrent = {1};
     thesis.mlp = {128, 128, 128, 128};
-#if defined(__x86_64__)
-    add("peak/avx2", peak, false);
-    if (!kernels_limited() && __builtin_cpu_supports("avx512f") != 0)
-        add("peak/avx512", peak, true);
-#endif
+    bench::add_peaks();
     for (const auto& [width, height] :
          std::vector<std::pair<int, int>>{{240, 180}, {346, 260}, {640, 480}, {1280, 720}})
         for (const auto& [name, config] : std::vector<std::pair<std::string, ModelConfig>>{

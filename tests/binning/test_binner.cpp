@@ -191,6 +191,22 @@ TEST(Binner, CountsFramesSinceTheLastEvent) {
     EXPECT_EQ(age_after(false), 1);
 }
 
+TEST(Binner, SaysWhichPixelsHaveEvents) {
+    std::mt19937 rng{3};
+    Binner binner{3, kHeight, kWidth};
+    VoxelGrid grid = binner.make_output();
+    for (const std::size_t n : {std::size_t{4}, std::size_t{0}, std::size_t{20}, std::size_t{1}}) {
+        const auto events = random_events(rng, kEpoch, 50'000, n);
+        binner.process(slice_of(events, kEpoch, 50'000), grid);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const bool any =
+                    grid.values(y, x, 3) + grid.values(y, x, 7) + grid.values(y, x, 11) > 0;
+                EXPECT_EQ(grid.touched(y, x), std::uint8_t(any)) << n << " events";
+            }
+    }
+}
+
 TEST(Binner, LeavesNothingOfTheFrameBefore) {
     std::mt19937 rng{6};
     Binner used(5, kHeight, kWidth);

@@ -18,6 +18,7 @@ public:
     GridStream(const ModelConfig& config, int height, int width, std::uint32_t seed)
         : bins_(config.bins), random_(seed) {
         grid_.values = {height, width, config.input_channels()};
+        grid_.touched = {height, width};
         since_ = {height, width};
         for (float& v : since_.values()) v = 8;
         x_ = width / 2;
@@ -57,6 +58,7 @@ private:
         const auto pixel = grid_.values.pixel(y, x);
         since_(y, x) = active ? 0 : std::min(since_(y, x) + 1, 8.0F);
         std::ranges::fill(pixel, 0.0F);
+        grid_.touched(y, x) = std::uint8_t(active);
         pixel[std::size_t(4 * bins_)] = since_(y, x) / 8;
         if (!active) return;
         const auto b = std::size_t(4) * (random_() % std::size_t(bins_));

@@ -1,13 +1,10 @@
 // The encoder: fast against plain against double, and what must not change anything.
 #include "src/core/error.h"
 #include "src/model/encoder.h"
-#include "src/model/plain_encoder.h"
-#include "src/nn/packed_layers.h"
+#include "tests/model/backends.h"
 #include "tests/model/streams.h"
 
 #include <gtest/gtest.h>
-
-#include <thread>
 
 namespace eventide {
 namespace {
@@ -18,22 +15,6 @@ using Kind = GridStream::Kind;
 /// Float32 against double over a recurrent run; states are near 1 and a step adds sums of a few
 /// hundred products, each rounded to 6e-8, which gates keep from growing.
 constexpr double kFloatTolerance = 2e-4;
-/// bf16 keeps 8 bits of each factor: 2^-9 relative per product, averaged over the sums.
-constexpr double kBf16Tolerance = 0.25;
-
-ParallelFor three_threads() {
-    return [](int n, const std::function<void(int)>& body) {
-        std::atomic<int> next{0};
-        const auto work = [&] {
-            for (int i = next++; i < n; i = next++) body(i);
-        };
-        std::thread a{work}, b{work};
-        work();
-        a.join();
-        b.join();
-    };
-}
-
 EngineOptions with(Engine engine, Precision precision = Precision::f32) {
     EngineOptions options;
     options.engine = engine;
@@ -67,72 +48,23 @@ TEST(Encoder, FastAgreesWithPlainAtEveryShape) {
     for (const Case& c : cases())
         for (const auto& [height, width] : shapes()) {
             const Model model = random_model(c.config, 7);
-            Encoder fast{model, width, height, with(Engine::fast)};
             Encoder plain{model, width, height, with(Engine::plain)};
+            std::vector<Encoder> fast;
+            for (const test::Backend& backend : test::backends())
+                if (!backend.bf16) fast.emplace_back(model, width, height, backend.options);
             GridStream stream{c.config, height, width, 3};
-            LatentMap a = fast.make_output(), b = plain.make_output();
+            LatentMap a = plain.make_output(), b = plain.make_output();
             for (int i = 0; i < 4; ++i) {
                 const VoxelGrid& grid = stream.next();
-                fast.encode(grid, a);
                 plain.encode(grid, b);
-                ASSERT_LE(test::worst(a.values.values(), b.values.values()), kFloatTolerance)
-                    << c.name << " " << width << "x" << height << " step " << i;
+                for (Encoder& encoder : fast) {
+                    encoder.encode(grid, a);
+                    ASSERT_LE(test::worst(a.values.values(), b.values.values()), kFloatTolerance)
+                        << encoder.description() << ", " << c.name << " " << width << "x" << height
+                        << " step " << i;
+                }
             }
         }
-}
-
-template <typename Network>
-void compare_long(const ModelConfig& config, int steps) {
-    const int kHeight = config.encoder == EncoderKind::thesis ? 9 : 26;
-    const int kWidth = config.encoder == EncoderKind::thesis ? 11 : 35;
-    const Model model = random_model(config, 11);
-    Network reference{model, kHeight, kWidth};
-    Encoder fast{model, kWidth, kHeight, with(Engine::fast)};
-    Encoder plain{model, kWidth, kHeight, with(Engine::plain)};
-    GridStream stream{config, kHeight, kWidth, 5};
-    LatentMap a = fast.make_output(), b = plain.make_output();
-    double fast_worst = 0, plain_worst = 0;
-    for (int i = 0; i < steps; ++i) {
-        const VoxelGrid& grid = stream.next();
-        fast.encode(grid, a);
-        plain.encode(grid, b);
-        const Array3<double> z = reference.step(test::as<double>(grid.values));
-        fast_worst = std::max(fast_worst, test::worst(a.values.values(), z.values()));
-        plain_worst = std::max(plain_worst, test::worst(b.values.values(), z.values()));
-    }
-    EXPECT_LE(fast_worst, kFloatTolerance);
-    EXPECT_LE(plain_worst, kFloatTolerance);
-    std::printf("  worst over %d steps: fast %.2g, plain %.2g\n", steps, fast_worst, plain_worst);
-}
-TEST(Encoder, GatedStaysWithDoubleOver200StepsOfPausesAndBursts) {
-    compare_long<plain::GatedEncoder<double>>(test::small_config(), 200);
-}
-TEST(Encoder, ThesisStaysWithDoubleOver200StepsOfPausesAndBursts) {
-    compare_long<plain::ThesisEncoder<double>>(test::thesis_config(), 200);
-}
-
-TEST(Encoder, Bf16StaysNearDoubleOver200Steps) {
-    if (!bf16_available()) GTEST_SKIP() << "this processor has no bf16 products";
-    const ModelConfig config = test::small_config();
-    const Model model = random_model(config, 11);
-    plain::GatedEncoder<double> reference{model, 26, 35};
-    Encoder fast{model, 35, 26, with(Engine::fast, Precision::bf16)};
-    GridStream stream{config, 26, 35, 5};
-    LatentMap a = fast.make_output();
-    double most = 0, squares = 0, power = 0;
-    for (int i = 0; i < 200; ++i) {
-        const VoxelGrid& grid = stream.next();
-        fast.encode(grid, a);
-        const Array3<double> z = reference.step(test::as<double>(grid.values));
-        most = std::max(most, test::worst(a.values.values(), z.values()));
-        for (std::size_t n = 0; n < z.values().size(); ++n) {
-            const double d = a.values.values()[n] - z.values()[n];
-            squares += d * d;
-            power += z.values()[n] * z.values()[n];
-        }
-    }
-    EXPECT_LE(most, kBf16Tolerance);
-    std::printf("  worst %.2g, relative rms %.2g\n", most, std::sqrt(squares / power));
 }
 
 /// Two encoders fed with the same frames give the same codes, bit for bit.
@@ -147,25 +79,15 @@ void expect_same(Encoder a, Encoder b, const ModelConfig& config, int steps) {
     }
 }
 
-TEST(Encoder, ThreadsChangeNoBit) {
-    for (const Case& c : cases())
-        for (const Precision precision : {Precision::f32, Precision::automatic}) {
-            const Model model = random_model(c.config, 1);
-            EngineOptions many = with(Engine::fast, precision);
-            many.parallel_for = three_threads();
-            expect_same({model, 75, 61, with(Engine::fast, precision)}, {model, 75, 61, many},
-                        c.config, 10);
-        }
-}
-
 TEST(Encoder, LeavingOutQuietTilesChangesNoBit) {
     for (const Case& c : cases())
-        for (const Precision precision : {Precision::f32, Precision::automatic}) {
+        for (const test::Backend& backend : test::backends()) {
+            if (backend.name == "emulated bf16") continue;  // slow, and the same code around it
             const Model model = random_model(c.config, 2);
-            EngineOptions all = with(Engine::fast, precision);
+            EngineOptions all = backend.options;
             all.skip_quiet = false;
-            expect_same({model, 150, 131, with(Engine::fast, precision)}, {model, 150, 131, all},
-                        c.config, 15);
+            expect_same({model, 150, 131, backend.options}, {model, 150, 131, all}, c.config,
+                        backend.options.kernels == Kernels::own ? 15 : 5);
         }
 }
 

@@ -2,12 +2,11 @@
 #include "src/core/error.h"
 #include "src/model/plain_renderer.h"
 #include "src/model/renderer.h"
+#include "tests/model/backends.h"
 #include "tests/model/streams.h"
+#include "tests/model/threads.h"
 
 #include <gtest/gtest.h>
-
-#include <atomic>
-#include <thread>
 
 namespace eventide {
 namespace {
@@ -128,9 +127,13 @@ TEST(Renderer, FastAgreesWithPlainAtEverySizeTimeAndLookahead) {
     for (const int stride : {1, 2}) {
         const ModelConfig config = config_of(stride);
         const Model model = random_model(config, 3);
-        EXPECT_LE(compare({model, 13, 9, with(Engine::fast)}, {model, 13, 9, with(Engine::plain)},
-                          config, 9, 13, kOutputs),
-                  kFloatTolerance);
+        for (const test::Backend& backend : test::backends()) {
+            if (backend.bf16) continue;
+            EXPECT_LE(compare({model, 13, 9, backend.options}, {model, 13, 9, with(Engine::plain)},
+                              config, 9, 13, kOutputs),
+                      kFloatTolerance)
+                << backend.name;
+        }
         EXPECT_LE(compare({model, 1, 1, with(Engine::fast)}, {model, 1, 1, with(Engine::plain)},
                           config, 1, 1, {{1, 1}, {3, 2}}),
                   kFloatTolerance);
@@ -148,29 +151,23 @@ TEST(Renderer, FastAgreesWithPlainForTheDefaultNetwork) {
 TEST(Renderer, Bf16StaysNear) {
     const ModelConfig config;
     const Model model = random_model(config, 3);
-    const double error = compare({model, 70, 40, with(Engine::fast, Precision::automatic)},
+    const double error = compare({model, 70, 40, with(Engine::fast, Precision::bf16_emulated)},
                                  {model, 70, 40, with(Engine::fast)}, config, 40, 70, {{40, 70}});
     EXPECT_LE(error, 0.1);
     std::printf("  worst %.2g\n", error);
 }
 
 TEST(Renderer, ThreadsChangeNoBit) {
-    EngineOptions many = with(Engine::fast);
-    many.parallel_for = [](int n, const std::function<void(int)>& body) {
-        std::atomic<int> next{0};
-        const auto work = [&] {
-            for (int i = next++; i < n; i = next++) body(i);
-        };
-        std::thread a{work}, b{work};
-        work();
-        a.join();
-        b.join();
-    };
     const ModelConfig config = config_of(1);
     const Model model = random_model(config, 3);
-    EXPECT_EQ(compare({model, 75, 61, many}, {model, 75, 61, with(Engine::fast)}, config, 61, 75,
-                      {{61, 75}, {70, 90}}),
-              0);
+    for (const test::Backend& backend : test::backends()) {
+        EngineOptions many = backend.options;
+        many.parallel_for = test::with_threads(3);
+        EXPECT_EQ(compare({model, 75, 61, many}, {model, 75, 61, backend.options}, config, 61, 75,
+                          {{61, 75}, {70, 90}}),
+                  0)
+            << backend.name;
+    }
 }
 
 TEST(Renderer, CarryingOverUnchangedTilesChangesNoBit) {

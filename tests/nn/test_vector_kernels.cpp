@@ -95,21 +95,52 @@ TEST(Bf16, RoundingIsToTheNearestEven) {
     EXPECT_EQ(back(to_bf16(1.0F + 0x1p-8F)), 1.0F) << "a tie goes to the even one";
     EXPECT_EQ(back(to_bf16(1.0F + 0x1.8p-7F)), 1.0F + 0x1p-6F);
     EXPECT_EQ(back(to_bf16(-3.14159F)), -3.140625F);
-    const Bf16Kernels* kernels = bf16_kernels();
-    if (kernels == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+}
+
+void expect_narrowed(const Bf16Kernels& kernels) {
     test::Numbers numbers{2};
     for (const int channels : {1, 2, 5, 16, 21, 64}) {
         const auto n = std::size_t(channels), pairs = (n + 1) / 2;
         const auto in = numbers.many(3 * n, Fill::mixed);
         std::vector<std::uint32_t> out(3 * pairs + 1, 77);
-        kernels->narrow(in.data(), 3, channels, out.data());
+        kernels.narrow(in.data(), 3, channels, out.data());
         EXPECT_EQ(out.back(), 77U);
         for (std::size_t p = 0; p < 3; ++p)
             for (std::size_t c = 0; c < n; ++c) {
                 const std::uint32_t pair = out[p * pairs + c / 2];
                 EXPECT_EQ(std::uint16_t(c % 2 == 0 ? pair : pair >> 16), to_bf16(in[p * n + c]));
             }
+        std::vector<std::uint16_t> row(3 * n + 1, 77);
+        kernels.narrow_row(in.data(), 3 * n, row.data());
+        EXPECT_EQ(row.back(), 77);
+        for (std::size_t i = 0; i < 3 * n; ++i) EXPECT_EQ(row[i], to_bf16(in[i]));
     }
+}
+TEST(Bf16, RowsAreNarrowedNumberByNumber) {
+    expect_narrowed(plain::bf16_kernels());
+    if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+    expect_narrowed(*bf16_kernels());
+}
+
+TEST(Bf16, TheProcessorsProductsAreThePlainOnes) {
+    if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+    test::Numbers numbers{5};
+    constexpr int kPixels = 17, kLength = 40, kOutputs = 32;
+    std::vector<std::uint32_t> in(kPixels * kLength), weight(kLength * kOutputs);
+    for (auto* words : {&in, &weight})
+        for (std::uint32_t& word : *words)
+            word = to_bf16(numbers.next(Fill::ordinary)) |
+                   std::uint32_t{to_bf16(numbers.next(Fill::ordinary))} << 16;
+    const std::vector<float> bias(kOutputs, 0.25F);
+    std::vector<float> fast(kPixels * kOutputs), plain(kPixels * kOutputs);
+    Bf16DotRows rows{in.data(),     0,           kLength, 1,       kLength, kPixels, kOutputs,
+                     weight.data(), bias.data(), true,    nullptr, kOutputs};
+    rows.out = fast.data();
+    bf16_kernels()->dot_rows(rows);
+    rows.out = plain.data();
+    plain::bf16_kernels().dot_rows(rows);
+    // The processor may sum a pair's two products before it adds them: one rounding elsewhere.
+    for (std::size_t i = 0; i < fast.size(); ++i) EXPECT_NEAR(fast[i], plain[i], 1e-5);
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+// See fast_encoder.h.
+#include "src/model/fast_encoder.h"
+
+#include <atomic>
+#include <cstring>
+
+namespace eventide {
+namespace {
+
+std::uint64_t new_source() {
+    static std::atomic<std::uint64_t> sources{0};
+    return ++sources;
+}
+
+}  // namespace
+
+FastEncoder::FastEncoder(const EngineOptions& options, const Arithmetic& arithmetic)
+    : options_(options), arithmetic_(arithmetic) {
+    history_.source = new_source();
+}
+
+void FastEncoder::make_room(int height, int width, int channels, std::size_t scratch) {
+    latent_ = {height, width, channels};
+    latent_tiles_ = latent_tiles(height, width);
+    history_.changed.resize(latent_tiles_.size());
+    scratch_.assign(kLanes, FloatBuffer(scratch));
+}
+
+std::string FastEncoder::description() const {
+    return std::string{"fast, "} + name_of(arithmetic_);
+}
+
+void FastEncoder::hand_out(LatentMap& latent) noexcept {
+    const Outdated outdated{latent.history, history_};
+    for_each_tile(options_.parallel_for, int(latent_tiles_.size()), [&](int, int i) {
+        if (!outdated(std::size_t(i))) return;
+        const Tile& tile = latent_tiles_[std::size_t(i)];
+        const std::size_t row = std::size_t(tile.width()) * std::size_t(latent_.channels());
+        for (int y = tile.y0; y < tile.y1; ++y)
+            std::memcpy(latent.values.pixel(y, tile.x0).data(), latent_.at(y, tile.x0),
+                        row * sizeof(float));
+    });
+    latent.history = history_;
+}
+
+Tensors FastEncoder::state() const {
+    Tensors state;
+    for (std::size_t l = 0; l < states_.size(); ++l) {
+        const PaddedMap& h = states_[l];
+        Tensor& tensor = state["h." + std::to_string(l)];
+        tensor.shape = {h.height(), h.width(), h.channels()};
+        tensor.values.resize(element_count(tensor.shape));
+        h.save(tensor.values.data());
+    }
+    return state;
+}
+
+void FastEncoder::restore(const Tensors& state) {
+    for (std::size_t l = 0; l < states_.size(); ++l)
+        states_[l].load(state.at("h." + std::to_string(l)).values.data());
+    stale_ = true;
+}
+
+}  // namespace eventide

@@ -1,0 +1,54 @@
+// What both fast encoders have: states that are saved and loaded, scratch memory for each lane, and
+// latent maps handed out by renewing what changed.
+#pragma once
+
+#include "src/model/cores.h"
+#include "src/nn/arithmetic.h"
+#include "src/nn/gru_tiles.h"
+#include "src/nn/padded_map.h"
+#include "src/nn/tiling.h"
+
+#include <vector>
+
+namespace eventide {
+
+class FastEncoder : public EncoderCore {
+public:
+    std::string description() const override;
+    Tensors state() const override;
+    void restore(const Tensors& state) override;
+
+protected:
+    FastEncoder(const EngineOptions& options, const Arithmetic& arithmetic);
+
+    /// To be called once, with the size of the latent map and the scratch numbers a lane needs.
+    void make_room(int height, int width, int channels, std::size_t scratch);
+    /// Tile i of latent_ has new values in this step.
+    void mark_changed(std::size_t i) noexcept { history_.changed[i] = history_.step; }
+    /// Brings `latent` to what latent_ is.
+    void hand_out(LatentMap& latent) noexcept;
+
+    EngineOptions options_;
+    Arithmetic arithmetic_;
+    std::vector<PaddedMap> states_;  // h_l
+    PaddedMap latent_;
+    std::vector<Tile> latent_tiles_;
+    LatentHistory history_;             // of latent_; `step` is the one at work
+    std::vector<FloatBuffer> scratch_;  // per lane
+    bool stale_ = true;                 // what follows from the states is not that of the states
+};
+
+/// Which tiles of a copy are out of date: those that changed since, or all.
+class Outdated {
+public:
+    Outdated(const LatentHistory& copy, const LatentHistory& now)
+        : now_(now), since_(copy.step), known_(now.source != 0 && copy.source == now.source) {}
+    bool operator()(std::size_t tile) const { return !known_ || now_.changed[tile] > since_; }
+
+private:
+    const LatentHistory& now_;
+    std::uint64_t since_;
+    bool known_;
+};
+
+}  // namespace eventide

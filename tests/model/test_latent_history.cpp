@@ -1,0 +1,128 @@
+// What a latent map says of its changes: copies that are renewed in part are whole copies.
+#include "src/model/encoder.h"
+#include "src/model/renderer.h"
+#include "tests/model/streams.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+using test::GridStream;
+using Kind = GridStream::Kind;
+
+constexpr int kHeight = 100, kWidth = 131;
+
+Encoder make_encoder(const Model& model) {
+    EngineOptions options;
+    options.precision = Precision::f32;
+    return {model, kWidth, kHeight, options};
+}
+
+/// A stream with silence, patches and bursts, step by step into buffers that take turns, as a
+/// pipeline's do.
+TEST(LatentHistory, BuffersThatTakeTurnsHoldWhatFreshOnesDo) {
+    const ModelConfig config = test::small_config();
+    const Model model = random_model(config, 1);
+    Encoder encoder = make_encoder(model), reference = make_encoder(model);
+    GridStream stream{config, kHeight, kWidth, 4};
+    std::vector<LatentMap> buffers(5, encoder.make_output());
+    std::mt19937 random{1};
+    for (int i = 0; i < 60; ++i) {
+        if (i == 40) {
+            encoder.reset();
+            reference.reset();
+        }
+        const VoxelGrid& grid = stream.next();
+        LatentMap& buffer = buffers[random() % buffers.size()];
+        LatentMap fresh = reference.make_output();
+        encoder.encode(grid, buffer);
+        reference.encode(grid, fresh);
+        ASSERT_EQ(buffer.values, fresh.values) << "step " << i;
+    }
+}
+
+TEST(LatentHistory, ABufferOfAnotherEncoderIsRenewedWhole) {
+    const ModelConfig config = test::small_config();
+    Encoder other = make_encoder(random_model(config, 1)),
+            mine = make_encoder(random_model(config, 2));
+    GridStream stream{config, kHeight, kWidth, 4};
+    LatentMap shared = other.make_output();
+    mine.encode(stream.next(Kind::patch), shared);
+    const LatentMap before = shared;
+    for (int i = 0; i < 4; ++i) {
+        other.encode(stream.next(Kind::patch), shared);
+        ASSERT_NE(shared.values, before.values);
+        mine.encode(stream.next(Kind::silence), shared);
+        ASSERT_EQ(shared.values, before.values) << "silence changes no code of mine";
+    }
+}
+
+TEST(LatentHistory, OnlyWhatIsTouchedChanges) {
+    const ModelConfig config = test::small_config();
+    Encoder encoder = make_encoder(random_model(config, 1));
+    GridStream stream{config, kHeight, kWidth, 4};
+    LatentMap z = encoder.make_output();
+    encoder.encode(stream.next(Kind::everywhere), z);
+    encoder.encode(stream.next(Kind::silence), z);
+    const LatentHistory still = z.history;
+    EXPECT_EQ(std::ranges::count(still.changed, still.step), 0) << "silence changes no tile";
+    VoxelGrid grid = stream.next(Kind::silence);
+    grid.values(2, 3, 3) = 1;
+    grid.touched(2, 3) = 1;
+    encoder.encode(grid, z);
+    const auto changed = std::ranges::count(z.history.changed, z.history.step);
+    EXPECT_GE(changed, 1);
+    EXPECT_LT(changed, std::ssize(z.history.changed));
+}
+
+/// The same latent maps with and without their history give the same pictures.
+TEST(LatentHistory, TheRendererRendersAsWithoutIt) {
+    const ModelConfig config = test::small_config();
+    const Model model = random_model(config, 1);
+    Encoder encoder = make_encoder(model);
+    EngineOptions options;
+    options.precision = Precision::f32;
+    Renderer with{model, kWidth, kHeight, options}, without{model, kWidth, kHeight, options};
+    GridStream stream{config, kHeight, kWidth, 4};
+    LatentMap latent = encoder.make_output();
+    for (int k = 1; k <= 50; ++k) {
+        if (k == 30) {
+            with.reset();
+            without.reset();
+        }
+        const VoxelGrid& grid = stream.next();
+        encoder.encode(grid, latent);
+        LatentMap bare = latent;
+        bare.history = {};
+        with.push(latent);
+        without.push(bare);
+        RenderRequest request;
+        request.lookahead = k % 30 > 3 ? k % 3 : 0;
+        request.t = grid.window.end - SensorDuration{50'000 * request.lookahead + 10'000};
+        Frame a = with.make_output(request), b = without.make_output(request);
+        with.render(request, a);
+        without.render(request, b);
+        ASSERT_EQ(a.intensity, b.intensity) << "event frame " << k;
+        ASSERT_EQ(a.sigma, b.sigma);
+    }
+}
+
+/// Where the grid says which pixels have events, the values are not searched for them.
+TEST(LatentHistory, TouchedPixelsAreTakenAtTheirWord) {
+    const ModelConfig config = test::small_config();
+    const Model model = random_model(config, 1);
+    Encoder told = make_encoder(model), searching = make_encoder(model);
+    GridStream stream{config, kHeight, kWidth, 4};
+    LatentMap a = told.make_output(), b = searching.make_output();
+    for (int i = 0; i < 20; ++i) {
+        VoxelGrid grid = stream.next();
+        told.encode(grid, a);
+        grid.touched = {};
+        searching.encode(grid, b);
+        ASSERT_EQ(a.values, b.values) << "step " << i;
+    }
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,204 @@
+// Encoder and renderer together, every back end, against double precision: over a long run, at real
+// sizes, and with the shipped network.
+#include "src/model/encoder.h"
+#include "src/model/plain_encoder.h"
+#include "src/model/plain_renderer.h"
+#include "src/model/renderer.h"
+#include "tests/model/backends.h"
+#include "tests/model/streams.h"
+#include "tests/model/threads.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <filesystem>
+
+namespace eventide {
+namespace {
+
+/// Float32 against double: sums of a few hundred products, each rounded to 6e-8, in numbers near 1;
+/// gates keep it from growing.
+constexpr double kFloatTolerance = 2e-4;
+/// bf16 keeps 8 bits of each factor; root mean square over all codes and pictures of a run.
+constexpr double kBf16Share = 0.02;
+
+/// How far something is from double precision.
+struct Distance {
+    double most = 0, squares = 0, power = 0;
+
+    template <typename A, typename B>
+    void add(const A& fast, const B& exact) {
+        most = std::max(most, test::worst(fast, exact));
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            squares += std::pow(double(fast[i]) - exact[i], 2);
+            power += exact[i] * exact[i];
+        }
+    }
+    double share() const { return std::sqrt(squares / power); }
+};
+
+/// The network in double precision: codes of the newest event frames, and pictures of them.
+template <typename Network>
+class Exact {
+public:
+    Exact(const Model& model, int height, int width)
+        : encoder_{model, height, width}, renderer_{model}, config_(model.config) {
+        picture_.sensor_height = picture_.height = picture_.part_height = height;
+        picture_.sensor_width = picture_.width = picture_.part_width = width;
+    }
+    const Array3<double>& step(const VoxelGrid& grid) {
+        codes_.push_back(encoder_.step(test::as<double>(grid.values)));
+        if (codes_.size() > 2) codes_.pop_front();
+        return codes_.back();
+    }
+    /// Of the newest event frame, at the live edge.
+    plain::Picture<double> render(double fraction) const {
+        const Array3<double>* before = codes_.size() > 1 ? &codes_.front() : nullptr;
+        return renderer_.render({before, &codes_.back(), nullptr, nullptr}, fraction, picture_,
+                                config_.sigma_rule);
+    }
+
+private:
+    Network encoder_;
+    plain::MlpRenderer<double> renderer_;
+    ModelConfig config_;
+    PictureGeometry picture_;
+    std::deque<Array3<double>> codes_;
+};
+
+struct Run {
+    std::string name;
+    bool bf16 = false;
+    Encoder encoder;
+    Renderer renderer;
+    LatentMap latent;
+    Frame frame;
+    Distance codes, pictures;
+
+    Run(std::string text, bool narrow, const Model& model, int height, int width,
+        const EngineOptions& options)
+        : name(std::move(text)),
+          bf16(narrow),
+          encoder{model, width, height, options},
+          renderer{model, width, height, options},
+          latent(encoder.make_output()),
+          frame(renderer.make_output({})) {}
+};
+
+/// All back ends and the plain engine over the same frames; every n-th is rendered, too.
+template <typename Network>
+void compare(const Model& model, int height, int width, int steps, int render_every,
+             bool plain_too = true) {
+    Exact<Network> exact{model, height, width};
+    std::vector<Run> runs;
+    for (const test::Backend& backend : test::backends())
+        runs.emplace_back(backend.name, backend.bf16, model, height, width, backend.options);
+    if (plain_too)
+        runs.emplace_back("plain f32", false, model, height, width,
+                          EngineOptions{.engine = Engine::plain});
+    test::GridStream stream{model.config, height, width, 5};
+    for (int k = 1; k <= steps; ++k) {
+        const VoxelGrid& grid = stream.next();
+        const Array3<double>& z = exact.step(grid);
+        RenderRequest request;
+        request.t = grid.window.begin + SensorDuration{30'000};
+        const bool shown = k % render_every == 0;
+        const plain::Picture<double> picture = shown ? exact.render(0.6) : plain::Picture<double>{};
+        for (Run& run : runs) {
+            run.encoder.encode(grid, run.latent);
+            run.renderer.push(run.latent);
+            run.codes.add(run.latent.values.values(), z.values());
+            if (!shown) continue;
+            run.renderer.render(request, run.frame);
+            run.pictures.add(run.frame.intensity.values(), picture.intensity.values());
+            run.pictures.add(run.frame.sigma.values(), picture.sigma.values());
+        }
+    }
+    for (const Run& run : runs) {
+        std::printf("  %-14s codes: worst %.2g, rms %.2g %%; pictures: worst %.2g, rms %.2g %%\n",
+                    run.name.c_str(), run.codes.most, 100 * run.codes.share(), run.pictures.most,
+                    100 * run.pictures.share());
+        EXPECT_LE(run.codes.share(), run.bf16 ? kBf16Share : kFloatTolerance) << run.name;
+        EXPECT_LE(run.pictures.share(), run.bf16 ? kBf16Share : kFloatTolerance) << run.name;
+        if (run.bf16) continue;
+        EXPECT_LE(run.codes.most, kFloatTolerance) << run.name;
+        EXPECT_LE(run.pictures.most, kFloatTolerance) << run.name;
+    }
+}
+
+using Gated = plain::GatedEncoder<double>;
+using Thesis = plain::ThesisEncoder<double>;
+
+TEST(WholeModel, TheShippedNetworkStaysWithDoubleOver200Steps) {
+    const std::filesystem::path file{EVENTIDE_SOURCE_DIR "/config/models/default.safetensors"};
+    compare<Gated>(load_model(file), 19, 21, 200, 25);
+}
+TEST(WholeModel, AnUntrainedThesisNetworkStaysWithDoubleOver200Steps) {
+    compare<Thesis>(random_model(test::thesis_config(), 11), 9, 11, 200, 25);
+}
+TEST(WholeModel, ManyTilesOfOddSizesStayWithDouble) {
+    compare<Gated>(random_model(test::small_config(), 3), 260, 346, 3, 3, false);
+}
+TEST(WholeModel, TheShippedNetworkStaysWithDoubleOverManyTiles) {
+    const std::filesystem::path file{EVENTIDE_SOURCE_DIR "/config/models/default.safetensors"};
+    compare<Gated>(load_model(file), 71, 97, 5, 5, false);
+}
+
+/// The bits of codes and pictures after some steps.
+struct Bits {
+    std::vector<Array3<float>> codes;
+    std::vector<Array2<float>> pictures;
+    friend bool operator==(const Bits&, const Bits&) = default;
+};
+Bits bits_of(const Model& model, int height, int width, const EngineOptions& options) {
+    Encoder encoder{model, width, height, options};
+    Renderer renderer{model, width, height, options};
+    test::GridStream stream{model.config, height, width, 9};
+    LatentMap latent = encoder.make_output();
+    Bits bits;
+    for (int k = 0; k < 5; ++k) {
+        const VoxelGrid& grid = stream.next();
+        encoder.encode(grid, latent);
+        renderer.push(latent);
+        RenderRequest request;
+        request.t = grid.window.end;
+        Frame frame = renderer.make_output(request);
+        renderer.render(request, frame);
+        bits.codes.push_back(latent.values);
+        bits.pictures.push_back(frame.intensity);
+        bits.pictures.push_back(frame.sigma);
+    }
+    return bits;
+}
+
+TEST(WholeModel, TheNumberOfThreadsChangesNoBit) {
+    ModelConfig half = test::small_config();
+    half.latent_stride = 2;
+    for (const ModelConfig& config : {test::small_config(), half, test::thesis_config()}) {
+        const Model model = random_model(config, 1);
+        for (test::Backend& backend : test::backends()) {
+            const Bits alone = bits_of(model, 61, 75, backend.options);
+            for (const int threads : {2, 3}) {
+                backend.options.parallel_for = test::with_threads(threads);
+                EXPECT_EQ(bits_of(model, 61, 75, backend.options), alone)
+                    << backend.name << ", " << threads << " threads";
+            }
+        }
+    }
+}
+
+TEST(WholeModel, ADifferentBackendIsNoticed) {
+    if (!onednn_available()) GTEST_SKIP() << "built without oneDNN";
+    const Model model = random_model(test::small_config(), 1);
+    EngineOptions own, onednn;
+    own.precision = onednn.precision = Precision::f32;
+    own.kernels = Kernels::own;
+    onednn.kernels = Kernels::onednn;
+    EXPECT_NE(Encoder(model, 20, 20, own).description(),
+              Encoder(model, 20, 20, onednn).description());
+    own.precision = Precision::bf16_emulated;
+    EXPECT_NE(bits_of(model, 20, 20, own), bits_of(model, 20, 20, onednn));
+}
+
+}  // namespace
+}  // namespace eventide
