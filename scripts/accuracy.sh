@@ -1,69 +1,175 @@
 #!/usr/bin/env bash
-# Measures a model and writes docs/accuracy/: tables.md, and figures as SVG and CSV. Ten minutes to an hour.
-#   scripts/accuracy.sh DATA [MODEL]
+# Measures a model: docs/accuracy/tables.md, figures beside it as SVG and CSV, and the bars in docs/accuracy.md.
+#   scripts/accuracy.sh DATA [MODEL [SECTION...]]
 # DATA holds recordings/, images/bsds500/ and perceptual/lpips_squeeze_v0.1.npz; MODEL is a name or a file (default).
-# EVENTIDE names the program; else build/release/src/app/eventide. SEQUENCES: how many simulated ones (20).
+# SECTION: real calibration simulated sigma super-resolution silence; without: all of them.
+# A section that was measured for this very model is not measured again (out/accuracy keeps them; FRESH=1 does), so the
+# script may be stopped at any time. EVENTIDE names the program; else build/release/src/app/eventide. SEQUENCES: how
+# many simulated ones (20).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-[ $# -ge 1 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+all=(real calibration simulated sigma super-resolution silence)
+[ $# -ge 1 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 DATA=$1
 model=${2:-default}
+shift $(($# < 2 ? $# : 2))
+wanted=("$@")
+[ $# -gt 0 ] || wanted=("${all[@]}")
 program=${EVENTIDE:-build/release/src/app/eventide}
 sequences=${SEQUENCES:-20}
-few=$(((sequences + 2) / 3))
+few=$(((sequences + 4) / 5))
 out=docs/accuracy
-mkdir -p "$out"
-tables=$out/tables.md
-scratch=$(mktemp -d)
-calibrated=$scratch/calibrated.safetensors
-trap 'rm -r "$scratch"' EXIT
+file=$model
+[ -e "$file" ] || file=${EVENTIDE_MODELS:-config/models}/$model.safetensors
+[ -e "$file" ] || { echo "accuracy: expected a model file or its name, found '$model'" >&2; exit 2; }
+kept=out/accuracy/$(sha256sum "$file" | cut -c 1-12)-$sequences
+mkdir -p "$out" "$kept"
+calibrated=$kept/calibrated.safetensors
 
 lpips=(--lpips "$DATA/perceptual/lpips_squeeze_v0.1.npz")
 simulated=(--protocol simulated --images "$DATA/images/bsds500" --last-images 100)
 recordings() { for name in "$@"; do echo "$DATA/recordings/$name"; done; }
+mapfile -t real < <(recordings camerashake_b slider_depth_head davis346_desk)
+mapfile -t held_out < <(recordings davis346_robotarm davis346_desk slider_depth_70_71)
 
-# Runs one evaluation and keeps command and table; what is not a path of the project is shown as $DATA.
-measure() {
-  local shown="$*"
-  shown=${shown//$DATA/\$DATA}
-  shown=${shown//$calibrated/calibrated.safetensors}
-  echo "accuracy: eventide evaluate $shown" >&2
-  { echo '```'; echo "\$ eventide evaluate $shown"; "$program" evaluate "$@" 2>&1; echo '```'; } \
-    | sed "s|$calibrated|calibrated.safetensors|; s|$DATA|\$DATA|g" >> "$tables"
+# What is not a path of the project is shown as a name.
+shown() { sed "s|$calibrated|calibrated.safetensors|g; s|$DATA|\$DATA|g; s|$file|$(basename "$file")|g"; }
+
+# Runs one evaluation; command and table go to the section's text, the numbers to NAME.csv for the bars.
+measure() { # NAME OPTIONS...
+  local csv=(--csv "$kept/$1.csv")
+  shift
+  set -- --model "$model" "$@"
+  echo "accuracy: eventide evaluate $*" | shown >&2
+  { echo '```'; echo "\$ eventide evaluate $*"; "$program" evaluate "$@" "${csv[@]}" 2>&1; echo '```'; } | shown
 }
-title() { printf '\n## %s\n' "$1" >> "$tables"; }
 
-echo "# Tables of $model, written by scripts/accuracy.sh" > "$tables"
+# Makes figures; the numbers of the CSV files named go to the section's text, a column for each and each of its lines.
+figures() { # TABLES... -- OPTIONS...
+  local csv=()
+  while [ "$1" != -- ]; do csv+=("$out/$1.csv"); shift; done
+  shift
+  set -- --model "$model" "$@" --plots "$out"
+  echo "accuracy: eventide evaluate $*" | shown >&2
+  { echo '```'; echo "\$ eventide evaluate $*"; echo '```'; } | shown
+  "$program" --quiet evaluate "$@" > /dev/null
+  cp "${csv[@]}" "$kept"
+  printf '\n'
+  awk -F, '
+    FNR == 1 { name = FILENAME; sub(/.*\//, "", name); sub(/\.csv/, "", name); next }
+    { column = name " " $1; if (!(column in seen)) { seen[column]; columns[++n] = column }
+      if (!($2 in known)) { known[$2]; rows[++m] = $2 }
+      value[$2, column] = $3 }
+    END { line = "| |"; rule = "|---|"
+      for (j = 1; j <= n; ++j) { line = line " " columns[j] " |"; rule = rule "---|" }
+      print line; print rule
+      for (i = 1; i <= m; ++i) { line = "| " rows[i] " |"
+        for (j = 1; j <= n; ++j) line = line " " value[rows[i], columns[j]] " |"
+        print line } }' "${csv[@]}"
+}
 
-title "Real recordings"
-real=($(recordings camerashake_b slider_depth_head davis346_desk))
-for lookahead in 0 1 2; do
-  measure "${real[@]}" --model "$model" "${lpips[@]}" --lookahead $lookahead
-done
-# Between the edges of event frames several codes are blended, and the rules for sigma differ.
-for rule in log_blend mixture; do
-  measure "${real[@]}" --model "$model" "${lpips[@]}" --lookahead 2 --window 50ms --sigma-rule $rule
+section_real() {
+  echo "## Real recordings"
+  for lookahead in 0 1 2; do measure real$lookahead "${real[@]}" "${lpips[@]}" --lookahead $lookahead; done
+}
+section_calibration() {
+  echo "## Calibration on other real recordings"
+  for rule in coverage cautious; do
+    measure held_out "${held_out[@]}" --skip 1 --calibration $rule --calibrated "$calibrated"
+    model=$calibrated measure $rule "${real[@]:0:2}"
+  done
+}
+section_simulated() {
+  echo "## Simulated test set"
+  measure simulated2 "${simulated[@]}" --sequences "$sequences" "${lpips[@]}" --lookahead 2 --plots "$out" \
+    --figure events --figure sigma --figure patch-size --figure reliability
+  measure simulated0 "${simulated[@]}" --sequences "$sequences" "${lpips[@]}" --lookahead 0
+  measure simulated1 "${simulated[@]}" --sequences $few "${lpips[@]}" --lookahead 1
+}
+# Between the edges of event frames and between pixels several codes are blended, and the rules for sigma differ.
+section_sigma() {
+  echo "## Blended ln sigma against mixture variance"
+  for rule in log_blend mixture; do
+    measure real_$rule "${real[@]}" --lookahead 2 --window 50ms --sigma-rule $rule
+    measure simulated_$rule "${simulated[@]}" --sequences $few --lookahead 2 --scale 1.5 --sigma-rule $rule
+  done
+}
+# Pictures six times the sensor's size: a smaller sensor, fewer event frames.
+section_super-resolution() {
+  echo "## Super-resolution in space and time"
+  figures spatial_lpips spatial_mse spatial_ssim -- "${simulated[@]}" "${lpips[@]}" --lookahead 2 --sequences $few \
+    --event-frames 40 --size 120x80 --figure spatial
+  figures temporal_lpips temporal_mse temporal_ssim -- "${simulated[@]}" "${lpips[@]}" --lookahead 2 --sequences $few \
+    --event-frames 40 --size 120x80 --figure temporal
+}
+section_silence() {
+  echo "## A scene that stops"
+  figures silence_mse silence_sigma silence_change -- "${simulated[@]}" "${lpips[@]}" --lookahead 0 \
+    --sequences $few --figure silence
+}
+
+for section in "${wanted[@]}"; do
+  [[ " ${all[*]} " == *" $section "* ]] || { echo "accuracy: expected one of ${all[*]}, found '$section'" >&2; exit 2; }
+  part=$kept/$section.md
+  [ -e "$part" ] && [ -z "${FRESH:-}" ] && continue
+  "section_$section" > "$part.part"
+  mv "$part.part" "$part"
 done
 
-title "Calibration on other real recordings"
-held_out=($(recordings davis346_robotarm davis346_desk slider_depth_70_71))
-measure "${held_out[@]}" --model "$model" "${lpips[@]}" --skip 1 --calibrated "$calibrated"
-measure "${real[@]:0:2}" --model "$model" "${lpips[@]}"
-measure "${real[@]:0:2}" --model "$calibrated" "${lpips[@]}"
+{
+  echo "# Tables of $(basename "$model" .safetensors), written by scripts/accuracy.sh"
+  for section in "${all[@]}"; do
+    [ ! -e "$kept/$section.md" ] || { echo; cat "$kept/$section.md"; }
+  done
+} > "$out/tables.md"
 
-title "Simulated test set"
-for lookahead in 0 1 2; do
-  measure "${simulated[@]}" --sequences "$sequences" --model "$model" "${lpips[@]}" --lookahead $lookahead
-done
-for rule in log_blend mixture; do
-  measure "${simulated[@]}" --sequences $few --model "$model" "${lpips[@]}" --lookahead 2 --scale 1.5 --sigma-rule $rule
-done
-
-for figure in events sigma patch-size reliability temporal silence; do
-  "$program" --quiet evaluate "${simulated[@]}" --model "$model" "${lpips[@]}" \
-    --lookahead 2 --sequences $few --figure $figure --plots "$out"
-done
-# Pictures six times the sensor's size: a smaller sensor, fewer of them.
-"$program" --quiet evaluate "${simulated[@]}" --model "$model" "${lpips[@]}" \
-  --lookahead 2 --sequences $few --event-frames 60 --size 120x80 --figure spatial --plots "$out"
-echo "accuracy: $tables" >&2
+# The bars of docs/accuracy.md, each held against what was measured; nothing where its section is not there yet.
+cell() { awk -F, -v s="$2" -v c="$3" '$1 == s { v = $c } END { print v }' "$kept/$1.csv" 2>/dev/null || true; }
+point() { awk -F, -v s="$2" -v x="$3" '$1 == s && $2 == x { print $3 }' "$kept/$1.csv" 2>/dev/null || true; }
+bar() { # TEXT LOWEST HIGHEST FOUND
+  awk -v text="$1" -v low="$2" -v high="$3" -v found="$4" 'BEGIN {
+    asked = low == "" ? "at most " high : high == "" ? "at least " low : low " to " high
+    ok = found != "" && (low == "" || found >= low + 0) && (high == "" || found <= high + 0)
+    printf "| %s | %s | %s | %s |\n", text, asked, found == "" ? "not measured" : sprintf("%.3g", found),
+      found == "" ? "" : ok ? "yes" : "**no**" }'
+}
+difference() { awk -v a="$1" -v b="$2" 'BEGIN { if (a != "" && b != "") print a - b }'; }
+ratio() { awk -v a="$1" -v b="$2" 'BEGIN { if (a != "" && b != "") print a / b }'; }
+bars() {
+  local mse=3 ssim=4 lpips=5 picp80=10 ll=11 name
+  printf '| bar | asked | found | held |\n|---|---|---|---|\n'
+  bar "simulated, $sequences sequences, lookahead 2: MSE" "" .018 "$(cell simulated2 all $mse)"
+  bar "the same: SSIM" .65 "" "$(cell simulated2 all $ssim)"
+  bar "the same: PICP80" .77 .83 "$(cell simulated2 all $picp80)"
+  bar "the same: LL" .76 "" "$(cell simulated2 all $ll)"
+  bar "MSE at lookahead 0 over that at lookahead 2" "" 1.15 "$(ratio "$(cell simulated0 all $mse)" "$(cell simulated2 all $mse)")"
+  # Peers are known per recording (docs/accuracy.md), so the two weigh equally.
+  both() { awk -v a="$(cell real0 camerashake_b "$1")" -v b="$(cell real0 slider_depth_head "$1")" \
+    'BEGIN { if (a != "" && b != "") print (a + b) / 2 }'; }
+  bar "camerashake_b and slider_depth_head, raw, mean of the two: MSE" "" .04 "$(both $mse)"
+  bar "the same: SSIM (best peer: FireNet, .458)" .458 "" "$(both $ssim)"
+  bar "the same: LPIPS-Squeeze (best peer: PIE-Net-Lite, .290)" "" .29 "$(both $lpips)"
+  bar "camerashake_b alone: SSIM (best peer: FireNet, .510)" .51 "" "$(cell real0 camerashake_b $ssim)"
+  bar "the same: LPIPS-Squeeze (FireNet, .250)" "" .25 "$(cell real0 camerashake_b $lpips)"
+  bar "slider_depth_head alone: SSIM (best peer: PIE-Net-Lite, .490)" .49 "" "$(cell real0 slider_depth_head $ssim)"
+  bar "the same: LPIPS-Squeeze (PIE-Net-Lite, .280)" "" .28 "$(cell real0 slider_depth_head $lpips)"
+  for name in camerashake_b slider_depth_head; do
+    bar "$name: PICP80 after calibration on other recordings" .7 .9 "$(cell cautious $name $picp80)"
+  done
+  for scale in 1.5 2 3 4; do
+    bar "$scale times the size: LPIPS less that of cubic" "" 0 \
+      "$(difference "$(point spatial_lpips model $scale)" "$(point spatial_lpips cubic $scale)")"
+  done
+  bar "6000 silent event frames: change of intensity" "" .01 "$(point silence_change model 6000)"
+  bar "the same: sigma over that at the stop" 1 "" \
+    "$(ratio "$(point silence_sigma model 6000)" "$(point silence_sigma model 0)")"
+}
+bars > "$kept/bars.md"
+awk -v text="$kept/bars.md" '
+  /<!-- bars begin -->/ { print; while ((getline line < text) > 0) print line; skip = 1 }
+  /<!-- bars end -->/ { skip = 0 }
+  !skip' docs/accuracy.md > "$kept/page.md"
+cat "$kept/page.md" > docs/accuracy.md
+echo "accuracy: $out/tables.md" >&2
+times > "$kept/times" # of this shell, then of what it ran: user, system
+awk 'NR == 2 { print "accuracy: " $1 " + " $2 " of processor time" }' "$kept/times" >&2

@@ -1,0 +1,140 @@
+#!/usr/bin/env bash
+# Small networks trained at equal budgets and scored alike: the tables of docs/accuracy.md, "Experiments".
+#   scripts/experiments.sh DATA [EXPERIMENT...]     without EXPERIMENT: all of them
+#   scripts/experiments.sh --tables                 only writes the tables again
+# A finished run is not repeated, so the script may be stopped at any time. A run's budget is MINUTES of processor
+# time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK, EVENTIDE name the programs, OUT the
+# folder of the runs (out/experiments).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=build/release/src
+train=${TRAIN:-$build/train/eventide-train}
+pack=${PACK:-$build/train/eventide-pack-pictures}
+program=${EVENTIDE:-$build/app/eventide}
+minutes=${MINUTES:-5}
+out=${OUT:-out/experiments}
+tables=docs/accuracy/experiments
+page=docs/accuracy.md
+export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 MALLOC_ARENA_MAX=4
+
+# What every run shares: the shipped network's shape, on pictures small enough for hundreds of steps.
+common=(--minutes "$minutes" --clock cpu --threads 1 --lanes 2 --groups 6 --crop 48 --patch 48 --frames 6 --rendered 3
+  --widths 16,32,48,48 --mlp 64,64 --rate 0.002 --warm-up 30 --ema 0.99 --validate-minutes 100000
+  --validation-scenes 8 --validation-frames 30 --validation-crop 64)
+
+declare -A options experiments title
+run() { options[$1]=${*:2}; }
+experiment() { experiments[$1]=$2; title[$1]=$3; order+=("$1"); }
+order=()
+
+run base
+run thesis        --encoder thesis --widths 24
+run equal         --widths 32,32,32,32
+run narrow        --widths 8,16,32,64
+run half          --latent-stride 2
+run levels3       --widths 16,32,48 --recurrent 1,1,1
+run levels5       --widths 16,32,48,48,48 --recurrent 1,1,1,1,1
+run mlp32         --mlp 32,32
+run mlp128        --mlp 128,128,128,128
+run full-only     --recurrent 1,0,0,0
+run half-only     --recurrent 0,1,0,0
+run quarter-only  --recurrent 0,0,1,0
+run bins1         --bins 1
+run bins2         --bins 2
+run polarity      --inputs polarity
+run no-moments    --inputs polarity,count,since
+run no-since      --inputs polarity,mean,std,count
+run threshold35   --threshold 0.35,0.35
+run threshold-low --threshold 0.1,0.4
+run l1-only       --ssim 0 --lpips-weight 0
+run no-lpips      --lpips-weight 0
+run no-ssim       --ssim 0
+run no-temporal   --temporal 0
+
+experiment encoder    "base thesis"                    "1. The gated encoder against the thesis' (instance norm, whole-image statistics)"
+experiment renderer   "base mlp32 mlp128 half"         "4. The renderer's width; latent codes at half resolution"
+experiment inputs     "base bins2 bins1 no-moments no-since polarity" "6. What the voxel grid says"
+experiment losses     "base no-lpips no-ssim no-temporal l1-only" "7. Losses"
+experiment thresholds "base threshold-low threshold35" "8. Range of contrast thresholds in training"
+experiment widths     "base equal narrow levels3 levels5" "10. Where the multiply-adds go, and field of view"
+experiment states     "base full-only half-only quarter-only" "10b. Which levels remember"
+
+# One line of scores from a file that eventide evaluate wrote: MSE, SSIM, LPIPS, PICP80 over everything.
+scores() { awk -F, 'END { printf "%.4f,%.3f,%.3f,%.3f", $3, $4, $5, $10 }' "$1"; }
+
+train_and_score() {
+  local name=$1 folder=$out/$1-$minutes
+  [ -e "$folder/scores.csv" ] && return
+  echo "experiments: $name: ${options[$name]}" >&2
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  # shellcheck disable=SC2086  # options are words
+  "$train" "${common[@]}" ${options[$name]} --textures "$out/train.pack" --validation-textures "$out/held_out.pack" \
+    --lpips "$lpips" --out "$folder" --export "$folder/model.safetensors" > "$folder/output.txt"
+  local held_out steps
+  # step, minutes, score, L1, 1-SSIM, LPIPS, NLL, temporal, MSE, PICP80
+  held_out=$(awk -F, 'END { printf "%.4f,%.3f,%.3f,%.3f", $9, $5, $6, $10 }' "$folder/validation.csv")
+  steps=$(awk -F, 'END { print $1 }' "$folder/validation.csv")
+  local evaluate=("$program" --quiet evaluate --model "$folder/model.safetensors" --lpips "$lpips")
+  for lookahead in 0 2; do
+    "${evaluate[@]}" --protocol simulated --images "$DATA/images/bsds500" --last-images 100 --sequences 4 \
+      --event-frames 60 --size 120x80 --lookahead $lookahead --csv "$folder/simulated$lookahead.csv" > /dev/null
+  done
+  "${evaluate[@]}" "$DATA/recordings/camerashake_b" "$DATA/recordings/slider_depth_head" \
+    --csv "$folder/real.csv" > /dev/null
+  echo "$name,${options[$name]//,/ },$steps,$held_out,$(scores "$folder/simulated0.csv"),$(scores \
+    "$folder/simulated2.csv"),$(scores "$folder/real.csv")" > "$folder/scores.csv"
+}
+
+header="run,options,steps"
+for where in held_out simulated simulated_lookahead2 real; do
+  header+=,${where}_mse,${where}_$([ $where = held_out ] && echo dssim || echo ssim),${where}_lpips,${where}_picp80
+done
+
+# A CSV file per experiment, of the runs that are done.
+write_csv() {
+  mkdir -p "$tables"
+  { echo "$header"; for name in ${experiments[$1]}; do cat "$out/$name-$minutes/scores.csv" 2>/dev/null || true; done; } \
+    > "$tables/$1.csv"
+}
+
+# The part of the page between its two marks, from the CSV files.
+write_tables() {
+  local text=$out/tables.md
+  : > "$text"
+  for name in "${order[@]}"; do
+    [ -e "$tables/$name.csv" ] && [ "$(wc -l < "$tables/$name.csv")" -gt 2 ] || continue
+    printf '\n**%s** (`scripts/experiments.sh DATA %s`)\n\n' "${title[$name]}" "$name" >> "$text"
+    printf '| run | options | steps | held-out scenes | simulated | lookahead 2 | real |\n|---|---|---|---|---|---|---|\n' >> "$text"
+    awk -F, 'NR > 1 {
+      printf "| %s | %s | %s |", $1, $2 == "" ? "" : "`" $2 "`", $3
+      for (i = 4; i < 20; i += 4) if ($i == "-") printf " - |"; else printf " %s %s %s (%s) |", $i, $(i+1), $(i+2), $(i+3)
+      print ""
+    }' "$tables/$name.csv" >> "$text"
+  done
+  awk -v text="$text" '
+    /<!-- experiments begin -->/ { print; while ((getline line < text) > 0) print line; skip = 1 }
+    /<!-- experiments end -->/ { skip = 0; print "" }
+    !skip' "$page" > "$out/page.md"
+  cat "$out/page.md" > "$page"
+}
+
+mkdir -p "$out"
+if [ "${1:-}" != --tables ]; then
+  [ $# -ge 1 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+  DATA=$1
+  lpips=$DATA/perceptual/lpips_squeeze_v0.1.npz
+  shift
+  [ $# -gt 0 ] || set -- "${order[@]}"
+  for name in "$@"; do
+    [ -n "${experiments[$name]:-}" ] || { echo "experiments: expected one of ${order[*]}, found '$name'" >&2; exit 2; }
+  done
+  [ -e "$out/train.pack" ] || "$pack" "$out/train.pack" 400 "$DATA/images/objects" 0 0 "$DATA/images/elementary" 0 0
+  [ -e "$out/held_out.pack" ] || "$pack" "$out/held_out.pack" 400 "$DATA/images/bsds500" 400 100
+  for name in "$@"; do
+    for one in ${experiments[$name]}; do train_and_score "$one"; write_csv "$name"; done
+    write_tables
+  done
+else
+  write_tables
+fi
