@@ -4,17 +4,28 @@
 
 #ifdef EVENTIDE_HAS_USB
 #include "drivers/usb/davis_camera.h"
+#include "drivers/usb/dvs128_camera.h"
+#include "drivers/usb/dvxplorer_camera.h"
 #endif
 #ifdef EVENTIDE_HAS_V4L2
 #include "drivers/v4l2/v4l2_camera.h"
 #endif
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 
 namespace eventide {
 namespace {
 
-constexpr std::string_view kDavis = "davis:", kV4l2 = "v4l2:";
+/// A kind of camera: what its sources begin with, and how one is opened. `open` is empty where the
+/// driver was not built.
+struct Kind {
+    std::string_view scheme;
+    const char* build_option;
+    std::unique_ptr<Camera> (*open)(std::string_view which, const CameraOptions& options);
+    std::vector<CameraDescription> (*list)();
+};
 
 #ifdef EVENTIDE_HAS_USB
 bool number(std::string_view text, int& into) {
@@ -22,60 +33,72 @@ bool number(std::string_view text, int& into) {
     return error == std::errc{} && end == text.data() + text.size() && into >= 0;
 }
 
-std::unique_ptr<Camera> open_davis(std::string_view which, const CameraOptions& options) {
-    DavisOptions davis;
-    davis.reconnect = options.reconnect;
-    if (!options.settings.empty()) davis.settings = load_davis_settings(options.settings);
+/// What follows the scheme: nothing, a serial number, or bus and address.
+template <typename OpenedCamera, typename Options, auto load_settings>
+std::unique_ptr<Camera> open_usb(std::string_view which, const CameraOptions& asked) {
+    Options options;
+    options.reconnect = asked.reconnect;
+    if (!asked.settings.empty()) options.settings = load_settings(asked.settings);
     const auto colon = which.find(':');
-    if (colon == which.npos) {
-        davis.serial = std::string{which};
-    } else if (!number(which.substr(0, colon), davis.bus) ||
-               !number(which.substr(colon + 1), davis.address)) {
-        throw Error(ErrorKind::usage, "source 'davis:" + std::string{which} +
-                                          "': expected davis:, davis:SERIAL or davis:BUS:ADDRESS");
-    }
-    return std::make_unique<DavisCamera>(std::move(davis));
+    if (colon == which.npos)
+        options.serial = std::string{which};
+    else if (!number(which.substr(0, colon), options.bus) ||
+             !number(which.substr(colon + 1), options.address))
+        throw Error(ErrorKind::usage, "camera '" + std::string{which} +
+                                          "': expected nothing, SERIAL or BUS:ADDRESS (lsusb)");
+    return std::make_unique<OpenedCamera>(std::move(options));
 }
+
+constexpr auto open_davis = open_usb<DavisCamera, DavisOptions, load_davis_settings>;
+constexpr auto open_dvxplorer =
+    open_usb<DvxplorerCamera, DvxplorerOptions, load_dvxplorer_settings>;
+constexpr auto open_dvs128 = open_usb<Dvs128Camera, Dvs128Options, load_dvs128_settings>;
+#else
+constexpr std::nullptr_t open_davis = nullptr, open_dvxplorer = nullptr, open_dvs128 = nullptr;
+constexpr std::nullptr_t list_davis_cameras = nullptr, list_dvxplorer_cameras = nullptr,
+                         list_dvs128_cameras = nullptr;
+#endif
+#ifndef EVENTIDE_HAS_V4L2
+constexpr std::nullptr_t open_v4l2 = nullptr, list_v4l2_cameras = nullptr;
 #endif
 
-[[maybe_unused]] [[noreturn]] void not_built(std::string_view source, const char* option) {
-    throw Error(ErrorKind::usage,
-                "source '" + std::string{source} + "': this eventide was built without " + option);
+constexpr std::array<Kind, 4> kKinds{
+    {{"davis:", "EVENTIDE_USB", open_davis, list_davis_cameras},
+     {"dvxplorer:", "EVENTIDE_USB", open_dvxplorer, list_dvxplorer_cameras},
+     {"dvs128:", "EVENTIDE_USB", open_dvs128, list_dvs128_cameras},
+     {"v4l2:", "EVENTIDE_V4L2", open_v4l2, list_v4l2_cameras}}};
+
+const Kind* kind_of(std::string_view source) {
+    const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) {
+        return source.starts_with(kind.scheme);
+    });
+    return found == kKinds.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
 bool names_camera(std::string_view source) {
-    return source.starts_with(kDavis) || source.starts_with(kV4l2);
+    return kind_of(source) != nullptr;
 }
 
 std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options) {
-    if (source.starts_with(kDavis)) {
-#ifdef EVENTIDE_HAS_USB
-        return open_davis(source.substr(kDavis.size()), options);
-#else
-        not_built(source, "EVENTIDE_USB");
-#endif
-    }
-    if (source.starts_with(kV4l2)) {
-#ifdef EVENTIDE_HAS_V4L2
-        return open_v4l2(source.substr(kV4l2.size()), options);
-#else
-        not_built(source, "EVENTIDE_V4L2");
-#endif
-    }
-    throw Error(ErrorKind::usage,
-                "source '" + std::string{source} + "' names no camera: expected davis: or v4l2:");
+    const Kind* kind = kind_of(source);
+    if (kind == nullptr)
+        throw Error(ErrorKind::usage,
+                    "source '" + std::string{source} +
+                        "' names no camera: expected davis:, dvxplorer:, dvs128: or v4l2:");
+    if (kind->open == nullptr)
+        throw Error(ErrorKind::usage, "source '" + std::string{source} +
+                                          "': this eventide was built without " +
+                                          kind->build_option);
+    return kind->open(source.substr(kind->scheme.size()), options);
 }
 
 std::vector<CameraDescription> list_cameras() {
     std::vector<CameraDescription> all;
-#ifdef EVENTIDE_HAS_USB
-    all = list_davis_cameras();
-#endif
-#ifdef EVENTIDE_HAS_V4L2
-    for (auto& camera : list_v4l2_cameras()) all.push_back(std::move(camera));
-#endif
+    for (const Kind& kind : kKinds)
+        if (kind.list != nullptr)
+            for (auto& camera : kind.list()) all.push_back(std::move(camera));
     return all;
 }
 

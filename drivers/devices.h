@@ -22,6 +22,7 @@ bool names_camera(std::string_view source);
 /// davis:              the first DAVIS found
 /// davis:SERIAL        the one with this serial number
 /// davis:BUS:ADDRESS   the one at this place (lsusb)
+/// dvxplorer:, dvs128: in the same way
 /// v4l2:/dev/videoN    an event sensor with a V4L2 driver
 /// Throws Error: usage for a name that makes no sense or a driver that was not built, device for a
 /// camera that cannot be used.

@@ -3,7 +3,11 @@
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
+#include <string>
+#include <tuple>
 
 namespace eventide {
 namespace {
@@ -74,7 +78,7 @@ void add_chip(Writes& writes, const DavisSettings& settings, const DavisSensor& 
     auto wanted = settings.biases;
     for (const Bias& bias : default_biases(sensor.chip)) {
         const auto own = wanted.extract(bias.name);
-        add(writes, {chip, bias.address}, own.empty() ? bias.value : own.mapped());
+        add(writes, {chip, bias.address}, own.empty() ? bias.value : int(own.mapped()));
     }
     if (!wanted.empty())
         throw Error(ErrorKind::usage,
@@ -96,49 +100,78 @@ void add_chip(Writes& writes, const DavisSettings& settings, const DavisSensor& 
     if (!sensor.is_davis240()) bit(16, 0);
 }
 
+/// Wanted, but this logic says it cannot do it.
+void require(bool can, bool wanted, const char* setting) {
+    if (wanted && !can)
+        throw Error(ErrorKind::usage, std::string{"camera settings: "} + setting +
+                                          ": this camera's logic was built without it");
+}
+
+constexpr int kFilterStepUs = 250;
+constexpr std::size_t kHotPixels = 8;
+
+/// A place outside the sensor means "off".
+void add_hot_pixels(Writes& writes, const DavisSettings& settings, const DavisSensor& sensor) {
+    for (std::size_t i = 0; i < kHotPixels; ++i) {
+        int x = sensor.width(), y = sensor.height();
+        if (i < settings.hot_pixels.size()) {
+            std::tie(x, y) = settings.hot_pixels[i];
+            require_inside({x, y, 1, 1}, "hot_pixels", sensor.width(), sensor.height());
+        }
+        add(writes, {dvs, std::uint16_t(11 + 2 * i)}, y);
+        add(writes, {dvs, std::uint16_t(12 + 2 * i)}, x);
+    }
+}
+
+/// In the picture's axes, also on chips whose axes are swapped.
+void add_region(Writes& writes, const std::optional<SensorRegion>& asked, const char* name,
+                int width, int height, std::array<Register, 4> start_and_end) {
+    const SensorRegion region = asked.value_or(SensorRegion{0, 0, width, height});
+    require_inside(region, name, width, height);
+    const std::array<int, 4> values{region.x, region.y, region.x + region.width - 1,
+                                    region.y + region.height - 1};
+    for (std::size_t i = 0; i < values.size(); ++i) add(writes, start_and_end[i], values[i]);
+}
+
+void add_polarity(Writes& writes, SentPolarity polarity) {
+    const bool one = polarity == SentPolarity::on || polarity == SentPolarity::off;
+    add(writes, kDvsPolarityFlatten, polarity == SentPolarity::flat ? 1 : 0);
+    add(writes, kDvsPolaritySuppress, one ? 1 : 0);
+    add(writes, kDvsPolarityWhich, polarity == SentPolarity::off ? 1 : 0);  // the one left out
+}
+
 void add_dvs(Writes& writes, const DavisSettings& settings, const DavisSensor& sensor,
              const DavisFeatures& features) {
-    constexpr int kFilterStepUs = 250;
+    require(features.pixel_filter, !settings.hot_pixels.empty(), "hot_pixels");
+    require(features.activity_filter, settings.refractory_us > 0, "refractory_us");
+    require(features.roi, settings.roi.has_value(), "roi");
+    require(features.skip, settings.skip_every > 0, "skip_every");
+    require(features.polarity_filter, settings.polarity != SentPolarity::both, "polarity");
     add(writes, kDvsWaitOnStall, 0);
     add(writes, kDvsExternalAer, 0);
-    if (features.pixel_filter)
-        for (std::uint16_t i = 0; i < 8; ++i) {  // a place outside the sensor means "off"
-            add(writes, {dvs, std::uint16_t(11 + 2 * i)}, sensor.height());
-            add(writes, {dvs, std::uint16_t(12 + 2 * i)}, sensor.width());
-        }
+    if (features.pixel_filter) add_hot_pixels(writes, settings, sensor);
     if (features.activity_filter) {
         add(writes, kDvsActivityFilter, settings.activity_filter ? 1 : 0);
         add(writes, kDvsActivityTime, settings.activity_time_us / kFilterStepUs);
-        add(writes, kDvsRefractory, 0);
-        add(writes, kDvsRefractoryTime, 1);
+        add(writes, kDvsRefractory, settings.refractory_us > 0 ? 1 : 0);
+        add(writes, kDvsRefractoryTime, std::max(1, settings.refractory_us / kFilterStepUs));
     }
-    if (features.roi) {  // in the picture's axes, also on chips whose axes are swapped
-        const auto roi =
-            settings.roi.value_or(DavisSettings::Roi{0, 0, sensor.width(), sensor.height()});
-        add(writes, kDvsRoiStartColumn, roi.x);
-        add(writes, kDvsRoiStartRow, roi.y);
-        add(writes, kDvsRoiEndColumn, roi.x + roi.width - 1);
-        add(writes, kDvsRoiEndRow, roi.y + roi.height - 1);
-    }
+    if (features.roi)
+        add_region(writes, settings.roi, "roi", sensor.width(), sensor.height(),
+                   {kDvsRoiStartColumn, kDvsRoiStartRow, kDvsRoiEndColumn, kDvsRoiEndRow});
     if (features.skip) {
         add(writes, kDvsSkip, settings.skip_every > 0 ? 1 : 0);
         add(writes, kDvsSkipEvery, settings.skip_every > 0 ? settings.skip_every : 5);
     }
-    if (features.polarity_filter) {
-        add(writes, kDvsPolarityFlatten, 0);
-        add(writes, kDvsPolaritySuppress, 0);
-        add(writes, kDvsPolarityWhich, 0);
-    }
+    if (features.polarity_filter) add_polarity(writes, settings.polarity);
 }
 
 void add_aps(Writes& writes, const DavisSettings& settings, const DavisSensor& sensor,
              const DavisFeatures& features) {
     add(writes, kApsWaitOnStall, 1);
     add(writes, kApsGlobalShutter, features.global_shutter && settings.global_shutter ? 1 : 0);
-    add(writes, kApsStartColumn, 0);
-    add(writes, kApsStartRow, 0);
-    add(writes, kApsEndColumn, sensor.aps_width() - 1);
-    add(writes, kApsEndRow, sensor.aps_height() - 1);
+    add_region(writes, settings.frame_roi, "frame_roi", sensor.aps_width(), sensor.aps_height(),
+               {kApsStartColumn, kApsStartRow, kApsEndColumn, kApsEndRow});
     writes.push_back({kApsExposure, adc_cycles(settings.exposure_us, features)});
     writes.push_back({kApsInterval, adc_cycles(settings.frame_interval_us, features)});
 }
@@ -158,7 +191,9 @@ void add_extinput(Writes& writes, const DavisSettings& settings, const DavisFeat
     add(writes, kExtFalling, settings.detect_edges ? 1 : 0);
     add(writes, kExtPulses, settings.detect_pulses ? 1 : 0);
     add(writes, kExtPulsePolarity, 1);
-    add(writes, kExtPulseLength, 10);
+    constexpr double kPulseUs = 10;
+    add(writes, kExtPulseLength,
+        int(std::lround(kPulseUs * features.logic_mhz * features.deviation / 1000)));
     if (features.generator) add(writes, kExtGeneratorRun, 0);
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/usb/davis_registers.h"
-#include "drivers/usb/usb_stream.h"
+#include "drivers/usb/usb_settings.h"
 #include "src/codec/davis_sensor.h"
 
 #include <cstdint>
@@ -10,16 +10,14 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace eventide {
 
 struct DavisSettings {
-    struct Roi {
-        int x = 0, y = 0, width = 0, height = 0;  ///< px, as a person sees the picture
-    };
-
-    bool frames = true;             ///< read APS frames
+    bool frames = true;  ///< read APS frames
+    std::optional<SensorRegion> frame_roi;
     bool global_shutter = true;     ///< where the chip has one
     int exposure_us = 4000;         ///< 0 to 4194303
     int frame_interval_us = 40000;  ///< 0 to 8388607
@@ -29,17 +27,23 @@ struct DavisSettings {
     int accel_range_g = 4;     ///< 2, 4, 8, 16
     int gyro_range_dps = 500;  ///< 250, 500, 1000, 2000
 
-    bool activity_filter = true;  ///< on the camera: drops events without a neighbour
+    // What limits the event rate, on the camera.
+    bool activity_filter = true;  ///< drops events without a neighbour
     int activity_time_us = 2000;  ///< in steps of 250
-    std::optional<Roi> roi;       ///< of events
-    int skip_every = 0;           ///< on the camera: leaves out one event in so many; 0 none
-    bool detect_pulses = true;    ///< on the external input
+    int refractory_us = 0;        ///< of each pixel, in steps of 250; 0 none
+    std::optional<SensorRegion> roi;
+    SentPolarity polarity = SentPolarity::both;
+    std::vector<std::pair<int, int>> hot_pixels;  ///< x, y of up to eight that are never sent
+    int skip_every = 0;                           ///< leaves out one event in so many; 0 none
+
+    bool detect_pulses = true;  ///< on the external input
     bool detect_edges = false;
 
-    std::map<std::string, std::uint16_t> biases;  ///< by name, instead of the defaults
+    std::map<std::string, std::uint32_t> biases;  ///< 16 bits, by name, instead of the defaults
     UsbStreamSettings transfers;
     int early_packet_delay_us =
-        1000;  ///< a partly filled packet is sent after this: bounds the latency
+        1000;            ///< a partly filled packet is sent after this: bounds the latency
+    bool verify = true;  ///< read back what was written
 };
 
 /// config/cameras/*.toml. Unknown keys and values out of range are refused with file and line
@@ -58,11 +62,12 @@ const std::vector<Bias>& default_biases(DavisChip chip);
 struct DavisFeatures {
     bool global_shutter = true, pixel_filter = true, activity_filter = true, roi = true,
          skip = true, polarity_filter = true, statistics = true, generator = true;
-    int adc_mhz = 30, usb_mhz = 30, deviation = 1000;  ///< MHz; per mille
+    int logic_mhz = 90, adc_mhz = 30, usb_mhz = 30, deviation = 1000;  ///< MHz; per mille
 };
 
 /// All writes that configure an idle camera, in order: chip and biases, multiplexer, DVS, APS, IMU,
-/// external input, USB. Throws Error (usage) for a bias the chip does not have.
+/// external input, USB. Throws Error (usage) for a bias the chip does not have, a region or pixel
+/// outside the sensor, or what this logic cannot do.
 std::vector<davis::Write> configuration(const DavisSettings& settings, const DavisSensor& sensor,
                                         const DavisFeatures& features);
 

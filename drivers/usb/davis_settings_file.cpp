@@ -2,15 +2,34 @@
 #include "drivers/settings_file.h"
 #include "drivers/usb/davis_settings.h"
 
-#include <array>
-#include <string>
-
 namespace eventide {
+namespace {
+
+void add_hot_pixels(SettingsFile& file, std::vector<std::pair<int, int>>& into) {
+    constexpr std::size_t kMostPixels = 8;
+    constexpr int kMost = 1023;
+    file.custom("hot_pixels", [&file, &into](const toml::node& node) {
+        const toml::array* pixels = node.as_array();
+        if (pixels == nullptr || pixels->size() > kMostPixels)
+            file.refuse(node, "hot_pixels: expected a list of up to eight [x, y]");
+        for (const toml::node& pixel : *pixels) {
+            const toml::array* place = pixel.as_array();
+            if (place == nullptr || place->size() != 2)
+                file.refuse(pixel, "hot_pixels: expected [x, y]");
+            into.emplace_back(int(file.checked(*place->get(0), "hot_pixels", 0, kMost)),
+                              int(file.checked(*place->get(1), "hot_pixels", 0, kMost)));
+        }
+    });
+}
+
+}  // namespace
 
 DavisSettings load_davis_settings(const std::filesystem::path& file) {
+    constexpr std::uint32_t kMost16Bits = 0xFFFF;
     DavisSettings settings;
     SettingsFile reader{file};
     reader.flag("frames", settings.frames);
+    add_region(reader, "frame_roi", settings.frame_roi);
     reader.flag("global_shutter", settings.global_shutter);
     reader.number("exposure_us", settings.exposure_us, 0, 4194303);
     reader.number("frame_interval_us", settings.frame_interval_us, 0, 8388607);
@@ -20,32 +39,18 @@ DavisSettings load_davis_settings(const std::filesystem::path& file) {
     reader.choice("gyro_range_dps", settings.gyro_range_dps, {250, 500, 1000, 2000});
     reader.flag("activity_filter", settings.activity_filter);
     reader.number("activity_time_us", settings.activity_time_us, 250, 1000000);
+    reader.number("refractory_us", settings.refractory_us, 0, 1000000);
+    add_region(reader, "roi", settings.roi);
+    add_polarity(reader, "polarity", settings.polarity);
+    add_hot_pixels(reader, settings.hot_pixels);
     reader.number("skip_every", settings.skip_every, 0, 255);
     reader.flag("detect_pulses", settings.detect_pulses);
     reader.flag("detect_edges", settings.detect_edges);
-    reader.number("transfers", settings.transfers.transfers, 2, 256);
+    add_transfers(reader, settings.transfers);
     reader.number("early_packet_delay_us", settings.early_packet_delay_us, 125, 100000);
-    int transfer_kib = int(settings.transfers.bytes / 1024);
-    reader.number("transfer_kib", transfer_kib, 1, 4096);
-    reader.custom("roi", [&](const toml::node& node) {
-        const toml::array* numbers = node.as_array();
-        if (numbers == nullptr || numbers->size() != 4)
-            reader.refuse(node, "roi: expected [x, y, width, height]");
-        std::array<int, 4> roi{};
-        for (std::size_t i = 0; i < 4; ++i)
-            roi[i] = int(reader.checked(*numbers->get(i), "roi", i < 2 ? 0 : 1, 1023));
-        settings.roi = {roi[0], roi[1], roi[2], roi[3]};
-    });
-    reader.custom("biases", [&](const toml::node& node) {
-        const toml::table* biases = node.as_table();
-        if (biases == nullptr)
-            reader.refuse(node, "biases: expected a table of names and 16-bit words");
-        for (const auto& [name, value] : *biases)
-            settings.biases[std::string{name.str()}] = std::uint16_t(
-                reader.checked(value, "biases." + std::string{name.str()}, 0, 0xFFFF));
-    });
+    reader.flag("verify", settings.verify);
+    add_biases(reader, settings.biases, kMost16Bits);
     reader.read();
-    settings.transfers.bytes = std::size_t(transfer_kib) * 1024;
     return settings;
 }
 

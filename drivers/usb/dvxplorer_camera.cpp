@@ -1,0 +1,148 @@
+#include "drivers/usb/dvxplorer_camera.h"
+
+#include "drivers/usb/verified_writes.h"
+#include "src/codec/byte_order.h"
+#include "src/core/error.h"
+
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace eventide {
+namespace {
+
+using namespace davis;
+
+constexpr int kFirmware = 8;
+constexpr std::uint32_t kPatch = 2;
+constexpr std::uint8_t kCx3Board = 4;
+constexpr std::uint32_t kLiteChip = 19;
+
+UsbKind kind() {
+    return {"DVXplorer", "dvxplorer:", {0x8419}};
+}
+
+}  // namespace
+
+DvxplorerCamera::DvxplorerCamera(DvxplorerOptions options)
+    : UsbCamera(kind(), options, options.settings.transfers), settings_(options.settings) {
+    open();
+}
+
+DvxplorerCamera::~DvxplorerCamera() {
+    stop_device();
+}
+
+SensorInfo DvxplorerCamera::set_up(UsbDevice& device) {
+    require_firmware(device.identity(), kFirmware);
+    require_logic(device, kPatch);
+    features_.mini = device.identity().board_type == kCx3Board;
+    if (!features_.mini) {  // a Mini does this itself
+        device.write_register({kRunChip, 1});
+        std::this_thread::sleep_for(waits().idle);
+        device.write_registers(chip_writes());
+    }
+    read_sensor(device);
+    const auto writes = configuration(settings_, sensor_, features_);
+    if (settings_.verify)
+        write_and_verify(device, writes);
+    else
+        device.write_registers(writes);
+
+    SensorInfo info;
+    const bool lite = device.read_register(kChipId) == kLiteChip;
+    info.name = features_.mini ? "DVXplorer Mini" : lite ? "DVXplorer Lite" : "DVXplorer";
+    info.format = features_.mini ? "dvxplorer-mini" : "dvxplorer";
+    info.width = sensor_.width;
+    info.height = sensor_.height;
+    return info;
+}
+
+void DvxplorerCamera::read_sensor(UsbDevice& device) {
+    const auto number = [&](Register at) { return int(device.read_register(at)); };
+    const int columns = number(kDvsColumns), rows = number(kDvsRows);
+    const int axes = number(kDvsOrientation), imu = number(kImuOrientation);
+    constexpr int kLargest = 1024;
+    for (const int size : {columns, rows})
+        if (size < 1 || size > kLargest)
+            refuse("says its sensor has a side of " + std::to_string(size) +
+                   " px, expected 1 to 1024");
+    sensor_.swapped = (axes & 4) != 0;
+    sensor_.width = sensor_.swapped ? rows : columns;
+    sensor_.height = sensor_.swapped ? columns : rows;
+    sensor_.imu_flip_x = (imu & 4) != 0;
+    sensor_.imu_flip_y = (imu & 2) != 0;
+    sensor_.imu_flip_z = (imu & 1) != 0;
+    features_.flip_x = (axes & 2) != 0;
+    features_.flip_y = (axes & 1) != 0;
+    features_.packet_format = device.read_register(dvxplorer::kPacketFormat);
+    features_.mode_control = device.read_register(dvxplorer::kModeControl);
+    features_.digital_enable = device.read_register(dvxplorer::kDigitalEnable);
+    features_.statistics = false;
+    if (features_.mini) return;
+    features_.statistics = number(kMuxHasStatistics) != 0;
+    features_.generator = number(kExtHasGenerator) != 0;
+    features_.logic_mhz = number(kLogicMhz);
+    features_.usb_mhz = number(kUsbMhz);
+    features_.deviation = number(kClockDeviation);
+}
+
+void DvxplorerCamera::make_idle(UsbDevice& device) {
+    device.write_registers(dvxplorer_idle_writes(features_.mini));
+}
+
+void DvxplorerCamera::start_data(UsbDevice& device) {
+    if (!features_.mini) {
+        device.write_registers(dvxplorer_flow_writes(false));
+        std::this_thread::sleep_for(waits().flow_settles);
+    }
+    device.write_registers(dvxplorer_run_writes(settings_, features_.mini));
+}
+
+/// The chip's clock stamps the words of a Mini, the multiplexer's those of the FX3 board, whose
+/// stream also says where that happened.
+void DvxplorerCamera::reset_time(UsbDevice& device) {
+    device.write_register({dvxplorer::kTimestampReset, 1});
+    device.write_register({dvxplorer::kTimestampReset, 0});
+    device.write_register({dvxplorer::kMode, dvxplorer::kModeStream});
+    const Write reset[] = {{kTimestampReset, 1}, {kTimestampReset, 0}};
+    if (!features_.mini) device.write_together(reset);
+}
+
+/// FX3: the reset marker. Mini: the first reference time, which comes every millisecond.
+std::optional<std::size_t> DvxplorerCamera::find_begin(std::span<const std::byte> bytes) const {
+    constexpr std::uint16_t kResetMarker = 1;
+    constexpr std::uint32_t kGroupBit = 1U << 31, kReferenceBit = 0x08000000,
+                            kColumnBit = 0x04000000;
+    const auto begins = [&](std::size_t at) {
+        if (!features_.mini) return load_little<std::uint16_t>(&bytes[at]) == kResetMarker;
+        const auto w = load_little<std::uint32_t>(&bytes[at]);
+        return (w & (kGroupBit | kColumnBit | kReferenceBit)) == kReferenceBit;
+    };
+    for (std::size_t at = 0; at + word_bytes() <= bytes.size(); at += word_bytes())
+        if (begins(at)) return at;
+    return std::nullopt;
+}
+
+void DvxplorerCamera::power_down(UsbDevice& device) {
+    if (!features_.mini) device.write_register({kRunChip, 0});
+}
+
+std::uint64_t DvxplorerCamera::dropped(UsbDevice& device) {
+    return features_.statistics ? device.read_counter(kMuxDroppedDvs) : 0;
+}
+
+std::unique_ptr<Parser> DvxplorerCamera::make_parser() const {
+    if (features_.mini) return std::make_unique<DvxplorerMiniParser>(sensor_);
+    return std::make_unique<DvxplorerParser>(sensor_);
+}
+
+std::vector<CameraDescription> list_dvxplorer_cameras() {
+    return list_usb_cameras(kind(), [](const UsbCameraOptions& which) {
+        DvxplorerOptions options;
+        static_cast<UsbCameraOptions&>(options) = which;
+        return std::make_unique<DvxplorerCamera>(std::move(options));
+    });
+}
+
+}  // namespace eventide

@@ -1,0 +1,239 @@
+#include "drivers/usb/usb_camera.h"
+
+#include "src/core/error.h"
+
+#include <thread>
+#include <utility>
+
+namespace eventide {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kLogicWanted = 18;
+constexpr std::uint8_t kSecondGenerationBoard = 5;
+constexpr auto kReadPatience = 20ms;
+constexpr auto kBeginPatience = 1000ms;
+
+}  // namespace
+
+UsbCamera::UsbCamera(UsbKind kind, UsbCameraOptions options, UsbStreamSettings transfers)
+    : kind_(std::move(kind)), options_(std::move(options)), transfers_(transfers) {}
+
+void UsbCamera::refuse(const std::string& why) const {
+    throw Error(ErrorKind::device,
+                std::string{"the "} + kind_.name + " '" + info_.serial + "' " + why);
+}
+
+void UsbCamera::require_firmware(const UsbIdentity& identity, int oldest) const {
+    if (identity.board_type == kSecondGenerationBoard)
+        refuse("is a second-generation board (type 5): its protocol is not supported");
+    if (identity.firmware < oldest)
+        refuse("has firmware " + std::to_string(identity.firmware) + ", at least " +
+               std::to_string(oldest) + " is needed: update it with iniVation's DV or Flashy");
+}
+
+void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
+    const std::uint32_t logic = device.read_register(davis::kLogicVersion),
+                        patch = device.read_register(davis::kLogicPatch);
+    logic_ = std::to_string(logic) + " patch " + std::to_string(patch);
+    if (logic == kLogicWanted && patch >= oldest_patch) return;
+    refuse("has logic " + logic_ + ", expected 18 patch " + std::to_string(oldest_patch) +
+           " or later: " +
+           (logic > kLogicWanted
+                ? "newer generations speak another protocol, which is not supported"
+                : "update it with iniVation's DV or Flashy"));
+}
+
+void UsbCamera::open() {
+    UsbSelector selector;
+    selector.products = kind_.products;
+    selector.serial = options_.serial;
+    selector.bus = options_.bus;
+    selector.address = options_.address;
+    device_ = std::make_unique<UsbDevice>(selector);
+    const std::string serial = device_->identity().serial;
+    info_.serial = serial;
+    info_ = set_up(*device_);
+    info_.serial = serial;
+    options_.serial = serial;  // the same camera must come back, not another
+    options_.bus = options_.address = -1;
+}
+
+void UsbCamera::start() {
+    dropped_before_ = dropped(*device_);
+    make_idle(*device_);
+    std::this_thread::sleep_for(options_.waits.idle);
+    device_->clear_halt(kind_.data_endpoint);
+    stream_ = std::make_unique<UsbStream>(device_->context(), device_->handle(),
+                                          kind_.data_endpoint, transfers_);
+    start_data(*device_);
+    reset_time(*device_);
+    if (!wait_for_begin() && !stopped_)
+        refuse(
+            "was started but no data came within a second: plug it in again, and if it is behind "
+            "a hub, try a port of the computer");
+}
+
+/// Words from after the reset prove that data really flow; what came before is from another time
+/// and is left out.
+bool UsbCamera::wait_for_begin() {
+    const auto deadline = std::chrono::steady_clock::now() + kBeginPatience;
+    std::vector<std::byte> bytes;
+    while (!stopped_ && std::chrono::steady_clock::now() < deadline) {
+        const UsbStream::Status status = stream_->read(bytes, kReadPatience);
+        if (status == UsbStream::Status::lost) throw UsbGone("USB: the camera was unplugged");
+        if (const auto halts = stream_->take_halts(); halts > 0) {
+            counters_.halts += halts;
+            reset_time(*device_);  // the begin may be lost with them
+        }
+        if (status != UsbStream::Status::data) continue;
+        if (const auto begin = find_begin(bytes)) {
+            first_.emplace(bytes.begin() + std::ptrdiff_t(*begin), bytes.end());
+            return true;
+        }
+    }
+    return false;
+}
+
+ReadStatus UsbCamera::read(RawPacket& into) {
+    into.bytes.clear();
+    if (!stopped_ && !device_) return wait_for_return();
+    try {
+        if (!stopped_ && !stream_) start();
+        if (stopped_) {
+            stop_device();
+            return ReadStatus::end;
+        }
+        between_transfers(*device_);
+        return read_stream(into);
+    } catch (const UsbGone&) {
+        into.bytes.clear();
+        return lost();
+    }
+}
+
+ReadStatus UsbCamera::read_stream(RawPacket& into) {
+    if (first_) {
+        into.bytes.swap(*first_);
+        first_.reset();
+    } else {
+        switch (stream_->read(into.bytes, kReadPatience)) {
+            case UsbStream::Status::lost:
+                throw UsbGone("USB: the camera was unplugged");
+            case UsbStream::Status::timeout:
+                into.bytes.clear();
+                return ReadStatus::timeout;
+            case UsbStream::Status::data:
+                gap_ = gap_ || stream_->gap_before();
+                counters_.halts += stream_->take_halts();
+        }
+    }
+    into.arrived = std::chrono::steady_clock::now();
+    into.gap_before = std::exchange(gap_, false);
+    ++counters_.transfers;
+    counters_.bytes += into.bytes.size();
+    leave_out_half_word(into.bytes);
+    return ReadStatus::data;
+}
+
+/// Transfers hold whole packets and packets whole words: where half a word ends one, the rest of it
+/// is lost, and the next begins with a whole word (as libcaer sees it, too).
+void UsbCamera::leave_out_half_word(std::vector<std::byte>& bytes) {
+    const std::size_t half = bytes.size() % word_bytes();
+    if (half == 0) return;
+    bytes.resize(bytes.size() - half);
+    ++counters_.odd_transfers;
+    gap_ = true;
+}
+
+/// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.
+ReadStatus UsbCamera::lost() {
+    close();
+    if (!options_.reconnect) refuse("was unplugged (use --reconnect to wait for it to come back)");
+    return ReadStatus::timeout;
+}
+
+ReadStatus UsbCamera::wait_for_return() {
+    if (!options_.reconnect) return lost();
+    try {
+        open();
+        start();
+        ++counters_.reconnects;
+        gap_ = true;
+    } catch (const Error&) {  // not there yet, or not yet ready: the next look will tell
+        close();
+        std::this_thread::sleep_for(kReadPatience);
+    }
+    return ReadStatus::timeout;
+}
+
+void UsbCamera::close() {
+    first_.reset();
+    stream_.reset();
+    device_.reset();
+}
+
+/// A waiting read() looks at this within kReadPatience.
+void UsbCamera::stop() noexcept {
+    stopped_ = true;
+}
+
+void UsbCamera::stop_device() noexcept {
+    if (!device_) return;
+    try {
+        if (stream_) {
+            counters_.device_dropped += dropped(*device_) - dropped_before_;
+            make_idle(*device_);
+        }
+        power_down(*device_);
+    } catch (const Error&) {
+        // Unplugged meanwhile: there is nothing left to stop.
+    }
+    close();
+}
+
+namespace {
+
+CameraDescription describe(const UsbKind& kind, const UsbIdentity& identity) {
+    CameraDescription camera;
+    camera.name = kind.name;
+    camera.serial = identity.serial;
+    camera.bus = identity.bus;
+    camera.address = identity.address;
+    camera.source = kind.scheme + (identity.serial.empty() ? std::to_string(identity.bus) + ":" +
+                                                                 std::to_string(identity.address)
+                                                           : identity.serial);
+    camera.firmware = std::to_string(identity.firmware);
+    camera.problem = identity.problem;
+    return camera;
+}
+
+}  // namespace
+
+std::vector<CameraDescription> list_usb_cameras(
+    const UsbKind& kind,
+    const std::function<std::unique_ptr<UsbCamera>(const UsbCameraOptions&)>& open) {
+    UsbSelector selector;
+    selector.products = kind.products;
+    std::vector<CameraDescription> cameras;
+    for (const UsbIdentity& identity : list_usb_devices(selector)) {
+        CameraDescription camera = describe(kind, identity);
+        if (camera.problem.empty()) {
+            UsbCameraOptions options;
+            options.bus = identity.bus;
+            options.address = identity.address;
+            try {
+                const auto opened = open(options);
+                camera.name = opened->info().name;
+                camera.logic = opened->logic();
+            } catch (const Error& error) {
+                camera.problem = error.what();
+            }
+        }
+        cameras.push_back(std::move(camera));
+    }
+    return cameras;
+}
+
+}  // namespace eventide

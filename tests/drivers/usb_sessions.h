@@ -1,0 +1,62 @@
+// What tests of USB cameras in software do alike.
+#pragma once
+
+#include "drivers/camera.h"
+#include "drivers/usb/usb_camera.h"
+#include "src/codec/parser.h"
+#include "src/core/error.h"
+#include "src/core/event.h"
+#include "tests/support/usb_testbed.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+
+namespace eventide::test {
+
+/// A camera in software needs no time to settle.
+inline constexpr UsbWaits kNoWaits{std::chrono::milliseconds{0}, std::chrono::milliseconds{0},
+                                   std::chrono::milliseconds{0}};
+
+/// The words of an Error of this kind; "nothing was thrown" where there was none.
+inline std::string words_of(ErrorKind kind, const std::function<void()>& what) {
+    try {
+        what();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind);
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+/// Reads until the model's scene is over and nothing more comes; no byte of it is damaged.
+template <typename Model>
+Batch stream_scene(Camera& camera, testing_support::UsbTestbed& bed, const Model& model) {
+    const auto parser = camera.make_parser();
+    Batch data;
+    RawPacket packet;
+    for (bool over = false; !over;) {
+        const ReadStatus status = camera.read(packet);
+        if (status == ReadStatus::data) parser->parse(packet.bytes, data);
+        if (status == ReadStatus::timeout) bed.look([&] { over = model.is_scene_over(); });
+    }
+    parser->finish(data);
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        EXPECT_EQ(parser->damaged()[DamageReason(i)], 0U) << name_of(DamageReason(i));
+    return data;
+}
+
+inline std::filesystem::path written(const std::string& toml) {
+    const auto file = std::filesystem::path{testing::TempDir()} / "usb_camera.toml";
+    std::ofstream{file} << toml;
+    return file;
+}
+
+inline std::filesystem::path shipped(const char* name) {
+    return std::filesystem::path{EVENTIDE_SOURCE_DIR} / "config/cameras" / name;
+}
+
+}  // namespace eventide::test

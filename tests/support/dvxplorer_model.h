@@ -1,0 +1,69 @@
+// A DVXplorer in software, register by register, with either of its boards.
+#pragma once
+
+#include "drivers/usb/davis_registers.h"
+#include "src/codec/dvxplorer.h"
+#include "src/core/event.h"
+#include "tests/support/usb_model.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace eventide::testing_support {
+
+struct DvxplorerModelSettings {
+    DvxplorerSensor sensor;
+    bool flip_x = false, flip_y = false;  ///< orientation bits 1, 0
+    bool mini = false;                    ///< a CX3 board
+    std::string serial = "DVX00001";
+    std::uint8_t firmware = 8, board_type = 3;  ///< a Mini has type 4
+    std::uint32_t logic = 18, patch = 2, chip = 20;
+    std::optional<davis::Register> deaf;  ///< does not take what is written to it
+};
+
+/// Registers, and the stream they let flow. The FX3 board sends words while MUX run, timestamp run
+/// and USB run are 1; events with DVS run, chip run and the chip's stream mode, from inside its
+/// cropper and of the polarity asked for; IMU samples with the accelerometer on, in its range;
+/// edges with the detector on. The CX3 board has only the chip and DVS run. A timestamp reset drops
+/// what was queued, and the scene begins; without one there is nothing.
+///
+/// Within one time the scene's events have to be in the order of the readout: by device column.
+class DvxplorerModel final : public UsbModel {
+public:
+    explicit DvxplorerModel(DvxplorerModelSettings settings);
+
+    void show(Batch scene) { scene_ = std::move(scene); }
+    std::uint32_t read(davis::Register at) const;
+    void write(davis::Write write);
+    const std::vector<davis::Write>& writes() const { return writes_; }  ///< all, in order
+    bool is_scene_over() const { return begun_ && sent_ == words_.size(); }
+
+    UsbModelIdentity identity() const override;
+    int control(const UsbSetup& setup, std::span<std::uint8_t> data) override;
+    std::size_t send(std::span<std::byte> out) override;
+    void clear_endpoint() override;
+
+private:
+    bool is_streaming() const;
+    bool is_set(davis::Register at) const { return read(at) == 1; }
+    int two_bytes(davis::Register at) const;
+    bool sees(const Event& event) const;
+    std::vector<Event> seen_events() const;
+    void begin_scene();
+
+    DvxplorerModelSettings settings_;
+    std::map<davis::Register, std::uint32_t> registers_;
+    std::vector<davis::Write> writes_;
+    Batch scene_;
+    bool time_runs_ = false;  ///< it was reset; before, nothing is sent
+    bool begun_ = false;      ///< the scene, since the reset
+    std::vector<std::byte> words_;
+    std::size_t sent_ = 0;  ///< of words_
+};
+
+}  // namespace eventide::testing_support
