@@ -6,9 +6,7 @@
 #include <linux/v4l2-subdev.h>
 #include <linux/videodev2.h>
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -22,32 +20,7 @@ bool is_multi_planar(std::uint32_t type) {
     return type == V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE;
 }
 
-const char* advice(int error) {
-    switch (error) {
-        case EACCES:
-            return " (no permission: join the group 'video')";
-        case EBUSY:
-            return " (in use by another program)";
-        case ENOENT:
-        case ENODEV:
-            return " (is the driver loaded and the sensor connected?)";
-        default:
-            return "";
-    }
-}
-
 }  // namespace
-
-FileDescriptor::~FileDescriptor() {
-    if (fd_ >= 0) ::close(fd_);
-}
-
-int v4l2_ioctl(int fd, unsigned long request, void* argument) {
-    int result = 0;
-    do result = ::ioctl(fd, request, argument);
-    while (result < 0 && errno == EINTR);
-    return result < 0 ? errno : 0;
-}
 
 std::string fourcc_text(std::uint32_t fourcc) {
     std::string text;
@@ -76,8 +49,10 @@ V4l2Device::~V4l2Device() {
 }
 
 void V4l2Device::fail(const std::string& what, int error) const {
-    throw Error(ErrorKind::device, "the camera " + node_.string() + " " + what + ": " +
-                                       std::strerror(error) + advice(error));
+    throw Error(ErrorKind::device,
+                "the camera " + node_.string() + " " + what + ": " +
+                    explain_v4l2_error(error, "is the driver loaded and the sensor connected?",
+                                       "in use by another program"));
 }
 
 void V4l2Device::query() {
@@ -85,10 +60,7 @@ void V4l2Device::query() {
     if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_QUERYCAP, &capability); error != 0)
         fail("is not a V4L2 device", error);
     card_ = reinterpret_cast<const char*>(capability.card);
-    // device_caps is about this node, capabilities about the whole device.
-    const std::uint32_t caps = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0
-                                   ? capability.device_caps
-                                   : capability.capabilities;
+    const std::uint32_t caps = capabilities_of(capability);
     if ((caps & V4L2_CAP_VIDEO_CAPTURE) != 0)
         type_ = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     else if ((caps & V4L2_CAP_VIDEO_CAPTURE_MPLANE) != 0)

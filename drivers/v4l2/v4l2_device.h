@@ -2,6 +2,8 @@
 // drivers-and-formats.md part C.
 #pragma once
 
+#include "pipeline/video_node.h"
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -14,25 +16,6 @@
 #include <vector>
 
 namespace eventide {
-
-/// A file descriptor that closes itself.
-class FileDescriptor {
-public:
-    explicit FileDescriptor(int fd = -1) : fd_(fd) {}
-    FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-    FileDescriptor& operator=(FileDescriptor&& other) noexcept {
-        std::swap(fd_, other.fd_);
-        return *this;
-    }
-    ~FileDescriptor();
-    int get() const { return fd_; }
-
-private:
-    int fd_;
-};
-
-/// ioctl() that goes on after a signal. Returns 0 or errno.
-int v4l2_ioctl(int fd, unsigned long request, void* argument);
 
 class V4l2Device {
 public:

@@ -4,13 +4,11 @@
 
 #include <fcntl.h>
 #include <linux/videodev2.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <string>
 
 namespace eventide {
@@ -34,26 +32,6 @@ const Packing& packing_of(V4l2PixelFormat format) {
                          [&](const Packing& p) { return p.format == format; });
 }
 
-int request(int file, unsigned long what, void* argument) {
-    int result = 0;
-    do result = ::ioctl(file, what, argument);
-    while (result < 0 && errno == EINTR);
-    return result < 0 ? errno : 0;
-}
-
-const char* advice(int error) {
-    switch (error) {
-        case ENOENT:
-            return " (load it with: modprobe v4l2loopback)";
-        case EACCES:
-            return " (no permission: join the group 'video')";
-        case EBUSY:
-            return " (another program writes to it)";
-        default:
-            return "";
-    }
-}
-
 }  // namespace
 
 V4l2OutputSink::V4l2OutputSink(V4l2OutputSettings settings) : settings_(std::move(settings)) {
@@ -62,25 +40,20 @@ V4l2OutputSink::V4l2OutputSink(V4l2OutputSettings settings) : settings_(std::mov
         throw Error(ErrorKind::usage, "v4l2:" + settings_.node.string() +
                                           " shows sigma as none or side, not as " +
                                           std::string{name_of(how)});
-    file_ = ::open(settings_.node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    if (file_ < 0) fail("cannot be opened", errno);
+    file_ = FileDescriptor{::open(settings_.node.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC)};
+    if (file_.get() < 0) fail("cannot be opened", errno);
     v4l2_capability capability{};
-    if (const int error = request(file_, VIDIOC_QUERYCAP, &capability); error != 0)
+    if (const int error = v4l2_ioctl(file_.get(), VIDIOC_QUERYCAP, &capability); error != 0)
         fail("is no video device", error);
-    const std::uint32_t caps = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0
-                                   ? capability.device_caps
-                                   : capability.capabilities;
-    if ((caps & V4L2_CAP_VIDEO_OUTPUT) == 0)
+    if ((capabilities_of(capability) & V4L2_CAP_VIDEO_OUTPUT) == 0)
         fail("takes no video (a camera, or a loopback in use by another writer)", EINVAL);
 }
 
-V4l2OutputSink::~V4l2OutputSink() {
-    if (file_ >= 0) ::close(file_);
-}
-
 void V4l2OutputSink::fail(const char* what, int error) const {
-    throw Error(ErrorKind::device, "v4l2:" + settings_.node.string() + " " + what + ": " +
-                                       std::strerror(error) + advice(error));
+    throw Error(ErrorKind::device,
+                "v4l2:" + settings_.node.string() + " " + what + ": " +
+                    explain_v4l2_error(error, "load it with: modprobe v4l2loopback",
+                                       "another program writes to it"));
 }
 
 bool V4l2OutputSink::try_format(V4l2PixelFormat format, int width, int height) {
@@ -100,7 +73,7 @@ bool V4l2OutputSink::try_format(V4l2PixelFormat format, int width, int height) {
     wanted.fmt.pix.field = V4L2_FIELD_NONE;
     wanted.fmt.pix.sizeimage = std::uint32_t(bytes);
     wanted.fmt.pix.colorspace = V4L2_COLORSPACE_SRGB;
-    if (const int error = request(file_, VIDIOC_S_FMT, &wanted); error != 0) {
+    if (const int error = v4l2_ioctl(file_.get(), VIDIOC_S_FMT, &wanted); error != 0) {
         if (error == EBUSY) fail("is held at another size or format by a reader or writer", error);
         return false;
     }
@@ -149,7 +122,7 @@ void V4l2OutputSink::write(const Frame& frame) {
                                            std::to_string(picture_.rows) + " does not fit");
     pack(picture_);
     ssize_t written = 0;
-    do written = ::write(file_, bytes_.data(), bytes_.size());
+    do written = ::write(file_.get(), bytes_.data(), bytes_.size());
     while (written < 0 && errno == EINTR);
     if (written < 0 && errno == EAGAIN)
         ++skipped_;

@@ -3,6 +3,7 @@
 
 #include "pipeline/sink.h"
 #include "pipeline/sinks/picture.h"
+#include "pipeline/video_node.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -35,9 +36,6 @@ public:
     /// Throws Error: usage for an uncertainty it cannot show, device for a node that is missing, no
     /// output device, or in use.
     explicit V4l2OutputSink(V4l2OutputSettings settings);
-    ~V4l2OutputSink() override;
-    V4l2OutputSink(const V4l2OutputSink&) = delete;
-    V4l2OutputSink& operator=(const V4l2OutputSink&) = delete;
 
     /// Throws Error (device) when the device takes none of the formats or goes away, (failed) when
     /// the frames' size changes.
@@ -52,7 +50,7 @@ private:
     [[noreturn]] void fail(const char* what, int error) const;
 
     V4l2OutputSettings settings_;
-    int file_ = -1;
+    FileDescriptor file_;
     int width_ = 0, height_ = 0;  // 0 until the first frame
     V4l2PixelFormat format_ = V4l2PixelFormat::grey;
     cv::Mat picture_;

@@ -24,6 +24,8 @@ using testing_support::V4l2NodeSettings;
 using testing_support::V4l2Testbed;
 
 constexpr std::uint32_t kEvt2 = v4l2_fourcc('P', 'S', 'E', 'E'),
+                        kEvt21Swapped = v4l2_fourcc('P', 'S', 'E', '1'),
+                        kEvt21 = v4l2_fourcc('P', 'S', 'E', '2'),
                         kEvt3 = v4l2_fourcc('P', 'S', 'E', '3');
 
 std::vector<std::byte> bytes_of(std::initializer_list<unsigned> words) {
@@ -87,6 +89,7 @@ class V4l2Planes : public testing::TestWithParam<bool> {};
 TEST_P(V4l2Planes, EventsGoOnAcrossBuffers) {
     V4l2NodeSettings settings = sensor();
     settings.multi_planar = GetParam();
+    settings.data_offset = 64;
     V4l2Testbed bed{settings};
     auto camera = open();
     EXPECT_EQ(camera.info().format, "evt3");
@@ -101,6 +104,55 @@ TEST_P(V4l2Planes, EventsGoOnAcrossBuffers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SingleAndMultiPlanar, V4l2Planes, testing::Bool());
+
+/// EVT2.1 (drivers-and-formats.md D.4): words of 64 bits, in one of two orders of their halves.
+std::vector<std::byte> evt21_bytes(std::initializer_list<std::uint64_t> words, bool swapped) {
+    std::vector<std::byte> bytes;
+    for (const std::uint64_t w : words)
+        for (int i = 0; i < 8; ++i) bytes.push_back(std::byte(w >> (8 * (swapped ? i ^ 4 : i))));
+    return bytes;
+}
+constexpr std::uint64_t evt21_time_high(std::uint64_t t) {
+    return std::uint64_t{8} << 60 | t << 32;
+}
+constexpr std::uint64_t evt21_on(std::uint64_t time_low, std::uint64_t x, std::uint64_t y,
+                                 std::uint64_t mask) {
+    return std::uint64_t{1} << 60 | time_low << 54 | x << 43 | y << 32 | mask;
+}
+constexpr std::uint64_t kEvt21EndOfData = 0xE000001900000000;
+
+TEST(V4l2Camera, Evt21ComesInEitherOrderOfItsHalves) {
+    for (const std::uint32_t fourcc : {kEvt21, kEvt21Swapped}) {
+        V4l2Testbed bed{sensor(fourcc)};
+        auto camera = open();
+        EXPECT_EQ(camera.info().format, "evt21");
+        bed.give({evt21_bytes({evt21_time_high(3), evt21_on(5, 32, 7, 0b101)},
+                              fourcc == kEvt21Swapped)});
+        const Batch data = read_all(camera, bed);
+        ASSERT_EQ(data.events.size(), 2U);
+        EXPECT_EQ(data.events[0], (Event{from_us(3 * 64 + 5), 32, 7, Polarity::on}));
+        EXPECT_EQ(data.events[1], (Event{from_us(3 * 64 + 5), 34, 7, Polarity::on}));
+    }
+}
+
+TEST(V4l2Camera, TheSubdeviceKnowsTheSensorsSize) {
+    V4l2NodeSettings settings = sensor(V4L2_PIX_FMT_GREY);  // of the Raspberry Pi's receiver
+    settings.width = 4096;
+    settings.height = 391;
+    settings.sensor_width = 1280;
+    settings.sensor_height = 720;
+    V4l2Testbed bed{settings};
+    V4l2Settings wanted;
+    wanted.encoding = EvtEncoding::evt21;
+    wanted.subdevice = "/dev/v4l-subdev0";
+    auto camera = open(wanted);
+    EXPECT_EQ(camera.info().width, 1280);
+    EXPECT_EQ(camera.info().height, 720);
+    bed.give({evt21_bytes(
+        {evt21_time_high(0), evt21_on(1, 0, 719, 1), kEvt21EndOfData, evt21_on(2, 0, 1, 1)},
+        false)});
+    EXPECT_EQ(read_all(camera, bed).events.size(), 1U) << "behind the marker is no data";
+}
 
 /// The words of a Prophesee file without its header, in buffers of one size.
 void give_file(V4l2Testbed& bed, const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include <sys/ioctl.h>
 
 #include <fcntl.h>
+#include <linux/v4l2-subdev.h>
 #include <linux/videodev2.h>
 #include <umockdev.h>
 #include <unistd.h>
@@ -26,6 +27,11 @@ constexpr const char* kRecord =
     "P: /devices/platform/eventide/video4linux/video0\nN: video0=00\n"
     "E: DEVNAME=/dev/video0\nE: SUBSYSTEM=video4linux\nE: MAJOR=81\nE: MINOR=0\nA: "
     "name=eventide\\n\n";
+constexpr const char* kSubdevice = "/dev/v4l-subdev0";
+constexpr const char* kSubdeviceRecord =
+    "P: /devices/platform/eventide/video4linux/v4l-subdev0\nN: v4l-subdev0=00\n"
+    "E: DEVNAME=/dev/v4l-subdev0\nE: SUBSYSTEM=video4linux\nE: MAJOR=81\nE: MINOR=1\nA: "
+    "name=sensor\\n\n";
 constexpr std::uint32_t kFirstControl = 0x00980900;
 
 const char* name_of(gulong request) {
@@ -74,6 +80,7 @@ struct V4l2Testbed::Parts {
     static gboolean on_write(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer parts) {
         return static_cast<Parts*>(parts)->handle_write(client);
     }
+    void make_node(const char* node, const char* record);
     gboolean handle(UMockdevIoctlClient* client);
     gboolean handle_write(UMockdevIoctlClient* client);
     int answer(gulong request, UMockdevIoctlData* arg);
@@ -101,21 +108,26 @@ V4l2Testbed::V4l2Testbed(V4l2NodeSettings settings) : parts_(std::make_unique<Pa
                      parts_.get());
     g_signal_connect(parts_->handler.get(), "handle-write", G_CALLBACK(&Parts::on_write),
                      parts_.get());
-    GError* error = nullptr;
-    if (!umockdev_testbed_add_from_string(parts_->testbed.get(), kRecord, &error) ||
-        !umockdev_testbed_attach_ioctl(parts_->testbed.get(), kNode, parts_->handler.get(),
-                                       &error)) {
-        const Owned<GError> owned{error};
-        throw std::runtime_error(std::string{"umockdev: "} + owned->message);
-    }
+    parts_->make_node(kNode, kRecord);
+    parts_->make_node(kSubdevice, kSubdeviceRecord);
     gchar* root = umockdev_testbed_get_root_dir(parts_->testbed.get());
     parts_->backing = ::open((std::string{root} + kNode).c_str(), O_RDWR);
     g_free(root);
     if (parts_->backing < 0) throw std::runtime_error("umockdev: no file behind /dev/video0");
 }
 
+void V4l2Testbed::Parts::make_node(const char* node, const char* record) {
+    GError* failure = nullptr;
+    if (umockdev_testbed_add_from_string(testbed.get(), record, &failure) &&
+        umockdev_testbed_attach_ioctl(testbed.get(), node, handler.get(), &failure))
+        return;
+    const Owned<GError> owned{failure};
+    throw std::runtime_error(std::string{"umockdev: "} + owned->message);
+}
+
 V4l2Testbed::~V4l2Testbed() {
     umockdev_testbed_detach_ioctl(parts_->testbed.get(), kNode, nullptr);
+    umockdev_testbed_detach_ioctl(parts_->testbed.get(), kSubdevice, nullptr);
     ::close(parts_->backing);
 }
 
@@ -256,6 +268,12 @@ int V4l2Testbed::Parts::answer(gulong request, UMockdevIoctlData* arg) {
                 c.value = control->value;
                 return 0;
             });
+        case VIDIOC_SUBDEV_G_SELECTION:
+            return with<v4l2_subdev_selection>(arg, [&](v4l2_subdev_selection& s, auto*) {
+                s.r = {0, 0, std::uint32_t(settings.sensor_width),
+                       std::uint32_t(settings.sensor_height)};
+                return settings.sensor_width > 0 ? 0 : ENOTTY;
+            });
         default:
             return ENOTTY;
     }
@@ -287,14 +305,17 @@ int V4l2Testbed::Parts::dequeue(v4l2_buffer& buffer, UMockdevIoctlData* data) {
     buffer.sequence = sequence += content.skipped_before;
     ++sequence;
     buffer.flags = content.error_flag ? V4L2_BUF_FLAG_ERROR : 0;
-    const std::size_t n = std::min(content.bytes.size(), settings.buffer_bytes);
+    const std::size_t offset = settings.multi_planar ? settings.data_offset : 0;
+    const std::size_t n = std::min(content.bytes.size(), settings.buffer_bytes - offset);
     Owned<UMockdevIoctlData> holder;
-    if (v4l2_plane* plane = settings.multi_planar ? plane_of(data, holder) : nullptr)
-        plane->bytesused = std::uint32_t(n);
-    else
+    if (v4l2_plane* plane = settings.multi_planar ? plane_of(data, holder) : nullptr) {
+        plane->bytesused = std::uint32_t(offset + n);  // with what lies before the data
+        plane->data_offset = std::uint32_t(offset);
+    } else {
         buffer.bytesused = std::uint32_t(n);
+    }
     return ::pwrite(backing, content.bytes.data(), n,
-                    off_t(buffer.index * settings.buffer_bytes)) == ssize_t(n)
+                    off_t(buffer.index * settings.buffer_bytes + offset)) == ssize_t(n)
                ? 0
                : EIO;
 }

@@ -19,8 +19,10 @@ struct V4l2NodeSettings {
     std::uint32_t fourcc = 0;   ///< of a capture node
     int width = 0, height = 0;  ///< of a capture node's format
     std::size_t buffer_bytes = 64 * 1024;
-    std::vector<std::uint32_t> takes;  ///< formats an output node takes
-    int refuse_format_with = 0;        ///< errno of every S_FMT; 0 none
+    std::uint32_t data_offset = 0;            ///< of a multi-planar buffer: bytes before the data
+    int sensor_width = 0, sensor_height = 0;  ///< what /dev/v4l-subdev0 says; 0: it does not say
+    std::vector<std::uint32_t> takes;         ///< formats an output node takes
+    int refuse_format_with = 0;               ///< errno of every S_FMT; 0 none
     struct Control {
         std::int32_t minimum = 0, maximum = 0, value = 0;
         bool read_only = false;
@@ -28,7 +30,7 @@ struct V4l2NodeSettings {
     std::map<std::string, Control> controls;
 };
 
-/// /dev/video0 (and the controls on it).
+/// /dev/video0 (and the controls on it), and the sensor's subdevice, /dev/v4l-subdev0.
 class V4l2Testbed {
 public:
     explicit V4l2Testbed(V4l2NodeSettings settings);
