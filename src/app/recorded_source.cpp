@@ -44,9 +44,17 @@ void RecordedSource::write(const RawPacket& packet) {
             throw Error(ErrorKind::failed, path_ + ": cannot be written: is the disk full?");
         return;
     }
-    if (packet.gap_before) parser_->resync();
+    if (packet.gap_before) note_gap(packet.arrived);
+    last_data_ = packet.arrived;
     parser_->parse(packet.bytes, batch_);
     write_batch();
+}
+
+/// As the line's own parser does it, so that both tell the same times.
+void RecordedSource::note_gap(HostTime arrived) {
+    parser_->resync();
+    if (is_live() && last_data_)
+        parser_->expect_passed(std::chrono::duration_cast<SensorDuration>(arrived - *last_data_));
 }
 
 void RecordedSource::write_batch() {

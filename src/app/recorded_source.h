@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace eventide::app {
@@ -32,6 +33,7 @@ public:
 
 private:
     void write(const RawPacket& packet);
+    void note_gap(HostTime arrived);
     void write_batch();
 
     struct Close {
@@ -43,6 +45,7 @@ private:
     const Format* format_ = nullptr;           // ... or these
     std::unique_ptr<RecordingFile> file_;
     std::unique_ptr<Parser> parser_;
+    std::optional<HostTime> last_data_;
     Batch batch_;
 };
 

@@ -97,17 +97,34 @@ int Run::run() {
     const Stopper stopper{program_.signals, [this] { pipeline_->stop(); }};
     Status status{[this] { return pipeline_->snapshot(); }, progress(), settings_.stats,
                   program_.quiet};
-    if (settings_.sequential)
-        pipeline_->run_sequential();
-    else
-        pipeline_->run();
-    if (recorded_) recorded_->finish();
+    run_line();
     if (!settings_.state_out.empty())
         write_safetensors(settings_.state_out, network_.encoder().state());
     const RunProgress end = status.finish();
     const Snapshot counters = pipeline_->snapshot();
-    spdlog::info("{}", summary_text(counters, end));
-    return settings_.strict && lost_data(counters) ? exit_data_lost : exit_done;
+    const CameraCounters camera = camera_counters();
+    spdlog::info("{}{}", summary_text(counters, end), camera_text(camera));
+    const bool lost = lost_data(counters) || camera.device_dropped > 0;
+    return settings_.strict && lost ? exit_data_lost : exit_done;
+}
+
+/// Also when it fails, what arrived until then is a whole recording.
+void Run::run_line() {
+    try {
+        if (settings_.sequential)
+            pipeline_->run_sequential();
+        else
+            pipeline_->run();
+    } catch (...) {
+        if (recorded_) recorded_->finish();
+        throw;
+    }
+    if (recorded_) recorded_->finish();
+}
+
+CameraCounters Run::camera_counters() const {
+    const auto* camera = dynamic_cast<const Camera*>(opened_.source.get());
+    return camera == nullptr ? CameraCounters{} : camera->counters();
 }
 
 /// What was asked, with what, and what came out.

@@ -46,6 +46,8 @@ private:
     SinkPlan sink_plan();
     PipelineParts parts();
     PipelineSettings line() const;
+    void run_line();
+    CameraCounters camera_counters() const;
     RunProgress progress() const;
     std::string run_json();
 

@@ -84,6 +84,19 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     return text;
 }
 
+std::string camera_text(const CameraCounters& camera) {
+    std::string text;
+    const auto say = [&](const char* what, std::uint64_t n) {
+        if (n > 0)
+            text += (text.empty() ? "\ncamera: " : ", ") + std::string{what} + std::to_string(n);
+    };
+    say("events dropped by itself ", camera.device_dropped);
+    say("came back ", camera.reconnects);
+    say("stalls cleared ", camera.halts);
+    say("transfers cut within a word ", camera.odd_transfers);
+    return text;
+}
+
 std::string stats_json(const Snapshot& now, const RunProgress& progress, bool final) {
     Json json;
     json["elapsed_s"] = progress.elapsed.count();

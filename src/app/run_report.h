@@ -1,6 +1,7 @@
 // The counters of a run as people and programs read them.
 #pragma once
 
+#include "drivers/camera.h"
 #include "pipeline/counters.h"
 
 #include <chrono>
@@ -23,6 +24,9 @@ std::string status_line(const Snapshot& now, const RunProgress& progress);
 
 /// Three or four lines at the end.
 std::string summary_text(const Snapshot& end, const RunProgress& progress);
+
+/// What happened between a camera and the line; empty where nothing did.
+std::string camera_text(const CameraCounters& camera);
 
 /// One JSON object in one line. docs/usage.md names the keys.
 std::string stats_json(const Snapshot& now, const RunProgress& progress, bool final);

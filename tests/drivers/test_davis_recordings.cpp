@@ -2,6 +2,7 @@
 // the driver.
 #include "replay/formats.h"
 #include "tests/drivers/davis_streams.h"
+#include "tests/support/davis_fire_hose.h"
 #include "tests/support/recorded_scene.h"
 
 #include <gtest/gtest.h>
@@ -68,6 +69,31 @@ TEST_P(DavisRecordings, ComeOutAsTheyWentInAtAnyTransferSize) {
             expect_equal(got.data.imu[i], seen.imu[i]);
         EXPECT_EQ(got.damaged.total(), 0U);
     }
+}
+
+/// The short form of davis-throughput, in time that the test makes: nothing can be too slow.
+TEST(DavisThroughput, OfTwelveMillionEventsASecondNoneIsLostOrChanged) {
+    testing_support::FireHoseSettings settings;
+    settings.now = [t = std::int64_t{0}]() mutable { return from_us(t += 500); };
+    const auto hose = std::make_shared<testing_support::DavisFireHose>(settings);
+    UsbTestbed bed;
+    bed.plug_in(hose);
+    DavisOptions options = at_once();
+    options.settings.frames = options.settings.imu = false;
+    DavisCamera camera{options};
+    const auto parser = camera.make_parser();
+    Batch batch;
+    std::uint64_t events = 0, wrong = 0;
+    for (RawPacket packet; !parser->clock() || *parser->clock() < from_us(500'000);) {
+        if (camera.read(packet) != ReadStatus::data) continue;
+        batch.clear();
+        parser->parse(packet.bytes, batch);
+        for (const Event& event : batch.events) wrong += event == hose->event(events++) ? 0 : 1;
+    }
+    EXPECT_GE(events, 6'000'000U);
+    EXPECT_EQ(wrong, 0U);
+    EXPECT_EQ(parser->damaged().total(), 0U);
+    bed.look([&] { EXPECT_EQ(hose->dropped(), 0U); });
 }
 
 INSTANTIATE_TEST_SUITE_P(AtHand, DavisRecordings,

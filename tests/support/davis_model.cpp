@@ -134,11 +134,22 @@ std::size_t DavisModel::send(std::span<std::byte> out) {
         if (words_.size() == before) break;
     }
     const std::size_t n = std::min(out.size(), words_.size() - sent_);
+    if (n < out.size() && is_too_early_for_part_of_a_packet()) return 0;
     std::copy_n(words_.begin() + std::ptrdiff_t(sent_), n, out.begin());
     sent_ += n;
     bytes_sent_ += n;
     if (sent_ == words_.size()) clear_endpoint();
     return n;
+}
+
+/// In real time a packet that is not full waits for more, but not for long (USB register 1).
+bool DavisModel::is_too_early_for_part_of_a_packet() {
+    if (!settings_.now) return false;
+    const SensorDuration delay{read(kUsbEarlyPacketDelay) / read(kUsbMhz)};
+    const SensorTime t = settings_.now();
+    if (t - last_packet_ < delay) return true;
+    last_packet_ = t;
+    return false;
 }
 
 SensorTime DavisModel::now() const {

@@ -65,6 +65,7 @@ public:
     std::uint64_t bytes_sent() const { return bytes_sent_; }
 
 private:
+    bool is_too_early_for_part_of_a_packet();
     SensorTime now() const;
     void make_more(std::size_t bytes);
     SensorTime end_of_stretch(std::size_t events, SensorTime clock) const;
@@ -76,7 +77,8 @@ private:
     std::vector<davis::Write> writes_;
     Batch scene_;
     std::size_t event_ = 0, image_ = 0, imu_ = 0, trigger_ = 0;  ///< next of the scene
-    SensorTime reset_at_{};                                      ///< on settings_.now
+    SensorTime last_packet_{};
+    SensorTime reset_at_{};  ///< on settings_.now
     std::unique_ptr<DavisWriter> writer_;
     std::vector<std::byte> words_;
     std::size_t sent_ = 0;  ///< of words_

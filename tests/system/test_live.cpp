@@ -1,0 +1,205 @@
+// The built program with a camera on USB: a DAVIS in software, through the real libusb.
+#include "replay/formats.h"
+#include "tests/drivers/davis_streams.h"
+#include "tests/support/preload.h"
+#include "tests/system/program_test.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <sstream>
+
+namespace eventide::test {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::DavisModel;
+using testing_support::DavisModelSettings;
+using testing_support::UsbTestbed;
+using Json = nlohmann::json;
+
+constexpr int kWidth = 64, kHeight = 48;
+constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
+
+/// So small that any machine keeps up.
+DavisModelSettings small_camera() {
+    DavisModelSettings settings;
+    settings.sensor.dvs_columns = settings.sensor.aps_columns = kHeight;
+    settings.sensor.dvs_rows = settings.sensor.aps_rows = kWidth;
+    return settings;
+}
+
+SensorTime host_time() {
+    return SensorTime{std::chrono::duration_cast<SensorDuration>(
+        std::chrono::steady_clock::now().time_since_epoch())};
+}
+
+class Live : public ProgramTest {
+protected:
+    std::shared_ptr<DavisModel> plug_in(const Batch& scene, bool in_real_time) {
+        DavisModelSettings settings = small_camera();
+        if (in_real_time) settings.now = host_time;
+        const auto camera = std::make_shared<DavisModel>(settings);
+        camera->show(scene);
+        bed_.plug_in(camera);
+        return camera;
+    }
+    /// About 0.3 s.
+    static Batch scene() { return davis_scene(small_camera().sensor, {.events = 20'000}); }
+
+    static void read_frames(Process& process, std::size_t frames) {
+        ASSERT_EQ(process.read_output(frames * kPixels).size(), frames * kPixels);
+    }
+    Batch recorded(const std::string& name) {
+        const auto recording = open_recording(temp_ / name);
+        const auto parser = recording->make_parser();
+        Batch data;
+        for (RawPacket packet; recording->read(packet) == ReadStatus::data;)
+            parser->parse(packet.bytes, data);
+        parser->finish(data);
+        EXPECT_EQ(parser->damaged().total(), 0U) << "the file is whole";
+        return data;
+    }
+    Json last_stats() {
+        std::istringstream lines{read_text(temp_ / "stats.jsonl")};
+        Json last;
+        for (std::string line; std::getline(lines, line);) last = Json::parse(line);
+        return last;
+    }
+
+    UsbTestbed bed_;
+};
+
+TEST_F(Live, RecordsAllThatTheCameraSent) {
+    const Batch seen = scene();
+    const auto camera = plug_in(seen, false);
+    Process process =
+        start({"run", "davis:", "--fps", "50", "--record", "raw.aedat4", "--out", "gray8:-"},
+              {.output_to_pipe = true});
+    for (bool over = false; !over;) {
+        read_frames(process, 1);
+        bed_.look([&] { over = camera->is_scene_over(); });
+    }
+    read_frames(process, 2);
+    process.signal(SIGINT);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    const Batch kept = recorded("raw.aedat4");
+    EXPECT_EQ(kept.events, seen.events);
+    EXPECT_EQ(kept.images, seen.images);
+    EXPECT_EQ(kept.imu.size(), seen.imu.size());
+}
+
+TEST_F(Live, UnpluggedItEndsAsADeviceThatWasLostAndItsFilesAreWhole) {
+    const Batch seen = scene();
+    plug_in(seen, true);
+    Process process = start({"run", "davis:", "--fps", "50", "--record", "raw.aedat4", "--out",
+                             "gray8:-", "--out", "video.mp4", "--out", "frames/"},
+                            {.output_to_pipe = true});
+    read_frames(process, 8);
+    bed_.unplug();
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.error, HasSubstr("was unplugged (use --reconnect"));
+    const Batch kept = recorded("raw.aedat4");
+    ASSERT_GT(kept.events.size(), 1000U);
+    EXPECT_TRUE(std::equal(kept.events.begin(), kept.events.end(), seen.events.begin()));
+    const auto times = column(temp_ / "frames/timestamps.csv", 2);
+    EXPECT_GE(times.size(), 8U);
+    EXPECT_EQ(packet_times(temp_ / "video.mp4").size(), times.size());
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "frames/run.json"));
+}
+
+class LiveReturn : public Live, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(StateKeptOrReset, LiveReturn, testing::Bool());
+
+TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
+    const bool reset = GetParam();
+    const Batch seen = scene();
+    plug_in(seen, true);
+    std::vector<std::string> arguments{"run",     "davis:",   "--reconnect", "--fps",
+                                       "50",      "--record", "raw.aedat4",  "--out",
+                                       "gray8:-", "--stats",  "stats.jsonl"};
+    if (reset) arguments.push_back("--reset-on-gap");
+    Process process = start(arguments, {.output_to_pipe = true});
+    read_frames(process, 8);
+    bed_.unplug();
+    read_frames(process, 5);  // the picture stays, and time goes on
+    const auto again = plug_in(seen, true);
+    for (bool over = false; !over;) {
+        read_frames(process, 1);
+        bed_.look([&] { over = again->is_scene_over() && again->bytes_sent() > 0; });
+    }
+    process.signal(SIGINT);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.error, HasSubstr("came back 1"));
+    const Json stats = last_stats();
+    EXPECT_EQ(stats["gaps"], 1);
+    EXPECT_EQ(stats["state_resets"], reset ? 1 : 0);
+
+    // All of the second scene is at the recording's end, later by the time that went by.
+    const Batch kept = recorded("raw.aedat4");
+    ASSERT_GT(kept.events.size(), seen.events.size());
+    const std::size_t before = kept.events.size() - seen.events.size();
+    EXPECT_TRUE(
+        std::equal(kept.events.begin(), kept.events.begin() + long(before), seen.events.begin()));
+    const SensorDuration shift = kept.events[before].t - seen.events.front().t;
+    EXPECT_GT(shift, kept.events[before - 1].t - SensorTime{});
+    for (std::size_t i = 0; i < seen.events.size(); ++i)
+        ASSERT_EQ(kept.events[before + i].t - shift, seen.events[i].t) << i;
+}
+
+TEST_F(Live, BeforeAWallFramesKeepComingAtTheAskedRate) {
+    plug_in(davis_scene(small_camera().sensor, {.events = 2'000}), true);
+    const Result result = eventide({"run", "davis:", "--fps", "50", "--duration", "1s", "--out",
+                                    "frames/", "--stats", "stats.jsonl"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto times = column(temp_ / "frames/timestamps.csv", 2);
+    const Json stats = last_stats();
+    EXPECT_NEAR(double(times.size() + stats["skipped_frames"].get<std::size_t>()), 50, 2);
+    for (std::size_t i = 1; i < times.size(); ++i)
+        EXPECT_EQ((times[i] - times[i - 1]) % 20'000, 0) << i;
+    EXPECT_GT(stats["silent_frames"], 20);
+}
+
+TEST_F(Live, ListsCamerasThatCanBeUsedAndThoseThatCannot) {
+    plug_in({}, false);
+    const Json usable = Json::parse(eventide({"devices", "--json"}).output);
+    ASSERT_EQ(usable.size(), 1U);
+    EXPECT_EQ(usable[0]["source"], "davis:00000042");
+    EXPECT_EQ(usable[0]["name"], "DAVIS346B");
+    EXPECT_EQ(usable[0]["firmware"], "6");
+    EXPECT_EQ(usable[0]["logic"], "18");
+    EXPECT_EQ(usable[0]["usable"], true);
+
+    bed_.unplug();
+    DavisModelSettings newer = small_camera();
+    newer.logic = 20;
+    bed_.plug_in(std::make_shared<DavisModel>(newer));
+    const Json unusable = Json::parse(eventide({"devices", "--json"}).output);
+    ASSERT_EQ(unusable.size(), 1U);
+    EXPECT_EQ(unusable[0]["usable"], false);
+    EXPECT_THAT(unusable[0]["problem"].get<std::string>(), HasSubstr("another protocol"));
+    const Result refused = eventide({"run", "davis:", "--out", "null"});
+    EXPECT_EQ(refused.exit_code, 4);
+    EXPECT_THAT(refused.error, HasSubstr("another protocol"));
+
+    bed_.unplug();
+    EXPECT_EQ(Json::parse(eventide({"devices", "--json"}).output), Json::array());
+    EXPECT_EQ(eventide({"run", "davis:", "--out", "null"}).exit_code, 4);
+}
+
+}  // namespace
+}  // namespace eventide::test
+
+int main(int argc, char** argv) {
+    eventide::testing_support::enter_testbed(argv);
+    testing::InitGoogleTest(&argc, argv);
+    return RUN_ALL_TESTS();
+}
