@@ -306,6 +306,12 @@ namespace {
 HWY_EXPORT(table);
 bool g_limited = false;
 
+void leave_out(std::int64_t targets) {
+    g_limited = true;
+    hwy::DisableTargets(targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
 }  // namespace
 
 const VectorKernels& vector_kernels() {
@@ -313,9 +319,10 @@ const VectorKernels& vector_kernels() {
 }
 
 void limit_kernels_to_avx2() {
-    g_limited = true;
-    hwy::DisableTargets(HWY_AVX3 | HWY_AVX3_DL);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    leave_out(HWY_AVX3 | HWY_AVX3_DL);
+}
+void limit_kernels_to_sse4() {
+    leave_out(HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL);
 }
 
 bool kernels_limited() {

@@ -66,9 +66,11 @@ struct VectorKernels {
 /// The best the processor has.
 const VectorKernels& vector_kernels();
 
-/// Leaves out everything past AVX2 from now on, here and in bf16_kernels.h: for comparisons. Not
-/// while any encoder or renderer exists. oneDNN has its own variable, ONEDNN_MAX_CPU_ISA.
+/// Leaves out everything past AVX2 (or SSE4) from now on, here and in bf16_kernels.h: for tests and
+/// comparisons. Not while any encoder or renderer exists. oneDNN has its own variable,
+/// ONEDNN_MAX_CPU_ISA.
 void limit_kernels_to_avx2();
+void limit_kernels_to_sse4();
 bool kernels_limited();
 
 /// How many numbers pack_weights writes.
