@@ -7,9 +7,8 @@
 namespace eventide::app {
 
 std::string RunCommand::examples() const {
-    return "SOURCE is a recording, an ECD folder, davis:[serial], v4l2:/dev/videoN, sim:SCENE, or "
-           "- for "
-           "text on standard input.\n"
+    return "SOURCE is a recording, an ECD folder, davis:[serial], dvxplorer:[serial], "
+           "dvs128:[serial], v4l2:/dev/videoN, sim:SCENE, or - for text on standard input.\n"
            "Examples:\n"
            "  eventide run recording.aedat4 --out video.mp4\n"
            "  eventide run recording.raw --fps 1000 --size 2.5x --out frames/ --out video.mp4 "

@@ -3,6 +3,7 @@
 #include "src/codec/byte_order.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -78,6 +79,7 @@ public:
         return two ? 2 : 1;
     }
     void imu(const ImuSample& sample, const DvxplorerSensor& sensor) {
+        constexpr std::array<std::size_t, 3> kSent{1, 0, 2};  // y before x
         const float accel_lsb = 32768.F / float(2 << ranges_.accel),
                     gyro_lsb = 32768.F / float(2000 >> ranges_.gyro);
         const std::array<float, 3> sign{sensor.imu_flip_x ? -1.F : 1.F,
@@ -85,10 +87,9 @@ public:
                                         sensor.imu_flip_z ? -1.F : 1.F};
         put(0, 5);
         put(5, 0x300 | 0xE0 | (ranges_.accel << 3) | ranges_.gyro);
-        for (const std::size_t a : {1, 0, 2})
-            number(sign[a] * sample.acceleration_g[a] * accel_lsb);
+        for (const std::size_t a : kSent) number(sign[a] * sample.acceleration_g[a] * accel_lsb);
         number((sample.temperature_c - 23) * 512);
-        for (const std::size_t a : {1, 0, 2}) number(sign[a] * sample.gyro_dps[a] * gyro_lsb);
+        for (const std::size_t a : kSent) number(sign[a] * sample.gyro_dps[a] * gyro_lsb);
         put(0, 7);
     }
     void trigger(const Trigger& trigger) {
