@@ -30,6 +30,10 @@ SensorTime real_time() {
         std::chrono::steady_clock::now().time_since_epoch())};
 }
 
+unsigned long long as_number(std::uint64_t n) {
+    return n;
+}
+
 double processor_seconds() {
     timespec time{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -38,7 +42,8 @@ double processor_seconds() {
 
 struct Outcome {
     std::uint64_t events = 0, wrong = 0;
-    double read = 0, parse = 0;  ///< processor time of the driver's thread, s
+    double read = 0, parse = 0;     ///< processor time of the driver's thread, s
+    SensorDuration longest_away{};  ///< of this thread, between two reads
 };
 
 Outcome fetch(DavisCamera& camera, const DavisFireHose& hose, SensorDuration time) {
@@ -46,11 +51,14 @@ Outcome fetch(DavisCamera& camera, const DavisFireHose& hose, SensorDuration tim
     const auto parser = camera.make_parser();
     Batch batch;
     RawPacket packet;
-    while (!parser->clock() || parser->clock()->time_since_epoch() < time) {
+    SensorTime last = real_time();
+    for (const SensorTime end = last + time; last < end;) {
         const double begun = processor_seconds();
         const ReadStatus status = camera.read(packet);
         const double fetched = processor_seconds();
         outcome.read += fetched - begun;
+        outcome.longest_away = std::max(outcome.longest_away, real_time() - last);
+        last = real_time();
         if (status != ReadStatus::data) continue;
         batch.clear();
         parser->parse(packet.bytes, batch);
@@ -74,19 +82,18 @@ int run(double events_per_second, double seconds, int transfers, std::size_t kib
     options.settings.imu = options.settings.frames = false;
     DavisCamera camera{options};
     const Outcome outcome = fetch(camera, *hose, SensorDuration{std::int64_t(seconds * 1e6)});
-    camera.stop();
-    RawPacket packet;
-    camera.read(packet);
-    const auto lost = camera.counters().device_dropped;
+    std::uint64_t lost = 0;
+    bed.look([&] { lost = hose->dropped(); });
     std::printf(
-        "%d million events/s for %.0f s through %d transfers of %zu KiB: %llu events arrived, %llu "
-        "wrong, %llu lost\n"
+        "%d million events/s for %.0f s through %d transfers of %zu KiB: %llu arrived, %llu not as "
+        "sent, %llu lost; longest pause between two reads %.1f ms\n"
         "processor time of the driver's thread: fetching %.2f s (%.1f %% of one core), parsing "
-        "%.2f s "
-        "(%.1f %%, %.0f million events/s)\n",
-        settings.events_per_us, seconds, transfers, kib, (unsigned long long)outcome.events,
-        (unsigned long long)outcome.wrong, (unsigned long long)lost, outcome.read,
-        100 * outcome.read / seconds, outcome.parse, 100 * outcome.parse / seconds,
+        "%.2f "
+        "s (%.1f %%, %.0f million events/s)\n",
+        settings.events_per_us, seconds, transfers, kib, as_number(outcome.events),
+        as_number(lost == 0 ? outcome.wrong : 0), as_number(lost),
+        double(outcome.longest_away.count()) / 1000, outcome.read, 100 * outcome.read / seconds,
+        outcome.parse, 100 * outcome.parse / seconds,
         double(outcome.events) * 1e-6 / outcome.parse);
     return lost == 0 && outcome.wrong == 0 ? 0 : 1;
 }
