@@ -11,9 +11,7 @@ EventFrames::EventFrames(const Source& source, const Settings& settings, EventFi
       observer_(observer),
       counters_(counters),
       live_(source.is_live()),
-      silence_margin_(settings.silence_margin) {
-    if (settings.resync_first) parser_->resync();
-}
+      silence_margin_(settings.silence_margin) {}
 
 void EventFrames::take(const RawPacket& packet) {
     if (packet.gap_before) note_gap(packet.arrived);

@@ -25,7 +25,6 @@ public:
         /// what is still on its way from the camera is not late. Cameras hold back few events for
         /// some milliseconds.
         SensorDuration silence_margin{30'000};
-        bool resync_first = false;  ///< the source was sent to a place: the first bytes may be half
                                     ///< a record
     };
 

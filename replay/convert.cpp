@@ -56,11 +56,8 @@ ConvertReport convert(Recording& recording, const std::string& path, const Forma
     ConvertReport report;
     RecordingFile file(path, options.overwrite, open_writer(format.name),
                        header_of(recording, format));
+    if (options.from) recording.seek(*options.from);
     const auto parser = recording.make_parser();
-    if (options.from) {
-        recording.seek(*options.from);
-        parser->resync();
-    }
     Batch batch;
     const auto pass_on = [&] {
         keep_inside(batch, options);

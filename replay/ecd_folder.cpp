@@ -83,8 +83,8 @@ EcdImages read_ecd_images(const std::string& folder) {
     return images;
 }
 
-EcdParser::EcdParser(std::unique_ptr<Parser> events, EcdImages images)
-    : events_(std::move(events)), images_(std::move(images)) {
+EcdParser::EcdParser(std::unique_ptr<Parser> events, EcdImages images, bool in_the_middle)
+    : events_(std::move(events)), images_(std::move(images)), jumped_(in_the_middle) {
     image_damage_.count(DamageReason::bad_record, images_.bad_entries);
 }
 

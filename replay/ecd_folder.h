@@ -33,7 +33,8 @@ EcdImages read_ecd_images(const std::string& folder);
 /// passed its time, the rest at finish(). Pictures that cannot be read count as bad_record.
 class EcdParser final : public Parser {
 public:
-    EcdParser(std::unique_ptr<Parser> events, EcdImages images);
+    /// `in_the_middle`: of the recording; images before the first event that comes are left out.
+    EcdParser(std::unique_ptr<Parser> events, EcdImages images, bool in_the_middle = false);
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
@@ -61,7 +62,8 @@ public:
     ReadStatus read(RawPacket& into) override { return events_->read(into); }
     void stop() noexcept override { events_->stop(); }
     std::unique_ptr<Parser> make_parser() const override {
-        return std::make_unique<EcdParser>(events_->make_parser(), images_);
+        return std::make_unique<EcdParser>(events_->make_parser(), images_,
+                                           events_->begins_in_the_middle());
     }
     std::unique_ptr<Parser> make_clock() const override { return events_->make_parser(); }
     void seek(SensorTime t) override { events_->seek(t); }

@@ -1,8 +1,6 @@
 // Chunks out of a file, and the way to a time in it.
 #include "replay/file_recording.h"
 
-#include "replay/seek.h"
-
 #include <utility>
 
 namespace eventide {
@@ -11,6 +9,7 @@ FileRecording::FileRecording(ByteFile file, OpenedStream stream, std::vector<std
     : file_(std::move(file)), stream_(std::move(stream)), ahead_(std::move(ahead)) {
     const StreamHeader& header = stream_.header;
     info_ = {header.sensor_name, header.serial, header.format, header.width, header.height};
+    begin_.position = header.data_offset;
     if (file_.is_seekable()) file_.move_to(header.data_offset);
 }
 
@@ -32,17 +31,17 @@ ReadStatus FileRecording::read(RawPacket& into) {
 }
 
 std::unique_ptr<Parser> FileRecording::make_parser() const {
-    return stream_.make_parser(stream_.header);
+    if (begin_.parser) return stream_.seek.copy(*begin_.parser);
+    auto parser = stream_.make_parser(stream_.header);
+    if (begins_in_the_middle()) parser->resync();
+    return parser;
 }
 
 void FileRecording::seek(SensorTime t) {
     if (!file_.is_seekable()) return;
-    const std::uint64_t position = find_position(file_, stream_, t);
-    file_.move_to(position);
+    begin_ = find_place(file_, stream_.header, stream_.make_parser, stream_.seek, t);
+    file_.move_to(begin_.position);
     ahead_.clear();
-    // The first line follows no newline that a parser looking for one could find.
-    if (stream_.records_are_lines && position == stream_.header.data_offset)
-        ahead_ = {std::byte{'\n'}};
 }
 
 }  // namespace eventide

@@ -3,9 +3,9 @@
 
 #include "replay/byte_file.h"
 #include "replay/recording.h"
+#include "replay/seek.h"
 #include "src/codec/stream.h"
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,12 +16,8 @@ struct OpenedStream {
     StreamHeader header;
     /// Makes a parser for the bytes after header.data_offset. The header given has its geometry
     /// completed.
-    std::function<std::unique_ptr<Parser>(const StreamHeader&)> make_parser;
-    /// Records start at data_offset plus a multiple of this; a fresh parser put there after
-    /// resync() finds the time. 0: the format does not allow to start in the middle.
-    std::uint64_t seek_alignment = 0;
-    /// A parser after resync() takes up after the next newline.
-    bool records_are_lines = false;
+    MakeParser make_parser;
+    SeekMeans seek{};
 };
 
 class FileRecording : public Recording {
@@ -34,6 +30,8 @@ public:
 
     const SensorInfo& info() const override { return info_; }
     const StreamHeader& header() const { return stream_.header; }
+    /// After a seek.
+    bool begins_in_the_middle() const { return begin_.position != stream_.header.data_offset; }
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override { file_.stop(); }
     std::unique_ptr<Parser> make_parser() const override;
@@ -46,6 +44,7 @@ private:
     OpenedStream stream_;
     SensorInfo info_;
     std::vector<std::byte> ahead_;
+    Place begin_;  ///< of what is read
     std::uint64_t packets_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "src/codec/aedat3.h"
 #include "src/codec/aedat4.h"
 #include "src/codec/aedat4_records.h"
+#include "src/codec/aedat4_table.h"
 #include "src/codec/aedat4_writer.h"
 #include "src/codec/dat.h"
 #include "src/codec/evt2.h"
@@ -35,6 +36,14 @@ bool starts_with(Bytes bytes, std::string_view magic) {
            std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
+/// For formats whose stamps wrap: DAT every 72 min, EVT3 every 17 s.
+template <typename P>
+SeekMeans by_skimming() {
+    return {0, [](const Parser& parser) -> std::unique_ptr<Parser> {
+                return std::make_unique<P>(static_cast<const P&>(parser));
+            }};
+}
+
 template <const char* kMagic>
 bool has_magic(Bytes first_bytes) {
     return starts_with(first_bytes, kMagic);
@@ -46,7 +55,7 @@ OpenedStream open_aedat1(Bytes first_bytes, const OpenOptions& options) {
     const auto make_parser = [one_is_on = options.dvs128_one_is_on](const StreamHeader&) {
         return std::make_unique<Aedat1Parser>(one_is_on);
     };
-    return {read_aedat1_header(first_bytes), make_parser, 6};
+    return {read_aedat1_header(first_bytes), make_parser, by_skimming<Aedat1Parser>()};
 }
 
 OpenedStream open_aedat2(Bytes first_bytes, const OpenOptions& options) {
@@ -55,7 +64,7 @@ OpenedStream open_aedat2(Bytes first_bytes, const OpenOptions& options) {
                               one_is_on = options.dvs128_one_is_on](const StreamHeader& stream) {
         return std::make_unique<Aedat2Parser>(sensor, stream.width, stream.height, one_is_on);
     };
-    return {header.stream, make_parser, 8};
+    return {header.stream, make_parser, by_skimming<Aedat2Parser>()};
 }
 
 OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
@@ -63,7 +72,7 @@ OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat3Parser>(header, stream.width, stream.height);
     };
-    return {header.stream, make_parser, 1};
+    return {header.stream, make_parser, {1}};
 }
 
 OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
@@ -71,7 +80,13 @@ OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat4Parser>(header, stream.width, stream.height);
     };
-    return {header.stream, make_parser, 1};
+    const auto look_up = [header](const ByteFile& file, SensorTime t) {
+        const auto read_at = [&](std::uint64_t position, std::span<std::byte> into) {
+            return file.read_at(position, into);
+        };
+        return find_in_aedat4_table(header, read_at, t);
+    };
+    return {header.stream, make_parser, {1, nullptr, look_up}};
 }
 
 template <const char* kName>
@@ -85,7 +100,7 @@ OpenedStream open_evt2(Bytes first_bytes, const OpenOptions&) {
     const auto make_parser = [](const StreamHeader& stream) {
         return std::make_unique<Evt2Parser>(stream.width, stream.height);
     };
-    return {read_evt_header(first_bytes).stream, make_parser, 4};
+    return {read_evt_header(first_bytes).stream, make_parser, by_skimming<Evt2Parser>()};
 }
 
 OpenedStream open_evt21(Bytes first_bytes, const OpenOptions&) {
@@ -95,16 +110,15 @@ OpenedStream open_evt21(Bytes first_bytes, const OpenOptions&) {
     const auto make_parser = [order](const StreamHeader& stream) {
         return std::make_unique<Evt21Parser>(stream.width, stream.height, order);
     };
-    return {header.stream, make_parser, 8};
+    return {header.stream, make_parser, by_skimming<Evt21Parser>()};
 }
 
-// EVT3 wraps every 17 s and DAT every 72 min: a time in the middle says nothing by itself.
 OpenedStream open_evt3(Bytes first_bytes, const OpenOptions&) {
     const EvtHeader header = read_evt_header(first_bytes);
     const auto make_parser = [base_us = header.time_base_us](const StreamHeader& stream) {
         return std::make_unique<Evt3Parser>(stream.width, stream.height, base_us);
     };
-    return {header.stream, make_parser, 0};
+    return {header.stream, make_parser, by_skimming<Evt3Parser>()};
 }
 
 bool is_dat(Bytes first_bytes) {
@@ -116,7 +130,7 @@ OpenedStream open_dat(Bytes first_bytes, const OpenOptions&) {
     const auto make_parser = [record = header.record](const StreamHeader& stream) {
         return std::make_unique<DatParser>(record, stream.width, stream.height);
     };
-    return {header.stream, make_parser, 0};
+    return {header.stream, make_parser, by_skimming<DatParser>()};
 }
 
 OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
@@ -124,7 +138,7 @@ OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
     const auto make_parser = [layout = header.layout](const StreamHeader& stream) {
         return std::make_unique<TextParser>(layout, stream.width, stream.height);
     };
-    return {header.stream, make_parser, 1, true};
+    return {header.stream, make_parser, {1}};
 }
 
 constexpr FormatHolds kOnlyEvents{};

@@ -1,5 +1,6 @@
 // From a path to a Recording: reads the first bytes, asks the table, completes the geometry.
 #include "replay/ecd_folder.h"
+#include "replay/foreign_formats.h"
 #include "replay/formats.h"
 #include "replay/scan_geometry.h"
 #include "src/core/error.h"
@@ -40,8 +41,11 @@ const Format& choose_format(const ByteFile& file, std::span<const std::byte> hea
                             const OpenOptions& options) {
     if (head.empty())
         throw Error(ErrorKind::input, file.path() + ": expected a recording, found no bytes");
-    const Format* format =
-        options.format.empty() ? detect_format(head) : find_format(options.format);
+    // Before the formats themselves: a ROS bag looks like an AEDAT 1 file.
+    const std::string_view foreign = describe_foreign(head);
+    const Format* format = !options.format.empty() ? find_format(options.format)
+                           : foreign.empty()       ? detect_format(head)
+                                                   : nullptr;
     if (format) return *format;
     std::string names;
     for (const Format& each : all_formats())
@@ -49,8 +53,9 @@ const Format& choose_format(const ByteFile& file, std::span<const std::byte> hea
     if (!options.format.empty())
         throw Error(ErrorKind::usage,
                     "format: expected one of " + names + ", found \"" + options.format + "\"");
-    throw Error(ErrorKind::input, file.path() + ": expected a recording (" + names +
-                                      "), found bytes of none of them");
+    throw Error(ErrorKind::input,
+                file.path() + ": expected a recording (" + names + "), found " +
+                    (foreign.empty() ? "bytes of none of them" : std::string(foreign)));
 }
 
 OpenedStream open_stream(const ByteFile& file, const Format& format,

@@ -108,7 +108,7 @@ void Paced::stop() noexcept {
 
 void Paced::seek(SensorTime t) {
     recording_->seek(t);
-    clock_->resync();
+    clock_ = recording_->make_clock();
     chunk_.bytes.clear();
     given_ = parsed_ = 0;
     start_at_ = t;

@@ -14,8 +14,8 @@ public:
     bool is_live() const noexcept override { return false; }
 
     /// Goes to a byte from which every event at or after `t` will be read (earlier ones may come
-    /// too). Formats without an index go to the beginning. Source thread, between reads; the parser
-    /// has to resync(). Standard input cannot go back: there it does nothing.
+    /// too). Source thread, between reads; what is read then is for a parser made then. Standard
+    /// input cannot go back: there it does nothing.
     virtual void seek(SensorTime t) = 0;
 
     /// Bytes of the whole recording, for progress; 0 where not known (standard input).

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 namespace eventide {
@@ -22,8 +23,11 @@ RecordingFile::RecordingFile(const std::string& path, bool overwrite,
     : path_(path == "-" ? "standard output" : path), writer_(std::move(writer)) {
     owned_ = path != "-";
     writer_->begin(header, pending_);  // before the file is made: it may refuse the header
-    // "x": made new or not at all, also when another makes it at the same moment.
-    file_ = owned_ ? std::fopen(path.c_str(), overwrite ? "wb" : "wbx") : stdout;
+    // "x": made new or not at all, also when another makes it at the same moment. Pipes and devices
+    // are there already, and not overwritten.
+    std::error_code none;
+    const bool is_other = std::filesystem::is_other(path, none);
+    file_ = owned_ ? std::fopen(path.c_str(), overwrite || is_other ? "wb" : "wbx") : stdout;
     if (!file_ && errno == EEXIST)
         throw Error(ErrorKind::usage, path_ +
                                           ": expected a new file, found one that exists; "
@@ -50,7 +54,10 @@ void RecordingFile::finish() {
     writer_->finish(pending_);
     flush();
     for (const StreamWriter::Patch& patch : writer_->patches()) {
-        if (std::fseek(file_, long(patch.offset), SEEK_SET) != 0) fail(path_);
+        if (std::fseek(file_, long(patch.offset), SEEK_SET) != 0) {
+            if (errno == ESPIPE) break;  // the index stays unnamed, as after a crash
+            fail(path_);
+        }
         if (std::fwrite(patch.bytes.data(), 1, patch.bytes.size(), file_) != patch.bytes.size())
             fail(path_);
     }

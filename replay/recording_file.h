@@ -9,12 +9,12 @@
 
 namespace eventide {
 
-/// Writes a recording; complete only after finish(). "-" is standard output, for formats without
-/// patches.
+/// Writes a recording; complete only after finish(). "-" is standard output. In pipes patches are
+/// left out: formats with an index are read without it.
 class RecordingFile {
 public:
-    /// Throws Error (usage) when the file exists and `overwrite` is false, Error (failed) when it
-    /// cannot be made.
+    /// Throws Error (usage) when a regular file exists and `overwrite` is false, Error (failed)
+    /// when it cannot be made.
     RecordingFile(const std::string& path, bool overwrite, std::unique_ptr<StreamWriter> writer,
                   const StreamHeader& header);
     ~RecordingFile();

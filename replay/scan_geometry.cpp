@@ -4,8 +4,23 @@
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <string>
 
 namespace eventide {
+
+namespace {
+
+/// " (bad_record 3)"
+std::string left_out(const Damage& damage) {
+    std::string reasons;
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        if (const auto n = damage[DamageReason(i)]; n > 0)
+            reasons += (reasons.empty() ? "" : ", ") + std::string(name_of(DamageReason(i))) + " " +
+                       std::to_string(n);
+    return reasons.empty() ? "" : " (left out as damaged: " + reasons + ")";
+}
+
+}  // namespace
 
 void scan_geometry(const ByteFile& file, OpenedStream& stream) {
     StreamHeader wide = stream.header;
@@ -37,9 +52,8 @@ void scan_geometry(const ByteFile& file, OpenedStream& stream) {
     look();
     if (width == 0)
         throw Error(ErrorKind::input,
-                    file.path() +
-                        ": expected events, to find the size of the sensor, found none; "
-                        "state it with --input-size WIDTHxHEIGHT");
+                    file.path() + ": expected events, to find the size of the sensor, found none" +
+                        left_out(parser->damaged()) + "; state it with --input-size WIDTHxHEIGHT");
     stream.header.width = width;
     stream.header.height = height;
 }

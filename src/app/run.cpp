@@ -35,12 +35,14 @@ Run::Run(Program& program, RunSettings& settings)
       lookahead_{lookahead_of(settings, network_.config(), live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       begun_{std::chrono::steady_clock::now()},
-      recorded_{recorder_of(settings, *opened_.source)},
       filter_{filter_of(settings, sensor_)},
       watch_{sheet_ ? &references_ : nullptr},
       encode_{network_.encoder()},
       render_{network_.renderer(), request_of(settings, sensor_, lookahead_)} {
     if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
+    if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
+        bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
+    recorded_ = recorder_of(settings, *opened_.source);
     sinks_ = open_sinks(settings_, sink_plan());
     pipeline_.emplace(parts(), line());
 }
@@ -74,7 +76,6 @@ PipelineSettings Run::line() const {
     PipelineSettings line;
     line.bins = network_.config().bins;
     line.event_frames.slicer = slicer_;
-    line.event_frames.resync_first = opened_.recording != nullptr && span_.begin.has_value();
     line.rate = rate_;
     line.frames_from = span_.frames_from;
     line.lookahead = lookahead_;
@@ -88,8 +89,8 @@ PipelineSettings Run::line() const {
 RunProgress Run::progress() const {
     RunProgress progress;
     progress.elapsed = std::chrono::steady_clock::now() - begun_;
-    progress.live = live();
-    if (opened_.recording != nullptr) progress.total_bytes = opened_.recording->size_bytes();
+    progress.in_step = live() || speed_ > 0;
+    progress.total_bytes = bytes_to_read_;
     return progress;
 }
 
@@ -104,6 +105,9 @@ int Run::run() {
     const Snapshot counters = pipeline_->snapshot();
     const CameraCounters camera = camera_counters();
     spdlog::info("{}{}", summary_text(counters, end), camera_text(camera));
+    if (const std::string why = why_no_frames(counters);
+        !why.empty() && !program_.signals.stopping())
+        spdlog::warn("{}", why);
     const bool lost = lost_data(counters) || camera.device_dropped > 0;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }

@@ -63,6 +63,7 @@ private:
     const int lookahead_;
     const bool sheet_;
     const std::chrono::steady_clock::time_point begun_;
+    std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known
     ReferenceImages references_;
     std::unique_ptr<RecordedSource> recorded_;  // null: nothing is recorded
     std::unique_ptr<EventFilter> filter_;

@@ -65,7 +65,7 @@ std::string status_line(const Snapshot& now, const RunProgress& progress) {
     line += short_count(progress.event_rate) + " events/s  " +
             text_of("window %.1f ms  ", double(now.window.width().count()) / 1000) + "frames " +
             std::to_string(now.frames) + "  ";
-    if (progress.live) line += latency_text(now) + "  ";
+    if (progress.in_step) line += latency_text(now) + "  ";
     return line + losses_text(now);
 }
 
@@ -75,13 +75,25 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress) {
         text_of("%llu frames from %s events in %.2f s", static_cast<unsigned long long>(end.frames),
                 short_count(double(end.events)).c_str(), seconds);
     if (seconds > 0) text += text_of(" (%.1f frames/s)", double(end.frames) / seconds);
-    text += "; " + latency_text(end) + " (p50/p99)\n" + losses_text(end);
+    if (progress.in_step) text += "; " + latency_text(end) + " (p50/p99)";
+    text += "\n" + losses_text(end);
     if (end.filtered_events > 0) text += "  filtered " + short_count(double(end.filtered_events));
     if (end.gaps > 0) text += "  gaps " + std::to_string(end.gaps);
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         if (const auto n = end.damaged[DamageReason(i)]; n > 0)
             text += "\n  " + std::string{name_of(DamageReason(i))} + ": " + std::to_string(n);
     return text;
+}
+
+std::string why_no_frames(const Snapshot& end) {
+    if (end.frames > 0) return {};
+    const SlicerCounters& cut = end.slicing;
+    if (end.events == 0)
+        return "no picture: no event was read; eventide info says from when to when there are any";
+    if (cut.before_begin == end.events) return "no picture: all events lie before --from";
+    if (cut.before_begin + cut.after_end == end.events)
+        return "no picture: no event lies between --from and --to";
+    return "no picture: what was asked for is shorter than the time between two pictures (--fps)";
 }
 
 std::string camera_text(const CameraCounters& camera) {
@@ -101,7 +113,9 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
     Json json;
     json["elapsed_s"] = progress.elapsed.count();
     json["final"] = final;
-    json["event_rate"] = progress.event_rate;
+    const double seconds = progress.elapsed.count();
+    const bool mean = final && seconds > 0;
+    json["event_rate"] = mean ? double(now.events) / seconds : progress.event_rate;
     json["events"] = now.events;
     json["images"] = now.images;
     json["imu"] = now.imu;

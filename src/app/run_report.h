@@ -15,8 +15,8 @@ namespace eventide::app {
 struct RunProgress {
     std::chrono::duration<double> elapsed{0};
     std::uint64_t total_bytes = 0;  ///< of a recording; 0 where not known
-    bool live = false;
-    double event_rate = 0;  ///< per second of host time, lately
+    bool in_step = false;   ///< with the world: a camera, or a recording at a pace; latency counts
+    double event_rate = 0;  ///< per second of host time, lately; final JSON says the mean
 };
 
 /// The moving line: "[====>  ]  43 %  1.2 M events/s  ...".
@@ -24,6 +24,9 @@ std::string status_line(const Snapshot& now, const RunProgress& progress);
 
 /// Three or four lines at the end.
 std::string summary_text(const Snapshot& end, const RunProgress& progress);
+
+/// Why a run gave no picture, for people; empty when it gave some.
+std::string why_no_frames(const Snapshot& end);
 
 /// What happened between a camera and the line; empty where nothing did.
 std::string camera_text(const CameraCounters& camera);

@@ -43,7 +43,7 @@ bool take_plain(std::span<const std::byte> records, EventLine& line, Batch& into
     const std::int64_t first = load_event(records.data()).t_us;
     const std::int64_t last = load_event(records.data() + records.size() - kAedat4EventBytes).t_us;
     if (!is_aedat4_time(first) || !is_aedat4_time(last)) return false;
-    if (!line.is_plain(first) || last - first > EventLine::kLongestSilence) return false;
+    if (!line.is_plain(first) || last - first > EventLine::kLongestStep) return false;
     const std::uint64_t width = line.width(), height = line.height();
     bool plain = true;
     std::int64_t before = first;
@@ -82,6 +82,8 @@ std::optional<PixelFormat> pixel_format(std::int8_t number) {
     return PixelFormat{channels, depth == 0 ? 1 : 2};
 }
 
+constexpr std::int64_t kLongestExposure = 60'000'000;  // us
+
 /// False when the times contradict each other.
 bool place_in_time(const FlatTable& frame, ReferenceImage& image) {
     const auto stamp = frame.scalar<std::int64_t>(0);
@@ -90,7 +92,7 @@ bool place_in_time(const FlatTable& frame, ReferenceImage& image) {
     if (begin == 0 && end == 0) {
         // Newer recorders stamp the begin of the exposure and give its length; older ones stamp
         // the middle and give begin and end.
-        if (exposure < 0 || exposure > EventLine::kLongestSilence) return false;
+        if (exposure < 0 || exposure > kLongestExposure) return false;
         begin = stamp;
         end = stamp + exposure;
     }

@@ -1,13 +1,13 @@
 // FTAB: a flatbuffer of {offset, {stream, bytes}, elements, first and last time}.
 #include "src/codec/aedat4_table.h"
 
-#include "src/codec/aedat4.h"
+#include "src/codec/aedat4_compression.h"
 #include "src/codec/aedat4_flat.h"
 #include "src/codec/aedat4_flat_writer.h"
 #include "src/codec/byte_order.h"
 
 #include <algorithm>
-#include <tuple>
+#include <array>
 #include <utility>
 
 namespace eventide {
@@ -16,37 +16,6 @@ namespace {
 
 constexpr std::size_t kPacketHeaderBytes = 8;
 constexpr std::size_t kChunkBytes = std::size_t(1) << 20;
-
-template <typename T>
-void widen(const std::vector<T>& items, std::optional<std::pair<SensorTime, SensorTime>>& span) {
-    for (const T& item : items) {
-        if (!span) span.emplace(item.t, item.t);
-        span->first = std::min(span->first, item.t);
-        span->second = std::max(span->second, item.t);
-    }
-}
-
-/// One packet's entry, from its own data.
-Aedat4TableEntry entry_of(const Aedat4Header& header, std::uint64_t position,
-                          std::span<const std::byte> packet) {
-    Aedat4TableEntry entry;
-    entry.position = position + kPacketHeaderBytes;
-    entry.stream = load_little<std::int32_t>(packet.data());
-    entry.bytes = load_little<std::int32_t>(packet.data() + 4);
-    Aedat4Parser parser(header, 0, 0);
-    Batch batch;
-    parser.parse(packet, batch);
-    parser.finish(batch);
-    std::optional<std::pair<SensorTime, SensorTime>> span;
-    widen(batch.events, span);
-    widen(batch.images, span);
-    widen(batch.imu, span);
-    widen(batch.triggers, span);
-    entry.elements = std::int64_t(batch.events.size() + batch.images.size() + batch.imu.size() +
-                                  batch.triggers.size());
-    if (span) std::tie(entry.first, entry.last) = *span;
-    return entry;
-}
 
 std::optional<Aedat4Table> read_at_end(const Aedat4Header& header, const ReadAt& read_at) {
     if (header.table_position <= 0) return {};
@@ -60,31 +29,12 @@ std::optional<Aedat4Table> read_at_end(const Aedat4Header& header, const ReadAt&
     return read_aedat4_table(bytes);
 }
 
-/// Hops from packet to packet; ends where none begins.
-Aedat4Table scan(const Aedat4Header& header, const ReadAt& read_at) {
-    Aedat4Table table;
-    std::vector<std::byte> packet;
-    for (std::uint64_t position = header.stream.data_offset;;) {
-        packet.resize(kPacketHeaderBytes);
-        if (read_at(position, packet) < kPacketHeaderBytes) break;
-        const auto bytes = load_little<std::int32_t>(packet.data() + 4);
-        const auto stream = load_little<std::int32_t>(packet.data());
-        const bool known = std::any_of(header.streams.begin(), header.streams.end(),
-                                       [&](const Aedat4Stream& s) { return s.id == stream; });
-        if (!known || bytes <= 0 || std::size_t(bytes) > kLargestAedat4Packet) break;
-        // In steps, so that a size that lies takes no more memory than there are bytes.
-        bool whole = true;
-        for (std::size_t left = std::size_t(bytes); whole && left > 0;) {
-            const std::size_t n = std::min(left, kChunkBytes), begin = packet.size();
-            packet.resize(begin + n);
-            whole = read_at(position + begin, std::span(packet).subspan(begin)) == n;
-            left -= n;
-        }
-        if (!whole) break;
-        table.entries.push_back(entry_of(header, position, packet));
-        position += packet.size();
-    }
-    return table;
+/// Whether a packet of this entry's stream and size begins where the entry says.
+bool fits(const Aedat4TableEntry& entry, const ReadAt& read_at) {
+    std::array<std::byte, kPacketHeaderBytes> header{};
+    return read_at(entry.position - kPacketHeaderBytes, header) == header.size() &&
+           load_little<std::int32_t>(header.data()) == entry.stream &&
+           load_little<std::int32_t>(header.data() + 4) == entry.bytes;
 }
 
 }  // namespace
@@ -93,14 +43,6 @@ bool Aedat4Table::has_times() const {
     return std::all_of(entries.begin(), entries.end(), [](const Aedat4TableEntry& entry) {
         return entry.last != SensorTime{} && entry.first <= entry.last;
     });
-}
-
-std::uint64_t Aedat4Table::position_for(SensorTime t) const {
-    const auto found = std::find_if(entries.begin(), entries.end(),
-                                    [&](const Aedat4TableEntry& entry) { return entry.last >= t; });
-    if (found != entries.end()) return found->position - kPacketHeaderBytes;
-    if (entries.empty()) return 0;
-    return entries.back().position + std::uint64_t(entries.back().bytes);
 }
 
 std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes) {
@@ -127,10 +69,17 @@ std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes) {
     return table;
 }
 
-Aedat4FileTable load_aedat4_table(const Aedat4Header& header, const ReadAt& read_at) {
-    if (auto table = read_at_end(header, read_at); table && table->has_times())
-        return {std::move(*table), false};
-    return {scan(header, read_at), true};
+std::optional<std::uint64_t> find_in_aedat4_table(const Aedat4Header& header, const ReadAt& read_at,
+                                                  SensorTime t) {
+    const auto table = read_at_end(header, read_at);
+    if (!table || table->entries.empty() || !table->has_times()) return {};
+    // Streams take turns in the file, so the first in it need not be the first in the table.
+    const Aedat4TableEntry* found = nullptr;
+    for (const Aedat4TableEntry& entry : table->entries)
+        if (entry.last >= t && (!found || entry.position < found->position)) found = &entry;
+    const Aedat4TableEntry& entry = found ? *found : table->entries.back();
+    if (!fits(table->entries.front(), read_at) || !fits(entry, read_at)) return {};
+    return entry.position - kPacketHeaderBytes;
 }
 
 std::vector<std::byte> aedat4_table_bytes(const Aedat4Table& table, Aedat4Compression compression) {

@@ -25,10 +25,6 @@ struct Aedat4Table {
 
     /// Some writers leave the times out.
     bool has_times() const;
-
-    /// The position of a packet's header from which all data at or after t are read; the end of the
-    /// last packet when there are none. Needs has_times().
-    std::uint64_t position_for(SensorTime t) const;
 };
 
 /// The table from its (packed) bytes; empty when they are damaged.
@@ -37,13 +33,10 @@ std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes);
 /// Fills the bytes from a position in the file and returns how many there were.
 using ReadAt = std::function<std::size_t(std::uint64_t position, std::span<std::byte> into)>;
 
-/// The table of a file: its own where it is whole and tells times, else made anew from the packets,
-/// which takes reading and unpacking all of them.
-struct Aedat4FileTable {
-    Aedat4Table table;
-    bool rebuilt = false;
-};
-Aedat4FileTable load_aedat4_table(const Aedat4Header& header, const ReadAt& read_at);
+/// Where in the file the first data at or after t begin, by the file's own table. Empty when it has
+/// none, or one that is damaged, tells no times or does not fit what lies there.
+std::optional<std::uint64_t> find_in_aedat4_table(const Aedat4Header& header, const ReadAt& read_at,
+                                                  SensorTime t);
 
 /// The bytes of a table as they go into a file.
 std::vector<std::byte> aedat4_table_bytes(const Aedat4Table& table, Aedat4Compression compression);

@@ -16,14 +16,15 @@ struct AedatRecord {
 
 /// The formats mark neither wraps nor resets, so both are told from damage by what follows:
 /// - a stamp that falls from near 2^31 to near zero, or overflows to negative, wrapped;
-/// - a leap of more than kLongestSilence is believed when the next record confirms it, else that
-///   one record is damage (a flipped bit would otherwise put all that follows in the past);
+/// - a leap of more than kLongestStep is believed when the next record does not lie before it, else
+///   that one record is damage (a flipped bit would otherwise put all that follows in the past);
 /// - a step back is jitter or damage, and the user's business, until kResetRecords records in a row
 ///   go on from there: then the clock was reset or files were joined, and time goes on from where
 ///   it was.
 class AedatTimeline {
 public:
-    static constexpr std::int64_t kLongestSilence = 60'000'000;  // us
+    static constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
+    static constexpr std::int64_t kLongestSilence = 60'000'000;  // us, after a reset
     static constexpr std::int64_t kJitter = 10'000;              // us, no reset is as small
     static constexpr int kResetRecords = 32;
 
@@ -31,10 +32,9 @@ public:
     /// reset(t) before a record after a reset. t may lie before an earlier one.
     template <typename Take, typename Reset>
     void push(const AedatRecord& record, Damage& damage, Take&& take, Reset&& reset) {
+        if ((held_ || step_to(record.stamp) > kLongestStep) && !settle(record, damage, take))
+            return;
         const std::int64_t step = step_to(record.stamp);
-        if (held_ || step > kLongestSilence) {
-            if (!settle_held(record, step, damage, take)) return;
-        }
         if (started_ && step < 0 && goes_on_in_the_past(record.stamp, step)) {
             last_stamp_ = record.stamp;
             steps_back_ = 0;
@@ -57,33 +57,29 @@ public:
     }
 
 private:
-    /// us from the newest time to this stamp.
-    std::int64_t step_to(std::int32_t stamp) const {
-        if (!started_) return 0;
-        const auto step =
-            std::int64_t(std::int32_t(std::uint32_t(stamp) - std::uint32_t(last_stamp_)));
-        const bool wrapped_31_bits =
-            step < -(std::int64_t(1) << 30) && stamp >= 0 && last_stamp_ >= 0;
+    /// us from one stamp to the next.
+    static std::int64_t step_between(std::int32_t from, std::int32_t to) {
+        const auto step = std::int64_t(std::int32_t(std::uint32_t(to) - std::uint32_t(from)));
+        const bool wrapped_31_bits = step < -(std::int64_t(1) << 30) && to >= 0 && from >= 0;
         return wrapped_31_bits ? step + (std::int64_t(1) << 31) : step;
     }
 
-    /// False when the record itself is now held back.
+    /// us from the newest time to this stamp.
+    std::int64_t step_to(std::int32_t stamp) const {
+        return started_ ? step_between(last_stamp_, stamp) : 0;
+    }
+
+    /// Takes or drops the record held back; false when this one is now held back.
     template <typename Take>
-    bool settle_held(const AedatRecord& record, std::int64_t step, Damage& damage, Take& take) {
-        if (step <= kLongestSilence) {
-            damage.count(DamageReason::bad_record);
-            held_.reset();
-            return true;
-        }
+    bool settle(const AedatRecord& record, Damage& damage, Take& take) {
         if (held_) {
-            const auto between = std::int64_t(record.stamp) - held_->stamp;
-            if (between >= 0 && between <= kLongestSilence) {
+            if (step_between(held_->stamp, record.stamp) >= 0)
                 place(*held_, take);
-                held_.reset();
-                return true;
-            }
-            damage.count(DamageReason::bad_record);
+            else
+                damage.count(DamageReason::bad_record);
+            held_.reset();
         }
+        if (step_to(record.stamp) <= kLongestStep) return true;
         held_ = record;
         return false;
     }

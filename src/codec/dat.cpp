@@ -13,7 +13,7 @@ namespace eventide {
 
 namespace {
 
-constexpr std::int64_t kLongestLeap = 60'000'000;  // us
+constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
 constexpr std::int64_t kWrap = std::int64_t(1) << 32;
 
 struct Place {
@@ -102,7 +102,7 @@ void DatParser::take(std::span<const std::byte> records, Batch& into) {
         }
         const Place at = version_1 ? place_of<true>(word) : place_of<false>(word);
         const std::int64_t t = unwrapped(stamp);
-        if (last_us_ != kNoTime && !held_ && t >= last_us_ && t - last_us_ <= kLongestLeap &&
+        if (last_us_ != kNoTime && !held_ && t >= last_us_ && t - last_us_ <= kLongestStep &&
             at.x < width_ && at.y < height_) {
             out[n++] = {from_us(t), std::uint16_t(at.x), std::uint16_t(at.y), Polarity(at.on)};
             last_us_ = t;
@@ -127,7 +127,7 @@ void DatParser::take_event(std::uint32_t stamp, std::uint32_t x, std::uint32_t y
         const std::int64_t before = last_us_;
         last_us_ = to_us(held.t);
         const std::int64_t after = unwrapped(stamp) - last_us_;
-        if (after >= 0 && after <= kLongestLeap) {
+        if (after >= 0 && after < kWrap / 4) {
             into.events.push_back(held);
         } else {
             last_us_ = before;
@@ -138,7 +138,7 @@ void DatParser::take_event(std::uint32_t stamp, std::uint32_t x, std::uint32_t y
     const Event event{from_us(t), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
     if (last_us_ != kNoTime && t < last_us_) {
         damage_.count(DamageReason::time_backwards);
-    } else if (last_us_ != kNoTime && t - last_us_ > kLongestLeap) {
+    } else if (last_us_ != kNoTime && t - last_us_ > kLongestStep) {
         held_ = event;
     } else {
         last_us_ = t;

@@ -47,8 +47,8 @@ private:
     EventBlock block_;
     Damage damage_;
     std::int64_t last_us_ = kNoTime;  ///< of the records taken
-    /// A record after a leap of more than a minute, believed when the next one confirms it: one
-    /// flipped bit would otherwise put all that follows in the past.
+    /// A record after a long step, believed when the next one does not lie before it: one flipped
+    /// bit would otherwise put all that follows in the past.
     std::optional<Event> held_;
 };
 

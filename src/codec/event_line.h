@@ -9,12 +9,12 @@
 
 namespace eventide {
 
-/// Takes events in the order of the stream. A leap of more than kLongestSilence is believed when
-/// the next event confirms it; else the event counts as bad_record: one flipped bit would otherwise
+/// Takes events in the order of the stream. A leap of more than kLongestStep is believed when the
+/// next event does not lie before it; else it counts as bad_record: one flipped bit would otherwise
 /// put all that follows in the past.
 class EventLine {
 public:
-    static constexpr std::int64_t kLongestSilence = 60'000'000;  // us
+    static constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
 
     /// px
     EventLine(std::uint64_t width, std::uint64_t height) : width_(width), height_(height) {}
@@ -53,14 +53,14 @@ public:
 
     /// For a loop of its own over many events: true when this time needs no more than a look.
     bool is_plain(std::int64_t t_us) const {
-        return newest_ && !held_ && t_us >= *newest_ && t_us - *newest_ <= kLongestSilence;
+        return newest_ && !held_ && t_us >= *newest_ && t_us - *newest_ <= kLongestStep;
     }
     void pass(std::int64_t t_us) { newest_ = t_us; }  ///< after is_plain()
 
 private:
     bool is_leap(std::int64_t t_us) const {
         return newest_ && t_us > *newest_ &&
-               std::uint64_t(t_us) - std::uint64_t(*newest_) > std::uint64_t(kLongestSilence);
+               std::uint64_t(t_us) - std::uint64_t(*newest_) > std::uint64_t(kLongestStep);
     }
 
     void take_held(Batch& into) {
@@ -70,21 +70,17 @@ private:
     }
 
     void add_after_leap(const Event& event, Batch& into, Damage& damage) {
-        if (held_) {
-            const Event held = *held_;
-            const bool confirmed = event.t >= held.t && event.t - held.t <= kLeap;
-            if (confirmed)
-                take_held(into);
-            else
-                damage.count(DamageReason::bad_record);
-            held_.reset();
-            add(to_us(event.t), event.x, event.y, event.polarity == Polarity::on, into, damage);
+        if (!held_) {
+            held_ = event;
             return;
         }
-        held_ = event;
+        if (event.t >= held_->t)
+            take_held(into);
+        else
+            damage.count(DamageReason::bad_record);
+        held_.reset();
+        add(to_us(event.t), event.x, event.y, event.polarity == Polarity::on, into, damage);
     }
-
-    static constexpr SensorDuration kLeap{kLongestSilence};
 
     std::uint64_t width_, height_;
     std::optional<std::int64_t> newest_;  ///< us

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <optional>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -66,17 +66,17 @@ bool is_row(const Fields& fields) {
 }
 
 /// The "width height" of a first line of two whole numbers.
-std::optional<std::pair<int, int>> geometry_of(const Fields& fields) {
+std::optional<std::array<std::int64_t, 2>> geometry_of(const Fields& fields) {
     if (fields.size() != 2) return {};
-    std::array<int, 2> sides{};
+    std::array<std::int64_t, 2> sides{};
     for (std::size_t i = 0; i < 2; ++i) {
         const auto value = parse_decimal(fields[i]);
         if (!value || value->fractional || value->negative) return {};
         const auto side = scaled_integer(*value, 0);
-        if (!side || *side < 1 || *side > 65536) return {};
-        sides[i] = int(*side);
+        if (!side) return {};
+        sides[i] = *side;
     }
-    return std::pair{sides[0], sides[1]};
+    return sides;
 }
 
 struct ColumnName {
@@ -147,8 +147,28 @@ bool is_fractional(std::string_view field) {
     return value && value->fractional;
 }
 
-/// Without names the order is t x y p, unless exactly one other column has fractions: only times
-/// can.
+/// How many of the rows of whole numbers can be events in this order, none before the last.
+std::size_t rows_that_fit(const std::vector<Fields>& rows, std::string_view order) {
+    constexpr std::int64_t kMostSide = 65536;
+    std::size_t fit = 0;
+    std::int64_t last = std::numeric_limits<std::int64_t>::min();
+    for (const Fields& row : rows) {
+        const auto whole = [&](char column) {
+            const auto value = parse_decimal(row[order.find(column)]);
+            return value ? scaled_integer(*value, 0) : std::nullopt;
+        };
+        const auto t = whole('t'), x = whole('x'), y = whole('y'), p = whole('p');
+        // A polarity in words is no number.
+        if (!t || !x || !y || *t < last || (p && (*p < -1 || *p > 1))) continue;
+        if (*x < 0 || *x >= kMostSide || *y < 0 || *y >= kMostSide) continue;
+        last = *t;
+        ++fit;
+    }
+    return fit;
+}
+
+/// Without names the order is t x y p, unless exactly one other column has fractions (only times
+/// can), or all are whole and another common order makes events of more rows.
 TextLayout layout_guessed(const std::vector<Fields>& rows) {
     std::array<bool, 4> fractions{};
     for (const Fields& row : rows)
@@ -156,7 +176,11 @@ TextLayout layout_guessed(const std::vector<Fields>& rows) {
     const auto n = std::count(fractions.begin(), fractions.end(), true);
     if (n == 1 && fractions[2]) return layout_stated("xytp");
     if (n == 1 && fractions[3]) return layout_stated("xypt");
-    return layout_stated("txyp");
+    std::string_view best = "txyp";
+    if (n == 0)
+        for (const std::string_view order : {"xytp", "xypt"})
+            if (rows_that_fit(rows, order) > rows_that_fit(rows, best)) best = order;
+    return layout_stated(best);
 }
 
 TextTimeUnit unit_of(const std::vector<Fields>& rows, const TextLayout& layout) {
@@ -201,7 +225,15 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     auto line = lines.next();
     if (line) {
         if (const auto geometry = geometry_of(split_fields(*line))) {
-            std::tie(header.stream.width, header.stream.height) = *geometry;
+            const auto [width, height] = *geometry;
+            constexpr int kMostSide = 65536;
+            if (std::min(width, height) < 1 || std::max(width, height) > kMostSide)
+                throw Error(ErrorKind::input,
+                            "text recording: expected a sensor's size in the line of two numbers, "
+                            "each from 1 to 65536, found \"" +
+                                std::string(line->substr(0, 60)) + "\"");
+            header.stream.width = int(width);
+            header.stream.height = int(height);
             line = lines.next();
         }
     }

@@ -46,12 +46,43 @@ TEST(RunReport, StatusFitsALineAndNamesWhatIsWrong) {
     for (const char* part :
          {"50 %", "2.5 M events/s", "frames 42", "lost 2", "skipped 3", "damaged 5"})
         EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
-    progress.live = true;
+    progress.in_step = true;
     EXPECT_NE(status_line(busy(), progress).find("latency 12.0/0.0 ms"), std::string::npos);
 }
 
 TEST(RunReport, SummaryNamesTheReasonsOfDamage) {
     EXPECT_NE(summary_text(busy(), {}).find("unknown_word: 5"), std::string::npos);
+}
+
+TEST(RunReport, LatencyIsOfRunsInStepWithTheWorld) {
+    EXPECT_EQ(summary_text(busy(), {}).find("latency"), std::string::npos);
+    RunProgress live;
+    live.in_step = true;
+    EXPECT_NE(summary_text(busy(), live).find("latency 12.0/0.0 ms"), std::string::npos);
+}
+
+TEST(RunReport, TheFinalEventRateIsTheMean) {
+    RunProgress progress;
+    progress.elapsed = std::chrono::seconds{2};
+    progress.event_rate = 5;
+    const auto rate = [&](bool final) {
+        return nlohmann::json::parse(stats_json(busy(), progress, final))["event_rate"];
+    };
+    EXPECT_EQ(rate(false), 5.0);
+    EXPECT_EQ(rate(true), 617'283.5);
+}
+
+TEST(RunReport, ARunWithoutPicturesSaysWhy) {
+    EXPECT_EQ(why_no_frames(busy()), "");
+    Snapshot none;
+    EXPECT_NE(why_no_frames(none).find("no event was read"), std::string::npos);
+    none.events = none.slicing.before_begin = 7;
+    EXPECT_NE(why_no_frames(none).find("before --from"), std::string::npos);
+    none.events = 9;
+    none.slicing.after_end = 2;
+    EXPECT_NE(why_no_frames(none).find("between --from and --to"), std::string::npos);
+    none.events = 10;
+    EXPECT_NE(why_no_frames(none).find("--fps"), std::string::npos);
 }
 
 TEST(RunReport, StrictMeansLossAndDamageAndNotSkippedFrames) {

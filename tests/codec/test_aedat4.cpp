@@ -281,15 +281,13 @@ TEST(Aedat4, TheTableLeadsToATime) {
             std::copy_n(rest.begin(), n, into.begin());
             return n;
         };
-        const Aedat4FileTable loaded = load_aedat4_table(header, read_at);
-        EXPECT_EQ(loaded.rebuilt, !with_end);
-        ASSERT_EQ(loaded.table.entries.size(), 4U);
-        EXPECT_EQ(loaded.table.entries[2].elements, 100);
-        const auto position = std::size_t(loaded.table.position_for(events[250].t));
+        const auto position = find_in_aedat4_table(header, read_at, events[250].t);
+        EXPECT_EQ(position.has_value(), with_end);
+        if (!position) continue;
         Aedat4Parser parser(header, kWidth, kHeight);
         parser.resync();
         Batch batch;
-        parser.parse(std::span(bytes).subspan(position), batch);
+        parser.parse(std::span(bytes).subspan(std::size_t(*position)), batch);
         ASSERT_FALSE(batch.events.empty());
         EXPECT_TRUE(batch.events.front() == events[200]);
     }

@@ -48,6 +48,9 @@ TEST(Text, TheSameEventsInEveryLayout) {
              "time_ns,y,x,pol,index\n3811000,133,96,0,5\n1003820000,171,127,1,6\n",
              "96 133 0.003811 0\n127 171 1.003820 1\n",
              "96 133 0 0.003811\n127 171 1 1.003820\n",
+             "96,133,0,3811\n127,171,1,1003820\n",
+             "96,133,3811,0\n127,171,1003820,1\n",
+             "96,133,False,3811\n127,171,True,1003820\n",
              "3.811e-03 9.6e+01 1.33e+02 0e+00\n1.003820e+00 1.27e+02 1.71e+02 1e+00\n",
              "0.0038105 96 133 0\n1.0038204999 127 171 1\n",
              "\xEF\xBB\xBF"
@@ -86,6 +89,22 @@ TEST(Text, TheSizeLineIsRead) {
     EXPECT_EQ(header.stream.height, 260);
     EXPECT_EQ(header.stream.data_offset, 8U);
     EXPECT_EQ(header.layout.unit, TextTimeUnit::seconds);
+}
+
+TEST(Text, WholeNumbersAreTakenInTheOrderThatMakesMostEvents) {
+    // Times too small to stand out: that they never fall tells.
+    const Parsed parsed = parse_text("90,3,1,7\n20,9,0,8\n50,1,1,9\n");
+    ASSERT_EQ(parsed.data.events.size(), 3U);
+    EXPECT_EQ(parsed.data.events[2], (Event{from_us(9), 50, 1, Polarity::on}));
+    // A damaged row does not overrule the others.
+    EXPECT_EQ(parse_text("90,3,1,7000\n20,9,0,8000\n1,1,1,1\n50,1,1,9000\n").data.events.size(),
+              3U);
+}
+
+TEST(Text, ASizeThatNoSensorHasIsRefused) {
+    for (const char* size : {"100000 260", "0 260", "346 99999999999"})
+        EXPECT_THROW(read_text_header(to_bytes(size + std::string("\n0.1 1 2 1\n")), {}), Error)
+            << size;
 }
 
 TEST(Text, OtherBytesDoNotLookLikeText) {

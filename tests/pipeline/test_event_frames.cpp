@@ -154,13 +154,5 @@ TEST(EventFrames, AreOfWhatTheFilterLeavesAndTheObserverSeesAll) {
     EXPECT_EQ(b.counters.snapshot().filtered_events, 6U);
 }
 
-TEST(EventFrames, CanBeginInTheMiddleOfTheBytes) {
-    ToySource source({});
-    Counters counters;
-    EventFrames::Settings settings = Beginning::settings(10);
-    settings.resync_first = true;
-    EXPECT_NO_THROW(EventFrames(source, settings, nullptr, nullptr, counters));
-}
-
 }  // namespace
 }  // namespace eventide

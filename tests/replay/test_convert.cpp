@@ -5,6 +5,9 @@
 #include "src/core/error.h"
 #include "tests/replay/recording_files.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 namespace eventide {
@@ -98,6 +101,25 @@ TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {
     EXPECT_THROW(
         convert(*open_recording(source), folder.path("no/such/folder"), *find_format("text")),
         Error);
+}
+
+TEST(Convert, PipesAndDevicesAreThereAlready) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const std::string source = write_recording(folder.path("a.txt"), "text", events);
+    EXPECT_EQ(convert(*open_recording(source), "/dev/null", *find_format("text")).written.events,
+              100U);
+    EXPECT_THROW(convert(*open_recording(source), "/dev/full", *find_format("text")), Error);
+
+    // AEDAT4 goes back to write where its table is; in a pipe it cannot.
+    const std::string pipe = folder.path("pipe");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    convert(*open_recording(source), pipe, *find_format("aedat4"));
+    std::string bytes(std::size_t(1) << 16, ' ');
+    bytes.resize(std::size_t(::read(reader, bytes.data(), bytes.size())));
+    ::close(reader);
+    EXPECT_TRUE(read_everything(*open_recording(folder.write("b", bytes))).events == events);
 }
 
 TEST(Summary, IsOneObjectWithTheKnownKeys) {

@@ -54,10 +54,10 @@ TEST(EcdFolder, APictureComesOnceTheEventsHavePassedIt) {
     Batch batch;
     EXPECT_EQ(parse("0.10 1 2 1\n", batch), 1U);
     EXPECT_EQ(parse("0.19 1 2 1\n", batch), 1U);
-    EXPECT_EQ(parse("0.30 1 2 1\n", batch), 2U);
+    EXPECT_EQ(parse("0.25 1 2 1\n", batch), 2U);
     parser->resync();
-    EXPECT_EQ(parse("\n0.06 1 2 1\n", batch), 2U);  // jumped back behind the first
-    EXPECT_EQ(parse("0.21 1 2 1\n", batch), 3U);    // the second once more
+    EXPECT_EQ(parse("\n0.06 1 2 1\n", batch), 2U);            // jumped back behind the first
+    EXPECT_EQ(parse("0.15 1 2 1\n0.21 1 2 1\n", batch), 3U);  // the second once more
     parser->finish(batch);
     EXPECT_EQ(batch.images.size(), 5U);
 }

@@ -78,7 +78,19 @@ TEST(OpenRecording, TheSizeComesFromTheOptionTheLineOrTheEvents) {
     const auto scanned = open_recording(without);
     EXPECT_EQ(size_of(*scanned), (std::array{10, 7}));
     EXPECT_EQ(summarize(*scanned).damaged[DamageReason::out_of_range], 1U);
-    EXPECT_THAT(refusal(folder.write("c.txt", "t x y p\n0.1 5000 0 1\n")), HasSubstr("--input-size"));
+    EXPECT_THAT(refusal(folder.write("c.txt", "t x y p\n0.1 5000 0 1\n")),
+                HasSubstr("--input-size"));
+}
+
+TEST(OpenRecording, FilesOfOtherKindsAreCalledByTheirName) {
+    const TestFolder folder;
+    EXPECT_THAT(refusal(folder.write("a.txt.gz", "\x1F\x8B\x08 rest")), HasSubstr("zcat"));
+    EXPECT_THAT(refusal(folder.write("a.png", "\x89PNG\r\n")), HasSubstr("a picture"));
+    // It looks like an AEDAT 1 file: a line with '#', then bytes.
+    const std::string bag = "#ROSBAG V2.0\n" + std::string(200, '\1');
+    EXPECT_THAT(refusal(folder.write("a.bag", bag)), HasSubstr("a ROS 1 bag"));
+    EXPECT_THAT(refusal(folder.write("a.mp4", std::string("\0\0\0\x1C", 4) + "ftypisom")),
+                HasSubstr("a video"));
 }
 
 /// A pipe whose reading end open_recording() can name.

@@ -76,7 +76,6 @@ TEST(Paced, AfterASeekWhatLiesBeforeIsNotWaitedFor) {
     Paced paced(open_recording(path), kForEver);
     paced.seek(events[20'000].t);
     const auto parser = paced.make_parser();
-    parser->resync();
     Batch batch;
     RawPacket packet;
     while (batch.events.empty() || batch.events.back().t < events[20'000].t) {

@@ -1,92 +1,170 @@
-// After a seek every event from the asked time on is read, without reading all before it.
-#include "replay/seek.h"
-
+// Seek then read = read then skip: for every format, real and made, whole and damaged.
 #include "replay/formats.h"
 #include "src/core/error.h"
-#include "tests/replay/recording_files.h"
+#include "tests/replay/made_formats.h"
+
+#include <algorithm>
 
 namespace eventide {
 namespace {
 
 constexpr std::size_t kEvents = 150'000;
 
-std::string big_endian(std::uint32_t value) {
-    std::string out;
-    for (int shift = 24; shift >= 0; shift -= 8) out += char(value >> shift & 0xFF);
-    return out;
-}
-
-/// AEDAT 2.0 has no writer: DVS128 words.
-std::string write_aedat2(const TestFolder& folder, const std::vector<Event>& events) {
-    std::string content = "#!AER-DAT2.0\r\n# AEChip: DVS128\r\n#End Of ASCII Header\r\n";
-    for (const Event& e : events)
-        content += big_endian(std::uint32_t(127 - e.y) << 8 | std::uint32_t(127 - e.x) << 1 |
-                              std::uint32_t(e.polarity == Polarity::off)) +
-                   big_endian(std::uint32_t(to_us(e.t)));
-    return folder.write("a.aedat2", content);
-}
-
-/// Seeks one recording forth and back, and reads from there.
-void expect_seeks(const std::string& path, const std::vector<Event>& events) {
+/// What a reader gets who seeks first; with `position`, how far into the file it begins.
+std::vector<Event> events_from(const std::string& path, SensorTime t, double* position = nullptr) {
     const auto recording = open_recording(path);
-    const auto parser = recording->make_parser();
+    recording->seek(t);
+    if (position) *position = double(recording->position_bytes()) / double(recording->size_bytes());
+    return read_everything(*recording).events;
+}
+
+std::vector<Event> at_or_after(const std::vector<Event>& events, SensorTime t) {
+    std::vector<Event> left;
+    std::copy_if(events.begin(), events.end(), std::back_inserter(left),
+                 [&](const Event& e) { return e.t >= t; });
+    return left;
+}
+
+/// Both in order of time.
+std::vector<Event> common(const std::vector<Event>& some, const std::vector<Event>& others) {
+    std::vector<Event> both;
+    for (const Event& event : some) {
+        const auto [begin, end] =
+            std::equal_range(others.begin(), others.end(), event,
+                             [](const Event& a, const Event& b) { return a.t < b.t; });
+        if (std::find(begin, end, event) != end) both.push_back(event);
+    }
+    return both;
+}
+
+class Seek : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Formats, Seek,
+                         testing::Values("text", "aedat1", "aedat2", "aedat3", "aedat4", "evt2",
+                                         "evt21", "evt3", "dat"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(Seek, ThenReadIsReadThenSkip) {
+    const TestFolder folder;
+    const auto events = some_events(kEvents, 3'000'000);
+    const std::string path = write_as(folder, GetParam(), events);
     for (const std::size_t i : {kEvents / 2, kEvents - 10, std::size_t(0), kEvents / 7}) {
+        double position = 0;
         const SensorTime t = events[i].t;
-        recording->seek(t);
-        parser->resync();
+        EXPECT_TRUE(at_or_after(events_from(path, t, &position), t) == at_or_after(events, t));
         if (i > kEvents / 4) {
-            EXPECT_GT(recording->position_bytes(), recording->size_bytes() / 4);
+            EXPECT_GT(position, 0.25) << "reads from the beginning";
         }
-        Batch batch;
-        RawPacket packet;
-        while (recording->read(packet) == ReadStatus::data) parser->parse(packet.bytes, batch);
-        const auto first = std::find_if(batch.events.begin(), batch.events.end(),
-                                        [&](const Event& e) { return e.t >= t; });
-        const auto expected =
-            std::find_if(events.begin(), events.end(), [&](const Event& e) { return e.t >= t; });
-        EXPECT_EQ(batch.events.end() - first, events.end() - expected);
-        EXPECT_TRUE(std::equal(first, batch.events.end(), expected)) << "from event " << i;
-    }
-    EXPECT_EQ(parser->damaged().total(), 0U);
-}
-
-TEST(Seek, EveryWritableFormatFindsItsTimes) {
-    const TestFolder folder;
-    const auto events = some_events(kEvents, 3'000'000);
-    for (const char* format : {"text", "aedat3"}) {
-        SCOPED_TRACE(format);
-        expect_seeks(write_recording(folder.path("a"), format, events), events);
     }
 }
 
-TEST(Seek, Aedat2FindsItsTimes) {
+TEST_P(Seek, GoesForthAndBack) {
+    const TestFolder folder;
+    const auto events = some_events(20'000);
+    const auto recording = open_recording(write_as(folder, GetParam(), events));
+    for (const std::size_t i : {std::size_t(19'000), std::size_t(100), std::size_t(10'000)}) {
+        recording->seek(events[i].t);
+        const Batch batch = read_everything(*recording);
+        EXPECT_TRUE(at_or_after(batch.events, events[i].t) == at_or_after(events, events[i].t));
+    }
+    recording->seek(from_us(0));
+    EXPECT_TRUE(read_everything(*recording).events == events);
+}
+
+TEST_P(Seek, FindsTimesBehindWraps) {
+    // EVT3's 24 bits wrap five times, the 31 of AEDAT 1 and 2 once, the others not at all.
+    const TestFolder folder;
+    const auto events = some_events(40'000, (std::int64_t(1) << 31) - 40'000'000, 4'000);
+    const std::string path = write_as(folder, GetParam(), events);
+    const auto all = read_everything(*open_recording(path)).events;
+    ASSERT_EQ(all.size(), events.size());
+    for (const std::size_t i : {std::size_t(15'000), std::size_t(25'000), std::size_t(39'000)})
+        EXPECT_TRUE(at_or_after(events_from(path, all[i].t), all[i].t) ==
+                    at_or_after(all, all[i].t));
+}
+
+TEST_P(Seek, LosesNothingInDamagedFiles) {
+    const TestFolder folder;
+    const auto events = some_events(60'000, 3'000'000);
+    const std::string whole = read_text(write_as(folder, GetParam(), events));
+    for (unsigned seed = 0; seed < 5; ++seed) {
+        std::mt19937 random(seed);
+        std::string damaged = whole;
+        for (int flips = 0; flips < 20; ++flips)
+            damaged[5'000 + random() % (damaged.size() - 5'000)] ^= char(1 << random() % 8);
+        const std::string path = folder.write("damaged", damaged);
+        const auto all = read_everything(*open_recording(path)).events;
+        for (const double share : {0.3, 0.6, 0.9}) {
+            const SensorTime t = events[std::size_t(share * double(events.size()))].t;
+            // Of what reading from the beginning finds, what is no damage itself.
+            const auto found = at_or_after(events_from(path, t), t);
+            const auto expected = common(at_or_after(all, t), events);
+            EXPECT_EQ(common(found, expected).size(), expected.size())
+                << "seed " << seed << ", from " << share;
+        }
+    }
+}
+
+TEST_P(Seek, BeyondTheEndsIsSafe) {
+    const TestFolder folder;
+    const auto events = some_events(20'000, 3'000'000);
+    const std::string path = write_as(folder, GetParam(), events);
+    EXPECT_TRUE(at_or_after(events_from(path, from_us(900'000'000)), from_us(900'000'000)).empty());
+    EXPECT_TRUE(events_from(path, from_us(-5)) == events);
+}
+
+TEST(SeekInAedat4, BisectsWhereTheTableIsMissingOrDamaged) {
     const TestFolder folder;
     const auto events = some_events(kEvents, 3'000'000);
-    expect_seeks(write_aedat2(folder, events), events);
+    const std::string whole = read_text(write_as(folder, "aedat4", events));
+    std::string flipped = whole;
+    flipped[flipped.size() - 200] ^= 0x10;
+    const SensorTime t = events[kEvents / 2].t;
+    for (const std::string& content : {whole, flipped, whole.substr(0, whole.size() - 300)}) {
+        const std::string path = folder.write("b.aedat4", content);
+        double position = 0;
+        EXPECT_TRUE(at_or_after(events_from(path, t, &position), t) == at_or_after(events, t));
+        EXPECT_GT(position, 0.25);
+    }
 }
 
-TEST(Seek, AClockThatWrappedIsReadFromTheBeginning) {
+TEST(SeekInText, OfTooFewOrNoLinesIsSafe) {
     const TestFolder folder;
-    const auto events = some_events(kEvents, (std::int64_t(1) << 31) - 500'000);
-    const auto recording = open_recording(write_aedat2(folder, events));
-    const std::uint64_t begin = recording->position_bytes();
-    recording->seek(events.back().t);
-    EXPECT_EQ(recording->position_bytes(), begin);
+    const std::string few = folder.write("a.txt", "9 9\n0.1 1 2 1\n0.2 1 2 1\n");
+    EXPECT_EQ(events_from(few, from_us(200'000)).size(), 2U);
+    const std::string junk =
+        folder.write("b.txt", "9 9\n0.1 1 2 1\n" + std::string(std::size_t(1) << 20, 'x'));
+    EXPECT_EQ(events_from(junk, from_us(200'000)).size(), 1U);
 }
 
-TEST(Seek, ShortOrDamagedFilesAreSoughtSafely) {
-    const TestFolder folder;
-    const auto recording = open_recording(folder.write("a.txt", "9 9\n0.1 1 2 1\n0.2 1 2 1\n"));
-    recording->seek(from_us(200'000));
-    EXPECT_EQ(read_everything(*recording).events.size(), 2U);
-    recording->seek(from_us(999'000'000));
-    EXPECT_EQ(read_everything(*recording).events.size(), 2U);
+class SeekInRealRecordings : public testing::TestWithParam<const char*> {};
 
-    std::string content = "9 9\n0.1 1 2 1\n" + std::string(1 << 20, 'x');
-    const auto junk = open_recording(folder.write("b.txt", content));
-    junk->seek(from_us(200'000));
-    EXPECT_EQ(read_everything(*junk).events.size(), 1U);
+TEST_P(SeekInRealRecordings, ThenReadIsReadThenSkip) {
+    const auto path =
+        std::filesystem::path(EVENTIDE_SOURCE_DIR) / ".." / "shared" / "data" / GetParam();
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << GetParam() << " at hand";
+    const Batch all = read_everything(*open_recording(path.string()));
+    for (const double share : {0.02, 0.5, 0.97}) {
+        const SensorTime t = all.events[std::size_t(share * double(all.events.size()))].t;
+        const auto recording = open_recording(path.string());
+        recording->seek(t);
+        const Batch found = read_everything(*recording);
+        EXPECT_TRUE(at_or_after(found.events, t) == at_or_after(all.events, t)) << share;
+        const auto later = [&](const auto& item) { return item.t >= t; };
+        EXPECT_EQ(std::ranges::count_if(found.imu, later), std::ranges::count_if(all.imu, later));
+        EXPECT_EQ(std::ranges::count_if(found.images, later),
+                  std::ranges::count_if(all.images, later));
+    }
 }
+
+INSTANTIATE_TEST_SUITE_P(All, SeekInRealRecordings,
+                         testing::Values("recordings/camerashake_b", "recordings/slider_depth_head",
+                                         "formats/davis240_imu_rotdisk.aedat2",
+                                         "formats/dvs128_short.aedat2",
+                                         "formats/davis346_robotarm.aedat4",
+                                         "formats/davis346_desk.aedat4", "formats/evt2_640x480.raw",
+                                         "formats/evt3_1280x720_5000.raw",
+                                         "formats/ncars_4407_td.dat"));
 
 }  // namespace
 }  // namespace eventide
