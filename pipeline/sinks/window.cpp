@@ -35,7 +35,9 @@ bool x_server_answers() {
     return display != nullptr;
 }
 
-/// HighGUI's Qt ends the whole program where there is no display, so we look before it does.
+}  // namespace
+
+// HighGUI's Qt ends the whole program where there is no display, so we look before it does.
 void require_display() {
     const std::string_view platform = environment("QT_QPA_PLATFORM");
     if (platform.starts_with("offscreen") || platform.starts_with("minimal")) return;
@@ -49,8 +51,6 @@ void require_display() {
         throw Error(ErrorKind::usage, "--out window: the display " + std::string{display} +
                                           " does not answer; write to a file or a pipe instead");
 }
-
-}  // namespace
 
 void WindowControls::press(int key) {
     switch (key) {

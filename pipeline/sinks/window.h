@@ -21,6 +21,9 @@ struct WindowSettings {
     std::function<bool()> give_up = {};
 };
 
+/// Throws Error (usage) when there is no display, or none that answers.
+void require_display();
+
 /// What the keys have set. Apart from the window, so that it can be tested without one.
 struct WindowControls {
     bool paused = false, closed = false;
@@ -38,7 +41,7 @@ struct WindowControls {
 /// a recording waits, a live source goes on and its frames are skipped.
 class WindowSink : public Sink {
 public:
-    /// Throws Error (usage) when there is no display.
+    /// Throws as require_display().
     explicit WindowSink(WindowSettings settings);
     ~WindowSink() override;
     WindowSink(const WindowSink&) = delete;

@@ -2,6 +2,7 @@
 #include "src/app/bench_command.h"
 #include "src/app/convert_command.h"
 #include "src/app/devices_command.h"
+#include "src/app/doctor_command.h"
 #include "src/app/evaluate_command.h"
 #include "src/app/info_command.h"
 #include "src/app/program.h"
@@ -16,6 +17,7 @@ std::vector<std::unique_ptr<Command>> all_commands() {
     commands.push_back(std::make_unique<InfoCommand>());
     commands.push_back(std::make_unique<ConvertCommand>());
     commands.push_back(std::make_unique<DevicesCommand>());
+    commands.push_back(std::make_unique<DoctorCommand>());
     commands.push_back(std::make_unique<SimulateCommand>());
     commands.push_back(std::make_unique<EvaluateCommand>());
     commands.push_back(std::make_unique<BenchCommand>());

@@ -28,9 +28,8 @@ void InputSettings::add_to(SettingTable& table) {
         [](const std::optional<Size>& s) { return s ? show_size(*s) : "auto"; }));
     table.settings.push_back(parsed_setting<std::string>(
         "input_columns", open.text.columns, "ORDER",
-        "Columns of a text recording, such as txyp or xypt; auto takes them from a header row, "
-        "else "
-        "txyp.",
+        "Columns of a text recording, such as txyp or xypt; auto takes them from a header row, or "
+        "from the numbers themselves.",
         [](const std::string& text) { return text == "auto" ? std::string{} : text; },
         [](const std::string& text) { return text.empty() ? "auto" : text; }));
     table.settings.push_back(choice_setting(

@@ -59,7 +59,8 @@ fs::path find_model(const std::string& name) {
     }
     throw Error(ErrorKind::input, "model '" + name +
                                       "': expected a file, or a name from the models folders (" +
-                                      looked + "); found there: " + names_in(places));
+                                      looked + "); found there: " + names_in(places) +
+                                      "; EVENTIDE_MODELS names another folder");
 }
 
 }  // namespace eventide::app

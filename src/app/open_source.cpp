@@ -4,6 +4,7 @@
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_camera.h"
 #include "replay/formats.h"
+#include "replay/scan_geometry.h"
 #include "src/core/error.h"
 
 #include <utility>
@@ -26,11 +27,18 @@ OpenedSource open_file(const RunSettings& settings, double speed) {
     return opened;
 }
 
-void require_size(const Source& source, const std::string& name) {
-    if (source.info().width < 1 || source.info().height < 1)
+void check_size(const Source& source, const std::string& name) {
+    const int width = source.info().width, height = source.info().height;
+    if (width < 1 || height < 1)
         throw Error(ErrorKind::usage, name +
                                           ": the recording does not say the sensor's size; "
                                           "--input-size 240x180 tells it");
+    // A header that lies must not make us ask for all the memory there is.
+    if (width > kLargestSensorSide || height > kLargestSensorSide)
+        throw Error(ErrorKind::input,
+                    name + ": expected a sensor of at most " + std::to_string(kLargestSensorSide) +
+                        " px each way, found " + std::to_string(width) + "x" +
+                        std::to_string(height) + "; --input-size states another size");
 }
 
 }  // namespace
@@ -43,7 +51,7 @@ OpenedSource open_source(const RunSettings& settings, double speed) {
         opened.source = open_camera(settings.source, {settings.camera, settings.reconnect});
     else
         opened = open_file(settings, speed);
-    require_size(*opened.source, settings.source);
+    check_size(*opened.source, settings.source);
     return opened;
 }
 

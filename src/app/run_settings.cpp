@@ -108,11 +108,17 @@ Size SizeChoice::of(const Size& sensor) const {
 SettingTable RunSettings::table() {
     SettingTable table{"run", "eventide run: a recording or camera in, frames and sigma out.", {}};
     add_times(table);
-    add_network(table);
+    table.group_rest("Which pictures");
     add_outputs(table);
+    table.group_rest("Where they go");
     add_look(table);
+    table.group_rest("How they look");
+    add_network(table);
+    table.group_rest("The network");
     input.add_to(table);
+    table.group_rest("Reading recordings");
     add_machinery(table);
+    table.group_rest("Cameras and buffers");
     return table;
 }
 
@@ -193,11 +199,6 @@ void RunSettings::add_network(SettingTable& table) {
     add(text_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
     add(flag_setting("reset_on_gap", reset_on_gap,
                      "Begin with an empty state where data were lost, instead of keeping it."));
-    add(parsed_setting<std::string>(
-        "hot_pixels", hot_pixels, "off|learn|FILE",
-        "Leave out pixels that fire by themselves: learn finds them while it runs, a file lists "
-        "them, one x,y a line.",
-        check_hot_pixels, same));
 }
 
 /// To where.
@@ -235,6 +236,11 @@ void RunSettings::add_outputs(SettingTable& table) {
 /// How it is to look.
 void RunSettings::add_look(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(parsed_setting<std::string>(
+        "hot_pixels", hot_pixels, "off|learn|FILE",
+        "Leave out pixels that fire by themselves: learn finds them while it runs, a file lists "
+        "them, one x,y a line.",
+        check_hot_pixels, same));
     add(flag_setting("auto_hdr", look.auto_hdr,
                      "Stretch the range the picture uses to black and white, smoothed in time; "
                      "sigma is scaled with it."));

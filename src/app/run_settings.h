@@ -64,7 +64,7 @@ struct RunSettings {
     std::vector<std::string> out;
     bool overwrite = false;
     Uncertainty uncertainty = Uncertainty::automatic;
-    double sigma_white = double(kSigmaWhite);
+    double sigma_white = 0.3;  // kSigmaWhite, in fewer digits
     bool events = false;
     std::string record;
     std::string stats;

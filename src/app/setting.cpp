@@ -20,6 +20,11 @@ std::string environment_of(const SettingTable& table, const Setting& setting) {
     return name;
 }
 
+void SettingTable::group_rest(const std::string& heading) {
+    for (Setting& setting : settings)
+        if (setting.group.empty()) setting.group = heading;
+}
+
 Setting text_setting(std::string key, std::string& value, std::string value_name,
                      std::string help) {
     return parsed_setting<std::string>(
@@ -28,7 +33,7 @@ Setting text_setting(std::string key, std::string& value, std::string value_name
 }
 
 Setting flag_setting(std::string key, bool& value, std::string help) {
-    Setting setting{std::move(key), ValueKind::flag, "", std::move(help), {}, {}, {}};
+    Setting setting{std::move(key), ValueKind::flag, "", std::move(help), {}, {}, {}, {}};
     setting.set = [&value](const std::vector<std::string>& texts) {
         value = parse_choice(texts.back(), {"false", "true"}) == 1;
     };
@@ -39,7 +44,7 @@ Setting flag_setting(std::string key, bool& value, std::string help) {
 Setting list_setting(std::string key, std::vector<std::string>& value, std::string value_name,
                      std::string help) {
     Setting setting{
-        std::move(key), ValueKind::list, std::move(value_name), std::move(help), {}, {}, {}};
+        std::move(key), ValueKind::list, std::move(value_name), std::move(help), {}, {}, {}, {}};
     setting.set = [&value](const std::vector<std::string>& texts) { value = texts; };
     setting.show = [&value] { return value; };
     return setting;

@@ -26,6 +26,7 @@ struct Setting {
     std::string value_name;  ///< "FPS", for help; empty for flags
     std::string help;        ///< one or two sentences, with the values it takes
     std::string short_flag;  ///< "-o", or empty
+    std::string group{};     ///< heading in --help; empty: "Options"
 
     /// Reads the value from text. Throws Error (usage): "expected ..., found ...".
     std::function<void(const std::vector<std::string>&)> set;
@@ -42,6 +43,9 @@ struct SettingTable {
     std::string section;  ///< TOML table: "run"
     std::string title;    ///< a comment over it
     std::vector<Setting> settings;
+
+    /// Puts those that are in no group yet under this heading.
+    void group_rest(const std::string& heading);
 };
 
 std::string flag_of(const Setting& setting);
@@ -64,7 +68,7 @@ Setting parsed_setting(std::string key, T& value, std::string value_name, std::s
                        std::function<T(const std::string&)> parse,
                        std::function<std::string(const T&)> show) {
     Setting setting{
-        std::move(key), ValueKind::text, std::move(value_name), std::move(help), {}, {}, {}};
+        std::move(key), ValueKind::text, std::move(value_name), std::move(help), {}, {}, {}, {}};
     setting.set = [&value, parse](const std::vector<std::string>& texts) {
         value = parse(texts.back());
     };

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 
 namespace eventide::test {
 namespace {
@@ -127,6 +128,18 @@ TEST_F(Commands, DevicesListsWhatThereIs) {
     const Result result = eventide({"devices", "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_TRUE(Json::parse(result.output).is_array());
+}
+
+TEST_F(Commands, DoctorSaysWhatWorksAndWhatToDo) {
+    const Json findings = Json::parse(eventide({"doctor", "--json"}).output);
+    std::map<std::string, Json> by_subject;
+    for (const Json& finding : findings) by_subject[finding["subject"]] = finding;
+    for (const char* subject : {"processor", "network", "video", "window"})
+        EXPECT_EQ(by_subject.count(subject), 1U) << subject;
+    EXPECT_EQ(by_subject["video"]["state"], "ok");
+    EXPECT_EQ(by_subject["window"]["state"], "absent") << "the tests' environment has no display";
+    const Result words = eventide({"doctor"});
+    EXPECT_NE(words.output.find("ok      video: libx264"), std::string::npos) << words.output;
 }
 
 TEST_F(Commands, RealRecordingsGoThroughTheWholeLine) {

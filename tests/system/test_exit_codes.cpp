@@ -29,15 +29,21 @@ TEST_F(ExitCodes, HelpAndVersionAreData) {
         EXPECT_EQ(result.error, "");
     }
     for (const char* command :
-         {"run", "info", "convert", "devices", "simulate", "evaluate", "bench"}) {
+         {"run", "info", "convert", "devices", "doctor", "simulate", "evaluate", "bench"}) {
         const Result result = eventide({command, "--help"});
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_NE(result.output.find("Examples:"), std::string::npos) << command;
+        EXPECT_EQ(result.output.find("Excludes"), std::string::npos) << command;
     }
 }
 
 TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"fly"}, "fly");
+    expect(2, {"rnu"}, "did you mean run?");
+    expect(2, {"run", recording(), "--frm", "5ms"},
+           "did you mean --from?; see eventide run --help");
+    expect(2, {"run", recording(), "--strict", "--no-strict", "--out", "null"}, "--no-strict");
+    expect(2, {"info", recording(), "another"}, "another");
     expect(2, {"run"}, "SOURCE");
     expect(2, {"run", recording()}, "--out");
     expect(2, {"run", recording(), "--fsp", "3", "--out", "null"}, "--fsp");
@@ -76,6 +82,10 @@ TEST_F(ExitCodes, ThreeIsAnInputThatIsNotWhatItSays) {
     expect(3, {"run", recording(), "--model", "nobody", "--out", "a/"}, "nobody");
     write_text(temp_ / "bad.safetensors", "not a model");
     expect(3, {"run", recording(), "--model", "bad.safetensors", "--out", "a/"}, "bad.safetensors");
+    write_text(temp_ / "huge.raw", "% evt 3.0\n% geometry 65535x65535\n% end\n");
+    expect(3, {"run", "huge.raw", "--out", "a/"}, "huge.raw: expected a sensor of at most");
+    write_text(temp_ / "a.gz", "\x1F\x8B\x08");
+    expect(3, {"run", "a.gz", "--out", "a/"}, "zcat");
     EXPECT_FALSE(std::filesystem::exists(temp_ / "a")) << "a wrong input leaves nothing behind";
     EXPECT_FALSE(std::filesystem::exists(temp_ / "b.txt"));
 }

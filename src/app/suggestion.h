@@ -1,0 +1,13 @@
+// What may have been meant by a word that is none.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eventide::app {
+
+/// "; did you mean --fps?" for the nearest of the words, empty where none is near.
+std::string suggestion(std::string_view typed, const std::vector<std::string>& words);
+
+}  // namespace eventide::app
