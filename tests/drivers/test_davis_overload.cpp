@@ -1,0 +1,51 @@
+// A DAVIS sends more than the line takes: the line's own counters, and the mark in the stream.
+#include "pipeline/pipeline.h"
+#include "tests/drivers/davis_streams.h"
+#include "tests/support/toy_line.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace eventide::test {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+
+TEST(DavisOverload, WhatTheLineCannotTakeIsCountedAndTheStreamCarriesAGap) {
+    testing_support::DavisModelSettings small;
+    small.sensor.dvs_columns = small.sensor.aps_columns = kHeight;
+    small.sensor.dvs_rows = small.sensor.aps_rows = kWidth;
+    PluggedIn camera_side{small, {.events = 100'000, .longest_pause_us = 3}};
+    DavisOptions options = at_once();
+    options.settings.transfers = {4, 8 << 10};
+    DavisCamera camera{options};
+
+    ToyEncoder encoder{kHeight, kWidth};
+    ToyRenderer renderer{kHeight, kWidth};
+    ToySink sink;
+    sink.wants = 20;
+    PipelineSettings settings;
+    settings.bins = 3;
+    settings.event_frames.slicer.width = SensorDuration{1000};
+    settings.buffers = {2, 1, 1};
+    Pipeline pipeline{{camera, encoder, renderer, {&sink}}, settings};
+    // The network takes its time until something was lost.
+    encoder.before_encode = [&] {
+        while (pipeline.snapshot().lost() == 0) std::this_thread::yield();
+    };
+    pipeline.run();
+
+    const Snapshot end = pipeline.snapshot();
+    EXPECT_GT(end.lost_packets, 0U);
+    EXPECT_GT(end.lost_bytes, 0U);
+    EXPECT_EQ(end.bytes, camera.counters().bytes) << "every byte was taken or counted as lost";
+    EXPECT_GE(end.gaps, 1U);
+    EXPECT_TRUE(std::any_of(sink.seen.begin(), sink.seen.end(),
+                            [](const ToySink::Seen& frame) { return frame.gap; }));
+    EXPECT_EQ(end.damaged.total(), 0U) << "nothing behind the gap is garbled";
+}
+
+}  // namespace
+}  // namespace eventide::test
