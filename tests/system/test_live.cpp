@@ -175,7 +175,7 @@ TEST_F(Live, ListsCamerasThatCanBeUsedAndThoseThatCannot) {
     EXPECT_EQ(usable[0]["source"], "davis:00000042");
     EXPECT_EQ(usable[0]["name"], "DAVIS346B");
     EXPECT_EQ(usable[0]["firmware"], "6");
-    EXPECT_EQ(usable[0]["logic"], "18");
+    EXPECT_THAT(usable[0]["logic"].get<std::string>(), testing::StartsWith("18"));
     EXPECT_EQ(usable[0]["usable"], true);
 
     bed_.unplug();
