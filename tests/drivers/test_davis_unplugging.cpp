@@ -127,7 +127,10 @@ TEST(DavisUnplugged, AHundredTimesItComesBackMarksTheGapAndLeaksNothing) {
     }
     const Holdings late = holdings();
     EXPECT_EQ(camera->counters().reconnects, unsigned(kTimes - 1));
-    EXPECT_LE(late.files, early->files);  // the test bus may close one of its own a little later
+    // The test bus closes some of its own a little later; one of ours in each cycle would be
+    // ninety.
+    constexpr std::size_t kFewOfTheBus = 10;
+    EXPECT_LT(late.files, early->files + kFewOfTheBus);
     EXPECT_EQ(late.threads, early->threads);
     // A leak of one transfer's buffer in each cycle would be 6 MB.
     EXPECT_LT(double(late.bytes) - double(early->bytes), 1e6);
