@@ -2,6 +2,7 @@
 // are compiled for their instruction set function by function and called only where it is there.
 #include "src/kernels/bf16_kernels.h"
 
+#include "src/kernels/dot_blocks.h"
 #include "src/kernels/vector_kernels.h"
 
 #include <algorithm>
@@ -112,19 +113,7 @@ constexpr std::array<Block, sizeof...(P)> blocks(std::integer_sequence<int, P...
 void dot_rows(const Bf16DotRows& r) {
     static constexpr auto kOne = blocks<false>(std::make_integer_sequence<int, kMaxPixels>{});
     static constexpr auto kTwo = blocks<true>(std::make_integer_sequence<int, kMaxPixels>{});
-    const int parts = (r.pixels + kMaxPixels - 1) / kMaxPixels;
-    const std::uint32_t* weight = r.weight;
-    for (int first = 0; first < r.outputs;) {
-        const bool two = r.outputs - first > kBf16Lanes;
-        const int width = two ? 2 * kBf16Lanes : kBf16Lanes;
-        for (int part = 0; part < parts; ++part) {
-            const int begin = r.pixels * part / parts, end = r.pixels * (part + 1) / parts;
-            const Block block = (two ? kTwo : kOne)[std::size_t(end - begin - 1)];
-            block(r, r.in + begin * r.step, weight, first, r.out + begin * r.out_step + first);
-        }
-        weight += std::ptrdiff_t(r.stretches) * r.length * width;
-        first += width;
-    }
+    dot_in_blocks(r, kBf16Lanes, kOne, kTwo);
 }
 
 EVENTIDE_BF16 void narrow_row(const float* in, std::size_t n, std::uint16_t* out) {

@@ -1,6 +1,8 @@
 // See vector_kernels.h. This text is compiled once per instruction set (foreach_target.h).
 #include "src/kernels/vector_kernels.h"
 
+#include "src/kernels/dot_blocks.h"
+
 // Vectors of unknown length cannot be members of a struct, which the register blocks here are.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -99,21 +101,7 @@ constexpr std::array<Block, sizeof...(P)> blocks(std::integer_sequence<int, P...
 void dot_rows(const DotRows& r) {
     static constexpr auto kOne = blocks<false>(std::make_integer_sequence<int, kMaxPixels>{});
     static constexpr auto kTwo = blocks<true>(std::make_integer_sequence<int, kMaxPixels>{});
-    const int lanes = int(hn::Lanes(D()));
-    // As few blocks as possible, of about the same size.
-    const int parts = (r.pixels + kMaxPixels - 1) / kMaxPixels;
-    const float* weight = r.weight;
-    for (int first = 0; first < r.outputs;) {
-        const bool two = r.outputs - first > lanes;
-        const int width = two ? 2 * lanes : lanes;
-        for (int part = 0; part < parts; ++part) {
-            const int begin = r.pixels * part / parts, end = r.pixels * (part + 1) / parts;
-            const Block block = (two ? kTwo : kOne)[std::size_t(end - begin - 1)];
-            block(r, r.in + begin * r.step, weight, first, r.out + begin * r.out_step + first);
-        }
-        weight += std::ptrdiff_t(r.stretches) * r.length * width;
-        first += width;
-    }
+    dot_in_blocks(r, int(hn::Lanes(D())), kOne, kTwo);
 }
 
 /// Calls body(vector, vector out)-like step over n numbers, the rest through a short copy, so that

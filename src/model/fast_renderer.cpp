@@ -59,8 +59,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
       width_((sensor_width + config_.latent_stride - 1) / config_.latent_stride),
       first_(config_.mlp[0]),
       widest_(*std::ranges::max_element(config_.mlp)),
-      tiles_(latent_tiles(height_, width_)),
-      nothing_(height_, width_, config_.latent) {
+      tiles_(latent_tiles(height_, width_)) {
     const auto extents = extents_of(tiles_, 0, height_, width_);
     past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents};
     whole_ = {hoisted_weights(model, 3), 1, false, arithmetic, extents};
@@ -82,7 +81,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
             last_bias_ = bias;
         }
     }
-    for (PaddedMap& map : codes_) map = nothing_;
+    for (PaddedMap& map : codes_) map = {height_, width_, config_.latent};
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
     const std::size_t area = std::size_t(kSide + 2) * std::size_t(kSide + 2);
@@ -104,15 +103,15 @@ void FastRenderer::reset() noexcept {
     newest_ = 0;
 }
 
-const PaddedMap& FastRenderer::code(std::int64_t k) const noexcept {
-    return k >= 1 ? codes_[LatentWindow::slot(k)] : nothing_;
+const PaddedMap* FastRenderer::code(std::int64_t k) const noexcept {
+    return k >= 1 ? &codes_[LatentWindow::slot(k)] : nullptr;
 }
 
 void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
     newest_ = k;
     const std::size_t slot = LatentWindow::slot(k);
     PaddedMap& mine = codes_[slot];
-    const PaddedMap& before = code(k - 1);
+    const PaddedMap* before = code(k - 1);
     const Outdated outdated{histories_[slot], latent.history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
         if (!outdated(std::size_t(n))) return;
@@ -124,7 +123,7 @@ void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
     histories_[slot] = latent.history;
 
     std::vector<std::uint8_t>& changed = changed_[std::size_t(k % kChangesKept)];
-    const bool comparable = k > 1 && options_.skip_quiet;
+    const bool comparable = before != nullptr && options_.skip_quiet;
     const Outdated since{histories_[LatentWindow::slot(k - 1)], latent.history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
         const Tile near = tiles_[std::size_t(n)].grown(1, height_, width_);
@@ -132,7 +131,7 @@ void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
         bool same = comparable;
         const bool may_differ = same && around(n, since);
         for (int y = near.y0; may_differ && same && y < near.y1; ++y)
-            same = std::memcmp(mine.at(y, near.x0), before.at(y, near.x0), bytes) == 0;
+            same = std::memcmp(mine.at(y, near.x0), before->at(y, near.x0), bytes) == 0;
         changed[std::size_t(n)] = std::uint8_t(!same);
     });
 }
@@ -189,13 +188,19 @@ void FastRenderer::hoist_tile(Hoisted& to, const Tile& tile, float* scratch) noe
     const std::ptrdiff_t step = codes * depth, row = (tile.width() + 2) * step;
     const auto bytes = std::size_t(depth) * sizeof(float);
     for (std::ptrdiff_t c = 0; c < codes; ++c) {
-        const PaddedMap& z = code(to.k - 1 + c);
+        const PaddedMap* z = code(to.k - 1 + c);
         // The map's own border of zeros is what lies outside.
         for (int y = tile.y0 - 1; y <= tile.y1; ++y) {
-            const float* from = z.at(y, tile.x0 - 1);
+            const float* from = z != nullptr ? z->at(y, tile.x0 - 1) : nullptr;
             float* out = scratch + (y - tile.y0 + 1) * row + c * depth;
-            for (int x = tile.x0 - 1; x <= tile.x1; ++x, from += depth, out += step)
+            for (int x = tile.x0 - 1; x <= tile.x1; ++x, out += step) {
+                if (from == nullptr) {
+                    std::memset(out, 0, bytes);
+                    continue;
+                }
                 std::memcpy(out, from, bytes);
+                from += depth;
+            }
         }
     }
     const PackedConv& conv = to.whole ? whole_ : past_;

@@ -51,7 +51,8 @@ private:
     bool unchanged(const Hoisted& from, std::int64_t k, bool whole,
                    std::size_t tile) const noexcept;
     void hoist_tile(Hoisted& to, const Tile& tile, float* scratch) noexcept;
-    const PaddedMap& code(std::int64_t k) const noexcept;
+    /// z_k, which must be kept; null before the first, which reads as zeros.
+    const PaddedMap* code(std::int64_t k) const noexcept;
     void lay_out_columns(const PictureGeometry& picture) noexcept;
     void render_row(const CodeChoice& codes, const PictureGeometry& picture,
                     const std::array<const Hoisted*, 2>& hoisted, int row, SigmaRule rule,
@@ -76,7 +77,6 @@ private:
     int tile_columns_ = 0;
     std::array<PaddedMap, LatentWindow::kLatentsKept> codes_;
     std::array<LatentHistory, LatentWindow::kLatentsKept> histories_;  // of the codes
-    PaddedMap nothing_;
     /// Per event frame (k % size), per tile: whether z_k differs from z_{k-1} in the tile's reach.
     static constexpr std::int64_t kChangesKept = 16;
     std::array<std::vector<std::uint8_t>, kChangesKept> changed_;
