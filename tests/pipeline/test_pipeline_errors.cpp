@@ -1,0 +1,90 @@
+// An error in any part of the line comes out, and takes nothing back.
+#include "src/core/error.h"
+#include "tests/pipeline/toy_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace eventide {
+namespace {
+
+using namespace test;
+
+struct FailingFilter final : EventFilter {
+    void process(std::vector<Event>& events) override {
+        seen += events.size();
+        if (seen > 20) throw std::runtime_error("filter");
+    }
+    std::size_t seen = 0;
+};
+
+/// Makes one part of the line fail; returns the sentence it fails with.
+std::string break_part(Line& line, const std::string& part, FailingFilter& filter) {
+    const auto fail = [part](auto... at) {
+        const bool now = (true && ... && (at == 20));
+        if (now) throw std::runtime_error(part);
+    };
+    if (part == "source") line.source.before_read = fail;
+    if (part == "parser") line.source.parser_fails_at_us = 20'000;
+    if (part == "filter") line.filter = &filter;
+    if (part == "sink") line.sink.before_write = fail;
+    if (part == "close") line.sink.before_close = [fail] { fail(); };
+    return part;
+}
+
+TEST(Pipeline, RethrowsAnErrorOfEachPartAndClosesTheSinks) {
+    const auto packets = one_frame_per_packet(200);
+    Line healthy(packets, quick_settings());
+    healthy.run();
+    for (const std::string part : {"source", "parser", "filter", "sink", "close"})
+        for (const bool threaded : {true, false})
+            for (int round = 0; round < 20; ++round) {
+                SCOPED_TRACE(part + (threaded ? " threaded" : " sequential"));
+                FailingFilter filter;
+                Line line(packets, quick_settings());
+                line.source.endless = part != "close";
+                break_part(line, part, filter);
+                try {
+                    threaded ? line.run() : line.run_sequential();
+                    ADD_FAILURE() << "no error";
+                } catch (const std::runtime_error& error) {
+                    EXPECT_EQ(error.what(), part);
+                }
+                EXPECT_EQ(line.sink.closed, 1);
+                // What was written before is right: an error takes nothing back.
+                ASSERT_LE(line.sink.seen.size(), healthy.sink.seen.size());
+                EXPECT_TRUE(std::equal(line.sink.seen.begin(), line.sink.seen.end(),
+                                       healthy.sink.seen.begin()));
+            }
+}
+
+TEST(Pipeline, WritesWhatWasReadBeforeTheSourceFailed) {
+    for (const bool threaded : {true, false}) {
+        Line line(one_frame_per_packet(200), quick_settings());
+        line.source.before_read = [](std::size_t packet) {
+            if (packet == 100) throw Error(ErrorKind::device, "unplugged");
+        };
+        EXPECT_THROW(threaded ? line.run() : line.run_sequential(), Error);
+        EXPECT_EQ(line.sink.seen.back().t_us, 99'000) << "the last of the event frames up to 99001";
+    }
+}
+
+TEST(Pipeline, KeepsTheFirstErrorOfTwo) {
+    Line line(one_frame_per_packet(200), quick_settings());
+    line.sink.before_write = [](auto frame) {
+        if (frame == 3) throw std::runtime_error("first");
+    };
+    line.sink.before_close = [] { throw std::runtime_error("second"); };
+    try {
+        line.run();
+        ADD_FAILURE();
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "first");
+    }
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,80 @@
+// Gaps in the data, and clocks that were reset.
+#include "tests/pipeline/toy_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace eventide {
+namespace {
+
+using namespace test;
+
+/// Marks chosen packets as coming after a loss, as drivers do.
+struct GappySource final : Source {
+    explicit GappySource(ToySource& toy) : toy_(toy) {}
+    const SensorInfo& info() const override { return toy_.info(); }
+    bool is_live() const noexcept override { return toy_.is_live(); }
+    ReadStatus read(RawPacket& into) override {
+        const ReadStatus status = toy_.read(into);
+        into.gap_before = gaps.count(next_++) > 0;
+        return status;
+    }
+    void stop() noexcept override { toy_.stop(); }
+    std::unique_ptr<Parser> make_parser() const override { return toy_.make_parser(); }
+
+    std::set<std::size_t> gaps;
+
+private:
+    ToySource& toy_;
+    std::size_t next_ = 0;
+};
+
+TEST(Pipeline, KeepsOrResetsItsStateOverAGapAsAsked) {
+    for (const bool reset : {false, true})
+        for (const bool threaded : {true, false}) {
+            PipelineSettings settings = quick_settings();
+            settings.rate = {};
+            settings.reset_on_gap = reset;
+            ToySource toy(one_frame_per_packet(30));
+            GappySource source(toy);
+            source.gaps = {10, 20};
+            ToyEncoder encoder;
+            ToyRenderer renderer;
+            ToySink sink;
+            Pipeline pipeline({source, encoder, renderer, {&sink}}, settings);
+            threaded ? pipeline.run() : pipeline.run_sequential();
+            EXPECT_EQ(encoder.resets, reset ? 2 : 0);
+            EXPECT_EQ(pipeline.snapshot().state_resets, reset ? 2U : 0U);
+            EXPECT_EQ(pipeline.snapshot().gaps, 2U);
+            std::vector<std::size_t> marked;
+            for (std::size_t i = 0; i < sink.seen.size(); ++i)
+                if (sink.seen[i].gap) marked.push_back(i);
+            EXPECT_EQ(marked, (std::vector<std::size_t>{9, 19})) << "the frame data are missing in";
+        }
+}
+
+TEST(Pipeline, BeginsANewStreamWhereTheCamerasClockWasReset) {
+    auto first = toy_events(1000, 1, 500'000), second = toy_events(1000, 2, 1000);
+    auto both = first;
+    both.insert(both.end(), second.begin(), second.end());
+    for (const bool threaded : {true, false}) {
+        Line line(ToySource::packets_of(bytes_of(both), 333), quick_settings());
+        threaded ? line.run() : line.run_sequential();
+        EXPECT_EQ(line.encoder.resets, 1);
+        EXPECT_EQ(line.snapshot().slicing.time_resets, 1U);
+        Line alone({bytes_of(second)}, quick_settings());
+        alone.run();
+        ASSERT_GT(line.sink.seen.size(), alone.sink.seen.size());
+        ASSERT_EQ(line.sink.seen.back().t_us, alone.sink.seen.back().t_us);
+        const auto offset = line.sink.seen.size() - alone.sink.seen.size();
+        for (std::size_t i = 0; i < alone.sink.seen.size(); ++i) {
+            ASSERT_EQ(line.sink.seen[offset + i].t_us, alone.sink.seen[i].t_us);
+            EXPECT_EQ(line.sink.seen[offset + i].sigma, alone.sink.seen[i].sigma);
+            EXPECT_EQ(line.sink.seen[offset + i].index, offset + i);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace eventide

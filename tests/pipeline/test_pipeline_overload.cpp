@@ -1,0 +1,110 @@
+// Too much for a part of the line: recordings wait, live sources lose, pictures are skipped.
+#include "tests/pipeline/toy_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <semaphore>
+#include <thread>
+
+namespace eventide {
+namespace {
+
+using namespace test;
+
+TEST(Pipeline, ARecordingWaitsForASlowSinkAndLosesNothing) {
+    const auto packets = one_frame_per_packet(300);
+    PipelineSettings settings = quick_settings();
+    settings.rate = {};
+    settings.buffers = {4, 2, 2};
+    Line line(packets, settings);
+    std::atomic<std::size_t> read{0};
+    std::counting_semaphore<> tokens{0};
+    std::size_t furthest = 0;
+    line.source.before_read = [&](std::size_t packet) {
+        read = packet;
+        tokens.release();
+    };
+    line.sink.before_write = [&](std::uint64_t frame) {
+        // Never quicker than the source: all buffers are full most of the time.
+        if (frame % 10 == 0) std::this_thread::yield();
+        furthest = std::max(furthest, read - std::size_t(frame));
+    };
+    line.run();
+    EXPECT_EQ(line.sink.count, 301U);
+    EXPECT_EQ(line.snapshot().lost_packets, 0U);
+    // Packets, grids and latents lent, one in each thread's hands, and the one not yet cut.
+    EXPECT_LE(furthest, 4U + 2U + 2U + 4U) << "pressure must walk back to the source";
+}
+
+TEST(Pipeline, ALiveSourceLosesWhatASlowModelCannotTakeAndSaysSo) {
+    constexpr std::size_t kPackets = 400, kReleasedAt = 200;
+    PipelineSettings settings = quick_settings();
+    settings.rate = {};
+    settings.buffers = {4, 1, 1};
+    Line line(one_frame_per_packet(kPackets), settings, true);
+    std::binary_semaphore released{0}, goes_on{0};
+    line.encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 1) released.acquire();
+        if (calls == 3) goes_on.release();
+    };
+    line.source.before_read = [&](std::size_t packet) {
+        if (packet == kReleasedAt) {
+            released.release();
+            goes_on.acquire();
+        }
+    };
+    line.run();
+    const Snapshot s = line.snapshot();
+    EXPECT_EQ(s.packets, kPackets + 1) << "a live source is never made to wait";
+    EXPECT_GE(s.lost_packets, kReleasedAt - 10);
+    EXPECT_EQ(s.events + s.lost_packets, s.packets) << "one event each: nothing else is missing";
+    EXPECT_EQ(s.lost_bytes, 14 * s.lost_packets);
+    const auto marked = std::count_if(line.sink.seen.begin(), line.sink.seen.end(),
+                                      [](const auto& seen) { return seen.gap; });
+    EXPECT_GE(marked, 1);
+    EXPECT_LE(std::uint64_t(marked), s.gaps) << "two gaps may fall into one event frame";
+    EXPECT_EQ(line.encoder.resets, 0) << "state is kept over a gap by default";
+}
+
+TEST(Pipeline, ALiveSourceSkipsTheOldestFramesWhenRenderingIsSlow) {
+    constexpr std::size_t kPackets = 60;
+    PipelineSettings settings = quick_settings();
+    settings.rate = {20'000, 1};  // 20 frames per event frame
+    settings.buffers = {64, 2, 4};
+    Line line(one_frame_per_packet(kPackets), settings, true);
+    std::binary_semaphore behind{0};
+    line.sink.before_write = [&](std::uint64_t frame) {
+        if (frame == 5) behind.acquire();
+    };
+    // At the fourth event frame the second and third wait behind the one being rendered.
+    line.encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 4) behind.release();
+    };
+    line.run();
+    const Snapshot s = line.snapshot();
+    EXPECT_GT(s.skipped_frames, 0U);
+    EXPECT_EQ(s.frames, line.sink.seen.size());
+    EXPECT_EQ(s.frames + s.skipped_frames, line.sink.seen.back().index + 1)
+        << "each frame of the clock is written or counted, and the newest is written";
+    EXPECT_GT(line.sink.seen[6].index, 6U) << "the oldest waiting ones go";
+}
+
+TEST(Pipeline, ALiveLineGoesOnGivingFramesInSilence) {
+    std::vector<std::vector<std::byte>> packets = one_frame_per_packet(3);
+    packets.emplace_back();  // a timeout, again and again
+    PipelineSettings settings = quick_settings();
+    settings.event_frames.silence_margin = SensorDuration{1000};
+    Line line(packets, settings, true);
+    line.source.endless = true;
+    line.sink.wants = 40;
+    line.run();
+    EXPECT_EQ(line.sink.count, 40U);
+    EXPECT_GE(line.sink.seen.back().t_us, 19'000) << "events ended at 3001";
+    EXPECT_GT(line.snapshot().silent_frames, 0U);
+}
+
+}  // namespace
+}  // namespace eventide
