@@ -22,24 +22,15 @@ enum Code : std::uint16_t {
     wrap_code
 };
 
-/// What a word is, as masks: bits 15-12 are the index. All zero: none of the three.
-struct PlainWord {
-    std::int64_t time = 0;            ///< -1 a timestamp
-    std::int32_t row = 0, event = 0;  ///< -1 a row, -1 an event
-    std::int32_t other = -1;
-};
-constexpr std::array<PlainWord, 16> kPlainWords = [] {
-    std::array<PlainWord, 16> words{};
-    words[y_code] = {0, -1, 0, 0};
-    words[x_off_code] = words[x_on_code] = {0, 0, -1, 0};
-    for (std::size_t i = kTimestampBit >> 12; i < words.size(); ++i) words[i] = {-1, 0, 0, 0};
-    return words;
-}();
-
 }  // namespace
 
 DavisParser::DavisParser(const DavisSensor& sensor)
-    : sensor_(sensor), frame_(sensor), imu_(sensor) {}
+    : sensor_(sensor), frame_(sensor), imu_(sensor) {
+    kinds_[y_code] = {0, -1, 0, sensor.dvs_rows - 1};
+    kinds_[x_off_code] = kinds_[x_on_code] = {0, 0, 1, sensor.dvs_columns - 1};
+    for (std::size_t i = kTimestampBit >> 12; i < kinds_.size(); ++i)
+        kinds_[i] = {-1, 0, 0, kDataMask};
+}
 
 void DavisParser::parse(std::span<const std::byte> bytes, Batch& into) {
     words_.feed(bytes, [&](std::span<const std::byte> whole) { parse_words(whole, into); });
@@ -48,8 +39,11 @@ void DavisParser::parse(std::span<const std::byte> bytes, Batch& into) {
 void DavisParser::parse_words(std::span<const std::byte> bytes, Batch& into) {
     while (!bytes.empty()) {
         std::size_t done = 0;
-        if (clock_.is_settled() && y_known_)
-            done = plain_words(bytes.first(std::min(bytes.size(), 2 * kStretchWords)), into);
+        if (clock_.is_settled() && y_known_ && y_ < sensor_.dvs_rows) {
+            const auto stretch = bytes.first(std::min(bytes.size(), 2 * kStretchWords));
+            done = sensor_.dvs_swapped ? plain_words<true>(stretch, into)
+                                       : plain_words<false>(stretch, into);
+        }
         if (done == 0) {
             word(load_little<std::uint16_t>(bytes.data()), into);
             done = 2;
@@ -61,27 +55,23 @@ void DavisParser::parse_words(std::span<const std::byte> bytes, Batch& into) {
 /// Timestamps, rows and events are all but a few of the words, in an order that no branch predictor
 /// can guess: so each word is worked on as if it were all three, and masks keep what it really is.
 /// Stops before the first word that is anything else, or bad; returns the bytes read.
+template <bool kSwapped>
 std::size_t DavisParser::plain_words(std::span<const std::byte> bytes, Batch& into) {
     const std::int64_t wrap_add = clock_.wrap_add();
-    const int last_column = sensor_.dvs_columns - 1, last_row = sensor_.dvs_rows - 1;
-    const int swap = sensor_.dvs_swapped ? -1 : 0;
-    std::int64_t time = clock_.us();
-    int y = y_;
+    std::int64_t time = clock_.us(), y = y_;
     Event* event = found_.data();
     std::size_t at = 0;
     for (; at < bytes.size(); at += 2) {
         const std::uint16_t w = load_little<std::uint16_t>(&bytes[at]);
-        const PlainWord& is = kPlainWords[w >> 12];
-        const int data = w & kDataMask;
+        const WordKind& is = kinds_[w >> 12];
+        const std::int64_t data = w & kDataMask;
         const std::int64_t passed = (wrap_add + (w & ~kTimestampBit) - time) & is.time;
-        const int outside = ((last_column - data) | (last_row - y)) & is.event;  // if negative
-        if ((passed | outside | is.other) < 0) break;
+        if ((passed | (is.last - data)) < 0) break;
         time += passed;
         y ^= (y ^ data) & is.row;
-        const int swapped = (y ^ data) & swap;
-        *event = {from_us(time), std::uint16_t(data ^ swapped), std::uint16_t(y ^ swapped),
-                  Polarity((w >> 12) & 1)};
-        event -= is.event;
+        *event = {from_us(time), std::uint16_t(kSwapped ? y : data),
+                  std::uint16_t(kSwapped ? data : y), Polarity((w >> 12) & 1)};
+        event += is.event;
     }
     clock_.move_on(time);
     y_ = std::uint16_t(y);

@@ -50,7 +50,15 @@ public:
 private:
     static constexpr std::size_t kStretchWords = 256;  ///< read at a time by plain_words()
 
+    /// What bits 15-12 of a word make of it, as masks; none of the three where `last` is negative.
+    struct WordKind {
+        std::int64_t time = 0, row = 0;  ///< -1 a timestamp, -1 a row
+        std::int64_t event = 0;          ///< 1 an event
+        std::int64_t last = -1;          ///< the largest value of bits 11-0
+    };
+
     void parse_words(std::span<const std::byte> bytes, Batch& into);
+    template <bool kSwapped>
     std::size_t plain_words(std::span<const std::byte> bytes, Batch& into);
     void word(std::uint16_t word, Batch& into);
     void misc8(std::uint16_t data);
@@ -68,6 +76,7 @@ private:
     IniVationClock<15> clock_;
     std::uint16_t y_ = 0;
     bool y_known_ = false;
+    std::array<WordKind, 16> kinds_;
     std::array<Event, kStretchWords + 1> found_;  ///< scratch of plain_words()
 };
 
