@@ -164,6 +164,19 @@ TEST(DvxplorerCamera, ASettingThatTheCameraDoesNotTakeIsNamed) {
     EXPECT_EQ(DvxplorerCamera{trusting}.info().name, "DVXplorer");
 }
 
+TEST(DvxplorerCamera, CountsWhatTheCameraItselfDropped) {
+    PluggedIn side;
+    constexpr davis::Register kLow{davis::mux, 84};
+    side.model->write({kLow, 1000});  // before it was started
+    DvxplorerCamera camera{at_once()};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    side.bed.look([&] { side.model->write({kLow, 1007}); });
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+    EXPECT_EQ(camera.counters().device_dropped, 7U);
+}
+
 TEST(DvxplorerCamera, UnpluggedItComesBackBehindAGap) {
     for (const bool mini : {false, true}) {
         DvxplorerModelSettings settings;
