@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 #include <utility>
 
 namespace eventide {
@@ -17,7 +17,8 @@ namespace eventide {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& doing) {
-    throw Error(ErrorKind::input, path + ": cannot " + doing + ": " + std::strerror(errno));
+    throw Error(ErrorKind::input,
+                path + ": cannot " + doing + ": " + std::system_category().message(errno));
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include "src/core/error.h"
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace eventide {
@@ -13,7 +13,8 @@ namespace eventide {
 namespace {
 
 [[noreturn]] void fail(const std::string& path) {
-    throw Error(ErrorKind::failed, path + ": cannot write: " + std::strerror(errno));
+    throw Error(ErrorKind::failed,
+                path + ": cannot write: " + std::system_category().message(errno));
 }
 
 }  // namespace
