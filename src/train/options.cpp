@@ -20,6 +20,11 @@ void read_value(const std::string& text, std::vector<int>& value) {
     std::istringstream in{text};
     for (std::string part; std::getline(in, part, ',');) read_value(part, value.emplace_back());
 }
+void read_value(const std::string& text, std::vector<std::string>& value) {
+    value.clear();
+    std::istringstream in{text};
+    for (std::string part; std::getline(in, part, ',');) value.push_back(part);
+}
 void read_value(const std::string& text, Range& value) {
     const auto comma = text.find(',');
     if (comma == text.npos) throw std::invalid_argument{"LOW,HIGH"};
@@ -45,6 +50,11 @@ std::string write_value(const T& value) {
 std::string write_value(const std::vector<int>& value) {
     std::string text;
     for (const int v : value) text += (text.empty() ? "" : ",") + std::to_string(v);
+    return text;
+}
+std::string write_value(const std::vector<std::string>& value) {
+    std::string text;
+    for (const std::string& v : value) text += (text.empty() ? "" : ",") + v;
     return text;
 }
 std::string write_value(const Range& value) {
@@ -90,6 +100,8 @@ OptionTable::OptionTable(TrainOptions& o) {
 
     add("encoder", o.model.encoder, "gated or thesis");
     add("bins", o.model.bins, "B of the voxel grid");
+    add("inputs", o.inputs,
+        "channels of the voxel grid that may be used: polarity,mean,std,count,since");
     add("widths", o.model.widths, "channels per level");
     add("recurrent", o.model.recurrent, "per level: 1 recurrent, 0 held");
     add("res-blocks", o.model.res_blocks, "at the lowest resolution");
@@ -106,6 +118,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("episode", o.data.episode, "event frames of one scene");
     add("frame-s", o.data.frame_s, "s, width of event frames");
     add("speed", o.data.scene.wander.speed, "px/s, of scenes");
+    add("leg-s", o.data.scene.wander.leg_s, "s, between changes of a scene's heading");
+    add("turn", o.data.scene.wander.turn,
+        "rad, of each change; near 3.14 the camera trembles in place");
     add("still", o.data.scene.still_background, "share of scenes whose camera stands still");
     add("objects", o.data.scene.objects_max, "moving objects at most");
     add("faint", o.data.scene.faint_probability, "share of scenes of little contrast");
@@ -115,6 +130,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("light-changes", o.data.scene.light_change_probability, "share of scenes");
     add("flicker", o.data.scene.flicker_probability, "share of scenes under mains light");
     add("threshold", o.data.sensor.threshold, "ln of the light's change");
+    add("shot-hz", o.data.sensor.shot_hz, "noise events per pixel in the dark");
+    add("leak-hz", o.data.sensor.leak_hz, "ON events per pixel without any change");
 
     add("l1", o.loss.l1, "weight in the loss");
     add("ssim", o.loss.ssim, "weight in the loss");

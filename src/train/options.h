@@ -5,6 +5,7 @@
 #include "src/train/data.h"
 #include "src/train/losses.h"
 #include "src/train/optimiser.h"
+#include "src/train/parameters.h"
 
 #include <functional>
 #include <map>
@@ -15,6 +16,7 @@ namespace eventide {
 
 struct TrainOptions {
     ModelConfig model;
+    std::vector<std::string> inputs{kGridInputs.begin(), kGridInputs.end()};
     DataSettings data;
     LossWeights loss;
     OptimiserSettings optimiser;
@@ -24,7 +26,7 @@ struct TrainOptions {
     std::string device = "cpu", precision = "auto";
     double minutes = 60;
     std::string clock = "wall";  ///< that minutes go by: wall, or cpu
-    int steps = 0;  ///< where not 0, the budget instead of `minutes`
+    int steps = 0;               ///< where not 0, the budget instead of `minutes`
     int threads = 1, lanes = 2, groups = 4;
     double learning_rate = 1e-3, final_rate = 0.02, constant_share = 0.6;
     int warm_up = 100;

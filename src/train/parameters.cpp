@@ -1,5 +1,8 @@
 #include "src/train/parameters.h"
 
+#include "src/core/error.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -36,6 +39,22 @@ Parameters initial_parameters(const ModelConfig& config, std::uint64_t seed, tor
     parameters.at(last + ".bias")[1] = -1.5;  // sigma .22: about the spread of grey levels
     for (auto& [name, values] : parameters) values = values.to(device).set_requires_grad(true);
     return parameters;
+}
+
+torch::Tensor input_mask(const ModelConfig& config, const std::vector<std::string>& inputs) {
+    torch::Tensor mask = torch::zeros({1, config.input_channels(), 1, 1});
+    for (const std::string& name : inputs) {
+        const auto at = std::ranges::find(kGridInputs, name) - kGridInputs.begin();
+        if (at == std::ssize(kGridInputs))
+            throw Error(
+                ErrorKind::usage,
+                "--inputs: expected polarity, mean, std, count or since, found '" + name + "'");
+        if (name == "since")
+            mask[0][4 * config.bins] = 1;
+        else
+            for (int b = 0; b < config.bins; ++b) mask[0][4 * b + at] = 1;
+    }
+    return mask;
 }
 
 Tensor to_tensor(const torch::Tensor& values) {

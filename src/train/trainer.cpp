@@ -78,9 +78,15 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
       say_(std::move(say)),
       device_(device_of(options)),
       type_(arithmetic_type(options)),
-      optimiser_(options.optimiser, initial_parameters(options.model, options.data.seed, device_)) {
+      optimiser_(options.optimiser, initial_parameters(options.model, options.data.seed, device_)),
+      input_mask_(input_mask(options.model, options.inputs).to(device_)) {
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
+    {
+        const torch::NoGradGuard none;
+        for (Parameters* weights : {&optimiser_.parameters, &optimiser_.ema})
+            weights->at("encoder.in.weight") *= input_mask_;
+    }
     options_.data.bins = options.model.bins;
     std::filesystem::create_directories(options.out);
     if (!options.lpips.empty())
@@ -183,6 +189,8 @@ void Trainer::step() {
         for (std::size_t i = 1; i < shares.size(); ++i) terms.means[k] += shares[i].terms.means[k];
         terms.means[k] /= double(shares.size());
     }
+    torch::Tensor& of_inputs = gradients.at("encoder.in.weight");
+    of_inputs = of_inputs * input_mask_;  // what starts at 0 stays there
     const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
     if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next windows
         ++skipped_;

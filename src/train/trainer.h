@@ -57,6 +57,7 @@ private:
     torch::Device device_;
     torch::ScalarType type_;
     Optimiser optimiser_;
+    torch::Tensor input_mask_;
     std::unique_ptr<Perceptual> perceptual_;
     std::unique_ptr<Validation> validation_;
     std::unique_ptr<Feed> feed_;

@@ -124,6 +124,23 @@ TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
     EXPECT_TRUE(fs::exists(out / "best.safetensors"));
 }
 
+TEST(Training, AnInputThatIsNotUsedHasNoWeightInTheModel) {
+    const fs::path out = empty_folder("inputs");
+    TrainOptions options = tiny_options(out);
+    options.steps = 4;
+    options.inputs = {"polarity", "since"};
+    const auto run = trainer(options);
+    train(*run);
+    const auto per_channel =
+        run->parameters().at("encoder.in.weight").detach().abs().sum(torch::IntArrayRef{0, 2, 3});
+    ASSERT_EQ(per_channel.size(0), 9);  // B = 2
+    for (const int channel : {0, 4, 8}) EXPECT_GT(per_channel[channel].item<float>(), 0) << channel;
+    for (const int channel : {1, 2, 3, 5, 6, 7})
+        EXPECT_EQ(per_channel[channel].item<float>(), 0) << channel;
+    options.inputs = {"colour"};
+    EXPECT_THROW(trainer(options), Error);
+}
+
 TEST(Training, ACheckpointOfAnotherNetworkIsRefusedByName) {
     const fs::path out = empty_folder("refuses");
     TrainOptions options = tiny_options(out);
