@@ -74,8 +74,8 @@ bool bf16_available() {
 
 Arithmetic best_arithmetic(bool bf16_allowed, bool onednn_allowed) {
     if (!bf16_allowed || !bf16_available()) return kFloat;
-    static const Arithmetic kAny = measure(true), kOwn = measure(false);
-    return onednn_allowed ? kAny : kOwn;
+    static const Arithmetic any = measure(true), own = measure(false);
+    return onednn_allowed ? any : own;
 }
 
 }  // namespace eventide

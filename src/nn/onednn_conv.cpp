@@ -15,6 +15,7 @@
 #include <cassert>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 // Debian's oneDNN divides its work among OpenMP's threads, as many as OpenMP has been told on the
 // calling thread. These two are OpenMP's own; declared here because clang has no <omp.h> of its
@@ -47,8 +48,8 @@ private:
 };
 
 const dnnl::engine& processor() {
-    static const dnnl::engine kProcessor{dnnl::engine::kind::cpu, 0};
-    return kProcessor;
+    static const dnnl::engine engine{dnnl::engine::kind::cpu, 0};
+    return engine;
 }
 
 constexpr std::size_t kLine = 64;  // bytes; what oneDNN likes its memory aligned to
@@ -60,17 +61,14 @@ std::size_t in_lines(std::size_t bytes) {
 /// Cuts scratch memory into aligned pieces.
 class Pieces {
 public:
-    explicit Pieces(float* scratch) : at_(reinterpret_cast<std::uintptr_t>(scratch)) {
-        at_ = (at_ + kLine - 1) / kLine * kLine;
+    explicit Pieces(float* scratch) : at_(reinterpret_cast<std::byte*>(scratch)) {
+        const auto address = reinterpret_cast<std::uintptr_t>(scratch);
+        at_ += in_lines(address) - address;
     }
-    void* take(std::size_t bytes) {
-        void* piece = reinterpret_cast<void*>(at_);
-        at_ += in_lines(bytes);
-        return piece;
-    }
+    void* take(std::size_t bytes) { return std::exchange(at_, at_ + in_lines(bytes)); }
 
 private:
-    std::uintptr_t at_;
+    std::byte* at_;
 };
 
 bool is_at_least(dnnl::cpu_isa isa) {
@@ -206,9 +204,8 @@ OnednnConv::OnednnConv(const plain::ConvWeights<float>& weights, int stride, boo
         {{weights.out, weights.in, 3, 3}, memory::data_type::f32, memory::format_tag::oihw},
         processor(),
         values.data()};
-    std::ranges::sort(extents);
-    const auto surplus = std::ranges::unique(extents);
-    extents.erase(surplus.begin(), surplus.end());
+    std::ranges::sort(extents, {}, [](Extent e) { return std::pair{e.height, e.width}; });
+    extents.erase(std::unique(extents.begin(), extents.end()), extents.end());
     for (const Extent extent : extents) made->add(extent, relu, plain_weights);
     primitives_ = std::move(made);
 }
@@ -222,6 +219,8 @@ std::size_t OnednnConv::scratch_size() const {
     return bytes / sizeof(float);
 }
 
+// Only memory can run out, which ends the program here as anywhere else.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 void OnednnConv::run(const ConvCall& call, float* scratch) const noexcept {
     const Primitives& p = *primitives_;
     const Primitives::Sized& sized = p.of({call.height, call.width});
@@ -241,8 +240,8 @@ void OnednnConv::run(const ConvCall& call, float* scratch) const noexcept {
                                                     {DNNL_ARG_SCRATCHPAD, room.get()}}};
     {
         const OneThread one_thread;
-        thread_local const dnnl::stream kStream{processor()};
-        dnnl::error::wrap_c_api(dnnl_primitive_execute(sized.primitive.get(), kStream.get(),
+        thread_local const dnnl::stream stream{processor()};
+        dnnl::error::wrap_c_api(dnnl_primitive_execute(sized.primitive.get(), stream.get(),
                                                        int(arguments.size()), arguments.data()),
                                 "oneDNN could not run a convolution");
     }

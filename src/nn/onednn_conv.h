@@ -41,6 +41,7 @@ public:
     /// Numbers of 4 bytes that run() needs for any of the extents.
     std::size_t scratch_size() const;
     /// On any number of threads, each with its own scratch memory.
+    // NOLINTNEXTLINE(bugprone-exception-escape)
     void run(const ConvCall& call, float* scratch) const noexcept;
 
 private:

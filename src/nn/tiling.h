@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <compare>
 #include <cstring>
 #include <vector>
 
@@ -50,7 +49,7 @@ inline std::vector<Tile> latent_tiles(int height, int width) {
 /// How many outputs a region has.
 struct Extent {
     int height = 0, width = 0;
-    friend auto operator<=>(const Extent&, const Extent&) = default;
+    friend bool operator==(const Extent&, const Extent&) = default;
 };
 
 /// Of the tiles grown by n within their map.
