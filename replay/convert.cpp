@@ -72,8 +72,8 @@ ConvertReport convert(Recording& recording, const std::string& path, const Forma
         parser->parse(packet.bytes, batch);
         pass_on();
         const auto now = parser->clock();
-        enough =
-            (options.to && now && *now - kLatestData > *options.to) || (progress && !progress());
+        enough = (options.to && now && *now - kLatestData > *options.to) || file.reader_gone() ||
+                 (progress && !progress());
     }
     parser->finish(batch);
     pass_on();

@@ -40,8 +40,14 @@ RecordingFile::~RecordingFile() {
     if (file_ && owned_) std::fclose(file_);
 }
 
+void RecordingFile::put(std::span<const std::byte> bytes) {
+    if (reader_gone_ || std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size()) return;
+    if (errno != EPIPE) fail(path_);
+    reader_gone_ = true;
+}
+
 void RecordingFile::flush() {
-    if (std::fwrite(pending_.data(), 1, pending_.size(), file_) != pending_.size()) fail(path_);
+    put(pending_);
     bytes_written_ += pending_.size();
     pending_.clear();
 }
@@ -59,11 +65,12 @@ void RecordingFile::finish() {
             if (errno == ESPIPE) break;  // the index stays unnamed, as after a crash
             fail(path_);
         }
-        if (std::fwrite(patch.bytes.data(), 1, patch.bytes.size(), file_) != patch.bytes.size())
-            fail(path_);
+        put(patch.bytes);
     }
     std::FILE* file = std::exchange(file_, nullptr);
-    if ((owned_ ? std::fclose(file) : std::fflush(file)) != 0) fail(path_);
+    if ((owned_ ? std::fclose(file) : std::fflush(file)) == 0 || reader_gone_) return;
+    if (errno != EPIPE) fail(path_);
+    reader_gone_ = true;
 }
 
 }  // namespace eventide

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace eventide {
@@ -29,7 +30,11 @@ public:
 
     std::uint64_t bytes_written() const { return bytes_written_; }
 
+    /// Whoever read the pipe went away: no error, but nothing is written any more.
+    bool reader_gone() const { return reader_gone_; }
+
 private:
+    void put(std::span<const std::byte> bytes);
     void flush();
 
     std::string path_;
@@ -38,6 +43,7 @@ private:
     bool owned_ = false;
     std::vector<std::byte> pending_;
     std::uint64_t bytes_written_ = 0;
+    bool reader_gone_ = false;
 };
 
 }  // namespace eventide

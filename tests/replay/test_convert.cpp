@@ -10,6 +10,10 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <csignal>
+#include <thread>
+
 namespace eventide {
 namespace {
 
@@ -120,6 +124,25 @@ TEST(Convert, PipesAndDevicesAreThereAlready) {
     bytes.resize(std::size_t(::read(reader, bytes.data(), bytes.size())));
     ::close(reader);
     EXPECT_TRUE(read_everything(*open_recording(folder.write("b", bytes))).events == events);
+}
+
+TEST(Convert, EndsWhereTheReaderOfAPipeWentAway) {
+    const TestFolder folder;
+    const auto handler = std::signal(SIGPIPE, SIG_IGN);  // as the program does
+    const std::string source = write_recording(folder.path("a.txt"), "text", some_events(100'000));
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    const auto recording = open_recording(source);
+    std::jthread reader([from = ends[0]] {
+        char first = 0;
+        EXPECT_EQ(::read(from, &first, 1), 1);
+        ::close(from);
+    });
+    const std::string pipe = "/dev/fd/" + std::to_string(ends[1]);
+    EXPECT_NO_THROW(convert(*recording, pipe, *find_format("text")));
+    EXPECT_LT(recording->position_bytes(), recording->size_bytes()) << "the rest is not read";
+    ::close(ends[1]);
+    std::signal(SIGPIPE, handler);
 }
 
 TEST(Summary, IsOneObjectWithTheKnownKeys) {
