@@ -131,6 +131,11 @@ TEST_F(Run, KeepsItsStateInAFileOfThisModelOnly) {
     const Result wrong = with({"c/", "--state-in", "state", "--model", wrong_model()});
     EXPECT_EQ(wrong.exit_code, 3) << wrong.error;
     EXPECT_FALSE(std::filesystem::exists(temp_ / "c")) << "a wrong input leaves nothing behind";
+    std::filesystem::resize_file(temp_ / "state", 1000);
+    const Result cut = with({"d/", "--state-in", "state"});
+    EXPECT_EQ(cut.exit_code, 3) << cut.error;
+    EXPECT_NE(cut.error.find("state: tensor 'h.0'"), std::string::npos) << cut.error;
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "d"));
 }
 
 TEST_F(Run, RecordsWhatItReads) {
