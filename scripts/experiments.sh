@@ -82,7 +82,7 @@ train_and_score() {
   done
   "${evaluate[@]}" "$DATA/recordings/camerashake_b" "$DATA/recordings/slider_depth_head" \
     --csv "$folder/real.csv" > /dev/null
-  echo "$name,${options[$name]//,/ },$steps,$held_out,$(scores "$folder/simulated0.csv"),$(scores \
+  echo "$name,${options[$name]//,/;},$steps,$held_out,$(scores "$folder/simulated0.csv"),$(scores \
     "$folder/simulated2.csv"),$(scores "$folder/real.csv")" > "$folder/scores.csv"
 }
 
@@ -93,20 +93,22 @@ done
 
 # A CSV file per experiment, of the runs that are done.
 write_csv() {
+  local one
   mkdir -p "$tables"
-  { echo "$header"; for name in ${experiments[$1]}; do cat "$out/$name-$minutes/scores.csv" 2>/dev/null || true; done; } \
+  { echo "$header"; for one in ${experiments[$1]}; do cat "$out/$one-$minutes/scores.csv" 2>/dev/null || true; done; } \
     > "$tables/$1.csv"
 }
 
 # The part of the page between its two marks, from the CSV files.
 write_tables() {
-  local text=$out/tables.md
+  local text=$out/tables.md name
   : > "$text"
   for name in "${order[@]}"; do
     [ -e "$tables/$name.csv" ] && [ "$(wc -l < "$tables/$name.csv")" -gt 2 ] || continue
     printf '\n**%s** (`scripts/experiments.sh DATA %s`)\n\n' "${title[$name]}" "$name" >> "$text"
     printf '| run | options | steps | held-out scenes | simulated | lookahead 2 | real |\n|---|---|---|---|---|---|---|\n' >> "$text"
     awk -F, 'NR > 1 {
+      gsub(";", ",", $2) # the commas of options
       printf "| %s | %s | %s |", $1, $2 == "" ? "" : "`" $2 "`", $3
       for (i = 4; i < 20; i += 4) if ($i == "-") printf " - |"; else printf " %s %s %s (%s) |", $i, $(i+1), $(i+2), $(i+3)
       print ""
