@@ -104,7 +104,7 @@ section_super-resolution() {
 }
 section_silence() {
   echo "## A scene that stops"
-  figures silence_mse silence_sigma silence_change -- "${simulated[@]}" "${lpips[@]}" --lookahead 0 \
+  figures silence_mse silence_sigma silence_change -- "${simulated[@]}" "${lpips[@]}" --lookahead 2 \
     --sequences $few --figure silence
 }
 
