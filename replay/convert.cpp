@@ -75,7 +75,8 @@ ConvertReport convert(Recording& recording, const std::string& path, const Forma
         enough = (options.to && now && *now - kLatestData > *options.to) || file.reader_gone() ||
                  (progress && !progress());
     }
-    parser->finish(batch);
+    // Where nobody wanted more, half a record in hand is no damage of the recording's.
+    if (!enough) parser->finish(batch);
     pass_on();
     file.finish();
     report.damaged = parser->damaged();

@@ -31,10 +31,17 @@ const Format& target_format(const std::string& file, const std::string& name) {
     return *format;
 }
 
+/// "3 events, 2 images"; what there is none of goes unsaid.
 std::string text_of(const DataCounts& counts) {
-    return std::to_string(counts.events) + " events, " + std::to_string(counts.images) +
-           " images, " + std::to_string(counts.imu) + " imu samples, " +
-           std::to_string(counts.triggers) + " triggers";
+    std::string text;
+    const auto add = [&text](std::uint64_t n, const char* what) {
+        if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+    };
+    add(counts.events, "events");
+    add(counts.images, "images");
+    add(counts.imu, "imu samples");
+    add(counts.triggers, "triggers");
+    return text.empty() ? "nothing" : text;
 }
 
 void say(const std::string& file, const ConvertReport& report) {
