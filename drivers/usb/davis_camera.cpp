@@ -64,11 +64,7 @@ SensorInfo DavisCamera::set_up(UsbDevice& device) {
     require_logic(device, kPatch);
     read_features(device);
     read_sensor(device);
-    const auto writes = configuration(settings_, sensor_, features_);
-    if (settings_.verify)
-        write_and_verify(device, writes);
-    else
-        device.write_registers(writes);
+    write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
     SensorInfo info;
     info.name = chip_name(sensor_.chip);
     info.format = "davis";

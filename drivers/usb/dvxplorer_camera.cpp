@@ -43,11 +43,7 @@ SensorInfo DvxplorerCamera::set_up(UsbDevice& device) {
         device.write_registers(chip_writes());
     }
     read_sensor(device);
-    const auto writes = configuration(settings_, sensor_, features_);
-    if (settings_.verify)
-        write_and_verify(device, writes);
-    else
-        device.write_registers(writes);
+    write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
 
     SensorInfo info;
     const bool lite = device.read_register(kChipId) == kLiteChip;

@@ -9,9 +9,9 @@ namespace eventide {
 
 class UsbDevice;
 
-/// Writes all, then reads each register back and compares. Throws Error (device) that names the
-/// register, what was written and what it says. Registers that do something instead of holding a
-/// value (timestamp reset, restart of the readout) are not read back.
-void write_and_verify(UsbDevice& device, std::span<const davis::Write> writes);
+/// Writes all; with `verify` reads each register back and compares. Throws Error (device) that
+/// names the register, what was written and what it says. Registers that do something instead of
+/// holding a value (timestamp reset, restart of the readout) are not read back.
+void write_settings(UsbDevice& device, std::span<const davis::Write> writes, bool verify);
 
 }  // namespace eventide
