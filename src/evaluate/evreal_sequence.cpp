@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace eventide {
 namespace {
@@ -30,15 +31,11 @@ SensorTime time_of(double seconds) {
 
 /// The first row of ascending times in seconds that is not before `t`.
 std::uint64_t lower_bound_row(NpyFile& file, SensorTime t) {
-    std::uint64_t low = 0, high = file.rows();
-    while (low < high) {
-        const std::uint64_t middle = low + (high - low) / 2;
-        if (time_of(file.read(middle, 1)[0]) < t)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    const auto rows = std::views::iota(std::int64_t{0}, std::int64_t(file.rows()));
+    const auto before = [&](std::int64_t row) {
+        return time_of(file.read(std::uint64_t(row), 1)[0]) < t;
+    };
+    return std::uint64_t(std::ranges::partition_point(rows, before) - rows.begin());
 }
 
 /// Both ends included.

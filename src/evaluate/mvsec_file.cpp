@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <ranges>
 #include <utility>
 
 namespace eventide {
@@ -125,15 +126,9 @@ struct LeftCamera {
     }
     /// The first event that is not before `t`.
     hsize_t first_event_at(SensorTime t) const {
-        hsize_t low = 0, high = events.rows();
-        while (low < high) {
-            const hsize_t middle = low + (high - low) / 2;
-            if (time_of(event_time(middle)) < t)
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        return low;
+        const auto rows = std::views::iota(std::int64_t{0}, std::int64_t(events.rows()));
+        const auto before = [&](std::int64_t row) { return time_of(event_time(hsize_t(row))) < t; };
+        return hsize_t(std::ranges::partition_point(rows, before) - rows.begin());
     }
 };
 
