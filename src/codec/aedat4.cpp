@@ -36,7 +36,7 @@ std::uint64_t side(int px) {
 
 Aedat4Parser::Aedat4Parser(const Aedat4Header& header, int width, int height)
     : header_(header),
-      line_(side(width), side(height)),
+      line_(side(width), side(height), EventLine::LeapEnds::with_next_packet),
       chosen_(header.chosen),
       all_streams_(header.streams.empty()),
       position_(header.stream.data_offset) {

@@ -130,6 +130,7 @@ std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventLin
         if (!take_plain(chunk, line, into)) take_one_by_one(chunk, line, into, damage);
         records = records.subspan(chunk.size());
     }
+    line.end_packet();
     return line.newest_us();
 }
 

@@ -245,6 +245,33 @@ TEST(Aedat4, EventsOutsideAndBackInTimeAreLeftOut) {
     EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 1U);
 }
 
+// A flipped bit in a packed time is repeated in all times that were packed by reference to it.
+TEST(Aedat4, APacketWhoseTimesLeapCostsWhatLeaptAndNothingThatFollows) {
+    const auto events = random_events(5, 3000, kWidth, kHeight, 1'600'000'000'000'000);
+    const std::vector<std::ptrdiff_t> ends{0, 1000, 2000, 3000};
+    std::vector<Batch> packets(3);
+    for (std::size_t i = 0; i < 3; ++i)
+        packets[i].events.assign(events.begin() + ends[i], events.begin() + ends[i + 1]);
+    constexpr std::size_t kWhole = 400;
+    for (std::size_t i = kWhole; i < 1000; ++i)
+        packets[1].events[i].t += SensorDuration(std::int64_t{1} << 33);
+    const Parsed parsed = parse_file(write_file(packets, Aedat4Compression::none));
+    std::vector<Event> expected(events.begin(), events.begin() + 1000 + kWhole);
+    expected.insert(expected.end(), events.begin() + 2000, events.end());
+    EXPECT_TRUE(parsed.data.events == expected);
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1000 - kWhole);
+    EXPECT_EQ(parsed.damage.total(), 1000 - kWhole);
+}
+
+TEST(Aedat4, SilenceBetweenPacketsIsNoDamage) {
+    Batch before, after;
+    before.events = random_events(5, 1000, kWidth, kHeight, 1'600'000'000'000'000);
+    after.events = random_events(6, 1000, kWidth, kHeight, 1'600'000'900'000'000);
+    const Parsed parsed = parse_file(write_file({before, after}, Aedat4Compression::lz4));
+    EXPECT_EQ(parsed.data.events.size(), 2000U);
+    EXPECT_EQ(parsed.damage.total(), 0U);
+}
+
 TEST(Aedat4, ReadingTakesUpAtTheNextPacketAfterALoss) {
     std::vector<Batch> batches(4);
     const auto events = random_events(5, 400, kWidth, kHeight);
