@@ -15,7 +15,11 @@ minutes=${MINUTES:-5}
 out=${OUT:-out/experiments}
 tables=docs/accuracy/experiments
 page=docs/accuracy.md
-export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 MALLOC_ARENA_MAX=4
+export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+# An allocator that keeps memory between steps, where there is one (docs/training.md).
+jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { print $NF; exit }')
+keep_memory=(env ${jemalloc:+LD_PRELOAD=$jemalloc
+  MALLOC_CONF=dirty_decay_ms:-1,muzzy_decay_ms:-1,narenas:4,oversize_threshold:0,thp:always})
 
 # What every run shares: the shipped network's shape, on pictures small enough for hundreds of steps.
 common=(--minutes "$minutes" --clock cpu --threads 1 --lanes 2 --groups 6 --crop 48 --patch 48 --frames 6 --rendered 3
@@ -69,7 +73,7 @@ train_and_score() {
   rm -rf "$folder"
   mkdir -p "$folder"
   # shellcheck disable=SC2086  # options are words
-  "$train" "${common[@]}" ${options[$name]} --textures "$out/train.pack" --validation-textures "$out/held_out.pack" \
+  "${keep_memory[@]}" "$train" "${common[@]}" ${options[$name]} --textures "$out/train.pack" --validation-textures "$out/held_out.pack" \
     --lpips "$lpips" --out "$folder" --export "$folder/model.safetensors" > "$folder/output.txt"
   local held_out steps
   # step, minutes, score, L1, 1-SSIM, LPIPS, NLL, temporal, MSE, PICP80

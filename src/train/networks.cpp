@@ -1,5 +1,7 @@
 #include "src/train/networks.h"
 
+#include "src/train/fused.h"
+
 namespace eventide {
 namespace {
 
@@ -24,13 +26,10 @@ public:
     /// h + m.u.(c - h), see docs/model.md.
     torch::Tensor gru(const std::string& name, const torch::Tensor& a, const torch::Tensor& h,
                       const torch::Tensor& mask) const {
-        const torch::Tensor narrow_h = h.to(type_);
-        const auto gates =
-            conv(name + ".gates", torch::cat({a, narrow_h}, 1)).sigmoid().chunk(2, 1);
+        const auto gates = conv(name + ".gates", torch::cat({a, h.to(type_)}, 1)).sigmoid();
         const auto candidate =
-            conv(name + ".candidate", torch::cat({a, gates[1] * narrow_h}, 1)).tanh();
-        torch::Tensor step = widen(gates[0]) * (widen(candidate) - h);
-        return h + (mask.defined() ? mask * step : step);
+            conv(name + ".candidate", torch::cat({a, fused::reset_state(gates, h)}, 1)).tanh();
+        return fused::update_state(gates, candidate, h, mask);
     }
     torch::Tensor norm(const std::string& name, const torch::Tensor& x) const;
     torch::ScalarType type() const { return type_; }
@@ -57,16 +56,8 @@ torch::Tensor transform(const torch::Tensor& grid) {
     return grid.sign() * grid.abs().log1p();
 }
 
-/// out[2 j] = a[j], out[2 j + 1] = (a[j] + a[min(j + 1, last)]) / 2 along dimension `dim`.
-torch::Tensor up2_along(const torch::Tensor& a, int dim, std::int64_t size) {
-    const std::int64_t n = a.size(dim);
-    const auto next = torch::cat({a.narrow(dim, 1, n - 1), a.narrow(dim, n - 1, 1)}, dim);
-    return torch::stack({a, (a + next) * 0.5}, dim + 1).flatten(dim, dim + 1).narrow(dim, 0, size);
-}
-
 torch::Tensor up2(const torch::Tensor& a, const torch::Tensor& joined) {
-    return up2_along(up2_along(a, 2, joined.size(2)), 3, joined.size(3))
-        .contiguous(torch::MemoryFormat::ChannelsLast);
+    return fused::up2(a, joined.size(2), joined.size(3));
 }
 
 /// m_0 .. m_{L-1} of the gated encoder, float32 0 or 1, [N][1][h][w].

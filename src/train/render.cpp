@@ -1,5 +1,6 @@
 #include "src/train/render.h"
 
+#include "src/train/fused.h"
 #include "src/train/networks.h"
 
 #include <array>
@@ -8,10 +9,9 @@
 namespace eventide {
 namespace {
 
-/// One sample index and weight per point along one axis, for the lower or upper neighbour.
+/// The lower or upper neighbour of each point along one axis.
 struct Neighbour {
-    torch::Tensor index;   ///< [n] int64
-    torch::Tensor offset;  ///< [n], point minus sample, px
+    fused::Axis axis;
     torch::Tensor weight;  ///< [n]
     bool empty = true;     ///< all weights are 0
 };
@@ -21,28 +21,21 @@ std::array<Neighbour, 2> neighbours(const std::vector<double>& points, std::int6
                                     torch::TensorOptions options) {
     std::array<Neighbour, 2> both;
     for (int side = 0; side < 2; ++side) {
-        std::vector<std::int64_t> index;
-        std::vector<double> offset, weight;
+        Neighbour& neighbour = both[std::size_t(side)];
+        std::vector<double> weight;
         for (const double p : points) {
             const double low = std::min(std::floor(p), double(samples - 1));
             const double part = low == double(samples - 1) ? 0 : p - low;
             const double sample = std::min(low + side, double(samples - 1));
-            index.push_back(std::int64_t(sample));
-            offset.push_back(p - sample);
+            neighbour.axis.index.push_back(std::int64_t(sample));
+            neighbour.axis.offset.push_back(p - sample);
             weight.push_back(side == 0 ? 1 - part : part);
+            neighbour.empty &= weight.back() == 0;
         }
-        for (const double w : weight) both[std::size_t(side)].empty &= w == 0;
         const auto wide = torch::TensorOptions().dtype(torch::kDouble);
-        both[std::size_t(side)].index = torch::tensor(index).to(options.device());
-        both[std::size_t(side)].offset = torch::tensor(offset, wide).to(options);
-        both[std::size_t(side)].weight = torch::tensor(weight, wide).to(options);
+        neighbour.weight = torch::tensor(weight, wide).to(options);
     }
     return both;
-}
-
-bool covers_all(const Neighbour& side, std::int64_t samples) {
-    return side.index.size(0) == samples && side.index[0].item<std::int64_t>() == 0 &&
-           side.index[-1].item<std::int64_t>() == samples - 1;
 }
 
 /// The learned function with its first layer taken apart: a convolution of codes plus a linear
@@ -69,12 +62,11 @@ public:
     torch::Tensor first(const torch::Tensor& codes) const {
         return torch::conv2d(codes.to(conv_.scalar_type()), conv_, bias_[0], 1, 1);
     }
-    /// Weights of one coordinate (0 t, 1 x, 2 y) of the offset, [H_1].
-    torch::Tensor offset(int coordinate) const { return offset_.select(1, coordinate).to(wide()); }
+    /// Weights of the offset (t, x, y), [H_1][3].
+    const torch::Tensor& offsets() const { return offset_; }
 
-    /// The rest: [M][H_1][r][c] -> [M][2][r][c] in float32.
-    torch::Tensor rest(const torch::Tensor& first_layer) const {
-        torch::Tensor x = rectify(first_layer.to(conv_.scalar_type()));
+    /// The rest, of the rectified first layer: [M][H_1][r][c] -> [M][2][r][c] in float32.
+    torch::Tensor rest(torch::Tensor x) const {
         for (std::size_t i = 1; i < weight_.size(); ++i) {
             x = torch::conv2d(x, weight_[i].unsqueeze(-1).unsqueeze(-1), bias_[i]);
             if (i + 1 < weight_.size()) x = rectify(x);
@@ -131,22 +123,17 @@ torch::Tensor moments(const ModelConfig& config, const torch::Tensor& out) {
     return torch::cat({mu, second}, 1);
 }
 
-/// Sums over the up to 4 neighbours in space: [M][2][r][c].
+/// Sums over the up to 4 neighbours in space: [M][2][r][c]. `dt` [M].
 torch::Tensor blend_space(const ModelConfig& config, const Mlp& mlp, const torch::Tensor& first,
-                          const PatchGrid& points) {
+                          const torch::Tensor& dt, const PatchGrid& points) {
     const auto options = first.options().dtype(mlp.wide());
-    const auto column = [](const torch::Tensor& v) { return v.view({1, -1, 1, 1}); };
     torch::Tensor sum;
     for (const Neighbour& ny : neighbours(points.y, first.size(2), options)) {
         if (ny.empty) continue;
-        const torch::Tensor rows =
-            covers_all(ny, first.size(2)) ? first : first.index_select(2, ny.index);
         for (const Neighbour& nx : neighbours(points.x, first.size(3), options)) {
             if (nx.empty) continue;
-            torch::Tensor x = covers_all(nx, first.size(3)) ? rows : rows.index_select(3, nx.index);
-            x = x + column(mlp.offset(1)) * nx.offset.view({1, 1, 1, -1}) +
-                column(mlp.offset(2)) * ny.offset.view({1, 1, -1, 1});
-            const auto out = mlp.rest(x.contiguous(torch::MemoryFormat::ChannelsLast));
+            const auto out =
+                mlp.rest(fused::offset_layer(first, dt, mlp.offsets(), ny.axis, nx.axis));
             const auto part =
                 moments(config, out) * (ny.weight.view({-1, 1}) * nx.weight.view({1, -1}));
             sum = sum.defined() ? sum + part : part;
@@ -170,11 +157,10 @@ Rendered render(const ModelConfig& config, const Parameters& parameters,
                 const std::vector<RenderTask>& tasks, const PatchGrid& points) {
     const Mlp mlp{config, parameters};
     const std::vector<Centre> list = centres(tasks);
-    torch::Tensor first = mlp.first(concat(list, &Centre::codes));
-    const torch::Tensor dt = concat(list, &Centre::offset).view({-1, 1, 1, 1});
-    first = first + dt * mlp.offset(0).view({1, -1, 1, 1});
+    const torch::Tensor first = mlp.first(concat(list, &Centre::codes));
+    const torch::Tensor dt = concat(list, &Centre::offset).to(mlp.wide());
     const torch::Tensor weight = concat(list, &Centre::weight).view({-1, 1, 1, 1});
-    const torch::Tensor weighted = weight * blend_space(config, mlp, first, points);
+    const torch::Tensor weighted = weight * blend_space(config, mlp, first, dt, points);
     // Back from centres to pictures: each task has one or two centres of N lanes.
     const std::int64_t lanes = tasks.front().f.size(0);
     std::vector<torch::Tensor> pictures(tasks.size());

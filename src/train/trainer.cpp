@@ -1,6 +1,7 @@
 #include "src/train/trainer.h"
 
 #include "src/core/error.h"
+#include "src/train/blas.h"
 #include "src/train/curve.h"
 
 #include <algorithm>
@@ -80,6 +81,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
       type_(arithmetic_type(options)),
       optimiser_(options.optimiser, initial_parameters(options.model, options.data.seed, device_)),
       input_mask_(input_mask(options.model, options.inputs).to(device_)) {
+    require_blas_for_threads(options.threads);
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
     {

@@ -1,0 +1,49 @@
+// Steps of the networks that libtorch takes in a dozen passes over memory, here in one each way.
+//
+// Gradients included. Types: T is that of the arithmetic (float, double, bfloat16), W the wider one
+// of states and sums (double for double, else float). Maps come out channels-last. On a device
+// other than the CPU the same is computed by torch's own operations.
+#pragma once
+
+#include "src/train/torch.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace eventide::fused {
+
+/// r.h in T: what the candidate sees of the state. `gates` [N][2C][h][w] in T, update gates first
+/// and reset gates second, after the sigmoid; h [N][C][h][w] in W.
+torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h);
+
+/// h + m.u.(c - h) in W. c [N][C][h][w] in T; mask [N][1][h][w] in W, or undefined for 1.
+torch::Tensor update_state(const torch::Tensor& gates, const torch::Tensor& candidate,
+                           const torch::Tensor& h, const torch::Tensor& mask);
+
+/// Twice the size: out[2 j] = a[j], out[2 j + 1] = (a[j] + a[min(j + 1, last)]) / 2 along both
+/// axes, cut to height x width (each 2 n or 2 n - 1).
+torch::Tensor up2(const torch::Tensor& a, std::int64_t height, std::int64_t width);
+
+/// Points along one axis: the sample that each takes, and where it lies from there (px).
+struct Axis {
+    std::vector<std::int64_t> index;
+    std::vector<double> offset;
+};
+
+/// The renderer's first layer at rows x columns of points, rectified, in T:
+/// max(0, first[m][:, y.index, x.index] + dt[m] o_0 + x.offset o_1 + y.offset o_2).
+/// first [M][H][h][w] in T; dt [M] in W, without gradient; offsets o [H][3] in T.
+torch::Tensor offset_layer(const torch::Tensor& first, const torch::Tensor& dt,
+                           const torch::Tensor& offsets, const Axis& y, const Axis& x);
+
+/// The same by torch's own operations: for other devices, and to judge the above by.
+namespace composed {
+torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h);
+torch::Tensor update_state(const torch::Tensor& gates, const torch::Tensor& candidate,
+                           const torch::Tensor& h, const torch::Tensor& mask);
+torch::Tensor up2(const torch::Tensor& a, std::int64_t height, std::int64_t width);
+torch::Tensor offset_layer(const torch::Tensor& first, const torch::Tensor& dt,
+                           const torch::Tensor& offsets, const Axis& y, const Axis& x);
+}  // namespace composed
+
+}  // namespace eventide::fused

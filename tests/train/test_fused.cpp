@@ -1,0 +1,109 @@
+// The fused steps give the values and the gradients that torch's own operations give.
+#include "src/train/fused.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using torch::Tensor;
+using Step = std::function<Tensor(const std::vector<Tensor>&)>;
+
+struct Outcome {
+    Tensor value;
+    std::vector<Tensor> gradients;
+};
+
+/// Value, and gradients of a sum with fixed random weights, of the inputs that want one.
+Outcome outcome(const Step& step, const std::vector<Tensor>& values) {
+    std::vector<Tensor> inputs, leaves;
+    for (const Tensor& value : values) {
+        inputs.push_back(value.detach().clone());
+        if (!value.requires_grad()) continue;
+        inputs.back().requires_grad_(true);
+        leaves.push_back(inputs.back());
+    }
+    const Tensor out = step(inputs);
+    torch::manual_seed(9);
+    const Tensor weight = torch::randn(out.sizes(), torch::kDouble);
+    return {out.detach(), torch::autograd::grad({(out.to(torch::kDouble) * weight).sum()}, leaves)};
+}
+
+double difference(const Tensor& a, const Tensor& b) {
+    const Tensor wide_a = a.to(torch::kDouble), wide_b = b.to(torch::kDouble);
+    const double scale = wide_b.abs().max().item<double>();
+    return (wide_a - wide_b).abs().max().item<double>() / std::max(scale, 1e-30);
+}
+
+void expect_same(const Step& fused, const Step& composed, const std::vector<Tensor>& values,
+                 double tolerance) {
+    const Outcome found = outcome(fused, values), expected = outcome(composed, values);
+    ASSERT_EQ(found.value.sizes(), expected.value.sizes());
+    ASSERT_EQ(found.value.scalar_type(), expected.value.scalar_type());
+    EXPECT_LT(difference(found.value, expected.value), tolerance);
+    ASSERT_EQ(found.gradients.size(), expected.gradients.size());
+    for (std::size_t i = 0; i < found.gradients.size(); ++i) {
+        EXPECT_EQ(found.gradients[i].scalar_type(), expected.gradients[i].scalar_type());
+        EXPECT_LT(difference(found.gradients[i], expected.gradients[i]), tolerance)
+            << "gradient " << i;
+    }
+}
+
+class Fused : public testing::TestWithParam<torch::ScalarType> {
+protected:
+    Fused() { torch::manual_seed(4); }
+    torch::ScalarType wide() const {
+        return GetParam() == torch::kDouble ? torch::kDouble : torch::kFloat;
+    }
+    static Tensor draw(std::vector<std::int64_t> shape, torch::ScalarType type) {
+        return torch::randn(shape, torch::kDouble).to(type).requires_grad_(true);
+    }
+    /// bfloat16 keeps 8 bits; torch's own steps round after each of several operations.
+    double tolerance() const {
+        return GetParam() == torch::kDouble ? 1e-12 : GetParam() == torch::kFloat ? 1e-5 : 3e-2;
+    }
+};
+
+TEST_P(Fused, ResetAndUpdateOfAState) {
+    const std::vector<Tensor> values{
+        draw({2, 10, 7, 4}, GetParam()).sigmoid().detach().requires_grad_(true),
+        draw({2, 5, 7, 4}, GetParam()), draw({2, 5, 7, 4}, wide()),
+        (torch::rand({2, 1, 7, 4}) < .5).to(wide())};
+    expect_same([](const auto& v) { return fused::reset_state(v[0], v[2]); },
+                [](const auto& v) { return fused::composed::reset_state(v[0], v[2]); },
+                {values[0], values[1].detach(), values[2]}, tolerance());
+    expect_same([](const auto& v) { return fused::update_state(v[0], v[1], v[2], v[3]); },
+                [](const auto& v) { return fused::composed::update_state(v[0], v[1], v[2], v[3]); },
+                values, tolerance());
+    expect_same([](const auto& v) { return fused::update_state(v[0], v[1], v[2], {}); },
+                [](const auto& v) { return fused::composed::update_state(v[0], v[1], v[2], {}); },
+                values, tolerance());
+}
+
+TEST_P(Fused, TwiceTheSizeOddOrEven) {
+    for (const int odd : {0, 1})
+        expect_same([&](const auto& v) { return fused::up2(v[0], 10 - odd, 6); },
+                    [&](const auto& v) { return fused::composed::up2(v[0], 10 - odd, 6); },
+                    {draw({2, 6, 5, 3}, GetParam())}, tolerance());
+}
+
+TEST_P(Fused, FirstLayerWithItsOffsets) {
+    // Several points share a sample, and some samples have no point.
+    const fused::Axis y{{0, 0, 2, 4}, {0, .5, -.25, .1}}, x{{1, 1, 1, 3, 2}, {0, .2, .4, -.6, 0}};
+    const std::vector<Tensor> values{draw({3, 6, 5, 4}, GetParam()), draw({3}, wide()).detach(),
+                                     draw({6, 3}, GetParam())};
+    expect_same(
+        [&](const auto& v) { return fused::offset_layer(v[0], v[1], v[2], y, x); },
+        [&](const auto& v) { return fused::composed::offset_layer(v[0], v[1], v[2], y, x); },
+        values, tolerance());
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, Fused,
+                         testing::Values(torch::kDouble, torch::kFloat, torch::kBFloat16),
+                         [](const auto& info) { return std::string(toString(info.param)); });
+
+}  // namespace
+}  // namespace eventide
