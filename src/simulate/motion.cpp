@@ -82,15 +82,20 @@ public:
     WanderMotion(const WanderSettings& settings, double speed, double radius, Point start,
                  const Home& home, Random random)
         : home_(home), speed_(speed), zoom_max_(settings.zoom_max), random_(random) {
-        leg_s_ = random_.log_uniform(settings.leg_s);
+        const bool tremble = settings.tremble > 0 && random_.chance(settings.tremble);
+        leg_s_ = random_.log_uniform(tremble ? settings.tremble_leg_s : settings.leg_s);
         const double width = home.x1 - home.x0, height = home.y1 - home.y0;
         // A leg that leaves home far behind would mean a thing hardly ever seen.
         if (width > 0 && speed > 0) leg_s_ = std::min(leg_s_, std::hypot(width, height) / speed);
-        turn_ = random_.uniform(settings.turn);
+        turn_ = random_.uniform(tremble ? settings.tremble_turn : settings.turn);
         spin_ = random_.uniform(settings.spin_share) * speed / radius;
         zoom_ = random_.uniform(settings.zoom_share) * speed / radius;
         cubic_ = !random_.chance(settings.linear_probability);
         heading_ = random_.uniform({0, 2 * std::numbers::pi});
+        if (settings.pace.low < 1) {
+            paces_ = settings.pace;
+            pace_change_ = std::min(1.0, leg_s_ / random_.log_uniform(settings.pace_s));
+        }
         Knot first{start.x, start.y, 0, 0};
         if (width > 0) first.angle = random_.uniform({0, 2 * std::numbers::pi});
         knots_.push(first);
@@ -128,7 +133,10 @@ private:
     Knot next(const Knot& from) {
         Knot to = from;
         heading_ += turn_ * random_.normal();
-        const double length = speed_ * leg_s_ * std::exp(.4 * random_.normal() - .08);
+        // A hand that shook fast and then holds nearly still: few events then say nothing of
+        // contrast.
+        if (pace_change_ > 0 && random_.chance(pace_change_)) pace_ = random_.log_uniform(paces_);
+        const double length = pace_ * speed_ * leg_s_ * std::exp(.4 * random_.normal() - .08);
         const auto go = [&] {
             to.x = from.x + length * std::cos(heading_);
             to.y = from.y + length * std::sin(heading_);
@@ -141,14 +149,16 @@ private:
                                   random_.uniform({home_.x0, home_.x1}) - from.x);
             go();
         }
-        to.angle += spin_ * leg_s_ * random_.normal();
-        to.log_scale += zoom_ * leg_s_ * random_.normal();
+        to.angle += pace_ * spin_ * leg_s_ * random_.normal();
+        to.log_scale += pace_ * zoom_ * leg_s_ * random_.normal();
         to.log_scale = std::clamp(to.log_scale, -zoom_max_, zoom_max_);
         return to;
     }
 
     Home home_;
     double speed_, zoom_max_, leg_s_ = 1, turn_ = 0, spin_ = 0, zoom_ = 0, heading_ = 0;
+    Range paces_{1, 1};
+    double pace_ = 1, pace_change_ = 0;  // probability per leg
     bool cubic_ = false;
     Random random_;
     Knots<Knot> knots_;

@@ -52,7 +52,10 @@ Scene::Scene(const SceneSettings& settings, std::shared_ptr<const TextureLibrary
     const double share = std::pow(random_.uniform(), settings.objects_skew);
     const int more = settings.objects_max - settings.objects_min + 1;
     const int objects = std::min(settings.objects_max, settings.objects_min + int(share * more));
-    for (int i = 0; i < objects; ++i) add_object(settings);
+    if (settings.pinned_max > 0 && !thesis_)
+        for (int i = random_.integer(0, settings.pinned_max); i > 0; --i)
+            add_object(settings, true);
+    for (int i = 0; i < objects; ++i) add_object(settings, false);
 }
 
 void Scene::draw_light(const SceneSettings& settings) {
@@ -110,13 +113,8 @@ void Scene::add_background(const SceneSettings& settings) {
     layers_.push_back(std::move(layer));
 }
 
-void Scene::add_object(const SceneSettings& settings) {
-    Layer layer;
-    layer.texture = &(*textures_)[std::size_t(random_.integer(0, int(textures_->size()) - 1))];
-    layer.tone = tone_curve(random_.log_uniform(settings.object_gain));
-    const double length = random_.log_uniform(settings.object_size) * std::min(width_, height_);
-    layer.half_width = length / 2;
-    layer.half_height = length / 2 * random_.uniform(settings.object_aspect);
+/// Where it starts and how it goes on from there.
+void Scene::set_moving(Layer& layer, const SceneSettings& settings, double length) {
     const double speed = std::clamp(speed_ * random_.log_uniform(settings.object_speed),
                                     settings.wander.speed.low, settings.wander.speed.high);
     const double reach = settings.object_reach * length;
@@ -127,6 +125,9 @@ void Scene::add_object(const SceneSettings& settings) {
     if (random_.chance(settings.object_pauses))
         layer.pauses.emplace(settings.pause_start, settings.pause_stay, settings.pause_step_s,
                              random_.fork());
+}
+
+void Scene::draw_shape(Layer& layer, const SceneSettings& settings) {
     if (!random_.chance(settings.polygon_probability))
         layer.shape = random_.chance(settings.ring_probability)
                           ? Shape::ring(random_.uniform({.3, .8}))
@@ -136,11 +137,31 @@ void Scene::add_object(const SceneSettings& settings) {
     else
         layer.shape = Shape::polygon(corners, random_);
     layer.softness_px = random_.uniform(settings.edge_softness_px);
+}
+
+void Scene::add_object(const SceneSettings& settings, bool pinned) {
+    Layer layer;
+    layer.texture = &(*textures_)[std::size_t(random_.integer(0, int(textures_->size()) - 1))];
+    layer.tone = tone_curve(random_.log_uniform(settings.object_gain));
+    const double length = random_.log_uniform(settings.object_size) * std::min(width_, height_);
+    layer.half_width = length / 2;
+    layer.half_height = length / 2 * random_.uniform(settings.object_aspect);
+    if (pinned) {
+        const auto place = [&](int size) { return random_.uniform({-.75 * size, .75 * size}); };
+        layer.pin = Affine::scale(1 / layer.half_width, 1 / layer.half_height)
+                        .after(Affine::rotation(random_.uniform({0, 2 * std::numbers::pi})))
+                        .after(Affine::translation(place(width_), place(height_)));
+    } else {
+        set_moving(layer, settings, length);
+    }
+    draw_shape(layer, settings);
     layer.opacity = random_.uniform(settings.opacity);
     if (random_.chance(settings.object_flicker_probability))
         layer.flicker = draw_flicker(settings.flicker_depth, random_);
     // A cut-out of the texture, in the texture's own proportions.
-    const double cut = random_.log_uniform({.15, 1}) / 2;
+    double cut = random_.log_uniform({.15, 1}) / 2;
+    constexpr double kOneGrey = 1e-4;
+    if (settings.object_flat > 0 && random_.chance(settings.object_flat)) cut = kOneGrey;
     layer.texture_in_local = {cut,
                               0,
                               random_.uniform(),
@@ -155,14 +176,14 @@ void Scene::prepare(double until_s) {
     if (light_) light_->prepare(until_s);
     for (Layer& layer : layers_) {
         if (layer.pauses) layer.pauses->prepare(until_s);
-        layer.motion->prepare(until_s);  // pauses only make its own time shorter
+        if (layer.motion) layer.motion->prepare(until_s);  // pauses only make its own time shorter
     }
 }
 
 void Scene::forget(double before_s) {
     const double scene_s = pauses_.at(before_s);
     for (Layer& layer : layers_) {
-        layer.motion->forget(layer_time(layer, scene_s));
+        if (layer.motion) layer.motion->forget(layer_time(layer, scene_s));
         if (layer.pauses) layer.pauses->forget(scene_s);
     }
     if (light_) light_->forget(before_s);
@@ -176,6 +197,7 @@ double Scene::layer_time(const Layer& layer, double scene_s) const {
 /// Sensor pixels -> the layer's own plane: an object's [-1, 1]^2, the background's pixels, or the
 /// thesis' image coordinates.
 Affine Scene::to_local(const Layer& layer, double scene_s) const {
+    if (!layer.motion) return layer.pin.after(to_local(layers_.front(), scene_s));
     const Pose pose = layer.motion->at(layer_time(layer, scene_s));
     if (layer.shape) {
         const Affine scale =
@@ -199,6 +221,7 @@ Affine Scene::to_local(const Layer& layer, double scene_s) const {
 
 /// Largest way (px) that a corner of the layer goes: a background's at the sensor's corners.
 double Scene::movement(const Layer& layer, double from_s, double to_s) const {
+    if (!layer.motion) return 0;  // no more than the background
     const double scene_from = pauses_.at(from_s), scene_to = pauses_.at(to_s);
     if (layer_time(layer, scene_from) == layer_time(layer, scene_to)) return 0;
     const Affine before = to_local(layer, scene_from);

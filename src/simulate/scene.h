@@ -50,7 +50,8 @@ public:
 private:
     struct Layer {
         const Texture* texture = nullptr;
-        std::unique_ptr<Motion> motion;
+        std::unique_ptr<Motion> motion;          // none: it is fixed to the background ...
+        Affine pin;                              // ... whose plane -> its own [-1, 1]^2
         std::optional<PauseClock> pauses;        // on top of the scene's
         std::optional<Shape> shape;              // none: the background
         double half_width = 1, half_height = 1;  // px, of an object
@@ -64,7 +65,9 @@ private:
     void draw_light(const SceneSettings& settings);
     ToneCurve tone_curve(double gain) const;
     void add_background(const SceneSettings& settings);
-    void add_object(const SceneSettings& settings);
+    void add_object(const SceneSettings& settings, bool pinned);
+    void set_moving(Layer& layer, const SceneSettings& settings, double length);
+    void draw_shape(Layer& layer, const SceneSettings& settings);
     double layer_time(const Layer& layer, double scene_s) const;
     Affine to_local(const Layer& layer, double scene_s) const;
     double movement(const Layer& layer, double from_s, double to_s) const;

@@ -41,6 +41,11 @@ struct WanderSettings {
     Range zoom_share{0, .3};          ///< speed at the rim by scaling, as a share of `speed`
     double zoom_max = .5;             ///< ln of the largest magnification either way
     double linear_probability = .5;   ///< else cubic through the legs' ends
+    Range pace{1, 1};                 ///< log-uniform; times the speed, drawn anew now and then ...
+    Range pace_s{.15, 2};             ///< ... log-uniform; after so long on average
+    double tremble = 0;               ///< probability of shaking about one place instead ...
+    Range tremble_leg_s{.012, .15};   ///< ... log-uniform; by legs this short ...
+    Range tremble_turn{2, std::numbers::pi};  ///< ... that turn back this far (rad)
 };
 
 struct SceneSettings {
@@ -52,11 +57,13 @@ struct SceneSettings {
     double still_background = .15;  ///< probability of a camera that does not move
 
     int objects_min = 0, objects_max = 30;
-    double objects_skew = 2;          ///< number = min + (max - min) u^skew: most scenes have few
-    Range object_size{.06, .6};       ///< log-uniform; full length over the sensor's shorter side
-    Range object_aspect{.3, 1};       ///< width over length
-    Range object_speed{.2, 5};        ///< log-uniform; times the scene's speed, within wander.speed
-    double object_reach = .5;         ///< how far beyond the sensor they roam, in their lengths
+    double objects_skew = 2;     ///< number = min + (max - min) u^skew: most scenes have few
+    int pinned_max = 0;          ///< things fixed to a wandering background, evenly 0 to this
+    double object_flat = 0;      ///< probability of one grey all over: what only its edges tell
+    Range object_size{.06, .6};  ///< log-uniform; full length over the sensor's shorter side
+    Range object_aspect{.3, 1};  ///< width over length
+    Range object_speed{.2, 5};   ///< log-uniform; times the scene's speed, within wander.speed
+    double object_reach = .5;    ///< how far beyond the sensor they roam, in their lengths
     double polygon_probability = .5;  ///< else an ellipse, or a ring
     double ring_probability = .1;
     Range edge_softness_px{0, 2};  ///< width of the blur at an object's edge

@@ -1,6 +1,7 @@
 #include "src/train/data.h"
 
 #include "src/binning/binner.h"
+#include "src/simulate/presets.h"
 #include "src/simulate/simulated_stream.h"
 
 #include <algorithm>
@@ -48,12 +49,44 @@ WindowPlan window_plan(const DataSettings& settings, std::int64_t window) {
     return plan;
 }
 
+namespace {
+
+/// What an episode's scene and camera are drawn from.
+struct Camera {
+    SceneSettings scene;
+    SensorSettings sensor;
+};
+
+/// The thesis' light, threshold and truth (the picture itself, whatever its brightness); half of
+/// these scenes move as the thesis', half as all others, since the thesis' motion is made for whole
+/// pictures and is slow in a small crop.
+Camera thesis_camera(const DataSettings& settings, Random& random) {
+    const SimulationPreset& preset = simulation_preset("thesis_train");
+    Camera camera{preset.scene, preset.sensor};
+    if (random.chance(.5)) return camera;
+    camera.scene.background = BackgroundMotion::wander;
+    camera.scene.wander = settings.scene.wander;
+    camera.scene.view_share = {.6, 1.1};  // a patch of a picture may be all white or all black
+    camera.scene.pause_start = settings.scene.pause_start;
+    return camera;
+}
+
+Camera draw_camera(const DataSettings& settings, Random& random) {
+    // A share of 0 draws nothing, so that runs of before go on as they were.
+    if (settings.thesis_share > 0 && random.chance(settings.thesis_share))
+        return thesis_camera(settings, random);
+    return {settings.scene, settings.sensor};
+}
+
+}  // namespace
+
 /// One scene, its camera and its clock.
 struct Lane::Episode {
     Episode(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
             std::uint64_t seed)
         : random(seed),
-          stream(settings.scene, settings.sensor, std::move(textures), settings.crop, settings.crop,
+          camera(draw_camera(settings, random)),
+          stream(camera.scene, camera.sensor, std::move(textures), settings.crop, settings.crop,
                  random.bits()),
           binner(settings.bins, settings.crop, settings.crop),
           grid(binner.make_output()),
@@ -71,6 +104,7 @@ struct Lane::Episode {
     }
 
     Random random;
+    Camera camera;
     SimulatedStream stream;
     Binner binner;
     VoxelGrid grid;

@@ -117,12 +117,18 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("patch", o.data.patch, "px, side of the pictures compared");
     add("episode", o.data.episode, "event frames of one scene");
     add("frame-s", o.data.frame_s, "s, width of event frames");
+    add("thesis-share", o.data.thesis_share,
+        "share of scenes with the thesis' light, threshold and truth");
     add("speed", o.data.scene.wander.speed, "px/s, of scenes");
+    add("pace", o.data.scene.wander.pace, "times the speed, drawn anew as a scene goes on");
     add("leg-s", o.data.scene.wander.leg_s, "s, between changes of a scene's heading");
-    add("turn", o.data.scene.wander.turn,
-        "rad, of each change; near 3.14 the camera trembles in place");
+    add("turn", o.data.scene.wander.turn, "rad, deviation of each change");
+    add("tremble", o.data.scene.wander.tremble,
+        "share of scenes and objects that shake about one place instead");
     add("still", o.data.scene.still_background, "share of scenes whose camera stands still");
     add("objects", o.data.scene.objects_max, "moving objects at most");
+    add("pinned", o.data.scene.pinned_max, "things fixed to the background at most");
+    add("flat", o.data.scene.object_flat, "share of things of one grey all over");
     add("faint", o.data.scene.faint_probability, "share of scenes of little contrast");
     add("pauses", o.data.scene.pause_start, "probability that a pause begins, per 50 ms");
     add("light", o.data.scene.white_lux, "lux on the chip where the scene is white");
@@ -131,6 +137,7 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("flicker", o.data.scene.flicker_probability, "share of scenes under mains light");
     add("threshold", o.data.sensor.threshold, "ln of the light's change");
     add("shot-hz", o.data.sensor.shot_hz, "noise events per pixel in the dark");
+    add("shot-lux", o.data.sensor.shot_lux, "light in which they are half as many");
     add("leak-hz", o.data.sensor.leak_hz, "ON events per pixel without any change");
 
     add("l1", o.loss.l1, "weight in the loss");

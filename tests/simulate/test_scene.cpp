@@ -1,4 +1,4 @@
-// Motion, pauses, light and the geometry of scenes.
+// The geometry, light and layers of scenes.
 #include "src/core/error.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/scene.h"
@@ -10,135 +10,6 @@
 
 namespace eventide {
 namespace {
-
-TEST(ControlCurve, PassesThroughItsPointsStraightOrCurved) {
-    Random random{1};
-    for (int n = 2; n <= 12; ++n)
-        for (const bool cubic : {false, true}) {
-            std::vector<double> values(static_cast<std::size_t>(n));
-            for (double& v : values) v = random.uniform();
-            const ControlCurve curve{values, cubic};
-            for (int k = 0; k < n; ++k)
-                EXPECT_NEAR(curve.at(double(k) / (n - 1)), values[std::size_t(k)], 1e-9);
-        }
-}
-
-TEST(ControlCurve, CubicReproducesACubicExactly) {
-    // Not-a-knot is the end condition under which a spline gives back any one polynomial.
-    const auto polynomial = [](double x) { return 1 - 2 * x + 5 * x * x - 4 * x * x * x; };
-    for (const int n : {4, 5, 6, 9, 15}) {
-        std::vector<double> values;
-        for (int k = 0; k < n; ++k) values.push_back(polynomial(double(k) / (n - 1)));
-        const ControlCurve curve{values, true};
-        for (double x = 0; x <= 1; x += .01) EXPECT_NEAR(curve.at(x), polynomial(x), 1e-9);
-    }
-}
-
-TEST(ThesisMotion, BeginsAtRestInItsRangesAndComesBack) {
-    const ThesisMotionSettings settings;
-    for (std::uint64_t seed = 0; seed < 200; ++seed) {
-        const auto motion = thesis_motion(settings, Random{seed});
-        const Pose first = motion->at(0);
-        EXPECT_EQ(first.x, 0);
-        EXPECT_EQ(first.angle, 0);
-        EXPECT_EQ(first.scale_x, 1);
-        for (double t = 0; t < settings.duration_s; t += .1) {
-            const Pose pose = motion->at(t), back = motion->at(2 * settings.duration_s - t);
-            EXPECT_NEAR(pose.x, back.x, 1e-9);
-            // Points lie in the table's ranges; a cubic may swing beyond by some.
-            EXPECT_LT(std::abs(pose.x), 2 * 2 * settings.displacement_max);
-            EXPECT_LT(std::abs(pose.angle), 2 * settings.angle_max);
-            EXPECT_GE(pose.scale_x, .1);
-        }
-    }
-}
-
-TEST(WanderMotion, KeepsItsSpeedOnAverage) {
-    WanderSettings settings;
-    settings.linear_probability = 1;
-    double total = 0;
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
-        const auto motion = wander_motion(settings, 100, 50, {}, {}, Random{seed});
-        motion->prepare(60);
-        double way = 0;
-        for (int i = 0; i < 60000; ++i) {
-            const Pose a = motion->at(i * .001), b = motion->at((i + 1) * .001);
-            way += std::hypot(b.x - a.x, b.y - a.y);
-        }
-        total += way / 60 / 40;
-    }
-    EXPECT_NEAR(total, 100, 4);
-}
-
-TEST(WanderMotion, StaysNearHome) {
-    for (std::uint64_t seed = 0; seed < 30; ++seed) {
-        const auto motion = wander_motion({}, 500, 10, {50, 50}, {0, 0, 100, 100}, Random{seed});
-        motion->prepare(100);
-        int away = 0;
-        for (int i = 0; i < 1000; ++i) {
-            const Pose p = motion->at(i * .1);
-            away += p.x < -100 || p.x > 200 || p.y < -100 || p.y > 200;
-        }
-        EXPECT_LT(away, 100);
-    }
-}
-
-TEST(WanderMotion, DoesNotDependOnHowItIsPreparedOrForgotten) {
-    const auto once = wander_motion({}, 50, 20, {}, {}, Random{5});
-    const auto bit_by_bit = wander_motion({}, 50, 20, {}, {}, Random{5});
-    once->prepare(20);
-    for (double t = 0; t < 20; t += .01) {
-        bit_by_bit->prepare(t);
-        EXPECT_EQ(once->at(t).x, bit_by_bit->at(t).x);
-        bit_by_bit->forget(t);
-    }
-}
-
-TEST(PauseClock, PausesWithTheProbabilitiesAskedFor) {
-    PauseClock clock{.05, .9, .05, Random{2}};
-    clock.prepare(5000);
-    int paused = 0, starts = 0, moving = 0;
-    bool last = false;
-    for (int k = 0; k < 100000; ++k) {
-        const bool still = clock.at((k + .75) * .05) == clock.at((k + .25) * .05);
-        paused += still;
-        starts += still && !last;
-        moving += !last;
-        last = still;
-    }
-    EXPECT_NEAR(double(starts) / moving, .05, .003);
-    EXPECT_NEAR(double(paused) / starts, 10, .5);  // 1 / (1 - .9) steps
-}
-
-TEST(PauseClock, NeverRunsBackwardsOrFasterThanTime) {
-    PauseClock clock{.2, .5, .03, Random{3}};
-    clock.prepare(100);
-    for (double t = 0; t < 99; t += .007) {
-        const double way = clock.at(t + .007) - clock.at(t);
-        EXPECT_GE(way, 0);
-        EXPECT_LE(way, .007 + 1e-12);
-    }
-}
-
-TEST(LightChanges, StaysInItsDepth) {
-    LightChanges light{.7, .1, Random{4}};
-    light.prepare(100);
-    double low = 0, high = -1;
-    for (double t = 0; t < 99; t += .01) {
-        low = std::min(low, light.log_gain(t));
-        high = std::max(high, light.log_gain(t));
-    }
-    EXPECT_NEAR(low, -.7, .02);
-    EXPECT_NEAR(high, 0, .02);
-    EXPECT_LE(high, 0);
-}
-
-TEST(Flicker, HasItsFrequencyAndDepth) {
-    const Flicker flicker{.depth = .4, .frequency_hz = 100, .phase = 0};
-    EXPECT_NEAR(flicker.at(.01), 1.4, 1e-9);
-    EXPECT_NEAR(flicker.at(.005), .6, 1e-9);
-    EXPECT_EQ(Flicker{}.at(.123), 1);
-}
 
 Scene make_scene(const SceneSettings& settings, std::uint64_t seed, int width = 48,
                  int height = 36) {
@@ -265,6 +136,90 @@ TEST(Scene, ObjectsHideWhatIsBehindThem) {
     EXPECT_GT(bright, 80);
     EXPECT_GT(dark, 80);
     EXPECT_GT(double(bright + dark), .8 * 36 * 48);  // little between: edges only
+}
+
+/// Light of what is fixed to the background, and of nothing else that moves by itself.
+SceneSettings pinned_scenes() {
+    SceneSettings settings;
+    settings.objects_max = 0;
+    settings.pinned_max = 12;
+    settings.object_size = {.3, .3};
+    settings.faint_probability = settings.light_change_probability = 0;
+    settings.flicker_probability = settings.object_flicker_probability = 0;
+    return settings;
+}
+
+TEST(Scene, PinnedThingsStandStillWithTheBackground) {
+    SceneSettings settings = pinned_scenes();
+    settings.still_background = 1;
+    int seen = 0;
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        Array2<float> first(36, 48), later(36, 48), bare(36, 48);
+        const Scene scene = make_scene(settings, seed);
+        scene.render(.06, {}, Scene::Show::light, first);
+        scene.render(9.9, {}, Scene::Show::light, later);
+        EXPECT_EQ(difference(first, later), 0);
+        settings.pinned_max = 0;
+        make_scene(settings, seed).render(.06, {}, Scene::Show::light, bare);
+        settings.pinned_max = 12;
+        seen += difference(first, bare) > 0;
+    }
+    EXPECT_GT(seen, 5);
+}
+
+TEST(Scene, PinnedThingsGoWhereTheBackgroundGoes) {
+    SceneSettings settings = pinned_scenes();
+    settings.still_background = 0;
+    settings.wander.speed = settings.wander.usual_speed = {20, 20};
+    settings.wander.spin_share = settings.wander.zoom_share = {0, 0};
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        const Scene scene = make_scene(settings, seed);
+        Array2<float> before(36, 48), after(36, 48);
+        scene.render(1, {}, Scene::Show::light, before);
+        scene.render(1.2, {}, Scene::Show::light, after);
+        // All of the picture is the one before, moved by one displacement.
+        double best = 1e9;
+        for (double dy = -5; dy <= 5; dy += .25)
+            for (double dx = -5; dx <= 5; dx += .25) {
+                Array2<float> moved(26, 38), same(26, 38);
+                scene.render(1, Affine::translation(5 + dx, 5 + dy), Scene::Show::light, moved);
+                for (int y = 0; y < 26; ++y)
+                    for (int x = 0; x < 38; ++x) same(y, x) = after(y + 5, x + 5);
+                double total = 0;
+                for (std::size_t i = 0; i < same.values().size(); ++i)
+                    total += std::abs(double(same.values()[i] - moved.values()[i]));
+                best = std::min(best, total / double(same.values().size()));
+            }
+        EXPECT_LT(best, .02 * scene.white_lux());
+    }
+}
+
+TEST(Scene, AFlatThingIsOfOneGrey) {
+    SceneSettings settings;
+    settings.objects_min = settings.objects_max = 1;
+    settings.object_size = {2.5, 2.5};
+    settings.object_aspect = {1, 1};
+    settings.still_background = 1;
+    settings.wander.speed = settings.wander.usual_speed = {.1, .1};
+    settings.object_reach = 0;
+    const auto of_one_grey = [&](std::uint64_t seed) {
+        Array2<float> grey(36, 48);
+        make_scene(settings, seed).render(0, {}, Scene::Show::grey, grey);
+        std::ptrdiff_t most = 0;
+        for (const float v : grey.values())
+            most = std::max(most, std::ranges::count_if(grey.values(), [v](float w) {
+                                return std::abs(v - w) < .004f;
+                            }));
+        return double(most) / double(grey.values().size());
+    };
+    double textured = 0, flat = 0;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+        settings.object_flat = 0;
+        textured += of_one_grey(seed) / 8;
+        settings.object_flat = 1;
+        flat += of_one_grey(seed) / 8;
+    }
+    EXPECT_GT(flat, textured + .3);
 }
 
 TEST(Scene, RefusesWhatItCannotShow) {
