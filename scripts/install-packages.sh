@@ -7,7 +7,7 @@ set -euo pipefail
 build=(
   g++ cmake ninja-build ccache pkg-config
   libopencv-dev libeigen3-dev nlohmann-json3-dev libtbb-dev libhwy-dev libdnnl-dev
-  libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler
+  libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libbz2-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler
   libcli11-dev libtomlplusplus-dev libspdlog-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
   libusb-1.0-0-dev libhdf5-dev

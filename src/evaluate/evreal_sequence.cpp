@@ -2,6 +2,7 @@
 #include "src/evaluate/evreal_sequence.h"
 
 #include "src/core/error.h"
+#include "src/evaluate/bag_file.h"
 #include "src/evaluate/mvsec_file.h"
 #include "src/evaluate/npy.h"
 
@@ -22,7 +23,7 @@ bool is_sequence(const fs::path& path) {
     if (fs::is_directory(path))
         return is_npy_folder(path) ||
                (fs::exists(path / "events.txt") && fs::exists(path / "images.txt"));
-    return is_hdf5_file(path) || path.extension() == ".aedat4";
+    return is_hdf5_file(path) || is_bag_file(path) || path.extension() == ".aedat4";
 }
 
 SensorTime time_of(double seconds) {
@@ -100,21 +101,16 @@ std::vector<fs::path> evreal_sequences(const fs::path& dataset) {
         throw Error(ErrorKind::input, dataset.string() + ": no such file or folder");
     if (is_sequence(dataset)) return {dataset};
     std::vector<fs::path> found;
-    bool bags = dataset.extension() == ".bag";
     if (fs::is_directory(dataset))
-        for (const fs::directory_entry& entry : fs::directory_iterator{dataset}) {
+        for (const fs::directory_entry& entry : fs::directory_iterator{dataset})
             if (is_sequence(entry.path())) found.push_back(entry.path());
-            bags = bags || entry.path().extension() == ".bag";
-        }
     std::ranges::sort(found);
     if (found.empty())
         throw Error(ErrorKind::input,
                     dataset.string() +
                         ": expected sequences: folders with events.txt and images.txt (ECD), "
-                        "folders with events_ts.npy (EVREAL's arrays), or MVSEC's .hdf5 files; "
-                        "found " +
-                        (bags ? "ROS bags, which are not read: EVREAL's tools turn them into arrays"
-                              : "none of them"));
+                        "folders with events_ts.npy (EVREAL's arrays), MVSEC's .hdf5 or HQF's .bag "
+                        "files; found none of them");
     return found;
 }
 

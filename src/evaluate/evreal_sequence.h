@@ -10,8 +10,8 @@ namespace eventide {
 
 /// The sequences of a data set: `dataset` itself, or what lies in it, by name. A sequence is a
 /// folder with events.txt and images.txt (Event Camera Dataset), a folder with events_ts.npy (as
-/// EVREAL's tools convert ECD, MVSEC and HQF), a file of MVSEC (.hdf5), or a recording that brings
-/// its images along (.aedat4). Throws Error(input) where there is none.
+/// EVREAL's tools convert ECD, MVSEC and HQF), a file of MVSEC (.hdf5), a ROS bag (HQF, .bag), or a
+/// recording that brings its images along (.aedat4). Throws Error(input) where there is none.
 std::vector<std::filesystem::path> evreal_sequences(const std::filesystem::path& dataset);
 
 /// Reads one of them. Times are told from the first event or image, whichever comes first; only

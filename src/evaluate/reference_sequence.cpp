@@ -4,6 +4,7 @@
 #include "replay/formats.h"
 #include "src/binning/slicer.h"
 #include "src/core/error.h"
+#include "src/evaluate/bag_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,18 +69,11 @@ std::string name_of(const std::filesystem::path& path) {
     return (plain.has_filename() ? plain : plain.parent_path()).stem().string();
 }
 
-}  // namespace
-
-ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
-                                          std::optional<double> from_s,
-                                          std::optional<double> to_s) {
+void read_recording(const std::filesystem::path& path, Keeper& keeper, ReferenceSequence& into) {
     const auto recording = open_recording(path.string());
     const auto parser = recording->make_parser();
-    ReferenceSequence sequence;
-    sequence.name = name_of(path);
-    sequence.width = recording->info().width;
-    sequence.height = recording->info().height;
-    Keeper keeper{sequence, from_s, to_s};
+    into.width = recording->info().width;
+    into.height = recording->info().height;
     RawPacket packet;
     Batch batch;
     while (!keeper.past_end(parser->clock()) && recording->read(packet) != ReadStatus::end) {
@@ -88,6 +82,38 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     }
     parser->finish(batch);
     keeper.take(batch);
+}
+
+void read_bag(const std::filesystem::path& path, Keeper& keeper, ReferenceSequence& into) {
+    BagFile bag{path};
+    Batch batch;
+    for (std::optional<SensorTime> clock; !keeper.past_end(clock) && bag.read(batch);) {
+        if (!batch.events.empty()) clock = batch.events.back().t;
+        keeper.take(batch);
+    }
+    into.width = bag.width();
+    into.height = bag.height();
+    if (into.events.empty() && into.images.empty())
+        throw Error(ErrorKind::input, path.string() +
+                                          ": expected dvs_msgs/EventArray and sensor_msgs/Image in "
+                                          "the time asked for, found " +
+                                          bag.types());
+    // Messages of one camera may overlap by a little.
+    std::ranges::stable_sort(into.events, {}, &Event::t);
+}
+
+}  // namespace
+
+ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
+                                          std::optional<double> from_s,
+                                          std::optional<double> to_s) {
+    ReferenceSequence sequence;
+    sequence.name = name_of(path);
+    Keeper keeper{sequence, from_s, to_s};
+    if (is_bag_file(path))
+        read_bag(path, keeper, sequence);
+    else
+        read_recording(path, keeper, sequence);
     mend_times(sequence.images);
 
     const auto refuse = [&](const std::string& what) {

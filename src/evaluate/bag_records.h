@@ -1,0 +1,91 @@
+// The container of ROS 1 bags, format 2.0: records, some of them packed in chunks.
+#pragma once
+
+#include "src/codec/byte_order.h"
+#include "src/core/sensor_time.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eventide {
+
+inline std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Numbers and blocks as ROS writes them, from front to back; what it does not hold is 0, and
+/// good() false.
+class BlockReader {
+public:
+    explicit BlockReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+    template <typename T>
+    T number() {
+        const auto bytes = take(sizeof(T));
+        return bytes.empty() ? T{} : load_little<T>(bytes.data());
+    }
+    std::span<const std::byte> block() { return take(number<std::uint32_t>()); }
+    std::span<const std::byte> take(std::size_t n) {
+        good_ = good_ && n <= rest_.size();
+        if (!good_) return {};
+        const auto front = rest_.first(n);
+        rest_ = rest_.subspan(n);
+        return front;
+    }
+    /// Seconds and nanoseconds.
+    SensorTime time() {
+        const auto s = number<std::uint32_t>(), ns = number<std::uint32_t>();
+        return from_us(std::int64_t{s} * 1'000'000 + (std::int64_t{ns} + 500) / 1000);
+    }
+    bool good() const { return good_; }
+
+private:
+    std::span<const std::byte> rest_;
+    bool good_ = true;
+};
+
+/// A header of named fields, and data.
+struct BagRecord {
+    enum Op : int { message = 2, chunk = 5, connection = 7 };
+
+    std::map<std::string, std::string_view, std::less<>> fields;
+    std::span<const std::byte> data;
+    int op = -1;
+};
+
+/// Name and value of each field "name=value" in a row of blocks.
+std::map<std::string, std::string_view, std::less<>> bag_fields(std::span<const std::byte> bytes);
+
+/// Reads from the beginning to the end, a record at a time; the index is not needed. Errors are
+/// Error(input) and name the file, what was expected and what was found.
+class BagRecords {
+public:
+    explicit BagRecords(const std::filesystem::path& path);
+
+    /// Gives the next record, or each of those in it when it is a chunk; false at the end.
+    bool read(const std::function<void(const BagRecord&)>& use);
+
+    /// Of a record's field of 4 bytes.
+    std::uint32_t number(const BagRecord& record, std::string_view field) const;
+    [[noreturn]] void refuse(const std::string& what) const;
+
+private:
+    std::optional<std::vector<std::byte>> next_bytes();  ///< of one record; none at the end
+    BagRecord parse(std::span<const std::byte>& bytes) const;
+    std::vector<std::byte> unpack(const BagRecord& chunk) const;
+
+    std::filesystem::path path_;
+    std::ifstream file_;
+    std::uint64_t left_ = 0;  ///< bytes of the file
+};
+
+}  // namespace eventide
