@@ -16,8 +16,8 @@ struct libusb_transfer;
 namespace eventide {
 
 struct UsbStreamSettings {
-    int transfers = 16;             ///< in flight
-    std::size_t bytes = 64 * 1024;  ///< of each; a multiple of the endpoint's packet (1024)
+    int transfers = 32;              ///< in flight
+    std::size_t bytes = 128 * 1024;  ///< of each; a multiple of the endpoint's packet (1024)
 };
 
 /// read() runs libusb's event handling on the caller's thread, and a completed transfer swaps its
