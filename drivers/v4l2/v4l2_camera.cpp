@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -75,8 +77,8 @@ void V4l2Camera::open() {
         const auto& holder = settings_.subdevice.empty() ? node_ : settings_.subdevice;
         const FileDescriptor fd{::open(holder.c_str(), O_RDWR | O_CLOEXEC)};
         if (fd.get() < 0)
-            throw Error(ErrorKind::device, "the camera " + holder.string() +
-                                               " cannot be opened: " + std::strerror(errno));
+            throw Error(ErrorKind::device, "the camera " + holder.string() + " cannot be opened: " +
+                                               std::system_category().message(errno));
         set_v4l2_controls(fd.get(), holder.string(), settings_.controls);
     }
     device_ = std::make_unique<V4l2Device>(node_, settings_.buffers);
@@ -154,11 +156,15 @@ ReadStatus V4l2Camera::lost() {
 std::unique_ptr<Parser> V4l2Camera::make_parser() const {
     const int width = info_.width, height = info_.height;
     switch (encoding_) {
-        case EvtEncoding::evt2: return std::make_unique<Evt2Parser>(width, height);
-        case EvtEncoding::evt21: return std::make_unique<Evt21Parser>(width, height);
+        case EvtEncoding::evt2:
+            return std::make_unique<Evt2Parser>(width, height);
+        case EvtEncoding::evt21:
+            return std::make_unique<Evt21Parser>(width, height);
         case EvtEncoding::evt21_swapped:
-            return std::make_unique<Evt21Parser>(width, height, Evt21Parser::Order::upper_half_first);
-        case EvtEncoding::evt3: break;
+            return std::make_unique<Evt21Parser>(width, height,
+                                                 Evt21Parser::Order::upper_half_first);
+        case EvtEncoding::evt3:
+            break;
     }
     return std::make_unique<Evt3Parser>(width, height);
 }

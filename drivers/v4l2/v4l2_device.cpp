@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 
 namespace eventide {
 namespace {
@@ -177,7 +177,7 @@ void set_v4l2_controls(int fd, const std::string& device,
                                               std::to_string(own.mapped()));
         v4l2_control control{query.id, std::int32_t(own.mapped())};
         if (const int error = v4l2_ioctl(fd, VIDIOC_S_CTRL, &control); error != 0)
-            throw Error(ErrorKind::device, name + ": " + std::strerror(error));
+            throw Error(ErrorKind::device, name + ": " + std::system_category().message(error));
         if (v4l2_ioctl(fd, VIDIOC_G_CTRL, &control) == 0 &&
             control.value != std::int32_t(own.mapped()))
             throw Error(ErrorKind::device, name + ": set to " + std::to_string(own.mapped()) +

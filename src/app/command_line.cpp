@@ -147,7 +147,7 @@ std::vector<std::string> flags_of(const CLI::App& app) {
     }
     std::string left;
     for (const std::string& each : app.remaining(true))
-        left = each + (left.empty() ? "" : " ") + left;
+        left.insert(0, left.empty() ? each : each + " ");
     throw Error(ErrorKind::usage, "not expected: " + left + help);
 }
 

@@ -69,10 +69,12 @@ Setting parsed_setting(std::string key, T& value, std::string value_name, std::s
                        std::function<std::string(const T&)> show) {
     Setting setting{
         std::move(key), ValueKind::text, std::move(value_name), std::move(help), {}, {}, {}, {}};
-    setting.set = [&value, parse](const std::vector<std::string>& texts) {
+    setting.set = [&value, parse = std::move(parse)](const std::vector<std::string>& texts) {
         value = parse(texts.back());
     };
-    setting.show = [&value, show] { return std::vector<std::string>{show(value)}; };
+    setting.show = [&value, show = std::move(show)] {
+        return std::vector<std::string>{show(value)};
+    };
     return setting;
 }
 

@@ -170,6 +170,30 @@ TEST_F(Live, BeforeAWallFramesKeepComingAtTheAskedRate) {
     EXPECT_GT(stats["silent_frames"], 20);
 }
 
+TEST_F(Live, StrictlyWhatTheCameraItselfDroppedIsLostData) {
+    for (const bool strict : {true, false}) {
+        DavisModelSettings settings = small_camera();
+        settings.fifo_bytes = 4 << 10;
+        // Between two looks 2 ms go by: 20,000 events, of which the camera's memory holds 1000.
+        settings.now = [t = std::int64_t{0}]() mutable { return from_us(t += 2000); };
+        Batch scene = davis_scene(settings.sensor, {.events = 100'000});
+        for (std::size_t i = 0; i < scene.events.size(); ++i)
+            scene.events[i].t = from_us(std::int64_t(i / 10));
+        scene.images.clear();
+        scene.imu.clear();
+        const auto camera = std::make_shared<DavisModel>(settings);
+        camera->show(scene);
+        bed_.plug_in(camera);
+        std::vector<std::string> arguments{"run",        "davis:", "--fps", "50",
+                                           "--duration", "200ms",  "--out", "null"};
+        if (strict) arguments.push_back("--strict");
+        const Result result = eventide(arguments);
+        EXPECT_EQ(result.exit_code, strict ? 5 : 0) << result.error;
+        EXPECT_THAT(result.error, HasSubstr("dropped by itself"));
+        bed_.unplug();
+    }
+}
+
 TEST_F(Live, ListsCamerasThatCanBeUsedAndThoseThatCannot) {
     plug_in({}, false);
     const Json usable = Json::parse(eventide({"devices", "--json"}).output);
