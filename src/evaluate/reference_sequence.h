@@ -23,10 +23,10 @@ struct ReferenceSequence {
     std::vector<ReferenceImage> images;  ///< in order of time
 };
 
-/// Reads a recording of any format, or a ROS bag (bag_file.h). Where given, only data in [from, to] (s from `first`)
-/// are kept. A single image time that lies after the next one is taken as the middle of its
-/// neighbours, as EVREAL does (HQF has one). Throws Error(input) where there are no events, no
-/// images, or no sensor size.
+/// Reads a recording of any format, or a ROS bag (bag_file.h). Where given, only data in [from, to]
+/// (s from `first`) are kept. A single image time that lies after the next one is taken as the
+/// middle of its neighbours, as EVREAL does (HQF has one). Throws Error(input) where there are no
+/// events, no images, or no sensor size.
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s = {},
                                           std::optional<double> to_s = {});
