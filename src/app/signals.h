@@ -1,7 +1,8 @@
 // SIGINT and SIGTERM: the first ends the work properly, the second at once.
 #pragma once
 
-#include <atomic>
+#include <signal.h>
+
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -9,26 +10,33 @@
 
 namespace eventide::app {
 
-/// Made first thing in main, before any thread: it blocks the two signals in the calling thread,
-/// and so in all threads made later, and waits for them on a thread of its own. SIGPIPE is ignored.
+/// Made first thing in main, one per process, and the only one who handles the two signals while
+/// it lives. They may arrive on any thread: libraries start some before main does (OpenBLAS, where
+/// OpenCV brings it). The calling thread, and so all made later, block them, lest their system
+/// calls be interrupted. SIGPIPE is ignored.
 class Signals {
 public:
+    /// Throws Error(failed) where the system has no file descriptors left.
     Signals();
     ~Signals();
     Signals(const Signals&) = delete;
     Signals& operator=(const Signals&) = delete;
 
     /// A signal came. Any thread.
-    bool stopping() const { return stopping_; }
+    bool stopping() const;
 
-    /// What the first signal calls, on the signals' thread; at once if it came already.
+    /// What the first signal calls, on the signals' thread; at once if it came already. The second
+    /// ends the process even if this hangs.
     void on_stop(std::function<void()> stop);
 
 private:
+    using Action = struct sigaction;
     void wait();
 
-    std::atomic<bool> stopping_{false}, done_{false};
-    std::mutex mutex_;  // guards stop_
+    sigset_t mask_before_{};
+    Action interrupt_before_{}, terminate_before_{};
+    int read_end_ = -1, write_end_ = -1;  // a byte per signal; none left when it is over
+    std::mutex mutex_;                    // guards stop_
     std::function<void()> stop_;
     std::jthread thread_;
 };
