@@ -27,7 +27,7 @@ std::uint32_t capabilities_of(const v4l2_capability& capability) {
 
 std::string explain_v4l2_error(int error, const std::string& if_missing,
                                const std::string& if_busy) {
-    const std::string words = std::system_category().message(error);
+    std::string words = std::system_category().message(error);
     switch (error) {
         case EACCES:
             return words + " (no permission: join the group 'video')";

@@ -81,7 +81,7 @@ Setting parsed_setting(std::string key, T& value, std::string value_name, std::s
 /// One of a few words: `names` in the order of the enumerators from 0.
 template <typename Enum>
 Setting choice_setting(std::string key, Enum& value, std::string help,
-                       std::vector<std::string> names) {
+                       const std::vector<std::string>& names) {
     std::string value_name;
     for (const std::string& name : names) value_name += (value_name.empty() ? "" : "|") + name;
     return parsed_setting<Enum>(
