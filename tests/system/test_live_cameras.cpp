@@ -45,6 +45,8 @@ protected:
             if (HasFailure()) break;
             bed_.look([&] { over = camera.is_scene_over(); });
         }
+        // What the camera has sent is not yet what the program has fetched.
+        EXPECT_EQ(process.read_output(3 * pixels_of_frame).size(), 3 * pixels_of_frame);
         process.signal(SIGINT);
         const Result result = process.wait();
         EXPECT_EQ(result.exit_code, 0) << result.error;
