@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <pthread.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <future>
@@ -12,15 +13,30 @@
 namespace eventide::app {
 namespace {
 
-/// A thread made before Signals, as libraries make them while they are loaded: it blocks nothing.
+/// A thread made before Signals, as libraries make them while they are loaded: it blocks no
+/// signals. It waits in a read, where the thread sanitizer too lets signals through.
 class ForeignThread {
 public:
-    ~ForeignThread() { end_.set_value(); }
+    ForeignThread() {
+        EXPECT_EQ(pipe(ends_), 0);
+        thread_ = std::jthread{[from = ends_[0]] {
+            char byte = 0;
+            while (read(from, &byte, 1) < 0) {
+            }
+        }};
+    }
+    ~ForeignThread() {
+        close(ends_[1]);
+        thread_.join();
+        close(ends_[0]);
+    }
+    ForeignThread(const ForeignThread&) = delete;
+    ForeignThread& operator=(const ForeignThread&) = delete;
     void interrupt() { pthread_kill(thread_.native_handle(), SIGINT); }
 
 private:
-    std::promise<void> end_;
-    std::jthread thread_{[over = end_.get_future()]() { over.wait(); }};
+    int ends_[2] = {};
+    std::jthread thread_;
 };
 
 TEST(SignalsOnAnyThread, TheFirstStopsTheWork) {
