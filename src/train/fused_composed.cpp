@@ -1,4 +1,5 @@
 #include "src/train/fused.h"
+#include "src/train/fused_types.h"
 #include "src/train/networks.h"
 
 namespace eventide::fused::composed {
@@ -8,10 +9,6 @@ torch::Tensor up2_along(const torch::Tensor& a, int dim, std::int64_t size) {
     const std::int64_t n = a.size(dim);
     const auto next = torch::cat({a.narrow(dim, 1, n - 1), a.narrow(dim, n - 1, 1)}, dim);
     return torch::stack({a, (a + next) * 0.5}, dim + 1).flatten(dim, dim + 1).narrow(dim, 0, size);
-}
-
-torch::ScalarType wide_of(const torch::Tensor& x) {
-    return x.scalar_type() == torch::kDouble ? torch::kDouble : torch::kFloat;
 }
 
 }  // namespace
@@ -34,7 +31,7 @@ torch::Tensor up2(const torch::Tensor& a, std::int64_t height, std::int64_t widt
 
 torch::Tensor offset_layer(const torch::Tensor& first, const torch::Tensor& dt,
                            const torch::Tensor& offsets, const Axis& y, const Axis& x) {
-    const auto options = first.options().dtype(wide_of(first));
+    const auto options = first.options().dtype(wide_of(first.scalar_type()));
     const auto index = [&](const Axis& axis) {
         return torch::tensor(axis.index).to(first.device());
     };
