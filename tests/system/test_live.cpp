@@ -1,8 +1,8 @@
 // The built program with a camera on USB: a DAVIS in software, through the real libusb.
-#include "replay/formats.h"
 #include "tests/drivers/davis_streams.h"
 #include "tests/support/preload.h"
 #include "tests/system/program_test.h"
+#include "tests/system/recorded.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -55,16 +55,6 @@ protected:
     static void read_frames(Process& process, std::size_t frames) {
         ASSERT_EQ(process.read_output(frames * kPixels).size(), frames * kPixels);
     }
-    Batch recorded(const std::string& name) {
-        const auto recording = open_recording(temp_ / name);
-        const auto parser = recording->make_parser();
-        Batch data;
-        for (RawPacket packet; recording->read(packet) == ReadStatus::data;)
-            parser->parse(packet.bytes, data);
-        parser->finish(data);
-        EXPECT_EQ(parser->damaged().total(), 0U) << "the file is whole";
-        return data;
-    }
     Json last_stats() {
         std::istringstream lines{read_text(temp_ / "stats.jsonl")};
         Json last;
@@ -89,7 +79,7 @@ TEST_F(Live, RecordsAllThatTheCameraSent) {
     process.signal(SIGINT);
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    const Batch kept = recorded("raw.aedat4");
+    const Batch kept = recorded(temp_ / "raw.aedat4");
     EXPECT_EQ(kept.events, seen.events);
     EXPECT_EQ(kept.images, seen.images);
     EXPECT_EQ(kept.imu.size(), seen.imu.size());
@@ -106,7 +96,7 @@ TEST_F(Live, UnpluggedItEndsAsADeviceThatWasLostAndItsFilesAreWhole) {
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.error, HasSubstr("was unplugged (use --reconnect"));
-    const Batch kept = recorded("raw.aedat4");
+    const Batch kept = recorded(temp_ / "raw.aedat4");
     ASSERT_GT(kept.events.size(), 1000U);
     EXPECT_TRUE(std::equal(kept.events.begin(), kept.events.end(), seen.events.begin()));
     const auto times = column(temp_ / "frames/timestamps.csv", 2);
@@ -146,7 +136,7 @@ TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
     EXPECT_EQ(stats["state_resets"], reset ? 1 : 0);
 
     // All of the second scene is at the recording's end, later by the time that went by.
-    const Batch kept = recorded("raw.aedat4");
+    const Batch kept = recorded(temp_ / "raw.aedat4");
     ASSERT_GT(kept.events.size(), seen.events.size());
     const std::size_t before = kept.events.size() - seen.events.size();
     EXPECT_TRUE(

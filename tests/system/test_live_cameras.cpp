@@ -1,10 +1,10 @@
 // The built program with the other USB cameras in software: what each of them saw is what it
 // records.
-#include "replay/formats.h"
 #include "tests/support/dvs128_model.h"
 #include "tests/support/dvxplorer_model.h"
 #include "tests/support/usb_testbed.h"
 #include "tests/system/program_test.h"
+#include "tests/system/recorded.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -50,13 +50,7 @@ protected:
         process.signal(SIGINT);
         const Result result = process.wait();
         EXPECT_EQ(result.exit_code, 0) << result.error;
-        const auto recording = open_recording(temp_ / "raw.aedat4");
-        const auto parser = recording->make_parser();
-        Batch data;
-        for (RawPacket packet; recording->read(packet) == ReadStatus::data;)
-            parser->parse(packet.bytes, data);
-        parser->finish(data);
-        return data.events;
+        return recorded(temp_ / "raw.aedat4").events;
     }
     Json only_device() {
         const Json devices = Json::parse(eventide({"devices", "--json"}).output);
