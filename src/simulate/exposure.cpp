@@ -55,8 +55,12 @@ double Exposure::gain_for_mean(std::vector<float>& signal, double gain) const {
     return gain;
 }
 
+bool Exposure::due(double t_s) const {
+    return history_.empty() || (!fixed_ && t_s >= history_.back().t_s + kMeterEvery_s);
+}
+
 void Exposure::meter(double t_s, const Array2<float>& light, double light_gain) {
-    if (!history_.empty() && (fixed_ || t_s < history_.back().t_s + kMeterEvery_s)) return;
+    if (!due(t_s)) return;
     std::vector<float> signal = metered(light, light_gain, gamma_);
     const double mean = mean_of(signal);
     if (history_.empty()) {

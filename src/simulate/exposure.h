@@ -15,6 +15,9 @@ class Exposure {
 public:
     Exposure(const SceneSettings& settings, Random random);
 
+    /// Whether meter() at t would do anything.
+    bool due(double t_s) const;
+
     /// `light` as it is at t; times must not decrease. The first call sets the exposure.
     void meter(double t_s, const Array2<float>& light, double light_gain);
     void forget(double before_s);

@@ -53,7 +53,7 @@ struct SceneSettings {
     ThesisMotionSettings thesis;
     WanderSettings wander;
     Range view_share{.2, 1.1};      ///< log-uniform; share of the texture that the sensor sees ...
-    double magnified_most = 1.2;    ///< ... but no texture pixel is shown larger than this, in px
+    double magnified_most = 1.6;    ///< ... but no texture pixel is shown larger than this, in px
     double still_background = .15;  ///< probability of a camera that does not move
 
     int objects_min = 0, objects_max = 30;

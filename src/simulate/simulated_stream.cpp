@@ -18,28 +18,53 @@ double seconds(SensorTime t) {
     return double(to_us(t)) * 1e-6;
 }
 
+const SensorPart& checked(const SensorPart& part) {
+    const auto inside = [](int from, int size, int whole) {
+        return from >= 0 && size >= 2 && from + size <= whole;
+    };
+    if (inside(part.x0, part.width, part.whole_width) &&
+        inside(part.y0, part.height, part.whole_height))
+        return part;
+    throw Error(ErrorKind::usage,
+                "a simulated sensor of " + std::to_string(part.width) + " x " +
+                    std::to_string(part.height) + " pixels at (" + std::to_string(part.x0) + ", " +
+                    std::to_string(part.y0) + ") does not lie in one of " +
+                    std::to_string(part.whole_width) + " x " + std::to_string(part.whole_height));
+}
+
 }  // namespace
 
 /// Sub-frames lie on a grid that only the scene decides, so that it does not matter how advance()
 /// is cut: events of the last sub-frame that are beyond its end wait in `ready`.
 struct SimulatedStream::Parts {
     Parts(const SceneSettings& scene_settings, const SensorSettings& sensor_settings,
-          std::shared_ptr<const TextureLibrary> textures, int width, int height, Random random)
+          std::shared_ptr<const TextureLibrary> textures, const SensorPart& part, Random random)
         : target(scene_settings.target),
           longest_step_s(scene_settings.step_s.high),
-          scene(scene_settings, std::move(textures), width, height, random.fork()),
+          scene(scene_settings, std::move(textures), part.whole_width, part.whole_height,
+                random.fork()),
           exposure(scene_settings, random.fork()),
-          sensor(SensorTraits::draw(sensor_settings, random), width, height, random.fork()),
-          readout(sensor.traits(), std::size_t(width) * std::size_t(height), random.fork()),
-          light(height, width) {
+          sensor(SensorTraits::draw(sensor_settings, random), part.width, part.height,
+                 random.fork()),
+          readout(sensor.traits(), std::size_t(part.width) * std::size_t(part.height),
+                  random.fork()),
+          to_scene(Affine::translation(part.x0, part.y0)),
+          is_part(part.width < part.whole_width || part.height < part.whole_height),
+          to_meter(Affine::scale((part.whole_width - 1) / (kMeterWidth - 1.0),
+                                 (part.whole_height - 1) / (kMeterHeight - 1.0))),
+          light(part.height, part.width),
+          whole_light(kMeterHeight, kMeterWidth) {
         scene.prepare(2 * longest_step_s);
         look(SensorTime{});
         sensor.settle(light, scene.gain(0) * scene.flicker(0));
     }
 
     void look(SensorTime t) {
-        scene.render(seconds(t), Affine{}, Scene::Show::light, light);
-        exposure.meter(seconds(t), light, scene.gain(seconds(t)));
+        const double t_s = seconds(t);
+        scene.render(t_s, to_scene, Scene::Show::light, light);
+        if (!exposure.due(t_s)) return;
+        if (is_part) scene.render(t_s, to_meter, Scene::Show::light, whole_light);
+        exposure.meter(t_s, is_part ? whole_light : light, scene.gain(t_s));
     }
 
     void sub_frame() {
@@ -56,13 +81,20 @@ struct SimulatedStream::Parts {
         ++sub_frames;
     }
 
+    // What the whole's exposure is metered on: fine enough for its contrast.
+    static constexpr int kMeterWidth = 64, kMeterHeight = 48;
+
     TargetRule target;
     double longest_step_s;
     Scene scene;
     Exposure exposure;
     EventSensor sensor;
     Readout readout;
-    Array2<float> light;        // lux at `reached`, without the scene's gain
+    Affine to_scene;  // the sensor's pixels -> the scene's
+    bool is_part;
+    Affine to_meter;      // pixels of `whole_light` -> the scene's
+    Array2<float> light;  // lux at `reached`, without the scene's gain
+    Array2<float> whole_light;
     std::vector<Event> events;  // of one sub-frame
     std::vector<Event> ready;   // in order, beyond now
     std::uint64_t sub_frames = 0;
@@ -73,7 +105,12 @@ struct SimulatedStream::Parts {
 SimulatedStream::SimulatedStream(const SceneSettings& scene, const SensorSettings& sensor,
                                  std::shared_ptr<const TextureLibrary> textures, int width,
                                  int height, std::uint64_t seed)
-    : parts_(std::make_unique<Parts>(scene, sensor, std::move(textures), width, height,
+    : SimulatedStream(scene, sensor, std::move(textures), SensorPart::all(width, height), seed) {}
+
+SimulatedStream::SimulatedStream(const SceneSettings& scene, const SensorSettings& sensor,
+                                 std::shared_ptr<const TextureLibrary> textures,
+                                 const SensorPart& part, std::uint64_t seed)
+    : parts_(std::make_unique<Parts>(scene, sensor, std::move(textures), checked(part),
                                      Random{seed})) {}
 
 SimulatedStream::~SimulatedStream() = default;
@@ -108,14 +145,14 @@ void SimulatedStream::truth(SensorTime t, double y0, double x0, double span_y, d
                             Array2<float>& out) const {
     const Parts& p = *parts_;
     const auto per_pixel = [](double span, int n) { return n > 1 ? span / (n - 1) : span; };
-    const Affine to_sensor{per_pixel(span_x, out.width()),  0, x0, 0,
-                           per_pixel(span_y, out.height()), y0};
+    const Affine to_scene = p.to_scene.after(
+        {per_pixel(span_x, out.width()), 0, x0, 0, per_pixel(span_y, out.height()), y0});
     const double t_s = seconds(t);
     if (p.target == TargetRule::texture) {
-        p.scene.render(t_s, to_sensor, Scene::Show::grey, out);
+        p.scene.render(t_s, to_scene, Scene::Show::grey, out);
         return;
     }
-    p.scene.render(t_s, to_sensor, Scene::Show::light_without_flicker, out);
+    p.scene.render(t_s, to_scene, Scene::Show::light_without_flicker, out);
     p.exposure.develop(t_s, p.scene.gain(t_s), out);
 }
 

@@ -57,16 +57,25 @@ struct Camera {
     SensorSettings sensor;
 };
 
+/// A sensor of random size, and where in it the crop lies.
+SensorPart draw_part(const DataSettings& settings, Random& random) {
+    const double width = random.log_uniform(settings.sensor_width);
+    SensorPart part{.width = settings.crop, .height = settings.crop};
+    part.whole_width = std::max(settings.crop, int(std::lround(width)));
+    part.whole_height = std::max(settings.crop, int(std::lround(width * 3 / 4)));
+    part.x0 = random.integer(0, part.whole_width - part.width);
+    part.y0 = random.integer(0, part.whole_height - part.height);
+    return part;
+}
+
 /// The thesis' light, threshold and truth (the picture itself, whatever its brightness); half of
-/// these scenes move as the thesis', half as all others, since the thesis' motion is made for whole
-/// pictures and is slow in a small crop.
+/// these scenes move as the thesis', half as all others, since the thesis' motion is slow.
 Camera thesis_camera(const DataSettings& settings, Random& random) {
     const SimulationPreset& preset = simulation_preset("thesis_train");
     Camera camera{preset.scene, preset.sensor};
     if (random.chance(.5)) return camera;
     camera.scene.background = BackgroundMotion::wander;
     camera.scene.wander = settings.scene.wander;
-    camera.scene.view_share = {.6, 1.1};  // a patch of a picture may be all white or all black
     camera.scene.pause_start = settings.scene.pause_start;
     return camera;
 }
@@ -86,8 +95,8 @@ struct Lane::Episode {
             std::uint64_t seed)
         : random(seed),
           camera(draw_camera(settings, random)),
-          stream(camera.scene, camera.sensor, std::move(textures), settings.crop, settings.crop,
-                 random.bits()),
+          part(draw_part(settings, random)),
+          stream(camera.scene, camera.sensor, std::move(textures), part, random.bits()),
           binner(settings.bins, settings.crop, settings.crop),
           grid(binner.make_output()),
           width_s(random.log_uniform(settings.frame_s)),
@@ -105,6 +114,7 @@ struct Lane::Episode {
 
     Random random;
     Camera camera;
+    SensorPart part;
     SimulatedStream stream;
     Binner binner;
     VoxelGrid grid;

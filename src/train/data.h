@@ -18,7 +18,10 @@ namespace eventide {
 
 struct DataSettings {
     int bins = 5;
-    int crop = 64;             ///< px, side of the simulated sensor
+    int crop = 64;  ///< px, side of the part of a sensor that is simulated
+    /// px, log-uniform per episode; width of that sensor, whose height is three quarters of it.
+    /// Never smaller than the crop.
+    Range sensor_width{128, 346};
     int frames = 8;            ///< event frames per window: gradients flow through one window
     int rendered = 4;          ///< of them, consecutive, are compared with the truth
     int patch = 64;            ///< px, side of the pictures compared

@@ -111,7 +111,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("mlp", o.model.mlp, "hidden widths of the renderer");
     add("sigma-rule", o.model.sigma_rule, "log_blend or mixture");
 
-    add("crop", o.data.crop, "px, side of the simulated sensor");
+    add("crop", o.data.crop, "px, side of the part of a sensor that is simulated");
+    add("sensor-width", o.data.sensor_width,
+        "px, of that sensor; its height is three quarters of it");
     add("frames", o.data.frames, "event frames that gradients flow through");
     add("rendered", o.data.rendered, "of them compared with the truth");
     add("patch", o.data.patch, "px, side of the pictures compared");
@@ -127,6 +129,8 @@ OptionTable::OptionTable(TrainOptions& o) {
         "share of scenes and objects that shake about one place instead");
     add("still", o.data.scene.still_background, "share of scenes whose camera stands still");
     add("objects", o.data.scene.objects_max, "moving objects at most");
+    add("object-size", o.data.scene.object_size,
+        "full length of moving and fixed things, over the sensor's height");
     add("pinned", o.data.scene.pinned_max, "things fixed to the background at most");
     add("flat", o.data.scene.object_flat, "share of things of one grey all over");
     add("faint", o.data.scene.faint_probability, "share of scenes of little contrast");

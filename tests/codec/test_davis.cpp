@@ -1,6 +1,7 @@
 // DAVIS words, spelled out, and read(write(x)) = x.
 #include "src/codec/davis.h"
 #include "src/codec/davis_writer.h"
+#include "tests/support/davis_sensors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@ namespace eventide {
 namespace {
 
 using testing::ElementsAre;
+using testing_support::davis240;
 
 // The vocabulary of drivers-and-formats.md A.9.
 constexpr std::uint16_t time(int low15) {
@@ -62,15 +64,6 @@ std::vector<std::byte> bytes_of(const Words& words) {
         bytes.push_back(std::byte(w >> 8));
     }
     return bytes;
-}
-
-DavisSensor davis240() {
-    DavisSensor sensor;
-    sensor.chip = DavisChip::davis240c;
-    sensor.dvs_columns = sensor.aps_columns = 240;
-    sensor.dvs_rows = sensor.aps_rows = 180;
-    sensor.dvs_swapped = sensor.aps_swapped = false;
-    return sensor;
 }
 
 struct Parsed {

@@ -41,15 +41,6 @@ Batch davis_scene(const DavisSensor& sensor, SceneSettings settings) {
     return batch;
 }
 
-DavisSensor davis240() {
-    DavisSensor sensor;
-    sensor.chip = DavisChip::davis240c;
-    sensor.dvs_columns = sensor.aps_columns = 240;
-    sensor.dvs_rows = sensor.aps_rows = 180;
-    sensor.dvs_swapped = sensor.aps_swapped = false;
-    return sensor;
-}
-
 DavisOptions at_once() {
     DavisOptions options;
     options.waits = {std::chrono::milliseconds{0}, std::chrono::milliseconds{0},

@@ -6,6 +6,7 @@
 #include "src/core/error.h"
 #include "src/core/event.h"
 #include "tests/support/davis_model.h"
+#include "tests/support/davis_sensors.h"
 #include "tests/support/usb_testbed.h"
 
 #include <cstdint>
@@ -24,8 +25,6 @@ struct SceneSettings {
     unsigned seed = 1;
 };
 Batch davis_scene(const DavisSensor& sensor, SceneSettings settings = {});
-
-DavisSensor davis240();
 
 /// A camera in software needs no time to settle.
 DavisOptions at_once();

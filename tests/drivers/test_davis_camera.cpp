@@ -10,6 +10,7 @@ namespace eventide::test {
 namespace {
 
 using testing::HasSubstr;
+using testing_support::davis240;
 using testing_support::DavisModel;
 using testing_support::DavisModelSettings;
 using testing_support::UsbTestbed;

@@ -1,6 +1,7 @@
 #include "tests/support/recorded_scene.h"
 
 #include "src/core/error.h"
+#include "tests/support/davis_sensors.h"
 
 #include <algorithm>
 #include <string>
@@ -39,13 +40,8 @@ void begin_at_zero(Batch& data) {
 }  // namespace
 
 DavisSensor sensor_for(const SensorInfo& info) {
-    DavisSensor sensor;  // a DAVIS346 unless the recording says otherwise
-    if (info.width == 240 && info.height == 180) {
-        sensor.chip = DavisChip::davis240c;
-        sensor.dvs_columns = sensor.aps_columns = 240;
-        sensor.dvs_rows = sensor.aps_rows = 180;
-        sensor.dvs_swapped = sensor.aps_swapped = false;
-    }
+    DavisSensor sensor;
+    if (info.width == 240 && info.height == 180) sensor = davis240();
     if (info.width > sensor.width() || info.height > sensor.height())
         throw Error(ErrorKind::usage, "the recording is " + std::to_string(info.width) + "x" +
                                           std::to_string(info.height) +
