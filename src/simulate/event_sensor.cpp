@@ -47,7 +47,8 @@ EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Rand
       width_(width),
       height_(height),
       pixels_(std::size_t(width) * std::size_t(height)),
-      random_(random) {
+      random_(random),
+      noise_(traits, pixels_, random_.fork()) {
     const std::size_t n = whole_lanes(pixels_);
     for (std::vector<float>* values : {&now_, &before_, &reference_, &leak_}) values->assign(n, 0);
     on_.assign(n, kHeld);  // what pads the last lanes never fires
@@ -63,8 +64,6 @@ EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Rand
         const double rate = std::max(0.0, vary(traits.leak_hz, traits.leak_mismatch));
         leak_[i] = float(rate * double(on_[i]));
     }
-    const double shots = traits.shot_hz * double(pixels_);
-    next_shot_s_ = shots > 0 ? random_.exponential() / shots : 1e300;
     const auto hot = std::size_t(traits.hot_share * double(pixels_) + random_.uniform());
     for (std::size_t i = 0; i < hot; ++i) {
         HotPixel pixel{.pixel = std::uint32_t(random_.uniform() * double(pixels_)),
@@ -132,11 +131,11 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
     const double v1 = double(now_[pixel]), slope = v1 - v0;
     const double on = double(on_[pixel]), off = double(off_[pixel]);
     double reference = double(reference_[pixel]), share = 0;
-    if (reference_[pixel] == kHeld) {
+    if (ready_s_[pixel] > step.begin_s) {
         if (ready_s_[pixel] >= step.end_s) return;
         share = (ready_s_[pixel] - step.begin_s) / step.seconds;
-        reference = v0 + slope * share;
     }
+    if (reference_[pixel] == kHeld) reference = v0 + slope * share;
     for (int n = 0;; ++n) {
         const bool rises = v1 >= reference + on;
         if (!rises && v1 > reference - off) break;
@@ -159,27 +158,18 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
     reference_[pixel] = float(reference);
 }
 
-/// A Poisson process of candidates at the dark rate over the whole sensor; a candidate in the light
-/// is kept less often. A noise event resets its pixel like any other.
+/// The light's own events go on from the reference they had: noise swings about the light and takes
+/// nothing of it. A noise event only keeps its pixel busy, like any other.
 void EventSensor::add_shot_noise(const Step& step, std::span<const float> lux, double gain,
                                  std::vector<Event>& events) {
-    const double rate = traits_.shot_hz * double(pixels_);
-    for (; next_shot_s_ <= step.end_s; next_shot_s_ += random_.exponential() / rate) {
-        const auto pixel = std::size_t(random_.uniform() * double(pixels_));
-        const double light = double(lux[pixel]) * gain;
-        const bool kept = random_.chance(traits_.shot_lux / (traits_.shot_lux + light));
-        const bool on = random_.chance(.5);
-        if (!kept || next_shot_s_ < ready_s_[pixel]) continue;
-        const double share = (next_shot_s_ - step.begin_s) / step.seconds;
-        events.push_back(event(step, pixel, share, on ? Polarity::on : Polarity::off));
-        ready_s_[pixel] = next_shot_s_ + traits_.refractory_s;
-        const double leak = double(leak_[pixel]) * step.seconds;
-        const double v0 = double(before_[pixel]) - leak;
-        const double ready = std::min(1.0, (ready_s_[pixel] - step.begin_s) / step.seconds);
-        reference_[pixel] = ready_s_[pixel] >= step.end_s && traits_.refractory_s > 0
-                                ? kHeld
-                                : float(v0 + (double(now_[pixel]) - v0) * ready);
-    }
+    const auto fire = [&](std::size_t pixel, double t_s, Polarity polarity) {
+        if (t_s < ready_s_[pixel]) return false;
+        events.push_back(event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity));
+        ready_s_[pixel] = t_s + traits_.refractory_s;
+        return true;
+    };
+    noise_.until(
+        step.end_s, [&](std::size_t pixel) { return double(lux[pixel]) * gain; }, fire);
 }
 
 void EventSensor::add_hot_pixels(const Step& step, std::vector<Event>& events) {

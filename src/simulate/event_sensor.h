@@ -4,6 +4,7 @@
 #include "src/core/array.h"
 #include "src/core/event.h"
 #include "src/simulate/sensor_settings.h"
+#include "src/simulate/shot_noise.h"
 
 #include <cstdint>
 #include <span>
@@ -54,7 +55,7 @@ private:
     std::vector<float> on_, off_;      // thresholds
     std::vector<float> leak_;          // per second, in ln
     std::vector<double> ready_s_;      // end of the refractory time, seconds since 0
-    double next_shot_s_ = 0;           // of the whole sensor's candidate events
+    ShotNoise noise_;
     std::vector<HotPixel> hot_;
 };
 

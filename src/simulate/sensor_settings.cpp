@@ -40,6 +40,8 @@ SensorTraits SensorTraits::draw(const SensorSettings& s, Random& random) {
         t.leak_mismatch = random.uniform(s.leak_mismatch);
         t.shot_hz = random.log_uniform(s.shot_hz);
         t.shot_lux = random.log_uniform(s.shot_lux);
+        t.shot_return_s = random.log_uniform(s.shot_return_s);
+        t.shot_mismatch = random.uniform(s.shot_mismatch);
         t.hot_share = random.uniform(s.hot_share);
         t.hot_hz = s.hot_hz;
     }

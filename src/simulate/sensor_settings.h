@@ -22,9 +22,11 @@ struct SensorSettings {
     Range leak_mismatch{.1, .5};         ///< uniform; deviation between pixels, share of the rate
     Range shot_hz{.01, 3};               ///< log-uniform; noise events per pixel in the dark ...
     Range shot_lux{1, 100};              ///< log-uniform; ... half as many at this light
-    Range hot_share{0, .001};            ///< uniform; share of pixels that fire by themselves
-    Range hot_hz{5, 1000};               ///< log-uniform per hot pixel
-    Range jitter_s{0, .0002};            ///< uniform; mean of the exponential delay of read-out
+    Range shot_return_s{.002, .03};  ///< log-uniform; mean time from a noise event to its opposite
+    Range shot_mismatch{.2, 1.2};    ///< uniform; deviation between pixels of the rate's ln
+    Range hot_share{0, .001};        ///< uniform; share of pixels that fire by themselves
+    Range hot_hz{5, 1000};           ///< log-uniform per hot pixel
+    Range jitter_s{0, .0002};        ///< uniform; mean of the exponential delay of read-out
     /// log-uniform; events per second that the bus can carry, over the number of pixels (a
     /// DAVIS240: 12e6 / 43200 = 280)
     Range arbiter_hz_per_pixel{100, 3000};
@@ -47,7 +49,7 @@ struct SensorTraits {
     double bandwidth_hz = 0, bandwidth_hz_per_lux = 0;
     double refractory_s = 0;
     double leak_hz = 0, leak_mismatch = 0;
-    double shot_hz = 0, shot_lux = 0;
+    double shot_hz = 0, shot_lux = 0, shot_return_s = .005, shot_mismatch = 0;
     double hot_share = 0;
     Range hot_hz;
     double jitter_s = 0, arbiter_hz_per_pixel = 0, arbiter_wait_s = 0, dropped = 0;

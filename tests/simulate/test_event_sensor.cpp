@@ -1,73 +1,16 @@
 // Each effect of the simulated sensor, by its statistics.
-#include "src/simulate/event_sensor.h"
+#include "tests/simulate/watched_sensor.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <numeric>
 
 namespace eventide {
 namespace {
 
-constexpr int kSide = 32;
-constexpr double kPixels = kSide * kSide;
-
-SensorTraits plain(double threshold) {
-    SensorTraits traits;
-    traits.threshold_on = traits.threshold_off = threshold;
-    return traits;
-}
-
-/// Events of a sensor whose pixels all see exp(log_lux(t)), in steps of `step_us`.
-std::vector<Event> watch(const SensorTraits& traits, double seconds,
-                         const std::function<double(double)>& log_lux, int step_us = 1000) {
-    EventSensor sensor{traits, kSide, kSide, Random{7}};
-    Array2<float> lux(kSide, kSide);
-    const auto set = [&](double t) {
-        std::ranges::fill(lux.values(), float(std::exp(log_lux(t))));
-    };
-    set(0);
-    sensor.settle(lux, 1);
-    std::vector<Event> events;
-    const int steps = int(std::lround(seconds * 1e6 / step_us));
-    for (int i = 0; i < steps; ++i) {
-        set((i + 1) * step_us * 1e-6);
-        sensor.step(from_us(std::int64_t(i) * step_us), from_us(std::int64_t(i + 1) * step_us), lux,
-                    1, events);
-    }
-    return events;
-}
-
-double still(double) {
-    return std::log(100.0);
-}
-
-std::map<int, std::vector<std::int64_t>> times_by_pixel(const std::vector<Event>& events) {
-    std::map<int, std::vector<std::int64_t>> times;
-    for (const Event& e : events) times[e.y * kSide + e.x].push_back(to_us(e.t));
-    for (auto& [pixel, list] : times) std::ranges::sort(list);
-    return times;
-}
-
-double share_on(const std::vector<Event>& events) {
-    return double(std::ranges::count(events, Polarity::on, &Event::polarity)) /
-           double(events.size());
-}
-
-struct Moments {
-    double mean = 0, deviation = 0;
-};
-Moments moments(const std::vector<double>& values) {
-    Moments m;
-    for (const double v : values) m.mean += v / double(values.size());
-    for (const double v : values)
-        m.deviation += (v - m.mean) * (v - m.mean) / double(values.size());
-    m.deviation = std::sqrt(m.deviation);
-    return m;
-}
+using namespace watched_sensor;
 
 TEST(EventSensor, SaysNothingBeforeAStillSceneWhenEveryEffectIsOff) {
     EXPECT_TRUE(watch(plain(.1), 2, still).empty());
@@ -189,24 +132,6 @@ TEST(EventSensor, LeaksDifferentlyFromPixelToPixel) {
     for (const auto& [pixel, times] : times_by_pixel(watch(traits, 10, still, 10000)))
         rates.push_back(double(times.size()) / 10);
     EXPECT_NEAR(moments(rates).deviation, 2, .2);
-}
-
-TEST(EventSensor, ShotNoiseIsPoissonBothWaysAndFallsWithLight) {
-    SensorTraits traits = plain(.3);
-    traits.shot_hz = 4;
-    traits.shot_lux = 50;
-    const auto rate = [&](double lux) {
-        const auto events = watch(traits, 10, [&](double) { return std::log(lux); });
-        std::vector<double> counts(std::size_t(kPixels), 0.0);
-        for (const Event& e : events) ++counts[std::size_t(e.y * kSide + e.x)];
-        const Moments m = moments(counts);
-        EXPECT_NEAR(m.deviation * m.deviation / m.mean, 1, .15) << "variance over mean";
-        EXPECT_NEAR(share_on(events), .5, .03);
-        return m.mean / 10;
-    };
-    EXPECT_NEAR(rate(.001), 4, .1);
-    EXPECT_NEAR(rate(50), 2, .1);
-    EXPECT_NEAR(rate(450), .4, .05);
 }
 
 TEST(EventSensor, KeepsTheRefractoryTimeBetweenAPixelsEvents) {
