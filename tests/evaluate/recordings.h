@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <opencv2/imgcodecs.hpp>
 
 #include <cmath>
@@ -27,8 +29,10 @@ inline void write_picture(const fs::path& path, const Array2<float>& image) {
 }
 
 /// A fresh folder of this name.
+/// Of this process alone: tests run beside each other.
 inline fs::path fresh_folder(const std::string& name) {
-    const fs::path folder = fs::path{testing::TempDir()} / ("eventide_" + name);
+    const fs::path own = fs::path{testing::TempDir()} / std::to_string(::getpid());
+    const fs::path folder = own / ("eventide_" + name);
     fs::remove_all(folder);
     fs::create_directories(folder);
     return folder;
