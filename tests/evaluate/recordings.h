@@ -28,8 +28,7 @@ inline void write_picture(const fs::path& path, const Array2<float>& image) {
     cv::imwrite(path.string(), out);
 }
 
-/// A fresh folder of this name.
-/// Of this process alone: tests run beside each other.
+/// A fresh folder of this name, of this process alone: tests run beside each other.
 inline fs::path fresh_folder(const std::string& name) {
     const fs::path own = fs::path{testing::TempDir()} / std::to_string(::getpid());
     const fs::path folder = own / ("eventide_" + name);
