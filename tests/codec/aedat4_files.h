@@ -61,6 +61,15 @@ inline Batch some_of_everything(unsigned seed = 1) {
     return batch;
 }
 
+/// The first `packets` times 100 of them, a packet each.
+inline std::vector<Batch> in_packets(const std::vector<Event>& events, std::size_t packets) {
+    std::vector<Batch> batches(packets);
+    for (std::size_t i = 0; i < packets; ++i)
+        batches[i].events.assign(events.begin() + std::ptrdiff_t(100 * i),
+                                 events.begin() + std::ptrdiff_t(100 * (i + 1)));
+    return batches;
+}
+
 inline Bytes write_file(const std::vector<Batch>& batches, Aedat4Compression compression,
                         bool with_end = true) {
     Aedat4Writer writer(compression);

@@ -88,11 +88,8 @@ TEST(Aedat4, ARealRecordingWrittenAnewIsTheSame) {
 }
 
 TEST(Aedat4, TheTableLeadsToATime) {
-    std::vector<Batch> batches(4);
     const auto events = random_events(6, 400, kWidth, kHeight);
-    for (std::size_t i = 0; i < 4; ++i)
-        batches[i].events.assign(events.begin() + std::ptrdiff_t(100 * i),
-                                 events.begin() + std::ptrdiff_t(100 * (i + 1)));
+    const std::vector<Batch> batches = in_packets(events, 4);
     for (const bool with_end : {true, false}) {
         const Bytes bytes = write_file(batches, Aedat4Compression::lz4, with_end);
         const Aedat4Header header = read_aedat4_header(bytes);

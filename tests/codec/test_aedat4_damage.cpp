@@ -14,11 +14,7 @@ namespace {
 using namespace aedat4_files;
 
 TEST(Aedat4Damage, ACutGivesABeginning) {
-    Batch batch = some_of_everything();
-    std::vector<Batch> batches(3);
-    for (std::size_t i = 0; i < 3; ++i)
-        batches[i].events.assign(batch.events.begin() + std::ptrdiff_t(100 * i),
-                                 batch.events.begin() + std::ptrdiff_t(100 * (i + 1)));
+    const std::vector<Batch> batches = in_packets(some_of_everything().events, 3);
     const File file = split_file(write_file(batches, Aedat4Compression::lz4));
     expect_beginnings_for_any_cut(file.make(), file.data);
     const Parsed cut = parse_whole(file.make(), std::span(file.data).first(file.data.size() / 3));
@@ -48,11 +44,8 @@ TEST(Aedat4Damage, ADamagedTableIsCountedAndNotNeeded) {
 }
 
 TEST(Aedat4Damage, APacketThatDoesNotUnpackCostsOnlyItself) {
-    std::vector<Batch> batches(3);
     const auto events = random_events(3, 300, kWidth, kHeight);
-    for (std::size_t i = 0; i < 3; ++i)
-        batches[i].events.assign(events.begin() + std::ptrdiff_t(100 * i),
-                                 events.begin() + std::ptrdiff_t(100 * (i + 1)));
+    const std::vector<Batch> batches = in_packets(events, 3);
     for (const auto compression : {Aedat4Compression::lz4, Aedat4Compression::zstd}) {
         File file = split_file(write_file(batches, compression));
         const std::size_t first = 8 + load_little<std::uint32_t>(file.data.data() + 4);
@@ -64,11 +57,8 @@ TEST(Aedat4Damage, APacketThatDoesNotUnpackCostsOnlyItself) {
 }
 
 TEST(Aedat4Damage, ASizeThatLiesDoesNotSwallowWhatFollows) {
-    std::vector<Batch> batches(5);
     const auto events = random_events(4, 500, kWidth, kHeight);
-    for (std::size_t i = 0; i < 5; ++i)
-        batches[i].events.assign(events.begin() + std::ptrdiff_t(100 * i),
-                                 events.begin() + std::ptrdiff_t(100 * (i + 1)));
+    const std::vector<Batch> batches = in_packets(events, 5);
     for (const std::uint32_t lie : {0x7FFFFFFFU, 0x0FFFFFFFU, 0U, 3U, 0xFFFFFFFFU}) {
         File file = split_file(write_file(batches, Aedat4Compression::lz4));
         const std::size_t first = 8 + load_little<std::uint32_t>(file.data.data() + 4);
@@ -122,11 +112,8 @@ TEST(Aedat4Damage, SilenceBetweenPacketsIsNoDamage) {
 }
 
 TEST(Aedat4Damage, ReadingTakesUpAtTheNextPacketAfterALoss) {
-    std::vector<Batch> batches(4);
     const auto events = random_events(5, 400, kWidth, kHeight);
-    for (std::size_t i = 0; i < 4; ++i)
-        batches[i].events.assign(events.begin() + std::ptrdiff_t(100 * i),
-                                 events.begin() + std::ptrdiff_t(100 * (i + 1)));
+    const std::vector<Batch> batches = in_packets(events, 4);
     const File file = split_file(write_file(batches, Aedat4Compression::lz4));
     const std::size_t first = 8 + load_little<std::uint32_t>(file.data.data() + 4);
     for (const std::size_t from : {std::size_t(1), first - 1, first}) {
