@@ -54,12 +54,16 @@ run l1-only       --ssim 0 --lpips-weight 0
 run no-lpips      --lpips-weight 0
 run no-ssim       --ssim 0
 run no-temporal   --temporal 0
+run fed           --feedback input
+run fed-change    --feedback change
+run fed-physical  --feedback physical
 
 experiment encoder    "base thesis"                    "1. The gated encoder against the thesis' (instance norm, whole-image statistics)"
 experiment renderer   "base mlp32 mlp128 half"         "4. The renderer's width; latent codes at half resolution"
 experiment inputs     "base bins2 bins1 no-moments no-since polarity" "6. What the voxel grid says"
 experiment losses     "base no-lpips no-ssim no-temporal l1-only" "7. Losses"
 experiment thresholds "base threshold-low threshold35" "8. Range of contrast thresholds in training"
+experiment feedback   "base fed fed-change fed-physical" "9. The last picture fed back: as an input, to be changed, as a physical output"
 experiment widths     "base equal narrow levels3 levels5" "10. Where the multiply-adds go, and field of view"
 experiment states     "base full-only half-only quarter-only" "10b. Which levels remember"
 
@@ -72,13 +76,21 @@ train_and_score() {
   echo "experiments: $name: ${options[$name]}" >&2
   rm -rf "$folder"
   mkdir -p "$folder"
-  # shellcheck disable=SC2086  # options are words
-  "${keep_memory[@]}" "$train" "${common[@]}" ${options[$name]} --textures "$out/train.pack" --validation-textures "$out/held_out.pack" \
-    --lpips "$lpips" --out "$folder" --export "$folder/model.safetensors" > "$folder/output.txt"
+  # shellcheck disable=SC2206  # options are words
+  local command=("${keep_memory[@]}" "$train" "${common[@]}" ${options[$name]} --textures "$out/train.pack"
+    --validation-textures "$out/held_out.pack" --lpips "$lpips" --out "$folder")
+  # A network that is fed its own picture exists in training alone.
+  case ${options[$name]} in *--feedback*) ;; *) command+=(--export "$folder/model.safetensors") ;; esac
+  "${command[@]}" > "$folder/output.txt"
   local held_out steps
   # step, minutes, score, L1, 1-SSIM, LPIPS, NLL, temporal, MSE, PICP80
   held_out=$(awk -F, 'END { printf "%.4f,%.3f,%.3f,%.3f", $9, $5, $6, $10 }' "$folder/validation.csv")
   steps=$(awk -F, 'END { print $1 }' "$folder/validation.csv")
+  local row="$name,${options[$name]//,/;},$steps,$held_out"
+  if [ ! -e "$folder/model.safetensors" ]; then
+    echo "$row,-,-,-,-,-,-,-,-,-,-,-,-" > "$folder/scores.csv"
+    return
+  fi
   local evaluate=("$program" --quiet evaluate --model "$folder/model.safetensors" --lpips "$lpips")
   for lookahead in 0 2; do
     "${evaluate[@]}" --protocol simulated --images "$DATA/images/bsds500" --last-images 100 --sequences 4 \
@@ -86,7 +98,7 @@ train_and_score() {
   done
   "${evaluate[@]}" "$DATA/recordings/camerashake_b" "$DATA/recordings/slider_depth_head" \
     --csv "$folder/real.csv" > /dev/null
-  echo "$name,${options[$name]//,/;},$steps,$held_out,$(scores "$folder/simulated0.csv"),$(scores \
+  echo "$row,$(scores "$folder/simulated0.csv"),$(scores \
     "$folder/simulated2.csv"),$(scores "$folder/real.csv")" > "$folder/scores.csv"
 }
 

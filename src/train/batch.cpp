@@ -6,11 +6,15 @@
 namespace eventide {
 
 Memory empty_memory(const ModelConfig& config, std::int64_t lanes, std::int64_t height,
-                    std::int64_t width, torch::TensorOptions options) {
+                    std::int64_t width, torch::TensorOptions options, Feedback feedback) {
     const std::int64_t s = config.latent_stride;
-    return {empty_state(config, lanes, height, width, options),
-            torch::zeros({lanes, config.latent, (height + s - 1) / s, (width + s - 1) / s}, options)
-                .contiguous(torch::MemoryFormat::ChannelsLast)};
+    Memory memory{
+        empty_state(config, lanes, height, width, options),
+        torch::zeros({lanes, config.latent, (height + s - 1) / s, (width + s - 1) / s}, options)
+            .contiguous(torch::MemoryFormat::ChannelsLast)};
+    if (feedback != Feedback::none)
+        memory.state.push_back(torch::zeros({lanes, 1, height, width}, options));
+    return memory;
 }
 
 Memory begin_window(const Memory& memory, const std::vector<bool>& fresh) {
@@ -62,16 +66,23 @@ TrainingBatch to_batch(std::span<const LaneWindow> windows, torch::Device device
 }
 
 Pictures run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
-                    const TrainingBatch& batch, int patch, Memory& memory) {
+                    const TrainingBatch& batch, int patch, Memory& memory, Feedback feedback) {
+    const bool fed = feedback != Feedback::none;
     std::vector<torch::Tensor> z{memory.latent};  // z[k + 1] belongs to frame k of the window
+    std::vector<torch::Tensor> pictures;          // at the start of frame k, where fed back
     for (const torch::Tensor& grid : batch.grids) {
-        Encoded encoded = encode(config, parameters, grid, memory.state);
+        if (fed) pictures.push_back(memory.state.back());
+        Encoded encoded = encode(config, parameters,
+                                 fed ? with_picture(grid, pictures.back()) : grid, memory.state);
         memory.state = std::move(encoded.state);
         z.push_back(std::move(encoded.latent));
+        if (fed)
+            memory.state.push_back(next_picture(feedback, config, parameters, *(z.end() - 2),
+                                                z.back(), pictures.back()));
     }
     memory.latent = z.back();
 
-    std::vector<RenderTask> tasks;
+    std::vector<RenderTask> tasks, bases;
     for (std::size_t i = 0; i < batch.f.size(); ++i) {
         const std::size_t k = std::size_t(plan.first_rendered) + i;
         // Codes past the window's end are not known, whatever the lookahead.
@@ -80,10 +91,17 @@ Pictures run_window(const ModelConfig& config, const Parameters& parameters, con
             return known ? z[k + 1 + ahead] : torch::Tensor{};
         };
         tasks.push_back({z[k], z[k + 1], code(1), code(2), batch.f[i]});
+        if (fed)
+            bases.push_back({{},
+                             pictures[k],
+                             tasks.back().next.defined() ? pictures[k + 1] : torch::Tensor{},
+                             {},
+                             batch.f[i]});
     }
     const double s = config.latent_stride;
-    Rendered out = render(config, parameters, tasks,
-                          patch_grid(plan.y0 / s, plan.x0 / s, plan.span / s, patch));
+    const PatchGrid points = patch_grid(plan.y0 / s, plan.x0 / s, plan.span / s, patch);
+    const Rendered out = apply_feedback(feedback, parameters,
+                                        render(config, parameters, tasks, points), bases, points);
     return {out.mu, out.log_sigma, batch.truth, batch.weight, std::int64_t(batch.fresh.size())};
 }
 

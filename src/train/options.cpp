@@ -2,6 +2,8 @@
 
 #include "src/core/error.h"
 
+#include <algorithm>
+#include <array>
 #include <sstream>
 
 namespace eventide {
@@ -41,6 +43,14 @@ void read_value(const std::string& text, SigmaRule& value) {
     value = text == "mixture" ? SigmaRule::mixture : SigmaRule::log_blend;
 }
 
+constexpr std::array kFeedbackNames{"none", "input", "change", "physical"};  // as Feedback
+void read_value(const std::string& text, Feedback& value) {
+    const auto found = std::ranges::find(kFeedbackNames, text);
+    if (found == kFeedbackNames.end())
+        throw std::invalid_argument{"none, input, change or physical"};
+    value = Feedback(found - kFeedbackNames.begin());
+}
+
 template <typename T>
 std::string write_value(const T& value) {
     std::ostringstream out;
@@ -65,6 +75,9 @@ std::string write_value(const EncoderKind& value) {
 }
 std::string write_value(const SigmaRule& value) {
     return value == SigmaRule::mixture ? "mixture" : "log_blend";
+}
+std::string write_value(const Feedback& value) {
+    return kFeedbackNames[std::size_t(value)];
 }
 
 }  // namespace
@@ -102,6 +115,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("bins", o.model.bins, "B of the voxel grid");
     add("inputs", o.inputs,
         "channels of the voxel grid that may be used: polarity,mean,std,count,since");
+    add("feedback", o.feedback,
+        "the last picture as an input, or to be changed: none, input, change or physical; such a "
+        "network can't be exported");
     add("widths", o.model.widths, "channels per level");
     add("recurrent", o.model.recurrent, "per level: 1 recurrent, 0 held");
     add("res-blocks", o.model.res_blocks, "at the lowest resolution");

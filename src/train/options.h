@@ -3,6 +3,7 @@
 
 #include "src/model/model_config.h"
 #include "src/train/data.h"
+#include "src/train/feedback.h"
 #include "src/train/losses.h"
 #include "src/train/optimiser.h"
 #include "src/train/parameters.h"
@@ -17,6 +18,7 @@ namespace eventide {
 struct TrainOptions {
     ModelConfig model;
     std::vector<std::string> inputs{kGridInputs.begin(), kGridInputs.end()};
+    Feedback feedback = Feedback::none;
     DataSettings data;
     LossWeights loss;
     OptimiserSettings optimiser;

@@ -47,6 +47,16 @@ bool processor_has_bf16() {
 #endif
 }
 
+/// Nothing but training can run such a network.
+void require_feedback_fits(const TrainOptions& options) {
+    if (!options.export_file.empty())
+        throw Error(ErrorKind::usage,
+                    "--export: expected --feedback none, as eventide gives a network events alone");
+    if (options.model.latent_stride != 1)
+        throw Error(ErrorKind::usage, "--feedback: expected --latent-stride 1, found " +
+                                          std::to_string(options.model.latent_stride));
+}
+
 void append_row(const std::filesystem::path& path, const std::string& header,
                 const std::string& row) {
     const bool begin = !std::filesystem::exists(path);
@@ -79,8 +89,15 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
       say_(std::move(say)),
       device_(device_of(options)),
       type_(arithmetic_type(options)),
-      optimiser_(options.optimiser, initial_parameters(options.model, options.data.seed, device_)),
+      optimiser_(options.optimiser,
+                 with_feedback(initial_parameters(options.model, options.data.seed, device_),
+                               options.feedback)),
       input_mask_(input_mask(options.model, options.inputs).to(device_)) {
+    if (options.feedback != Feedback::none) {
+        require_feedback_fits(options);
+        const auto picture = torch::ones_like(input_mask_.narrow(1, 0, 1));  // is always used
+        input_mask_ = torch::cat({input_mask_, picture}, 1);
+    }
     require_blas_for_threads(options.threads);
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
@@ -102,7 +119,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     if (options.validation_scenes > 0)
         validation_ = std::make_unique<Validation>(
             ValidationSettings{options.validation_scenes, options.validation_frames,
-                               options.validation_crop, 4242},
+                               options.validation_crop, 4242, options.feedback},
             options_.data, std::move(validation_textures), device_);
     feed_ =
         std::make_unique<Feed>(options_.data, std::move(textures), options.threads * options.lanes,
@@ -113,8 +130,8 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
 void Trainer::begin_memories() {
     std::vector<Memory>& memories = progress_.memories;
     const int crop = options_.data.crop;
-    const Memory empty =
-        empty_memory(options_.model, options_.lanes, crop, crop, torch::TensorOptions{device_});
+    const Memory empty = empty_memory(options_.model, options_.lanes, crop, crop,
+                                      torch::TensorOptions{device_}, options_.feedback);
     const auto count = std::size_t(options_.threads * options_.groups);
     if (memories.size() != count || memories[0].latent.sizes() != empty.latent.sizes())
         memories.assign(count, empty);
@@ -147,8 +164,8 @@ Trainer::Share Trainer::run_share(std::span<const LaneWindow> windows, const Win
     memory = begin_window(memory, batch.fresh);
     const Parameters narrow =
         type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
-    const Pictures pictures =
-        run_window(options_.model, narrow, plan, batch, options_.data.patch, memory);
+    const Pictures pictures = run_window(options_.model, narrow, plan, batch, options_.data.patch,
+                                         memory, options_.feedback);
     Share share;
     share.terms = loss(pictures, options_.loss, perceptual_.get(), options_.data.rendered);
     std::vector<torch::Tensor> leaves;
@@ -237,7 +254,8 @@ void Trainer::validate() {
     validation_->write_sheet(file("sheet.pgm"), options_.model, weights, 0);
     if (scores.score < progress_.best_score) {
         progress_.best_score = scores.score;
-        save_model(file("best.safetensors"), {options_.model, to_tensors(optimiser_.ema)});
+        if (options_.feedback == Feedback::none)
+            save_model(file("best.safetensors"), {options_.model, to_tensors(optimiser_.ema)});
     }
 }
 
