@@ -3,7 +3,7 @@
 #   scripts/experiments.sh DATA [EXPERIMENT...]     without EXPERIMENT: all of them
 #   scripts/experiments.sh --tables                 only writes the tables again
 # A finished run is not repeated, so the script may be stopped at any time. A run's budget is MINUTES of processor
-# time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK, EVENTIDE name the programs, OUT the
+# time (3), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK, EVENTIDE name the programs, OUT the
 # folder of the runs (out/experiments).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,13 +11,13 @@ build=build/release/src
 train=${TRAIN:-$build/train/eventide-train}
 pack=${PACK:-$build/train/eventide-pack-pictures}
 program=${EVENTIDE:-$build/app/eventide}
-minutes=${MINUTES:-5}
+minutes=${MINUTES:-3}
 out=${OUT:-out/experiments}
 tables=docs/accuracy/experiments
 page=docs/accuracy.md
 export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 # An allocator that keeps memory between steps, where there is one (docs/training.md).
-jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { print $NF; exit }')
+jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { path = $NF } END { print path }')
 keep_memory=(env ${jemalloc:+LD_PRELOAD=$jemalloc
   MALLOC_CONF=dirty_decay_ms:-1,muzzy_decay_ms:-1,narenas:4,oversize_threshold:0,thp:always})
 
