@@ -50,6 +50,8 @@ run no-moments    --inputs polarity,count,since
 run no-since      --inputs polarity,mean,std,count
 run threshold35   --threshold 0.35,0.35
 run threshold-low --threshold 0.1,0.4
+run gate12        --gate-radius 12
+run gate32        --gate-radius 32
 run l1-only       --ssim 0 --lpips-weight 0
 run no-lpips      --lpips-weight 0
 run no-ssim       --ssim 0
@@ -65,6 +67,7 @@ experiment losses     "base no-lpips no-ssim no-temporal l1-only" "7. Losses"
 experiment thresholds "base threshold-low threshold35" "8. Range of contrast thresholds in training"
 experiment feedback   "base fed fed-change fed-physical" "9. The last picture fed back: as an input, to be changed, as a physical output"
 experiment widths     "base equal narrow levels3 levels5" "10. Where the multiply-adds go, and field of view"
+experiment gate       "base gate12 gate32"             "How far around events the state may change (px; 4 in base)"
 experiment states     "base full-only half-only quarter-only" "10b. Which levels remember"
 
 # One line of scores from a file that eventide evaluate wrote: MSE, SSIM, LPIPS, PICP80 over everything.
