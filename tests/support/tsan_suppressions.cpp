@@ -1,8 +1,11 @@
 // What the thread sanitizer cannot know: ConcurrentQueue synchronises by fences. Data that travel
-// through it are still watched: links and pools hand over by semaphores.
+// through it are still watched: links and pools hand over by semaphores. GDAL, by which OpenCV
+// reads images, takes two locks of its own in either order, on the one thread that opens a
+// recording.
 
 // The sanitizer's own name for it; nobody else asks.
 extern "C" const char* __tsan_default_suppressions();
 extern "C" const char* __tsan_default_suppressions() {
-    return "race:moodycamel::ConcurrentQueue\n";
+    return "race:moodycamel::ConcurrentQueue\n"
+           "deadlock:libgdal.so\n";
 }
