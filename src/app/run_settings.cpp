@@ -174,8 +174,9 @@ void RunSettings::add_times(SettingTable& table) {
 /// With which network, and what it remembers.
 void RunSettings::add_network(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(text_setting("model", model, "NAME|FILE",
-                     "A name from the models folder (default, small, thesis) or a safetensors file."));
+    add(text_setting(
+        "model", model, "NAME|FILE",
+        "A name from the models folder (default, small, thesis) or a safetensors file."));
     add(choice_setting("sigma_rule", sigma_rule,
                        "How the members of the local ensemble give one sigma; model: as the model "
                        "says.",
