@@ -85,24 +85,32 @@ TEST(Training, AFewStepsMakeTheErrorSmaller) {
     EXPECT_TRUE(fs::exists(out / "checkpoint.safetensors"));
 }
 
-TEST(Training, ARunThatStoppedGoesOnAsIfItHadNot) {
-    const fs::path whole = empty_folder("whole"), parts = empty_folder("parts");
-    TrainOptions options = tiny_options(whole);
-    options.steps = 12;
+/// A run of `options.steps` in one go, and one that stops after `stop_at`: the same bit for bit.
+/// Gives the first.
+std::unique_ptr<Trainer> expect_stopping_changes_nothing(TrainOptions options, int stop_at) {
+    const fs::path parts = empty_folder("parts");
+    const int steps = options.steps;
     options.constant_share = 1;  // the rate must not depend on how often the run stops
-    const auto expected = trainer(options);
+    auto expected = trainer(options);
     train(*expected);
 
     options.out = parts.string();
-    options.steps = 5;
+    options.steps = stop_at;
     train(*trainer(options));
     options.resume = (parts / "checkpoint.safetensors").string();
-    options.steps = 12;
+    options.steps = steps;
     const auto resumed = trainer(options);
-    EXPECT_EQ(resumed->steps(), 5);
+    EXPECT_EQ(resumed->steps(), stop_at);
     train(*resumed);
     for (const auto& [name, values] : expected->parameters())
         EXPECT_EQ((values - resumed->parameters().at(name)).abs().max().item<float>(), 0) << name;
+    return expected;
+}
+
+TEST(Training, ARunThatStoppedGoesOnAsIfItHadNot) {
+    TrainOptions options = tiny_options(empty_folder("whole"));
+    options.steps = 12;
+    expect_stopping_changes_nothing(options, 5);
 }
 
 TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
@@ -141,28 +149,15 @@ TEST(Training, AnInputThatIsNotUsedHasNoWeightInTheModel) {
     EXPECT_THROW(trainer(options), Error);
 }
 
-TEST(Training, ANetworkThatIsFedItsOwnPictureLearnsAndGoesOnAsIfItHadNotStopped) {
+TEST(Training, ANetworkThatIsFedItsOwnPictureGoesOnAsIfItHadNotStopped) {
     for (const char* kind : {"input", "change", "physical"}) {
-        const fs::path whole = empty_folder("fed_whole"), parts = empty_folder("fed_parts");
-        TrainOptions options = tiny_options(whole);
+        SCOPED_TRACE(kind);
+        TrainOptions options = tiny_options(empty_folder("fed_whole"));
         OptionTable{options}.set("feedback", kind);
-        options.constant_share = 1;
         options.steps = 10;
-        const auto expected = trainer(options);
-        train(*expected);
-        const auto& first = expected->parameters().at("encoder.in.weight");
+        const auto whole = expect_stopping_changes_nothing(options, 4);
+        const auto& first = whole->parameters().at("encoder.in.weight");
         EXPECT_EQ(first.size(1), 4 * 2 + 2) << "the picture is one more channel than the events";
-
-        options.out = parts.string();
-        options.steps = 4;
-        train(*trainer(options));
-        options.resume = (parts / "checkpoint.safetensors").string();
-        options.steps = 10;
-        const auto resumed = trainer(options);
-        train(*resumed);
-        for (const auto& [name, values] : expected->parameters())
-            EXPECT_EQ((values - resumed->parameters().at(name)).abs().max().item<float>(), 0)
-                << kind << " " << name;
     }
 }
 
