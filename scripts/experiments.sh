@@ -32,6 +32,7 @@ experiment() { experiments[$1]=$2; title[$1]=$3; order+=("$1"); }
 order=()
 
 run base
+run seed2         --seed 2
 run thesis        --encoder thesis --widths 24
 run equal         --widths 32,32,32,32
 run narrow        --widths 8,16,32,64
@@ -60,6 +61,7 @@ run fed           --feedback input
 run fed-change    --feedback change
 run fed-physical  --feedback physical
 
+experiment seeds      "base seed2"                     "How far two runs of the same options differ: smaller differences below say nothing"
 experiment encoder    "base thesis"                    "1. The gated encoder against the thesis' (instance norm, whole-image statistics)"
 experiment renderer   "base mlp32 mlp128 half"         "4. The renderer's width; latent codes at half resolution"
 experiment inputs     "base bins2 bins1 no-moments no-since polarity" "6. What the voxel grid says"

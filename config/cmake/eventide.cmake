@@ -48,8 +48,11 @@ function(eventide_test name)
   eventide_compile(test_${name})
   target_link_libraries(test_${name} PRIVATE ${arg_USES} GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(test_${name} PRIVATE EVENTIDE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  # One label that `ctest -L` finds each of them in: a list would come apart on its way into the discovered tests'
+  # properties ("LABELS a b c" labels with a alone, and sets a property b to c).
+  list(JOIN arg_LABELS "," labels)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
+    PROPERTIES LABELS "${labels}" TIMEOUT ${arg_TIMEOUT})
 endfunction()
 
 # eventide_bench(name SOURCES bench_a.cpp USES ...): one Google Benchmark program.

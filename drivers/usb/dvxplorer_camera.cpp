@@ -2,6 +2,8 @@
 
 #include "drivers/usb/verified_writes.h"
 #include "src/codec/byte_order.h"
+#include "src/codec/dvxplorer.h"
+#include "src/codec/dvxplorer_mini.h"
 #include "src/core/error.h"
 
 #include <string>
@@ -126,6 +128,16 @@ void DvxplorerCamera::power_down(UsbDevice& device) {
 
 std::uint64_t DvxplorerCamera::dropped(UsbDevice& device) {
     return features_.statistics ? device.read_counter(kMuxDroppedDvs) : 0;
+}
+
+/// The FX3 board puts IMU samples among its words, a Mini sends them beside.
+std::uint8_t DvxplorerCamera::message_endpoint() const {
+    constexpr std::uint8_t kMessages = 0x81;
+    return features_.mini && settings_.imu ? kMessages : 0;
+}
+
+void DvxplorerCamera::frame_message(std::vector<std::byte>& message) const {
+    frame_mini_message(message);
 }
 
 std::unique_ptr<Parser> DvxplorerCamera::make_parser() const {

@@ -35,6 +35,8 @@ private:
     std::size_t word_bytes() const override { return features_.mini ? 4 : 2; }
     void power_down(UsbDevice& device) override;
     std::uint64_t dropped(UsbDevice& device) override;
+    std::uint8_t message_endpoint() const override;
+    void frame_message(std::vector<std::byte>& message) const override;
     void read_sensor(UsbDevice& device);
 
     DvxplorerSettings settings_;

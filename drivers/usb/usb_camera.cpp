@@ -66,7 +66,8 @@ void UsbCamera::start() {
     std::this_thread::sleep_for(options_.waits.idle);
     device_->clear_halt(kind_.data_endpoint);
     stream_ = std::make_unique<UsbStream>(device_->context(), device_->handle(),
-                                          kind_.data_endpoint, transfers_);
+                                          UsbEndpoints{kind_.data_endpoint, message_endpoint()},
+                                          transfers_);
     start_data(*device_);
     reset_time(*device_);
     if (!wait_for_begin() && !stopped_)
@@ -124,10 +125,13 @@ ReadStatus UsbCamera::read_stream(RawPacket& into) {
             case UsbStream::Status::timeout:
                 into.bytes.clear();
                 return ReadStatus::timeout;
+            case UsbStream::Status::message:
+                frame_message(into.bytes);
+                break;
             case UsbStream::Status::data:
                 gap_ = gap_ || stream_->gap_before();
-                counters_.halts += stream_->take_halts();
         }
+        counters_.halts += stream_->take_halts();
     }
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, false);

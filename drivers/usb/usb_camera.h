@@ -70,6 +70,10 @@ protected:
     /// Where in these bytes, which begin with a whole word, its time begins.
     virtual std::optional<std::size_t> find_begin(std::span<const std::byte> bytes) const = 0;
     virtual std::size_t word_bytes() const { return 2; }
+    /// Where it says things beside its data (interrupt IN); 0: nowhere, or nobody asks. What it
+    /// says there becomes words of the data's stream, in place.
+    virtual std::uint8_t message_endpoint() const { return 0; }
+    virtual void frame_message(std::vector<std::byte>&) const {}
     /// Undoes what set_up() switched on: the last step of a stop.
     virtual void power_down(UsbDevice&) {}
     /// Events that it dropped itself since it was powered.

@@ -13,30 +13,30 @@ namespace {
 
 /// An endpoint that halts as often without giving anything between will not recover.
 constexpr int kMostHaltsInARow = 8;
+/// As many and as long as libcaer asks for (LC src/dvxplorer.h).
+constexpr int kMessageTransfers = 4;
+constexpr std::size_t kMessageBytes = 64;
 
 }  // namespace
 
 struct UsbStream::Transfer {
     UsbStream* stream = nullptr;
+    Pipe* pipe = nullptr;
     libusb_transfer* raw = nullptr;
     std::vector<std::byte> buffer;
     ~Transfer() { libusb_free_transfer(raw); }
 };
 
-UsbStream::UsbStream(libusb_context* context, libusb_device_handle* handle, std::uint8_t endpoint,
+UsbStream::UsbStream(libusb_context* context, libusb_device_handle* handle, UsbEndpoints endpoints,
                      const UsbStreamSettings& settings)
-    : context_(context), handle_(handle), endpoint_(endpoint), settings_(settings) {
-    for (int i = 0; i < settings.transfers; ++i) {
-        auto transfer = std::make_unique<Transfer>();
-        transfer->stream = this;
-        transfer->raw = libusb_alloc_transfer(0);
-        if (transfer->raw == nullptr)
-            throw Error(ErrorKind::device, "USB: no memory for a transfer");
-        transfer->buffer.resize(settings.bytes);
-        libusb_fill_bulk_transfer(transfer->raw, handle, endpoint, nullptr, 0,
-                                  &UsbStream::completed, transfer.get(), 0);
-        transfers_.push_back(std::move(transfer));
-    }
+    : context_(context),
+      handle_(handle),
+      data_{.endpoint = endpoints.data, .transfers = settings.transfers, .bytes = settings.bytes},
+      messages_{.endpoint = endpoints.messages,
+                .transfers = endpoints.messages == 0 ? 0 : kMessageTransfers,
+                .bytes = kMessageBytes} {
+    add_transfers(data_);
+    add_transfers(messages_);
     for (const auto& transfer : transfers_) {
         const int code = submit(*transfer);
         if (code == 0) continue;
@@ -48,6 +48,23 @@ UsbStream::UsbStream(libusb_context* context, libusb_device_handle* handle, std:
                             " bytes: ask for fewer or smaller ones, or allow more in "
                             "/sys/module/usbcore/parameters/usbfs_memory_mb");
         check_usb(code, "the camera takes no transfers");
+    }
+}
+
+void UsbStream::add_transfers(Pipe& pipe) {
+    for (int i = 0; i < pipe.transfers; ++i) {
+        auto transfer = std::make_unique<Transfer>();
+        transfer->stream = this;
+        transfer->pipe = &pipe;
+        transfer->raw = libusb_alloc_transfer(0);
+        if (transfer->raw == nullptr)
+            throw Error(ErrorKind::device, "USB: no memory for a transfer");
+        transfer->buffer.resize(pipe.bytes);
+        const auto fill =
+            &pipe == &data_ ? libusb_fill_bulk_transfer : libusb_fill_interrupt_transfer;
+        fill(transfer->raw, handle_, pipe.endpoint, nullptr, 0, &UsbStream::completed,
+             transfer.get(), 0);
+        transfers_.push_back(std::move(transfer));
     }
 }
 
@@ -65,9 +82,9 @@ void UsbStream::cancel_all() {
 }
 
 int UsbStream::submit(Transfer& transfer) {
-    transfer.buffer.resize(settings_.bytes);
+    transfer.buffer.resize(transfer.pipe->bytes);
     transfer.raw->buffer = reinterpret_cast<unsigned char*>(transfer.buffer.data());
-    transfer.raw->length = int(settings_.bytes);
+    transfer.raw->length = int(transfer.pipe->bytes);
     const int code = libusb_submit_transfer(transfer.raw);
     active_ += code == 0 ? 1 : 0;
     return code;
@@ -75,8 +92,8 @@ int UsbStream::submit(Transfer& transfer) {
 
 void UsbStream::resubmit(Transfer& transfer) {
     if (lost_ || stopping_) return;
-    if (halted_)
-        resting_.push_back(&transfer);
+    if (transfer.pipe->halted)
+        transfer.pipe->resting.push_back(&transfer);
     else if (submit(transfer) != 0)
         lost_ = true;
 }
@@ -84,6 +101,7 @@ void UsbStream::resubmit(Transfer& transfer) {
 void UsbStream::completed(libusb_transfer* raw) {
     auto& transfer = *static_cast<Transfer*>(raw->user_data);
     UsbStream& stream = *transfer.stream;
+    Pipe& pipe = *transfer.pipe;
     --stream.active_;
     switch (raw->status) {
         case LIBUSB_TRANSFER_COMPLETED:
@@ -92,48 +110,51 @@ void UsbStream::completed(libusb_transfer* raw) {
         case LIBUSB_TRANSFER_OVERFLOW:
             break;
         case LIBUSB_TRANSFER_STALL:
-            stream.halted_ = true;
+            pipe.halted = true;
             break;
         default:
             stream.lost_ = true;  // error, no device
     }
     // Bytes that came before the end are good, whatever ended the transfer.
     if (raw->actual_length > 0)
-        stream.done_.push_back({&transfer, std::exchange(stream.gap_, false)});
+        stream.done_.push_back({&transfer, std::exchange(pipe.gap, false)});
     else
         stream.resubmit(transfer);
     // The device sent more than there was room for.
-    if (raw->status == LIBUSB_TRANSFER_OVERFLOW) stream.gap_ = true;
+    if (raw->status == LIBUSB_TRANSFER_OVERFLOW) pipe.gap = true;
 }
 
-bool UsbStream::take(std::vector<std::byte>& into) {
-    if (done_.empty()) return false;
+UsbStream::Status UsbStream::take(std::vector<std::byte>& into) {
+    if (done_.empty()) return Status::timeout;
     Transfer& transfer = *done_.front().transfer;
     gap_before_ = done_.front().gap_before;
     done_.pop_front();
     transfer.buffer.resize(std::size_t(transfer.raw->actual_length));
-    into.swap(transfer.buffer);
+    const bool is_data = transfer.pipe == &data_;
+    if (is_data)
+        into.swap(transfer.buffer);
+    else  // a few bytes: their small buffer must not come to hold data
+        into.assign(transfer.buffer.begin(), transfer.buffer.end());
+    transfer.pipe->halts_in_a_row = 0;
     resubmit(transfer);
-    halts_in_a_row_ = 0;
-    return true;
+    return is_data ? Status::data : Status::message;
 }
 
 /// Nothing comes from a halted endpoint until this was done, and what the device had queued is
 /// lost.
-void UsbStream::clear_halt() {
-    if (++halts_in_a_row_ > kMostHaltsInARow)
-        throw Error(
-            ErrorKind::device,
-            "USB: the camera's data endpoint stalls again each time it is cleared: plug the "
-            "camera in again");
-    if (libusb_clear_halt(handle_, endpoint_) != 0) {
+void UsbStream::clear_halt(Pipe& pipe) {
+    if (++pipe.halts_in_a_row > kMostHaltsInARow)
+        throw Error(ErrorKind::device,
+                    std::string{"USB: the camera's "} + (&pipe == &data_ ? "data" : "message") +
+                        " endpoint stalls again each time it is cleared: plug the camera in again");
+    if (libusb_clear_halt(handle_, pipe.endpoint) != 0) {
         lost_ = true;
         return;
     }
     ++halts_;
-    halted_ = false;
-    gap_ = true;
-    for (Transfer* transfer : std::exchange(resting_, {})) resubmit(*transfer);
+    pipe.halted = false;
+    pipe.gap = true;
+    for (Transfer* transfer : std::exchange(pipe.resting, {})) resubmit(*transfer);
 }
 
 void UsbStream::handle_events(std::chrono::milliseconds patience) {
@@ -145,11 +166,12 @@ void UsbStream::handle_events(std::chrono::milliseconds patience) {
 
 UsbStream::Status UsbStream::read(std::vector<std::byte>& into,
                                   std::chrono::milliseconds patience) {
-    if (take(into)) return Status::data;
-    if (halted_ && !lost_) clear_halt();
+    if (const Status taken = take(into); taken != Status::timeout) return taken;
+    for (Pipe* pipe : {&data_, &messages_})
+        if (pipe->halted && !lost_) clear_halt(*pipe);
     if (lost_) return Status::lost;
     handle_events(patience);
-    if (take(into)) return Status::data;
+    if (const Status taken = take(into); taken != Status::timeout) return taken;
     return lost_ ? Status::lost : Status::timeout;
 }
 

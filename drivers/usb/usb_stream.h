@@ -1,4 +1,4 @@
-// Bulk transfers in flight: bytes from the camera without a copy and without a thread of its own.
+// Transfers in flight: bytes from the camera without a copy and without a thread of its own.
 #pragma once
 
 #include <chrono>
@@ -20,23 +20,30 @@ struct UsbStreamSettings {
     std::size_t bytes = 128 * 1024;  ///< of each; a multiple of the endpoint's packet (1024)
 };
 
+/// Where the bytes come from.
+struct UsbEndpoints {
+    std::uint8_t data = 0x82;   ///< bulk IN
+    std::uint8_t messages = 0;  ///< interrupt IN, at most 64 bytes each; 0: not listened to
+};
+
 /// read() runs libusb's event handling on the caller's thread, and a completed transfer swaps its
 /// buffer with the caller's. A transfer goes back in flight as soon as its bytes were taken. An
 /// endpoint that halts is cleared, and the stream goes on behind a gap.
 class UsbStream {
 public:
-    enum class Status { data, timeout, lost };
+    enum class Status { data, message, timeout, lost };
 
     /// Throws UsbGone, or Error (device) when the kernel has no memory for so many transfers.
-    UsbStream(libusb_context* context, libusb_device_handle* handle, std::uint8_t endpoint,
+    UsbStream(libusb_context* context, libusb_device_handle* handle, UsbEndpoints endpoints,
               const UsbStreamSettings& settings);
     /// Cancels what is in flight and waits until libusb has let go of every transfer.
     ~UsbStream();
     UsbStream(const UsbStream&) = delete;
     UsbStream& operator=(const UsbStream&) = delete;
 
-    /// Source thread. Waits at most `patience`. After `lost` the device is gone and nothing more
-    /// will come. Throws Error (device) for an endpoint that halts again and again.
+    /// Source thread. Waits at most `patience`. Data and messages come in the order in which they
+    /// arrived. After `lost` the device is gone and nothing more will come. Throws Error (device)
+    /// for an endpoint that halts again and again.
     Status read(std::vector<std::byte>& into, std::chrono::milliseconds patience);
 
     /// Bytes were lost before those that read() gave last.
@@ -50,25 +57,31 @@ private:
         Transfer* transfer;
         bool gap_before;
     };
+    /// One endpoint, and what became of it.
+    struct Pipe {
+        std::uint8_t endpoint = 0;
+        int transfers = 0;
+        std::size_t bytes = 0;
+        bool halted = false, gap = false;
+        int halts_in_a_row = 0;
+        std::vector<Transfer*> resting{};  ///< until the halt is cleared
+    };
     static void completed(libusb_transfer* raw);
+    void add_transfers(Pipe& pipe);
     int submit(Transfer& transfer);
     void resubmit(Transfer& transfer);
     void cancel_all();
-    void clear_halt();
-    bool take(std::vector<std::byte>& into);
+    void clear_halt(Pipe& pipe);
+    Status take(std::vector<std::byte>& into);
     void handle_events(std::chrono::milliseconds patience);
 
     libusb_context* context_;
     libusb_device_handle* handle_;
-    std::uint8_t endpoint_;
-    UsbStreamSettings settings_;
+    Pipe data_, messages_;
     std::vector<std::unique_ptr<Transfer>> transfers_;
-    std::deque<Done> done_;           ///< completed, in order, bytes not yet taken
-    std::vector<Transfer*> resting_;  ///< until the halt is cleared
-    int active_ = 0;                  ///< with libusb
-    bool stopping_ = false, lost_ = false, halted_ = false;
-    bool gap_ = false, gap_before_ = false;
-    int halts_in_a_row_ = 0;
+    std::deque<Done> done_;  ///< completed, in order, bytes not yet taken
+    int active_ = 0;         ///< with libusb
+    bool stopping_ = false, lost_ = false, gap_before_ = false;
     std::uint64_t halts_ = 0;
 };
 

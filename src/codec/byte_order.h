@@ -1,6 +1,7 @@
 // Numbers out of bytes and into them, whatever the machine's own order.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -41,10 +42,17 @@ inline float load_little_float(const std::byte* p) {
 }
 
 template <typename T>
-void append_little(std::vector<std::byte>& out, T value) {
+std::array<std::byte, sizeof(T)> little_bytes(T value) {
     static_assert(std::is_integral_v<T>);
+    std::array<std::byte, sizeof(T)> bytes;
     for (std::size_t i = 0; i < sizeof(T); ++i)
-        out.push_back(std::byte((std::make_unsigned_t<T>(value) >> (8 * i)) & 0xFF));
+        bytes[i] = std::byte((std::make_unsigned_t<T>(value) >> (8 * i)) & 0xFF);
+    return bytes;
+}
+
+template <typename T>
+void append_little(std::vector<std::byte>& out, T value) {
+    for (const std::byte b : little_bytes(value)) out.push_back(b);
 }
 
 inline void append_little_float(std::vector<std::byte>& out, float value) {

@@ -2,14 +2,9 @@
 
 #include "src/codec/byte_order.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-
 namespace eventide {
 namespace {
 
-constexpr int kRowsPerGroup = 8;
 constexpr std::uint16_t kTimestampBit = 0x8000, kDataMask = 0x0FFF;
 
 DavisSensor imu_of(const DvxplorerSensor& sensor) {
@@ -19,12 +14,6 @@ DavisSensor imu_of(const DvxplorerSensor& sensor) {
     imu.imu_flip_y = sensor.imu_flip_y;
     imu.imu_flip_z = sensor.imu_flip_z;
     return imu;
-}
-
-Event event_at(SensorTime t, int column, int row, Polarity polarity,
-               const DvxplorerSensor& sensor) {
-    const auto x = std::uint16_t(column), y = std::uint16_t(row);
-    return sensor.swapped ? Event{t, y, x, polarity} : Event{t, x, y, polarity};
 }
 
 }  // namespace
@@ -76,14 +65,14 @@ void DvxplorerParser::word(std::uint16_t w, Batch& into) {
 void DvxplorerParser::group_addresses(std::uint16_t data) {
     const int first = data & 0x3F, offset = (data >> 6) & 0x1F;
     const int second = (data & 0x800) != 0 ? first - offset : first + offset;
-    rows_ = {first * kRowsPerGroup, second * kRowsPerGroup};
+    rows_ = {first * kDvxplorerRowsPerGroup, second * kDvxplorerRowsPerGroup};
 }
 
 /// A bit for each of eight rows; bit 8 clear means ON.
 void DvxplorerParser::group(int first_row, std::uint16_t data, Batch& into) {
     if (!clock_.is_known() || column_ < 0 || rows_[0] < 0) return;  // after a loss
     const Polarity polarity = (data & 0x100) != 0 ? Polarity::off : Polarity::on;
-    for (int i = 0; i < kRowsPerGroup; ++i) {
+    for (int i = 0; i < kDvxplorerRowsPerGroup; ++i) {
         if ((data & (1 << i)) == 0) continue;
         const int y = first_row + i;
         if (y < 0 || y >= sensor_.rows())
@@ -152,105 +141,6 @@ void DvxplorerParser::resync() {
 std::optional<SensorTime> DvxplorerParser::clock() const {
     if (!clock_.is_known()) return std::nullopt;
     return clock_.now();
-}
-
-void DvxplorerMiniParser::parse(std::span<const std::byte> bytes, Batch& into) {
-    words_.feed(bytes, [&](std::span<const std::byte> whole) {
-        for (std::size_t at = 0; at < whole.size(); at += 4)
-            word(load_little<std::uint32_t>(&whole[at]), into);
-    });
-}
-
-void DvxplorerMiniParser::word(std::uint32_t w, Batch& into) {
-    constexpr std::uint32_t kGroup = 1U << 31, kReference = 0x08000000, kColumn = 0x04000000;
-    if (w == 0) return;  // padding
-    if ((w & kGroup) != 0) {
-        const int first = int((w >> 18) & 0x3F), second = first + int((w >> 26) & 0x1F);
-        group(first * kRowsPerGroup, w & 0xFF, (w & (1U << 16)) != 0, into);
-        group(second * kRowsPerGroup, (w >> 8) & 0xFF, (w & (1U << 17)) != 0, into);
-    } else if ((w & kColumn) != 0) {
-        column(w);
-    } else if ((w & kReference) != 0) {
-        constexpr std::int64_t kMs = 1000;
-        reference((w & 0x3FFFFF) * kMs);
-    } else {
-        damage_.count(DamageReason::unknown_word);
-    }
-}
-
-constexpr std::int64_t kReferenceWrapUs = (std::int64_t{1} << 22) * 1000;  // 70 minutes
-
-/// A small step back is noise, a large one a wrap.
-void DvxplorerMiniParser::reference(std::int64_t us) {
-    if (reference_ < 0) {
-        settle(us);
-    } else if (us < reference_ - kReferenceWrapUs / 2) {
-        base_ += kReferenceWrapUs;
-    } else if (us < reference_) {
-        return damage_.count(DamageReason::time_backwards);
-    }
-    reference_ = us;
-    time_ = std::max(time_, base_ + us);
-    begun_ = true;
-}
-
-/// The first reference since the start or a loss. Whole wraps may be missing, or all that was
-/// before.
-void DvxplorerMiniParser::settle(std::int64_t us) {
-    constexpr std::int64_t kBeganAnewUs = 2'000'000;
-    if (!begun_) return;
-    const std::int64_t expected = expected_.value_or(time_);
-    const double wraps = std::round(double(expected - base_ - us) / double(kReferenceWrapUs));
-    base_ += std::max(std::int64_t{0}, std::int64_t(wraps)) * kReferenceWrapUs;
-    const bool far_off = expected_ && std::abs(base_ + us - expected) > kBeganAnewUs;
-    if (far_off || base_ + us < time_) base_ = std::max(time_, expected) - us;
-    expected_.reset();
-}
-
-/// Bits 9-0 x; 20-11 the frame's time after the reference, where bit 21 marks its first column.
-void DvxplorerMiniParser::column(std::uint32_t w) {
-    const int x = int(w & 0x3FF);
-    const bool begins_frame = (w & (1U << 21)) != 0;
-    if (reference_ < 0 || (!begins_frame && column_ < 0)) return;
-    const int before = begins_frame ? -1 : column_;
-    column_ = -1;
-    if (begins_frame) {
-        const std::int64_t time = base_ + reference_ + ((w >> 11) & 0x3FF);
-        if (time < time_) return damage_.count(DamageReason::time_backwards);
-        time_ = time;
-    }
-    if (x >= sensor_.columns()) return damage_.count(DamageReason::out_of_range);
-    if (x <= before) return damage_.count(DamageReason::bad_record);
-    column_ = x;
-}
-
-void DvxplorerMiniParser::group(int first_row, std::uint32_t mask, bool off, Batch& into) {
-    if (reference_ < 0 || column_ < 0) return;
-    for (int i = 0; i < kRowsPerGroup; ++i) {
-        if ((mask & (1U << i)) == 0) continue;
-        const int y = first_row + i;
-        if (y >= sensor_.rows())
-            damage_.count(DamageReason::out_of_range);
-        else
-            into.events.push_back(
-                event_at(from_us(time_), column_, y, off ? Polarity::off : Polarity::on, sensor_));
-    }
-}
-
-void DvxplorerMiniParser::finish(Batch&) {
-    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
-    words_.drop();
-}
-
-void DvxplorerMiniParser::resync() {
-    words_.drop();
-    reference_ = -1;
-    column_ = -1;
-}
-
-std::optional<SensorTime> DvxplorerMiniParser::clock() const {
-    if (reference_ < 0) return std::nullopt;
-    return from_us(time_);
 }
 
 }  // namespace eventide

@@ -1,6 +1,8 @@
 // DVXplorer and DVS128 words, spelled out.
+#include "src/codec/byte_order.h"
 #include "src/codec/dvs128.h"
 #include "src/codec/dvxplorer.h"
+#include "src/codec/dvxplorer_mini.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +12,9 @@
 namespace eventide {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
+using testing::FloatEq;
 
 // The vocabulary of drivers-and-formats.md A.12.
 constexpr std::uint16_t time(int low15) {
@@ -171,6 +175,78 @@ TEST(DvxplorerMini, ACameraThatCameBackCountsFromZeroAndTimeGoesOn) {
     parser.expect_passed(SensorDuration{5'000'000});
     EXPECT_EQ(tell(3), 60'001'000);  // it was plugged in anew
     EXPECT_EQ(tell(13), 60'011'000);
+}
+
+std::vector<std::byte> mini_imu(std::uint8_t flags) {
+    // Kind and flags; gyroscope z y x, accelerometer z y x, temperature, each little-endian.
+    std::vector<std::byte> message = bytes_of<std::uint8_t>({1, flags});
+    for (const int v : {3000, -200, 100, 16384, 8192, -4096, 512})
+        append_little(message, std::int16_t(v));
+    frame_mini_message(message);
+    return message;
+}
+
+TEST(DvxplorerMini, AMessageBesideTheDataIsAnImuSampleOfThatMoment) {
+    DvxplorerSensor sensor;
+    sensor.imu_flip_y = true;
+    auto bytes = bytes_of<std::uint32_t>({reference(7)});
+    const auto message = mini_imu(0xE0 | (1 << 3) | 2);  // 4 g, 500 deg/s
+    bytes.insert(bytes.end(), message.begin(), message.end());
+    const auto parsed = parse(DvxplorerMiniParser{sensor}, bytes);
+    ASSERT_EQ(parsed.data.imu.size(), 1U);
+    const ImuSample& sample = parsed.data.imu[0];
+    EXPECT_EQ(to_us(sample.t), 7000);
+    EXPECT_THAT(sample.acceleration_g, ElementsAre(-.5F, -1.F, 2.F));
+    EXPECT_THAT(sample.gyro_dps,
+                ElementsAre(FloatEq(100 * 500 / 32768.F), FloatEq(200 * 500 / 32768.F),
+                            FloatEq(3000 * 500 / 32768.F)));
+    EXPECT_FLOAT_EQ(sample.temperature_c, 24);
+    EXPECT_EQ(parsed.damaged.total(), 0U);
+}
+
+TEST(DvxplorerMini, PartsOfAnImuSampleThatAreNotThereAreZero) {
+    auto bytes = bytes_of<std::uint32_t>({reference(7)});
+    const auto message = mini_imu(0x80);
+    bytes.insert(bytes.end(), message.begin(), message.end());
+    const auto parsed = parse(DvxplorerMiniParser{{}}, bytes);
+    ASSERT_EQ(parsed.data.imu.size(), 1U);
+    EXPECT_THAT(parsed.data.imu[0].gyro_dps, Each(0));
+    EXPECT_FLOAT_EQ(parsed.data.imu[0].acceleration_g[0], -.25F);
+    EXPECT_FLOAT_EQ(parsed.data.imu[0].temperature_c, 0);
+}
+
+TEST(DvxplorerMini, OtherMessagesAreCountedAndWhatFollowsIsWhole) {
+    for (const std::size_t length : {1, 15, 17, 64}) {
+        auto bytes = bytes_of<std::uint32_t>({reference(1)});
+        std::vector<std::byte> text(length, std::byte{0xFF});
+        frame_mini_message(text);
+        bytes.insert(bytes.end(), text.begin(), text.end());
+        const auto after = bytes_of<std::uint32_t>({frame32(5, 1), pair(0, 0, 1, 0, false, false)});
+        bytes.insert(bytes.end(), after.begin(), after.end());
+        const auto parsed = parse(DvxplorerMiniParser{{}}, bytes);
+        EXPECT_THAT(parsed.data.events, ElementsAre(event(1001, 5, 0, Polarity::on))) << length;
+        EXPECT_EQ(parsed.damaged[DamageReason::unknown_word], 1U);
+        EXPECT_EQ(parsed.damaged.total(), 1U);
+    }
+}
+
+TEST(DvxplorerMini, AMessageCutOffByALossOrTheEndIsNoSample) {
+    const auto message = mini_imu(0xE0);
+    for (std::size_t cut = 4; cut < message.size(); cut += 4) {
+        DvxplorerMiniParser parser{{}};
+        Batch data;
+        parser.parse(bytes_of<std::uint32_t>({reference(1)}), data);
+        parser.parse(std::span{message}.first(cut), data);
+        parser.resync();
+        parser.parse(
+            bytes_of<std::uint32_t>({reference(2), frame32(5, 1), pair(0, 0, 1, 0, false, false)}),
+            data);
+        EXPECT_THAT(data.events, ElementsAre(event(2001, 5, 0, Polarity::on)));
+        parser.parse(std::span{message}.first(cut), data);
+        parser.finish(data);
+        EXPECT_EQ(parser.damaged()[DamageReason::truncated], 1U);
+        EXPECT_TRUE(data.imu.empty());
+    }
 }
 
 TEST(Dvxplorer, SwappedAxesAreGivenAsAPersonSeesThem) {

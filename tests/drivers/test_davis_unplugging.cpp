@@ -136,6 +136,24 @@ TEST(DavisUnplugged, AHundredTimesItComesBackMarksTheGapAndLeaksNothing) {
     EXPECT_LT(double(late.bytes) - double(early->bytes), 1e6);
 }
 
+TEST(DavisUnplugged, TheFirstLookAfterItIsBackOpensItAndNothingWaitsForASecond) {
+    UsbTestbed bed;
+    bed.plug_in(camera_before(2'000));
+    DavisCamera camera{small_transfers(true)};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    for (int look = 0; look < 5; ++look) ASSERT_EQ(camera.read(packet), ReadStatus::timeout);
+    bed.plug_in(camera_before(2'000));
+    ASSERT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters().reconnects, 1U);
+    EXPECT_EQ(camera.read(packet), ReadStatus::data);
+    // What a real camera needs between the steps of that look is the only waiting in it.
+    const UsbWaits waits;
+    EXPECT_LT(waits.idle + waits.biases_settle + waits.flow_settles, std::chrono::seconds{1});
+}
+
 TEST(DavisUnplugged, OnlyTheSameCameraIsTakenBack) {
     UsbTestbed bed;
     bed.plug_in(camera_before(2'000));

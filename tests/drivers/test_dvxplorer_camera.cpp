@@ -102,6 +102,39 @@ TEST(DvxplorerCamera, GivesImuSamplesInTheRangesAskedForAndTriggers) {
     EXPECT_EQ(got.triggers[3], side.seen.triggers[2]);
 }
 
+TEST(DvxplorerCamera, AMinisImuComesBesideItsDataAndFallsWhereItBelongs) {
+    DvxplorerModelSettings settings;
+    settings.mini = settings.sensor.imu_flip_x = true;
+    PluggedIn side{settings};
+    side.seen.imu.clear();
+    for (int i = 0; i < 500; ++i)
+        side.seen.imu.push_back({from_us(i * 1250), {.5F, -1, .25F}, {float(i), -20, 3}, {}, 30});
+    side.model->show(side.seen);
+    for (const bool imu : {true, false}) {
+        DvxplorerOptions options = at_once();
+        options.settings.imu = imu;
+        options.settings.accel_range_g = 4;
+        DvxplorerCamera camera{options};
+        const Batch got = stream_scene(camera, side.bed, *side.model);
+        EXPECT_EQ(got.events, side.seen.events);
+        if (!imu) {
+            EXPECT_TRUE(got.imu.empty());
+            continue;
+        }
+        // Those before the begin of time are not known yet.
+        ASSERT_GE(got.imu.size(), side.seen.imu.size() - 2);
+        const std::size_t missing = side.seen.imu.size() - got.imu.size();
+        for (std::size_t i = 0; i < got.imu.size(); ++i) {
+            const ImuSample &a = got.imu[i], &b = side.seen.imu[i + missing];
+            ASSERT_NEAR(double(to_us(a.t)), double(to_us(b.t)), 1000) << i;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                ASSERT_NEAR(a.acceleration_g[axis], b.acceleration_g[axis], 1e-3);
+                ASSERT_NEAR(a.gyro_dps[axis], b.gyro_dps[axis], 2e-2);
+            }
+        }
+    }
+}
+
 TEST(DvxplorerCamera, CutsARegionOutOnTheCamera) {
     for (const bool mini : {false, true})
         for (const SensorRegion roi :

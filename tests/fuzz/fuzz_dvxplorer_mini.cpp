@@ -1,5 +1,5 @@
 // Hostile bytes into DvxplorerMiniParser.
-#include "src/codec/dvxplorer.h"
+#include "src/codec/dvxplorer_mini.h"
 #include "tests/fuzz/fuzz_parser.h"
 
 #include <cstdint>

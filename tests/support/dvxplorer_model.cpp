@@ -1,6 +1,7 @@
 #include "tests/support/dvxplorer_model.h"
 
 #include "drivers/usb/dvxplorer_registers.h"
+#include "src/codec/davis_sensor.h"
 #include "tests/support/dvxplorer_words.h"
 #include "tests/support/register_requests.h"
 
@@ -105,29 +106,41 @@ void DvxplorerModel::begin_scene() {
     begun_ = true;
     Batch seen;
     seen.events = seen_events();
+    if (is_set(kImuRunAccel)) seen.imu = scene_.imu;
+    const ImuRanges ranges{int(read(dvxplorer::kImuAccelRange)),
+                           int(read(dvxplorer::kImuGyroRange))};
     if (settings_.mini) {
-        words_ = mini_words(seen.events, settings_.sensor);
+        MiniStream stream = mini_stream(seen, settings_.sensor, ranges);
+        words_ = std::move(stream.words);
+        messages_ = std::move(stream.messages);
         return;
     }
-    if (is_set(kImuRunAccel)) seen.imu = scene_.imu;
     if (is_set(kExtRun)) seen.triggers = scene_.triggers;
-    const int accel = int(read(dvxplorer::kImuAccelRange)),
-              gyro = int(read(dvxplorer::kImuGyroRange));
-    words_ = fx3_words(seen, settings_.sensor, {accel, gyro});
+    words_ = fx3_words(seen, settings_.sensor, ranges);
 }
 
 std::size_t DvxplorerModel::send(std::span<std::byte> out) {
     if (!time_runs_ || !is_streaming()) return 0;
     if (!begun_) begin_scene();
-    const std::size_t n = std::min(out.size(), words_.size() - sent_);
+    // A message falls where it belongs: the packet before it is short, and the next waits for it.
+    const std::size_t end = told_ < messages_.size() ? messages_[told_].after : words_.size();
+    const std::size_t n = std::min(out.size(), end - sent_);
     std::copy_n(words_.begin() + std::ptrdiff_t(sent_), n, out.begin());
     sent_ += n;
     return n;
 }
 
+std::size_t DvxplorerModel::message(std::span<std::byte> out) {
+    if (told_ == messages_.size() || messages_[told_].after > sent_) return 0;
+    const std::vector<std::byte>& bytes = messages_[told_++].bytes;
+    std::ranges::copy(bytes, out.begin());
+    return bytes.size();
+}
+
 void DvxplorerModel::clear_endpoint() {
     words_.clear();
-    sent_ = 0;
+    messages_.clear();
+    sent_ = told_ = 0;
 }
 
 }  // namespace eventide::testing_support

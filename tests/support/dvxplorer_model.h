@@ -2,8 +2,9 @@
 #pragma once
 
 #include "drivers/usb/davis_registers.h"
-#include "src/codec/dvxplorer.h"
+#include "src/codec/dvxplorer_sensor.h"
 #include "src/core/event.h"
+#include "tests/support/dvxplorer_words.h"
 #include "tests/support/usb_model.h"
 
 #include <cstddef>
@@ -46,6 +47,7 @@ public:
     UsbModelIdentity identity() const override;
     int control(const UsbSetup& setup, std::span<std::uint8_t> data) override;
     std::size_t send(std::span<std::byte> out) override;
+    std::size_t message(std::span<std::byte> out) override;
     void clear_endpoint() override;
 
 private:
@@ -63,7 +65,8 @@ private:
     bool time_runs_ = false;  ///< it was reset; before, nothing is sent
     bool begun_ = false;      ///< the scene, since the reset
     std::vector<std::byte> words_;
-    std::size_t sent_ = 0;  ///< of words_
+    std::vector<MiniStream::Message> messages_;  ///< a Mini's, beside its words
+    std::size_t sent_ = 0, told_ = 0;            ///< of words_, of messages_
 };
 
 }  // namespace eventide::testing_support

@@ -149,16 +149,46 @@ std::vector<std::byte> fx3_words(const Batch& scene, const DvxplorerSensor& sens
     return words.take();
 }
 
-std::vector<std::byte> mini_words(const std::vector<Event>& events, const DvxplorerSensor& sensor) {
-    std::vector<std::byte> bytes;
-    const auto put = [&](std::uint32_t word) { append_little(bytes, word); };
-    const auto octets = octets_of(events, sensor);
-    std::int64_t reference_ms = 0, time = -1;
+std::vector<std::byte> mini_imu(const ImuSample& sample, const DvxplorerSensor& sensor,
+                                const ImuRanges& ranges) {
+    constexpr std::uint8_t kImu = 1, kEverything = 0xE0;
+    const float accel_lsb = 32768.F / float(2 << ranges.accel),
+                gyro_lsb = 32768.F / float(2000 >> ranges.gyro);
+    const std::array<float, 3> sign{sensor.imu_flip_x ? -1.F : 1.F, sensor.imu_flip_y ? -1.F : 1.F,
+                                    sensor.imu_flip_z ? -1.F : 1.F};
+    std::vector<std::byte> bytes{std::byte{kImu},
+                                 std::byte(kEverything | (ranges.accel << 3) | ranges.gyro)};
+    const auto number = [&](float value) {
+        append_little(bytes, std::int16_t(std::lround(value)));
+    };
+    for (const std::size_t a : {2, 1, 0}) number(sign[a] * sample.gyro_dps[a] * gyro_lsb);
+    for (const std::size_t a : {2, 1, 0}) number(sign[a] * sample.acceleration_g[a] * accel_lsb);
+    number((sample.temperature_c - 23) * 512);
+    return bytes;
+}
+
+MiniStream mini_stream(const Batch& scene, const DvxplorerSensor& sensor, const ImuRanges& ranges) {
+    MiniStream stream;
+    const auto put = [&](std::uint32_t word) { append_little(stream.words, word); };
+    std::int64_t reference_ms = -1, time = -1;
+    const auto reference = [&](std::int64_t ms) {
+        if (ms != reference_ms) put(0x08000000U | std::uint32_t(reference_ms = ms));
+    };
+    std::size_t imu = 0;
+    const auto imu_until = [&](std::int64_t ms) {
+        for (; imu < scene.imu.size() && to_us(scene.imu[imu].t) / 1000 <= ms; ++imu) {
+            reference(to_us(scene.imu[imu].t) / 1000);
+            stream.messages.push_back(
+                {stream.words.size(), mini_imu(scene.imu[imu], sensor, ranges)});
+        }
+    };
+    const auto octets = octets_of(scene.events, sensor);
     int column = -1;
-    put(0x08000000U);
+    reference(0);
     for (std::size_t at = 0; at < octets.size();) {
         const Octet& a = octets[at];
-        if (a.t / 1000 != reference_ms) put(0x08000000U | std::uint32_t(reference_ms = a.t / 1000));
+        if (a.t / 1000 != reference_ms) imu_until(a.t / 1000);
+        reference(a.t / 1000);
         if (a.t != time)
             put(0x04000000U | (1U << 21) | (std::uint32_t(a.t % 1000) << 11) |
                 std::uint32_t(a.column));
@@ -174,7 +204,8 @@ std::vector<std::byte> mini_words(const std::vector<Event>& events, const Dvxplo
         put(0);  // padding
         at += two ? 2 : 1;
     }
-    return bytes;
+    imu_until(INT64_MAX);
+    return stream;
 }
 
 }  // namespace eventide::testing_support

@@ -2,7 +2,7 @@
 // (drivers-and-formats.md A.12).
 #pragma once
 
-#include "src/codec/dvxplorer.h"
+#include "src/codec/dvxplorer_sensor.h"
 #include "src/core/event.h"
 
 #include <cstddef>
@@ -24,7 +24,19 @@ std::pair<int, int> device_axes(const Event& event, const DvxplorerSensor& senso
 std::vector<std::byte> fx3_words(const Batch& scene, const DvxplorerSensor& sensor,
                                  const ImuRanges& ranges);
 
-/// One frame per time; its events in the order of the columns.
-std::vector<std::byte> mini_words(const std::vector<Event>& events, const DvxplorerSensor& sensor);
+/// What a Mini sends on its two endpoints: words, and messages each of which comes after so many
+/// bytes of them.
+struct MiniStream {
+    struct Message {
+        std::size_t after = 0;
+        std::vector<std::byte> bytes;
+    };
+    std::vector<std::byte> words;
+    std::vector<Message> messages;
+};
+
+/// One frame per time; its events in the order of the columns. An IMU sample comes right behind the
+/// reference of its millisecond, whose time it so gets.
+MiniStream mini_stream(const Batch& scene, const DvxplorerSensor& sensor, const ImuRanges& ranges);
 
 }  // namespace eventide::testing_support

@@ -34,6 +34,8 @@ public:
     virtual int control(const UsbSetup& setup, std::span<std::uint8_t> data) = 0;
     /// The next bytes of the data endpoint, at most out.size(); 0 when there are none now.
     virtual std::size_t send(std::span<std::byte> out) = 0;
+    /// The next message of the interrupt endpoint, as send().
+    virtual std::size_t message(std::span<std::byte>) { return 0; }
     /// CLEAR_HALT on the data endpoint: what was queued is dropped.
     virtual void clear_endpoint() = 0;
 };

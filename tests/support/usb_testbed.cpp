@@ -56,8 +56,8 @@ struct UsbTestbed::Parts {
     UsbModelIdentity identity;
     bool attached = false, gone = true, halted = false;
     int requests = 0, looks = 0, transfers = 0;
-    std::deque<Urb> controls;  // not yet answered
-    std::deque<Urb> waiting, finished;
+    std::deque<Urb> controls;                      // not yet answered
+    std::deque<Urb> waiting, listening, finished;  // for data, for messages
     Faults faults;
 
     static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer parts) {
@@ -74,6 +74,7 @@ struct UsbTestbed::Parts {
     void answer_controls();
     int control(const Urb& urb);
     void fill_transfers();
+    void tell_messages();
     std::size_t in_flight() const;
 };
 
@@ -128,7 +129,7 @@ void UsbTestbed::unplug() {
 void UsbTestbed::Parts::pull_cable() {
     gone = true;
     faults.unplug_after = -1;
-    for (auto* urbs : {&controls, &waiting}) {
+    for (auto* urbs : {&controls, &waiting, &listening}) {
         for (Urb& urb : *urbs) {
             urb.end(-ESHUTDOWN);
             finished.push_back(std::move(urb));
@@ -257,7 +258,8 @@ int UsbTestbed::Parts::submit(UMockdevIoctlData* arg) {
         controls.push_back(std::move(urb));
         if (faults.control_delay == 0) answer_controls();
     } else {
-        waiting.push_back(std::move(urb));
+        auto& urbs = urb->endpoint == identity.data_endpoint ? waiting : listening;
+        urbs.push_back(std::move(urb));
     }
     return 0;
 }
@@ -276,7 +278,9 @@ bool UsbTestbed::Parts::reap(UMockdevIoctlData* arg) {
 int UsbTestbed::Parts::discard(UMockdevIoctlData* arg) {
     // The argument is the address of the URB in the client.
     const auto address = *reinterpret_cast<gulong*>(arg->data);
-    return discard_from(waiting, address) || discard_from(controls, address) ? 0 : EINVAL;
+    for (auto* urbs : {&waiting, &listening, &controls})
+        if (discard_from(*urbs, address)) return 0;
+    return EINVAL;
 }
 
 bool UsbTestbed::Parts::discard_from(std::deque<Urb>& urbs, gulong address) {
@@ -314,9 +318,9 @@ int UsbTestbed::Parts::control(const Urb& urb) {
 
 /// Bulk requests are answered in order, when the camera has something to say.
 void UsbTestbed::Parts::fill_transfers() {
+    tell_messages();
     while (!waiting.empty() && !halted) {
         Urb& urb = waiting.front();
-        if (urb->endpoint != identity.data_endpoint) return;
         if (faults.halts > 0) {
             --faults.halts;
             halted = true;
@@ -332,6 +336,19 @@ void UsbTestbed::Parts::fill_transfers() {
         }
         finished.push_back(std::move(urb));
         waiting.pop_front();
+        tell_messages();
+    }
+}
+
+void UsbTestbed::Parts::tell_messages() {
+    while (!listening.empty()) {
+        Urb& urb = listening.front();
+        const std::size_t n =
+            camera->message({reinterpret_cast<std::byte*>(urb.buffer->data), urb.room()});
+        if (n == 0) return;
+        urb.end(0, int(n));
+        finished.push_back(std::move(urb));
+        listening.pop_front();
     }
 }
 
