@@ -82,7 +82,8 @@ Pictures run_window(const ModelConfig& config, const Parameters& parameters, con
     }
     memory.latent = z.back();
 
-    std::vector<RenderTask> tasks, bases;
+    std::vector<RenderTask> tasks;
+    std::vector<FedPictures> bases;
     for (std::size_t i = 0; i < batch.f.size(); ++i) {
         const std::size_t k = std::size_t(plan.first_rendered) + i;
         // Codes past the window's end are not known, whatever the lookahead.
@@ -92,11 +93,8 @@ Pictures run_window(const ModelConfig& config, const Parameters& parameters, con
         };
         tasks.push_back({z[k], z[k + 1], code(1), code(2), batch.f[i]});
         if (fed)
-            bases.push_back({{},
-                             pictures[k],
-                             tasks.back().next.defined() ? pictures[k + 1] : torch::Tensor{},
-                             {},
-                             batch.f[i]});
+            bases.push_back(
+                {pictures[k], code(1).defined() ? pictures[k + 1] : torch::Tensor{}, batch.f[i]});
     }
     const double s = config.latent_stride;
     const PatchGrid points = patch_grid(plan.y0 / s, plan.x0 / s, plan.span / s, patch);

@@ -21,11 +21,11 @@ torch::Tensor interpolation(const std::vector<double>& points, std::int64_t samp
 
 /// What the codes of each task started from, at its instant: [N * tasks][rows][columns], grey
 /// included. Weights in time are those of the codes (docs/model.md, "Centres").
-torch::Tensor base(const std::vector<RenderTask>& pictures, const PatchGrid& points) {
+torch::Tensor base(const std::vector<FedPictures>& pictures, const PatchGrid& points) {
     std::vector<torch::Tensor> all;
-    for (const RenderTask& task : pictures) {
-        const torch::Tensor f = task.f.view({-1, 1, 1, 1});
-        all.push_back(task.next.defined() ? (1 - f) * task.current + f * task.next : task.current);
+    for (const FedPictures& fed : pictures) {
+        const torch::Tensor f = fed.f.view({-1, 1, 1, 1});
+        all.push_back(fed.end.defined() ? (1 - f) * fed.start + f * fed.end : fed.start);
     }
     const torch::Tensor maps = torch::cat(all, 0).squeeze(1);
     const auto wy = interpolation(points.y, maps.size(1), maps.options());
@@ -57,7 +57,7 @@ torch::Tensor with_picture(const torch::Tensor& grid, const torch::Tensor& pictu
 }
 
 Rendered apply_feedback(Feedback feedback, const Parameters& parameters, const Rendered& out,
-                        const std::vector<RenderTask>& pictures, const PatchGrid& points) {
+                        const std::vector<FedPictures>& pictures, const PatchGrid& points) {
     if (feedback == Feedback::none || feedback == Feedback::input) return out;
     const torch::Tensor p = base(pictures, points);
     if (feedback == Feedback::change) return {p + out.mu, out.log_sigma};
@@ -75,8 +75,7 @@ torch::Tensor next_picture(Feedback feedback, const ModelConfig& config,
     for (std::int64_t x = 0; x < current.size(3); ++x) points.x.push_back(double(x));
     const torch::Tensor end = torch::ones({current.size(0)}, picture.options());
     const Rendered out = render(config, parameters, {{previous, current, {}, {}, end}}, points);
-    const auto next =
-        apply_feedback(feedback, parameters, out, {{{}, picture, {}, {}, end}}, points);
+    const auto next = apply_feedback(feedback, parameters, out, {{picture, {}, end}}, points);
     return next.mu.clamp(0, 1).unsqueeze(1) - kFeedbackGrey;
 }
 

@@ -22,10 +22,16 @@ torch::Tensor with_picture(const torch::Tensor& grid, const torch::Tensor& pictu
 /// Pictures are kept less this grey, so that an empty state shows it.
 inline constexpr double kFeedbackGrey = 0.45;
 
-/// mu and log_sigma of tasks whose codes lie beside pictures[i], [N][1][H][W] less the grey, at the
-/// start and, where defined, the end of each task's event frame. Gradients don't reach pictures.
+/// What a task's codes start from: the pictures fed back, [N][1][H][W] less the grey. Gradients do
+/// not reach them.
+struct FedPictures {
+    torch::Tensor start, end;  ///< of its event frame; `end` undefined where it is not known
+    torch::Tensor f;           ///< [N], place in the event frame, as RenderTask's
+};
+
+/// mu and log_sigma of tasks, where those of task i were given pictures[i].
 Rendered apply_feedback(Feedback feedback, const Parameters& parameters, const Rendered& out,
-                        const std::vector<RenderTask>& pictures, const PatchGrid& points);
+                        const std::vector<FedPictures>& pictures, const PatchGrid& points);
 
 /// The picture at the end of the event frame whose code is `current`, from what is known then.
 torch::Tensor next_picture(Feedback feedback, const ModelConfig& config,

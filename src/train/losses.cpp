@@ -80,18 +80,19 @@ LossTerms loss(const Pictures& p, const LossWeights& weights, const Perceptual* 
     const auto lpips = perceptual != nullptr && weights.lpips > 0
                            ? perceptual_distance(p, *perceptual, lpips_tasks)
                            : zero;
+    const auto l2 = mean_of(error.square().mean({1, 2}), p.weight);
     const auto squared = error.detach().square();
     const auto nll =
         mean_of((p.log_sigma + 0.5 * squared * (-2 * p.log_sigma).exp()).mean({1, 2}), p.weight);
     const auto temporal = temporal_change(p);
     const auto inside =
         (squared.sqrt() <= 1.2816 * p.log_sigma.detach().exp()).to(torch::kFloat).mean({1, 2});
-    const auto total = weights.l1 * l1 + weights.ssim * dssim + weights.lpips * lpips +
-                       weights.nll * nll + weights.temporal * temporal;
+    const auto total = weights.l1 * l1 + weights.l2 * l2 + weights.ssim * dssim +
+                       weights.lpips * lpips + weights.nll * nll + weights.temporal * temporal;
     const auto number = [](const torch::Tensor& x) { return x.detach().item<double>(); };
     return {total,
-            {number(l1), number(dssim), number(lpips), number(nll), number(temporal),
-             number(mean_of(squared.mean({1, 2}), p.weight)), number(mean_of(inside, p.weight))}};
+            {number(l1), number(dssim), number(lpips), number(nll), number(temporal), number(l2),
+             number(mean_of(inside, p.weight))}};
 }
 
 }  // namespace eventide

@@ -11,7 +11,8 @@ namespace eventide {
 
 /// Factors of the terms.
 struct LossWeights {
-    double l1 = 1;
+    double l1 = 1;           ///< alone it asks for the median of what the truth may be
+    double l2 = 0;           ///< of the squared error: the mean, which is brighter
     double ssim = 0.6;       ///< 1 - SSIM, mean over sizes
     double lpips = 0.4;      ///< LPIPS-Squeeze
     double nll = 0.1;        ///< of sigma; never moves mu

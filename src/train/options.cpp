@@ -161,6 +161,7 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("leak-hz", o.data.sensor.leak_hz, "ON events per pixel without any change");
 
     add("l1", o.loss.l1, "weight in the loss");
+    add("l2", o.loss.l2, "weight in the loss");
     add("ssim", o.loss.ssim, "weight in the loss");
     add("lpips-weight", o.loss.lpips, "weight in the loss");
     add("nll", o.loss.nll, "weight in the loss");

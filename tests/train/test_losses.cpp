@@ -25,6 +25,14 @@ Array2<float> as_array(const torch::Tensor& image) {
     return array;
 }
 
+/// The weights of some terms; the others count nothing.
+struct Only {
+    double l1 = 0, l2 = 0, ssim = 0, lpips = 0, nll = 0, temporal = 0;
+};
+LossWeights only(const Only& w) {
+    return {w.l1, w.l2, w.ssim, w.lpips, w.nll, w.temporal};
+}
+
 TEST(Losses, SsimIsThatOfEvaluation) {
     const auto a = picture(40, 53, 1), b = 0.7 * a + 0.3 * picture(40, 53, 2);
     EXPECT_NEAR(ssim(a, b).item<double>(), structural_similarity(as_array(a), as_array(b)), 1e-4);
@@ -45,10 +53,24 @@ TEST(Losses, SigmaLearnsTheSizeOfErrorsAndNeverMovesThePicture) {
     const auto truth = torch::zeros({1, 32, 32});
     const auto mu = torch::full({1, 32, 32}, 0.25).set_requires_grad(true);
     const auto s = torch::full({1, 32, 32}, std::log(0.25)).set_requires_grad(true);
-    LossWeights only_nll{0, 0, 0, 1, 0};
-    loss({mu, s, truth, torch::ones({1})}, only_nll, nullptr, 1).total.backward();
+    loss({mu, s, truth, torch::ones({1})}, only({.nll = 1}), nullptr, 1).total.backward();
     EXPECT_NEAR(s.grad().abs().max().item<double>(), 0, 1e-9) << "sigma = |error| is the best";
     EXPECT_TRUE(!mu.grad().defined() || mu.grad().abs().max().item<double>() == 0);
+}
+
+TEST(Losses, L1AsksForTheMedianAndL2ForTheMean) {
+    // Three scenes that look alike to the sensor: two dark, one bright.
+    const auto truth = torch::tensor({0.F, 0.F, 0.6F}).view({3, 1, 1}).expand({3, 32, 32});
+    const auto slope_at = [&](float grey, const LossWeights& weights) {
+        const auto mu = torch::full({}, grey).set_requires_grad(true);
+        const auto s = torch::full({3, 32, 32}, -1.0);
+        loss({mu.expand({3, 32, 32}), s, truth, torch::ones({3})}, weights, nullptr, 1)
+            .total.backward();
+        return mu.grad().item<double>();
+    };
+    EXPECT_NEAR(slope_at(.2F, only({.l2 = 1})), 0, 1e-6);
+    EXPECT_GT(slope_at(.01F, only({.l1 = 1})), .3) << "darker still";
+    EXPECT_LT(slope_at(-.01F, only({.l1 = 1})), -.3);
 }
 
 TEST(Losses, PicturesOfNoWeightCountNothing) {
@@ -57,7 +79,7 @@ TEST(Losses, PicturesOfNoWeightCountNothing) {
     mu[0] = 0;
     const auto s = torch::full_like(mu, -1);
     const auto cost = [&](std::vector<float> weight) {
-        return loss({mu, s, truth, torch::tensor(weight)}, {1, 1, 0, 0, 0}, nullptr, 1)
+        return loss({mu, s, truth, torch::tensor(weight)}, only({.l1 = 1, .ssim = 1}), nullptr, 1)
             .total.item<double>();
     };
     EXPECT_NEAR(cost({0, 1}), 0, 1e-5);

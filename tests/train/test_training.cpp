@@ -192,8 +192,8 @@ TEST(Feedback, APictureIsReadBetweenItsPixelsAndBetweenItsInstants) {
     const Rendered nothing{torch::zeros({1, 2, 3}), torch::zeros({1, 2, 3})};
     const PatchGrid points{.y = {0, 2.5}, .x = {.25, 3, 9}};  // the last beyond the border
     const auto mu = [&](const torch::Tensor& later) {
-        const RenderTask task{{}, ramp, later, {}, torch::full({1}, .25)};
-        return apply_feedback(Feedback::change, {}, nothing, {task}, points).mu - kFeedbackGrey;
+        const FedPictures fed{ramp, later, torch::full({1}, .25)};
+        return apply_feedback(Feedback::change, {}, nothing, {fed}, points).mu - kFeedbackGrey;
     };
     EXPECT_TRUE(torch::allclose(mu({})[0][1], torch::tensor({.25F, 3.F, 5.F})));
     EXPECT_TRUE(torch::allclose(mu(ramp + 1)[0][0], torch::tensor({.5F, 3.25F, 5.25F})));
