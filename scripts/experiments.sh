@@ -2,18 +2,18 @@
 # Small networks trained at equal budgets and scored alike: the tables of docs/accuracy.md, "Experiments".
 #   scripts/experiments.sh DATA [EXPERIMENT...]     without EXPERIMENT: all of them
 #   scripts/experiments.sh --tables                 only writes the tables again
-# A finished run is not repeated, so the script may be stopped at any time. A run's budget is MINUTES of processor
-# time (3), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK, EVENTIDE name the programs, OUT the
-# folder of the runs (out/experiments).
+# A finished run (a file in docs/accuracy/experiments/) is not repeated, so the script may be stopped at any time. A
+# run's budget is MINUTES of processor time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK,
+# EVENTIDE name the programs, OUT the folder of the runs (out/experiments).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=build/release/src
 train=${TRAIN:-$build/train/eventide-train}
 pack=${PACK:-$build/train/eventide-pack-pictures}
 program=${EVENTIDE:-$build/app/eventide}
-minutes=${MINUTES:-3}
+minutes=${MINUTES:-5}
 out=${OUT:-out/experiments}
-tables=docs/accuracy/experiments
+results=docs/accuracy/experiments
 page=docs/accuracy.md
 export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 # An allocator that keeps memory between steps, where there is one (docs/training.md).
@@ -78,8 +78,8 @@ experiment states     "base full-only half-only quarter-only" "10b. Which levels
 scores() { awk -F, 'END { printf "%.4f,%.3f,%.3f,%.3f", $3, $4, $5, $10 }' "$1"; }
 
 train_and_score() {
-  local name=$1 folder=$out/$1-$minutes
-  [ -e "$folder/scores.csv" ] && return
+  local name=$1 folder=$out/$1-$minutes result=$results/$1-$minutes.csv
+  [ -e "$result" ] && return
   echo "experiments: $name: ${options[$name]}" >&2
   rm -rf "$folder"
   mkdir -p "$folder"
@@ -95,7 +95,7 @@ train_and_score() {
   steps=$(awk -F, 'END { print $1 }' "$folder/validation.csv")
   local row="$name,${options[$name]//,/;},$steps,$held_out"
   if [ ! -e "$folder/model.safetensors" ]; then
-    echo "$row,-,-,-,-,-,-,-,-,-,-,-,-" > "$folder/scores.csv"
+    write_result "$row,-,-,-,-,-,-,-,-,-,-,-,-"
     return
   fi
   local evaluate=("$program" --quiet evaluate --model "$folder/model.safetensors" --lpips "$lpips")
@@ -105,8 +105,7 @@ train_and_score() {
   done
   "${evaluate[@]}" "$DATA/recordings/camerashake_b" "$DATA/recordings/slider_depth_head" \
     --csv "$folder/real.csv" > /dev/null
-  echo "$row,$(scores "$folder/simulated0.csv"),$(scores \
-    "$folder/simulated2.csv"),$(scores "$folder/real.csv")" > "$folder/scores.csv"
+  write_result "$row,$(scores "$folder/simulated0.csv"),$(scores "$folder/simulated2.csv"),$(scores "$folder/real.csv")"
 }
 
 header="run,options,steps"
@@ -114,28 +113,31 @@ for where in held_out simulated simulated_lookahead2 real; do
   header+=,${where}_mse,${where}_$([ $where = held_out ] && echo dssim || echo ssim),${where}_lpips,${where}_picp80
 done
 
-# A CSV file per experiment, of the runs that are done.
-write_csv() {
-  local one
-  mkdir -p "$tables"
-  { echo "$header"; for one in ${experiments[$1]}; do cat "$out/$one-$minutes/scores.csv" 2>/dev/null || true; done; } \
-    > "$tables/$1.csv"
+# `result` is the file of the run at hand, whole or not there.
+write_result() {
+  mkdir -p "$results"
+  printf '%s\n%s\n' "$header" "$1" > "$result.part"
+  mv "$result.part" "$result"
 }
 
-# The part of the page between its two marks, from the CSV files.
+# The part of the page between its two marks, from the results.
 write_tables() {
-  local text=$out/tables.md name
+  local text=$out/tables.md name one rows
   : > "$text"
   for name in "${order[@]}"; do
-    [ -e "$tables/$name.csv" ] && [ "$(wc -l < "$tables/$name.csv")" -gt 2 ] || continue
+    rows=()
+    for one in ${experiments[$name]}; do
+      [ -e "$results/$one-$minutes.csv" ] && rows+=("$results/$one-$minutes.csv")
+    done
+    [ ${#rows[@]} -ge 2 ] || continue
     printf '\n**%s** (`scripts/experiments.sh DATA %s`)\n\n' "${title[$name]}" "$name" >> "$text"
     printf '| run | options | steps | held-out scenes | simulated | lookahead 2 | real |\n|---|---|---|---|---|---|---|\n' >> "$text"
-    awk -F, 'NR > 1 {
+    awk -F, 'FNR > 1 {
       gsub(";", ",", $2) # the commas of options
       printf "| %s | %s | %s |", $1, $2 == "" ? "" : "`" $2 "`", $3
       for (i = 4; i < 20; i += 4) if ($i == "-") printf " - |"; else printf " %s %s %s (%s) |", $i, $(i+1), $(i+2), $(i+3)
       print ""
-    }' "$tables/$name.csv" >> "$text"
+    }' "${rows[@]}" >> "$text"
   done
   awk -v text="$text" '
     /<!-- experiments begin -->/ { print; while ((getline line < text) > 0) print line; skip = 1 }
@@ -157,7 +159,7 @@ if [ "${1:-}" != --tables ]; then
   [ -e "$out/train.pack" ] || "$pack" "$out/train.pack" 400 "$DATA/images/objects" 0 0 "$DATA/images/elementary" 0 0
   [ -e "$out/held_out.pack" ] || "$pack" "$out/held_out.pack" 400 "$DATA/images/bsds500" 400 100
   for name in "$@"; do
-    for one in ${experiments[$name]}; do train_and_score "$one"; write_csv "$name"; done
+    for one in ${experiments[$name]}; do train_and_score "$one"; done
     write_tables
   done
 else

@@ -34,6 +34,11 @@ function(eventide_program name)
   target_link_libraries(${name} PRIVATE ${arg_USES})
 endfunction()
 
+# What a sanitizer has to be told in every test program.
+if(EVENTIDE_SANITIZE STREQUAL "thread")
+  set(eventide_sanitizer_sources ${CMAKE_CURRENT_LIST_DIR}/../../tests/support/tsan_suppressions.cpp)
+endif()
+
 # eventide_test(name SOURCES test_a.cpp USES eventide::x LABELS unit): one GoogleTest program, run by ctest
 # test by test. Labels: unit kernels threads realtime system slow.
 function(eventide_test name)
@@ -44,7 +49,7 @@ function(eventide_test name)
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
-  add_executable(test_${name} ${arg_SOURCES})
+  add_executable(test_${name} ${arg_SOURCES} ${eventide_sanitizer_sources})
   eventide_compile(test_${name})
   target_link_libraries(test_${name} PRIVATE ${arg_USES} GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(test_${name} PRIVATE EVENTIDE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
