@@ -27,17 +27,17 @@ function(eventide_library name)
   target_link_libraries(eventide_${name} PUBLIC ${arg_USES} PRIVATE ${arg_PRIVATELY})
 endfunction()
 
-function(eventide_program name)
-  cmake_parse_arguments(arg "" "" "SOURCES;USES" ${ARGN})
-  add_executable(${name} ${arg_SOURCES})
-  eventide_compile(${name})
-  target_link_libraries(${name} PRIVATE ${arg_USES})
-endfunction()
-
-# What a sanitizer has to be told in every test program.
+# What a sanitizer has to be told in every program.
 if(EVENTIDE_SANITIZE STREQUAL "thread")
   set(eventide_sanitizer_sources ${CMAKE_CURRENT_LIST_DIR}/../../tests/support/tsan_suppressions.cpp)
 endif()
+
+function(eventide_program name)
+  cmake_parse_arguments(arg "" "" "SOURCES;USES" ${ARGN})
+  add_executable(${name} ${arg_SOURCES} ${eventide_sanitizer_sources})
+  eventide_compile(${name})
+  target_link_libraries(${name} PRIVATE ${arg_USES})
+endfunction()
 
 # eventide_test(name SOURCES test_a.cpp USES eventide::x LABELS unit): one GoogleTest program, run by ctest
 # test by test. Labels: unit kernels threads realtime system slow.

@@ -26,7 +26,7 @@ UsbKind kind() {
 
 }  // namespace
 
-DvxplorerCamera::DvxplorerCamera(DvxplorerOptions options)
+DvxplorerCamera::DvxplorerCamera(const DvxplorerOptions& options)
     : UsbCamera(kind(), options, options.settings.transfers), settings_(options.settings) {
     open();
 }
@@ -149,7 +149,7 @@ std::vector<CameraDescription> list_dvxplorer_cameras() {
     return list_usb_cameras(kind(), [](const UsbCameraOptions& which) {
         DvxplorerOptions options;
         static_cast<UsbCameraOptions&>(options) = which;
-        return std::make_unique<DvxplorerCamera>(std::move(options));
+        return std::make_unique<DvxplorerCamera>(options);
     });
 }
 

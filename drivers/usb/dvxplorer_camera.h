@@ -20,7 +20,7 @@ class DvxplorerCamera final : public UsbCamera {
 public:
     /// Opens and configures. Throws Error (device): no camera, no permission, in use, firmware or
     /// logic that does not fit, a second-generation board, a setting that was not taken.
-    explicit DvxplorerCamera(DvxplorerOptions options);
+    explicit DvxplorerCamera(const DvxplorerOptions& options);
     ~DvxplorerCamera() override;
 
     std::unique_ptr<Parser> make_parser() const override;

@@ -4,7 +4,6 @@
 #include "pipeline/pipeline.h"
 #include "tests/model/streams.h"
 #include "tests/support/allocation_counter.h"
-#include "tests/support/sanitizers.h"
 #include "tests/support/toy_line.h"
 
 #include <gtest/gtest.h>
@@ -78,8 +77,7 @@ TEST(ModelLine, GivesTheSameFramesThreadedAsSequentialWithAnyNumberOfWorkers) {
         ModelRun whole({bytes}, model, settings, options);
         whole.pipeline.run_sequential();
         ASSERT_GT(whole.sink.seen.size(), 80U);
-        // The thread sanitizer cannot see how oneTBB synchronises; the line's threads it can.
-        options.parallel_for = parallel_for_with(kThreadSanitizer ? 1 : 2);
+        options.parallel_for = parallel_for_with(2);
         std::mt19937 rng{2};
         ModelRun split(ToySource::packets_of(bytes, 900, &rng), model, settings, options);
         split.pipeline.run();
