@@ -12,5 +12,5 @@ extern "C" const char* __tsan_default_suppressions() {
            "race:libglib-2.0.so\n"
            "race:libgobject-2.0.so\n"
            "race:libudev.so\n"
-           "race:libumockdev.so\n";
+           "race:libumockdev\n";
 }

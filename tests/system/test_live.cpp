@@ -157,7 +157,8 @@ TEST_F(Live, BeforeAWallFramesKeepComingAtTheAskedRate) {
     EXPECT_NEAR(double(times.size() + stats["skipped_frames"].get<std::size_t>()), 50, 2);
     for (std::size_t i = 1; i < times.size(); ++i)
         EXPECT_EQ((times[i] - times[i - 1]) % 20'000, 0) << i;
-    EXPECT_GT(stats["silent_frames"], 20);
+    // Few of them are of the scene; all the rest is wall.
+    EXPECT_GT(stats["silent_frames"].get<int>(), stats["event_frames"].get<int>() * 3 / 4);
 }
 
 TEST_F(Live, StrictlyWhatTheCameraItselfDroppedIsLostData) {
