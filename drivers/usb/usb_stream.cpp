@@ -40,6 +40,10 @@ UsbStream::UsbStream(libusb_context* context, libusb_device_handle* handle, UsbE
     for (const auto& transfer : transfers_) {
         const int code = submit(*transfer);
         if (code == 0) continue;
+        if (transfer->pipe == &messages_) {
+            give_up(messages_);
+            break;
+        }
         cancel_all();
         if (code == LIBUSB_ERROR_NO_MEM)
             throw Error(ErrorKind::device,
@@ -91,11 +95,18 @@ int UsbStream::submit(Transfer& transfer) {
 }
 
 void UsbStream::resubmit(Transfer& transfer) {
-    if (lost_ || stopping_) return;
-    if (transfer.pipe->halted)
-        transfer.pipe->resting.push_back(&transfer);
+    Pipe& pipe = *transfer.pipe;
+    if (lost_ || stopping_ || pipe.given_up) return;
+    if (pipe.halted)
+        pipe.resting.push_back(&transfer);
     else if (submit(transfer) != 0)
-        lost_ = true;
+        give_up(pipe);
+}
+
+/// Without data the device is of no use; without messages it is, and libcaer goes on too.
+void UsbStream::give_up(Pipe& pipe) {
+    pipe.given_up = true;
+    lost_ = lost_ || &pipe == &data_;
 }
 
 void UsbStream::completed(libusb_transfer* raw) {
@@ -113,7 +124,7 @@ void UsbStream::completed(libusb_transfer* raw) {
             pipe.halted = true;
             break;
         default:
-            stream.lost_ = true;  // error, no device
+            stream.give_up(pipe);  // error, no device
     }
     // Bytes that came before the end are good, whatever ended the transfer.
     if (raw->actual_length > 0)
@@ -143,14 +154,12 @@ UsbStream::Status UsbStream::take(std::vector<std::byte>& into) {
 /// Nothing comes from a halted endpoint until this was done, and what the device had queued is
 /// lost.
 void UsbStream::clear_halt(Pipe& pipe) {
-    if (++pipe.halts_in_a_row > kMostHaltsInARow)
+    const bool hopeless = ++pipe.halts_in_a_row > kMostHaltsInARow;
+    if (hopeless && &pipe == &data_)
         throw Error(ErrorKind::device,
-                    std::string{"USB: the camera's "} + (&pipe == &data_ ? "data" : "message") +
-                        " endpoint stalls again each time it is cleared: plug the camera in again");
-    if (libusb_clear_halt(handle_, pipe.endpoint) != 0) {
-        lost_ = true;
-        return;
-    }
+                    "USB: the camera's data endpoint stalls again each time it is cleared: plug "
+                    "the camera in again");
+    if (hopeless || libusb_clear_halt(handle_, pipe.endpoint) != 0) return give_up(pipe);
     ++halts_;
     pipe.halted = false;
     pipe.gap = true;
@@ -168,7 +177,7 @@ UsbStream::Status UsbStream::read(std::vector<std::byte>& into,
                                   std::chrono::milliseconds patience) {
     if (const Status taken = take(into); taken != Status::timeout) return taken;
     for (Pipe* pipe : {&data_, &messages_})
-        if (pipe->halted && !lost_) clear_halt(*pipe);
+        if (pipe->halted && !pipe->given_up && !lost_) clear_halt(*pipe);
     if (lost_) return Status::lost;
     handle_events(patience);
     if (const Status taken = take(into); taken != Status::timeout) return taken;

@@ -28,7 +28,8 @@ struct UsbEndpoints {
 
 /// read() runs libusb's event handling on the caller's thread, and a completed transfer swaps its
 /// buffer with the caller's. A transfer goes back in flight as soon as its bytes were taken. An
-/// endpoint that halts is cleared, and the stream goes on behind a gap.
+/// endpoint that halts is cleared, and the stream goes on behind a gap. Messages that cannot be had
+/// do not stop the data.
 class UsbStream {
 public:
     enum class Status { data, message, timeout, lost };
@@ -62,7 +63,7 @@ private:
         std::uint8_t endpoint = 0;
         int transfers = 0;
         std::size_t bytes = 0;
-        bool halted = false, gap = false;
+        bool halted = false, gap = false, given_up = false;
         int halts_in_a_row = 0;
         std::vector<Transfer*> resting{};  ///< until the halt is cleared
     };
@@ -71,6 +72,7 @@ private:
     int submit(Transfer& transfer);
     void resubmit(Transfer& transfer);
     void cancel_all();
+    void give_up(Pipe& pipe);
     void clear_halt(Pipe& pipe);
     Status take(std::vector<std::byte>& into);
     void handle_events(std::chrono::milliseconds patience);

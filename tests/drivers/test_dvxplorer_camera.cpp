@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <random>
 
 namespace eventide::test {
@@ -132,6 +133,19 @@ TEST(DvxplorerCamera, AMinisImuComesBesideItsDataAndFallsWhereItBelongs) {
                 ASSERT_NEAR(a.gyro_dps[axis], b.gyro_dps[axis], 2e-2);
             }
         }
+    }
+}
+
+TEST(DvxplorerCamera, AMiniWhoseMessagesFailStillGivesItsEvents) {
+    DvxplorerModelSettings settings;
+    settings.mini = true;
+    for (const int error : {EPROTO, EPIPE}) {
+        PluggedIn side{settings};
+        side.bed.fail_messages(error);
+        DvxplorerCamera camera{at_once()};
+        const Batch got = stream_scene(camera, side.bed, *side.model);
+        EXPECT_EQ(got.events, side.seen.events) << error;
+        EXPECT_TRUE(got.imu.empty());
     }
 }
 

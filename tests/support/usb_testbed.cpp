@@ -42,7 +42,7 @@ struct Urb {
 
 struct Faults {
     int control_stalls = 0, control_delay = 0, halts = 0, loses_byte_of_every = 0;
-    int unplug_after = -1;
+    int unplug_after = -1, message_error = 0;
     std::size_t transfer_limit = 0, memory = SIZE_MAX;
 };
 
@@ -66,6 +66,7 @@ struct UsbTestbed::Parts {
     gboolean handle(UMockdevIoctlClient* client);
     int answer(gulong request, UMockdevIoctlData* arg);
     void pull_cable();
+    int clear_halt(UMockdevIoctlData* arg);
     int tell_capabilities(UMockdevIoctlData* arg) const;
     int submit(UMockdevIoctlData* arg);
     bool reap(UMockdevIoctlData* arg);
@@ -165,6 +166,11 @@ void UsbTestbed::halt_data(int times) {
     parts_->faults.halts = times;
 }
 
+void UsbTestbed::fail_messages(int error) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.message_error = error;
+}
+
 void UsbTestbed::limit_transfer(std::size_t bytes) {
     const std::lock_guard lock{parts_->mutex};
     parts_->faults.transfer_limit = bytes;
@@ -209,9 +215,7 @@ int UsbTestbed::Parts::answer(gulong request, UMockdevIoctlData* arg) {
         case USBDEVFS_GET_CAPABILITIES:
             return tell_capabilities(arg);
         case USBDEVFS_CLEAR_HALT:
-            halted = false;
-            camera->clear_endpoint();
-            return 0;
+            return clear_halt(arg);
         case USBDEVFS_CLAIMINTERFACE:
         case USBDEVFS_RELEASEINTERFACE:
         case USBDEVFS_SETCONFIGURATION:
@@ -227,6 +231,16 @@ int UsbTestbed::Parts::answer(gulong request, UMockdevIoctlData* arg) {
         default:
             return ENOTTY;
     }
+}
+
+int UsbTestbed::Parts::clear_halt(UMockdevIoctlData* arg) {
+    const Owned<UMockdevIoctlData> endpoint{
+        umockdev_ioctl_data_resolve(arg, 0, sizeof(unsigned), nullptr)};
+    if (!endpoint) return EFAULT;
+    if (endpoint->data[0] != identity.data_endpoint) return 0;
+    halted = false;
+    camera->clear_endpoint();
+    return 0;
 }
 
 int UsbTestbed::Parts::tell_capabilities(UMockdevIoctlData* arg) const {
@@ -346,7 +360,7 @@ void UsbTestbed::Parts::tell_messages() {
         const std::size_t n =
             camera->message({reinterpret_cast<std::byte*>(urb.buffer->data), urb.room()});
         if (n == 0) return;
-        urb.end(0, int(n));
+        urb.end(-faults.message_error, faults.message_error == 0 ? int(n) : 0);
         finished.push_back(std::move(urb));
         listening.pop_front();
     }

@@ -38,6 +38,8 @@ public:
     /// The data endpoint halts: the first transfer in flight ends with a stall, and nothing more
     /// comes until the halt is cleared. So many times, each as soon as transfers wait.
     void halt_data(int times);
+    /// Transfers for messages end with this errno (EPIPE: the endpoint halts); 0: they do not.
+    void fail_messages(int error);
     /// At most so many bytes per transfer, to make short packets; 0 for as many as fit.
     void limit_transfer(std::size_t bytes);
     /// Every n-th transfer loses its last byte on the way; 0: none.
