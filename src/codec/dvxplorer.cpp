@@ -7,15 +7,6 @@ namespace {
 
 constexpr std::uint16_t kTimestampBit = 0x8000, kDataMask = 0x0FFF;
 
-DavisSensor imu_of(const DvxplorerSensor& sensor) {
-    DavisSensor imu;
-    imu.imu_type = kImuBmi160;
-    imu.imu_flip_x = sensor.imu_flip_x;
-    imu.imu_flip_y = sensor.imu_flip_y;
-    imu.imu_flip_z = sensor.imu_flip_z;
-    return imu;
-}
-
 }  // namespace
 
 DvxplorerParser::DvxplorerParser(const DvxplorerSensor& sensor)

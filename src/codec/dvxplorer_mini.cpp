@@ -117,34 +117,37 @@ void DvxplorerMiniParser::message_word(std::uint32_t word, Batch& into) {
     if (message_read_ == message_bytes_) message(std::span{message_}.first(message_bytes_), into);
 }
 
-/// Kind; of an IMU sample then what is there (bits 7-5: accelerometer, gyroscope, temperature) and
-/// in which ranges (4-3: 2 g << n; 2-0: 2000 deg/s >> n); gyroscope z y x, accelerometer z y x,
-/// temperature: the chip lies on its side. The camera's own texts have kind 0.
+/// Kind; of an IMU sample then what is there and in which ranges, as the FX3 board's scale word;
+/// gyroscope z y x, accelerometer z y x, temperature: the chip lies on its side. The camera's own
+/// texts have kind 0.
 void DvxplorerMiniParser::message(std::span<const std::byte> bytes, Batch& into) {
     constexpr std::byte kImu{1};
-    constexpr std::size_t kImuBytes = 16, kGyroAt = 2, kAccelAt = 8, kTemperatureAt = 14;
+    constexpr std::size_t kImuBytes = 16;
     if (bytes.size() != kImuBytes || bytes[0] != kImu)
         return damage_.count(DamageReason::unknown_word);
     if (reference_ < 0) return;
-    const auto flags = std::to_integer<unsigned>(bytes[1]);
-    const auto number = [&](std::size_t at) {
-        return float(std::int16_t(load_little<std::uint16_t>(&bytes[at])));
+    struct Part {
+        unsigned flag;
+        std::array<std::size_t, 3> at;  // in the assembler's order: y x z
     };
-    constexpr float kFullScale = 32768;
-    const float g = float(2U << ((flags >> 3) & 3)) / kFullScale;
-    const float dps = 2000.F / float(1U << (flags & 7)) / kFullScale;
-    const std::array sign{sensor_.imu_flip_x ? -1.F : 1.F, sensor_.imu_flip_y ? -1.F : 1.F,
-                          sensor_.imu_flip_z ? -1.F : 1.F};
+    constexpr Part kAccel{0x80, {10, 12, 8}}, kGyro{0x40, {4, 6, 2}};
+    constexpr unsigned kTemperature = 0x20;
+    const auto flags = std::to_integer<std::uint8_t>(bytes[1]);
+    const auto number = [&](std::size_t at) {
+        imu_.byte(std::to_integer<std::uint8_t>(bytes[at + 1]));
+        imu_.byte(std::to_integer<std::uint8_t>(bytes[at]));
+    };
+    const auto part = [&](const Part& p) {
+        if ((flags & p.flag) != 0) std::ranges::for_each(p.at, number);
+    };
+    imu_.begin();
+    imu_.scale(flags);
+    part(kAccel);
+    if ((flags & kTemperature) != 0) number(14);
+    part(kGyro);
     ImuSample sample;
-    sample.t = from_us(time_);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t at = 2 * (2 - axis);
-        if ((flags & 0x80) != 0)
-            sample.acceleration_g[axis] = sign[axis] * g * number(kAccelAt + at);
-        if ((flags & 0x40) != 0) sample.gyro_dps[axis] = sign[axis] * dps * number(kGyroAt + at);
-    }
-    if ((flags & 0x20) != 0) sample.temperature_c = number(kTemperatureAt) / 512.F + 23.F;
-    into.imu.push_back(sample);
+    if (imu_.end(from_us(time_), sample) == DavisImuAssembler::End::complete)
+        into.imu.push_back(sample);
 }
 
 void DvxplorerMiniParser::finish(Batch&) {

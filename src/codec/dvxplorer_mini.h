@@ -2,6 +2,7 @@
 // (drivers-and-formats.md A.12; the messages: libcaer src/dvxplorer.c, debugTranslator).
 #pragma once
 
+#include "src/codec/davis_imu.h"
 #include "src/codec/dvxplorer_sensor.h"
 #include "src/codec/parser.h"
 #include "src/codec/whole_words.h"
@@ -25,7 +26,8 @@ void frame_mini_message(std::vector<std::byte>& message);
 /// what follows is left out until the next frame.
 class DvxplorerMiniParser final : public Parser {
 public:
-    explicit DvxplorerMiniParser(const DvxplorerSensor& sensor) : sensor_(sensor) {}
+    explicit DvxplorerMiniParser(const DvxplorerSensor& sensor)
+        : sensor_(sensor), imu_(imu_of(sensor)) {}
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
@@ -47,6 +49,7 @@ private:
     void message(std::span<const std::byte> bytes, Batch& into);
 
     DvxplorerSensor sensor_;
+    DavisImuAssembler imu_;
     Damage damage_;
     WholeWords<4> words_;
     std::int64_t base_ = 0;        ///< us, of reference 0

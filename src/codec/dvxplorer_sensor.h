@@ -1,6 +1,7 @@
 // What the words of a DVXplorer do not say about themselves, alike for both of its boards.
 #pragma once
 
+#include "src/codec/davis_sensor.h"
 #include "src/core/event.h"
 
 #include <cstdint>
@@ -18,6 +19,16 @@ struct DvxplorerSensor {
     int columns() const { return swapped ? height : width; }
     int rows() const { return swapped ? width : height; }
 };
+
+/// Its IMU, for DavisImuAssembler.
+inline DavisSensor imu_of(const DvxplorerSensor& sensor) {
+    DavisSensor imu;
+    imu.imu_type = kImuBmi160;
+    imu.imu_flip_x = sensor.imu_flip_x;
+    imu.imu_flip_y = sensor.imu_flip_y;
+    imu.imu_flip_z = sensor.imu_flip_z;
+    return imu;
+}
 
 /// The event of a pixel of the chip, where a person sees it.
 inline Event event_at(SensorTime t, int column, int row, Polarity polarity,

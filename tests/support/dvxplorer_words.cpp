@@ -50,6 +50,18 @@ bool has_partner(const std::vector<Octet>& octets, std::size_t at, bool may_be_b
            (may_be_before || offset >= 0);
 }
 
+struct ImuScales {
+    float accel_lsb, gyro_lsb;  ///< per g, per deg/s
+    std::array<float, 3> sign;
+};
+
+ImuScales imu_scales(const DvxplorerSensor& sensor, const ImuRanges& ranges) {
+    return {32768.F / float(2 << ranges.accel),
+            32768.F / float(2000 >> ranges.gyro),
+            {sensor.imu_flip_x ? -1.F : 1.F, sensor.imu_flip_y ? -1.F : 1.F,
+             sensor.imu_flip_z ? -1.F : 1.F}};
+}
+
 class Fx3Words {
 public:
     explicit Fx3Words(const ImuRanges& ranges) : ranges_(ranges) { put(0, 1); }
@@ -80,11 +92,7 @@ public:
     }
     void imu(const ImuSample& sample, const DvxplorerSensor& sensor) {
         constexpr std::array<std::size_t, 3> kSent{1, 0, 2};  // y before x
-        const float accel_lsb = 32768.F / float(2 << ranges_.accel),
-                    gyro_lsb = 32768.F / float(2000 >> ranges_.gyro);
-        const std::array<float, 3> sign{sensor.imu_flip_x ? -1.F : 1.F,
-                                        sensor.imu_flip_y ? -1.F : 1.F,
-                                        sensor.imu_flip_z ? -1.F : 1.F};
+        const auto [accel_lsb, gyro_lsb, sign] = imu_scales(sensor, ranges_);
         put(0, 5);
         put(5, 0x300 | 0xE0 | (ranges_.accel << 3) | ranges_.gyro);
         for (const std::size_t a : kSent) number(sign[a] * sample.acceleration_g[a] * accel_lsb);
@@ -152,17 +160,16 @@ std::vector<std::byte> fx3_words(const Batch& scene, const DvxplorerSensor& sens
 std::vector<std::byte> mini_imu(const ImuSample& sample, const DvxplorerSensor& sensor,
                                 const ImuRanges& ranges) {
     constexpr std::uint8_t kImu = 1, kEverything = 0xE0;
-    const float accel_lsb = 32768.F / float(2 << ranges.accel),
-                gyro_lsb = 32768.F / float(2000 >> ranges.gyro);
-    const std::array<float, 3> sign{sensor.imu_flip_x ? -1.F : 1.F, sensor.imu_flip_y ? -1.F : 1.F,
-                                    sensor.imu_flip_z ? -1.F : 1.F};
+    const ImuScales scales = imu_scales(sensor, ranges);
     std::vector<std::byte> bytes{std::byte{kImu},
                                  std::byte(kEverything | (ranges.accel << 3) | ranges.gyro)};
     const auto number = [&](float value) {
         append_little(bytes, std::int16_t(std::lround(value)));
     };
-    for (const std::size_t a : {2, 1, 0}) number(sign[a] * sample.gyro_dps[a] * gyro_lsb);
-    for (const std::size_t a : {2, 1, 0}) number(sign[a] * sample.acceleration_g[a] * accel_lsb);
+    for (const std::size_t a : {2, 1, 0})
+        number(scales.sign[a] * sample.gyro_dps[a] * scales.gyro_lsb);
+    for (const std::size_t a : {2, 1, 0})
+        number(scales.sign[a] * sample.acceleration_g[a] * scales.accel_lsb);
     number((sample.temperature_c - 23) * 512);
     return bytes;
 }
