@@ -133,6 +133,8 @@ bool FastGatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
     const bool any = std::memchr(top.values().data(), 1, top.values().size()) != nullptr;
     if (any) dilate(top, config_.gate_radius, mask_scratch_[0], top);
     for (std::size_t l = 1; l < levels_.size(); ++l) halve(levels_[l - 1].mask, levels_[l].mask);
+    Mask& deepest = levels_.back().mask;
+    if (any) dilate(deepest, config_.gate_spread, mask_scratch_.back(), deepest);
     return any;
 }
 

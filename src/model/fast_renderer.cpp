@@ -219,7 +219,7 @@ void FastRenderer::lay_out_columns(const PictureGeometry& picture) noexcept {
         columns_.weight[side].clear();
         for (int i = 0; i < picture.part_width; ++i) {
             const AxisSamples x = sample_axis(picture.x + i, picture.width, picture.sensor_width,
-                                              config_.latent_stride);
+                                              config_.latent_stride, config_.blend);
             if (x.weight[side] == 0) continue;
             columns_.pixel[side].push_back(i);
             columns_.column[side].push_back(x.index + int(side));
@@ -257,8 +257,8 @@ void FastRenderer::render_row(const CodeChoice& codes, const PictureGeometry& pi
     const int width = picture.part_width;
     const auto count = std::size_t(width);
     const AxisSamples t = sample_time(codes.fraction, codes.next[0]);
-    const AxisSamples y =
-        sample_axis(picture.y + row, picture.height, picture.sensor_height, config_.latent_stride);
+    const AxisSamples y = sample_axis(picture.y + row, picture.height, picture.sensor_height,
+                                      config_.latent_stride, config_.blend);
     float* scratch = scratch_[lane].data();
     float* blended = row_sums_[lane].data();  // mu, ln sigma, sigma^2 + mu^2
     std::fill_n(blended, 3 * count, 0.0F);

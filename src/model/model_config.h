@@ -9,6 +9,8 @@ namespace eventide {
 
 enum class EncoderKind { gated, thesis };
 enum class SigmaRule { log_blend, mixture };
+/// Weight in space of the nearer latent samples: straight in the distance, or without a crease.
+enum class Blend { linear, smooth };
 
 struct ModelConfig {
     EncoderKind encoder = EncoderKind::gated;
@@ -17,6 +19,7 @@ struct ModelConfig {
     std::vector<int> recurrent{1, 1, 1, 1};   ///< per level: 1 ConvGRU, 0 held features
     int res_blocks = 2;
     int gate_radius = 4;                   ///< px
+    int gate_spread = 0;                   ///< further, at the deepest level, in its pixels
     int latent = 16;                       ///< D
     int latent_stride = 1;                 ///< 1 or 2
     std::vector<int> mlp{64, 64, 64};      ///< hidden widths
@@ -24,6 +27,7 @@ struct ModelConfig {
     float log_sigma_min = -6, log_sigma_max = 1;
     float sigma_scale = 1;  ///< calibration: rendered sigma is multiplied by it
     SigmaRule sigma_rule = SigmaRule::log_blend;
+    Blend blend = Blend::linear;
     std::string window = "50ms";  ///< the event frames it was trained for
     std::string card;             ///< data, budget, scores, limits
 

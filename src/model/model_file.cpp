@@ -161,7 +161,8 @@ void save_model(const std::filesystem::path& path, const Model& model) {
 std::string encoder_identity(const Model& model) {
     Digest digest;
     const auto metadata = format_metadata(model.config);
-    for (const char* key : {"encoder", "bins", "widths", "recurrent", "gate_radius"}) {
+    for (const char* key :
+         {"encoder", "bins", "widths", "recurrent", "gate_radius", "gate_spread"}) {
         const std::string& value = metadata.at(key);
         digest.add(value.c_str(), value.size() + 1);
     }

@@ -53,7 +53,13 @@ struct Key {
     std::string name, expected;
     std::function<std::string(const ModelConfig&)> format;
     std::function<bool(const std::string&, ModelConfig&)> parse;
+    bool may_be_missing = false;  // where files of before have not got it
 };
+
+Key optional(Key key) {
+    key.may_be_missing = true;
+    return key;
+}
 
 Key whole_number(const char* name, int ModelConfig::*member) {
     return {name, "a whole number",
@@ -115,6 +121,7 @@ const std::vector<Key>& keys() {
         list("recurrent", &ModelConfig::recurrent),
         whole_number("res_blocks", &ModelConfig::res_blocks),
         whole_number("gate_radius", &ModelConfig::gate_radius),
+        optional(whole_number("gate_spread", &ModelConfig::gate_spread)),
         whole_number("latent", &ModelConfig::latent),
         whole_number("latent_stride", &ModelConfig::latent_stride),
         list("mlp", &ModelConfig::mlp),
@@ -124,6 +131,8 @@ const std::vector<Key>& keys() {
         number("sigma_scale", &ModelConfig::sigma_scale),
         choice("sigma_rule", &ModelConfig::sigma_rule, {SigmaRule::log_blend, SigmaRule::mixture},
                {"log_blend", "mixture"}),
+        optional(choice("blend", &ModelConfig::blend, {Blend::linear, Blend::smooth},
+                        {"linear", "smooth"})),
         text("window", &ModelConfig::window),
         text("card", &ModelConfig::card),
     };
@@ -159,6 +168,7 @@ ModelConfig parse_metadata(const std::map<std::string, std::string>& metadata,
     ModelConfig config;
     for (const Key& key : keys()) {
         const auto found = metadata.find(key.name);
+        if (found == metadata.end() && key.may_be_missing) continue;
         if (found == metadata.end())
             throw Error(ErrorKind::input, file + ": metadata '" + key.name +
                                               "' is missing: not a model file of this project");
@@ -179,6 +189,7 @@ void check_config(const ModelConfig& config, const std::string& file) {
     check_list(file, "recurrent", config.recurrent, kMaxLevels, 0, 1);
     check_range(file, "res_blocks", config.res_blocks, 0, kMaxLayers);
     check_range(file, "gate_radius", config.gate_radius, 0, kMaxRadius);
+    check_range(file, "gate_spread", config.gate_spread, 0, kMaxRadius);
     check_range(file, "latent", config.latent, 1, kMaxWidth);
     check_range(file, "latent_stride", config.latent_stride, 1, 2);
     check_list(file, "mlp", config.mlp, kMaxLayers, 1, kMaxWidth);

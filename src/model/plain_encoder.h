@@ -77,6 +77,10 @@ private:
                 halve(mask, half);
                 mask = half;
             }
+            if (l + 1 == states_.size()) {
+                scratch = mask;
+                dilate(mask, config_.gate_spread, scratch, mask);
+            }
             const Array3<T> a = l == 0 ? each(conv(in_, each(grid, compress<T>)), relu<T>)
                                        : each(conv(down_[l], states_[l - 1], 2), relu<T>);
             if (config_.recurrent[l] != 0)

@@ -136,11 +136,11 @@ private:
                        {picture.part_height, picture.part_width}};
         const AxisSamples t = sample_time(fraction, codes[2] != nullptr);
         for (int row = 0; row < picture.part_height; ++row) {
-            const AxisSamples y =
-                sample_axis(picture.y + row, picture.height, picture.sensor_height, stride);
+            const AxisSamples y = sample_axis(picture.y + row, picture.height,
+                                              picture.sensor_height, stride, config_.blend);
             for (int column = 0; column < picture.part_width; ++column) {
-                const AxisSamples x =
-                    sample_axis(picture.x + column, picture.width, picture.sensor_width, stride);
+                const AxisSamples x = sample_axis(picture.x + column, picture.width,
+                                                  picture.sensor_width, stride, config_.blend);
                 T mu = 0, log_sigma = 0, square = 0;
                 for (std::size_t n = 0; n < 8; ++n) {
                     const std::size_t a = n / 4, b = n / 2 % 2, c = n % 2;

@@ -1,6 +1,8 @@
 // Which latent samples surround a query, and with which weights and offsets.
 #pragma once
 
+#include "src/model/model_config.h"
+
 #include <array>
 #include <cstdint>
 
@@ -15,10 +17,16 @@ struct AxisSamples {
     std::array<double, 2> offset{0, -1};
 };
 
+/// Weight of the sample at `fraction` = 1, of two at 0 and 1. Smooth weights leave no creases at
+/// samples and give more to the nearer one, which knows its surroundings best.
+inline double blend_weight(double fraction, Blend blend) {
+    return blend == Blend::linear ? fraction : fraction * fraction * (3 - 2 * fraction);
+}
+
 /// Output sample i of out_size, spread align-corners over sensor_size pixels, among samples at
 /// every `stride`-th pixel. Past the last sample only that one is used, with its true offset.
 /// Offsets are in latent pixels.
-inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride) {
+inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride, Blend blend) {
     const int samples = (sensor_size + stride - 1) / stride;
     if (out_size == 1) return {};
     // Whole numbers, so that a query on a sample is exactly on it.
@@ -28,7 +36,8 @@ inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride)
     found.index = int(numerator / denominator);
     double fraction = double(numerator % denominator) / double(denominator);
     found.offset = {fraction, fraction - 1};
-    if (found.index < samples - 1) found.weight = {1 - fraction, fraction};
+    const double next = blend_weight(fraction, blend);
+    if (found.index < samples - 1) found.weight = {1 - next, next};
     return found;
 }
 

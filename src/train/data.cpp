@@ -36,12 +36,17 @@ WindowPlan window_plan(const DataSettings& settings, std::int64_t window) {
     WindowPlan plan;
     plan.first_rendered = random.integer(0, settings.frames - settings.rendered);
     const double whole = settings.crop - 1;
-    plan.span = whole;
-    if (settings.patch != settings.crop || !random.chance(settings.whole_probability))
-        plan.span = std::min(
-            whole, (settings.patch - 1) / random.log_uniform({1, settings.span_scale_max}));
+    const double one_to_one = settings.patch - 1;
+    const bool on_pixels = random.chance(settings.whole_probability);
+    plan.span = one_to_one;
+    if (!on_pixels)
+        plan.span = std::min(whole, one_to_one / random.log_uniform({1, settings.span_scale_max}));
     plan.y0 = random.uniform() * (whole - plan.span);
     plan.x0 = random.uniform() * (whole - plan.span);
+    if (on_pixels) {
+        plan.y0 = std::round(plan.y0);
+        plan.x0 = std::round(plan.x0);
+    }
     for (int i = 0; i < settings.rendered; ++i) {
         const double u = random.uniform();
         plan.lookahead.push_back(u < .5 ? 0 : u < .7 ? 1 : 2);

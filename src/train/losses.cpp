@@ -60,6 +60,12 @@ torch::Tensor ssim(const torch::Tensor& a, const torch::Tensor& b) {
     return map.mean({1, 2});
 }
 
+torch::Tensor whole_contrast(const torch::Tensor& a, const torch::Tensor& b) {
+    constexpr double C2 = 0.03 * 0.03;
+    const auto u = a - a.mean({1, 2}, true), v = b - b.mean({1, 2}, true);
+    return (2 * (u * v).mean({1, 2}) + C2) / ((u * u + v * v).mean({1, 2}) + C2);
+}
+
 torch::Tensor multi_scale_ssim(const torch::Tensor& a, const torch::Tensor& b) {
     torch::Tensor x = a, y = b, sum = ssim(a, b);
     int sizes = 1;
@@ -87,8 +93,11 @@ LossTerms loss(const Pictures& p, const LossWeights& weights, const Perceptual* 
     const auto temporal = temporal_change(p);
     const auto inside =
         (squared.sqrt() <= 1.2816 * p.log_sigma.detach().exp()).to(torch::kFloat).mean({1, 2});
+    const auto contrast =
+        weights.contrast > 0 ? 1 - mean_of(whole_contrast(p.mu, p.truth), p.weight) : zero;
     const auto total = weights.l1 * l1 + weights.l2 * l2 + weights.ssim * dssim +
-                       weights.lpips * lpips + weights.nll * nll + weights.temporal * temporal;
+                       weights.contrast * contrast + weights.lpips * lpips + weights.nll * nll +
+                       weights.temporal * temporal;
     const auto number = [](const torch::Tensor& x) { return x.detach().item<double>(); };
     return {total,
             {number(l1), number(dssim), number(lpips), number(nll), number(temporal), number(l2),

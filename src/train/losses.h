@@ -17,6 +17,7 @@ struct LossWeights {
     double lpips = 0.4;      ///< LPIPS-Squeeze
     double nll = 0.1;        ///< of sigma; never moves mu
     double temporal = 0.25;  ///< L1 between the changes from picture to picture
+    double contrast = 0;     ///< 1 - structure and contrast of the picture as one window
 };
 
 struct LossTerms {
@@ -41,6 +42,10 @@ LossTerms loss(const Pictures& pictures, const LossWeights& weights, const Perce
 /// Mean SSIM [M] of pictures [M][h][w], as scikit-image with a Gaussian of sigma 1.5, 11x11, data
 /// range 1, the border of 5 px left out.
 torch::Tensor ssim(const torch::Tensor& a, const torch::Tensor& b);
+
+/// Structure and contrast of the whole picture [M]: 2 cov / (var_a + var_b), 1 where a and b differ
+/// by a constant. What lies far inside plain surfaces counts, which windows of 11 px don't see.
+torch::Tensor whole_contrast(const torch::Tensor& a, const torch::Tensor& b);
 
 /// Mean of SSIM over the picture, its half and its quarter, as far as they are 16 px or more.
 torch::Tensor multi_scale_ssim(const torch::Tensor& a, const torch::Tensor& b);

@@ -65,11 +65,13 @@ std::vector<torch::Tensor> masks(const ModelConfig& config, const torch::Tensor&
     torch::Tensor mask = torch::zeros_like(grid.narrow(1, 0, 1));
     for (int b = 0; b < config.bins; ++b) mask += grid.narrow(1, 4 * b + 3, 1);
     mask = (mask > 0).to(grid.scalar_type()).contiguous();
-    const int r = config.gate_radius;
-    mask = torch::max_pool2d(mask, {1, 2 * r + 1}, {1, 1}, {0, r});
-    mask = torch::max_pool2d(mask, {2 * r + 1, 1}, {1, 1}, {r, 0});
-    std::vector<torch::Tensor> all{mask};
+    const auto widen = [](const torch::Tensor& m, int r) {
+        return torch::max_pool2d(torch::max_pool2d(m, {1, 2 * r + 1}, {1, 1}, {0, r}),
+                                 {2 * r + 1, 1}, {1, 1}, {r, 0});
+    };
+    std::vector<torch::Tensor> all{widen(mask, config.gate_radius)};
     while (int(all.size()) < config.levels()) all.push_back(torch::max_pool2d(all.back(), 3, 2, 1));
+    all.back() = widen(all.back(), config.gate_spread);
     return all;
 }
 

@@ -42,6 +42,10 @@ void read_value(const std::string& text, SigmaRule& value) {
         throw std::invalid_argument{"log_blend or mixture"};
     value = text == "mixture" ? SigmaRule::mixture : SigmaRule::log_blend;
 }
+void read_value(const std::string& text, Blend& value) {
+    if (text != "linear" && text != "smooth") throw std::invalid_argument{"linear or smooth"};
+    value = text == "smooth" ? Blend::smooth : Blend::linear;
+}
 
 constexpr std::array kFeedbackNames{"none", "input", "change", "physical"};  // as Feedback
 void read_value(const std::string& text, Feedback& value) {
@@ -75,6 +79,9 @@ std::string write_value(const EncoderKind& value) {
 }
 std::string write_value(const SigmaRule& value) {
     return value == SigmaRule::mixture ? "mixture" : "log_blend";
+}
+std::string write_value(const Blend& value) {
+    return value == Blend::smooth ? "smooth" : "linear";
 }
 std::string write_value(const Feedback& value) {
     return kFeedbackNames[std::size_t(value)];
@@ -121,11 +128,13 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("widths", o.model.widths, "channels per level");
     add("recurrent", o.model.recurrent, "per level: 1 recurrent, 0 held");
     add("res-blocks", o.model.res_blocks, "at the lowest resolution");
-    add("gate-radius", o.model.gate_radius, "px");
+    add("gate-radius", o.model.gate_radius, "px around events in which states change");
+    add("gate-spread", o.model.gate_spread, "further at the lowest resolution, in its pixels");
     add("latent", o.model.latent, "D");
     add("latent-stride", o.model.latent_stride, "1 or 2");
     add("mlp", o.model.mlp, "hidden widths of the renderer");
     add("sigma-rule", o.model.sigma_rule, "log_blend or mixture");
+    add("blend", o.model.blend, "weights of latent samples in space: linear or smooth");
 
     add("crop", o.data.crop, "px, side of the part of a sensor that is simulated");
     add("sensor-width", o.data.sensor_width,
@@ -163,6 +172,7 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("l1", o.loss.l1, "weight in the loss");
     add("l2", o.loss.l2, "weight in the loss");
     add("ssim", o.loss.ssim, "weight in the loss");
+    add("contrast", o.loss.contrast, "weight in the loss");
     add("lpips-weight", o.loss.lpips, "weight in the loss");
     add("nll", o.loss.nll, "weight in the loss");
     add("temporal", o.loss.temporal, "weight in the loss");

@@ -1,5 +1,6 @@
 #include "src/train/render.h"
 
+#include "src/model/sampling.h"
 #include "src/train/fused.h"
 #include "src/train/networks.h"
 
@@ -18,14 +19,14 @@ struct Neighbour {
 
 /// Beyond the last sample only that one is used, with its true offset (docs/model.md).
 std::array<Neighbour, 2> neighbours(const std::vector<double>& points, std::int64_t samples,
-                                    torch::TensorOptions options) {
+                                    Blend blend, torch::TensorOptions options) {
     std::array<Neighbour, 2> both;
     for (int side = 0; side < 2; ++side) {
         Neighbour& neighbour = both[std::size_t(side)];
         std::vector<double> weight;
         for (const double p : points) {
             const double low = std::min(std::floor(p), double(samples - 1));
-            const double part = low == double(samples - 1) ? 0 : p - low;
+            const double part = low == double(samples - 1) ? 0 : blend_weight(p - low, blend);
             const double sample = std::min(low + side, double(samples - 1));
             neighbour.axis.index.push_back(std::int64_t(sample));
             neighbour.axis.offset.push_back(p - sample);
@@ -128,9 +129,9 @@ torch::Tensor blend_space(const ModelConfig& config, const Mlp& mlp, const torch
                           const torch::Tensor& dt, const PatchGrid& points) {
     const auto options = first.options().dtype(mlp.wide());
     torch::Tensor sum;
-    for (const Neighbour& ny : neighbours(points.y, first.size(2), options)) {
+    for (const Neighbour& ny : neighbours(points.y, first.size(2), config.blend, options)) {
         if (ny.empty) continue;
-        for (const Neighbour& nx : neighbours(points.x, first.size(3), options)) {
+        for (const Neighbour& nx : neighbours(points.x, first.size(3), config.blend, options)) {
             if (nx.empty) continue;
             const auto out =
                 mlp.rest(fused::offset_layer(first, dt, mlp.offsets(), ny.axis, nx.axis));

@@ -85,6 +85,8 @@ inline ModelConfig small_config() {
     config.recurrent = {1, 0, 1};
     config.res_blocks = 1;
     config.gate_radius = 2;
+    config.gate_spread = 1;
+    config.blend = Blend::smooth;
     config.latent = 5;
     config.mlp = {24, 16};
     return config;

@@ -64,7 +64,8 @@ TEST(ModelFile, MetadataThatMakesNoSenseIsRefusedByItsKey) {
         {"recurrent", "1,0"},  {"recurrent", "1,2,1"},   {"latent_stride", "3"},
         {"lookaheads", "0,5"}, {"log_sigma_min", "nan"}, {"log_sigma_min", "3"},
         {"sigma_scale", "-1"}, {"sigma_rule", "median"}, {"mlp", ""},
-        {"res_blocks", "-1"},  {"gate_radius", "1e9"},   {"new_key", "1"},
+        {"res_blocks", "-1"},  {"gate_radius", "1e9"},   {"gate_spread", "-1"},
+        {"blend", "cubic"},    {"new_key", "1"},
     };
     for (const auto& [key, value] : bad) {
         TensorFile file = good();
@@ -75,6 +76,16 @@ TEST(ModelFile, MetadataThatMakesNoSenseIsRefusedByItsKey) {
     file.metadata.erase("latent");
     EXPECT_THAT(refusal(file), HasSubstr("'latent' is missing"));
     EXPECT_EQ(refusal(good()), "accepted");
+}
+
+TEST(ModelFile, KeysThatOlderFilesHaveNotGotMayBeMissing) {
+    TensorFile file = good();
+    file.metadata.erase("gate_spread");
+    file.metadata.erase("blend");
+    const ModelConfig config = parse_metadata(file.metadata, "old");
+    EXPECT_EQ(config.gate_spread, 0);
+    EXPECT_EQ(config.blend, Blend::linear);
+    EXPECT_EQ(refusal(file), "accepted");
 }
 
 TEST(ModelFile, TensorsThatDoNotFitAreRefusedByName) {

@@ -27,16 +27,42 @@ Array2<float> as_array(const torch::Tensor& image) {
 
 /// The weights of some terms; the others count nothing.
 struct Only {
-    double l1 = 0, l2 = 0, ssim = 0, lpips = 0, nll = 0, temporal = 0;
+    double l1 = 0, l2 = 0, ssim = 0, lpips = 0, nll = 0, temporal = 0, contrast = 0;
 };
 LossWeights only(const Only& w) {
-    return {w.l1, w.l2, w.ssim, w.lpips, w.nll, w.temporal};
+    return {w.l1, w.l2, w.ssim, w.lpips, w.nll, w.temporal, w.contrast};
 }
 
 TEST(Losses, SsimIsThatOfEvaluation) {
     const auto a = picture(40, 53, 1), b = 0.7 * a + 0.3 * picture(40, 53, 2);
     EXPECT_NEAR(ssim(a, b).item<double>(), structural_similarity(as_array(a), as_array(b)), 1e-4);
     EXPECT_NEAR(ssim(a, a).item<double>(), 1, 1e-5);
+}
+
+TEST(Losses, ContrastLooksAtThePictureAsAWholeAndNotAtItsBrightness) {
+    const auto truth = picture(40, 53, 1);
+    const auto of = [&](const torch::Tensor& mu) {
+        return whole_contrast(mu, truth).item<double>();
+    };
+    EXPECT_NEAR(of(truth), 1, 1e-5);
+    EXPECT_NEAR(of(truth + 0.3), 1, 1e-5) << "brighter";
+    EXPECT_NEAR(of(0.25 + 0.5 * (truth - truth.mean())), 2 * 0.5 / (1 + 0.25), 0.01) << "fainter";
+    EXPECT_NEAR(of(-truth), -1, 0.03) << "a negative";
+    EXPECT_NEAR(of(torch::full_like(truth, 0.4)), 0, 0.03) << "grey";
+}
+
+TEST(Losses, ContrastAloneFillsAGreySurface) {
+    auto truth = torch::zeros({1, 64, 64});
+    truth.narrow(2, 0, 32).fill_(0.6);
+    auto mu = torch::full({1, 64, 64}, 0.3);
+    mu.select(2, 31).fill_(0.5);  // only its edge is told
+    mu.select(2, 32).fill_(0.1);
+    mu.set_requires_grad(true);
+    const auto s = torch::zeros({1, 64, 64});
+    loss({mu, s, truth, torch::ones({1})}, only({.contrast = 1}), nullptr, 1).total.backward();
+    const auto inside = mu.grad().select(1, 32);
+    EXPECT_LT(inside[0][4].item<double>(), 0) << "far inside the bright half: brighter";
+    EXPECT_GT(inside[0][60].item<double>(), 0) << "far inside the dark half: darker";
 }
 
 TEST(Losses, APerfectPictureCostsNothingButSigma) {
