@@ -36,11 +36,10 @@ WindowPlan window_plan(const DataSettings& settings, std::int64_t window) {
     WindowPlan plan;
     plan.first_rendered = random.integer(0, settings.frames - settings.rendered);
     const double whole = settings.crop - 1;
-    const double one_to_one = settings.patch - 1;
+    const double one_to_one = std::min(whole, settings.patch - 1.0);
     const bool on_pixels = random.chance(settings.whole_probability);
     plan.span = one_to_one;
-    if (!on_pixels)
-        plan.span = std::min(whole, one_to_one / random.log_uniform({1, settings.span_scale_max}));
+    if (!on_pixels) plan.span /= random.log_uniform({1, settings.span_scale_max});
     plan.y0 = random.uniform() * (whole - plan.span);
     plan.x0 = random.uniform() * (whole - plan.span);
     if (on_pixels) {

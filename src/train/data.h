@@ -29,7 +29,7 @@ struct DataSettings {
     Range frame_s{.01, .1};    ///< log-uniform per episode; width of the event frames
     double frame_jitter = .3;  ///< ln; widths of one episode's frames differ by up to this ...
     double jitter_probability = .5;  ///< ... in this share of the episodes
-    double whole_probability = .6;   ///< patches that are the whole crop, pixel by pixel
+    double whole_probability = .6;   ///< patches whose points are pixels
     double span_scale_max = 4;       ///< else log-uniform 1..this points per pixel
     double edge_probability = .4;    ///< pictures at the end of their event frame; else anywhere
     int warm_frames = 4;             ///< frames of a new lane that count nothing
