@@ -162,6 +162,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("pauses", o.data.scene.pause_start, "probability that a pause begins, per 50 ms");
     add("light", o.data.scene.white_lux, "lux on the chip where the scene is white");
     add("range", o.data.scene.dynamic_range, "white over black of scenes");
+    add("target-mean", o.data.scene.target_mean, "mean of what the exposed camera shows");
+    add("target-deviation", o.data.scene.target_deviation, "standard deviation of the same");
     add("light-changes", o.data.scene.light_change_probability, "share of scenes");
     add("flicker", o.data.scene.flicker_probability, "share of scenes under mains light");
     add("threshold", o.data.sensor.threshold, "ln of the light's change");
