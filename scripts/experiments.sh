@@ -120,25 +120,31 @@ write_result() {
   mv "$result.part" "$result"
 }
 
-# The part of the page between its two marks, from the results.
-write_tables() {
-  local text=$out/tables.md name one rows
-  : > "$text"
-  for name in "${order[@]}"; do
-    rows=()
-    for one in ${experiments[$name]}; do
-      [ -e "$results/$one-$minutes.csv" ] && rows+=("$results/$one-$minutes.csv")
-    done
-    [ ${#rows[@]} -ge 2 ] || continue
-    printf '\n**%s** (`scripts/experiments.sh DATA %s`)\n\n' "${title[$name]}" "$name" >> "$text"
-    printf '| run | options | steps | held-out scenes | simulated | lookahead 2 | real |\n|---|---|---|---|---|---|---|\n' >> "$text"
-    awk -F, 'FNR > 1 {
-      gsub(";", ",", $2) # the commas of options
-      printf "| %s | %s | %s |", $1, $2 == "" ? "" : "`" $2 "`", $3
-      for (i = 4; i < 20; i += 4) if ($i == "-") printf " - |"; else printf " %s %s %s (%s) |", $i, $(i+1), $(i+2), $(i+3)
-      print ""
-    }' "${rows[@]}" >> "$text"
+# One table: the runs of an experiment that have results at a budget, where there are two or more.
+write_table() { # EXPERIMENT MINUTES
+  local one rows=() command="scripts/experiments.sh DATA $1"
+  for one in ${experiments[$1]}; do
+    [ -e "$results/$one-$2.csv" ] && rows+=("$results/$one-$2.csv")
   done
+  [ ${#rows[@]} -ge 2 ] || return 0
+  [ "$2" = 5 ] || command="MINUTES=$2 $command"
+  printf '\n**%s**, %s minutes a run (`%s`)\n\n' "${title[$1]}" "$2" "$command"
+  printf '| run | options | steps | held-out scenes | simulated | lookahead 2 | real |\n|---|---|---|---|---|---|---|\n'
+  awk -F, 'FNR > 1 {
+    gsub(";", ",", $2) # the commas of options
+    printf "| %s | %s | %s |", $1, $2 == "" ? "" : "`" $2 "`", $3
+    for (i = 4; i < 20; i += 4) if ($i == "-") printf " - |"; else printf " %s %s %s (%s) |", $i, $(i+1), $(i+2), $(i+3)
+    print ""
+  }' "${rows[@]}"
+}
+
+# The part of the page between its two marks, from the results; the longest runs of an experiment first.
+write_tables() {
+  local text=$out/tables.md name budgets budget
+  budgets=$(for name in "$results"/*.csv; do name=${name%.csv}; echo "${name##*-}"; done | sort -rnu)
+  for name in "${order[@]}"; do
+    for budget in $budgets; do write_table "$name" "$budget"; done
+  done > "$text"
   awk -v text="$text" '
     /<!-- experiments begin -->/ { print; while ((getline line < text) > 0) print line; skip = 1 }
     /<!-- experiments end -->/ { skip = 0; print "" }
