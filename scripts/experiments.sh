@@ -122,13 +122,13 @@ write_result() {
 
 # One table: the runs of an experiment that have results at a budget, where there are two or more.
 write_table() { # EXPERIMENT MINUTES
-  local one rows=() command="scripts/experiments.sh DATA $1"
+  local one rows=() how="scripts/experiments.sh DATA $1"
   for one in ${experiments[$1]}; do
     [ -e "$results/$one-$2.csv" ] && rows+=("$results/$one-$2.csv")
   done
   [ ${#rows[@]} -ge 2 ] || return 0
-  [ "$2" = 5 ] || command="MINUTES=$2 $command"
-  printf '\n**%s**, %s minutes a run (`%s`)\n\n' "${title[$1]}" "$2" "$command"
+  [ "$2" = 5 ] || how="MINUTES=$2 $how"
+  printf '\n**%s**, %s minutes a run (`%s`)\n\n' "${title[$1]}" "$2" "$how"
   printf '| run | options | steps | held-out scenes | simulated | lookahead 2 | real |\n|---|---|---|---|---|---|---|\n'
   awk -F, 'FNR > 1 {
     gsub(";", ",", $2) # the commas of options
