@@ -1,4 +1,5 @@
 // How transfers end: answered by the camera, by a fault, or by the cable.
+#include "src/codec/byte_order.h"
 #include "tests/support/usb_testbed_parts.h"
 
 #include <algorithm>
@@ -9,10 +10,6 @@ namespace eventide::testing_support {
 namespace {
 
 constexpr int kSetupBytes = 8;
-
-std::uint16_t little16(const std::uint8_t* at) {
-    return std::uint16_t(at[0] | (at[1] << 8));
-}
 
 }  // namespace
 
@@ -41,7 +38,10 @@ void UsbTestbed::Parts::answer_controls() {
 int UsbTestbed::Parts::control(const UsbUrb& urb) {
     constexpr std::uint8_t kStandardIn = 0x80, kGetDescriptor = 6, kString = 3;
     const std::uint8_t* bytes = urb.buffer->data;
-    const UsbSetup setup{bytes[0], bytes[1], little16(bytes + 2), little16(bytes + 4)};
+    const auto word = [&](int at) {
+        return load_little<std::uint16_t>(reinterpret_cast<const std::byte*>(bytes + at));
+    };
+    const UsbSetup setup{bytes[0], bytes[1], word(2), word(4)};
     const std::span data{urb.buffer->data + kSetupBytes, urb.room() - kSetupBytes};
     if (setup.type != kStandardIn) return camera->control(setup, data);
     if (setup.request != kGetDescriptor || setup.value >> 8 != kString) return -1;
