@@ -7,32 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 
 namespace eventide {
 namespace {
 
-constexpr int kSide = kLatentSide;
 /// Pixels that go through the layers together: two maps of 56 x 64 numbers fill half a first-level
 /// cache; a multiple of the kernels' 14 and near one of their 6.
 constexpr int kBlock = 56;
-
-/// Layer 1 as a convolution over the first `codes` of the three codes, joined per pixel.
-plain::ConvWeights<float> hoisted_weights(const Model& model, int codes) {
-    const Tensor& first = model.weights.at("renderer.mlp.0.weight");
-    const int outputs = int(first.shape[0]), inputs = int(first.shape[1]);
-    const int depth = model.config.latent;
-    plain::ConvWeights<float> weights{
-        outputs, codes * depth, {}, model.weights.at("renderer.mlp.0.bias").values};
-    for (int o = 0; o < outputs; ++o)
-        for (int code = 0; code < codes; ++code)
-            for (int d = 0; d < depth; ++d)
-                for (int tap = 0; tap < 9; ++tap)
-                    weights.weight.push_back(
-                        first.values[std::size_t(o * inputs + (code * 9 + tap) * depth + d)]);
-    return weights;
-}
 
 /// [in][out] of a linear layer.
 std::vector<float> transposed(const Tensor& weight) {
@@ -42,6 +24,10 @@ std::vector<float> transposed(const Tensor& weight) {
         for (std::size_t i = 0; i < inputs; ++i)
             values[i * outputs + o] = weight.values[o * inputs + i];
     return values;
+}
+
+int latent_size(int sensor, int stride) {
+    return (sensor + stride - 1) / stride;
 }
 
 bool same_columns(const PictureGeometry& a, const PictureGeometry& b) {
@@ -55,15 +41,10 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
     : config_(model.config),
       options_(options),
       arithmetic_(arithmetic),
-      height_((sensor_height + config_.latent_stride - 1) / config_.latent_stride),
-      width_((sensor_width + config_.latent_stride - 1) / config_.latent_stride),
       first_(config_.mlp[0]),
       widest_(*std::ranges::max_element(config_.mlp)),
-      tiles_(latent_tiles(height_, width_)) {
-    const auto extents = extents_of(tiles_, 0, height_, width_);
-    past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents};
-    whole_ = {hoisted_weights(model, 3), 1, false, arithmetic, extents};
-    tile_columns_ = int(std::ranges::count(tiles_, 0, &Tile::y0));
+      hoisted_(model, latent_size(sensor_height, config_.latent_stride),
+               latent_size(sensor_width, config_.latent_stride), options, arithmetic) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const auto inputs = std::size_t(first.shape[1]);
     for (std::size_t o = 0; o < std::size_t(first_); ++o)
@@ -81,16 +62,8 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
             last_bias_ = bias;
         }
     }
-    for (PaddedMap& map : codes_) map = {height_, width_, config_.latent};
-    for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
-    active_.reserve(tiles_.size());
-    const std::size_t area = std::size_t(kSide + 2) * std::size_t(kSide + 2);
-    const std::size_t for_hoisting =
-        area * 3 * std::size_t(config_.latent) +
-        std::max(past_.scratch_size(kSide, kSide), whole_.scratch_size(kSide, kSide));
-    const std::size_t for_rows =
-        std::size_t(first_) + std::size_t(kBlock) * (4 * std::size_t(widest_) + 2);
-    scratch_.assign(kLanes, FloatBuffer(std::max(for_hoisting, for_rows)));
+    scratch_.assign(kLanes, FloatBuffer(std::size_t(first_) +
+                                        std::size_t(kBlock) * (4 * std::size_t(widest_) + 2)));
     row_sums_.resize(kLanes);
 }
 
@@ -99,114 +72,11 @@ std::string FastRenderer::description() const {
 }
 
 void FastRenderer::reset() noexcept {
-    for (Hoisted& hoisted : hoisted_) hoisted.k = 0;
-    newest_ = 0;
-}
-
-const PaddedMap* FastRenderer::code(std::int64_t k) const noexcept {
-    return k >= 1 ? &codes_[LatentWindow::slot(k)] : nullptr;
+    hoisted_.reset();
 }
 
 void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
-    newest_ = k;
-    const std::size_t slot = LatentWindow::slot(k);
-    PaddedMap& mine = codes_[slot];
-    const PaddedMap* before = code(k - 1);
-    const Outdated outdated{histories_[slot], latent.history};
-    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
-        if (!outdated(std::size_t(n))) return;
-        const Tile& tile = tiles_[std::size_t(n)];
-        const auto bytes = std::size_t(tile.width()) * std::size_t(config_.latent) * sizeof(float);
-        for (int y = tile.y0; y < tile.y1; ++y)
-            std::memcpy(mine.at(y, tile.x0), latent.values.pixel(y, tile.x0).data(), bytes);
-    });
-    histories_[slot] = latent.history;
-
-    std::vector<std::uint8_t>& changed = changed_[std::size_t(k % kChangesKept)];
-    const bool comparable = before != nullptr && options_.skip_quiet;
-    const Outdated since{histories_[LatentWindow::slot(k - 1)], latent.history};
-    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
-        const Tile near = tiles_[std::size_t(n)].grown(1, height_, width_);
-        const auto bytes = std::size_t(near.width()) * std::size_t(config_.latent) * sizeof(float);
-        bool same = comparable;
-        const bool may_differ = same && around(n, since);
-        for (int y = near.y0; may_differ && same && y < near.y1; ++y)
-            same = std::memcmp(mine.at(y, near.x0), before->at(y, near.x0), bytes) == 0;
-        changed[std::size_t(n)] = std::uint8_t(!same);
-    });
-}
-
-/// Whether a tile or one beside it may have changed.
-bool FastRenderer::around(int tile, const Outdated& since) const noexcept {
-    const int rows = int(tiles_.size()) / tile_columns_, columns = tile_columns_;
-    const int row = tile / columns, column = tile % columns;
-    for (int r = std::max(0, row - 1); r <= std::min(row + 1, rows - 1); ++r)
-        for (int c = std::max(0, column - 1); c <= std::min(column + 1, columns - 1); ++c)
-            if (since(std::size_t(r * columns + c))) return true;
-    return false;
-}
-
-/// Whether a tile of `from` already holds what event frame k would give: every code it reads is the
-/// one read then.
-bool FastRenderer::unchanged(const Hoisted& from, std::int64_t k, bool whole,
-                             std::size_t tile) const noexcept {
-    if (from.k < 1 || from.whole != whole || k < from.k) return false;
-    const std::int64_t oldest = from.k,
-                       newest = whole ? k + 1 : k;  // changes from.k-1 -> from.k ..
-    if (newest - oldest >= kChangesKept - 1) return false;
-    for (std::int64_t j = oldest; j <= newest; ++j)
-        if (changed_[std::size_t(j % kChangesKept)][tile] != 0) return false;
-    return true;
-}
-
-/// Brings one of the two kept maps to event frame k; never the one to `keep`.
-const FastRenderer::Hoisted& FastRenderer::hoist(std::int64_t k, bool whole,
-                                                 const Hoisted* keep) noexcept {
-    for (const Hoisted& there : hoisted_)
-        if (there.k == k && there.whole == whole) return there;
-    // The one that shares most with what is wanted: of the same kind, and newest.
-    const auto worth = [&](const Hoisted& there) {
-        if (&there == keep) return std::int64_t{-2};
-        return there.whole == whole && there.k <= k ? there.k : std::int64_t{-1};
-    };
-    Hoisted& to = worth(hoisted_[1]) > worth(hoisted_[0]) ? hoisted_[1] : hoisted_[0];
-    if (to.sums.empty()) to.sums = {height_, width_, first_};
-    active_.clear();
-    for (std::size_t i = 0; i < tiles_.size(); ++i)
-        if (!unchanged(to, k, whole, i)) active_.push_back(int(i));
-    to.k = k;
-    to.whole = whole;
-    for_each_tile(options_.parallel_for, int(active_.size()), [&](int lane, int n) {
-        hoist_tile(to, tiles_[std::size_t(active_[std::size_t(n)])],
-                   scratch_[std::size_t(lane)].data());
-    });
-    return to;
-}
-
-void FastRenderer::hoist_tile(Hoisted& to, const Tile& tile, float* scratch) noexcept {
-    const std::ptrdiff_t depth = config_.latent, codes = to.whole ? 3 : 2;
-    const std::ptrdiff_t step = codes * depth, row = (tile.width() + 2) * step;
-    const auto bytes = std::size_t(depth) * sizeof(float);
-    for (std::ptrdiff_t c = 0; c < codes; ++c) {
-        const PaddedMap* z = code(to.k - 1 + c);
-        // The map's own border of zeros is what lies outside.
-        for (int y = tile.y0 - 1; y <= tile.y1; ++y) {
-            const float* from = z != nullptr ? z->at(y, tile.x0 - 1) : nullptr;
-            float* out = scratch + (y - tile.y0 + 1) * row + c * depth;
-            for (int x = tile.x0 - 1; x <= tile.x1; ++x, out += step) {
-                if (from == nullptr) {
-                    std::memset(out, 0, bytes);
-                    continue;
-                }
-                std::memcpy(out, from, bytes);
-                from += depth;
-            }
-        }
-    }
-    const PackedConv& conv = to.whole ? whole_ : past_;
-    conv.run({scratch, row, to.sums.pixel(tile.y0, tile.x0).data(), std::ptrdiff_t(width_) * first_,
-              first_, tile.height(), tile.width()},
-             scratch + (tile.height() + 2) * row);
+    hoisted_.push(k, latent);
 }
 
 void FastRenderer::lay_out_columns(const PictureGeometry& picture) noexcept {
@@ -235,16 +105,13 @@ void FastRenderer::render(const CodeChoice& codes, const PictureGeometry& pictur
     lay_out_columns(picture);
     needs_squares_ = sigma != nullptr && rule == SigmaRule::mixture;
     const AxisSamples t = sample_time(codes.fraction, codes.next[0]);
-    std::array<const Hoisted*, 2> hoisted{};
-    if (t.weight[0] != 0) {
-        // The later sample's map, if there already, must not be overwritten by the earlier one's.
-        const Hoisted* later = nullptr;
-        for (const Hoisted& there : hoisted_)
-            if (t.weight[1] != 0 && there.k == codes.k + 1 && there.whole == codes.next[1])
-                later = &there;
-        hoisted[0] = &hoist(codes.k, codes.next[0], later);
-    }
-    if (t.weight[1] != 0) hoisted[1] = &hoist(codes.k + 1, codes.next[1], hoisted[0]);
+    std::array<const HoistedLayer::Sums*, 2> hoisted{};  // of the samples with a weight
+    if (t.weight[1] == 0)
+        hoisted[0] = &hoisted_.at(codes.k, codes.next[0]);
+    else if (t.weight[0] == 0)
+        hoisted[1] = &hoisted_.at(codes.k + 1, codes.next[1]);
+    else
+        hoisted = hoisted_.pair(codes.k, codes.next[0], codes.next[1]);
     for_each_tile(options_.parallel_for, picture.part_height, [&](int lane, int row) {
         render_row(codes, picture, hoisted, row, rule, intensity.row(row).data(),
                    sigma != nullptr ? sigma->row(row).data() : nullptr, std::size_t(lane));
@@ -252,8 +119,9 @@ void FastRenderer::render(const CodeChoice& codes, const PictureGeometry& pictur
 }
 
 void FastRenderer::render_row(const CodeChoice& codes, const PictureGeometry& picture,
-                              const std::array<const Hoisted*, 2>& hoisted, int row, SigmaRule rule,
-                              float* intensity, float* sigma, std::size_t lane) noexcept {
+                              const std::array<const HoistedLayer::Sums*, 2>& hoisted, int row,
+                              SigmaRule rule, float* intensity, float* sigma,
+                              std::size_t lane) noexcept {
     const int width = picture.part_width;
     const auto count = std::size_t(width);
     const AxisSamples t = sample_time(codes.fraction, codes.next[0]);
@@ -269,7 +137,7 @@ void FastRenderer::render_row(const CodeChoice& codes, const PictureGeometry& pi
         if (weight == 0) continue;
         for (std::size_t o = 0; o < std::size_t(first_); ++o)
             base[o] = slope_[0][o] * float(t.offset[a]) + slope_[2][o] * float(y.offset[b]);
-        const float* sums = hoisted[a]->sums.pixel(y.index + int(b), 0).data();
+        const float* sums = hoisted[a]->values.pixel(y.index + int(b), 0).data();
         for (std::size_t side = 0; side < 2; ++side)
             evaluate({sums, base, float(weight), side}, blended, width, scratch + first_);
     }

@@ -1,0 +1,112 @@
+// Functions of up to four rows of numbers, number by number.
+#if defined(EVENTIDE_VECTOR_MAPS_INL_H) == defined(HWY_TARGET_TOGGLE)  // once per instruction set
+#ifdef EVENTIDE_VECTOR_MAPS_INL_H
+#undef EVENTIDE_VECTOR_MAPS_INL_H
+#else
+#define EVENTIDE_VECTOR_MAPS_INL_H
+#endif
+
+#include "src/kernels/vectors-inl.h"
+
+// Highway's maths after highway.h: it follows the target.
+#include <hwy/contrib/math/math-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace eventide::HWY_NAMESPACE {
+
+/// Calls body(vector, vector out)-like step over n numbers, the rest through a short copy, so that
+/// nothing outside is read or written.
+template <typename Step>
+HWY_INLINE void over(std::size_t n, Step step) {
+    const std::size_t lanes = hn::Lanes(D());
+    std::size_t i = 0;
+    for (; i + lanes <= n; i += lanes) step.whole(i);
+    if (i < n) step.some(i, n - i);
+}
+
+/// One function of up to four inputs, number by number.
+template <typename Function>
+HWY_INLINE void map(Function function, std::size_t n, float* out, const float* a, const float* b,
+                    const float* c, const float* d) {
+    struct Step {
+        Function function;
+        float* out;
+        const float *a, *b, *c, *d;
+        HWY_INLINE void whole(std::size_t i) {
+            const D tag;
+            hn::StoreU(function(hn::LoadU(tag, a + i), hn::LoadU(tag, b + i), hn::LoadU(tag, c + i),
+                                hn::LoadU(tag, d + i)),
+                       tag, out + i);
+        }
+        HWY_INLINE void some(std::size_t i, std::size_t n) {
+            store_some(function(load_some(a + i, n), load_some(b + i, n), load_some(c + i, n),
+                                load_some(d + i, n)),
+                       out + i, int(n));
+        }
+    };
+    over(n, Step{function, out, a, b, c, d});
+}
+
+/// Beyond this exp saturates in both functions to within float's last place.
+HWY_INLINE V exp_within(V v) {
+    const D d;
+    return hn::Exp(d, hn::Min(hn::Max(v, hn::Set(d, -40.0F)), hn::Set(d, 40.0F)));
+}
+HWY_INLINE V sigmoid(V v) {
+    const V one = hn::Set(D(), 1.0F);
+    return hn::Div(one, hn::Add(one, exp_within(hn::Neg(v))));
+}
+/// 1 - 2 / (1 + exp(2 v)): absolute error of a few 1e-7, which is what a state near 1 has anyway.
+HWY_INLINE V tanh(V v) {
+    const D d;
+    const V one = hn::Set(d, 1.0F);
+    return hn::Sub(one, hn::Div(hn::Set(d, 2.0F), hn::Add(one, exp_within(hn::Add(v, v)))));
+}
+HWY_INLINE V elu_of(V v) {
+    const D d;
+    const V zero = hn::Zero(d);
+    const V below = hn::Expm1(d, hn::Max(hn::Min(v, zero), hn::Set(d, -40.0F)));
+    return hn::IfThenElse(hn::Gt(v, zero), v, below);
+}
+
+struct Compress {
+    HWY_INLINE V operator()(V v, V, V, V) const {
+        const D d;
+        const V size = hn::Abs(v);
+        if (hn::AllTrue(d, hn::Eq(size, hn::Zero(d)))) return v;  // most of a grid
+        return hn::CopySign(hn::Log1p(d, size), v);
+    }
+};
+struct ResetState {
+    HWY_INLINE V operator()(V r, V h, V, V) const { return hn::Mul(sigmoid(r), h); }
+};
+struct UpdateState {
+    HWY_INLINE V operator()(V h, V u, V c, V) const {
+        return hn::MulAdd(sigmoid(u), hn::Sub(tanh(c), h), h);
+    }
+};
+struct AddRelu {
+    HWY_INLINE V operator()(V a, V b, V, V) const { return hn::Max(hn::Add(a, b), hn::Zero(D())); }
+};
+struct NormElu {
+    HWY_INLINE V operator()(V v, V scale, V shift, V skip) const {
+        return elu_of(hn::Add(hn::MulAdd(v, scale, shift), skip));
+    }
+};
+struct NormEluAlone {
+    HWY_INLINE V operator()(V v, V scale, V shift, V) const {
+        return elu_of(hn::MulAdd(v, scale, shift));
+    }
+};
+struct Elu {
+    HWY_INLINE V operator()(V v, V, V, V) const { return elu_of(v); }
+};
+struct Average {
+    HWY_INLINE V operator()(V a, V b, V c, V d) const {
+        return hn::Mul(hn::Add(hn::Add(a, b), hn::Add(c, d)), hn::Set(D(), 0.25F));
+    }
+};
+
+}  // namespace eventide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

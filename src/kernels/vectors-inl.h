@@ -1,0 +1,41 @@
+// The vector of the instruction set that is being compiled for, and its first n numbers alone.
+#if defined(EVENTIDE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)  // once per instruction set
+#ifdef EVENTIDE_VECTORS_INL_H
+#undef EVENTIDE_VECTORS_INL_H
+#else
+#define EVENTIDE_VECTORS_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstring>
+
+HWY_BEFORE_NAMESPACE();
+namespace eventide::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+
+HWY_INLINE V load_some(const float* from, std::size_t n) {
+    HWY_ALIGN float whole[HWY_MAX_BYTES / sizeof(float)] = {};
+    std::memcpy(whole, from, n * sizeof(float));
+    return hn::Load(D(), whole);
+}
+
+/// All of v where n is at least its size.
+HWY_INLINE void store_some(V v, float* out, int n) {
+    const D d;
+    if (n >= int(hn::Lanes(d))) {
+        hn::StoreU(v, d, out);
+        return;
+    }
+    HWY_ALIGN float whole[HWY_MAX_BYTES / sizeof(float)];
+    hn::Store(v, d, whole);
+    for (int i = 0; i < n; ++i) out[i] = whole[i];
+}
+
+}  // namespace eventide::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
