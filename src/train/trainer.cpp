@@ -2,13 +2,11 @@
 
 #include "src/core/error.h"
 #include "src/train/blas.h"
-#include "src/train/curve.h"
+#include "src/train/device.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <sstream>
@@ -23,32 +21,13 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-torch::Device device_of(const TrainOptions& options) {
-    if (options.device != "cpu" && options.device != "cuda")
+/// What no single option can say of itself. Throws Error(usage).
+void require_sound(const TrainOptions& options) {
+    if (options.clock != "wall" && options.clock != "cpu")
         throw Error(ErrorKind::usage,
-                    "--device: expected cpu or cuda, found '" + options.device + "'");
-    if (options.device == "cuda" && !torch::cuda::is_available())
-        throw Error(ErrorKind::device, "--device cuda: this libtorch sees no CUDA device");
-    return torch::Device{options.device};
-}
-
-/// Processor time of the whole process, simulation included.
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-bool processor_has_bf16() {
-#if defined(__x86_64__)
-    return __builtin_cpu_supports("avx512bf16") != 0;
-#else
-    return false;
-#endif
-}
-
-/// Nothing but training can run such a network.
-void require_feedback_fits(const TrainOptions& options) {
+                    "--clock: expected wall or cpu, found '" + options.clock + "'");
+    require_blas_for_threads(options.threads);
+    if (options.feedback == Feedback::none) return;
     if (!options.export_file.empty())
         throw Error(ErrorKind::usage,
                     "--export: expected --feedback none, as eventide gives a network events alone");
@@ -57,48 +36,27 @@ void require_feedback_fits(const TrainOptions& options) {
                                           std::to_string(options.model.latent_stride));
 }
 
-void append_row(const std::filesystem::path& path, const std::string& header,
-                const std::string& row) {
-    const bool begin = !std::filesystem::exists(path);
-    std::ofstream out{path, std::ios::app};
-    if (begin) out << header << "\n";
-    out << row << "\n";
-    if (!out) throw Error(ErrorKind::failed, path.string() + ": cannot be written");
-}
-
-std::string csv_of_names() {
-    std::string text;
-    for (const char* name : kLossNames) text += std::string{","} + name;
-    return text;
+/// 1 for every weight of the first layer that may be other than 0.
+torch::Tensor mask_of_inputs(const TrainOptions& options, torch::Device device) {
+    const torch::Tensor mask = input_mask(options.model, options.inputs).to(device);
+    if (options.feedback == Feedback::none) return mask;
+    const auto picture = torch::ones_like(mask.narrow(1, 0, 1));  // is always used
+    return torch::cat({mask, picture}, 1);
 }
 
 }  // namespace
 
-torch::ScalarType arithmetic_type(const TrainOptions& options) {
-    if (options.precision == "f32") return torch::kFloat;
-    if (options.precision == "bf16") return torch::kBFloat16;
-    if (options.precision != "auto")
-        throw Error(ErrorKind::usage,
-                    "--precision: expected f32, bf16 or auto, found '" + options.precision + "'");
-    return options.device == "cuda" || processor_has_bf16() ? torch::kBFloat16 : torch::kFloat;
-}
-
 Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
                  std::shared_ptr<const TextureLibrary> validation_textures, Say say)
     : options_(options),
-      say_(std::move(say)),
+      log_(options.out, options.log_every, std::move(say)),
       device_(device_of(options)),
       type_(arithmetic_type(options)),
       optimiser_(options.optimiser,
                  with_feedback(initial_parameters(options.model, options.data.seed, device_),
                                options.feedback)),
-      input_mask_(input_mask(options.model, options.inputs).to(device_)) {
-    if (options.feedback != Feedback::none) {
-        require_feedback_fits(options);
-        const auto picture = torch::ones_like(input_mask_.narrow(1, 0, 1));  // is always used
-        input_mask_ = torch::cat({input_mask_, picture}, 1);
-    }
-    require_blas_for_threads(options.threads);
+      input_mask_(mask_of_inputs(options, device_)) {
+    require_sound(options);
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
     {
@@ -110,9 +68,6 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     std::filesystem::create_directories(options.out);
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
-    if (options.clock != "wall" && options.clock != "cpu")
-        throw Error(ErrorKind::usage,
-                    "--clock: expected wall or cpu, found '" + options.clock + "'");
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
     progress_.options = OptionTable{options_}.record();
     begin_memories();
@@ -220,24 +175,7 @@ void Trainer::step() {
     const double seconds = seconds_since(start);
     progress_.elapsed_minutes +=
         (options_.clock == "cpu" ? cpu_seconds() - cpu_start : seconds) / 60;
-    log_step(terms, rate, norm, seconds);
-}
-
-void Trainer::log_step(const LossTerms& terms, double rate, double norm, double seconds) {
-    const std::size_t n = terms.means.size();
-    for (std::size_t k = 0; k < n; ++k) sums_[k] += terms.means[k];
-    sums_[n] += norm;
-    sums_[n + 1] += seconds;
-    if (++summed_ < options_.log_every) return;
-    std::ostringstream row;
-    row << progress_.window << "," << progress_.elapsed_minutes << "," << rate;
-    for (const double sum : sums_) row << "," << sum / summed_;
-    row << "," << skipped_;
-    append_row(file("log.csv"), "step,minutes,rate" + csv_of_names() + ",gradient,seconds,skipped",
-               row.str());
-    say_(row.str());
-    sums_ = {};
-    summed_ = 0;
+    log_.step(mark(), terms, {rate, norm, seconds, skipped_});
 }
 
 void Trainer::validate() {
@@ -245,12 +183,7 @@ void Trainer::validate() {
     const Parameters weights = cast(optimiser_.ema, type_);
     const auto scores =
         validation_->judge(options_.model, weights, 0, options_.loss, perceptual_.get());
-    std::ostringstream row;
-    row << progress_.window << "," << progress_.elapsed_minutes << "," << scores.score;
-    for (const double mean : scores.means) row << "," << mean;
-    append_row(file("validation.csv"), "step,minutes,score" + csv_of_names(), row.str());
-    say_("validation " + row.str());
-    write_curve(file("learning_curve.svg"), file("log.csv"), file("validation.csv"));
+    log_.validation(mark(), scores);
     validation_->write_sheet(file("sheet.pgm"), options_.model, weights, 0);
     if (scores.score < progress_.best_score) {
         progress_.best_score = scores.score;

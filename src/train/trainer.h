@@ -3,24 +3,17 @@
 
 #include "src/train/checkpoint.h"
 #include "src/train/options.h"
-#include "src/train/validation.h"
+#include "src/train/training_log.h"
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 
 namespace eventide {
 
-/// bfloat16 where the processor has instructions for it (or on a GPU), else float32; or what the
-/// option says. Throws Error(usage).
-torch::ScalarType arithmetic_type(const TrainOptions& options);
-
 class Trainer {
 public:
-    using Say = std::function<void(const std::string&)>;  ///< a line for whoever watches
-
     /// Starts anew, or where options.resume says. Throws Error.
     Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
             std::shared_ptr<const TextureLibrary> validation_textures, Say say);
@@ -47,13 +40,13 @@ private:
     double learning_rate() const;
     void step();
     Share run_share(std::span<const LaneWindow> windows, const WindowPlan& plan, Memory& memory);
-    void log_step(const LossTerms& terms, double rate, double norm, double seconds);
+    Mark mark() const { return {progress_.window, progress_.elapsed_minutes}; }
     void validate();
     void checkpoint();
     std::filesystem::path file(const char* name) const;
 
     TrainOptions options_;
-    Say say_;
+    TrainingLog log_;
     torch::Device device_;
     torch::ScalarType type_;
     Optimiser optimiser_;
@@ -62,8 +55,7 @@ private:
     std::unique_ptr<Validation> validation_;
     std::unique_ptr<Feed> feed_;
     Checkpoint progress_;
-    std::array<double, kLossNames.size() + 2> sums_{};  // since the last line: means, norm, seconds
-    int summed_ = 0, skipped_ = 0;
+    int skipped_ = 0;
 };
 
 }  // namespace eventide
