@@ -1,76 +1,18 @@
 // The real driver, through the real libusb, against a DVXplorer in software with either board.
-#include "drivers/usb/dvxplorer_camera.h"
-
 #include "drivers/devices.h"
-#include "tests/drivers/usb_sessions.h"
-#include "tests/support/dvxplorer_model.h"
+#include "tests/drivers/dvxplorer_boards.h"
 #include "tests/support/preload.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <random>
 
-namespace eventide::test {
+namespace eventide::test::dvxplorer {
 namespace {
 
 using testing::HasSubstr;
-using testing_support::DvxplorerModel;
 using testing_support::DvxplorerModelSettings;
-using testing_support::UsbTestbed;
-
-/// Readouts of the sensor: within one time, column by column, each pixel once.
-Batch readouts(const DvxplorerSensor& sensor, int count, unsigned seed = 1) {
-    std::mt19937 rng{seed};
-    Batch scene;
-    std::int64_t t = 0;
-    for (int i = 0; i < count; ++i) {
-        t += 1 + std::int64_t(rng() % (i % 50 == 0 ? 90'000 : 400));
-        for (int column = int(rng() % 100); column < sensor.columns();
-             column += int(rng() % 97) + 1)
-            for (int row = int(rng() % 60); row < sensor.rows(); row += int(rng() % 90) + 1) {
-                const auto x = std::uint16_t(sensor.swapped ? row : column);
-                const auto y = std::uint16_t(sensor.swapped ? column : row);
-                scene.events.push_back({from_us(t), x, y, Polarity(rng() % 2)});
-            }
-    }
-    for (int i = 1; i <= 3; ++i) {
-        scene.imu.push_back({from_us(t * i / 4), {.5F, 0, 1}, {100, -20, 3}, {}, 30});
-        scene.triggers.push_back({from_us(t * i / 5), Trigger::Kind::rising, 0});
-    }
-    return scene;
-}
-
-DvxplorerOptions at_once() {
-    DvxplorerOptions options;
-    options.waits = kNoWaits;
-    return options;
-}
-
-struct PluggedIn {
-    explicit PluggedIn(DvxplorerModelSettings settings = {}, int count = 200)
-        : model(std::make_shared<DvxplorerModel>(settings)),
-          seen(readouts(settings.sensor, count)) {
-        model->show(seen);
-        bed.plug_in(model);
-    }
-    UsbTestbed bed;
-    std::shared_ptr<DvxplorerModel> model;
-    Batch seen;
-};
-
-std::vector<DvxplorerModelSettings> boards() {
-    DvxplorerModelSettings red, lite, swapped, mini;
-    lite.sensor.width = 320;
-    lite.sensor.height = 240;
-    lite.chip = 19;
-    swapped = lite;
-    swapped.sensor.swapped = true;
-    mini.mini = true;
-    return {red, lite, swapped, mini};
-}
 
 TEST(DvxplorerCamera, GivesTheEventsThatTheCameraSawWithEachBoardAtEachTransferSize) {
     for (const auto& settings : boards()) {
@@ -136,19 +78,6 @@ TEST(DvxplorerCamera, AMinisImuComesBesideItsDataAndFallsWhereItBelongs) {
     }
 }
 
-TEST(DvxplorerCamera, AMiniWhoseMessagesFailStillGivesItsEvents) {
-    DvxplorerModelSettings settings;
-    settings.mini = true;
-    for (const int error : {EPROTO, EPIPE}) {
-        PluggedIn side{settings};
-        side.bed.fail_messages(error);
-        DvxplorerCamera camera{at_once()};
-        const Batch got = stream_scene(camera, side.bed, *side.model);
-        EXPECT_EQ(got.events, side.seen.events) << error;
-        EXPECT_TRUE(got.imu.empty());
-    }
-}
-
 TEST(DvxplorerCamera, CutsARegionOutOnTheCamera) {
     for (const bool mini : {false, true})
         for (const SensorRegion roi :
@@ -185,78 +114,6 @@ TEST(DvxplorerCamera, SendsOnlyThePolarityAskedFor) {
     EXPECT_EQ(std::ptrdiff_t(stream_scene(camera, side.bed, *side.model).events.size()), off);
 }
 
-TEST(DvxplorerCamera, SaysWhatToDoWhenItCannotStart) {
-    const auto with = [](auto change) {
-        DvxplorerModelSettings settings;
-        change(settings);
-        const PluggedIn side{settings, 1};
-        return words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; });
-    };
-    EXPECT_THAT(with([](auto& s) { s.firmware = 7; }), HasSubstr("firmware 7, at least 8"));
-    EXPECT_THAT(with([](auto& s) { s.logic = 17; }), HasSubstr("logic 17"));
-    EXPECT_THAT(with([](auto& s) { s.patch = 1; }),
-                HasSubstr("logic 18 patch 1, expected 18 patch 2"));
-    EXPECT_THAT(with([](auto& s) { s.board_type = 5; }), HasSubstr("second-generation"));
-    EXPECT_THAT(with([](auto& s) { s.sensor.width = 0; }), HasSubstr("a side of 0 px"));
-}
-
-TEST(DvxplorerCamera, ASettingThatTheCameraDoesNotTakeIsNamed) {
-    DvxplorerModelSettings settings;
-    settings.deaf = davis::Register{davis::chip, 0x001E};
-    const PluggedIn side{settings, 1};
-    EXPECT_THAT(words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; }),
-                HasSubstr("register CHIP.30 was set to 8 and says 0"));
-    DvxplorerOptions trusting = at_once();
-    trusting.settings.verify = false;
-    EXPECT_EQ(DvxplorerCamera{trusting}.info().name, "DVXplorer");
-}
-
-TEST(DvxplorerCamera, CountsWhatTheCameraItselfDropped) {
-    PluggedIn side;
-    constexpr davis::Register kLow{davis::mux, 84};
-    side.model->write({kLow, 1000});  // before it was started
-    DvxplorerCamera camera{at_once()};
-    RawPacket packet;
-    while (camera.read(packet) != ReadStatus::data) continue;
-    side.bed.look([&] { side.model->write({kLow, 1007}); });
-    camera.stop();
-    EXPECT_EQ(camera.read(packet), ReadStatus::end);
-    EXPECT_EQ(camera.counters().device_dropped, 7U);
-}
-
-TEST(DvxplorerCamera, UnpluggedItComesBackBehindAGap) {
-    for (const bool mini : {false, true}) {
-        DvxplorerModelSettings settings;
-        settings.mini = mini;
-        PluggedIn side{settings};
-        DvxplorerOptions options = at_once();
-        options.reconnect = true;
-        DvxplorerCamera camera{options};
-        RawPacket packet;
-        while (camera.read(packet) != ReadStatus::data) continue;
-        EXPECT_FALSE(packet.gap_before);
-        side.bed.unplug();
-        while (camera.read(packet) != ReadStatus::timeout) continue;
-        side.bed.plug_in(side.model);
-        while (camera.read(packet) != ReadStatus::data) continue;
-        EXPECT_TRUE(packet.gap_before);
-        EXPECT_EQ(camera.counters().reconnects, 1U);
-    }
-}
-
-TEST(DvxplorerCamera, UnpluggedWithoutReconnectIsAnErrorThatNamesTheWayOut) {
-    PluggedIn side;
-    DvxplorerCamera camera{at_once()};
-    RawPacket packet;
-    while (camera.read(packet) != ReadStatus::data) continue;
-    side.bed.unplug();
-    EXPECT_THAT(words_of(ErrorKind::device,
-                         [&] {
-                             while (camera.read(packet) != ReadStatus::end) continue;
-                         }),
-                HasSubstr("the DVXplorer 'DVX00001' was unplugged (use --reconnect"));
-}
-
 TEST(DvxplorerCamera, IsListedAndOpenedByItsNameOnTheCommandLine) {
     const PluggedIn side{boards()[3], 1};
     const auto cameras = list_cameras();
@@ -272,79 +129,8 @@ TEST(DvxplorerCamera, IsListedAndOpenedByItsNameOnTheCommandLine) {
                 HasSubstr("serial 'other'"));
 }
 
-/// What was written between the settings and the end.
-std::vector<davis::Write> session_of(DvxplorerModelSettings settings) {
-    PluggedIn side{settings, 1};
-    std::size_t configured = 0;
-    {
-        DvxplorerCamera camera{at_once()};
-        side.bed.look([&] { configured = side.model->writes().size(); });
-        RawPacket packet;
-        while (camera.read(packet) != ReadStatus::data) continue;
-    }
-    const auto& writes = side.model->writes();
-    return {writes.begin() + std::ptrdiff_t(configured), writes.end()};
-}
-
-constexpr davis::Register chip(int address) {
-    return {davis::chip, std::uint16_t(address)};
-}
-
-TEST(DvxplorerCamera, StartsAndStopsAsTheRedBoardExpects) {
-    using namespace davis;
-    // libcaer's dvXplorerDataStart, with the chip's mode off before it (its DataStop).
-    const std::vector<Write> idle{{chip(0x3000), 0},
-                                  {kDvsRun, 0},
-                                  {kImuRunAccel, 0},
-                                  {kImuRunGyro, 0},
-                                  {kImuRunTemperature, 0},
-                                  {kExtRun, 0},
-                                  {kRun, 0},
-                                  {kTimestampRun, 0},
-                                  {kUsbRun, 0}};
-    std::vector<Write> expected = idle;
-    for (const Write w : {Write{kUsbRun, 1},
-                          {kTimestampRun, 1},
-                          {kRun, 1},  // the way to the host; 50 ms
-                          {kDvsRun, 1},
-                          {kImuRunAccel, 1},
-                          {kImuRunGyro, 1},
-                          {kImuRunTemperature, 1},
-                          {kExtRun, 1},  // what makes data
-                          {chip(0x3238), 1},
-                          {chip(0x3238), 0},  // the chip's own clock
-                          {chip(0x3000), 2},  // stream mode
-                          {kTimestampReset, 1},
-                          {kTimestampReset, 0}})  // dv-processing's handshake
-        expected.push_back(w);
-    expected.insert(expected.end(), idle.begin(), idle.end());
-    expected.push_back({kRunChip, 0});  // libcaer's dvXplorerClose: the chip back into reset
-    EXPECT_EQ(session_of({}), expected);
-}
-
-TEST(DvxplorerCamera, StartsAndStopsAsAMiniExpects) {
-    using namespace davis;
-    // The same without multiplexer, external input and USB module, which it has not got.
-    const std::vector<Write> idle{{chip(0x3000), 0},
-                                  {kDvsRun, 0},
-                                  {kImuRunAccel, 0},
-                                  {kImuRunGyro, 0},
-                                  {kImuRunTemperature, 0}};
-    std::vector<Write> expected = idle;
-    for (const Write w : {Write{kDvsRun, 1},
-                          {kImuRunAccel, 1},
-                          {kImuRunGyro, 1},
-                          {kImuRunTemperature, 1},
-                          {chip(0x3238), 1},
-                          {chip(0x3238), 0},
-                          {chip(0x3000), 2}})
-        expected.push_back(w);
-    expected.insert(expected.end(), idle.begin(), idle.end());
-    EXPECT_EQ(session_of(boards()[3]), expected);
-}
-
 }  // namespace
-}  // namespace eventide::test
+}  // namespace eventide::test::dvxplorer
 
 int main(int argc, char** argv) {
     eventide::testing_support::enter_testbed(argv);

@@ -1,0 +1,101 @@
+// What a DVXplorer or its cable does wrong, and what the user is told.
+#include "tests/drivers/dvxplorer_boards.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cerrno>
+
+namespace eventide::test::dvxplorer {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::DvxplorerModelSettings;
+
+TEST(DvxplorerFaults, AMiniWhoseMessagesFailStillGivesItsEvents) {
+    DvxplorerModelSettings settings;
+    settings.mini = true;
+    for (const int error : {EPROTO, EPIPE}) {
+        PluggedIn side{settings};
+        side.bed.fail_messages(error);
+        DvxplorerCamera camera{at_once()};
+        const Batch got = stream_scene(camera, side.bed, *side.model);
+        EXPECT_EQ(got.events, side.seen.events) << error;
+        EXPECT_TRUE(got.imu.empty());
+    }
+}
+
+TEST(DvxplorerFaults, SaysWhatToDoWhenItCannotStart) {
+    const auto with = [](auto change) {
+        DvxplorerModelSettings settings;
+        change(settings);
+        const PluggedIn side{settings, 1};
+        return words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; });
+    };
+    EXPECT_THAT(with([](auto& s) { s.firmware = 7; }), HasSubstr("firmware 7, at least 8"));
+    EXPECT_THAT(with([](auto& s) { s.logic = 17; }), HasSubstr("logic 17"));
+    EXPECT_THAT(with([](auto& s) { s.patch = 1; }),
+                HasSubstr("logic 18 patch 1, expected 18 patch 2"));
+    EXPECT_THAT(with([](auto& s) { s.board_type = 5; }), HasSubstr("second-generation"));
+    EXPECT_THAT(with([](auto& s) { s.sensor.width = 0; }), HasSubstr("a side of 0 px"));
+}
+
+TEST(DvxplorerFaults, ASettingThatTheCameraDoesNotTakeIsNamed) {
+    DvxplorerModelSettings settings;
+    settings.deaf = davis::Register{davis::chip, 0x001E};
+    const PluggedIn side{settings, 1};
+    EXPECT_THAT(words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; }),
+                HasSubstr("register CHIP.30 was set to 8 and says 0"));
+    DvxplorerOptions trusting = at_once();
+    trusting.settings.verify = false;
+    EXPECT_EQ(DvxplorerCamera{trusting}.info().name, "DVXplorer");
+}
+
+TEST(DvxplorerFaults, CountsWhatTheCameraItselfDropped) {
+    PluggedIn side;
+    constexpr davis::Register kLow{davis::mux, 84};
+    side.model->write({kLow, 1000});  // before it was started
+    DvxplorerCamera camera{at_once()};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    side.bed.look([&] { side.model->write({kLow, 1007}); });
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+    EXPECT_EQ(camera.counters().device_dropped, 7U);
+}
+
+TEST(DvxplorerFaults, UnpluggedItComesBackBehindAGap) {
+    for (const bool mini : {false, true}) {
+        DvxplorerModelSettings settings;
+        settings.mini = mini;
+        PluggedIn side{settings};
+        DvxplorerOptions options = at_once();
+        options.reconnect = true;
+        DvxplorerCamera camera{options};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_FALSE(packet.gap_before);
+        side.bed.unplug();
+        while (camera.read(packet) != ReadStatus::timeout) continue;
+        side.bed.plug_in(side.model);
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_TRUE(packet.gap_before);
+        EXPECT_EQ(camera.counters().reconnects, 1U);
+    }
+}
+
+TEST(DvxplorerFaults, UnpluggedWithoutReconnectIsAnErrorThatNamesTheWayOut) {
+    PluggedIn side;
+    DvxplorerCamera camera{at_once()};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    side.bed.unplug();
+    EXPECT_THAT(words_of(ErrorKind::device,
+                         [&] {
+                             while (camera.read(packet) != ReadStatus::end) continue;
+                         }),
+                HasSubstr("the DVXplorer 'DVX00001' was unplugged (use --reconnect"));
+}
+
+}  // namespace
+}  // namespace eventide::test::dvxplorer
