@@ -79,19 +79,19 @@ void two_outputs(const float* in, const float* weight, const float* bias, int pi
 }
 
 const VectorKernels* table() {
-    static const VectorKernels kTable{hwy::TargetName(HWY_TARGET),
-                                      int(hn::Lanes(D())),
-                                      dot_rows,
-                                      compress,
-                                      reset_state,
-                                      update_state,
-                                      add_relu,
-                                      norm_elu,
-                                      elu,
-                                      average,
-                                      offset_rows,
-                                      two_outputs};
-    return &kTable;
+    static const VectorKernels kernels{hwy::TargetName(HWY_TARGET),
+                                       int(hn::Lanes(D())),
+                                       dot_rows,
+                                       compress,
+                                       reset_state,
+                                       update_state,
+                                       add_relu,
+                                       norm_elu,
+                                       elu,
+                                       average,
+                                       offset_rows,
+                                       two_outputs};
+    return &kernels;
 }
 
 }  // namespace eventide::HWY_NAMESPACE

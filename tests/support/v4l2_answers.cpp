@@ -14,6 +14,7 @@ namespace eventide::testing_support {
 namespace {
 
 constexpr std::uint32_t kFirstControl = 0x00980900;
+constexpr char kCard[] = "eventide testbed";
 
 const char* name_of(gulong request) {
     switch (request) {
@@ -79,7 +80,7 @@ int V4l2Testbed::Parts::answer_format(gulong request, UMockdevIoctlData* arg) {
     switch (request) {
         case VIDIOC_QUERYCAP:
             return with<v4l2_capability>(arg, [&](v4l2_capability& c, auto*) {
-                std::strcpy(reinterpret_cast<char*>(c.card), "eventide testbed");
+                std::memcpy(c.card, kCard, sizeof kCard);
                 c.device_caps = settings.output ? V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_READWRITE
                                 : settings.multi_planar
                                     ? V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING
