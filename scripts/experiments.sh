@@ -55,6 +55,7 @@ run threshold35   --threshold 0.35,0.35
 run threshold-low --threshold 0.1,0.4
 run gate12        --gate-radius 12
 run gate32        --gate-radius 32
+run spread4       --gate-spread 4
 run l1-only       --ssim 0 --lpips-weight 0
 run no-lpips      --lpips-weight 0
 run no-ssim       --ssim 0
@@ -71,7 +72,7 @@ experiment losses     "base no-lpips no-ssim no-temporal l1-only" "7. Losses"
 experiment thresholds "base threshold-low threshold35" "8. Range of contrast thresholds in training"
 experiment feedback   "base fed fed-change fed-physical" "9. The last picture fed back: as an input, to be changed, as a physical output"
 experiment widths     "base equal narrow levels3 levels5" "10. Where the multiply-adds go, and field of view"
-experiment gate       "base gate12 gate32"             "How far around events the state may change (px; 4 in base)"
+experiment gate       "base gate12 gate32 spread4"   "How far around events the state may change (4 px in base; spread4: 4 px of the lowest resolution further there)"
 experiment states     "base full-only half-only quarter-only" "10b. Which levels remember"
 
 # One line of scores from a file that eventide evaluate wrote: MSE, SSIM, LPIPS, PICP80 over everything.
