@@ -46,7 +46,7 @@ void narrow_pixels(NarrowRow narrow_row, const float* in, std::size_t pixels, in
 #if defined(__x86_64__)
 namespace {
 
-/// Register block; see Sums in vector_kernels.cpp.
+/// Register block; see Sums in vector_dots-inl.h.
 template <int P, bool kTwo>
 struct Sums {
     Sums<P - 1, kTwo> before;

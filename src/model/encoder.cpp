@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/model/cores.h"
+#include "src/model/sampling.h"
 
 #include <utility>
 
@@ -23,8 +24,8 @@ Encoder::Encoder(const Model& model, int width, int height, const EngineOptions&
     : width_(width),
       height_(height),
       bins_(model.config.bins),
-      latent_height_((height + model.config.latent_stride - 1) / model.config.latent_stride),
-      latent_width_((width + model.config.latent_stride - 1) / model.config.latent_stride),
+      latent_height_(latent_samples(height, model.config.latent_stride)),
+      latent_width_(latent_samples(width, model.config.latent_stride)),
       latent_channels_(model.config.latent) {
     check_size(width, height);
     check_model(model, "encoder");

@@ -26,10 +26,6 @@ std::vector<float> transposed(const Tensor& weight) {
     return values;
 }
 
-int latent_size(int sensor, int stride) {
-    return (sensor + stride - 1) / stride;
-}
-
 bool same_columns(const PictureGeometry& a, const PictureGeometry& b) {
     return a.width == b.width && a.x == b.x && a.part_width == b.part_width;
 }
@@ -43,8 +39,8 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
       arithmetic_(arithmetic),
       first_(config_.mlp[0]),
       widest_(*std::ranges::max_element(config_.mlp)),
-      hoisted_(model, latent_size(sensor_height, config_.latent_stride),
-               latent_size(sensor_width, config_.latent_stride), options, arithmetic) {
+      hoisted_(model, latent_samples(sensor_height, config_.latent_stride),
+               latent_samples(sensor_width, config_.latent_stride), options, arithmetic) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const auto inputs = std::size_t(first.shape[1]);
     for (std::size_t o = 0; o < std::size_t(first_); ++o)

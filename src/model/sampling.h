@@ -8,6 +8,11 @@
 
 namespace eventide {
 
+/// Latent samples along an axis: one at every `stride`-th pixel, beginning with the first.
+inline int latent_samples(int sensor_size, int stride) {
+    return (sensor_size + stride - 1) / stride;
+}
+
 /// The one or two samples around a query along one axis. Sample `index + i` lies `offset[i]` before
 /// the query (offset = query - sample) and has weight `weight[i]`; a sample of weight 0 is not
 /// evaluated.
@@ -27,7 +32,7 @@ inline double blend_weight(double fraction, Blend blend) {
 /// every `stride`-th pixel. Past the last sample only that one is used, with its true offset.
 /// Offsets are in latent pixels.
 inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride, Blend blend) {
-    const int samples = (sensor_size + stride - 1) / stride;
+    const int samples = latent_samples(sensor_size, stride);
     if (out_size == 1) return {};
     // Whole numbers, so that a query on a sample is exactly on it.
     const std::int64_t numerator = std::int64_t(i) * (sensor_size - 1);

@@ -119,14 +119,7 @@ TEST(Dvs128Camera, UnpluggedItComesBackBehindAGap) {
     Dvs128Options options = at_once();
     options.reconnect = true;
     Dvs128Camera camera{options};
-    RawPacket packet;
-    while (camera.read(packet) != ReadStatus::data) continue;
-    side.bed.unplug();
-    while (camera.read(packet) != ReadStatus::timeout) continue;
-    side.bed.plug_in(side.model);
-    while (camera.read(packet) != ReadStatus::data) continue;
-    EXPECT_TRUE(packet.gap_before);
-    EXPECT_EQ(camera.counters().reconnects, 1U);
+    expect_return_behind_a_gap(camera, side.bed, side.model);
 }
 
 TEST(Dvs128Camera, IsListedAndOpenedByItsNameOnTheCommandLine) {

@@ -72,15 +72,7 @@ TEST(DvxplorerFaults, UnpluggedItComesBackBehindAGap) {
         DvxplorerOptions options = at_once();
         options.reconnect = true;
         DvxplorerCamera camera{options};
-        RawPacket packet;
-        while (camera.read(packet) != ReadStatus::data) continue;
-        EXPECT_FALSE(packet.gap_before);
-        side.bed.unplug();
-        while (camera.read(packet) != ReadStatus::timeout) continue;
-        side.bed.plug_in(side.model);
-        while (camera.read(packet) != ReadStatus::data) continue;
-        EXPECT_TRUE(packet.gap_before);
-        EXPECT_EQ(camera.counters().reconnects, 1U);
+        expect_return_behind_a_gap(camera, side.bed, side.model);
     }
 }
 

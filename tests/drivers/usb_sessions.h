@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace eventide::test {
@@ -47,6 +48,22 @@ Batch stream_scene(Camera& camera, testing_support::UsbTestbed& bed, const Model
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         EXPECT_EQ(parser->damaged()[DamageReason(i)], 0U) << name_of(DamageReason(i));
     return data;
+}
+
+/// A camera that reconnects and is sending is unplugged and plugged in again: its data go on, and
+/// say that some are missing.
+template <typename Model>
+void expect_return_behind_a_gap(Camera& camera, testing_support::UsbTestbed& bed,
+                                const std::shared_ptr<Model>& model) {
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_FALSE(packet.gap_before);
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    bed.plug_in(model);
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_EQ(camera.counters().reconnects, 1U);
 }
 
 inline std::filesystem::path written(const std::string& toml) {
