@@ -109,6 +109,9 @@ OptionTable::OptionTable(TrainOptions& o) {
         "checkpoint to go on from; its options are those of its beginning, "
         "unless given again after this one",
         Use::once);
+    add("initial", o.initial,
+        "model or checkpoint whose weights a new network begins with where names and shapes agree",
+        Use::once);
     add("export", o.export_file, "model file to write at the end", Use::once);
     add("card", o.card, "what the model card says first", Use::run);
     add("device", o.device, "cpu or cuda", Use::run);

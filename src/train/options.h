@@ -24,7 +24,7 @@ struct TrainOptions {
     OptimiserSettings optimiser;
     std::string out = "out/train";
     std::string textures, validation_textures, lpips;
-    std::string resume, export_file, card;
+    std::string resume, initial, export_file, card;
     std::string device = "cpu", precision = "auto";
     double minutes = 60;
     std::string clock = "wall";  ///< that minutes go by: wall, or cpu

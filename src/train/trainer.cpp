@@ -3,6 +3,7 @@
 #include "src/core/error.h"
 #include "src/train/blas.h"
 #include "src/train/device.h"
+#include "src/train/inherit.h"
 
 #include <algorithm>
 #include <chrono>
@@ -27,6 +28,8 @@ void require_sound(const TrainOptions& options) {
         throw Error(ErrorKind::usage,
                     "--clock: expected wall or cpu, found '" + options.clock + "'");
     require_blas_for_threads(options.threads);
+    if (!options.initial.empty() && !options.resume.empty())
+        throw Error(ErrorKind::usage, "--initial: expected no --resume, found both");
     if (options.feedback == Feedback::none) return;
     if (!options.export_file.empty())
         throw Error(ErrorKind::usage,
@@ -34,6 +37,15 @@ void require_sound(const TrainOptions& options) {
     if (options.model.latent_stride != 1)
         throw Error(ErrorKind::usage, "--feedback: expected --latent-stride 1, found " +
                                           std::to_string(options.model.latent_stride));
+}
+
+Parameters first_parameters(const TrainOptions& options, torch::Device device, const Say& say) {
+    Parameters parameters = initial_parameters(options.model, options.data.seed, device);
+    if (options.initial.empty()) return parameters;
+    std::string left;
+    for (const std::string& name : inherit(options.initial, parameters)) left += " " + name;
+    say("initial weights of " + options.initial + ", new:" + (left.empty() ? " none" : left));
+    return parameters;
 }
 
 /// 1 for every weight of the first layer that may be other than 0.
@@ -47,14 +59,13 @@ torch::Tensor mask_of_inputs(const TrainOptions& options, torch::Device device) 
 }  // namespace
 
 Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
-                 std::shared_ptr<const TextureLibrary> validation_textures, Say say)
+                 std::shared_ptr<const TextureLibrary> validation_textures, const Say& say)
     : options_(options),
-      log_(options.out, options.log_every, std::move(say)),
+      log_(options.out, options.log_every, say),
       device_(device_of(options)),
       type_(arithmetic_type(options)),
       optimiser_(options.optimiser,
-                 with_feedback(initial_parameters(options.model, options.data.seed, device_),
-                               options.feedback)),
+                 with_feedback(first_parameters(options, device_, say), options.feedback)),
       input_mask_(mask_of_inputs(options, device_)) {
     require_sound(options);
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.

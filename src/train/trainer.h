@@ -16,7 +16,7 @@ class Trainer {
 public:
     /// Starts anew, or where options.resume says. Throws Error.
     Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
-            std::shared_ptr<const TextureLibrary> validation_textures, Say say);
+            std::shared_ptr<const TextureLibrary> validation_textures, const Say& say);
 
     /// Trains until the budget is spent or `stop` is set, then writes a checkpoint. Files in the
     /// output folder: checkpoint.safetensors, best.safetensors, log.csv, validation.csv,
