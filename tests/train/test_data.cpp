@@ -1,8 +1,9 @@
-// What a window of training looks at.
-#include "src/train/data.h"
+// What a window of training looks at, and the scenes it looks at.
+#include "tests/train/tiny_run.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace eventide {
@@ -45,6 +46,45 @@ TEST(WindowPlan, IsTheSameForTheSameWindow) {
         EXPECT_EQ(a.x0, b.x0);
         EXPECT_EQ(a.lookahead, b.lookahead);
     }
+}
+
+TEST(Lane, IsTheSameHoweverOftenTheRunStops) {
+    DataSettings settings = tiny_options({}).data;
+    settings.thesis_share = .5;
+    const LanePlace place{.lane = 3, .group = 1, .groups = 2};
+    Lane whole{settings, few_textures(), place, 0};
+    std::vector<LaneWindow> windows;
+    for (int i = 0; i < 12; ++i) windows.push_back(whole.next());
+    int fresh = 0;
+    for (const int at : {0, 1, 5, 9}) {
+        // The lane's window i is the run's window 2 i + 1.
+        LaneWindow again = Lane{settings, few_textures(), place, 2 * at}.next();
+        const LaneWindow& expected = windows[std::size_t(at)];
+        EXPECT_EQ(again.fresh, expected.fresh);
+        EXPECT_EQ(again.f, expected.f);
+        EXPECT_EQ(again.grids, expected.grids);
+        EXPECT_EQ(again.truth, expected.truth);
+    }
+    for (const LaneWindow& window : windows) fresh += window.fresh;
+    EXPECT_GT(fresh, 1) << "scenes end";
+    EXPECT_LT(fresh, 12) << "scenes last longer than a window";
+}
+
+TEST(Lane, ThesisScenesShowThePictureWhateverTheLight) {
+    DataSettings settings = tiny_options({}).data;
+    settings.scene.target_white = {.5, .5};
+    settings.scene.target_white_below_one = 1;  // of all other scenes
+    const auto brightest = [&] {
+        Lane lane{settings, few_textures(), {}, 0};
+        float most = 0;
+        for (int i = 0; i < 8; ++i)
+            for (const auto& truth : lane.next().truth)
+                most = std::max(most, *std::ranges::max_element(truth.values()));
+        return most;
+    };
+    EXPECT_LE(brightest(), .5f);
+    settings.thesis_share = 1;
+    EXPECT_GT(brightest(), .6f);
 }
 
 }  // namespace
