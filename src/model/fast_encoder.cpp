@@ -1,6 +1,7 @@
 // See fast_encoder.h.
 #include "src/model/fast_encoder.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 
@@ -15,15 +16,18 @@ std::uint64_t new_source() {
 }  // namespace
 
 FastEncoder::FastEncoder(const EngineOptions& options, const Arithmetic& arithmetic)
-    : options_(options), arithmetic_(arithmetic) {
+    : options_(options),
+      arithmetic_(arithmetic),
+      runner_(options.parallel_for, options.skip_quiet) {
     history_.source = new_source();
 }
 
-void FastEncoder::make_room(int height, int width, int channels, std::size_t scratch) {
+void FastEncoder::make_room(int height, int width, int channels, std::size_t scratch,
+                            std::size_t tiles) {
     latent_ = {height, width, channels};
     latent_tiles_ = latent_tiles(height, width);
     history_.changed.resize(latent_tiles_.size());
-    scratch_.assign(kLanes, FloatBuffer(scratch));
+    runner_.make_room(scratch, std::max(tiles, latent_tiles_.size()));
 }
 
 std::string FastEncoder::description() const {
@@ -32,9 +36,8 @@ std::string FastEncoder::description() const {
 
 void FastEncoder::hand_out(LatentMap& latent) noexcept {
     const Outdated outdated{latent.history, history_};
-    for_each_tile(options_.parallel_for, int(latent_tiles_.size()), [&](int, int i) {
-        if (!outdated(std::size_t(i))) return;
-        const Tile& tile = latent_tiles_[std::size_t(i)];
+    runner_.over(latent_tiles_, [&](std::size_t i, const Tile& tile, float*) {
+        if (!outdated(i)) return;
         const std::size_t row = std::size_t(tile.width()) * std::size_t(latent_.channels());
         for (int y = tile.y0; y < tile.y1; ++y)
             std::memcpy(latent.values.pixel(y, tile.x0).data(), latent_.at(y, tile.x0),

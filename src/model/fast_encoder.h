@@ -6,7 +6,7 @@
 #include "src/nn/arithmetic.h"
 #include "src/nn/gru_tiles.h"
 #include "src/nn/padded_map.h"
-#include "src/nn/tiling.h"
+#include "src/nn/tile_runner.h"
 
 #include <vector>
 
@@ -21,8 +21,9 @@ public:
 protected:
     FastEncoder(const EngineOptions& options, const Arithmetic& arithmetic);
 
-    /// To be called once, with the size of the latent map and the scratch numbers a lane needs.
-    void make_room(int height, int width, int channels, std::size_t scratch);
+    /// To be called once, with the size of the latent map, the scratch numbers a lane needs, and
+    /// the most tiles any map has.
+    void make_room(int height, int width, int channels, std::size_t scratch, std::size_t tiles);
     /// Tile i of latent_ has new values in this step.
     void mark_changed(std::size_t i) noexcept { history_.changed[i] = history_.step; }
     /// Brings `latent` to what latent_ is.
@@ -33,9 +34,9 @@ protected:
     std::vector<PaddedMap> states_;  // h_l
     PaddedMap latent_;
     std::vector<Tile> latent_tiles_;
-    LatentHistory history_;             // of latent_; `step` is the one at work
-    std::vector<FloatBuffer> scratch_;  // per lane
-    bool stale_ = true;                 // what follows from the states is not that of the states
+    LatentHistory history_;  // of latent_; `step` is the one at work
+    TileRunner runner_;
+    bool stale_ = true;  // what follows from the states is not that of the states
 };
 
 /// Which tiles of a copy are out of date: those that changed since, or all.

@@ -53,14 +53,8 @@ FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
     make_room(
         height, width, model.config.latent,
         std::max({joined + convolving, full_gru_.scratch_size(),
-                  half_gru_.scratch_size() + down_.scratch_size(kHalfSide + 4, kHalfSide + 4)}));
-}
-
-template <typename Body>
-void FastThesisEncoder::over(const std::vector<Tile>& tiles, const Body& body) noexcept {
-    for_each_tile(options_.parallel_for, int(tiles.size()), [&](int lane, int i) {
-        body(std::size_t(i), tiles[std::size_t(i)], scratch_[std::size_t(lane)].data());
-    });
+                  half_gru_.scratch_size() + down_.scratch_size(kHalfSide + 4, kHalfSide + 4)}),
+        std::max(tiles_.size(), half_tiles_.size()));
 }
 
 void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
@@ -77,7 +71,7 @@ void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept 
     normalise(3, nullptr, y0_);
     convolve(head_[1], y0_);
     normalise(4, &y0_, y1_);
-    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
         head_[2].run({y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), latent_.at(tile.y0, tile.x0),
                       latent_.pitch(), latent_.channels(), tile.height(), tile.width()},
                      scratch);
@@ -98,7 +92,7 @@ ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,
 }
 
 void FastThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
-    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
         const Tile near = tile.grown(1, grid.height(), grid.width());
         const std::ptrdiff_t c = grid.channels(), row = (tile.width() + 2) * c;
         std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
@@ -113,7 +107,7 @@ void FastThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
 }
 
 void FastThesisEncoder::convolve(const PackedConv& conv, const PaddedMap& from) noexcept {
-    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
         conv.run(into_raw(tile, from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()), scratch);
         keep_sums(i);
     });
@@ -159,7 +153,7 @@ void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, Padde
                           weights.gamma[c] * weights.alpha[c] * (mean - grand) /
                               std::sqrt(spread + kEpsilon));
     }
-    over(tiles_, [&](std::size_t, const Tile& tile, float*) {
+    runner_.over(tiles_, [&](std::size_t, const Tile& tile, float*) {
         for (int y = tile.y0; y < tile.y1; ++y)
             vector_kernels().norm_elu(raw_.pixel(y, tile.x0).data(), scale_.data(), shift_.data(),
                                       skip != nullptr ? skip->at(y, tile.x0) : nullptr,
@@ -170,7 +164,7 @@ void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, Padde
 /// h0 <- gru.0(x0, h0)
 void FastThesisEncoder::step_full() noexcept {
     const auto bytes = std::size_t(channels_) * sizeof(float);
-    over(tiles_, [&](std::size_t i, const Tile&, float* scratch) {
+    runner_.over(tiles_, [&](std::size_t i, const Tile&, float* scratch) {
         full_gru_.step(states_[0], i, nullptr, scratch, [&](const GruTiles::Target& target) {
             const Tile& region = target.region;
             for (int y = region.y0; y < region.y1; ++y)
@@ -180,12 +174,13 @@ void FastThesisEncoder::step_full() noexcept {
                         x0_.at(y, x), bytes);
         });
     });
-    over(tiles_, [&](std::size_t i, const Tile&, float*) { full_gru_.commit(states_[0], i); });
+    runner_.over(tiles_,
+                 [&](std::size_t i, const Tile&, float*) { full_gru_.commit(states_[0], i); });
 }
 
 /// h1 <- gru.1(elu(down x2), h1)
 void FastThesisEncoder::step_half() noexcept {
-    over(half_tiles_, [&](std::size_t i, const Tile&, float* scratch) {
+    runner_.over(half_tiles_, [&](std::size_t i, const Tile&, float* scratch) {
         float* narrow = scratch + half_gru_.scratch_size();
         half_gru_.step(states_[1], i, nullptr, scratch, [&](const GruTiles::Target& target) {
             const Tile& region = target.region;
@@ -199,7 +194,8 @@ void FastThesisEncoder::step_half() noexcept {
                 }
         });
     });
-    over(half_tiles_, [&](std::size_t i, const Tile&, float*) { half_gru_.commit(states_[1], i); });
+    runner_.over(half_tiles_,
+                 [&](std::size_t i, const Tile&, float*) { half_gru_.commit(states_[1], i); });
 }
 
 /// raw_ = head.0 of [up2(h1); x2; x0]
@@ -207,7 +203,7 @@ void FastThesisEncoder::join_head() noexcept {
     const PaddedMap& below = states_[1];
     const std::ptrdiff_t c = channels_, step = 3 * c;
     const auto bytes = std::size_t(c) * sizeof(float);
-    over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
         const Tile near = tile.grown(1, raw_.height(), raw_.width());
         const std::ptrdiff_t row = (tile.width() + 2) * step;
         std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));

@@ -27,8 +27,6 @@ private:
     void step_full() noexcept;
     void step_half() noexcept;
     void join_head() noexcept;
-    template <typename Body>
-    void over(const std::vector<Tile>& tiles, const Body& body) noexcept;
     ConvCall into_raw(const Tile& tile, const float* in, std::ptrdiff_t pitch) noexcept;
 
     int channels_;

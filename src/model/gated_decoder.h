@@ -1,0 +1,69 @@
+// The gated encoder's way up: from the levels' states to latent codes, renewed where what they are
+// made of may have changed.
+#pragma once
+
+#include "src/model/gated_level.h"
+#include "src/nn/tile_runner.h"
+
+#include <vector>
+
+namespace eventide {
+
+class GatedDecoder {
+public:
+    /// `latent_tiles`: how the latent map is cut.
+    GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,
+                 const std::vector<Tile>& latent_tiles, const Arithmetic& arithmetic);
+
+    /// Numbers run() needs for each lane.
+    std::size_t scratch_size() const { return scratch_; }
+
+    /// Brings `latent` up to the states, where a level's mask says that one has changed, or
+    /// `everywhere`; changed(i) is called for each of the latent tiles written, on any thread.
+    template <typename Changed>
+    void run(const std::vector<GatedLevel>& levels, const std::vector<PaddedMap>& states,
+             bool everywhere, TileRunner& runner, PaddedMap& latent,
+             const Changed& changed) noexcept {
+        run_blocks(levels.back(), states.back(), everywhere, runner);
+        for (std::size_t l = levels.size() - 1; l-- > top_;)
+            join(levels[l], states[l], decoded(l + 1, states), l, runner);
+        Level& top = levels_[top_];
+        spread(top);
+        runner.over(latent_tiles_, top.touched, [&](std::size_t i, const Tile& tile, float* room) {
+            convolve(out_, decoded(top_, states), latent, tile, room);
+            changed(i);
+        });
+    }
+
+private:
+    struct Level {
+        Mask touched, room;  // where what d_l is made of has changed; to spread it with
+        PackedConv up;
+        PaddedMap d;  // d_l; of the deepest level that of the blocks counts
+    };
+    struct Block {
+        PackedConv first, second;
+        PaddedMap inner, out;
+    };
+
+    static void convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to,
+                         const Tile& tile, float* scratch) noexcept;
+    /// By a convolution's reach.
+    static void spread(Level& level) noexcept;
+    void run_blocks(const GatedLevel& deepest, const PaddedMap& h, bool everywhere,
+                    TileRunner& runner) noexcept;
+    void join(const GatedLevel& level, const PaddedMap& h, const PaddedMap& below, std::size_t l,
+              TileRunner& runner) noexcept;
+    static void join_tile(const PaddedMap& h, const PaddedMap& below, Level& level,
+                          const Tile& tile, float* scratch) noexcept;
+    const PaddedMap& decoded(std::size_t l, const std::vector<PaddedMap>& states) const;
+
+    std::size_t top_;  // the level that codes come from
+    std::vector<Level> levels_;
+    std::vector<Block> blocks_;
+    PackedConv out_;
+    std::vector<Tile> latent_tiles_;
+    std::size_t scratch_ = 0;
+};
+
+}  // namespace eventide

@@ -1,0 +1,114 @@
+// See gated_level.h; docs/model.md has the formulas.
+#include "src/model/gated_level.h"
+
+#include "src/kernels/vector_kernels.h"
+#include "src/nn/typed_weights.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide {
+namespace {
+
+/// Small enough that a tile's maps stay in a core's own cache, large enough that borders computed
+/// twice cost little. Deeper levels have more channels and smaller maps.
+constexpr int kSides[] = {32, 24, 16, 12};
+
+/// What a GRU's step reads of its input reaches 2 further than its tile.
+constexpr int kGruReach = 2;
+
+}  // namespace
+
+std::string encoder_layer(const char* part, std::size_t i) {
+    return "encoder." + std::string{part} + "." + std::to_string(i);
+}
+
+GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
+                       const Arithmetic& arithmetic)
+    : number_(number),
+      size_(size),
+      channels_(model.config.widths[number]),
+      inputs_(number == 0 ? model.config.input_channels() : model.config.widths[number - 1]),
+      side_(kSides[std::min(number, std::size(kSides) - 1)]),
+      tiles_(tiles_of(size.height, size.width, side_)),
+      recurrent_(model.config.recurrent[number] != 0),
+      mask_(size.height, size.width) {
+    in_ = {plain::conv_weights<float>(model.weights,
+                                      number == 0 ? "encoder.in" : encoder_layer("down", number)),
+           number == 0 ? 1 : 2, true, arithmetic,
+           extents_of(tiles_, recurrent_ ? kGruReach : 0, size.height, size.width)};
+    if (recurrent_)
+        gru_ = {plain::gru_weights<float>(model.weights, encoder_layer("gru", number)), size,
+                tiles_, side_, arithmetic};
+    else
+        for (const Tile& tile : tiles_)
+            held_.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
+                               std::size_t(channels_));
+}
+
+std::size_t GatedLevel::scratch_size() const {
+    const int side = side_ + (recurrent_ ? 2 * kGruReach : 0);
+    const std::size_t grid =
+        number_ == 0 ? std::size_t(side + 2) * std::size_t(side + 2) * std::size_t(inputs_) : 0;
+    return gru_.scratch_size() + grid + in_.scratch_size(side, side);
+}
+
+void GatedLevel::advance(const Array3<float>& grid, const std::vector<PaddedMap>& states,
+                         std::size_t i, float* scratch) noexcept {
+    if (recurrent_) {
+        float* rest = scratch + gru_.scratch_size();
+        gru_.step(states[number_], i, &mask_, scratch,
+                  [&](const Target& target) { feed(grid, states, target, rest); });
+        return;
+    }
+    const Tile& tile = tiles_[i];
+    feed(grid, states, {tile, held_[i].data(), std::ptrdiff_t(tile.width()) * channels_, channels_},
+         scratch);
+}
+
+void GatedLevel::commit(std::vector<PaddedMap>& states, std::size_t i) noexcept {
+    PaddedMap& h = states[number_];
+    if (recurrent_) {
+        gru_.commit(h, i);
+        return;
+    }
+    const Tile& tile = tiles_[i];
+    const auto c = std::size_t(channels_);
+    const float* next = held_[i].data();
+    for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x, next += c)
+            if (mask_(y, x) != 0) std::memcpy(h.at(y, x), next, c * sizeof(float));
+}
+
+/// a_l in a region.
+void GatedLevel::feed(const Array3<float>& grid, const std::vector<PaddedMap>& states,
+                      const Target& target, float* scratch) const noexcept {
+    if (number_ == 0) {
+        feed_grid(grid, target, scratch);
+        return;
+    }
+    const PaddedMap& above = states[number_ - 1];
+    const Tile& region = target.region;
+    in_.run({above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch(), target.out,
+             target.pitch, target.step, region.height(), region.width()},
+            scratch);
+}
+
+/// Of the compressed grid around the region, zeros outside the sensor.
+void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
+                           float* scratch) const noexcept {
+    const Tile& region = target.region;
+    const Tile wide{region.y0 - 1, region.x0 - 1, region.y1 + 1, region.x1 + 1};
+    const Tile inside = region.grown(1, grid.height(), grid.width());
+    const std::ptrdiff_t channels = grid.channels(), row = wide.width() * channels;
+    if (inside.height() < wide.height() || inside.width() < wide.width())
+        std::memset(scratch, 0, std::size_t(wide.height() * row) * sizeof(float));
+    for (int y = inside.y0; y < inside.y1; ++y)
+        vector_kernels().compress(grid.pixel(y, inside.x0).data(),
+                                  scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * channels,
+                                  std::size_t(inside.width()) * std::size_t(channels));
+    in_.run({scratch, row, target.out, target.pitch, target.step, region.height(), region.width()},
+            scratch + wide.height() * row);
+}
+
+}  // namespace eventide

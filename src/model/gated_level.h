@@ -1,0 +1,54 @@
+// One level of the gated encoder on the way down: what it takes in, and what it remembers of it.
+#pragma once
+
+#include "src/model/model_file.h"
+#include "src/nn/gru_tiles.h"
+#include "src/nn/packed_layers.h"
+#include "src/nn/padded_map.h"
+
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+/// "encoder.PART.I"
+std::string encoder_layer(const char* part, std::size_t i);
+
+/// A step reads neighbouring tiles' old state, so it has two halves: advance() of all tiles writes
+/// aside, commit() of all tiles brings it into the map.
+class GatedLevel {
+public:
+    GatedLevel(const Model& model, std::size_t number, Extent size, const Arithmetic& arithmetic);
+
+    const Extent& size() const { return size_; }
+    int side() const { return side_; }  ///< of its tiles, at most
+    const std::vector<Tile>& tiles() const { return tiles_; }
+    /// m_l, whose filling is the encoder's business.
+    Mask& mask() { return mask_; }
+    const Mask& mask() const { return mask_; }
+
+    /// Numbers advance() needs.
+    std::size_t scratch_size() const;
+    /// The next state of tile i, aside. `states`: those of all levels; the top one reads `grid`.
+    void advance(const Array3<float>& grid, const std::vector<PaddedMap>& states, std::size_t i,
+                 float* scratch) noexcept;
+    void commit(std::vector<PaddedMap>& states, std::size_t i) noexcept;
+
+private:
+    using Target = GruTiles::Target;
+    void feed(const Array3<float>& grid, const std::vector<PaddedMap>& states, const Target& target,
+              float* scratch) const noexcept;
+    void feed_grid(const Array3<float>& grid, const Target& target, float* scratch) const noexcept;
+
+    std::size_t number_;
+    Extent size_;
+    int channels_, inputs_, side_;
+    std::vector<Tile> tiles_;
+    PackedConv in_;  // from the grid, or from the level above
+    bool recurrent_;
+    GruTiles gru_;
+    std::vector<FloatBuffer> held_;  // next state of a level that is not recurrent, per tile
+    Mask mask_;
+};
+
+}  // namespace eventide
