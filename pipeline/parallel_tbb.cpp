@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -43,9 +44,12 @@ ParallelFor parallel_for_with(int threads) {
 #ifdef __SANITIZE_THREAD__
     return watched_threads(threads);
 #else
+    // As many as this process may use: for more, oneTBB writes a warning and gives no more.
+    const int usable = tbb::info::default_concurrency();
+    const int given = threads == 0 ? usable : std::min(threads, usable);
+    if (given == 1) return sequential_for;
     // An arena of our own: the number holds here and is not set for the whole process.
-    const auto arena =
-        std::make_shared<tbb::task_arena>(threads == 0 ? int(tbb::task_arena::automatic) : threads);
+    const auto arena = std::make_shared<tbb::task_arena>(given);
     return [arena](int n, const std::function<void(int)>& body) {
         if (n == 1)
             body(0);

@@ -6,8 +6,8 @@
 namespace eventide {
 
 /// At most `threads` threads at a time, the caller's included (1: no other thread is used; 0: as
-/// many as the machine has). May be called from several threads at once: they share the threads.
-/// Throws Error (usage) for a negative number.
+/// many as this process may use; more than those are not made). May be called from several threads
+/// at once: they share the threads. Throws Error (usage) for a negative number.
 ParallelFor parallel_for_with(int threads);
 
 }  // namespace eventide

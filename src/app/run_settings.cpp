@@ -193,7 +193,8 @@ void RunSettings::add_network(SettingTable& table) {
     add(choice_setting("engine", engine, "plain is the readable reference, fast the usual one.",
                        {"plain", "fast"}));
     add(whole_setting("threads", threads, "N",
-                      "Threads the network may use; 0: as many as the machine has.", 0, 1024));
+                      "Threads the network may use; 0: as many as this process may run on.", 0,
+                      1024));
     add(text_setting("state_in", state_in, "FILE",
                      "Go on from the network's state that an earlier run saved."));
     add(text_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
