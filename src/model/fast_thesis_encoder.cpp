@@ -2,6 +2,7 @@
 #include "src/model/fast_thesis_encoder.h"
 
 #include "src/kernels/vector_kernels.h"
+#include "src/nn/doubling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -208,12 +209,9 @@ void FastThesisEncoder::join_head() noexcept {
         const std::ptrdiff_t row = (tile.width() + 2) * step;
         std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
         for (int y = near.y0; y < near.y1; ++y) {
-            const int y0 = y / 2, y1 = std::min((y + 1) / 2, below.height() - 1);
             float* to = scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * step;
+            double_row(below, y, near.x0, near.x1, to, step);
             for (int x = near.x0; x < near.x1; ++x, to += step) {
-                const int x0 = x / 2, x1 = std::min((x + 1) / 2, below.width() - 1);
-                vector_kernels().average(below.at(y0, x0), below.at(y0, x1), below.at(y1, x0),
-                                         below.at(y1, x1), to, channels_);
                 std::memcpy(to + c, x2_.at(y, x), bytes);
                 std::memcpy(to + 2 * c, x0_.at(y, x), bytes);
             }

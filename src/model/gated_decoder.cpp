@@ -2,6 +2,7 @@
 #include "src/model/gated_decoder.h"
 
 #include "src/kernels/vector_kernels.h"
+#include "src/nn/doubling.h"
 #include "src/nn/typed_weights.h"
 
 #include <algorithm>
@@ -108,14 +109,10 @@ void GatedDecoder::join_tile(const PaddedMap& h, const PaddedMap& below, Level& 
     if (near.height() < tile.height() + 2 || near.width() < tile.width() + 2)
         std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
     for (int y = near.y0; y < near.y1; ++y) {
-        const int y0 = y / 2, y1 = std::min((y + 1) / 2, below.height() - 1);
         float* to = scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * step;
-        for (int x = near.x0; x < near.x1; ++x, to += step) {
-            const int x0 = x / 2, x1 = std::min((x + 1) / 2, below.width() - 1);
-            vector_kernels().average(below.at(y0, x0), below.at(y0, x1), below.at(y1, x0),
-                                     below.at(y1, x1), to, int(deeper));
+        double_row(below, y, near.x0, near.x1, to, step);
+        for (int x = near.x0; x < near.x1; ++x, to += step)
             std::memcpy(to + deeper, h.at(y, x), std::size_t(mine) * sizeof(float));
-        }
     }
     level.up.run({scratch, row, level.d.at(tile.y0, tile.x0), level.d.pitch(), mine, tile.height(),
                   tile.width()},
