@@ -1,7 +1,6 @@
 #include "src/train/checkpoint.h"
 
 #include "src/core/error.h"
-#include "src/nn/safetensors.h"
 
 #include <charconv>
 
@@ -82,11 +81,15 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
     write_safetensors(path, file);
 }
 
+bool is_checkpoint(const TensorFile& file) {
+    const auto format = file.metadata.find("format");
+    return format != file.metadata.end() && format->second == "eventide-checkpoint";
+}
+
 std::string checkpoint_options(const std::filesystem::path& path) {
     const TensorFile file = read_safetensors(path);
-    const auto format = file.metadata.find("format"), options = file.metadata.find("options");
-    if (format == file.metadata.end() || format->second != "eventide-checkpoint" ||
-        options == file.metadata.end())
+    const auto options = file.metadata.find("options");
+    if (!is_checkpoint(file) || options == file.metadata.end())
         throw Error(ErrorKind::input, path.string() + ": expected a checkpoint of training");
     return options->second;
 }

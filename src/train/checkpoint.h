@@ -1,6 +1,7 @@
 // A run in one file, so that it goes on as if it had never stopped.
 #pragma once
 
+#include "src/nn/safetensors.h"
 #include "src/train/batch.h"
 #include "src/train/optimiser.h"
 
@@ -21,6 +22,9 @@ struct Checkpoint {
 /// Writes whole or not at all. Throws Error(failed).
 void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint,
                      const Optimiser& optimiser);
+
+/// Whether a file says that it is one.
+bool is_checkpoint(const TensorFile& file);
 
 /// The options only: they decide what the rest looks like. Throws Error(input).
 std::string checkpoint_options(const std::filesystem::path& path);

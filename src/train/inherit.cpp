@@ -1,7 +1,7 @@
 #include "src/train/inherit.h"
 
 #include "src/core/error.h"
-#include "src/nn/safetensors.h"
+#include "src/train/checkpoint.h"
 
 namespace eventide {
 namespace {
@@ -22,14 +22,12 @@ void let_through(torch::Tensor& join) {
 
 std::vector<std::string> inherit(const std::filesystem::path& path, Parameters& parameters) {
     const TensorFile file = read_safetensors(path);
-    const auto format = file.metadata.find("format");
-    const bool checkpoint =
-        format != file.metadata.end() && format->second == "eventide-checkpoint";
+    const std::string prefix = is_checkpoint(file) ? "ema." : "";
     const torch::NoGradGuard none;
     std::vector<std::string> left;
     bool related = false;  // biases agree by chance: the renderer's last has two numbers always
     for (auto& [name, values] : parameters) {
-        const auto found = file.tensors.find((checkpoint ? "ema." : "") + name);
+        const auto found = file.tensors.find(prefix + name);
         if (found != file.tensors.end() && found->second.shape == values.sizes().vec()) {
             values.copy_(to_torch(found->second, values.device()));
             related |= name.ends_with(".weight");

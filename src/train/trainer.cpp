@@ -22,21 +22,22 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What no single option can say of itself. Throws Error(usage).
-void require_sound(const TrainOptions& options) {
+/// The options, once what no single one can say of itself holds. Throws Error(usage).
+const TrainOptions& sound(const TrainOptions& options) {
     if (options.clock != "wall" && options.clock != "cpu")
         throw Error(ErrorKind::usage,
                     "--clock: expected wall or cpu, found '" + options.clock + "'");
     require_blas_for_threads(options.threads);
     if (!options.initial.empty() && !options.resume.empty())
         throw Error(ErrorKind::usage, "--initial: expected no --resume, found both");
-    if (options.feedback == Feedback::none) return;
+    if (options.feedback == Feedback::none) return options;
     if (!options.export_file.empty())
         throw Error(ErrorKind::usage,
                     "--export: expected --feedback none, as eventide gives a network events alone");
     if (options.model.latent_stride != 1)
         throw Error(ErrorKind::usage, "--feedback: expected --latent-stride 1, found " +
                                           std::to_string(options.model.latent_stride));
+    return options;
 }
 
 Parameters first_parameters(const TrainOptions& options, torch::Device device, const Say& say) {
@@ -60,14 +61,13 @@ torch::Tensor mask_of_inputs(const TrainOptions& options, torch::Device device) 
 
 Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
                  std::shared_ptr<const TextureLibrary> validation_textures, const Say& say)
-    : options_(options),
+    : options_(sound(options)),
       log_(options.out, options.log_every, say),
       device_(device_of(options)),
       type_(arithmetic_type(options)),
       optimiser_(options.optimiser,
                  with_feedback(first_parameters(options, device_, say), options.feedback)),
       input_mask_(mask_of_inputs(options, device_)) {
-    require_sound(options);
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
     {

@@ -74,8 +74,18 @@ TEST(Training, WeightsOfAnotherNetworkAreRefused) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
         EXPECT_NE(std::string{error.what()}.find("other.safetensors"), std::string::npos);
     }
-    options.resume = options.initial;
-    EXPECT_THROW(trainer(options), Error);
+}
+
+TEST(Training, ARunBeginsOrGoesOnNotBoth) {
+    TrainOptions options = tiny_options(empty_folder("both"));
+    options.initial = options.resume = "no-such-file";
+    try {
+        trainer(options);
+        FAIL() << "expected an error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+        EXPECT_NE(std::string{error.what()}.find("--initial"), std::string::npos);
+    }
 }
 
 }  // namespace
