@@ -56,6 +56,8 @@ run threshold-low --threshold 0.1,0.4
 run gate12        --gate-radius 12
 run gate32        --gate-radius 32
 run spread4       --gate-spread 4
+run cheap         --widths 8,16,32,64 --recurrent 1,0,0,0
+run cheap5        --widths 8,16,32,64,64 --recurrent 1,0,0,0,0 --gate-radius 12
 run l1-only       --ssim 0 --lpips-weight 0
 run no-lpips      --lpips-weight 0
 run no-ssim       --ssim 0
@@ -74,6 +76,7 @@ experiment feedback   "base fed fed-change fed-physical" "9. The last picture fe
 experiment widths     "base equal narrow levels3 levels5" "10. Where the multiply-adds go, and field of view"
 experiment gate       "base gate12 gate32 spread4"   "How far around events the state may change (4 px in base; spread4: 4 px of the lowest resolution further there)"
 experiment states     "base full-only half-only quarter-only" "10b. Which levels remember"
+experiment combined   "base narrow full-only cheap levels5 cheap5" "The best of 10, 10b and the gate, together"
 
 # One line of scores from a file that eventide evaluate wrote: MSE, SSIM, LPIPS, PICP80 over everything.
 scores() { awk -F, 'END { printf "%.4f,%.3f,%.3f,%.3f", $3, $4, $5, $10 }' "$1"; }
@@ -91,8 +94,8 @@ train_and_score() {
   case ${options[$name]} in *--feedback*) ;; *) command+=(--export "$folder/model.safetensors") ;; esac
   "${command[@]}" > "$folder/output.txt"
   local held_out steps
-  # step, minutes, score, L1, 1-SSIM, LPIPS, NLL, temporal, MSE, PICP80
-  held_out=$(awk -F, 'END { printf "%.4f,%.3f,%.3f,%.3f", $9, $5, $6, $10 }' "$folder/validation.csv")
+  # step, minutes, score, L1, 1-SSIM, LPIPS (0: a loss without it does not measure it), NLL, temporal, MSE, PICP80
+  held_out=$(awk -F, 'END { printf "%.4f,%.3f,%s,%.3f", $9, $5, $6 == 0 ? "-" : sprintf("%.3f", $6), $10 }' "$folder/validation.csv")
   steps=$(awk -F, 'END { print $1 }' "$folder/validation.csv")
   local row="$name,${options[$name]//,/;},$steps,$held_out"
   if [ ! -e "$folder/model.safetensors" ]; then

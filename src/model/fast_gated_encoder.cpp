@@ -17,11 +17,6 @@ std::vector<GatedLevel> levels_of(const Model& model, int height, int width,
     return levels;
 }
 
-std::vector<Tile> tiles_of_codes(const ModelConfig& config, const std::vector<GatedLevel>& levels) {
-    const Extent size = levels[std::size_t(config.latent_stride - 1)].size();
-    return latent_tiles(size.height, size.width);
-}
-
 }  // namespace
 
 FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
@@ -29,7 +24,7 @@ FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
     : FastEncoder(options, arithmetic),
       config_(model.config),
       levels_(levels_of(model, height, width, arithmetic)),
-      decoder_(model, levels_, tiles_of_codes(config_, levels_), arithmetic),
+      decoder_(model, levels_, arithmetic),
       top_room_(levels_.front().mask()),
       deepest_room_(levels_.back().mask()) {
     std::size_t scratch = decoder_.scratch_size(), tiles = 0;
@@ -39,8 +34,8 @@ FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
         scratch = std::max(scratch, levels_[l].scratch_size());
         tiles = std::max(tiles, levels_[l].tiles().size());
     }
-    const Extent codes = levels_[std::size_t(config_.latent_stride - 1)].size();
-    make_room(codes.height, codes.width, config_.latent, scratch, tiles);
+    const auto [rows, columns] = decoder_.latent_size();
+    make_room(rows, columns, config_.latent, scratch, tiles);
 }
 
 void FastGatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {

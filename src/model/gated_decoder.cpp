@@ -11,8 +11,10 @@
 namespace eventide {
 
 GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,
-                           const std::vector<Tile>& latent_tiles, const Arithmetic& arithmetic)
-    : top_(std::size_t(model.config.latent_stride - 1)), latent_tiles_(latent_tiles) {
+                           const Arithmetic& arithmetic)
+    : top_(std::size_t(model.config.latent_stride - 1)),
+      latent_size_(levels[top_].size()),
+      latent_tiles_(latent_tiles(latent_size_.height, latent_size_.width)) {
     const auto conv = [&](const std::string& name, bool relu, const std::vector<Tile>& tiles,
                           Extent size) {
         return PackedConv{plain::conv_weights<float>(model.weights, name), 1, relu, arithmetic,
@@ -42,7 +44,7 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
         need(0, block.first, deepest.side());
         need(0, block.second, deepest.side());
     }
-    out_ = conv("encoder.out", false, latent_tiles, levels[top_].size());
+    out_ = conv("encoder.out", false, latent_tiles_, latent_size_);
     need(0, out_, kLatentSide);
 }
 

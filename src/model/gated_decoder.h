@@ -11,9 +11,11 @@ namespace eventide {
 
 class GatedDecoder {
 public:
-    /// `latent_tiles`: how the latent map is cut.
     GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,
-                 const std::vector<Tile>& latent_tiles, const Arithmetic& arithmetic);
+                 const Arithmetic& arithmetic);
+
+    /// Of the map of codes that run() writes.
+    Extent latent_size() const { return latent_size_; }
 
     /// Numbers run() needs for each lane.
     std::size_t scratch_size() const { return scratch_; }
@@ -62,6 +64,7 @@ private:
     std::vector<Level> levels_;
     std::vector<Block> blocks_;
     PackedConv out_;
+    Extent latent_size_;
     std::vector<Tile> latent_tiles_;
     std::size_t scratch_ = 0;
 };
