@@ -5,8 +5,10 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <random>
+#include <thread>
 
 namespace eventide::test {
 
@@ -85,6 +87,18 @@ Holdings holdings() {
                                          std::filesystem::directory_iterator{}));
     };
     return {count("/proc/self/fd"), count("/proc/self/task"), mallinfo2().uordblks};
+}
+
+Holdings holdings_down_to(const Holdings& wanted) {
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::seconds{10};
+    Holdings held = holdings();
+    while ((held.files > wanted.files || held.threads > wanted.threads) &&
+           Clock::now() < deadline) {
+        std::this_thread::yield();
+        held = holdings();
+    }
+    return held;
 }
 
 }  // namespace eventide::test

@@ -82,8 +82,9 @@ TEST(DavisUnplugged, AtAnyMomentItEndsWithTheRightWordsAndLeaksNothing) {
         if (!first) first = holdings();
     }
     EXPECT_GT(ended_well, 1) << "the sweep never reached the stop";
-    EXPECT_EQ(holdings().files, first->files);
-    EXPECT_EQ(holdings().threads, first->threads);
+    const Holdings last = holdings_down_to(*first);
+    EXPECT_LE(last.files, first->files);
+    EXPECT_LE(last.threads, first->threads);
 }
 
 TEST(DavisUnplugged, AtAnyMomentAfterOpeningItComesBackWhenToldToWait) {
@@ -125,13 +126,10 @@ TEST(DavisUnplugged, AHundredTimesItComesBackMarksTheGapAndLeaksNothing) {
         while (camera->read(packet) != ReadStatus::timeout) continue;
         if (time == kSettled) early = holdings();
     }
-    const Holdings late = holdings();
+    const Holdings late = holdings_down_to(*early);
     EXPECT_EQ(camera->counters().reconnects, unsigned(kTimes - 1));
-    // The test bus closes some of its own a little later; one of ours in each cycle would be
-    // ninety.
-    constexpr std::size_t kFewOfTheBus = 10;
-    EXPECT_LT(late.files, early->files + kFewOfTheBus);
-    EXPECT_EQ(late.threads, early->threads);
+    EXPECT_LE(late.files, early->files);
+    EXPECT_LE(late.threads, early->threads);
     // A leak of one transfer's buffer in each cycle would be 6 MB.
     EXPECT_LT(double(late.bytes) - double(early->bytes), 1e6);
 }
