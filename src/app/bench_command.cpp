@@ -12,6 +12,7 @@
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
 #include "src/evaluate/plot.h"
+#include "src/kernels/vector_kernels.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -178,7 +179,8 @@ std::string BenchCommand::examples() const {
            "Examples:\n"
            "  eventide bench\n"
            "  eventide bench --sizes 240x180 --models default --models small --precisions f32 "
-           "--precisions bf16";
+           "--precisions bf16\n"
+           "  eventide bench --instructions avx2";
 }
 
 SettingTable BenchCommand::settings() {
@@ -189,6 +191,10 @@ SettingTable BenchCommand::settings() {
     add(list_setting("models", models_, "NAME|FILE", "Models, any number of times."));
     add(list_setting("precisions", precisions_, "P", "auto, f32 or bf16, any number of times."));
     add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
+    add(choice_setting("instructions", instructions_,
+                       "What the kernels may use: best (all the processor has), or no more than "
+                       "an older one.",
+                       {"best", "avx2", "sse4"}));
     add(number_setting("seconds", seconds_, "S", "Length of each recording.", 0.2, 3600));
     add(number_setting("scale", scale_, "S", "Pictures are so many times the sensor's size.", 0.1,
                        16));
@@ -226,6 +232,8 @@ BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& dat
 }
 
 int BenchCommand::run(Program& program) {
+    if (instructions_ == Instructions::avx2) limit_kernels_to_avx2();
+    if (instructions_ == Instructions::sse4) limit_kernels_to_sse4();
     std::printf("%s; eventide %s, %s; threads %s; scene %s, %g s, lookahead %d (latency: 0)\n",
                 processor_text().c_str(), version().c_str(), compiler_text().c_str(),
                 threads_ == 0 ? "all" : std::to_string(threads_).c_str(), scene_.c_str(), seconds_,

@@ -24,6 +24,9 @@ struct BenchRow {
     double mse = 0;                                 ///< against the truth at the pictures' times
 };
 
+/// What the kernels may use: all that the processor has, or no more than an older one.
+enum class Instructions { best, avx2, sse4 };
+
 class BenchCommand : public Command {
 public:
     std::string name() const override { return "bench"; }
@@ -44,6 +47,7 @@ private:
     double seconds_ = 2, scale_ = 1;
     int threads_ = 0, lookahead_ = 2;
     Engine engine_ = Engine::fast;
+    Instructions instructions_ = Instructions::best;
     std::string json_, plots_;
 };
 

@@ -124,6 +124,19 @@ TEST_F(Commands, BenchPrintsTheMachineAndARowForEachSize) {
     EXPECT_GT(json["rows"][0]["times_real_time"].get<double>(), 0);
 }
 
+TEST_F(Commands, BenchMeasuresAsOnAnOlderProcessor) {
+    const auto engine_with = [&](const std::string& instructions) {
+        const Result result =
+            eventide({"bench", "--seconds", "0.2", "--sizes", "32x24", "--precisions", "f32",
+                      "--instructions", instructions, "--json", "bench.json"});
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return Json::parse(read_text(temp_ / "bench.json"))["rows"][0]["engine"];
+    };
+    EXPECT_EQ(engine_with("sse4"), "fast, SSE4");
+    EXPECT_NE(engine_with("best"), "fast, SSE4") << "expected a processor with AVX2 or NEON";
+    EXPECT_EQ(eventide({"bench", "--instructions", "mmx"}).exit_code, 2);
+}
+
 TEST_F(Commands, DevicesListsWhatThereIs) {
     const Result result = eventide({"devices", "--json"});
     EXPECT_EQ(result.exit_code, 0) << result.error;
