@@ -12,7 +12,6 @@
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
 #include "src/evaluate/plot.h"
-#include "src/kernels/vector_kernels.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -232,8 +231,7 @@ BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& dat
 }
 
 int BenchCommand::run(Program& program) {
-    if (instructions_ == Instructions::avx2) limit_kernels_to_avx2();
-    if (instructions_ == Instructions::sse4) limit_kernels_to_sse4();
+    limit_instructions(instructions_);
     std::printf("%s; eventide %s, %s; threads %s; scene %s, %g s, lookahead %d (latency: 0)\n",
                 processor_text().c_str(), version().c_str(), compiler_text().c_str(),
                 threads_ == 0 ? "all" : std::to_string(threads_).c_str(), scene_.c_str(), seconds_,

@@ -5,6 +5,7 @@
 #include "src/app/memory_recording.h"
 #include "src/app/run_settings.h"
 #include "src/app/values.h"
+#include "src/model/instructions.h"
 
 #include <memory>
 #include <string>
@@ -23,9 +24,6 @@ struct BenchRow {
     double latency_p50_ms = 0, latency_p99_ms = 0;  ///< at the pace of the camera
     double mse = 0;                                 ///< against the truth at the pictures' times
 };
-
-/// What the kernels may use: all that the processor has, or no more than an older one.
-enum class Instructions { best, avx2, sse4 };
 
 class BenchCommand : public Command {
 public:

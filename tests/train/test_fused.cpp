@@ -103,7 +103,7 @@ TEST_P(Fused, FirstLayerWithItsOffsets) {
 
 INSTANTIATE_TEST_SUITE_P(Types, Fused,
                          testing::Values(torch::kDouble, torch::kFloat, torch::kBFloat16),
-                         [](const auto& info) { return std::string(toString(info.param)); });
+                         [](const auto& type) { return std::string(toString(type.param)); });
 
 }  // namespace
 }  // namespace eventide
