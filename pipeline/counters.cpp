@@ -20,6 +20,7 @@ Snapshot Counters::snapshot() const {
     s.lost_packets = read.lost_packets.value();
     s.lost_bytes = read.lost_bytes.value();
 
+    s.parsed_bytes = bin.bytes.value();
     s.gaps = bin.gaps.value();
     s.events = bin.events.value();
     s.images = bin.images.value();
@@ -36,6 +37,8 @@ Snapshot Counters::snapshot() const {
     s.slicing.time_resets = bin.time_resets.value();
     s.event_frames = bin.event_frames.value();
     s.silent_frames = bin.silent_frames.value();
+    s.merged_windows = bin.merged_windows.value();
+    s.begin = from_us(std::int64_t(bin.begin_us.value()));
     s.window = {from_us(std::int64_t(bin.window_begin_us.value())),
                 from_us(std::int64_t(bin.window_end_us.value()))};
     s.bin = bin.work.summary();
@@ -46,6 +49,7 @@ Snapshot Counters::snapshot() const {
 
     s.frames = present.frames.value();
     s.skipped_frames = present.skipped_frames.value();
+    s.broken_frames = present.broken_frames.value();
     s.newest_frame = from_us(std::int64_t(present.newest_us.value()));
     s.latency = present.latency.summary();
     s.render = present.render.summary();

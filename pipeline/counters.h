@@ -31,13 +31,16 @@ struct Snapshot {
     std::uint64_t lost_packets = 0, lost_bytes = 0;  ///< of those: every buffer was in use
 
     // parse, slice, bin
+    std::uint64_t parsed_bytes = 0;
     std::uint64_t gaps = 0;  ///< places where bytes are missing, here or already at the source
     std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;  ///< parsed
     std::uint64_t filtered_events = 0;                            ///< skipped by the event filter
     Damage damaged;
     SlicerCounters slicing;
     std::uint64_t event_frames = 0, silent_frames = 0;  ///< silent: of those, without events
-    Window window{};                                    ///< the newest event frame
+    std::uint64_t merged_windows = 0;  ///< became one with the one before, to keep --latency
+    SensorTime begin{};                ///< of the first event frame; valid where event_frames > 0
+    Window window{};                   ///< the newest event frame
 
     // encode
     std::uint64_t encoded = 0;  ///< event frames
@@ -46,6 +49,7 @@ struct Snapshot {
     // render, write
     std::uint64_t frames = 0;          ///< written
     std::uint64_t skipped_frames = 0;  ///< a live source, and rendering could not keep up
+    std::uint64_t broken_frames = 0;   ///< not finite, not written; the run ends with the first
     SensorTime newest_frame{};         ///< t of the last one written; valid where frames > 0
 
     LatencySummary latency;        ///< from the last packet a frame saw to the frame written
@@ -61,10 +65,11 @@ struct Counters {
         Counter packets, bytes, lost_packets, lost_bytes;
     } read;
     struct alignas(64) {
-        Counter gaps, events, images, imu, triggers, filtered_events;
+        Counter bytes, gaps, events, images, imu, triggers, filtered_events;
         std::array<Counter, kDamageReasons> damaged;
         Counter before_begin, after_end, too_many, late, late_references, time_resets;
-        Counter event_frames, silent_frames, window_begin_us, window_end_us;
+        Counter event_frames, silent_frames, merged_windows, begin_us, window_begin_us,
+            window_end_us;
         LatencyHistogram work;
     } bin;
     struct alignas(64) {
@@ -72,7 +77,7 @@ struct Counters {
         LatencyHistogram work;
     } encode;
     struct alignas(64) {
-        Counter frames, skipped_frames, newest_us;
+        Counter frames, skipped_frames, broken_frames, newest_us;
         LatencyHistogram latency, render, write;
     } present;
 

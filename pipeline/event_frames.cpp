@@ -20,14 +20,15 @@ void EventFrames::take(const RawPacket& packet) {
         return;
     }
     last_data_ = packet.arrived;
+    counters_.bin.bytes.add(packet.bytes.size());
     parser_->parse(packet.bytes, batch_);
     pass_on(packet.arrived);
     if (live_) advance_clock(packet.arrived);
     counters_.note(parser_->damaged(), slicer_.counters());
 }
 
-void EventFrames::finish() {
-    parser_->finish(batch_);
+void EventFrames::finish(End end) {
+    if (end == End::of_source && !is_past_end()) parser_->finish(batch_);
     pass_on(last_data_.value_or(HostTime{}));
     // A stream without any event has no frames, even though its clock ran.
     if (const auto clock = parser_->clock(); clock && slicer_.has_begun())

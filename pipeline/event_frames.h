@@ -25,7 +25,7 @@ public:
         /// what is still on its way from the camera is not late. Cameras hold back few events for
         /// some milliseconds.
         SensorDuration silence_margin{30'000};
-                                    ///< a record
+        ///< a record
     };
 
     /// filter and observer may be null; both are borrowed.
@@ -33,7 +33,9 @@ public:
                 DataObserver* observer, Counters& counters);
 
     void take(const RawPacket& packet);
-    void finish();  ///< after the last packet
+    /// After the last packet. Where the end was asked for, half a record in hand is no damage.
+    enum class End { of_source, asked_for };
+    void finish(End end);
     bool next(Slice& slice) { return slicer_.next(slice); }
     bool is_past_end() const { return slicer_.is_past_end(); }
 

@@ -4,8 +4,13 @@
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <numeric>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -55,6 +60,28 @@ FrameRate parse_frame_rate(std::string_view text) {
         refuse(text);
     const std::int64_t common = std::gcd(rate.frames, rate.seconds);
     return {rate.frames / common, rate.seconds / common};
+}
+
+FrameRate slowed(const FrameRate& rate, double slow) {
+    const Wide frames = Wide{rate.frames} * std::llround(slow * 1000),
+               seconds = Wide{rate.seconds} * 1000;
+    if (!rate.is_set()) return rate;
+    const auto greatest_common = [](Wide a, Wide b) {
+        while (b != 0) a = std::exchange(b, a % b);
+        return a;
+    };
+    const Wide common = greatest_common(frames, seconds);
+    if (frames > seconds * kMostPerSecond || frames / common > INT64_MAX ||
+        seconds / common > INT64_MAX) {
+        std::array<char, 64> found{};
+        std::snprintf(found.data(), found.size(), "%.6g x %.6g",
+                      double(rate.frames) / double(rate.seconds), slow);
+        throw Error(ErrorKind::usage,
+                    "--fps with --slow: expected at most 1000000 frames per "
+                    "second of sensor time, found " +
+                        std::string{found.data()});
+    }
+    return {std::int64_t(frames / common), std::int64_t(seconds / common)};
 }
 
 SensorTime FrameClock::time_of(std::uint64_t index) const {

@@ -23,6 +23,10 @@ struct FrameRate {
 /// (usage).
 FrameRate parse_frame_rate(std::string_view text);
 
+/// The rate in sensor time of a video that is `slow` times (0.001 to 1e5, exact to thousandths) as
+/// long as what it shows and has `rate` in its own. Throws Error (usage) for more than 1e6.
+FrameRate slowed(const FrameRate& rate, double slow);
+
 /// t0 + k / fps, rounded to the nearest microsecond: each from k itself, so nothing accumulates.
 class FrameClock {
 public:
@@ -57,6 +61,7 @@ public:
 
     /// Of the open event frame: how many are still due, and the next of them.
     std::uint64_t due() const { return end_ - next_; }
+    std::uint64_t next_index() const { return next_; }
     DueFrame next();
 
     /// Leaves out what is due.

@@ -1,6 +1,8 @@
 // The line: four functions, each one thread.
 #include "pipeline/pipeline.h"
 
+#include "pipeline/encoder_gate.h"
+#include "src/binning/grid_sums.h"
 #include "src/core/error.h"
 
 #include <pthread.h>
@@ -26,20 +28,11 @@ Presenter::Settings presenter_settings(const PipelineParts& parts,
     s.from = settings.frames_from;
     s.lookahead = settings.lookahead;
     s.live = parts.source.is_live();
+    s.allow_silence = settings.allow_silence;
     // One buffer is being rendered and one being filled; were all the others waiting, the encoder
     // would wait, too, and in the end the camera lose events.
     s.waits_at_most = settings.buffers.latents > 2 ? settings.buffers.latents - 2 : 1;
     return s;
-}
-
-void sum_polarities(const VoxelGrid& grid, Array2<float>& picture) {
-    const std::size_t channels = std::size_t(grid.values.channels());
-    const float* pixel = grid.values.values().data();
-    for (float& sum : picture.values()) {
-        sum = 0;
-        for (std::size_t c = 0; c + 1 < channels; c += 4) sum += pixel[c];
-        pixel += channels;
-    }
 }
 
 }  // namespace
@@ -47,6 +40,7 @@ void sum_polarities(const VoxelGrid& grid, Array2<float>& picture) {
 Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
     : parts_(parts),
       settings_(settings),
+      keeper_(parts.source.is_live() ? settings.latency : std::nullopt),
       event_frames_(parts.source, settings.event_frames, parts.filter, parts.observer, counters_),
       binner_(settings.bins, parts.source.info().height, parts.source.info().width),
       packet_pool_(at_least_one(settings.buffers.packets, "packets"), [] { return RawPacket{}; }),
@@ -59,18 +53,17 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
       latents_(settings.buffers.latents),
       presenter_(
           parts.renderer, parts.sinks, presenter_settings(parts, settings),
-          [this] { return latents_.waiting(); }, stop_, counters_) {}
+          [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {}
 
 // ---- the line --------------------------------------------------------------------------------
 
 void Pipeline::read() {  // bytes
     bool gap = false;
-    const bool live = parts_.source.is_live();
     guarded([&] {
         for (;;) {
-            auto packet = live ? packet_pool_.try_acquire() : packet_pool_.acquire();
+            auto packet = packet_to_fill();
             if (!read_one(packet ? *packet : spill_)) break;
-            if (!packet && (packet = packet_pool_.try_acquire())) std::swap(*packet, spill_);
+            if (!packet && (packet = packet_to_fill())) std::swap(*packet, spill_);
             if (!packet) {  // the one place where data are lost
                 counters_.read.lost_packets.add(spill_.bytes.empty() ? 0 : 1);
                 counters_.read.lost_bytes.add(spill_.bytes.size());
@@ -85,19 +78,26 @@ void Pipeline::read() {  // bytes
 }
 
 void Pipeline::bin() {  // bytes -> events -> grids
-    const auto hand_on = [this](const Slice& slice) {
-        auto grid = grid_pool_.acquire();
-        bin_one(slice, *grid);
-        grids_.push(std::move(grid));
-    };
+    EncoderGate gate{
+        keeper_,
+        {grid_pool_.size(), settings_.event_frames.slicer.max_events, settings_.reset_on_gap},
+        [this] { return grid_pool_.lent(); },
+        [this](const Slice& slice) { hand_on(slice); }};
+    const auto take = [&](const Slice& slice) { gate.take(slice); };
     const bool complete = for_each(packets_, [&](const RawPacket& packet) {
+        const HostTime begun = Clock::now();
         event_frames_.take(packet);
-        for_each_slice(hand_on);
+        for_each_slice(take);
+        gate.look_again();
+        counters_.bin.merged_windows.set(gate.merged());
+        if (!packet.bytes.empty()) keeper_.packet_took(Clock::now() - begun);
     });
     if (complete)
         guarded([&] {
-            event_frames_.finish();
-            for_each_slice(hand_on);
+            event_frames_.finish(ending());
+            for_each_slice(take);
+            gate.flush();
+            counters_.bin.merged_windows.set(gate.merged());
         });
     grids_.close();
 }
@@ -133,16 +133,36 @@ bool Pipeline::read_one(RawPacket& into) {
     return true;
 }
 
+/// A recording waits for a buffer; empty where a live source must not.
+Pool<RawPacket>::Handle Pipeline::packet_to_fill() {
+    if (!parts_.source.is_live()) return packet_pool_.acquire();
+    return keeper_.takes_packet(packets_.waiting()) ? packet_pool_.try_acquire()
+                                                    : Pool<RawPacket>::Handle{};
+}
+
+void Pipeline::hand_on(const Slice& slice) {
+    auto grid = grid_pool_.acquire();
+    bin_one(slice, *grid);
+    grids_.push(std::move(grid));
+}
+
 template <typename Body>
 void Pipeline::for_each_slice(Body body) {
     for (Slice slice; event_frames_.next(slice) && !stop_.is_overdue();) body(slice);
     if (event_frames_.is_past_end()) parts_.source.stop();
 }
 
+EventFrames::End Pipeline::ending() const {
+    return stop_.is_set() ? EventFrames::End::asked_for : EventFrames::End::of_source;
+}
+
 void Pipeline::bin_one(const Slice& slice, VoxelGrid& grid) {
     const HostTime begun = Clock::now();
     if (slice.reset_before || (slice.gap_before && settings_.reset_on_gap)) binner_.reset();
     binner_.process(slice, grid);
+    grid.images = counters_.bin.images.value();
+    if (counters_.bin.event_frames.value() == 0)
+        counters_.bin.begin_us.set(std::uint64_t(to_us(slice.window.begin)));
     counters_.bin.event_frames.add();
     counters_.bin.silent_frames.add(slice.events.empty() ? 1 : 0);
     counters_.bin.window_begin_us.set(std::uint64_t(to_us(slice.window.begin)));
@@ -163,9 +183,13 @@ void Pipeline::encode_one(const VoxelGrid& grid, Encoded& encoded) {
     latent.arrived = grid.arrived;
     latent.gap_before = grid.gap_before;
     latent.reset_before = grid.reset_before;
+    latent.images = grid.images;
+    if (settings_.events_per_pixel) count_events(grid, latent.events_per_pixel);
     if (settings_.event_preview) sum_polarities(grid, encoded.event_preview);
     counters_.encode.encoded.add();
-    counters_.encode.work.record(Clock::now() - begun);
+    const HostTime::duration work = Clock::now() - begun;
+    counters_.encode.work.record(work);
+    keeper_.window_took(work);
 }
 
 void Pipeline::present_one(const Encoded& encoded) {
@@ -177,6 +201,8 @@ Encoded Pipeline::make_encoded() const {
     encoded.latent = parts_.encoder.make_output();
     const SensorInfo& info = parts_.source.info();
     if (settings_.event_preview) encoded.event_preview = Array2<float>(info.height, info.width);
+    if (settings_.events_per_pixel)
+        encoded.latent.events_per_pixel = Array2<float>(info.height, info.width);
     return encoded;
 }
 
@@ -215,7 +241,7 @@ void Pipeline::run_sequential() {
     });
     if (complete)
         guarded([&] {
-            event_frames_.finish();
+            event_frames_.finish(ending());
             for_each_slice(hand_on);
         });
     if (presenting) guarded([&] { presenter_.finish(); });

@@ -5,6 +5,7 @@
 #include "pipeline/event_frames.h"
 #include "pipeline/first_error.h"
 #include "pipeline/frame_clock.h"
+#include "pipeline/latency_keeper.h"
 #include "pipeline/link.h"
 #include "pipeline/pool.h"
 #include "pipeline/presenter.h"
@@ -33,8 +34,13 @@ struct PipelineSettings {
     FrameRate rate;
     std::optional<SensorTime> frames_from;  ///< earlier event frames only warm up the state
     int lookahead = 0;                      ///< 0, 1 or 2: event frames a picture waits for
-    bool reset_on_gap = false;              ///< begin with a new state where bytes were lost
-    bool event_preview = false;             ///< fill Frame::event_preview
+    /// Of a live source: what is left out so that frames are no later than this; empty: nothing,
+    /// and latency is what the buffers hold. A recording waits in any case.
+    std::optional<HostTime::duration> latency;
+    bool reset_on_gap = false;      ///< begin with a new state where bytes were lost
+    bool allow_silence = false;     ///< any number of frames in a row without events
+    bool event_preview = false;     ///< fill Frame::event_preview
+    bool events_per_pixel = false;  ///< fill LatentMap::events_per_pixel
     PipelineBuffers buffers;
 };
 
@@ -78,11 +84,14 @@ private:
 
     // One step of each, for both kinds of run.
     bool read_one(RawPacket& into);
+    Pool<RawPacket>::Handle packet_to_fill();
+    void hand_on(const Slice& slice);
     void bin_one(const Slice& slice, VoxelGrid& grid);
     void encode_one(const VoxelGrid& grid, Encoded& encoded);
     void present_one(const Encoded& encoded);
     template <typename Body>
     void for_each_slice(Body body);
+    EventFrames::End ending() const;
     Encoded make_encoded() const;
 
     template <typename Handle>
@@ -98,6 +107,7 @@ private:
     Counters counters_;
     StopRequest stop_;
     FirstError error_;
+    LatencyKeeper keeper_;      // any thread
     RawPacket spill_;           // read thread
     EventFrames event_frames_;  // bin thread
     Binner binner_;             // bin thread

@@ -49,6 +49,9 @@ public:
 
     std::size_t size() const { return buffers_.size(); }
 
+    /// About how many are lent out; no fewer, to the thread that acquires.
+    std::size_t lent() const { return buffers_.size() - available_.availableApprox(); }
+
 private:
     Handle take() {
         T* buffer = nullptr;

@@ -3,7 +3,10 @@
 
 #include "src/core/error.h"
 
+#include <chrono>
+#include <cstdio>
 #include <exception>
+#include <ratio>
 #include <string>
 #include <utility>
 
@@ -13,13 +16,14 @@ using Clock = std::chrono::steady_clock;
 
 Presenter::Presenter(RenderStage& renderer, std::vector<Sink*> sinks, const Settings& settings,
                      std::function<std::size_t()> waiting, const StopRequest& stop,
-                     Counters& counters)
+                     Counters& counters, LatencyKeeper& keeper)
     : renderer_(renderer),
       sinks_(std::move(sinks)),
       settings_(settings),
       waiting_(std::move(waiting)),
       stop_(stop),
       counters_(counters),
+      keeper_(keeper),
       schedule_(settings.rate, settings.from),
       shedder_(settings.waits_at_most),
       frame_(renderer.make_output()) {
@@ -57,7 +61,8 @@ void Presenter::present_oldest() {
     oldest_ = (oldest_ + 1) % held_.size();
     --held_count_;
     schedule_.open(held.window);
-    if (settings_.live) shedder_.open(schedule_.due(), Clock::now());
+    check_silence(held);
+    if (settings_.live) open_shedder();
     while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
         const DueFrame due = schedule_.next();
         if (!settings_.live) {
@@ -65,11 +70,38 @@ void Presenter::present_oldest() {
         } else if (shedder_.keeps_next(waiting_())) {
             const HostTime begun = Clock::now();
             present(due, held);
-            shedder_.took(Clock::now() - begun);
+            const HostTime::duration work = Clock::now() - begun;
+            shedder_.took(work);
+            keeper_.frame_took(work);
         } else {
             counters_.present.skipped_frames.add();
         }
     }
+}
+
+void Presenter::open_shedder() {
+    const HostTime now = Clock::now();
+    shedder_.open({schedule_.next_index(), schedule_.due(), keeper_.halvings(),
+                   keeper_.frames_in_time(now - arrived_)},
+                  now);
+}
+
+/// Before any of the window's frames: a long silence comes as one wide window.
+void Presenter::check_silence(const Waiting& held) {
+    silent_ = held.events > 0 ? 0 : silent_ + schedule_.due();
+    if (silent_ <= kMostSilentFrames || settings_.live || settings_.allow_silence) return;
+    const double hours =
+        std::chrono::duration<double, std::ratio<3600>>(held.window.end - held.window.begin)
+            .count();
+    char length[32];
+    std::snprintf(length, sizeof length, "%.1f", hours);
+    throw Error(ErrorKind::input,
+                "no events from " + std::to_string(to_us(held.window.begin)) + " to " +
+                    std::to_string(to_us(held.window.end)) + " us (" + length +
+                    " hours): expected at most " + std::to_string(kMostSilentFrames) +
+                    " frames in a row without events, found " + std::to_string(silent_) +
+                    "; choose a part with --from and --to, fewer frames with --fps, or "
+                    "--allow-silence");
 }
 
 void Presenter::present(const DueFrame& due, Waiting& from) {
@@ -82,6 +114,7 @@ void Presenter::present(const DueFrame& due, Waiting& from) {
     frame_.gap_before = from.gap_before;
     frame_.arrived = arrived_;
     std::swap(frame_.event_preview, from.event_preview);
+    check_finite();
     const HostTime rendered = Clock::now();
     for (Sink* sink : sinks_) {
         sink->write(frame_);
@@ -94,6 +127,16 @@ void Presenter::present(const DueFrame& due, Waiting& from) {
     counters_.present.render.record(rendered - begun);
     counters_.present.write.record(written - rendered);
     counters_.present.latency.record(written - arrived_);
+}
+
+/// A state that has a NaN keeps it, so no later frame will be better.
+void Presenter::check_finite() {
+    if (is_finite(frame_.intensity) && is_finite(frame_.sigma)) return;
+    counters_.present.broken_frames.add();
+    throw Error(ErrorKind::input, "frame " + std::to_string(frame_.index) + ", at " +
+                                      std::to_string(to_us(frame_.t)) +
+                                      " us: expected finite numbers of the network, found NaN or "
+                                      "infinity: its weights or its state are damaged");
 }
 
 void Presenter::close() {

@@ -4,6 +4,7 @@
 #include "pipeline/counters.h"
 #include "pipeline/frame_clock.h"
 #include "pipeline/frame_shedder.h"
+#include "pipeline/latency_keeper.h"
 #include "pipeline/sink.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"
@@ -27,6 +28,9 @@ struct Encoded {
 class Presenter {
 public:
     static constexpr int kMostLookahead = 2;
+    /// Of a recording, in a row and without events: more are times that are wrong (a stamp of 0
+    /// before times since 1970), and would fill any disk. 9 hours at 30 frames/s.
+    static constexpr std::uint64_t kMostSilentFrames = 1'000'000;
 
     struct Settings {
         FrameRate rate;
@@ -34,13 +38,16 @@ public:
         int lookahead = 0;               ///< 0 to kMostLookahead
         bool live = false;               ///< may skip frames
         std::size_t waits_at_most = 1;  ///< event frames behind this one, before frames are skipped
+        bool allow_silence = false;     ///< no limit to frames in a row without events
     };
 
     /// `waiting()` tells how many event frames stand behind the one at hand.
     Presenter(RenderStage& renderer, std::vector<Sink*> sinks, const Settings& settings,
-              std::function<std::size_t()> waiting, const StopRequest& stop, Counters& counters);
+              std::function<std::size_t()> waiting, const StopRequest& stop, Counters& counters,
+              LatencyKeeper& keeper);
 
-    /// Throws what a sink throws. False when no more frames are wanted.
+    /// Throws what a sink throws, and Error (input) before it writes more than kMostSilentFrames
+    /// in a row or one that is not finite. False when no more frames are wanted.
     bool take(const Encoded& encoded);
 
     /// Nothing more comes: the frames that still wait for later latent maps.
@@ -58,6 +65,9 @@ private:
         Array2<float> event_preview;
     };
     void present_oldest();
+    void open_shedder();
+    void check_silence(const Waiting& held);
+    void check_finite();
     void present(const DueFrame& due, Waiting& from);
 
     RenderStage& renderer_;
@@ -66,11 +76,13 @@ private:
     std::function<std::size_t()> waiting_;
     const StopRequest& stop_;
     Counters& counters_;
+    LatencyKeeper& keeper_;
     FrameSchedule schedule_;
     FrameShedder shedder_;
     std::array<Waiting, kMostLookahead + 1> held_;  // a ring
     std::size_t oldest_ = 0, held_count_ = 0;
-    HostTime arrived_{};  // of the newest latent map
+    std::uint64_t silent_ = 0;  // frames in a row without events
+    HostTime arrived_{};        // of the newest latent map
     Frame frame_;
     bool wanted_ = true;
 };

@@ -4,9 +4,10 @@
 #include "src/codec/parser.h"
 #include "src/core/packet.h"
 
+#include <eventide/sensor_info.h>
+
 #include <memory>
 #include <optional>
-#include <string>
 
 namespace eventide {
 
@@ -15,13 +16,6 @@ enum class ReadStatus {
     timeout,  ///< live sources only: nothing came for a while (at most 20 ms); `into.bytes` is
               ///< empty
     end       ///< nothing will come any more
-};
-
-struct SensorInfo {
-    std::string name;    ///< "DAVIS346", or what the recording says; may be empty
-    std::string serial;  ///< may be empty
-    std::string format;  ///< "aedat4", "evt3", "davis", "text", ...
-    int width = 0, height = 0;
 };
 
 /// Where bytes come from: a camera or a recording. The pipeline owns the thread.

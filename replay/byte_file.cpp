@@ -2,6 +2,7 @@
 #include "replay/byte_file.h"
 
 #include "src/core/error.h"
+#include "src/io/system_words.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -9,7 +10,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 namespace eventide {
@@ -17,8 +17,10 @@ namespace eventide {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& doing) {
-    throw Error(ErrorKind::input,
-                path + ": cannot " + doing + ": " + std::system_category().message(errno));
+    // Having no descriptor left says nothing about the recording.
+    const bool exhausted = errno == EMFILE || errno == ENFILE;
+    throw Error(exhausted ? ErrorKind::failed : ErrorKind::input,
+                path + ": cannot " + doing + ": " + system_words(errno));
 }
 
 }  // namespace

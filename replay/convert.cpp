@@ -38,10 +38,27 @@ void add(DataCounts& sum, const DataCounts& more) {
     sum.triggers += more.triggers;
 }
 
-StreamHeader header_of(const Recording& recording, const Format& format) {
+/// One file of one format.
+class FileTarget final : public ConvertTarget {
+public:
+    FileTarget(const std::string& path, bool overwrite, const Format& format, StreamHeader header)
+        : format_{format}, file_{path, overwrite, open_writer(format.name), header} {}
+    const FormatHolds& holds() const override { return format_.holds; }
+    void write(const Batch& batch) override { file_.write(batch); }
+    void finish() override { file_.finish(); }
+    bool reader_gone() const override { return file_.reader_gone(); }
+    std::uint64_t bytes_written() const override { return file_.bytes_written(); }
+
+private:
+    const Format& format_;
+    RecordingFile file_;
+};
+
+}  // namespace
+
+StreamHeader header_of(const Recording& recording) {
     const SensorInfo& info = recording.info();
     StreamHeader header;
-    header.format = format.name;
     header.width = info.width;
     header.height = info.height;
     header.sensor_name = info.name;
@@ -49,21 +66,25 @@ StreamHeader header_of(const Recording& recording, const Format& format) {
     return header;
 }
 
-}  // namespace
-
 ConvertReport convert(Recording& recording, const std::string& path, const Format& format,
                       const ConvertOptions& options, const std::function<bool()>& progress) {
+    StreamHeader header = header_of(recording);
+    header.format = format.name;
+    FileTarget target(path, options.overwrite, format, header);
+    return convert(recording, target, options, progress);
+}
+
+ConvertReport convert(Recording& recording, ConvertTarget& target, const ConvertOptions& options,
+                      const std::function<bool()>& progress) {
     ConvertReport report;
-    RecordingFile file(path, options.overwrite, open_writer(format.name),
-                       header_of(recording, format));
     if (options.from) recording.seek(*options.from);
     const auto parser = recording.make_parser();
     Batch batch;
     const auto pass_on = [&] {
         keep_inside(batch, options);
-        add(report.not_held, remove_not_held(batch, format.holds));
+        add(report.not_held, remove_not_held(batch, target.holds()));
         add(report.written, counts_of(batch));
-        if (!batch.empty()) file.write(batch);
+        if (!batch.empty()) target.write(batch);
         batch.clear();
     };
     RawPacket packet;
@@ -72,15 +93,15 @@ ConvertReport convert(Recording& recording, const std::string& path, const Forma
         parser->parse(packet.bytes, batch);
         pass_on();
         const auto now = parser->clock();
-        enough = (options.to && now && *now - kLatestData > *options.to) || file.reader_gone() ||
+        enough = (options.to && now && *now - kLatestData > *options.to) || target.reader_gone() ||
                  (progress && !progress());
     }
     // Where nobody wanted more, half a record in hand is no damage of the recording's.
     if (!enough) parser->finish(batch);
     pass_on();
-    file.finish();
+    target.finish();
     report.damaged = parser->damaged();
-    report.bytes_written = file.bytes_written();
+    report.bytes_written = target.bytes_written();
     return report;
 }
 

@@ -23,9 +23,29 @@ struct ConvertReport {
     std::uint64_t bytes_written = 0;
 };
 
-/// Writes the recording to `path` in the given format. `progress` is called after each chunk and
-/// may return false: then what was written so far is completed. Throws Error (usage) for what the
-/// format cannot hold (a coordinate too large), Error (failed) when the file cannot be written.
+/// Where converted data go.
+class ConvertTarget {
+public:
+    virtual ~ConvertTarget() = default;
+    virtual const FormatHolds& holds() const = 0;  ///< nothing else is written
+    /// Throws Error: usage for what cannot be held (a coordinate too large), failed when it cannot
+    /// be written.
+    virtual void write(const Batch& batch) = 0;
+    virtual void finish() = 0;                          ///< once, after the last write
+    virtual bool reader_gone() const { return false; }  ///< nobody wants more
+    virtual std::uint64_t bytes_written() const = 0;
+};
+
+/// What a target is told of where its data come from.
+StreamHeader header_of(const Recording& recording);
+
+/// Writes the recording to the target. `progress` is called after each chunk and may return false:
+/// then what was written so far is completed. Throws what the target throws.
+ConvertReport convert(Recording& recording, ConvertTarget& target,
+                      const ConvertOptions& options = {},
+                      const std::function<bool()>& progress = {});
+
+/// To a file of the given format.
 ConvertReport convert(Recording& recording, const std::string& path, const Format& format,
                       const ConvertOptions& options = {},
                       const std::function<bool()>& progress = {});

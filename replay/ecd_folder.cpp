@@ -4,6 +4,7 @@
 #include "replay/image_file.h"
 #include "src/codec/text_number.h"
 #include "src/codec/text_row.h"
+#include "src/io/input_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -38,13 +39,25 @@ std::optional<SensorTime> parse_seconds(std::string_view text) {
 /// Fields of the lines that are no comments.
 std::vector<std::vector<std::string>> read_table(const fs::path& path) {
     std::vector<std::vector<std::string>> table;
-    std::ifstream file(path);
+    std::error_code none;
+    if (!fs::exists(path, none)) return table;
+    std::ifstream file = open_to_read(path);
     for (std::string line; std::getline(file, line);) {
         if (is_comment(line)) continue;
         const auto fields = split_fields(line);
         table.emplace_back(fields.begin(), fields.end());
     }
     return table;
+}
+
+/// The picture that a line names, without detours; nothing where that lies outside the folder: a
+/// recording from elsewhere must not reach for other files.
+std::optional<std::string> inside(const fs::path& folder, const std::string& name) {
+    const fs::path root = fs::absolute(folder).lexically_normal();
+    const fs::path file = (root / name).lexically_normal();
+    const fs::path way = file.lexically_relative(root);
+    if (way.empty() || *way.begin() == "..") return {};
+    return (folder / way).string();
 }
 
 /// Only where they are as many as the images: else there is no telling whose they are.
@@ -66,8 +79,9 @@ EcdImages read_ecd_images(const std::string& folder) {
     EcdImages images;
     for (const auto& fields : read_table(fs::path(folder) / "images.txt")) {
         const auto t = fields.size() < 2 ? std::nullopt : parse_seconds(fields[0]);
-        if (t)
-            images.entries.push_back({*t, *t, *t, (fs::path(folder) / fields[1]).string()});
+        const auto file = t ? inside(folder, fields[1]) : std::nullopt;
+        if (file)
+            images.entries.push_back({*t, *t, *t, *file});
         else
             ++images.bad_entries;
     }
@@ -108,7 +122,8 @@ void EcdParser::emit_until(std::optional<SensorTime> t, Batch& into) {
 void EcdParser::parse(std::span<const std::byte> bytes, Batch& into) {
     const std::size_t before = into.events.size();
     events_->parse(bytes, into);
-    if (jumped_ && into.events.size() > before) {
+    if (into.events.size() == before) return;
+    if (jumped_) {
         const SensorTime first = into.events[before].t;
         next_image_ = std::size_t(
             std::lower_bound(images_.entries.begin(), images_.entries.end(), first,
@@ -116,7 +131,7 @@ void EcdParser::parse(std::span<const std::byte> bytes, Batch& into) {
             images_.entries.begin());
         jumped_ = false;
     }
-    if (const auto now = events_->clock(); now && !jumped_) emit_until(now, into);
+    emit_until(into.events.back().t, into);
 }
 
 void EcdParser::finish(Batch& into) {

@@ -22,11 +22,11 @@ struct EcdImages {
     };
     std::vector<Entry> entries;     ///< in time order; empty where there is no images.txt
     int width = 0, height = 0;      ///< px, of the first picture that can be read; else 0
-    std::uint64_t bad_entries = 0;  ///< lines of images.txt that could not be read
+    std::uint64_t bad_entries = 0;  ///< lines of images.txt that make no sense or lead elsewhere
 };
 
-/// Reads images.txt ("t file", t in seconds, file relative to the folder), exposure.txt where there
-/// is one ("begin end" in seconds, a line for each of images.txt), and one picture for the size.
+/// Reads images.txt ("t file", t in seconds, file in the folder), exposure.txt where there is one
+/// ("begin end" in seconds, a line for each of images.txt), and one picture for the size.
 EcdImages read_ecd_images(const std::string& folder);
 
 /// Events with the folder's pictures as reference images: each comes out once the events have
@@ -66,6 +66,7 @@ public:
                                            events_->begins_in_the_middle());
     }
     std::unique_ptr<Parser> make_clock() const override { return events_->make_parser(); }
+    std::vector<std::string> remarks() const override { return events_->remarks(); }
     void seek(SensorTime t) override { events_->seek(t); }
     std::uint64_t size_bytes() const override { return events_->size_bytes(); }
     std::uint64_t position_bytes() const override { return events_->position_bytes(); }

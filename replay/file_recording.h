@@ -7,6 +7,7 @@
 #include "src/codec/stream.h"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace eventide {
@@ -18,6 +19,7 @@ struct OpenedStream {
     /// completed.
     MakeParser make_parser;
     SeekMeans seek{};
+    std::vector<std::string> remarks{};  ///< see Recording::remarks()
 };
 
 class FileRecording : public Recording {
@@ -35,6 +37,7 @@ public:
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override { file_.stop(); }
     std::unique_ptr<Parser> make_parser() const override;
+    std::vector<std::string> remarks() const override { return stream_.remarks; }
     void seek(SensorTime t) override;
     std::uint64_t size_bytes() const override { return file_.size(); }
     std::uint64_t position_bytes() const override { return file_.position(); }

@@ -135,10 +135,11 @@ OpenedStream open_dat(Bytes first_bytes, const OpenOptions&) {
 
 OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
     const TextHeader header = read_text_header(first_bytes, options.text);
-    const auto make_parser = [layout = header.layout](const StreamHeader& stream) {
-        return std::make_unique<TextParser>(layout, stream.width, stream.height);
+    const auto make_parser = [layout = header.layout,
+                              reorder = options.text.reorder](const StreamHeader& stream) {
+        return std::make_unique<TextParser>(layout, stream.width, stream.height, reorder);
     };
-    return {header.stream, make_parser, {1}};
+    return {header.stream, make_parser, {1}, header.remarks};
 }
 
 constexpr FormatHolds kOnlyEvents{};

@@ -1,6 +1,8 @@
 // A picture file as a reference image; the one file of replay/ that uses OpenCV (imgcodecs).
 #include "replay/image_file.h"
 
+#include "src/io/input_file.h"
+
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -15,6 +17,12 @@ cv::Mat read_picture(const std::string& path) {
     // Otherwise OpenCV prints a warning of its own.
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) return {};
+    try {
+        open_to_read(path);
+    } catch (const Error& error) {
+        if (error.kind() == ErrorKind::failed) throw;  // no fault of the picture
+        return {};
+    }
     try {
         return cv::imread(path, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception&) {

@@ -1,4 +1,5 @@
 // From a path to a Recording: reads the first bytes, asks the table, completes the geometry.
+#include "replay/aedat4_streams.h"
 #include "replay/ecd_folder.h"
 #include "replay/foreign_formats.h"
 #include "replay/formats.h"
@@ -40,7 +41,7 @@ std::vector<std::byte> read_head(ByteFile& file) {
 const Format& choose_format(const ByteFile& file, std::span<const std::byte> head,
                             const OpenOptions& options) {
     if (head.empty())
-        throw Error(ErrorKind::input, file.path() + ": expected a recording, found no bytes");
+        throw Error(ErrorKind::input, file.path() + ": expected a recording, the file is empty");
     // Before the formats themselves: a ROS bag looks like an AEDAT 1 file.
     const std::string_view foreign = describe_foreign(head);
     const Format* format = !options.format.empty() ? find_format(options.format)
@@ -55,7 +56,7 @@ const Format& choose_format(const ByteFile& file, std::span<const std::byte> hea
                     "format: expected one of " + names + ", found \"" + options.format + "\"");
     throw Error(ErrorKind::input,
                 file.path() + ": expected a recording (" + names + "), found " +
-                    (foreign.empty() ? "bytes of none of them" : std::string(foreign)));
+                    (foreign.empty() ? "an unrecognised format" : std::string(foreign)));
 }
 
 OpenedStream open_stream(const ByteFile& file, const Format& format,
@@ -92,6 +93,8 @@ std::unique_ptr<FileRecording> open_file(const std::string& path, const OpenOpti
     ByteFile file(path);
     std::vector<std::byte> head = read_head(file);
     OpenedStream stream = open_stream(file, choose_format(file, head, options), head, options);
+    if (file.is_seekable() && stream.header.format == "aedat4")
+        stream.remarks = compare_aedat4_streams(file, read_aedat4_header(head));
     complete_geometry(file, stream, options);
     const std::size_t header_bytes = std::min<std::size_t>(stream.header.data_offset, head.size());
     head.erase(head.begin(), head.begin() + std::ptrdiff_t(header_bytes));

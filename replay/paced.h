@@ -30,6 +30,7 @@ public:
     void stop() noexcept override;  ///< a waiting read() ends at once
     std::unique_ptr<Parser> make_parser() const override { return recording_->make_parser(); }
     std::unique_ptr<Parser> make_clock() const override { return recording_->make_clock(); }
+    std::vector<std::string> remarks() const override { return recording_->remarks(); }
     /// What lies before `t` comes without waiting.
     void seek(SensorTime t) override;
     std::uint64_t size_bytes() const override { return recording_->size_bytes(); }

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace eventide {
@@ -21,6 +22,9 @@ public:
     /// Bytes of the whole recording, for progress; 0 where not known (standard input).
     virtual std::uint64_t size_bytes() const = 0;
     virtual std::uint64_t position_bytes() const = 0;
+
+    /// What had to be guessed, or was not found, when it was opened: sentences for people.
+    virtual std::vector<std::string> remarks() const { return {}; }
 
     /// A parser whose clock() is that of make_parser(), without costly extras (pictures read from
     /// files): for whoever needs the time of bytes and not the data.

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "src/codec/stream.h"
+#include "src/io/output_file.h"
 
-#include <cstdio>
+#include <cstdint>
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace eventide {
 
@@ -14,13 +16,9 @@ namespace eventide {
 /// left out: formats with an index are read without it.
 class RecordingFile {
 public:
-    /// Throws Error (usage) when a regular file exists and `overwrite` is false, Error (failed)
-    /// when it cannot be made.
+    /// Throws Error as OutputFile does.
     RecordingFile(const std::string& path, bool overwrite, std::unique_ptr<StreamWriter> writer,
-                  const StreamHeader& header);
-    ~RecordingFile();
-    RecordingFile(const RecordingFile&) = delete;
-    RecordingFile& operator=(const RecordingFile&) = delete;
+                  const StreamHeader& header, Appears appears = Appears::whole);
 
     /// Throws Error (failed) when the disk is full, Error (usage) for what the format cannot hold.
     void write(const Batch& batch);
@@ -31,19 +29,15 @@ public:
     std::uint64_t bytes_written() const { return bytes_written_; }
 
     /// Whoever read the pipe went away: no error, but nothing is written any more.
-    bool reader_gone() const { return reader_gone_; }
+    bool reader_gone() const { return file_->reader_gone(); }
 
 private:
-    void put(std::span<const std::byte> bytes);
     void flush();
 
-    std::string path_;
     std::unique_ptr<StreamWriter> writer_;
-    std::FILE* file_ = nullptr;
-    bool owned_ = false;
+    std::optional<OutputFile> file_;
     std::vector<std::byte> pending_;
     std::uint64_t bytes_written_ = 0;
-    bool reader_gone_ = false;
 };
 
 }  // namespace eventide

@@ -8,8 +8,10 @@ namespace eventide {
 /// Larger coordinates than any sensor has are damage and not taken for the size.
 constexpr int kLargestSensorSide = 4096;
 
-/// Reads the whole file once, in bounded memory, and sets width and height of the header to the
-/// largest coordinates plus one. Throws Error (input) when there is no event.
+/// Reads the whole file once, in bounded memory, and sets width and height of the header to those
+/// of the smallest known sensor that holds all its events but damaged ones (one in a thousand), and
+/// says so in the remarks. Throws Error (input) where there is no event or no such sensor: one bad
+/// coordinate may not make a run allocate gigabytes.
 void scan_geometry(const ByteFile& file, OpenedStream& stream);
 
 }  // namespace eventide

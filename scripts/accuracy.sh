@@ -24,6 +24,7 @@ file=$model
 [ -e "$file" ] || { echo "accuracy: expected a model file or its name, found '$model'" >&2; exit 2; }
 kept=out/accuracy/$(sha256sum "$file" | cut -c 1-12)-$sequences
 mkdir -p "$out" "$kept"
+export EVENTIDE_EVALUATE_OVERWRITE=true  # tables and figures of an earlier call
 calibrated=$kept/calibrated.safetensors
 
 lpips=(--lpips "$DATA/perceptual/lpips_squeeze_v0.1.npz")

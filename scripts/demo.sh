@@ -16,10 +16,10 @@ mkdir -p "$out"
 echo "simulating a camera before a moving scene ..."
 "$eventide" simulate --scene demo --seconds 4 --size 240x180 --overwrite --out "$out/recording.aedat4"
 "$eventide" info "$out/recording.aedat4"
-echo "reconstructing it ..."
-"$eventide" run "$out/recording.aedat4" --fps 60 --overwrite \
+echo "reconstructing it, from events alone ..."
+"$eventide" run "$out/recording.aedat4" --frames ignore --fps 60 --overwrite \
   --out "$out/reconstruction/" --out "$out/reconstruction.mp4" --uncertainty side
-"$eventide" run "$out/recording.aedat4" --window aps --overwrite --out "sheet:$out/contact_sheet.png" --quiet
+"$eventide" run "$out/recording.aedat4" --frames ignore --window aps --overwrite --out "contact-sheet:$out/contact_sheet.png" --quiet
 echo
 echo "frames:         $out/reconstruction/frames/"
 echo "sigma:          $out/reconstruction/uncertainty/"

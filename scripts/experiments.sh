@@ -62,9 +62,6 @@ run l1-only       --ssim 0 --lpips-weight 0
 run no-lpips      --lpips-weight 0
 run no-ssim       --ssim 0
 run no-temporal   --temporal 0
-run fed           --feedback input
-run fed-change    --feedback change
-run fed-physical  --feedback physical
 
 experiment seeds      "base seed2 seed3"                     "How far runs of the same options differ: smaller differences below say nothing"
 experiment encoder    "base thesis"                    "1. The gated encoder against the thesis' (instance norm, whole-image statistics)"
@@ -72,7 +69,6 @@ experiment renderer   "base mlp32 mlp128 half"         "4. The renderer's width;
 experiment inputs     "base bins2 bins1 no-moments no-since polarity" "6. What the voxel grid says"
 experiment losses     "base no-lpips no-ssim no-temporal l1-only" "7. Losses"
 experiment thresholds "base threshold-low threshold35" "8. Range of contrast thresholds in training"
-experiment feedback   "base fed fed-change fed-physical" "9. The last picture fed back: as an input, to be changed, as a physical output"
 experiment widths     "base equal narrow levels3 levels5" "10. Where the multiply-adds go, and field of view"
 experiment gate       "base gate12 gate32 spread4"   "How far around events the state may change (4 px in base; spread4: 4 px of the lowest resolution further there)"
 experiment states     "base full-only half-only quarter-only" "10b. Which levels remember"
@@ -90,8 +86,7 @@ train_and_score() {
   # shellcheck disable=SC2206  # options are words
   local command=("${keep_memory[@]}" "$train" "${common[@]}" ${options[$name]} --textures "$out/train.pack"
     --validation-textures "$out/held_out.pack" --lpips "$lpips" --out "$folder")
-  # A network that is fed its own picture exists in training alone.
-  case ${options[$name]} in *--feedback*) ;; *) command+=(--export "$folder/model.safetensors") ;; esac
+  command+=(--export "$folder/model.safetensors")
   "${command[@]}" > "$folder/output.txt"
   local held_out steps
   # step, minutes, score, L1, 1-SSIM, LPIPS (0: a loss without it does not measure it), NLL, temporal, MSE, PICP80

@@ -32,6 +32,11 @@ if(hdf5_FOUND)
   target_link_libraries(eventide_hdf5 INTERFACE PkgConfig::hdf5)
 endif()
 
+# Debian's Python, for which its NumPy is; pybind11 is headers alone.
+set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The Python that the module is made for")
+find_package(Python3 COMPONENTS Interpreter Development.Module NumPy QUIET)
+find_path(PYBIND11_HEADERS pybind11/pybind11.h)
+
 # Header-only, without a CMake package in Debian 12.
 find_path(CONCURRENTQUEUE_DIR concurrentqueue.h PATH_SUFFIXES concurrentqueue moodycamel REQUIRED)
 add_library(eventide_concurrentqueue INTERFACE)
@@ -56,3 +61,4 @@ eventide_feature(EVENTIDE_USB "USB event cameras" CHECK libusb_FOUND)
 eventide_feature(EVENTIDE_EMULATOR "software DAVIS for tests" CHECK umockdev_FOUND)
 eventide_feature(EVENTIDE_HDF5 "MVSEC's files in eventide evaluate" CHECK hdf5_FOUND)
 eventide_feature(EVENTIDE_TRAIN "training with libtorch" CHECK Torch_FOUND)
+eventide_feature(EVENTIDE_PYTHON "the Python module" CHECK Python3_Development.Module_FOUND Python3_NumPy_FOUND PYBIND11_HEADERS)

@@ -16,6 +16,11 @@ function(eventide_compile target)
   endif()
 endfunction()
 
+# All of it may end in the shared library, which shows what is marked EVENTIDE_API and nothing else.
+function(eventide_hide_symbols target)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
 # eventide_library(name SOURCES a.cpp b.cpp USES lib... PRIVATELY lib...): made as eventide::name.
 # PRIVATELY is for libraries that must not show in our headers.
 function(eventide_library name)
@@ -23,9 +28,13 @@ function(eventide_library name)
   add_library(eventide_${name} STATIC ${arg_SOURCES})
   add_library(eventide::${name} ALIAS eventide_${name})
   eventide_compile(eventide_${name})
-  target_include_directories(eventide_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  eventide_hide_symbols(eventide_${name})
+  target_include_directories(eventide_${name} PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
   target_link_libraries(eventide_${name} PUBLIC ${arg_USES} PRIVATE ${arg_PRIVATELY})
 endfunction()
+
+# Every test process has a temporary folder of its own.
+set(eventide_test_sources ${CMAKE_CURRENT_LIST_DIR}/../../tests/support/own_temporary_folder.cpp)
 
 # What a sanitizer has to be told in every program.
 if(EVENTIDE_SANITIZE STREQUAL "thread")
@@ -49,7 +58,7 @@ function(eventide_test name)
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()
-  add_executable(test_${name} ${arg_SOURCES} ${eventide_sanitizer_sources})
+  add_executable(test_${name} ${arg_SOURCES} ${eventide_test_sources} ${eventide_sanitizer_sources})
   eventide_compile(test_${name})
   target_link_libraries(test_${name} PRIVATE ${arg_USES} GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(test_${name} PRIVATE EVENTIDE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

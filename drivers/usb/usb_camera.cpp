@@ -38,8 +38,8 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
                         patch = device.read_register(davis::kLogicPatch);
     logic_ = std::to_string(logic) + " patch " + std::to_string(patch);
     if (logic == kLogicWanted && patch >= oldest_patch) return;
-    refuse("has logic " + logic_ + ", expected 18 patch " + std::to_string(oldest_patch) +
-           " or later: " +
+    refuse("has FPGA logic version " + logic_ + ", expected 18 patch " +
+           std::to_string(oldest_patch) + " or later: " +
            (logic > kLogicWanted
                 ? "newer generations speak another protocol, which is not supported"
                 : "update it with iniVation's DV or Flashy"));

@@ -1,11 +1,13 @@
 #include "drivers/usb/usb_device.h"
 
 #include "src/core/error.h"
+#include "src/io/system_words.h"
 
 #include <libusb-1.0/libusb.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 
 namespace eventide {
@@ -16,6 +18,7 @@ constexpr std::uint8_t kOut = 0x40, kIn = 0xC0;  // vendor request, to the devic
 constexpr unsigned kControlTimeoutMs = 1000;
 constexpr int kInterface = 0, kConfiguration = 1;
 constexpr std::size_t kSerialLength = 8;
+constexpr int kDescriptors = 8;  // that libusb opens, about
 
 using Context = std::unique_ptr<libusb_context, FreeUsbContext>;
 using Handle = std::unique_ptr<libusb_device_handle, CloseUsbDevice>;
@@ -128,6 +131,8 @@ void CloseUsbDevice::operator()(libusb_device_handle* handle) const {
 }
 
 std::string explain_usb_error(int code) {
+    if ((code == LIBUSB_ERROR_OTHER || code == LIBUSB_ERROR_IO) && out_of_descriptors(kDescriptors))
+        return system_words(EMFILE);
     switch (code) {
         case LIBUSB_ERROR_ACCESS:
             return "no permission: install config/udev/65-eventide.rules into /etc/udev/rules.d, "
@@ -178,7 +183,8 @@ UsbDevice::UsbDevice(const UsbSelector& selector) : context_(make_context()) {
     if (!handle_) {
         throw Error(ErrorKind::device,
                     problem.empty()
-                        ? "no camera " + describe(selector) + " is plugged in"
+                        ? "no camera " + describe(selector) +
+                              " was found: plug it in; eventide devices lists what is there"
                         : "the camera " + describe(selector) + " cannot be opened: " + problem);
     }
     int configuration = 0;

@@ -122,11 +122,7 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
         case V4l2Device::Status::data:
             break;
     }
-    if (last_sequence_ && filled.sequence != *last_sequence_ + 1) {
-        counters_.device_dropped += filled.sequence - *last_sequence_ - 1;
-        gap_ = true;
-    }
-    last_sequence_ = filled.sequence;
+    note_sequence(filled.sequence);
     const auto bytes = before_end_of_data(filled.bytes, encoding_);
     into.bytes.assign(bytes.begin(), bytes.end());
     into.arrived = std::chrono::steady_clock::now();
@@ -134,6 +130,16 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
     ++counters_.transfers;
     counters_.bytes += bytes.size();
     return ReadStatus::data;
+}
+
+/// A jump forward is as many buffers lost by the driver. Some drivers do not count at all: a number
+/// that stands still says nothing; one that falls says that the driver began anew.
+void V4l2Camera::note_sequence(std::uint32_t sequence) {
+    constexpr std::uint32_t kBackwards = std::uint32_t{1} << 31;
+    const std::uint32_t step = sequence - last_sequence_.value_or(sequence);
+    if (step > 1) gap_ = true;
+    if (step > 1 && step < kBackwards) counters_.device_dropped += step - 1;
+    last_sequence_ = sequence;
 }
 
 ReadStatus V4l2Camera::lost() {

@@ -58,6 +58,7 @@ public:
 
 private:
     void open();
+    void note_sequence(std::uint32_t sequence);
     ReadStatus lost();
 
     std::filesystem::path node_;

@@ -2,6 +2,7 @@
 #include "pipeline/filters/hot_pixels.h"
 
 #include "src/core/error.h"
+#include "src/io/input_file.h"
 
 #include <algorithm>
 #include <array>
@@ -28,9 +29,7 @@ HotPixelFilter::HotPixelFilter(int width, int height)
 HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::path& list)
     : HotPixelFilter{width, height} {
     learns_ = false;
-    std::ifstream file{list};
-    if (!file)
-        throw Error(ErrorKind::usage, list.string() + ": the list of hot pixels cannot be read");
+    std::ifstream file = open_to_read(list, ErrorKind::usage);
     int number = 0;
     for (std::string line; std::getline(file, line);) {
         ++number;
@@ -99,6 +98,12 @@ std::uint32_t HotPixelFilter::median_around(int y, int x) const {
     if (n == 0) return 0;
     std::nth_element(around.begin(), around.begin() + n / 2, around.begin() + n);
     return around[n / 2];
+}
+
+std::unique_ptr<EventFilter> hot_pixel_filter(const std::string& choice, int width, int height) {
+    if (choice == "off") return nullptr;
+    if (choice == "learn") return std::make_unique<HotPixelFilter>(width, height);
+    return std::make_unique<HotPixelFilter>(width, height, choice);
 }
 
 }  // namespace eventide

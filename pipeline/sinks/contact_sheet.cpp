@@ -1,14 +1,15 @@
 // One picture of a whole run: rows of events, intensity, sigma and truth.
 #include "pipeline/sinks/contact_sheet.h"
 
-#include "pipeline/sinks/new_file.h"
 #include "src/core/error.h"
+#include "src/io/output_file.h"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <chrono>
 #include <cstdio>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -36,8 +37,8 @@ void caption(cv::Mat& sheet, const std::string& text, int x, int y) {
 ContactSheetSink::ContactSheetSink(ContactSheetSettings settings) : settings_{std::move(settings)} {
     refuse_existing(settings_.path, settings_.overwrite);
     if (!cv::haveImageWriter(settings_.path.string()))
-        throw Error(ErrorKind::usage, settings_.path.string() +
-                                          ": expected the name of a picture, such as sheet.png");
+        throw Error(ErrorKind::usage,
+                    settings_.path.string() + ": expected the name of an image, such as sheet.png");
 }
 
 void ContactSheetSink::write(const Frame& frame) {
@@ -80,7 +81,7 @@ cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
     for (const Column& column : {Column{"events", &Row::events},
                                  {"intensity", &Row::intensity},
                                  {"sigma", &Row::sigma},
-                                 {"truth", &Row::truth}})
+                                 {settings_.truth_caption.c_str(), &Row::truth}})
         for (const Row& row : rows)
             if (!(row.*column.second).empty()) {
                 columns.push_back(column);
@@ -113,8 +114,10 @@ void ContactSheetSink::close() {
     // the run.
     for (std::size_t i = 0; i < count; ++i)
         rows.push_back(kept_[(2 * i + 1) * kept_.size() / (2 * count)]);
-    if (!cv::imwrite(settings_.path.string(), lay_out(rows)))
-        throw Error(ErrorKind::failed, settings_.path.string() + ": cannot be written");
+    std::vector<unsigned char> bytes;
+    if (!cv::imencode(settings_.path.extension().string(), lay_out(rows), bytes))
+        throw Error(ErrorKind::failed, settings_.path.string() + ": cannot be encoded");
+    write_file(settings_.path, std::as_bytes(std::span{bytes}), settings_.overwrite);
 }
 
 }  // namespace eventide

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace eventide {
@@ -18,6 +19,7 @@ struct ContactSheetSettings {
     /// Draws the reference image of a frame, CV_8UC1, or leaves the picture empty where there is
     /// none; may be empty.
     std::function<void(const Frame&, cv::Mat&)> draw_truth = {};
+    std::string truth_caption = "truth";  ///< what those images are: a sensor's own are not truth
 };
 
 /// Columns are left out where no frame has anything for them: events need Frame::event_preview.

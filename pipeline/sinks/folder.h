@@ -3,10 +3,11 @@
 
 #include "pipeline/sink.h"
 #include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/run_folder.h"
+#include "src/io/output_file.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <string>
 
@@ -14,13 +15,13 @@ namespace eventide {
 
 struct FolderSettings {
     std::filesystem::path path = {};
-    bool overwrite = false;  ///< a folder that holds something is refused, or its old run removed
+    bool overwrite = false;  ///< replaces an earlier run, and only that (RunFolder)
     /// none leaves out the TIFFs; side, alpha and overlay change the PNGs and keep the TIFFs.
     Uncertainty uncertainty = Uncertainty::automatic;
     float sigma_white = kSigmaWhite;
     /// Packets lost until now, for the column `lost`; may be empty. Any thread.
     std::function<std::uint64_t()> lost = {};
-    /// The text of run.json, asked for once, at close; may be empty.
+    /// A JSON object for run.json, asked for once, at close; may be empty.
     std::function<std::string()> run_json = {};
 };
 
@@ -32,13 +33,16 @@ struct FolderSettings {
 ///   timestamps.csv                frame, index, t_us, window_begin_us, window_end_us, events,
 ///   lost;
 ///                                 a jump of `index` is a skipped frame
-///   run.json                      at close
-/// What is written is complete after each frame: a killed run loses at most the frame in work.
+///   run.json                      what of this is ours; whole at close
+/// What is written is complete after each frame: a killed run loses at most the frame in work, and
+/// every picture is whole.
 class FolderSink : public Sink {
 public:
-    /// Makes the folder. Throws Error (usage) when it holds something and overwrite is not set,
-    /// (failed) when it cannot be made.
+    /// Makes the folder. Throws Error as RunFolder does.
     explicit FolderSink(FolderSettings settings);
+
+    /// What it writes.
+    static RunFolderFiles files();
 
     void write(const Frame& frame) override;
     void close() override;
@@ -47,7 +51,8 @@ private:
     void write_times(const Frame& frame);
 
     FolderSettings settings_;
-    std::ofstream seconds_, table_;
+    RunFolder folder_;
+    OutputFile seconds_, table_;
     cv::Mat picture_;
     std::uint64_t frames_ = 0;
     bool closed_ = false;

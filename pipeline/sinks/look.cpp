@@ -84,7 +84,7 @@ AutoRange::Range AutoRange::update(SensorTime t, const Array2<float>& intensity)
 const Frame& Look::apply(const Frame& frame) {
     if (2 * settings_.crop_px >= std::min(frame.intensity.height(), frame.intensity.width()))
         throw Error(ErrorKind::usage, "--crop " + std::to_string(settings_.crop_px) +
-                                          ": nothing is left of a picture of " +
+                                          ": nothing is left of a frame of " +
                                           std::to_string(frame.intensity.width()) + "x" +
                                           std::to_string(frame.intensity.height()));
     shown_.t = frame.t;

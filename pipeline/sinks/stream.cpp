@@ -1,11 +1,12 @@
 // Frames as bytes into standard output, a named pipe or a file.
 #include "pipeline/sinks/stream.h"
 
-#include "pipeline/sinks/descriptor.h"
 #include "pipeline/sinks/raw_pixels.h"
 #include "pipeline/sinks/yuv.h"
+#include "src/codec/byte_order.h"
 #include "src/core/error.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -64,6 +65,14 @@ std::string_view name_of(StreamFormat format) {
     return kNames[std::size_t(format)];
 }
 
+void FrameStamp::write_to(std::span<std::byte> bytes) const {
+    constexpr std::string_view kMagic = "EVF";
+    for (std::size_t i = 0; i < kMagic.size(); ++i) bytes[i] = std::byte(kMagic[i]);
+    bytes[3] = std::byte(flags);
+    std::ranges::copy(little_bytes(index), bytes.begin() + 4);
+    std::ranges::copy(little_bytes(t_us), bytes.begin() + 8);
+}
+
 StreamSink::StreamSink(StreamSettings settings) : settings_{std::move(settings)} {
     if (!supports(settings_.format, settings_.uncertainty))
         throw Error(ErrorKind::usage,
@@ -72,31 +81,43 @@ StreamSink::StreamSink(StreamSettings settings) : settings_{std::move(settings)}
                         std::string{name_of(settings_.uncertainty)} +
                         (is_y4m(settings_.format) ? "; expected none, side or (y4m) overlay"
                                                   : "; expected none, side, separate or alpha"));
-    owned_ = settings_.path != "-";
-    file_ = owned_ ? open_for_writing(settings_.path, settings_.overwrite, settings_.give_up)
-                   : kStandardOutput;
-    reader_gone_ = file_ < 0;
-}
-
-StreamSink::~StreamSink() {
-    if (owned_ && file_ >= 0) close_descriptor(file_);
+    file_.emplace(settings_.path, OutputOptions{.overwrite = settings_.overwrite,
+                                                .appears = Appears::growing,
+                                                .give_up = settings_.give_up});
 }
 
 void StreamSink::write(const Frame& frame) {
-    if (reader_gone_) return;
+    if (begun_ && settings_.overload == Overload::repeat) repeat_until(frame.index);
+    if (!wants_more()) return;
+    index_ = frame.index;
     bytes_.clear();
     if (is_y4m(settings_.format))
         append_y4m(frame);
     else
         append_raw(frame);
-    send();
+    file_->write(bytes_);
+    begun_ = true;
+}
+
+/// What was skipped before frame `index`.
+void StreamSink::repeat_until(std::uint64_t index) {
+    while (index_ + 1 < index && wants_more()) {
+        stamp_.index = std::uint32_t(++index_);
+        stamp_.flags = FrameStamp::kRepeat;
+        if (settings_.stamp) stamp_.write_to(bytes_);
+        file_->write(bytes_);
+    }
 }
 
 void StreamSink::append_y4m(const Frame& frame) {
     draw(frame, settings_.uncertainty, settings_.sigma_white, picture_);
-    if (!std::exchange(begun_, true))
+    if (!begun_) {
         append_text(bytes_, header_of(picture_, settings_.format, settings_.fps));
-    append_text(bytes_, "FRAME\n");
+        file_->write(bytes_);  // apart, so that a frame that is repeated is a frame alone
+        bytes_.clear();
+    }
+    // A tag of our own, which readers pass over: the stream's rate says nothing of sensor time.
+    append_text(bytes_, "FRAME XT=" + std::to_string(to_us(frame.t)) + "\n");
     const std::size_t start = bytes_.size();
     const auto width = std::size_t(even(picture_.cols)), height = std::size_t(even(picture_.rows));
     if (settings_.format == StreamFormat::y4m_mono) {
@@ -115,6 +136,12 @@ void StreamSink::append_y4m(const Frame& frame) {
 
 void StreamSink::append_raw(const Frame& frame) {
     const RawLayout layout{settings_.uncertainty, settings_.sigma_white};
+    if (settings_.stamp) {
+        stamp_ = {frame.gap_before ? FrameStamp::kGap : std::uint8_t(0), std::uint32_t(frame.index),
+                  to_us(frame.t)};
+        bytes_.resize(FrameStamp::kBytes);
+        stamp_.write_to(bytes_);
+    }
     switch (settings_.format) {
         case StreamFormat::gray8:
             return append_pixels<std::uint8_t>(frame, layout, bytes_);
@@ -125,22 +152,9 @@ void StreamSink::append_raw(const Frame& frame) {
     }
 }
 
-void StreamSink::send() {
-    switch (write_all(file_, bytes_)) {
-        case WriteResult::written:
-            return;
-        case WriteResult::reader_gone:
-            reader_gone_ = true;
-            return;
-        case WriteResult::failed:
-            throw Error(ErrorKind::failed, (owned_ ? settings_.path : "standard output") +
-                                               ": cannot be written: " + last_system_error());
-    }
-}
-
 void StreamSink::close() {
-    if (owned_ && file_ >= 0) close_descriptor(std::exchange(file_, -1));
-    reader_gone_ = true;
+    if (file_) file_->close();
+    file_.reset();
 }
 
 }  // namespace eventide

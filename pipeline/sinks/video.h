@@ -1,4 +1,4 @@
-// Frames as H.264 in MP4 or Matroska, each with its own exact time.
+// Frames as video: H.264 in MP4 or Matroska, each with its own exact time; Motion JPEG; GIF.
 #pragma once
 
 #include "pipeline/sink.h"
@@ -14,7 +14,7 @@ namespace eventide {
 class VideoFile;
 
 struct VideoSettings {
-    std::filesystem::path path = {};  ///< .mp4 or .mkv
+    std::filesystem::path path = {};  ///< .mp4, .mkv, .avi or .gif
     bool overwrite = false;           ///< an existing file that is not empty is refused without
     /// separate writes a second file, x.sigma.mp4; alpha is refused, H.264 has none.
     Uncertainty uncertainty = Uncertainty::automatic;
@@ -22,11 +22,15 @@ struct VideoSettings {
     std::string preset = "veryfast";  ///< x264's
     int crf = 18;                     ///< 0 lossless to 51 worst; 18 looks lossless
     double fps = 30;  ///< nominal, > 0: for the last frame's length and players' displays
+    double slow = 1;  ///< the video is so many times as long as what it shows
 };
 
-/// Time stamps are the frames' sensor times minus the first one's, in microseconds (time base
-/// 1/10^6; Matroska rounds them to 1 ms). Should sensor time go back, the frame follows the one
-/// before after 1/fps, and so do the next ones.
+/// Where sigma goes when it has a video of its own: x.mp4 -> x.sigma.mp4.
+std::filesystem::path sigma_path(std::filesystem::path path);
+
+/// Time stamps are the frames' sensor times minus the first one's, times `slow`, in microseconds
+/// (time base 1/10^6; Matroska rounds them to 1 ms). Should sensor time go back, the frame follows
+/// the one before after 1/fps, and so do the next ones.
 ///
 /// MP4 is written in fragments of 30 frames, so that a killed run leaves a file that plays
 /// up to the last fragment. H.264 with 4:2:0 chroma needs even sizes: an odd row or column is added
@@ -39,16 +43,17 @@ public:
     ~VideoSink() override;
 
     void write(const Frame& frame) override;
-    /// A file without a frame would not be a video: it is removed.
+    /// A file without a frame would not be a video: it is not left behind.
     void close() override;
 
 private:
-    std::int64_t microseconds_after_first(SensorTime t);
+    std::int64_t microseconds_to_show(SensorTime t);
 
     VideoSettings settings_;
     cv::Mat picture_;
     std::unique_ptr<VideoFile> intensity_, sigma_;
-    SensorTime origin_{};        // shown at 0
+    SensorTime origin_{};  // shown at begin_us_
+    std::int64_t begin_us_ = 0;
     std::int64_t last_us_ = -1;  // of the frame before; -1 before the first
 };
 

@@ -1,4 +1,4 @@
-// One H.264 stream in one file, through libav.
+// One stream of video in one file, through libav.
 #include "pipeline/sinks/video_file.h"
 
 #include "pipeline/sinks/yuv.h"
@@ -12,7 +12,10 @@ extern "C" {
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,6 +29,10 @@ constexpr AVRational kMicroseconds{1, 1'000'000};
 /// Frames per group of pictures, and so per MP4 fragment: what a killed run can lose.
 constexpr int kKeyInterval = 30;
 
+constexpr int kJpegQuality = 3;  // 1 best to 31: hard to tell from the original
+
+constexpr int kBufferBytes = 32768;  // as libav's own files have
+
 std::string words_of(int error) {
     char text[AV_ERROR_MAX_STRING_SIZE]{};
     av_strerror(error, text, sizeof text);
@@ -36,8 +43,21 @@ bool is_mp4(const AVFormatContext& container) {
     return std::string_view{container.oformat->name} == "mp4";
 }
 
+bool is_h264(const VideoKind& kind) {
+    return std::string_view{kind.encoder} == "libx264";
+}
+
 /// x264 itself prints to the terminal about these.
-void refuse_wrong(const EncoderSettings& settings, const std::filesystem::path& path) {
+void refuse_wrong(const EncoderSettings& settings, const VideoKind& kind,
+                  const std::filesystem::path& path) {
+    if (settings.fps > kind.most_fps) {
+        char text[96];
+        std::snprintf(text, sizeof text,
+                      ": expected at most %g frames per second of video, found %g", kind.most_fps,
+                      settings.fps);
+        throw Error(ErrorKind::usage, path.string() + text + "; a lower --fps, or --slow, does it");
+    }
+    if (!is_h264(kind)) return;
     constexpr std::array<std::string_view, 9> kPresets{"ultrafast", "superfast", "veryfast",
                                                        "faster",    "fast",      "medium",
                                                        "slow",      "slower",    "veryslow"};
@@ -58,8 +78,11 @@ void VideoFile::Free::operator()(AVCodecContext* p) const {
     avcodec_free_context(&p);
 }
 void VideoFile::Free::operator()(AVFormatContext* p) const {
-    avio_closep(&p->pb);
     avformat_free_context(p);
+}
+void VideoFile::Free::operator()(AVIOContext* p) const {
+    av_freep(&p->buffer);
+    avio_context_free(&p);
 }
 void VideoFile::Free::operator()(AVFrame* p) const {
     av_frame_free(&p);
@@ -68,24 +91,23 @@ void VideoFile::Free::operator()(AVPacket* p) const {
     av_packet_free(&p);
 }
 
-void VideoFile::check(int result, const char* doing) const {
+/// libav hands our own errors on as numbers only; they come out here, with their words.
+void VideoFile::check(int result, const char* doing) {
+    if (failure_) std::rethrow_exception(failure_);
     if (result < 0)
         throw Error(ErrorKind::failed,
                     path_.string() + ": " + doing + " failed: " + words_of(result));
 }
 
 VideoFile::VideoFile(std::filesystem::path path, EncoderSettings settings)
-    : path_{std::move(path)}, settings_{std::move(settings)} {
-    const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
-    if (codec == nullptr)
-        throw Error(ErrorKind::failed, path_.string() +
-                                           ": this libavcodec has no libx264, which "
-                                           "eventide's videos need");
-    refuse_wrong(settings_, path_);
+    : path_{std::move(path)}, kind_{video_kind_of(path_)}, settings_{std::move(settings)} {
+    const AVCodec* codec = avcodec_find_encoder_by_name(kind_.encoder);
     const AVOutputFormat* format = av_guess_format(nullptr, path_.c_str(), nullptr);
-    if (format == nullptr || !(path_.extension() == ".mp4" || path_.extension() == ".mkv"))
-        throw Error(ErrorKind::usage,
-                    path_.string() + ": expected a video file ending in .mp4 or .mkv");
+    if (codec == nullptr || format == nullptr)
+        throw Error(ErrorKind::failed, path_.string() + ": expected libav to have " +
+                                           kind_.encoder + " and " + kind_.extension +
+                                           ", found one without");
+    refuse_wrong(settings_, kind_, path_);
     AVFormatContext* container = nullptr;
     check(avformat_alloc_output_context2(&container, format, nullptr, path_.c_str()),
           "preparing it");
@@ -95,40 +117,89 @@ VideoFile::VideoFile(std::filesystem::path path, EncoderSettings settings)
     packet_.reset(av_packet_alloc());
     // What goes wrong comes back as a result; x264's own talk is not for the terminal.
     encoder_->log_level_offset = AV_LOG_MAX_OFFSET;
-    check(av_opt_set(encoder_->priv_data, "preset", settings_.preset.c_str(), 0),
-          "choosing x264's preset");
-    check(avio_open(&container_->pb, path_.c_str(), AVIO_FLAG_WRITE), "creating it");
+    if (is_h264(kind_))
+        check(av_opt_set(encoder_->priv_data, "preset", settings_.preset.c_str(), 0),
+              "choosing x264's preset");
+    file_ = std::make_unique<OutputFile>(
+        path_, OutputOptions{.overwrite = settings_.overwrite, .appears = Appears::growing});
+    const auto buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
+    bytes_.reset(avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr,
+#if LIBAVFORMAT_VERSION_MAJOR >= 61
+                                    put,
+#else
+                                    [](void* self, std::uint8_t* bytes, int size) {
+                                        return put(self, bytes, size);
+                                    },
+#endif
+                                    file_->is_seekable() ? seek : nullptr));
+    container_->pb = bytes_.get();
+    container_->flags |= AVFMT_FLAG_CUSTOM_IO;
 }
 
 VideoFile::~VideoFile() = default;
+
+int VideoFile::put(void* self, const std::uint8_t* bytes, int size) {
+    auto& file = *static_cast<VideoFile*>(self);
+    try {
+        file.put_here(std::as_bytes(std::span{bytes, std::size_t(size)}));
+        return size;
+    } catch (...) {  // not through C
+        file.failure_ = std::current_exception();
+        return AVERROR(EIO);
+    }
+}
+
+std::int64_t VideoFile::seek(void* self, std::int64_t offset, int from) {
+    auto& file = *static_cast<VideoFile*>(self);
+    if ((from & AVSEEK_SIZE) != 0) return file.size_;
+    const std::int64_t origin =
+        from == SEEK_CUR ? file.position_ : (from == SEEK_END ? file.size_ : 0);
+    if (origin + offset < 0 || origin + offset > file.size_) return AVERROR(EINVAL);
+    return file.position_ = origin + offset;
+}
+
+void VideoFile::put_here(std::span<const std::byte> bytes) {
+    const std::size_t over = std::min(bytes.size(), std::size_t(size_ - position_));
+    if (over > 0) file_->write_at(std::uint64_t(position_), bytes.first(over));
+    file_->write(bytes.subspan(over));
+    position_ += std::int64_t(bytes.size());
+    size_ = std::max(size_, position_);
+}
 
 void VideoFile::open_encoder(const cv::Mat& picture) {
     type_ = picture.type();
     width_ = picture.cols;
     height_ = picture.rows;
-    encoder_->width = even(width_);
-    encoder_->height = even(height_);
-    encoder_->pix_fmt = AV_PIX_FMT_YUV420P;
-    encoder_->color_range = AVCOL_RANGE_MPEG;
+    encoder_->pix_fmt = kind_.pixels;
+    const bool grey = encoder_->pix_fmt == AV_PIX_FMT_GRAY8;
+    encoder_->width = grey ? width_ : even(width_);
+    encoder_->height = grey ? height_ : even(height_);
+    encoder_->color_range = kind_.full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     encoder_->colorspace = AVCOL_SPC_BT709;
     encoder_->color_primaries = AVCOL_PRI_BT709;
     encoder_->color_trc = AVCOL_TRC_BT709;
-    encoder_->time_base = kMicroseconds;
     encoder_->framerate = av_d2q(settings_.fps, 1'000'000);
+    encoder_->time_base = kind_.ticks_per_second > 0 ? AVRational{1, kind_.ticks_per_second}
+                                                     : av_inv_q(encoder_->framerate);
     encoder_->gop_size = kKeyInterval;
     // Frames leave in the order of their times: exact stamps without an edit list.
     encoder_->max_b_frames = 0;
     if (container_->oformat->flags & AVFMT_GLOBALHEADER)
         encoder_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    av_opt_set_double(encoder_->priv_data, "crf", settings_.crf, 0);
-    // A long look ahead would keep that many frames out of the file.
-    av_opt_set_int(encoder_->priv_data, "rc-lookahead", 10, 0);
+    if (is_h264(kind_)) {
+        av_opt_set_double(encoder_->priv_data, "crf", settings_.crf, 0);
+        // A long look ahead would keep that many frames out of the file.
+        av_opt_set_int(encoder_->priv_data, "rc-lookahead", 10, 0);
+    }
+    encoder_->flags |= AV_CODEC_FLAG_QSCALE;  // Motion JPEG; the others pass it over
+    encoder_->global_quality = kJpegQuality * FF_QP2LAMBDA;
     if (avcodec_open2(encoder_.get(), encoder_->codec, nullptr) < 0)
-        throw Error(ErrorKind::failed, path_.string() + ": x264 refuses pictures of " +
-                                           std::to_string(width_) + "x" + std::to_string(height_));
+        throw Error(ErrorKind::failed, path_.string() + ": " + kind_.encoder +
+                                           " refuses frames of " + std::to_string(width_) + "x" +
+                                           std::to_string(height_));
 
     stream_ = avformat_new_stream(container_.get(), nullptr);
-    stream_->time_base = kMicroseconds;
+    stream_->time_base = encoder_->time_base;
     stream_->avg_frame_rate = encoder_->framerate;
     check(avcodec_parameters_from_context(stream_->codecpar, encoder_.get()), "describing it");
     AVDictionary* options = nullptr;
@@ -140,6 +211,7 @@ void VideoFile::open_encoder(const cv::Mat& picture) {
     const int result = avformat_write_header(container_.get(), &options);
     av_dict_free(&options);
     check(result, "writing its header");
+    header_written_ = true;
 
     frame_->format = encoder_->pix_fmt;
     frame_->width = encoder_->width;
@@ -148,7 +220,7 @@ void VideoFile::open_encoder(const cv::Mat& picture) {
 }
 
 void VideoFile::write(const cv::Mat& picture, std::int64_t t_us) {
-    if (stream_ == nullptr) open_encoder(picture);
+    if (!header_written_) open_encoder(picture);
     if (picture.cols != width_ || picture.rows != height_ || picture.type() != type_)
         throw Error(ErrorKind::failed, path_.string() + ": expected frames of " +
                                            std::to_string(width_) + "x" + std::to_string(height_) +
@@ -156,12 +228,20 @@ void VideoFile::write(const cv::Mat& picture, std::int64_t t_us) {
                                            std::to_string(picture.rows));
     // The encoder may still read the buffer of the frame before.
     check(av_frame_make_writable(frame_.get()), "making a buffer");
+    fill_frame(picture);
+    const std::int64_t tick = av_rescale_q(t_us, kMicroseconds, encoder_->time_base);
+    frame_->pts = last_tick_ = std::max(tick, last_tick_ + 1);
+    encode(frame_.get());
+}
+
+void VideoFile::fill_frame(const cv::Mat& picture) {
+    if (kind_.pixels == AV_PIX_FMT_GRAY8)
+        return picture.copyTo(cv::Mat(picture.rows, picture.cols, CV_8UC1, frame_->data[0],
+                                      std::size_t(frame_->linesize[0])));
     to_yuv420(
-        picture, YuvRange::limited,
+        picture, kind_.full_range ? YuvRange::full : YuvRange::limited,
         {Plane{frame_->data[0], frame_->linesize[0]}, Plane{frame_->data[1], frame_->linesize[1]},
          Plane{frame_->data[2], frame_->linesize[2]}});
-    frame_->pts = t_us;
-    encode(frame_.get());
 }
 
 void VideoFile::encode(const AVFrame* frame) {
@@ -171,8 +251,9 @@ void VideoFile::encode(const AVFrame* frame) {
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "encoding");
         packet_->stream_index = stream_->index;
-        packet_->duration = std::llround(1e6 / settings_.fps);
-        av_packet_rescale_ts(packet_.get(), kMicroseconds, stream_->time_base);
+        packet_->duration =
+            av_rescale_q(std::llround(1e6 / settings_.fps), kMicroseconds, encoder_->time_base);
+        av_packet_rescale_ts(packet_.get(), encoder_->time_base, stream_->time_base);
         check(av_write_frame(container_.get(), packet_.get()), "writing");
         av_packet_unref(packet_.get());
     }
@@ -180,14 +261,13 @@ void VideoFile::encode(const AVFrame* frame) {
 
 void VideoFile::finish() {
     if (std::exchange(finished_, true)) return;
-    if (stream_ == nullptr) {
-        avio_closep(&container_->pb);
-        if (std::filesystem::is_regular_file(path_)) std::filesystem::remove(path_);
-        return;
+    if (header_written_ && !failure_) {
+        encode(nullptr);
+        check(av_write_trailer(container_.get()), "ending it");
+        avio_flush(bytes_.get());
+        check(0, "closing it");
     }
-    encode(nullptr);
-    check(av_write_trailer(container_.get()), "ending it");
-    check(avio_closep(&container_->pb), "closing it");
+    file_->close();
 }
 
 }  // namespace eventide

@@ -5,13 +5,16 @@
 #include "pipeline/model_stages.h"
 #include "pipeline/pipeline.h"
 #include "replay/paced.h"
+#include "src/app/model_path.h"
 #include "src/app/network.h"
+#include "src/app/printable.h"
 #include "src/app/progress.h"
 #include "src/app/reference_images.h"
 #include "src/app/version.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
 #include "src/evaluate/plot.h"
+#include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +22,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <map>
 
@@ -124,7 +126,7 @@ void print_table(const std::vector<BenchRow>& rows) {
                 "events/s", "ms/evfr", "ms/pict", "x real", "latency p50/p99", "MSE");
     for (const BenchRow& row : rows)
         std::printf("%-12s %-28s %-10s %11.0f %9.2f %9.2f %7.2f %8.1f/%-7.1f %8.4f\n",
-                    row.model.c_str(), row.engine.c_str(), show_size(row.sensor).c_str(),
+                    printable(row.model).c_str(), row.engine.c_str(), show_size(row.sensor).c_str(),
                     row.event_rate, row.encode_ms, row.render_ms, row.times_real_time,
                     row.latency_p50_ms, row.latency_p99_ms, row.mse);
 }
@@ -146,13 +148,13 @@ std::string json_of(const std::vector<BenchRow>& rows) {
                                 {"latency_p50_ms", row.latency_p50_ms},
                                 {"latency_p99_ms", row.latency_p99_ms},
                                 {"mse", row.mse}});
-    return json.dump(2) + "\n";
+    return json_text(json) + "\n";
 }
 
 /// Error over work, one line per sensor size.
 Plot plot_of(const std::vector<BenchRow>& rows) {
     Plot plot{.name = "bench",
-              .title = "Error against work per event frame and picture",
+              .title = "Error against work per event window and frame",
               .x_label = "ms",
               .y_label = "MSE",
               .log_x = true};
@@ -170,11 +172,11 @@ Plot plot_of(const std::vector<BenchRow>& rows) {
 }  // namespace
 
 std::string BenchCommand::examples() const {
-    return "ms/evfr: the network per event frame of 50 ms, ms/pict: rendering one picture "
+    return "ms/evfr: the network per event window of 50 ms, ms/pict: rendering one frame "
            "(medians);\n"
-           "x real: sensor time over host time as fast as it goes; latency at the pace of the "
+           "x real: sensor time over host time as fast as possible; latency at the pace of the "
            "camera,\n"
-           "from the last packet a picture saw to the picture written.\n"
+           "from the last packet a frame saw to the frame written.\n"
            "Examples:\n"
            "  eventide bench\n"
            "  eventide bench --sizes 240x180 --models default --models small --precisions f32 "
@@ -195,12 +197,13 @@ SettingTable BenchCommand::settings() {
                        "an older one.",
                        {"best", "avx2", "sse4"}));
     add(number_setting("seconds", seconds_, "S", "Length of each recording.", 0.2, 3600));
-    add(number_setting("scale", scale_, "S", "Pictures are so many times the sensor's size.", 0.1,
+    add(number_setting("scale", scale_, "S", "Frames are so many times the sensor's size.", 0.1,
                        16));
     add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
+    add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
     return table;
 }
 
@@ -230,8 +233,27 @@ BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& dat
             free.mse};
 }
 
+void BenchCommand::name_bench_files(NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    for (const std::string& model : models_) files.reads("--models", find_model(model));
+    files.writes("--json", json_);
+    if (plots_.empty()) return;
+    for (const char* name : {"bench.svg", "bench.csv"})
+        files.writes("--plots", std::filesystem::path{plots_} / name);
+}
+
+namespace {
+
+std::string what_of(const std::string& model, const std::string& precision,
+                    const std::string& size) {
+    return model + " " + precision + " " + size;
+}
+
+}  // namespace
+
 int BenchCommand::run(Program& program) {
     limit_instructions(instructions_);
+    name_bench_files(program.files);
     std::printf("%s; eventide %s, %s; threads %s; scene %s, %g s, lookahead %d (latency: 0)\n",
                 processor_text().c_str(), version().c_str(), compiler_text().c_str(),
                 threads_ == 0 ? "all" : std::to_string(threads_).c_str(), scene_.c_str(), seconds_,
@@ -244,7 +266,7 @@ int BenchCommand::run(Program& program) {
         for (const std::string& model : models_)
             for (const std::string& precision : precisions_) {
                 if (program.signals.stopping()) break;
-                progress.show(0, model + " " + precision + " " + size);
+                progress.show(0, what_of(model, precision, size));
                 rows.push_back(measure(data, model,
                                        Precision(parse_choice(precision, {"auto", "f32", "bf16"})),
                                        program));
@@ -252,12 +274,8 @@ int BenchCommand::run(Program& program) {
     }
     progress.clear();
     print_table(rows);
-    if (!json_.empty()) {
-        std::ofstream file{json_};
-        file << json_of(rows) << std::flush;
-        if (!file) throw Error(ErrorKind::failed, json_ + ": cannot be written");
-    }
-    if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_).string());
+    if (!json_.empty()) write_file(json_, json_of(rows), overwrite_);
+    if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_, overwrite_).string());
     return exit_done;
 }
 

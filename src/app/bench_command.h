@@ -38,6 +38,7 @@ public:
 private:
     BenchRow measure(const std::shared_ptr<const RecordedPackets>& data, const std::string& model,
                      Precision precision, Program& program) const;
+    void name_bench_files(NamedFiles& files) const;
 
     std::string scene_ = "demo";
     std::vector<std::string> sizes_{"240x180", "346x260", "640x480"}, models_{"default"},
@@ -47,6 +48,7 @@ private:
     Engine engine_ = Engine::fast;
     Instructions instructions_ = Instructions::best;
     std::string json_, plots_;
+    bool overwrite_ = false;
 };
 
 }  // namespace eventide::app

@@ -1,6 +1,7 @@
 // What every subcommand is: a name, its settings, and what it does.
 #pragma once
 
+#include "src/app/named_files.h"
 #include "src/app/setting.h"
 #include "src/app/signals.h"
 
@@ -17,6 +18,7 @@ struct Program {
     Signals& signals;
     std::vector<std::string> arguments;  ///< as typed, without the program's name
     bool quiet = false;
+    NamedFiles files{};  ///< the configuration, and what the command adds
 };
 
 /// An argument without a flag.

@@ -146,9 +146,13 @@ std::vector<std::string> flags_of(const CLI::App& app) {
                         "there is no option " + flag + suggestion(flag, flags) + help);
     }
     std::string left;
-    for (const std::string& each : app.remaining(true))
-        left.insert(0, left.empty() ? each : each + " ");
-    throw Error(ErrorKind::usage, "not expected: " + left + help);
+    bool output = false;
+    for (const std::string& each : app.remaining(true)) {
+        left.insert(0, "'" + each + (left.empty() ? "'" : "' "));
+        output = output || (command == "run" && !each.starts_with("-"));
+    }
+    throw Error(ErrorKind::usage,
+                "unexpected argument " + left + (output ? "; did you mean --out?" : "") + help);
 }
 
 }  // namespace
@@ -159,14 +163,11 @@ std::string help_hint(const std::string& command) {
 
 Parsed parse_command_line(const std::vector<std::string>& arguments, const SettingTable& common) {
     CLI::App app{"Video with uncertainty from event cameras, in real time.", "eventide"};
-    app.footer(
-        "Examples:\n"
-        "  eventide run recording.aedat4 --out video.mp4\n"
-        "  eventide info recording.raw\n"
-        "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"
-        "Exit codes: 0 done, 1 failed while running, 2 wrong usage or configuration, 3 input "
-        "unreadable,\n"
-        "4 device missing or lost, 5 finished but data were lost (with --strict).");
+    app.footer(std::string{"Examples:\n"
+                           "  eventide run recording.aedat4 --out video.mp4\n"
+                           "  eventide info recording.raw\n"
+                           "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"} +
+               kExitCodes);
     app.set_version_flag("--version", version_text());
     app.require_subcommand(0, 1);
     app.fallthrough();
@@ -176,10 +177,10 @@ Parsed parse_command_line(const std::vector<std::string>& arguments, const Setti
         ->type_name("FILE")
         ->envname("EVENTIDE_CONFIG");
     app.add_flag("--print-config", invocation.print_config,
-                 wrapped("Show each value of the command and where it comes from, and end"));
+                 wrapped("Show each value of the command and where it comes from, and exit"));
     app.add_flag("--default-config", print_defaults,
                  wrapped("Print a configuration file with all keys, their meaning and defaults, "
-                         "and end"));
+                         "and exit"));
     Options common_options;
     common_options.add(app, common);
 

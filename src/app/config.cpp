@@ -1,9 +1,11 @@
 // The layers of the configuration, and how it is printed.
 #include "src/app/config.h"
 
+#include "src/app/printable.h"
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <ostream>
 #include <sstream>
@@ -31,10 +33,17 @@ std::vector<std::string> split(const std::string& text, char separator) {
 std::string quoted(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 0x20 || code == 0x7F) {  // TOML has these escaped
+            char escaped[8];
+            std::snprintf(escaped, sizeof escaped, "\\u%04X", unsigned(code));
+            out += escaped;
+            continue;
+        }
         if (c == '"' || c == '\\') out += '\\';
         out += c;
     }
-    return out + "\"";
+    return printable(out) + "\"";
 }
 
 std::string toml_value(const Setting& setting) {
@@ -165,7 +174,7 @@ void print_config(std::ostream& out, const std::vector<const SettingTable*>& tab
                 out << line << '\n';
             } else {
                 out << line << std::string(line.size() < 40 ? 40 - line.size() : 1, ' ') << "# "
-                    << setting.origin << '\n';
+                    << printable(setting.origin) << '\n';
             }
         }
     }

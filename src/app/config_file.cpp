@@ -1,10 +1,10 @@
 // TOML through toml++; our own walk, because unknown keys are errors with a line number here.
 #include "src/app/config.h"
 #include "src/core/error.h"
+#include "src/io/input_file.h"
 
 #include <toml++/toml.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -54,9 +54,7 @@ ConfigValue value_of(const std::string& path, const toml::key& key, const toml::
 }  // namespace
 
 ConfigFile read_config_file(const std::string& path) {
-    std::ifstream stream{path};
-    if (!stream || std::filesystem::is_directory(path))
-        throw Error(ErrorKind::usage, path + ": cannot be read");
+    std::ifstream stream = open_to_read(path, ErrorKind::usage);
     const std::string text{std::istreambuf_iterator<char>{stream}, {}};
     ConfigFile file;
     try {

@@ -20,7 +20,7 @@ private:
     std::string from_file_, to_file_, to_format_ = "auto";
     InputSettings input_;
     std::optional<Moment> from_, to_;
-    bool overwrite_ = false, strict_ = false;
+    bool overwrite_ = false, force_ = false, strict_ = false;
 };
 
 }  // namespace eventide::app

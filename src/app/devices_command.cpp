@@ -2,6 +2,7 @@
 #include "src/app/devices_command.h"
 
 #include "drivers/devices.h"
+#include "src/app/printable.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -21,12 +22,13 @@ nlohmann::ordered_json json_of(const CameraDescription& camera) {
 }
 
 void print(const CameraDescription& camera) {
-    std::cout << camera.source << "  " << camera.name;
-    if (!camera.serial.empty()) std::cout << ", serial " << camera.serial;
-    if (!camera.firmware.empty()) std::cout << ", firmware " << camera.firmware;
-    if (!camera.logic.empty()) std::cout << ", logic " << camera.logic;
-    std::cout << '\n';
-    if (!camera.problem.empty()) std::cout << "    cannot be used: " << camera.problem << '\n';
+    std::string line = camera.source + "  " + camera.name;
+    if (!camera.serial.empty()) line += ", serial " + camera.serial;
+    if (!camera.firmware.empty()) line += ", firmware " + camera.firmware;
+    if (!camera.logic.empty()) line += ", FPGA logic version " + camera.logic;
+    std::cout << printable(line) << '\n';
+    if (!camera.problem.empty())
+        std::cout << "    cannot be used: " << printable(camera.problem) << '\n';
 }
 
 }  // namespace
@@ -42,7 +44,7 @@ int DevicesCommand::run(Program&) {
     if (json_) {
         auto list = nlohmann::ordered_json::array();
         for (const CameraDescription& camera : cameras) list.push_back(json_of(camera));
-        std::cout << list.dump(2) << '\n';
+        std::cout << json_text(list) << '\n';
         return exit_done;
     }
     for (const CameraDescription& camera : cameras) print(camera);

@@ -8,7 +8,7 @@ namespace eventide::app {
 class DevicesCommand : public Command {
 public:
     std::string name() const override { return "devices"; }
-    std::string summary() const override { return "List cameras, and what keeps one from working"; }
+    std::string summary() const override { return "List cameras and diagnose problems"; }
     std::string examples() const override {
         return "Examples:\n  eventide devices\n  eventide devices --json";
     }

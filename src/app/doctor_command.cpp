@@ -4,6 +4,7 @@
 #include "drivers/devices.h"
 #include "pipeline/sinks/window.h"
 #include "src/app/network.h"
+#include "src/app/printable.h"
 #include "src/app/version.h"
 #include "src/core/error.h"
 
@@ -86,9 +87,9 @@ std::vector<Finding> cameras() {
 
 void print(const Finding& finding) {
     const std::string state = kStates[std::size_t(finding.state)];
-    std::cout << state << std::string(8 - state.size(), ' ') << finding.subject << ": "
-              << finding.found << '\n';
-    if (!finding.advice.empty()) std::cout << "        " << finding.advice << '\n';
+    std::cout << state << std::string(8 - state.size(), ' ')
+              << printable(finding.subject + ": " + finding.found) << '\n';
+    if (!finding.advice.empty()) std::cout << "        " << printable(finding.advice) << '\n';
 }
 
 }  // namespace
@@ -112,7 +113,7 @@ int DoctorCommand::run(Program&) {
                         {"advice", finding.advice}});
         if (!json_) print(finding);
     }
-    if (json_) std::cout << list.dump(2) << '\n';
+    if (json_) std::cout << json_text(list) << '\n';
     return bad ? int(ErrorKind::failed) : exit_done;
 }
 

@@ -8,7 +8,7 @@ namespace eventide::app {
 class DoctorCommand : public Command {
 public:
     std::string name() const override { return "doctor"; }
-    std::string summary() const override { return "What works on this machine, and what to do"; }
+    std::string summary() const override { return "Check this machine and suggest fixes"; }
     std::string examples() const override {
         return "Nothing is changed. Exit code 0 unless something is missing that run needs.\n"
                "Examples:\n  eventide doctor\n  eventide doctor --json";

@@ -2,30 +2,41 @@
 // images/.
 #pragma once
 
+#include "pipeline/sinks/run_folder.h"
 #include "replay/recording_file.h"
 #include "src/core/event.h"
+#include "src/io/output_file.h"
 
+#include <opencv2/core.hpp>
+
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 namespace eventide::app {
 
 class EcdWriter {
 public:
-    /// Throws Error (usage) for a folder that holds something, without `overwrite`, (failed) when
-    /// it cannot be made.
-    EcdWriter(std::filesystem::path folder, bool overwrite, int width, int height);
+    /// Throws Error as RunFolder does.
+    EcdWriter(const std::filesystem::path& folder, bool overwrite, int width, int height);
+
+    /// What it writes.
+    static RunFolderFiles files();
 
     /// Events and images; inertial samples and triggers have no place there.
     void write(const Batch& batch);
     void finish();
+    std::uint64_t bytes_written() const { return events_->bytes_written() + image_bytes_; }
 
 private:
-    std::filesystem::path folder_;
+    void write(const ReferenceImage& image);
+    cv::Mat covering_sensor(const ReferenceImage& image) const;
+
+    int width_, height_;  // of the sensor
+    std::uint64_t image_bytes_ = 0;
+    RunFolder folder_;
     std::unique_ptr<RecordingFile> events_;
-    std::ofstream list_;
-    std::uint64_t images_ = 0;
+    OutputFile list_;
 };
 
 }  // namespace eventide::app

@@ -2,31 +2,32 @@
 #include "src/app/evaluate_command.h"
 
 #include "pipeline/parallel_tbb.h"
+#include "src/app/command_files.h"
 #include "src/app/model_path.h"
+#include "src/app/printable.h"
 #include "src/app/progress.h"
+#include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
+#include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 namespace eventide::app {
 
 namespace {
 
 /// To a file, or to standard output for "-".
-void write_text(const std::string& file, const std::string& text) {
-    if (file.empty()) return;
-    if (file == "-") {
-        std::cout << text << std::flush;
-        return;
-    }
-    std::ofstream stream{file};
-    stream << text << std::flush;
-    if (!stream) throw Error(ErrorKind::failed, file + ": cannot be written");
+void write_text(const std::string& file, const std::string& text, bool overwrite) {
+    if (file == "-")
+        std::cout << text;
+    else if (!file.empty())
+        write_file(file, text, overwrite);
 }
 
 std::optional<double> seconds_of(const std::string& text, const char* open) {
@@ -61,7 +62,7 @@ std::string EvaluateCommand::examples() const {
 std::vector<Positional> EvaluateCommand::positionals() {
     return {{"INPUT",
              "Recordings with reference images; a folder of sequences (evreal); two folders of "
-             "pictures (folders); nothing (simulated)",
+             "images (folders); nothing (simulated)",
              nullptr, &inputs_}};
 }
 
@@ -71,21 +72,30 @@ SettingTable EvaluateCommand::settings() {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(choice_setting("protocol", protocol_,
                        "recordings: between their reference images; evreal: ECD, MVSEC and HQF as "
-                       "EVREAL does; simulated: the project's test set; folders: pictures against "
-                       "pictures.",
+                       "EVREAL does; simulated: the project's test set; folders: images against "
+                       "images.",
                        {"recordings", "evreal", "simulated", "folders"}));
     add(text_setting("model", model_, "NAME|FILE", "As in eventide run."));
     add(text_setting(
         "lpips", lpips_, "FILE",
         "Weights of LPIPS as npz (lpips_squeeze_v0.1.npz); empty: LPIPS is left out."));
     add(whole_setting("lookahead", lookahead_, "0|1|2",
-                      "Event frames after the picture's own that may be used.", 0, 2));
-    add(text_setting("window", window_, "WINDOW",
-                     "recordings: reference (an event frame between reference images), or as in "
-                     "eventide run."));
+                      "Event windows after the frame's own that may be used.", 0, 2));
+    add(parsed_setting<std::string>(
+        "window", window_, "WINDOW",
+        "recordings: reference (an event window between reference images), or as in eventide run.",
+        [](const std::string& text) {
+            if (text != "reference") parse_window(text);
+            return text;
+        },
+        [](const std::string& text) { return text; }));
     add(whole_setting("skip", skip_, "N",
-                      "So many first images are not scored: the state is still empty.", 0,
-                      1000000));
+                      "The first N images are not scored: the state is still empty.", 0, 1000000));
+    add(whole_setting(
+        "frames", given_images_, "N",
+        "recordings: give one image of N to the model, which corrects its frames, and "
+        "score the others; 0: none.",
+        0, 1000000));
     add(seconds_setting("from", from_,
                         "recordings: score from here, after the first event; start: "
                         "all.",
@@ -98,7 +108,7 @@ SettingTable EvaluateCommand::settings() {
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
 
     add(text_setting("images", images_, "FOLDER",
-                     "simulated: photographs to draw scenes from; empty: made-up patterns."));
+                     "simulated: photographs to draw scenes from; empty: procedural textures."));
     add(whole_setting("last_images", last_images_, "N",
                       "simulated: only the last so many of them by name; 0: all.", 0, 1000000));
     add(whole_setting("sequences", sequences_, "N", "simulated: how many.", 1, 100000));
@@ -106,7 +116,7 @@ SettingTable EvaluateCommand::settings() {
                       1000000));
     add(parsed_setting<Size>("size", size_, "WxH", "simulated: sensor size in pixels.", parse_size,
                              show_size));
-    add(number_setting("scale", scale_, "S", "simulated: pictures are so many times larger.", 0.1,
+    add(number_setting("scale", scale_, "S", "simulated: frames are so many times larger.", 0.1,
                        16));
     add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
 
@@ -114,7 +124,7 @@ SettingTable EvaluateCommand::settings() {
                      "All measures as JSON; -: on standard output, instead of "
                      "the table."));
     add(text_setting("csv", csv_, "FILE", "A line per sequence; - as for --json."));
-    add(text_setting("frame_csv", frame_csv_, "FILE", "A line per picture; - as for --json."));
+    add(text_setting("frame_csv", frame_csv_, "FILE", "A line per frame; - as for --json."));
     std::string names;
     for (const std::string& figure : figure_names()) names += (names.empty() ? "" : ", ") + figure;
     add(list_setting(
@@ -130,6 +140,7 @@ SettingTable EvaluateCommand::settings() {
     add(text_setting(
         "calibrated", calibrated_, "FILE",
         "Fit one factor for sigma on what was evaluated, and write the model with it."));
+    add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
     return table;
 }
 
@@ -174,7 +185,7 @@ void EvaluateCommand::require_inputs() const {
     if (protocol_ == Protocol::recordings && n < 1) expected = "one or more recordings";
     if (protocol_ == Protocol::evreal && n != 1) expected = "one folder";
     if (protocol_ == Protocol::folders && n != 2)
-        expected = "two folders: pictures and what they are to be";
+        expected = "two folders: images and what they are to be";
     if (protocol_ == Protocol::simulated && n != 0) expected = "no input";
     if (expected != nullptr)
         throw Error(ErrorKind::usage,
@@ -196,13 +207,19 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
     what.recordings.assign(inputs_.begin(), inputs_.end());
     what.window = window_;
     what.skip_images = skip_;
+    if (given_images_ == 1)
+        throw Error(
+            ErrorKind::usage,
+            "--frames 1: all images would be given and none scored; expected 0, or 2 or more");
+    what.given_images = given_images_;
     what.from_s = seconds_of(from_, "start");
     what.to_s = seconds_of(to_, "end");
     return evaluate_recordings(what, how);
 }
 
 void EvaluateCommand::write_plots(const std::vector<Plot>& plots) const {
-    for (const Plot& plot : plots) spdlog::info("{}", write_plot(plot, plots_).string());
+    for (const Plot& plot : plots)
+        spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());
 }
 
 void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const {
@@ -213,22 +230,55 @@ void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const 
 }
 
 void EvaluateCommand::write(const EvaluateReport& report) const {
-    if (json_ != "-" && csv_ != "-" && frame_csv_ != "-") std::cout << text_table(report);
-    write_text(json_, json(report) + "\n");
-    write_text(csv_, csv(report));
-    write_text(frame_csv_, frame_csv(report));
+    if (json_ != "-" && csv_ != "-" && frame_csv_ != "-")
+        std::cout << printable(text_table(report), Lines::keep);
+    write_text(json_, json(report) + "\n", overwrite_);
+    write_text(csv_, csv(report), overwrite_);
+    write_text(frame_csv_, frame_csv(report), overwrite_);
 }
 
 void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSettings& how) const {
     const Calibration found = eventide::calibrate(report, calibration_);
-    write_calibrated(how.model, calibrated_, found);
+    write_calibrated(how.model, calibrated_, found, overwrite_);
     spdlog::info("{}: sigma times {:.4f}; PICP80 {:.3f} to {:.3f}, LL {:.3f} to {:.3f}",
                  calibrated_, found.factor, found.picp80_before, found.picp80_after,
                  found.ll_before, found.ll_after);
 }
 
+/// What the figures' names begin with in --plots; the rest depends on what is measured.
+void EvaluateCommand::name_plots(NamedFiles& files) const {
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator{plots_, none})
+        for (std::string figure : figures_) {
+            std::ranges::replace(figure, '-', '_');
+            const std::string kind = entry.path().extension();
+            if ((kind == ".svg" || kind == ".csv") &&
+                (entry.path().stem() == figure ||
+                 entry.path().stem().string().starts_with(figure + "_")))
+                files.writes("--plots", entry.path());
+        }
+}
+
+void EvaluateCommand::name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    for (const std::string& input : inputs_)
+        if (protocol_ == Protocol::recordings)
+            name_recording("INPUT", input, files);
+        else
+            name_files("INPUT", input, files);
+    files.reads("--model", how.model);
+    files.reads("--lpips", lpips_);
+    name_files("--images", images_, files);
+    for (const auto& [option, file] :
+         {std::pair{"--json", &json_}, {"--csv", &csv_}, {"--frame-csv", &frame_csv_}})
+        if (*file != "-") files.writes(option, *file);
+    files.writes("--calibrated", calibrated_);
+    name_plots(files);
+}
+
 int EvaluateCommand::run(Program& program) {
     const EvaluateSettings settings = how(program);
+    name_evaluation_files(settings, program.files);
     make_simulated_figures(settings);
     const bool table = figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
     if (!table) return exit_done;

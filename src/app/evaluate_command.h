@@ -27,6 +27,8 @@ private:
     SimulatedSettings simulated() const;
     EvaluateReport evaluate(const EvaluateSettings& how) const;
     void require_inputs() const;
+    void name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const;
+    void name_plots(NamedFiles& files) const;
     void write_plots(const std::vector<Plot>& plots) const;
     void make_simulated_figures(const EvaluateSettings& how) const;
     void write(const EvaluateReport& report) const;
@@ -35,7 +37,7 @@ private:
     std::vector<std::string> inputs_;
     Protocol protocol_ = Protocol::recordings;
     std::string model_ = "default", lpips_, window_ = "reference";
-    int lookahead_ = 0, skip_ = 3, threads_ = 0;
+    int lookahead_ = 0, skip_ = 3, given_images_ = 0, threads_ = 0;
     SigmaChoice sigma_rule_ = SigmaChoice::model;
     Precision precision_ = Precision::automatic;
     Engine engine_ = Engine::fast;
@@ -49,6 +51,7 @@ private:
     std::string plots_ = "plots";
     CalibrationRule calibration_ = CalibrationRule::coverage;
     std::string calibrated_;
+    bool overwrite_ = false;
 };
 
 }  // namespace eventide::app

@@ -3,11 +3,14 @@
 
 #include "replay/formats.h"
 #include "replay/summary.h"
+#include "src/app/disorder.h"
+#include "src/app/printable.h"
 #include "src/app/progress.h"
 #include "src/core/error.h"
 #include "src/model/model_file.h"
 #include "src/model/model_metadata.h"
 
+#include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
@@ -19,7 +22,8 @@ namespace {
 
 void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t bytes) {
     const auto line = [](const char* name, const std::string& value) {
-        std::cout << name << std::string(12 - std::string{name}.size(), ' ') << value << '\n';
+        std::cout << name << std::string(12 - std::string{name}.size(), ' ') << printable(value)
+                  << '\n';
     };
     const auto whole = [](std::uint64_t n) { return std::to_string(n); };
     line("format", summary.format);
@@ -60,12 +64,12 @@ int InfoCommand::describe_model() const {
     facts["weights"] = std::to_string(weights);
     facts["identity"] = encoder_identity(model);
     if (json_) {
-        std::cout << nlohmann::json(facts).dump(2) << '\n';
+        std::cout << json_text(facts) << '\n';
         return exit_done;
     }
     for (const auto& [key, value] : facts)
-        std::cout << key << std::string(key.size() < 16 ? 16 - key.size() : 1, ' ') << value
-                  << '\n';
+        std::cout << key << std::string(key.size() < 16 ? 16 - key.size() : 1, ' ')
+                  << printable(value, Lines::keep) << '\n';
     return exit_done;
 }
 
@@ -90,7 +94,7 @@ SettingTable InfoCommand::settings() {
 
 int InfoCommand::run(Program& program) {
     if (file_.ends_with(".safetensors")) return describe_model();
-    const auto recording = open_recording(file_, input_.options());
+    const auto recording = open_input(file_, input_);
     Progress progress{program.quiet};
     const Summary summary = summarize(*recording, [&] {
         if (recording->size_bytes() > 0)
@@ -99,6 +103,10 @@ int InfoCommand::run(Program& program) {
     });
     progress.clear();
     if (program.signals.stopping()) throw Error(ErrorKind::failed, "stopped before the end");
+    if (const std::string why =
+            disorder_text(file_, summary.format, summary.events, summary.damaged);
+        !why.empty())
+        spdlog::warn("{}", why);
     if (json_)
         std::cout << to_json(summary) << '\n';
     else

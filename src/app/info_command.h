@@ -9,7 +9,7 @@ namespace eventide::app {
 class InfoCommand : public Command {
 public:
     std::string name() const override { return "info"; }
-    std::string summary() const override { return "Say what a recording or a model holds"; }
+    std::string summary() const override { return "Show information about a recording or model"; }
     std::string examples() const override;
     std::vector<Positional> positionals() override;
     SettingTable settings() override;

@@ -3,6 +3,8 @@
 
 #include "replay/formats.h"
 
+#include <spdlog/spdlog.h>
+
 namespace eventide::app {
 
 void InputSettings::add_to(SettingTable& table) {
@@ -35,8 +37,14 @@ void InputSettings::add_to(SettingTable& table) {
     table.settings.push_back(choice_setting(
         "input_time_unit", open.text.unit,
         "Unit of the times in a text recording; auto: seconds where there is a decimal point, else "
-        "microseconds.",
+        "microseconds, or what makes sense of the rate of events.",
         {"auto", "s", "ms", "us", "ns"}));
+    table.settings.push_back(parsed_setting<SensorDuration>(
+        "reorder", open.text.reorder, "TIME",
+        "Put rows of a text recording in order that come at most so long after a later one; 0s "
+        "takes them as they come. What comes later still is left out.",
+        [](const std::string& text) { return parse_duration(text); },
+        [](const SensorDuration& d) { return show_duration(d); }));
     table.settings.push_back(flag_setting(
         "input_dvs128_one_is_on", open.dvs128_one_is_on,
         "In AEDAT 1.0 and 2.0 files of a DVS128, polarity bit 1 means on; jAER's files, the usual "
@@ -50,6 +58,12 @@ OpenOptions InputSettings::options() const {
         options.height = size->height;
     }
     return options;
+}
+
+std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input) {
+    auto recording = open_recording(path, input.options());
+    for (const std::string& remark : recording->remarks()) spdlog::warn("{}: {}", path, remark);
+    return recording;
 }
 
 }  // namespace eventide::app

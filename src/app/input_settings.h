@@ -2,6 +2,7 @@
 #pragma once
 
 #include "replay/open_options.h"
+#include "replay/recording.h"
 #include "src/app/setting.h"
 #include "src/app/values.h"
 
@@ -19,5 +20,8 @@ struct InputSettings {
     void add_to(SettingTable& table);
     OpenOptions options() const;
 };
+
+/// open_recording(), and its remarks as warnings.
+std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input);
 
 }  // namespace eventide::app

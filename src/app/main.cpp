@@ -1,11 +1,34 @@
 // eventide: video with uncertainty from event cameras.
 #include "src/app/program.h"
 #include "src/app/signals.h"
+#include "src/core/error.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
 #include <string>
 #include <vector>
 
+namespace {
+
+/// Else the next file to be opened would take the number of a standard stream that is closed, and
+/// what is said to people would land in it. In the wrong direction, so that using one is an error.
+void occupy_closed_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) < 0)
+            ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-    eventide::app::Signals signals;
-    return eventide::app::run_program(signals, std::vector<std::string>(argv + 1, argv + argc));
+    occupy_closed_streams();
+    try {
+        eventide::app::Signals signals;
+        return eventide::app::run_program(signals, std::vector<std::string>(argv + 1, argv + argc));
+    } catch (const eventide::Error& error) {
+        std::fprintf(stderr, "eventide: error: %s\n", error.what());
+        return int(error.kind());
+    }
 }

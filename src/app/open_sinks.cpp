@@ -8,28 +8,15 @@
 #include "pipeline/sinks/v4l2_output.h"
 #include "pipeline/sinks/video.h"
 #include "pipeline/sinks/window.h"
-#include "src/core/error.h"
+#include "src/app/sink_name.h"
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <optional>
-#include <string_view>
+#include <utility>
 
 namespace eventide::app {
 
 namespace {
-
-constexpr StreamFormat kStreamFormats[]{StreamFormat::y4m, StreamFormat::y4m_mono,
-                                        StreamFormat::gray8, StreamFormat::gray16,
-                                        StreamFormat::grayf32};
-
-/// What is after "name:", or nothing.
-std::optional<std::string> after_prefix(const std::string& sink, std::string_view name) {
-    if (!sink.starts_with(std::string{name} + ":")) return std::nullopt;
-    return sink.substr(name.size() + 1);
-}
 
 std::unique_ptr<Sink> open_folder(const std::string& path, const RunSettings& settings,
                                   const SinkPlan& plan) {
@@ -44,14 +31,22 @@ std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& set
         spdlog::warn("{}: Matroska rounds times to 1 ms; MP4 keeps microseconds", path);
     return std::make_unique<VideoSink>(
         VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
-                      settings.video_preset, settings.video_crf, plan.fps});
+                      settings.video_preset, settings.video_crf, plan.fps, settings.slow});
 }
 
 std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
                                   const RunSettings& settings, const SinkPlan& plan) {
-    return std::make_unique<StreamSink>(
-        StreamSettings{path, format, settings.overwrite, settings.uncertainty,
-                       float(settings.sigma_white), plan.fps, plan.questions.stopping});
+    StreamSettings stream;
+    stream.path = path;
+    stream.format = format;
+    stream.overwrite = settings.overwrite;
+    stream.uncertainty = settings.uncertainty;
+    stream.sigma_white = float(settings.sigma_white);
+    stream.fps = plan.fps;
+    stream.stamp = settings.stamp;
+    stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
+    stream.give_up = plan.questions.stopping;
+    return std::make_unique<StreamSink>(std::move(stream));
 }
 
 std::unique_ptr<Sink> open_window(const RunSettings& settings, const SinkPlan& plan) {
@@ -80,6 +75,7 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.overwrite = settings.overwrite;
     sheet.sigma_white = float(settings.sigma_white);
     sheet.rows = settings.sheet_rows;
+    sheet.truth_caption = plan.reference_caption;
     if (plan.references != nullptr)
         sheet.draw_truth = [references = plan.references, sensor = plan.sensor](const Frame& frame,
                                                                                 cv::Mat& picture) {
@@ -88,37 +84,26 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     return std::make_unique<ContactSheetSink>(std::move(sheet));
 }
 
-std::unique_ptr<Sink> open_sink(const std::string& sink, const RunSettings& settings,
+std::unique_ptr<Sink> open_sink(const std::string& text, const RunSettings& settings,
                                 const SinkPlan& plan) {
-    if (sink == "null") return std::make_unique<NullSink>();
-    if (sink == "window") return open_window(settings, plan);
-    if (sink == "-") return open_stream(sink, StreamFormat::y4m, settings, plan);
-    if (const auto path = after_prefix(sink, "sheet")) return open_sheet(*path, settings, plan);
-    if (const auto node = after_prefix(sink, "v4l2")) return open_v4l2(*node, settings);
-    if (const auto path = after_prefix(sink, "folder")) return open_folder(*path, settings, plan);
-    for (const StreamFormat format : kStreamFormats)
-        if (const auto path = after_prefix(sink, name_of(format)))
-            return open_stream(*path, format, settings, plan);
-    if (sink.ends_with(".mp4") || sink.ends_with(".mkv")) return open_video(sink, settings, plan);
-    if (sink.ends_with(".y4m")) return open_stream(sink, StreamFormat::y4m, settings, plan);
-    if (sink.ends_with('/') || std::filesystem::is_directory(sink))
-        return open_folder(sink, settings, plan);
-    if (std::filesystem::is_fifo(sink)) return open_stream(sink, StreamFormat::y4m, settings, plan);
-    throw Error(ErrorKind::usage,
-                "--out " + sink +
-                    ": expected a folder (ending in /), x.mp4, x.mkv, x.y4m, -, a named pipe, "
-                    "window, null, v4l2:/dev/videoN, sheet:x.png, or y4m:, y4m-mono:, gray8:, "
-                    "gray16:, grayf32: and "
-                    "a file, pipe or -");
-}
-
-/// Two sinks on standard output would mix their bytes.
-void refuse_two_on_standard_output(const std::vector<std::string>& sinks) {
-    const auto takes_it = [](const std::string& sink) {
-        return sink == "-" || sink.ends_with(":-");
-    };
-    if (std::ranges::count_if(sinks, takes_it) > 1)
-        throw Error(ErrorKind::usage, "--out: only one sink can have standard output");
+    const SinkName sink = parse_sink(text);
+    switch (sink.kind) {
+        case SinkKind::window:
+            return open_window(settings, plan);
+        case SinkKind::folder:
+            return open_folder(sink.path, settings, plan);
+        case SinkKind::video:
+            return open_video(sink.path, settings, plan);
+        case SinkKind::stream:
+            return open_stream(sink.path, sink.format, settings, plan);
+        case SinkKind::sheet:
+            return open_sheet(sink.path, settings, plan);
+        case SinkKind::v4l2:
+            return open_v4l2(sink.path, settings);
+        case SinkKind::nothing:
+            break;
+    }
+    return std::make_unique<NullSink>();
 }
 
 }  // namespace
@@ -128,11 +113,10 @@ bool is_window(const std::string& sink) {
 }
 
 bool is_contact_sheet(const std::string& sink) {
-    return sink.starts_with("sheet:");
+    return sink.starts_with("contact-sheet:");
 }
 
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {
-    refuse_two_on_standard_output(settings.out);
     std::vector<std::unique_ptr<Sink>> plain, looked;
     LookSettings look = settings.look;
     look.unsharp = float(settings.unsharp);

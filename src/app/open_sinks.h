@@ -21,10 +21,12 @@ struct SinkQuestions {
 };
 
 struct SinkPlan {
-    double fps = 30;   ///< nominal
-    double speed = 1;  ///< of the recording, for the window
-    Size sensor;       ///< px
+    double fps = 30;            ///< nominal
+    bool constant_rate = true;  ///< and no frame for each event window
+    double speed = 1;           ///< of the recording, for the window
+    Size sensor;                ///< px
     ReferenceImages* references = nullptr;
+    std::string reference_caption;  ///< for people
     SinkQuestions questions;
 };
 

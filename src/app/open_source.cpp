@@ -7,14 +7,30 @@
 #include "replay/scan_geometry.h"
 #include "src/core/error.h"
 
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace eventide::app {
 
 namespace {
 
+/// "metavision:" is no file that is missing.
+void refuse_unknown_prefix(const std::string& source) {
+    const std::size_t colon = source.find(':');
+    std::error_code none;
+    if (colon == source.npos || source.find('/') < colon || std::filesystem::exists(source, none))
+        return;
+    throw Error(ErrorKind::usage,
+                source +
+                    ": unknown source; expected a file or folder, davis:, dvxplorer:, dvs128:, "
+                    "v4l2:/dev/videoN, sim:SCENE, or - for standard input");
+}
+
 OpenedSource open_file(const RunSettings& settings, double speed) {
-    auto recording = open_recording(settings.source, settings.input.options());
+    refuse_unknown_prefix(settings.source);
+    auto recording = open_input(settings.source, settings.input);
     OpenedSource opened;
     if (speed > 0) {
         auto paced = std::make_unique<Paced>(std::move(recording), speed);
@@ -45,6 +61,10 @@ void check_size(const Source& source, const std::string& name) {
 
 OpenedSource open_source(const RunSettings& settings, double speed) {
     OpenedSource opened;
+    if (!settings.camera.empty() && !names_camera(settings.source))
+        throw Error(ErrorKind::usage, "--camera " + settings.camera +
+                                          ": expected a camera as SOURCE, found " +
+                                          settings.source);
     if (names_simulation(settings.source))
         opened.source = open_simulation(settings.source);
     else if (names_camera(settings.source))

@@ -3,12 +3,17 @@
 
 #include "src/app/command_line.h"
 #include "src/app/config.h"
+#include "src/app/manual.h"
+#include "src/app/suggestion.h"
 #include "src/app/talk.h"
 #include "src/core/error.h"
+#include "src/io/system_words.h"
 
+#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -41,6 +46,14 @@ struct CommonSettings {
     }
 };
 
+std::vector<std::string> variables_of(const std::vector<const SettingTable*>& tables) {
+    std::vector<std::string> names;
+    for (const SettingTable* table : tables)
+        for (const Setting& setting : table->settings)
+            names.push_back(environment_of(*table, setting));
+    return names;
+}
+
 /// All layers into the command's and the common settings. Returns the resolved tables, common
 /// first.
 std::pair<SettingTable, SettingTable> resolve(Invocation& invocation, CommonSettings& common) {
@@ -59,7 +72,8 @@ std::pair<SettingTable, SettingTable> resolve(Invocation& invocation, CommonSett
     resolve_settings(own, file, invocation.command_flags);
     start_talk(common.talk);
     for (const std::string& name : unknown_variables(environ, tables))
-        spdlog::warn("{} in the environment means nothing to eventide", name);
+        spdlog::warn("unknown variable {} in the environment{}", name,
+                     suggestion(name, variables_of(tables)));
     return {std::move(shared), std::move(own)};
 }
 
@@ -78,9 +92,22 @@ int run_parsed(Signals& signals, std::vector<std::string> arguments) {
                                               positional.name +
                                               help_hint(invocation->command->name()));
     Program program{signals, std::move(arguments), common.talk.quiet};
-    const int result = invocation->command->run(program);
-    std::cout.flush();
-    return result;
+    program.files.reads("--config", invocation->config_file);
+    return invocation->command->run(program);
+}
+
+/// What was printed may still be in a buffer. A reader that went away is no error.
+void finish_standard_output() {
+    errno = 0;
+    const bool written = std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    const int error = errno;
+    pollfd reader{STDOUT_FILENO, 0, 0};
+    const bool gone =
+        error == EPIPE || (::poll(&reader, 1, 0) == 1 && (reader.revents & POLLERR) != 0);
+    if (!written && !gone)
+        throw Error(ErrorKind::failed,
+                    "standard output: cannot be written" +
+                        (error == 0 ? std::string{} : ": " + system_words(error)));
 }
 
 }  // namespace
@@ -102,10 +129,22 @@ std::string default_config() {
     return text.str();
 }
 
+std::string manual_page() {
+    CommonSettings common;
+    return manual_page(common.table(), all_commands());
+}
+
+std::string bash_completion() {
+    CommonSettings common;
+    return bash_completion(common.table(), all_commands());
+}
+
 int run_program(Signals& signals, std::vector<std::string> arguments) {
     start_talk({});
     try {
-        return run_parsed(signals, std::move(arguments));
+        const int result = run_parsed(signals, std::move(arguments));
+        finish_standard_output();
+        return result;
     } catch (const Error& error) {
         spdlog::error("{}", error.what());
         return int(error.kind());

@@ -1,6 +1,7 @@
 // Progress of long work that is not a run.
 #pragma once
 
+#include "src/app/fitted_line.h"
 #include "src/app/talk.h"
 
 #include <chrono>
@@ -19,7 +20,10 @@ public:
         const auto now = std::chrono::steady_clock::now();
         if (!line_.active() || now - shown_ < std::chrono::milliseconds{100}) return;
         shown_ = now;
-        line_.show(progress_bar(share) + (what.empty() ? "" : "  " + what));
+        constexpr std::size_t kShare = 0, kLeft = 1, kWhat = 2;
+        constexpr std::size_t kGivesWay[]{kShare, kShare, kLeft, kWhat};
+        line_.show(fitted_line({share_part(share), left_part(now - begun_, share), {what, ""}},
+                               kGivesWay, line_.columns()));
     }
     void clear() {
         const std::lock_guard lock{mutex_};
@@ -29,6 +33,7 @@ public:
 private:
     std::mutex mutex_;
     ProgressLine line_;
+    const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
     std::chrono::steady_clock::time_point shown_{};
 };
 

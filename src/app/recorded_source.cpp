@@ -1,17 +1,14 @@
 // A source whose data are also written down.
 #include "src/app/recorded_source.h"
 
-#include "pipeline/sinks/new_file.h"
 #include "src/core/error.h"
 
 namespace eventide::app {
 
 RecordedSource::RecordedSource(Source& source, const std::string& path, bool overwrite)
-    : source_{source}, path_{path} {
+    : source_{source} {
     if (path.ends_with(".bin")) {
-        refuse_existing(path, overwrite);
-        bytes_.reset(std::fopen(path.c_str(), "wb"));
-        if (!bytes_) throw Error(ErrorKind::failed, path + ": cannot be made");
+        bytes_.emplace(path, OutputOptions{.overwrite = overwrite, .appears = Appears::growing});
         return;
     }
     format_ = format_for_writing(path);
@@ -25,7 +22,8 @@ RecordedSource::RecordedSource(Source& source, const std::string& path, bool ove
     header.height = source.info().height;
     header.sensor_name = source.info().name;
     header.serial = source.info().serial;
-    file_ = std::make_unique<RecordingFile>(path, overwrite, open_writer(format_->name), header);
+    file_ = std::make_unique<RecordingFile>(path, overwrite, open_writer(format_->name), header,
+                                            Appears::growing);
     parser_ = source.make_parser();
 }
 
@@ -38,12 +36,7 @@ ReadStatus RecordedSource::read(RawPacket& into) {
 }
 
 void RecordedSource::write(const RawPacket& packet) {
-    if (bytes_) {
-        if (std::fwrite(packet.bytes.data(), 1, packet.bytes.size(), bytes_.get()) !=
-            packet.bytes.size())
-            throw Error(ErrorKind::failed, path_ + ": cannot be written: is the disk full?");
-        return;
-    }
+    if (bytes_) return bytes_->write(packet.bytes);
     if (packet.gap_before) note_gap(packet.arrived);
     last_data_ = packet.arrived;
     parser_->parse(packet.bytes, batch_);
@@ -64,11 +57,7 @@ void RecordedSource::write_batch() {
 }
 
 void RecordedSource::finish() {
-    if (bytes_) {
-        if (std::fclose(bytes_.release()) != 0)
-            throw Error(ErrorKind::failed, path_ + ": cannot be written: is the disk full?");
-        return;
-    }
+    if (bytes_) return bytes_->close();
     parser_->finish(batch_);
     write_batch();
     file_->finish();

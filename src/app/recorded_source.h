@@ -4,8 +4,8 @@
 #include "pipeline/source.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
+#include "src/io/output_file.h"
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,13 +36,9 @@ private:
     void note_gap(HostTime arrived);
     void write_batch();
 
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
     Source& source_;
-    std::string path_;
-    std::unique_ptr<std::FILE, Close> bytes_;  // either this ...
-    const Format* format_ = nullptr;           // ... or these
+    std::optional<OutputFile> bytes_;  // either this ...
+    const Format* format_ = nullptr;   // ... or these
     std::unique_ptr<RecordingFile> file_;
     std::unique_ptr<Parser> parser_;
     std::optional<HostTime> last_data_;

@@ -1,15 +1,21 @@
 // One run of the line.
 #include "src/app/run.h"
 
+#include "src/app/disorder.h"
+#include "src/app/look_ahead.h"
+#include "src/app/memory.h"
+#include "src/app/printable.h"
 #include "src/app/status.h"
 #include "src/app/version.h"
 #include "src/core/error.h"
+#include "src/io/output_file.h"
 #include "src/nn/safetensors.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <new>
 
 namespace eventide::app {
 
@@ -18,6 +24,13 @@ namespace {
 std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source) {
     if (settings.record.empty()) return nullptr;
     return std::make_unique<RecordedSource>(source, settings.record, settings.overwrite);
+}
+
+/// Null: not asked for.
+std::unique_ptr<OutputFile> stats_of(const RunSettings& settings) {
+    if (settings.stats.empty()) return nullptr;
+    return std::make_unique<OutputFile>(settings.stats == "-" ? "/dev/stderr" : settings.stats,
+                                        OutputOptions{.overwrite = settings.overwrite});
 }
 
 }  // namespace
@@ -30,21 +43,35 @@ Run::Run(Program& program, RunSettings& settings)
       sensor_{opened_.source->info()},
       span_{span_of(settings, live())},
       network_{settings, sensor_},
-      slicer_{slicer_of(settings, network_.config(), span_)},
+      slicer_{slicer_of(settings, network_.config(), span_, live())},
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       begun_{std::chrono::steady_clock::now()},
       filter_{filter_of(settings, sensor_)},
-      watch_{sheet_ ? &references_ : nullptr},
+      watch_{sheet_ ? &references_ : nullptr,
+             settings.frames == CameraFrames::ignore ? nullptr : &images_},
       encode_{network_.encoder()},
       render_{network_.renderer(), request_of(settings, sensor_, lookahead_)} {
+    check_recording(settings, span_, slicer_);
+    if (settings.frames != CameraFrames::ignore)
+        fusion_.emplace(network_.renderer(), request_of(settings, sensor_, lookahead_),
+                        sensor_.width, sensor_.height, images_);
     if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
     recorded_ = recorder_of(settings, *opened_.source);
     sinks_ = open_sinks(settings_, sink_plan());
-    pipeline_.emplace(parts(), line());
+    stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
+    try {
+        pipeline_.emplace(parts(), line());
+    } catch (const std::bad_alloc&) {
+        const auto& config = network_.config();
+        throw out_of_memory(
+            "the network with its buffers (--buffers-grids, --buffers-latents)",
+            network_bytes(config, sensor_) + buffer_bytes(config, sensor_, line().buffers),
+            sensor_);
+    }
 }
 
 Source& Run::source() {
@@ -54,10 +81,12 @@ Source& Run::source() {
 
 SinkPlan Run::sink_plan() {
     SinkPlan plan;
-    plan.fps = nominal_fps(rate_, slicer_);
+    plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
+    plan.constant_rate = rate_.is_set();
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
     plan.references = sheet_ ? &references_ : nullptr;
+    plan.reference_caption = reference_caption(sensor_);
     plan.questions.stopping = [this] { return program_.signals.stopping(); };
     plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
     plan.questions.run_json = [this] { return run_json(); };
@@ -67,7 +96,8 @@ SinkPlan Run::sink_plan() {
 }
 
 PipelineParts Run::parts() {
-    PipelineParts parts{source(), encode_, render_, {}, filter_.get(), &watch_};
+    RenderStage& render = fusion_ ? static_cast<RenderStage&>(*fusion_) : render_;
+    PipelineParts parts{source(), encode_, render, {}, filter_.get(), &watch_};
     for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
     return parts;
 }
@@ -79,8 +109,11 @@ PipelineSettings Run::line() const {
     line.rate = rate_;
     line.frames_from = span_.frames_from;
     line.lookahead = lookahead_;
+    line.latency = latency_of(settings_, live());
     line.reset_on_gap = settings_.reset_on_gap;
+    line.allow_silence = settings_.allow_silence;
     line.event_preview = settings_.events || sheet_;
+    line.events_per_pixel = fusion_.has_value();
     line.buffers = {std::size_t(settings_.buffers_packets), std::size_t(settings_.buffers_grids),
                     std::size_t(settings_.buffers_latents)};
     return line;
@@ -91,23 +124,34 @@ RunProgress Run::progress() const {
     progress.elapsed = std::chrono::steady_clock::now() - begun_;
     progress.in_step = live() || speed_ > 0;
     progress.total_bytes = bytes_to_read_;
+    progress.end = span_.end;
+    progress.duration = span_.duration;
     return progress;
 }
 
 int Run::run() {
     const Stopper stopper{program_.signals, [this] { pipeline_->stop(); }};
-    Status status{[this] { return pipeline_->snapshot(); }, progress(), settings_.stats,
+    Status status{[this] { return pipeline_->snapshot(); }, progress(), std::move(stats_),
                   program_.quiet};
     run_line();
     if (!settings_.state_out.empty())
-        write_safetensors(settings_.state_out, network_.encoder().state());
+        write_safetensors(settings_.state_out, network_.encoder().state(), settings_.overwrite);
     const RunProgress end = status.finish();
     const Snapshot counters = pipeline_->snapshot();
     const CameraCounters camera = camera_counters();
     spdlog::info("{}{}", summary_text(counters, end), camera_text(camera));
+    if (const std::string why =
+            disorder_text(settings_.source, sensor_.format, counters.events, counters.damaged);
+        !why.empty())
+        spdlog::warn("{}", why);
     if (const std::string why = why_no_frames(counters);
         !why.empty() && !program_.signals.stopping())
         spdlog::warn("{}", why);
+    if (fusion_ && fusion_->fused().used() > 0)
+        spdlog::info("frames corrected by {} of the camera's images", fusion_->fused().used());
+    else if (settings_.frames == CameraFrames::use)
+        spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
+                     counters.images);
     const bool lost = lost_data(counters) || camera.device_dropped > 0;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
@@ -154,7 +198,7 @@ std::string Run::run_json() {
     }
     json["settings"] = values;
     json["counters"] = nlohmann::ordered_json::parse(stats_json(pipeline_->snapshot(), now, true));
-    return json.dump(2);
+    return json_text(json);
 }
 
 }  // namespace eventide::app

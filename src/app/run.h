@@ -1,6 +1,7 @@
 // One run of the line: everything that was named is opened, connected, run and closed.
 #pragma once
 
+#include "pipeline/fusion_stage.h"
 #include "pipeline/model_stages.h"
 #include "pipeline/pipeline.h"
 #include "src/app/command.h"
@@ -19,16 +20,19 @@
 
 namespace eventide::app {
 
-/// Hands reference images on. Bin thread.
+/// Hands reference images on, where somebody wants them (not null). Bin thread.
 class Watch : public DataObserver {
 public:
-    explicit Watch(ReferenceImages* references) : references_{references} {}
+    Watch(ReferenceImages* references, ImagesOnTheWay* images)
+        : references_{references}, images_{images} {}
     void see(const Batch& batch) override {
         if (references_ != nullptr) references_->see(batch);
+        if (images_ != nullptr) images_->put(batch.images);
     }
 
 private:
     ReferenceImages* references_;
+    ImagesOnTheWay* images_;
 };
 
 /// Inputs are opened before outputs, so that a wrong input leaves nothing behind.
@@ -65,11 +69,14 @@ private:
     const std::chrono::steady_clock::time_point begun_;
     std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known
     ReferenceImages references_;
+    ImagesOnTheWay images_;
     std::unique_ptr<RecordedSource> recorded_;  // null: nothing is recorded
+    std::unique_ptr<OutputFile> stats_;         // null: not asked for, or taken by run()
     std::unique_ptr<EventFilter> filter_;
     Watch watch_;
     ModelEncodeStage encode_;
     ModelRenderStage render_;
+    std::optional<FusionRenderStage> fusion_;  // none: the camera's images are ignored
     std::vector<std::unique_ptr<Sink>> sinks_;
     std::optional<Pipeline> pipeline_;
 };

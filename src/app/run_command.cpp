@@ -2,6 +2,7 @@
 #include "src/app/run_command.h"
 
 #include "src/app/run.h"
+#include "src/app/run_files.h"
 #include "src/core/error.h"
 
 namespace eventide::app {
@@ -13,8 +14,8 @@ std::string RunCommand::examples() const {
            "  eventide run recording.aedat4 --out video.mp4\n"
            "  eventide run recording.raw --fps 1000 --size 2.5x --out frames/ --out video.mp4 "
            "--uncertainty side\n"
-           "  eventide run recording.aedat4 --fps 200 --out - | ffmpeg -i - slow.mp4\n"
-           "  eventide run recording.aedat4 --from 2s --warmup 1s --duration 500ms --out cut/\n"
+           "  eventide run recording.aedat4 --slow 8 --out - | ffmpeg -i - slow.mp4\n"
+           "  eventide run recording.aedat4 --from 2s --duration 500ms --out cut/\n"
            "  eventide run davis: --out window --record raw.aedat4\n"
            "  zcat events.txt.gz | eventide run - --input-size 240x180 --out frames/";
 }
@@ -27,6 +28,7 @@ int RunCommand::run(Program& program) {
     if (settings_.out.empty())
         throw Error(ErrorKind::usage,
                     "expected at least one --out, such as --out video.mp4 or --out window");
+    name_run_files(settings_, program.files);
     return Run{program, settings_}.run();
 }
 

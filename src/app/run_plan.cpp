@@ -12,6 +12,24 @@
 
 namespace eventide::app {
 
+namespace {
+
+/// Half a dozen of the widest windows and more of the usual ones: what a scene has to show in that
+/// time the network has seen.
+constexpr SensorDuration kWarmup{1'000'000};
+
+/// As long before the first frame as was asked for, and no earlier than the first event: silence
+/// teaches nothing. Standard input cannot be asked for its first event.
+SensorTime warm_up_from(const RunSettings& settings, const MomentReader& moments,
+                        SensorTime frames_from) {
+    const SensorDuration usual = settings.state_in.empty() ? kWarmup : SensorDuration{0};
+    const SensorTime begin = frames_from - settings.warmup.value_or(usual);
+    if (settings.source == "-" || begin == frames_from) return begin;
+    return std::min(std::max(begin, moments.time_of({})), frames_from);
+}
+
+}  // namespace
+
 Span span_of(const RunSettings& settings, bool live) {
     Span span;
     if (live) {
@@ -26,7 +44,7 @@ Span span_of(const RunSettings& settings, bool live) {
                                      : MomentReader{settings.source, settings.input.options()};
     if (settings.from) {
         span.frames_from = moments.time_of(*settings.from);
-        span.begin = *span.frames_from - settings.warmup;
+        span.begin = warm_up_from(settings, moments, *span.frames_from);
     }
     if (settings.to) span.end = moments.time_of(*settings.to);
     if (settings.duration) {
@@ -34,34 +52,50 @@ Span span_of(const RunSettings& settings, bool live) {
         const SensorTime end = begin + *settings.duration;
         span.end = span.end ? std::min(*span.end, end) : end;
     }
-    if (span.end && span.frames_from && *span.end <= *span.frames_from)
+    if (span.end && span.frames_from && *span.end < *span.frames_from)
         throw Error(ErrorKind::usage, "--to lies before --from");
     return span;
 }
 
 double speed_of(const RunSettings& settings) {
     if (settings.speed == "max") return 0;
-    if (settings.speed == "auto") return std::ranges::any_of(settings.out, is_window) ? 1 : 0;
+    if (settings.speed == "auto")
+        return std::ranges::any_of(settings.out, is_window) ? 1 / settings.slow : 0;
     return parse_number(settings.speed, 0.001, 1000);
 }
 
-SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span) {
-    SlicerSettings slicer =
-        parse_window(settings.window == "auto" ? model.window : settings.window);
-    slicer.begin = span.begin;
+std::optional<HostTime::duration> latency_of(const RunSettings& settings, bool live) {
+    constexpr std::chrono::milliseconds kUsual{250};
+    if (settings.latency == "none") return {};
+    if (settings.latency == "auto")
+        return live ? std::optional<HostTime::duration>{kUsual} : std::nullopt;
+    if (!live)
+        throw Error(ErrorKind::usage,
+                    "--latency " + settings.latency + ": expected a camera as SOURCE, found " +
+                        settings.source + "; a recording waits, and loses nothing");
+    return parse_duration(settings.latency);
+}
+
+SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span,
+                         bool live) {
+    // Short windows cost more: what a recording waits for, a camera would lose.
+    const bool of_model = settings.window == "model" || (settings.window == "auto" && live);
+    SlicerSettings slicer = parse_window(of_model ? model.window : settings.window);
+    // A window is (begin, end]: the event of the very moment asked for is in it.
+    if (span.begin) slicer.begin = *span.begin - SensorDuration{1};
     slicer.end = span.end;
     slicer.duration = span.duration;
     return slicer;
 }
 
 FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer) {
-    if (!settings.fps.automatic) return settings.fps.rate;
-    return slicer.rule == SliceRule::reference ? FrameRate{} : FrameRate{30, 1};
+    if (!settings.fps.automatic) return slowed(settings.fps.rate, settings.slow);
+    return slicer.rule == SliceRule::reference ? FrameRate{} : slowed({30, 1}, settings.slow);
 }
 
-double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer) {
-    if (rate.is_set()) return double(rate.frames) / double(rate.seconds);
-    return slicer.rule == SliceRule::duration ? 1e6 / double(slicer.width.count()) : 30;
+double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer, double slow) {
+    if (rate.is_set()) return double(rate.frames) / double(rate.seconds) / slow;
+    return slicer.rule == SliceRule::duration ? 1e6 / double(slicer.width.count()) / slow : 30;
 }
 
 int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool live) {
@@ -77,11 +111,13 @@ int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool liv
     return lookahead;
 }
 
+std::string reference_caption(const SensorInfo& sensor) {
+    if (sensor.name.starts_with("simulated")) return "truth";
+    return sensor.name.empty() ? "reference" : "APS";
+}
+
 std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const SensorInfo& sensor) {
-    if (settings.hot_pixels == "off") return nullptr;
-    if (settings.hot_pixels == "learn")
-        return std::make_unique<HotPixelFilter>(sensor.width, sensor.height);
-    return std::make_unique<HotPixelFilter>(sensor.width, sensor.height, settings.hot_pixels);
+    return hot_pixel_filter(settings.hot_pixels, sensor.width, sensor.height);
 }
 
 RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead) {

@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace eventide::app {
 
@@ -26,16 +27,28 @@ Span span_of(const RunSettings& settings, bool live);
 /// Of a recording: 0 is as fast as it goes.
 double speed_of(const RunSettings& settings);
 
-SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span);
+/// The bound of a live source's latency; empty where there is none. Throws Error (usage) for a
+/// bound of a recording, which waits and loses nothing.
+std::optional<HostTime::duration> latency_of(const RunSettings& settings, bool live);
 
+SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span,
+                         bool live);
+
+/// Of sensor time: --slow 10 asks for ten times the frames of the video's rate. Throws Error
+/// (usage) for more than sensor time has microseconds.
 FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer);
 
-/// Pictures per second of sensor time, as far as it can be said before the run.
-double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer);
+/// Frames per second of the video, as far as it can be said before the run; `rate` is of sensor
+/// time.
+double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer, double slow);
 
 /// What was asked for, else 0 for live sources and 2 for recordings, or the most the model was
 /// trained for.
 int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool live);
+
+/// What a source's reference images are to people: "truth" of a simulation, "APS" of a camera that
+/// is named, else (in folders, whose makers are not told) "reference".
+std::string reference_caption(const SensorInfo& sensor);
 
 /// Null when hot pixels stay.
 std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const SensorInfo& sensor);

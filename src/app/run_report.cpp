@@ -58,17 +58,6 @@ bool lost_data(const Snapshot& end) {
            end.slicing.too_many > 0;
 }
 
-std::string status_line(const Snapshot& now, const RunProgress& progress) {
-    std::string line;
-    if (progress.total_bytes > 0)
-        line += progress_bar(double(now.bytes) / double(progress.total_bytes)) + "  ";
-    line += short_count(progress.event_rate) + " events/s  " +
-            text_of("window %.1f ms  ", double(now.window.width().count()) / 1000) + "frames " +
-            std::to_string(now.frames) + "  ";
-    if (progress.in_step) line += latency_text(now) + "  ";
-    return line + losses_text(now);
-}
-
 std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     const double seconds = progress.elapsed.count();
     std::string text =
@@ -78,6 +67,7 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     if (progress.in_step) text += "; " + latency_text(end) + " (p50/p99)";
     text += "\n" + losses_text(end);
     if (end.filtered_events > 0) text += "  filtered " + short_count(double(end.filtered_events));
+    if (end.merged_windows > 0) text += "  merged " + std::to_string(end.merged_windows);
     if (end.gaps > 0) text += "  gaps " + std::to_string(end.gaps);
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         if (const auto n = end.damaged[DamageReason(i)]; n > 0)
@@ -89,11 +79,11 @@ std::string why_no_frames(const Snapshot& end) {
     if (end.frames > 0) return {};
     const SlicerCounters& cut = end.slicing;
     if (end.events == 0)
-        return "no picture: no event was read; eventide info says from when to when there are any";
-    if (cut.before_begin == end.events) return "no picture: all events lie before --from";
+        return "no frame: no event was read; eventide info says from when to when there are any";
+    if (cut.before_begin == end.events) return "no frame: all events lie before --from";
     if (cut.before_begin + cut.after_end == end.events)
-        return "no picture: no event lies between --from and --to";
-    return "no picture: what was asked for is shorter than the time between two pictures (--fps)";
+        return "no frame: no event lies between --from and --to";
+    return "no frame: what was asked for is shorter than the time between two frames (--fps)";
 }
 
 std::string camera_text(const CameraCounters& camera) {
@@ -135,12 +125,14 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
                        {"time_resets", now.slicing.time_resets}};
     json["event_frames"] = now.event_frames;
     json["silent_frames"] = now.silent_frames;
+    json["merged_windows"] = now.merged_windows;
     json["window_begin_us"] = to_us(now.window.begin);
     json["window_end_us"] = to_us(now.window.end);
     json["encoded"] = now.encoded;
     json["state_resets"] = now.state_resets;
     json["frames"] = now.frames;
     json["skipped_frames"] = now.skipped_frames;
+    json["broken_frames"] = now.broken_frames;
     json["newest_frame_us"] = now.frames > 0 ? Json(to_us(now.newest_frame)) : Json(nullptr);
     json["latency_ms"] = json_of(now.latency);
     json["work_ms"] = {{"bin", json_of(now.bin)},

@@ -14,13 +14,12 @@ namespace eventide::app {
 /// What is needed beside the counters themselves.
 struct RunProgress {
     std::chrono::duration<double> elapsed{0};
-    std::uint64_t total_bytes = 0;  ///< of a recording; 0 where not known
+    std::uint64_t total_bytes = 0;             ///< of a recording; 0 where not known
+    std::optional<SensorTime> end{};           ///< where it is known: of what was asked for, ...
+    std::optional<SensorDuration> duration{};  ///< ... or its length
     bool in_step = false;   ///< with the world: a camera, or a recording at a pace; latency counts
     double event_rate = 0;  ///< per second of host time, lately; final JSON says the mean
 };
-
-/// The moving line: "[====>  ]  43 %  1.2 M events/s  ...".
-std::string status_line(const Snapshot& now, const RunProgress& progress);
 
 /// Three or four lines at the end.
 std::string summary_text(const Snapshot& end, const RunProgress& progress);

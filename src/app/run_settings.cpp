@@ -9,7 +9,7 @@ namespace eventide::app {
 
 namespace {
 
-constexpr int kMostPixels = 16384;  // each way, of an output
+constexpr int kMostPixels = kLargestFrameSide;  // each way, of an output
 
 FpsChoice parse_fps(const std::string& text) {
     if (text == "auto") return {};
@@ -67,7 +67,7 @@ Setting open_setting(std::string key, std::optional<T>& value, std::string value
 }
 
 std::string check_window(const std::string& text) {
-    if (text != "auto") parse_window(text);
+    if (text != "model") parse_window(text);
     return text;
 }
 
@@ -79,6 +79,12 @@ std::string check_speed(const std::string& text) {
             complain("auto, max or a factor from 0.001 to 1000", text);
         }
     }
+    return text;
+}
+
+std::string check_latency(const std::string& text) {
+    if (text != "auto" && text != "none" && parse_duration(text) <= SensorDuration{0})
+        complain("auto, none or a time above 0", text);
     return text;
 }
 
@@ -108,7 +114,7 @@ Size SizeChoice::of(const Size& sensor) const {
 SettingTable RunSettings::table() {
     SettingTable table{"run", "eventide run: a recording or camera in, frames and sigma out.", {}};
     add_times(table);
-    table.group_rest("Which pictures");
+    table.group_rest("Which frames");
     add_outputs(table);
     table.group_rest("Where they go");
     add_look(table);
@@ -127,44 +133,53 @@ void RunSettings::add_times(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(parsed_setting<FpsChoice>(
         "fps", fps, "RATE",
-        "Pictures per second of sensor time: 120, 29.97, 30000/1001; frame: one at the end of each "
-        "event frame; auto: frame with --window aps, else 30.",
+        "Frames per second of the video, which without --slow is sensor time: 120, 29.97, "
+        "30000/1001; frame: one at the end of each event window; auto: frame with --window aps, "
+        "else 30.",
         parse_fps, show_fps));
+    add(number_setting("slow", slow, "N",
+                       "Slow motion: the video takes N times as long as what it shows, with --fps "
+                       "frames in each of its seconds.",
+                       0.001, 100'000));
     add(parsed_setting<SizeChoice>("size", size, "2x|640x480",
-                                   "Size of the pictures: a factor of the sensor's, or pixels.",
+                                   "Size of the frames: a factor of the sensor's, or pixels.",
                                    parse_size_choice, show_size_choice));
-    add(open_setting<Region>(
-        "roi", region, "X,Y,WxH",
-        "Render only this part of the picture, in its pixels; all: everything.", "all",
-        parse_region, show_region));
+    add(open_setting<Region>("roi", region, "X,Y,WxH",
+                             "Render only this part of the frame, in its pixels; all: everything.",
+                             "all", parse_region, show_region));
     add(open_setting<int>(
         "lookahead", lookahead, "0|1|2",
-        "Event frames a picture waits for: more is better and later. auto: 0 for live sources, 2 "
+        "Event windows a frame waits for: more give higher quality and more latency. auto: 0 for "
+        "live sources, 2 "
         "for recordings.",
         "auto", [](const std::string& text) { return parse_whole(text, 0, 2); },
         [](const int& n) { return std::to_string(n); }));
     add(parsed_setting<std::string>(
         "window", window, "WINDOW",
-        "How events are cut into event frames: 50ms (constant time), 20000ev (constant number), "
+        "How events are cut into event windows: 50ms (constant time), 20000ev (constant number), "
         "0.35epp (events per pixel), aps (between reference images); after a comma the maximum "
-        "width: 20000ev,200ms. auto: what the model was trained for.",
+        "width: 20000ev,200ms. model: what the model was trained for. auto: by content for "
+        "recordings, short where much moves and 50 ms at most; model for live sources.",
         check_window, same));
     add(parsed_setting<std::string>("speed", speed, "FACTOR",
-                                    "Of a recording: max (as fast as it goes), 1 (as it was "
-                                    "recorded), 0.25, ...; auto: 1 with a "
-                                    "window, else max.",
+                                    "Of a recording: max (as fast as possible), 1 (as it was "
+                                    "recorded), 0.25, ...; auto: with a window as "
+                                    "recorded, or as --slow says, else max.",
                                     check_speed, same));
     add(moment_setting(
         "from", from, "start",
-        "First picture: 2.5s or 20ms after the first event, or @MICROSECONDS of the sensor; start: "
+        "First frame: 2.5s or 20ms after the first event, or @MICROSECONDS of the sensor; start: "
         "the beginning."));
-    add(moment_setting("to", to, "end", "Last picture, written as --from; end: the end."));
-    add(parsed_setting<SensorDuration>(
+    add(moment_setting("to", to, "end", "Last frame, written as --from; end: the end."));
+    add(open_setting<SensorDuration>(
         "warmup", warmup, "TIME",
-        "With --from: begin so much earlier, without pictures, so that the network has seen the "
-        "scene.",
-        [](const std::string& text) { return parse_duration(text); },
+        "With --from: begin so much earlier, without frames, so that the network has seen the "
+        "scene; auto: 1s, or 0s where --state-in tells what was before.",
+        "auto", [](const std::string& text) { return parse_duration(text); },
         [](const SensorDuration& d) { return show_duration(d); }));
+    add(flag_setting("allow_silence", allow_silence,
+                     "Render more than 1000000 frames in a row without events; such a silence is "
+                     "usually a wrong time in the recording."));
     add(open_setting<SensorDuration>(
         "duration", duration, "TIME", "Stop after so much sensor time; all: at the end.", "all",
         [](const std::string& text) { return parse_duration(text); },
@@ -181,14 +196,13 @@ void RunSettings::add_network(SettingTable& table) {
                        "How the members of the local ensemble give one sigma; model: as the model "
                        "says.",
                        {"model", "log_blend", "mixture"}));
-    add(choice_setting(
-        "precision", precision,
-        "Numbers the network multiplies: auto measures at the start which is faster.",
-        {"auto", "f32", "bf16"}));
+    add(choice_setting("precision", precision,
+                       "Arithmetic precision: auto measures at the start which is faster.",
+                       {"auto", "f32", "bf16"}));
     add(choice_setting(
         "kernels", kernels,
         "Whose convolutions the fast engine calls: auto takes what pays best on this "
-        "processor; own or onednn fix the last bits, too.",
+        "processor; own (built-in kernels) or onednn give bit-identical results.",
         {"auto", "own", "onednn"}));
     add(choice_setting("engine", engine, "plain is the readable reference, fast the usual one.",
                        {"plain", "fast"}));
@@ -198,8 +212,13 @@ void RunSettings::add_network(SettingTable& table) {
     add(text_setting("state_in", state_in, "FILE",
                      "Go on from the network's state that an earlier run saved."));
     add(text_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
+    add(choice_setting("frames", frames,
+                       "The camera's own images (APS): auto and use correct the frames by them, "
+                       "for as long as what they "
+                       "show holds; use says so where none came; ignore leaves them alone.",
+                       {"auto", "use", "ignore"}));
     add(flag_setting("reset_on_gap", reset_on_gap,
-                     "Begin with an empty state where data were lost, instead of keeping it."));
+                     "Reset the recurrent state where data were lost, instead of keeping it."));
 }
 
 /// To where.
@@ -207,13 +226,24 @@ void RunSettings::add_outputs(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     Setting sinks = list_setting(
         "out", out, "SINK",
-        "Where pictures go, any number of times: dir/ (PNG, TIFF, times), x.mp4, x.mkv, x.y4m, - "
+        "Where frames go, any number of times: dir/ (PNG, TIFF, times), x.mp4, x.mkv, x.avi, "
+        "x.gif, x.y4m, - "
         "(Y4M on standard output), y4m:, y4m-mono:, gray8:, gray16: or grayf32: and a file, pipe "
         "or "
-        "-, window, v4l2:/dev/videoN (a virtual camera), sheet:x.png (contact sheet), null.");
+        "-, window, v4l2:/dev/videoN (a virtual camera), contact-sheet:x.png, null.");
     sinks.short_flag = "-o";
     add(std::move(sinks));
-    add(flag_setting("overwrite", overwrite, "Replace what is there."));
+    add(flag_setting("overwrite", overwrite,
+                     "Replace files that exist; of a folder, what an earlier run wrote."));
+    add(flag_setting("force", force,
+                     "Write frames to standard output even where it is a terminal."));
+    add(flag_setting("stamp", stamp,
+                     "Raw streams: 16 bytes before each frame with its number, its time in "
+                     "microseconds and what happened (docs/usage.md). Y4M has the time anyway."));
+    add(choice_setting("overload", overload,
+                       "What a stream of constant rate has in place of a skipped frame: the one "
+                       "before again, so that it keeps its pace, or nothing.",
+                       {"repeat", "skip"}));
     add(choice_setting(
         "uncertainty", uncertainty,
         "How sigma is shown: separate (TIFF in the folder, a second video, a second plane), side, "
@@ -224,7 +254,7 @@ void RunSettings::add_outputs(SettingTable& table) {
                        "The sigma (of intensity 0 to 1) that is shown as white, full red or clear.",
                        0.001, 100));
     add(flag_setting("events", events,
-                     "Show the events of each picture's event frame: left in the window, as "
+                     "Show the events of each frame's event window: left in the window, as "
                      "events/*.png in the folder. The contact sheet always does."));
     add(text_setting("record", record, "FILE",
                      "Also write what the source sends, before anything can be lost: in the format "
@@ -239,14 +269,14 @@ void RunSettings::add_look(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(parsed_setting<std::string>(
         "hot_pixels", hot_pixels, "off|learn|FILE",
-        "Leave out pixels that fire by themselves: learn finds them while it runs, a file lists "
+        "Leave out hot pixels: learn finds them while it runs, a file lists "
         "them, one x,y a line.",
         check_hot_pixels, same));
     add(flag_setting("auto_hdr", look.auto_hdr,
-                     "Stretch the range the picture uses to black and white, smoothed in time; "
+                     "Stretch the range the frame uses to black and white, smoothed in time; "
                      "sigma is scaled with it."));
     add(number_setting("unsharp", unsharp, "AMOUNT", "Sharpen: 0 is off, 0.3 is moderate.", 0, 10));
-    add(choice_setting("flip", look.flip, "Mirror the picture.",
+    add(choice_setting("flip", look.flip, "Mirror the frame.",
                        {"none", "horizontal", "vertical", "both"}));
     add(whole_setting("crop", look.crop_px, "PIXELS", "Cut so many pixels off at each side.", 0,
                       kMostPixels));
@@ -260,19 +290,25 @@ void RunSettings::add_look(SettingTable& table) {
 /// Cameras, and the numbers of buffers.
 void RunSettings::add_machinery(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(parsed_setting<std::string>(
+        "latency", latency, "TIME",
+        "Of a live source: how late frames may be. What does not fit is left out, in this order: "
+        "frames, half of their rate, event windows (merged into one), packets. none: as late as "
+        "the buffers allow; auto: 250ms.",
+        check_latency, same));
     add(text_setting("camera", camera, "FILE", "Settings of a camera, as in config/cameras."));
     add(flag_setting("reconnect", reconnect, "Wait for an unplugged camera to come back."));
     add(whole_setting("buffers_packets", buffers_packets, "N",
                       "Packets between reading and binning: the burst a live source may send.", 1,
                       1 << 16));
     add(whole_setting("buffers_grids", buffers_grids, "N",
-                      "Event frames between binning and the network.", 1, 1024));
+                      "Event windows between binning and the network.", 1, 1024));
     add(whole_setting("buffers_latents", buffers_latents, "N",
-                      "Event frames between the network and rendering: more bridge longer bursts "
+                      "Event windows between the network and rendering: more bridge longer bursts "
                       "and allow more latency.",
                       1, 1024));
     add(flag_setting("sequential", sequential,
-                     "Everything on one thread: the same pictures, for comparison."));
+                     "Everything on one thread: the same frames, for comparison."));
 }
 
 }  // namespace eventide::app

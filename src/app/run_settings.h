@@ -4,6 +4,7 @@
 #include "pipeline/frame_clock.h"
 #include "pipeline/sinks/look.h"
 #include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/stream.h"
 #include "src/app/input_settings.h"
 #include "src/app/moment.h"
 #include "src/app/setting.h"
@@ -33,6 +34,9 @@ struct SizeChoice {
 
 enum class SigmaChoice { model, log_blend, mixture };
 
+/// What becomes of the camera's own images: automatic uses them where some come.
+enum class CameraFrames { automatic, use, ignore };
+
 struct RunSettings {
     // what
     std::string source;
@@ -40,9 +44,12 @@ struct RunSettings {
     std::string camera;  ///< settings file of a camera
     bool reconnect = false;
     std::optional<Moment> from, to;
-    SensorDuration warmup{0};
+    bool allow_silence = false;
+    std::optional<SensorDuration> warmup;  ///< before `from`; empty: warmup_of() decides
     std::optional<SensorDuration> duration;
-    std::string speed = "auto";  ///< auto, max, or a factor
+    std::string speed = "auto";    ///< auto, max, or a factor
+    std::string latency = "auto";  ///< auto, none, or a time
+    double slow = 1;               ///< seconds of video for one of sensor time
 
     // how
     std::string model = "default";
@@ -58,11 +65,15 @@ struct RunSettings {
     int threads = 0;
     std::string state_in, state_out;
     bool reset_on_gap = false;
+    CameraFrames frames = CameraFrames::automatic;
     std::string hot_pixels = "off";
 
     // to where
     std::vector<std::string> out;
     bool overwrite = false;
+    bool force = false;  ///< frames onto a terminal
+    bool stamp = false;
+    Overload overload = Overload::repeat;
     Uncertainty uncertainty = Uncertainty::automatic;
     double sigma_white = 0.3;  // kSigmaWhite, in fewer digits
     bool events = false;

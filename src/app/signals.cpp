@@ -2,6 +2,7 @@
 #include "src/app/signals.h"
 
 #include "src/core/error.h"
+#include "src/io/system_words.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,7 +10,6 @@
 #include <atomic>
 #include <cerrno>
 #include <string_view>
-#include <system_error>
 
 namespace eventide::app {
 
@@ -27,7 +27,10 @@ void say(std::string_view words) {
 
 extern "C" void handle(int number) {
     const int error = errno;
-    if (asked.exchange(true)) {
+    const bool again = asked.exchange(true);
+    // A terminal that closes hangs up more than once: the shell's and the kernel's are one wish.
+    if (again && number == SIGHUP) return;
+    if (again) {
         say("\neventide: stopped at once; files may be incomplete\n");
         _exit(128 + number);
     }
@@ -40,6 +43,7 @@ sigset_t watched() {
     sigemptyset(&set);
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
+    sigaddset(&set, SIGHUP);
     return set;
 }
 
@@ -48,8 +52,7 @@ sigset_t watched() {
 Signals::Signals() {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)
-        throw Error(ErrorKind::failed,
-                    "a pipe for signals cannot be made: " + std::system_category().message(errno));
+        throw Error(ErrorKind::failed, "a pipe for signals cannot be made: " + system_words(errno));
     read_end_ = ends[0];
     write_end_ = ends[1];
     wake_fd = write_end_;
@@ -62,13 +65,19 @@ Signals::Signals() {
     action.sa_flags = SA_RESTART;
     sigaction(SIGINT, &action, &interrupt_before_);
     sigaction(SIGTERM, &action, &terminate_before_);
+    sigaction(SIGHUP, nullptr, &hangup_before_);
+    // nohup(1) has it ignored, and so it stays.
+    if (hangup_before_.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+    // A reader that went away and a file that may not grow are results of write().
     ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);
     thread_ = std::jthread{[this] { wait(); }};
 }
 
 Signals::~Signals() {
     sigaction(SIGINT, &interrupt_before_, nullptr);
     sigaction(SIGTERM, &terminate_before_, nullptr);
+    sigaction(SIGHUP, &hangup_before_, nullptr);
     wake_fd = -1;
     close(write_end_);
     thread_.join();

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM: the first ends the work properly, the second at once.
+// SIGINT, SIGTERM and SIGHUP: the first ends the work properly, the second at once.
 #pragma once
 
 #include <signal.h>
@@ -10,10 +10,10 @@
 
 namespace eventide::app {
 
-/// Made first thing in main, one per process, and the only one who handles the two signals while
-/// it lives. They may arrive on any thread: libraries start some before main does (OpenBLAS, where
-/// OpenCV brings it). The calling thread, and so all made later, block them, lest their system
-/// calls be interrupted. SIGPIPE is ignored.
+/// Made first thing in main, one per process, and the only one who handles the three signals
+/// while it lives. They may arrive on any thread: libraries start some before main does (OpenBLAS,
+/// where OpenCV brings it). The calling thread, and so all made later, block them, lest their
+/// system calls be interrupted. SIGPIPE and SIGXFSZ are ignored.
 class Signals {
 public:
     /// Throws Error(failed) where the system has no file descriptors left.
@@ -34,7 +34,7 @@ private:
     void wait();
 
     sigset_t mask_before_{};
-    Action interrupt_before_{}, terminate_before_{};
+    Action interrupt_before_{}, terminate_before_{}, hangup_before_{};
     int read_end_ = -1, write_end_ = -1;  // a byte per signal; none left when it is over
     std::mutex mutex_;                    // guards stop_
     std::function<void()> stop_;

@@ -3,9 +3,9 @@
 
 #include "pipeline/sinks/folder.h"
 #include "replay/formats.h"
-#include "replay/recording_file.h"
-#include "src/app/ecd_writer.h"
+#include "src/app/command_files.h"
 #include "src/app/progress.h"
+#include "src/app/recording_out.h"
 #include "src/core/error.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/texture_pack.h"
@@ -21,45 +21,32 @@ namespace eventide::app {
 
 namespace {
 
-/// Where a recording goes: a file of some format, or a folder.
-class RecordingOut {
-public:
-    RecordingOut(const std::string& path, bool overwrite, int width, int height) {
-        if (path.ends_with('/')) {
-            folder_ = std::make_unique<EcdWriter>(path, overwrite, width, height);
-            return;
-        }
-        format_ = format_for_writing(path);
-        if (format_ == nullptr)
-            throw Error(ErrorKind::usage, "--out " + path +
-                                              ": expected a folder (ending in /) or the extension "
-                                              "of a format that can be written, such as .aedat4");
-        StreamHeader header;
-        header.format = format_->name;
-        header.width = width;
-        header.height = height;
-        header.sensor_name = "simulated";
-        file_ =
-            std::make_unique<RecordingFile>(path, overwrite, open_writer(format_->name), header);
-    }
+/// Null for a folder.
+const Format* format_of(const std::string& path) {
+    if (names_folder(path)) return nullptr;
+    const Format* format = format_for_writing(path);
+    if (format == nullptr)
+        throw Error(ErrorKind::usage, "--out " + path +
+                                          ": expected a folder (ending in /) or the extension "
+                                          "of a format that can be written, such as .aedat4");
+    return format;
+}
 
-    bool holds_images() const { return folder_ || format_->holds.images; }
+StreamHeader header_of(const SimRecordingSettings& what) {
+    StreamHeader header;
+    header.width = what.width;
+    header.height = what.height;
+    header.sensor_name = "simulated";
+    return header;
+}
 
-    void write(const Batch& batch) {
-        if (folder_) return folder_->write(batch);
-        Batch held;
-        held.events = batch.events;
-        if (format_->holds.images) held.images = batch.images;
-        if (!held.empty()) file_->write(held);
-    }
-
-    void finish() { folder_ ? folder_->finish() : file_->finish(); }
-
-private:
-    std::unique_ptr<EcdWriter> folder_;  // either this ...
-    const Format* format_ = nullptr;     // ... or these two
-    std::unique_ptr<RecordingFile> file_;
-};
+/// Events, and images where the target has a place for them.
+Batch held_of(const Batch& batch, const FormatHolds& holds) {
+    Batch held;
+    held.events = batch.events;
+    if (holds.images) held.images = batch.images;
+    return held;
+}
 
 /// As many procedural ones as give a scene of 30 objects little repetition.
 std::shared_ptr<const TextureLibrary> open_textures(const std::string& path) {
@@ -89,19 +76,19 @@ SettingTable SimulateCommand::settings() {
     SettingTable table{"simulate", "eventide simulate: recordings whose truth is known.", {}};
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(text_setting("scene", scene_, "NAME", "What is simulated; --list shows the names."));
-    add(flag_setting("list", list_, "List the scenes, and end."));
+    add(flag_setting("list", list_, "List the scenes, and exit."));
     Setting out =
         text_setting("out", out_, "FILE|FOLDER/",
                      "Where the recording goes: x.aedat4 or another format with images, or "
                      "a folder/ with events.txt, images.txt and images/.");
     out.short_flag = "-o";
     add(std::move(out));
-    add(number_setting("seconds", seconds_, "S", "Length.", 0.001, 1e6));
+    add(number_setting("seconds", seconds_, "S", "Recording duration, seconds.", 0.001, 1e6));
     add(parsed_setting<Size>("size", size_, "WxH", "Sensor size in pixels.", parse_size,
                              show_size));
     add(parsed_setting<std::string>(
         "seed", seed_, "N",
-        "Number of the scene: the same number, the same recording; auto: the "
+        "Random seed: the same seed, the same recording; auto: the "
         "scene's own.",
         [](const std::string& text) {
             if (text != "auto") parse_whole(text, 0, std::numeric_limits<int>::max());
@@ -111,7 +98,7 @@ SettingTable SimulateCommand::settings() {
     add(number_setting("images_per_second", images_per_second_, "N",
                        "Reference images in the recording; 0: none.", 0, 1e5));
     add(text_setting("truth", truth_, "FOLDER",
-                     "Also write the truth as pictures, laid out as the "
+                     "Also write the truth as frames, laid out as the "
                      "folder sink does."));
     add(number_setting("truths_per_second", truths_per_second_, "N", "Rate of the truth.", 0.001,
                        1e5));
@@ -119,9 +106,10 @@ SettingTable SimulateCommand::settings() {
         "truth_scale", truth_scale_, "S",
         "Size of the truth: (width - 1) S + 1 columns, so that corners stay corners.", 0.1, 16));
     add(text_setting("textures", textures_, "PATH",
-                     "Folder of images or pack of textures to draw the scene from; empty: patterns "
-                     "made up."));
-    add(flag_setting("overwrite", overwrite_, "Replace what is there."));
+                     "Folder of images or pack of textures to draw the scene from; empty: "
+                     "procedural textures."));
+    add(flag_setting("overwrite", overwrite_,
+                     "Replace files that exist; of a folder, what an earlier run wrote."));
     return table;
 }
 
@@ -140,6 +128,16 @@ SimRecordingSettings SimulateCommand::plan() const {
     return plan;
 }
 
+void SimulateCommand::name_output_files(NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    name_files("--textures", textures_, files);
+    if (names_folder(out_))
+        name_run_folder("--out", out_, EcdWriter::files(), files);
+    else
+        files.writes("--out", out_);
+    if (!truth_.empty()) name_run_folder("--truth", truth_, FolderSink::files(), files);
+}
+
 int SimulateCommand::run(Program& program) {
     if (list_) {
         print_scenes();
@@ -147,11 +145,12 @@ int SimulateCommand::run(Program& program) {
     }
     if (out_.empty())
         throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
+    name_output_files(program.files);
     const SimRecordingSettings what = plan();
     const auto textures = open_textures(textures_);
-    RecordingOut out{out_, overwrite_, what.width, what.height};
-    if (!out.holds_images() && what.images_per_second > 0)
-        spdlog::warn("{}: its format has no place for reference images", out_);
+    RecordingOut out{out_, overwrite_, format_of(out_), header_of(what)};
+    if (!out.holds().images && what.images_per_second > 0)
+        spdlog::warn("{}: its format cannot hold reference images", out_);
     std::unique_ptr<FolderSink> truth;
     if (!truth_.empty())
         truth = std::make_unique<FolderSink>(FolderSettings{
@@ -159,7 +158,7 @@ int SimulateCommand::run(Program& program) {
     Progress progress{program.quiet};
     std::uint64_t events = 0, images = 0, truths = 0;
     simulate_recording(what, textures, [&](const Batch& batch, const std::vector<Truth>& pictures) {
-        out.write(batch);
+        if (const Batch held = held_of(batch, out.holds()); !held.empty()) out.write(held);
         events += batch.events.size();
         images += batch.images.size();
         for (const Truth& picture : pictures) {

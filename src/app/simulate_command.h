@@ -19,6 +19,7 @@ public:
 
 private:
     SimRecordingSettings plan() const;
+    void name_output_files(NamedFiles& files) const;
 
     std::string scene_ = "demo", out_, truth_, textures_;
     std::string seed_ = "auto";

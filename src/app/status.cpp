@@ -1,8 +1,6 @@
 // While a run goes on: the moving line on a terminal, and the JSON lines of --stats.
 #include "src/app/status.h"
 
-#include "src/core/error.h"
-
 #include <utility>
 
 namespace eventide::app {
@@ -16,13 +14,13 @@ constexpr int kTicksPerStats = 4;  // one line of JSON a second
 
 }  // namespace
 
-Status::Status(std::function<Snapshot()> snapshot, RunProgress fixed, const std::string& stats,
-               bool quiet)
-    : snapshot_{std::move(snapshot)}, fixed_{fixed}, line_{quiet}, begun_{Clock::now()} {
-    if (!stats.empty()) {
-        stats_.open(stats == "-" ? "/dev/stderr" : stats);
-        if (!stats_) throw Error(ErrorKind::failed, "--stats " + stats + ": cannot be written");
-    }
+Status::Status(std::function<Snapshot()> snapshot, RunProgress fixed,
+               std::unique_ptr<OutputFile> stats, bool quiet)
+    : snapshot_{std::move(snapshot)},
+      fixed_{fixed},
+      stats_{std::move(stats)},
+      line_{quiet},
+      begun_{Clock::now()} {
     thread_ = std::jthread{[this] { tick(); }};
 }
 
@@ -40,7 +38,7 @@ void Status::tick() {
         if (ended_.wait_for(lock, kTick, [this] { return end_; })) return;
         const Snapshot now = snapshot_();
         const RunProgress state = progress(now);
-        line_.show(status_line(now, state));
+        line_.show(status_line(now, state, line_.columns()));
         if (n % kTicksPerStats == 0) write_stats(now, false);
     }
 }
@@ -60,12 +58,19 @@ RunProgress Status::progress(const Snapshot& now) {
 }
 
 void Status::write_stats(const Snapshot& now, bool final) {
-    if (!stats_.is_open()) return;
+    if (!stats_) return;
     RunProgress state = fixed_;
     state.elapsed = Clock::now() - begun_;
     const double seconds = state.elapsed.count();
     state.event_rate = final ? (seconds > 0 ? double(now.events) / seconds : 0) : event_rate_;
-    stats_ << stats_json(now, state, final) << std::endl;
+    try {
+        stats_->write(stats_json(now, state, final) + "\n");
+        stats_->publish();
+        if (final) stats_->close();
+    } catch (...) {  // told at the end: the run is worth more than its counters
+        stats_failure_ = std::current_exception();
+        stats_.reset();
+    }
 }
 
 RunProgress Status::finish() {
@@ -78,6 +83,7 @@ RunProgress Status::finish() {
     line_.clear();
     const Snapshot now = snapshot_();
     write_stats(now, true);
+    if (stats_failure_) std::rethrow_exception(stats_failure_);
     RunProgress state = fixed_;
     state.elapsed = Clock::now() - begun_;
     return state;

@@ -2,11 +2,14 @@
 #pragma once
 
 #include "src/app/run_report.h"
+#include "src/app/status_line.h"
 #include "src/app/talk.h"
+#include "src/io/output_file.h"
 
 #include <condition_variable>
-#include <fstream>
+#include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,15 +18,16 @@ namespace eventide::app {
 
 class Status {
 public:
-    /// `snapshot` may be called from any thread. Throws Error (failed) when `stats` (a file, "-"
-    /// for standard error, or empty) cannot be written.
-    Status(std::function<Snapshot()> snapshot, RunProgress fixed, const std::string& stats,
+    /// `snapshot` may be called from any thread. `stats` may be null; it shows under its name with
+    /// its first line and grows from then on.
+    Status(std::function<Snapshot()> snapshot, RunProgress fixed, std::unique_ptr<OutputFile> stats,
            bool quiet);
     ~Status();
     Status(const Status&) = delete;
     Status& operator=(const Status&) = delete;
 
-    /// Ends the line and writes the last JSON line. Once, after the run.
+    /// Ends the line and writes the last JSON line. Once, after the run. Throws Error (failed)
+    /// where a line could not be written.
     RunProgress finish();
 
 private:
@@ -33,7 +37,8 @@ private:
 
     std::function<Snapshot()> snapshot_;
     RunProgress fixed_;
-    std::ofstream stats_;
+    std::unique_ptr<OutputFile> stats_;  // null: not asked for, or it failed
+    std::exception_ptr stats_failure_;
     ProgressLine line_;
     std::chrono::steady_clock::time_point begun_;
     std::uint64_t last_events_ = 0;

@@ -2,6 +2,7 @@
 // somebody looks at a terminal.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,10 @@ void start_talk(const TalkSettings& settings);
 /// Standard error is a terminal.
 bool on_terminal();
 
+/// Throws Error (usage) where standard output is a terminal, which frames and packed events would
+/// only garble. `option` is what asked for it; --force allows it.
+void refuse_terminal(const std::string& option, bool force);
+
 /// Whether colour may be used: on a terminal, unless NO_COLOR is set to something (no-color.org).
 bool colour_allowed();
 
@@ -31,6 +36,8 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     bool active() const { return active_; }
+    /// How long a line may be.
+    std::size_t columns() const;
     void show(std::string_view text);
     /// Takes the line away before something else is printed.
     void clear();
@@ -38,9 +45,6 @@ public:
 private:
     bool active_, drawn_ = false;
 };
-
-/// "[=====>    ]  43 %"
-std::string progress_bar(double share);
 
 /// 12,345,678 -> "12.3 M"; for rates and counts in lines people read.
 std::string short_count(double n);

@@ -67,7 +67,7 @@ SensorDuration parse_duration(const std::string& text, bool negative) {
         double us;
     };
     std::string_view number = text;
-    double us_per_unit = 1e6;
+    double us_per_unit = 0;
     for (const Unit& unit : {Unit{"us", 1}, Unit{"ms", 1e3}, Unit{"s", 1e6}})
         if (number.ends_with(unit.name)) {
             number.remove_suffix(unit.name.size());
@@ -75,8 +75,10 @@ SensorDuration parse_duration(const std::string& text, bool negative) {
             break;
         }
     double value = 0;
+    if (us_per_unit == 0 && read(number, value))
+        complain("a time with its unit, " + text + "s, " + text + "ms or " + text + "us", text);
     // 1e12 s: far past every clock, and exact to the microsecond up to 9e9 s.
-    if (!read(number, value) || !(std::abs(value * us_per_unit) <= 1e18) ||
+    if (us_per_unit == 0 || !read(number, value) || !(std::abs(value * us_per_unit) <= 1e18) ||
         (value < 0 && !negative))
         complain("a time such as 1.5s, 20ms or 250us", text);
     return SensorDuration{std::llround(value * us_per_unit)};

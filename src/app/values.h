@@ -20,8 +20,8 @@ std::string show_number(double value);
 /// The index of `text` in `names`.
 std::size_t parse_choice(const std::string& text, const std::vector<std::string>& names);
 
-/// "250us", "20ms", "1.5s", or a plain number of seconds. Exact to the microsecond; negative ones
-/// pass where `negative` says so.
+/// "250us", "20ms" or "1.5s", exact to the microsecond. A number without a unit is refused: to some
+/// it means seconds, to others microseconds. Negative ones pass where `negative` says so.
 SensorDuration parse_duration(const std::string& text, bool negative = false);
 std::string show_duration(SensorDuration duration);
 

@@ -26,7 +26,7 @@ std::uint64_t events_per_frame(const SlicerSettings& settings, int width, int he
 
 void check(bool good, const char* name, std::int64_t found) {
     if (!good)
-        throw Error(ErrorKind::usage, std::string{"event frames: "} + name +
+        throw Error(ErrorKind::usage, std::string{"event windows: "} + name +
                                           " must be at least 1, found " + std::to_string(found));
 }
 
@@ -40,6 +40,7 @@ Slicer::Slicer(const SlicerSettings& settings, int width, int height)
     check(most_events_ >= 1, "the number of events", std::int64_t(most_events_));
     check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
     check(width >= 1 && height >= 1, "the sensor's size", std::min(width, height));
+    if (settings.rule == SliceRule::content) activity_ = {settings.events_per_pixel, width, height};
     reset();
 }
 
@@ -49,6 +50,7 @@ void Slicer::reset() {
     references_.clear();
     head_ = 0;
     begin_.reset();
+    look_again();
     newest_ = newest_event_ = SensorTime::min();
     same_time_ = 0;
     silent_ = 0;
@@ -157,6 +159,21 @@ std::optional<SensorTime> Slicer::next_reference() {
     return references_.front();
 }
 
+/// Rule content: the time at which the open frame has seen enough, where it is known.
+std::optional<SensorTime> Slicer::busy_at() {
+    for (const std::size_t end = segment_end(); !busy_ && head_ + scanned_ < end; ++scanned_)
+        if (const Event& event = pending_[head_ + scanned_]; activity_.add(event)) busy_ = event.t;
+    if (!busy_) return std::nullopt;
+    return std::max(*busy_, *begin_ + settings_.min_width);
+}
+
+/// Another frame is open: what was counted was of the one before.
+void Slicer::look_again() {
+    activity_.reset();
+    scanned_ = 0;
+    busy_.reset();
+}
+
 SensorTime Slicer::natural_edge() const {
     if (settings_.rule != SliceRule::duration) return *begin_ + step_;
     return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
@@ -183,6 +200,8 @@ std::optional<SensorTime> Slicer::cut() {
         else if (!is_ended())
             wait = settings_.reference_wait;
     }
+    if (settings_.rule == SliceRule::content)
+        if (const auto busy = busy_at()) edge = std::min(edge, limit = *busy);
     edge = stretched(edge, passed - wait, limit);
     if (segment_end() - head_ >= most_events_) {
         const SensorTime last = pending_[head_ + most_events_ - 1].t;
@@ -209,6 +228,7 @@ void Slicer::emit(SensorTime end, Slice& slice) {
     silent_ = slice.events.empty() ? std::min(silent_ + 1, settings_.silent_frames) : 0;
     head_ += slice.events.size();
     begin_ = end;
+    look_again();
 }
 
 void Slicer::cross_seam() {
@@ -217,6 +237,7 @@ void Slicer::cross_seam() {
     references_.clear();
     silent_ = 0;
     reset_ = true;
+    look_again();
     begin_ = origin_ = pending_[head_].t - kMicrosecond;
 }
 

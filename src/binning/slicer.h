@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/binning/slicer_settings.h"
+#include "src/binning/tile_activity.h"
 #include "src/core/frame_data.h"
 
 #include <cstddef>
@@ -77,14 +78,20 @@ private:
     std::size_t segment_end() const;
     std::optional<SensorTime> cut();
     std::optional<SensorTime> next_reference();
+    std::optional<SensorTime> busy_at();
     SensorTime natural_edge() const;
     SensorTime stretched(SensorTime edge, SensorTime passed, SensorTime limit) const;
     void emit(SensorTime end, Slice& slice);
     void cross_seam();
+    void look_again();
 
     SlicerSettings settings_;
     SensorDuration step_;        // width of a frame without events
     std::uint64_t most_events_;  // per frame
+
+    TileActivity activity_;  // rule content: of the open frame's first scanned_ events
+    std::size_t scanned_ = 0;
+    std::optional<SensorTime> busy_;  // rule content: when the tiles had seen enough
 
     std::vector<Event> pending_;  // from head_ on not yet in a slice
     std::size_t head_ = 0;

@@ -14,12 +14,16 @@ constexpr double kUsPerDay = 24.0 * 3600.0 * 1e6;
 constexpr double kMostEvents = 1e9;
 /// Images come 5 to 50 times a second; a frame between two of them must not be cut in two.
 constexpr SensorDuration kReferenceMaxWidth{1'000'000};
+/// Rule content (docs/accuracy.md, "Windows by content").
+constexpr SensorDuration kContentMaxWidth{50'000};
+constexpr double kContentEventsPerPixel = 0.5;
 
 [[noreturn]] void refuse(std::string_view text, const std::string& why) {
-    throw Error(ErrorKind::usage,
-                "window '" + std::string{text} + "': " + why +
-                    "; expected for example 50ms, 20000ev, 0.35epp, aps, or with a maximum width "
-                    "20000ev,200ms");
+    throw Error(
+        ErrorKind::usage,
+        "window '" + std::string{text} + "': " + why +
+            "; expected for example auto, 50ms, 20000ev, 0.35epp, aps, or with a maximum width "
+            "20000ev,200ms");
 }
 
 struct Quantity {
@@ -58,6 +62,12 @@ void parse_rule(std::string_view rule, std::string_view text, SlicerSettings& se
         settings.max_width = kReferenceMaxWidth;
         return;
     }
+    if (rule == "auto") {
+        settings.rule = SliceRule::content;
+        settings.events_per_pixel = kContentEventsPerPixel;
+        settings.max_width = kContentMaxWidth;
+        return;
+    }
     const Quantity q = quantity(rule, text);
     if (q.unit == "ev") {
         settings.rule = SliceRule::count;
@@ -72,6 +82,10 @@ void parse_rule(std::string_view rule, std::string_view text, SlicerSettings& se
     } else if (const auto width = duration(q, text)) {
         settings.rule = SliceRule::duration;
         settings.width = *width;
+    } else if (q.unit.empty()) {
+        const std::string number{rule};
+        refuse(text, "expected a unit, as in " + number + "s, " + number + "ms, " + number +
+                         "us or " + number + "ev");
     } else {
         refuse(text, "unknown unit '" + std::string{q.unit} + "'");
     }
@@ -98,6 +112,8 @@ std::string window_text(const SlicerSettings& settings) {
             return text_of(settings.width);
         case SliceRule::reference:
             return "aps" + widest;
+        case SliceRule::content:
+            return "auto" + widest;
         case SliceRule::count:
             break;
     }

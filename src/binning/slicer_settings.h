@@ -13,6 +13,7 @@ namespace eventide {
 enum class SliceRule : std::uint8_t {
     duration,  ///< constant width
     count,     ///< constant number of events, ended early at max_width
+    content,   ///< once the busiest tiles have seen enough (tile_activity.h), or at max_width
     reference  ///< from reference image to reference image, ended early at max_width
 };
 
@@ -20,9 +21,13 @@ struct SlicerSettings {
     SliceRule rule = SliceRule::duration;
     SensorDuration width{50'000};   ///< of each frame, rule duration; >= 1 us
     std::uint64_t events = 20'000;  ///< per frame, rule count; >= 1
-    double events_per_pixel = 0;    ///< rule count: where > 0, `events` is this times the pixels
+    /// Rule count: where > 0, `events` is this times the pixels. Rule content: of the busiest
+    /// tiles.
+    double events_per_pixel = 0;
+    SensorDuration min_width{1'000};  ///< rule content: no event ends a frame before
 
-    /// Rules count and reference: no frame is wider, so that a still scene ends its frames too.
+    /// Rules count, content and reference: no frame is wider, so that a still scene ends its frames
+    /// too.
     SensorDuration max_width{100'000};
 
     /// Rule reference: where no image is known, a frame ends at max_width only when the stream is

@@ -271,7 +271,7 @@ void Aedat3Parser::finish(Batch& into) {
     const bool inside = state_ == State::records || state_ == State::passing_over;
     if (inside || (state_ == State::header && !unit_.empty()))
         damage_.count(DamageReason::truncated);
-    line_.finish(into);
+    line_.finish(into, damage_);
     if (const auto newest = line_.newest_us()) move_clock(*newest);
     unit_.clear();
     state_ = State::header;

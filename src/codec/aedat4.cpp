@@ -223,7 +223,7 @@ void Aedat4Parser::finish(Batch& into) {
             run(rest, into);
         }
     }
-    line_.finish(into);
+    line_.finish(into, damage_);
     if (line_.newest_us() && (!newest_us_ || *line_.newest_us() > *newest_us_))
         newest_us_ = line_.newest_us();
     pending_.clear();

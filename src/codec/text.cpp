@@ -76,8 +76,8 @@ bool to_microseconds(const QuickNumber& number, int shift, std::int64_t& t_us) {
 
 }  // namespace
 
-TextParser::TextParser(const TextLayout& layout, int width, int height)
-    : layout_(layout), line_(std::uint64_t(width), std::uint64_t(height)) {
+TextParser::TextParser(const TextLayout& layout, int width, int height, SensorDuration reorder)
+    : layout_(layout), reorder_(reorder), line_(std::uint64_t(width), std::uint64_t(height)) {
     assert(layout.unit != TextTimeUnit::automatic && width > 0 && height > 0);
     const auto column = [&](TextField field) {
         return std::size_t(std::find(layout.columns.begin(), layout.columns.end(), field) -
@@ -90,14 +90,26 @@ TextParser::TextParser(const TextLayout& layout, int width, int height)
     carried_.reserve(kLongestLineBytes);
 }
 
+void TextParser::place(std::int64_t t_us, std::uint64_t x, std::uint64_t y, bool on, Batch& into) {
+    if (!line_.is_inside(x, y)) return damage_.count(DamageReason::out_of_range);
+    reorder_.push({from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)}, taker(into));
+}
+
+/// After a jump: what was whole before it comes out, and times begin anew.
+void TextParser::take_up(Batch& into) {
+    if (!resyncing_) return;
+    resyncing_ = false;
+    reorder_.flush(taker(into));
+    line_.resync();
+}
+
 /// The line [begin, end), without its newline; false when it is damaged. Nothing is counted then.
 bool TextParser::parse_line(const char* begin, const char* end, Batch& into) {
     const std::string_view line(begin, std::size_t(end - begin));
     if (is_comment(line)) return true;
     const auto row = parse_row(line, layout_);
     // A negative coordinate becomes a huge one, outside of every sensor.
-    if (row)
-        line_.add(row->t_us, std::uint64_t(row->x), std::uint64_t(row->y), row->on, into, damage_);
+    if (row) place(row->t_us, std::uint64_t(row->x), std::uint64_t(row->y), row->on, into);
     return row.has_value();
 }
 
@@ -127,7 +139,7 @@ const char* TextParser::parse_quickly(const char* p, const char* end, Batch& int
         if (!to_microseconds(numbers[time_column_], shift, t_us) || polarity.whole > 1 ||
             (x.decimals | y.decimals | polarity.decimals) != 0 || x.negative || y.negative)
             return p;
-        line_.add(t_us, x.whole, y.whole, polarity.whole == 1 && !polarity.negative, into, damage_);
+        place(t_us, x.whole, y.whole, polarity.whole == 1 && !polarity.negative, into);
         p = cursor + 1;
     }
     return p;
@@ -156,6 +168,7 @@ const char* TextParser::complete_carried_line(const char* p, const char* end, Ba
 
 void TextParser::parse(std::span<const std::byte> bytes, Batch& into) {
     if (bytes.empty()) return;
+    take_up(into);
     const char* p = reinterpret_cast<const char*>(bytes.data());
     const char* end = p + bytes.size();
     if (!carried_.empty() || skipping_to_line_) p = complete_carried_line(p, end, into);
@@ -169,25 +182,28 @@ void TextParser::parse(std::span<const std::byte> bytes, Batch& into) {
         if (!parse_line(p, newline, into)) damage_.count(DamageReason::bad_record);
         p = newline + 1;
     }
+    if (!reorder_.is_empty()) reorder_.drain(taker(into));
 }
 
 void TextParser::finish(Batch& into) {
+    take_up(into);
     // A last line without a newline is whole when it reads as a row.
     if (!carried_.empty() && !parse_line(carried_.data(), carried_.data() + carried_.size(), into))
         damage_.count(DamageReason::truncated);
-    line_.finish(into);
+    reorder_.flush(taker(into));
+    line_.finish(into, damage_);
     carried_.clear();
     skipping_to_line_ = false;
 }
 
 void TextParser::resync() {
     carried_.clear();
-    skipping_to_line_ = true;
-    line_.resync();
+    skipping_to_line_ = resyncing_ = true;
 }
 
 std::optional<SensorTime> TextParser::clock() const {
-    const auto newest = line_.newest_us();
+    if (resyncing_) return std::nullopt;
+    const auto newest = std::max(line_.newest_us(), reorder_.newest_us());  // none is less than any
     return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 

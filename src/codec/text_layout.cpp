@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -183,14 +184,68 @@ TextLayout layout_guessed(const std::vector<Fields>& rows) {
     return layout_stated(best);
 }
 
-TextTimeUnit unit_of(const std::vector<Fields>& rows, const TextLayout& layout) {
-    const auto time =
+struct Times {
+    std::size_t count = 0;
+    std::int64_t first = 0, last = 0;  ///< the least and the largest, rounded
+    bool fractions = false;
+};
+
+Times times_of(const std::vector<Fields>& rows, const TextLayout& layout) {
+    const auto column =
         std::size_t(std::find(layout.columns.begin(), layout.columns.end(), TextField::time) -
                     layout.columns.begin());
-    const bool fractions = std::any_of(rows.begin(), rows.end(), [&](const Fields& row) {
-        return time < row.size() && is_fractional(row[time]);
-    });
-    return fractions ? TextTimeUnit::seconds : TextTimeUnit::microseconds;
+    Times times;
+    for (const Fields& row : rows) {
+        const auto value = column < row.size() ? parse_decimal(row[column]) : std::nullopt;
+        const auto whole = value ? scaled_integer(*value, 0) : std::nullopt;
+        if (!whole) continue;
+        times.fractions |= value->fractional;
+        times.first = times.count == 0 ? *whole : std::min(times.first, *whole);
+        times.last = times.count == 0 ? *whole : std::max(times.last, *whole);
+        ++times.count;
+    }
+    return times;
+}
+
+/// "2.5e+06 events/s"
+std::string rate_text(double rate) {
+    char text[48];
+    std::snprintf(text, sizeof text, "%.2g events/s", rate);
+    return text;
+}
+
+/// Whole numbers are microseconds, unless no sensor sends so few or so many events in them and
+/// another unit makes sense; nanoseconds since 1970 stand out by themselves.
+TextTimeUnit guess_unit(const Times& times, std::vector<std::string>& remarks) {
+    constexpr std::size_t kFewest = 100;                               // rows that tell a rate
+    constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
+    constexpr std::int64_t kNanosecondsIn2001 = 1'000'000'000'000'000'000;
+    if (times.fractions) return TextTimeUnit::seconds;
+    const double span = double(times.last) - double(times.first);
+    if (times.count < kFewest || span <= 0) return TextTimeUnit::microseconds;
+    struct Unit {
+        TextTimeUnit unit;
+        const char* name;
+        double seconds;
+    };
+    constexpr std::array<Unit, 4> kUnits{{{TextTimeUnit::microseconds, "microseconds", 1e-6},
+                                          {TextTimeUnit::nanoseconds, "nanoseconds", 1e-9},
+                                          {TextTimeUnit::milliseconds, "milliseconds", 1e-3},
+                                          {TextTimeUnit::seconds, "seconds", 1}}};
+    const auto rate = [&](const Unit& unit) { return double(times.count) / (span * unit.seconds); };
+    const auto makes_sense = [&](const Unit& unit) {
+        return rate(unit) >= kSlowest && rate(unit) <= kFastest;
+    };
+    const Unit* chosen = times.first >= kNanosecondsIn2001
+                             ? &kUnits[1]
+                             : std::find_if(kUnits.begin(), kUnits.end(), makes_sense);
+    const bool none = chosen == kUnits.end();
+    if (none) chosen = kUnits.data();
+    if (none || chosen != kUnits.data() || rate(*chosen) < kDoubtful)
+        remarks.push_back("times are whole numbers, taken for " + std::string(chosen->name) + ": " +
+                          rate_text(rate(*chosen)) + (none ? ", which no sensor sends" : "") +
+                          "; --input-time-unit states the unit");
+    return chosen->unit;
 }
 
 bool is_printable(std::string_view text) {
@@ -258,7 +313,7 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
         header.layout = named ? *named : layout_guessed(rows);
     if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
     if (header.layout.unit == TextTimeUnit::automatic)
-        header.layout.unit = unit_of(rows, header.layout);
+        header.layout.unit = guess_unit(times_of(rows, header.layout), header.remarks);
     return header;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace eventide {
 
@@ -23,8 +24,11 @@ enum class TextTimeUnit : std::uint8_t {
 struct TextOptions {
     std::string columns{};  ///< a permutation of "txyp"; empty: from a header row, else "txyp"
     /// Automatic: seconds when any time near the beginning has a decimal point or an exponent, else
-    /// microseconds.
+    /// microseconds, or what makes more sense of the rate of events there.
     TextTimeUnit unit = TextTimeUnit::automatic;
+    /// Rows that come at most so much before one already read are put in order (reorder.h).
+    SensorDuration reorder = kUsualReorder;
+    static constexpr SensorDuration kUsualReorder{10'000};
 };
 
 enum class TextField : std::uint8_t { time, x, y, polarity, ignored };
@@ -41,6 +45,7 @@ struct TextLayout {
 struct TextHeader {
     StreamHeader stream;  ///< width and height from a "width height" first line, else 0
     TextLayout layout;
+    std::vector<std::string> remarks{};  ///< on what was guessed with little to go by
 };
 
 /// True when the bytes look like a text recording: printable, and the first lines are comments, a

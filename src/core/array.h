@@ -1,57 +1,15 @@
-// Owning, row-major blocks of numbers, 64-byte aligned; the last index is contiguous.
+// Owning, row-major blocks of numbers, 64-byte aligned; the last index is contiguous. The public
+// face is Array2's home.
 #pragma once
+
+#include <eventide/array.h>
 
 #include <cassert>
 #include <cstddef>
-#include <new>
 #include <span>
 #include <vector>
 
 namespace eventide {
-
-/// Gives vectors the alignment of a cache line, which the widest vector instructions like too.
-template <typename T>
-struct CacheLineAllocator {
-    using value_type = T;
-    static constexpr std::align_val_t kAlignment{64};
-
-    CacheLineAllocator() = default;
-    template <typename U>
-    constexpr CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
-    T* allocate(std::size_t n) {
-        return static_cast<T*>(::operator new(n * sizeof(T), kAlignment));
-    }
-    void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, kAlignment); }
-    friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
-};
-
-template <typename T>
-class Array2 {
-public:
-    Array2() = default;
-    Array2(int height, int width)
-        : height_(height), width_(width), values_(std::size_t(height) * std::size_t(width)) {}
-
-    int height() const { return height_; }
-    int width() const { return width_; }
-    bool empty() const { return values_.empty(); }
-    std::span<T> values() { return values_; }
-    std::span<const T> values() const { return values_; }
-    std::span<T> row(int y) { return values().subspan(at(y, 0), std::size_t(width_)); }
-    std::span<const T> row(int y) const { return values().subspan(at(y, 0), std::size_t(width_)); }
-    T& operator()(int y, int x) { return values_[at(y, x)]; }
-    const T& operator()(int y, int x) const { return values_[at(y, x)]; }
-
-    friend bool operator==(const Array2&, const Array2&) = default;
-
-private:
-    std::size_t at(int y, int x) const {
-        assert(y >= 0 && y < height_ && x >= 0 && x <= width_);
-        return std::size_t(y) * std::size_t(width_) + std::size_t(x);
-    }
-    int height_ = 0, width_ = 0;
-    std::vector<T, CacheLineAllocator<T>> values_;
-};
 
 /// [y][x][channel]: all numbers of one pixel are neighbours ("channels last"), because every
 /// consumer of a voxel grid, a feature map or a latent map reads whole pixels.
@@ -88,5 +46,12 @@ private:
     int height_ = 0, width_ = 0, channels_ = 0;
     std::vector<T, CacheLineAllocator<T>> values_;
 };
+
+/// No NaN, no infinity.
+inline bool is_finite(const Array2<float>& map) {
+    float worst = 0;  // 0 x is NaN for both; sums of NaN stay so, and this loop has no branches
+    for (const float value : map.values()) worst += 0 * value;
+    return worst == 0;
+}
 
 }  // namespace eventide

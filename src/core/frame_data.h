@@ -5,6 +5,8 @@
 #include "src/core/event.h"
 #include "src/core/sensor_time.h"
 
+#include <eventide/frame.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,6 +35,7 @@ struct VoxelGrid {
     bool gap_before = false;
     HostTime arrived{};
     bool reset_before = false;  ///< as in Slice
+    std::uint64_t images = 0;   ///< reference images the stream had given when the frame was cut
     /// [y][x], 1 where the pixel has events in this frame, else 0; empty where whoever filled the
     /// values did not keep track.
     Array2<std::uint8_t> touched;
@@ -53,23 +56,9 @@ struct LatentMap {
     std::uint64_t events = 0;
     HostTime arrived{};
     bool gap_before = false, reset_before = false;  ///< as in Slice
+    std::uint64_t images = 0;                       ///< as in VoxelGrid
+    Array2<float> events_per_pixel;                 ///< [y][x]; empty where not asked for
     LatentHistory history;
-};
-
-/// One rendered picture.
-struct Frame {
-    SensorTime t{};  ///< the instant it shows
-    Window window;   ///< of the event frame t lies in
-    std::uint64_t index =
-        0;  ///< number on the frame clock: t = t0 + index / fps; a jump is a skipped frame
-    std::uint64_t events = 0;  ///< in that event frame
-    Array2<float> intensity;   ///< [y][x], 0 black to 1 white; may lie a little outside
-    Array2<float>
-        sigma;  ///< [y][x], standard deviation, in units of intensity; empty where not asked for
-    HostTime arrived{};       ///< of the last packet the frame saw; now minus this is the latency
-    bool gap_before = false;  ///< bytes were lost before or in that event frame
-    Array2<float> event_preview;  ///< [y][x], sum of polarities of that event frame, sensor size;
-                                  ///< empty where not asked for
 };
 
 }  // namespace eventide

@@ -1,6 +1,8 @@
 // Messages as dvs_msgs and sensor_msgs define them (drivers-and-formats.md D).
 #include "src/evaluate/bag_file.h"
 
+#include "replay/scan_geometry.h"
+
 namespace eventide {
 namespace {
 
@@ -36,9 +38,11 @@ void BagFile::take_connection(const BagRecord& record) {
 }
 
 void BagFile::take_size(std::uint32_t width, std::uint32_t height) {
-    if (width == 0 || height == 0 || width > 65535 || height > 65535 ||
+    constexpr auto kLargest = std::uint32_t(kLargestSensorSide);
+    if (width == 0 || height == 0 || width > kLargest || height > kLargest ||
         (width_ > 0 && (int(width) != width_ || int(height) != height_)))
-        records_.refuse("expected events and images of one size, found " + std::to_string(width) +
+        records_.refuse("expected events and images of one size, at most " +
+                        std::to_string(kLargest) + " px each way, found " + std::to_string(width) +
                         "x" + std::to_string(height) + " px beside " + std::to_string(width_) +
                         "x" + std::to_string(height_));
     width_ = int(width);

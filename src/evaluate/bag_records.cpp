@@ -11,7 +11,8 @@ namespace eventide {
 namespace {
 
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint32_t kLongest = 1U << 30;  // bytes of a record or chunk
+// Of a record or an unpacked chunk. rosbag closes a chunk at 768 KiB, or after one longer message.
+constexpr std::uint32_t kLongest = 1U << 28;
 
 }  // namespace
 
@@ -65,7 +66,7 @@ std::optional<std::vector<std::byte>> BagRecords::next_bytes() {
         };
         const auto length = load_little<std::uint32_t>(grow(4));
         if (length > kLongest)
-            refuse("expected records of at most 1 GiB, found one of " + std::to_string(length) +
+            refuse("expected records of at most 256 MiB, found one of " + std::to_string(length) +
                    " bytes");
         grow(length);
     }

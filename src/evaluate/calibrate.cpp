@@ -36,7 +36,7 @@ Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule) {
 }
 
 void write_calibrated(const std::filesystem::path& from, const std::filesystem::path& to,
-                      const Calibration& calibration) {
+                      const Calibration& calibration, bool overwrite) {
     Model model = load_model(from);
     model.config.sigma_scale = float(double(model.config.sigma_scale) * calibration.factor);
     char line[160];
@@ -46,7 +46,7 @@ void write_calibrated(const std::filesystem::path& from, const std::filesystem::
                   calibration.ll_before, calibration.ll_after);
     if (!model.config.card.empty()) model.config.card += "\n";
     model.config.card += line;
-    save_model(to, model);
+    save_model(to, model, overwrite);
 }
 
 }  // namespace eventide

@@ -22,6 +22,7 @@ struct EvaluateSettings {
     int lookahead = 0;                    ///< event frames after the picture's own that may be used
     std::optional<SigmaRule> sigma_rule;  ///< else the model's own
     EngineOptions engine;
+    bool fuse_images = false;  ///< images will be given to the model (evaluate_recordings sets it)
     /// Over sequences; results do not depend on it. Memory grows with those done at once.
     ParallelFor parallel_for = sequential_for;
     /// Called now and then: which sequence, and how much of it is done (0 to 1). From whatever
@@ -41,6 +42,8 @@ struct RecordingSettings {
     static constexpr int kSkipHalf = -1;
     int skip_images = 3;
     std::optional<double> from_s, to_s;  ///< from the first event or image; what is scored
+    /// Every so many images one is given to the model (ImageFusion) and not scored; 0: none.
+    int given_images = 0;
 };
 EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how);
 
@@ -89,6 +92,6 @@ Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule);
 
 /// Writes `model` again as `to`, with sigma_scale multiplied and a line in its card.
 void write_calibrated(const std::filesystem::path& model, const std::filesystem::path& to,
-                      const Calibration& calibration);
+                      const Calibration& calibration, bool overwrite = false);
 
 }  // namespace eventide

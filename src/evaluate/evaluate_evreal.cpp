@@ -57,7 +57,7 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
                         evaluation.lpips()->name() + " and must not be compared with them");
     if (how.lookahead > 0)
         evaluation.note("EVREAL's tables are without lookahead: these numbers saw " +
-                        std::to_string(how.lookahead) + " event frames more");
+                        std::to_string(how.lookahead) + " event windows more");
     return evaluation.finish("windows between reference images, no stretch");
 }
 

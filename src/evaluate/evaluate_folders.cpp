@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 Array2<float> read_intensity(const fs::path& path) {
     const cv::Mat image = cv::imread(path.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
     if (image.empty() || (image.depth() != CV_8U && image.depth() != CV_16U))
-        throw Error(ErrorKind::input, path.string() + ": expected a picture of 8 or 16 bit");
+        throw Error(ErrorKind::input, path.string() + ": expected an image of 8 or 16 bit");
     cv::Mat scaled;
     image.convertTo(scaled, CV_32F, image.depth() == CV_8U ? 1. / 255 : 1. / 65535);
     Array2<float> out(scaled.rows, scaled.cols);
@@ -39,7 +39,7 @@ SequenceReport compare(const std::string& name, const std::vector<fs::path>& fra
                        const fs::path& references, Judge& judge) {
     const std::vector<fs::path> truths = pictures_in(references);
     if (truths.size() != frames.size())
-        throw Error(ErrorKind::input, name + ": expected as many pictures as references, found " +
+        throw Error(ErrorKind::input, name + ": expected as many images as references, found " +
                                           std::to_string(frames.size()) + " and " +
                                           std::to_string(truths.size()));
     SequenceReport out;
@@ -55,7 +55,7 @@ EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& referenc
                                 const fs::path& lpips_file) {
     for (const fs::path& folder : {frames, references})
         if (!fs::is_directory(folder))
-            throw Error(ErrorKind::input, folder.string() + ": expected a folder of pictures");
+            throw Error(ErrorKind::input, folder.string() + ": expected a folder of images");
     const auto lpips = load_lpips(lpips_file);
     Judge judge{lpips.get()};
     EvaluateReport report;
@@ -73,7 +73,7 @@ EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& referenc
         report.sequences.push_back(
             compare(frames.filename().string(), pictures, references, judge));
     if (report.sequences.empty())
-        throw Error(ErrorKind::input, frames.string() + ": expected pictures, found none");
+        throw Error(ErrorKind::input, frames.string() + ": expected images, found none");
     report.overall = overall_scores(report.sequences);
     return report;
 }

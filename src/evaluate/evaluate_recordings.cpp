@@ -35,6 +35,7 @@ std::vector<std::size_t> scored_images(const ReferenceSequence& sequence,
     std::vector<std::size_t> scored;
     for (auto i = std::size_t(which.skip); i < sequence.images.size(); ++i) {
         const SensorTime t = sequence.images[i].t;
+        if (which.is_given(i)) continue;
         if (t >= which.from && t <= which.to) scored.push_back(i);
     }
     return scored;
@@ -50,12 +51,18 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, const ReferenceSe
         {sequence.name, sequence.width, sequence.height, sequence.first, int(scored.size())}};
     // Asked for one event frame at a time, so that a long recording's truth is not all in memory.
     auto next = scored.begin();
+    std::size_t given = 0;
+    const auto give_until = [&](SensorTime end) {
+        for (; given < sequence.images.size() && sequence.images[given].t <= end; ++given)
+            if (which.is_given(given)) judged.run().give(sequence.images[given]);
+    };
     const auto ask_until = [&](SensorTime end) {
         for (; next != scored.end() && sequence.images[*next].t <= end; ++next)
             judged.run().ask(query_of(sequence, *next));
     };
     const auto push = [&](const Slice& slice) {
         ask_until(slice.window.end);
+        give_until(slice.window.end);
         judged.run().push(slice);
     };
     if (window == "reference")
@@ -69,13 +76,16 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, const ReferenceSe
 EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how) {
     if (what.recordings.empty())
         throw Error(ErrorKind::usage, "evaluate: expected at least one recording, found none");
-    Evaluation evaluation{"recordings", how};
+    EvaluateSettings settings = how;
+    settings.fuse_images = what.given_images > 0;
+    Evaluation evaluation{"recordings", settings};
     evaluation.run_sequences(int(what.recordings.size()), [&](int i) {
         const std::filesystem::path& path = what.recordings[std::size_t(i)];
         std::optional<double> read_from;
         if (what.from_s) read_from = std::max(0., *what.from_s - kWarmUpSeconds);
         const ReferenceSequence sequence = read_reference_sequence(path, read_from, what.to_s);
         ScoredImages which;
+        which.given = what.given_images;
         const int images = int(sequence.images.size());
         which.skip = what.skip_images == RecordingSettings::kSkipHalf
                          ? images / 2
@@ -88,7 +98,10 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
                              (what.skip_images == RecordingSettings::kSkipHalf
                                   ? std::string{"half of the images"}
                                   : std::to_string(what.skip_images) + " images") +
-                             " not scored");
+                             " not scored" +
+                             (what.given_images > 0
+                                  ? ", one image of " + std::to_string(what.given_images) + " given"
+                                  : std::string{}));
 }
 
 }  // namespace eventide

@@ -14,13 +14,13 @@ void check(const SimulatedSettings& what) {
     const auto need = [](bool holds, const std::string& text) {
         if (!holds) throw Error(ErrorKind::usage, "simulated test set: expected " + text);
     };
-    need(what.sequences >= 1 && what.event_frames >= 1, "at least one sequence and event frame");
+    need(what.sequences >= 1 && what.event_frames >= 1, "at least one sequence and event window");
     need(what.width >= 16 && what.height >= 16, "a sensor of at least 16x16");
     need(what.scale >= 1 && what.scale <= 8, "a scale of 1 to 8");
     need(what.score_every >= 1 && what.skip_frames >= 0, "to score one frame in 1 or more");
-    need(what.frame_width.count() >= 1000, "event frames of at least 1 ms");
+    need(what.frame_width.count() >= 1000, "event windows of at least 1 ms");
     for (const double phase : what.phases)
-        need(phase > 0 && phase <= 1, "times within the event frame, more than 0 and at most 1");
+        need(phase > 0 && phase <= 1, "times within the event window, more than 0 and at most 1");
 }
 
 }  // namespace
@@ -95,10 +95,10 @@ EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateS
         return judged.finish();
     });
     return evaluation.finish(std::to_string(what.sequences) + " sequences of " +
-                             std::to_string(what.event_frames) + " event frames, one in " +
+                             std::to_string(what.event_frames) + " event windows, one in " +
                              std::to_string(what.score_every) + " scored, " +
                              std::to_string(what.width) + "x" + std::to_string(what.height) +
-                             ", pictures " + std::to_string(width) + "x" + std::to_string(height));
+                             ", frames " + std::to_string(width) + "x" + std::to_string(height));
 }
 
 }  // namespace eventide

@@ -2,6 +2,7 @@
 #include "src/evaluate/evaluation.h"
 
 #include "src/core/error.h"
+#include "src/model/model_trial.h"
 
 namespace eventide {
 
@@ -12,6 +13,7 @@ Evaluation::Evaluation(std::string subject, EvaluateSettings settings)
     if (settings_.lookahead < 0 || settings_.lookahead > 2)
         throw Error(ErrorKind::usage,
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(settings_.lookahead));
+    try_model(model_, settings_.model.string());
     report_.subject = std::move(subject);
     report_.model = settings_.model.filename().string();
     if (lpips_) report_.lpips_name = lpips_->name();
@@ -41,7 +43,7 @@ SequenceEvaluation::SequenceEvaluation(const Evaluation& evaluation, const About
       judge_(evaluation.lpips()),
       run_(evaluation.model(), about.width, about.height,
            {evaluation.settings().lookahead, evaluation.settings().sigma_rule,
-            evaluation.settings().engine},
+            evaluation.settings().engine, evaluation.settings().fuse_images},
            [this](const Query& query, const Frame& frame) { judge(query, frame); }) {}
 
 void SequenceEvaluation::judge(const Query& query, const Frame& frame) {
@@ -60,7 +62,7 @@ SequenceResult SequenceEvaluation::finish() {
     result_.report.not_rendered = run_.not_rendered();
     if (run_.not_rendered() > 0)
         result_.notes.push_back(about_.name + ": " + std::to_string(run_.not_rendered()) +
-                                " references lie outside the event frames and were not compared");
+                                " references lie outside the event windows and were not compared");
     result_.observations = judge_.observations();
     result_.report.sigma_scale = result_.observations.sigma_scale;
     return std::move(result_);

@@ -5,9 +5,9 @@
 #include "src/evaluate/bag_file.h"
 #include "src/evaluate/mvsec_file.h"
 #include "src/evaluate/npy.h"
+#include "src/evaluate/seconds.h"
 
 #include <algorithm>
-#include <cmath>
 #include <ranges>
 
 namespace eventide {
@@ -26,15 +26,19 @@ bool is_sequence(const fs::path& path) {
     return is_hdf5_file(path) || is_bag_file(path) || path.extension() == ".aedat4";
 }
 
-SensorTime time_of(double seconds) {
-    return from_us(std::llround(seconds * 1e6));
+/// Of an array of times.
+SensorTime time_of(double seconds, const NpyFile& file, std::uint64_t row) {
+    if (const auto t = time_from_seconds(seconds)) return *t;
+    throw Error(ErrorKind::input, file.name() + ": row " + std::to_string(row) +
+                                      ": expected a time in seconds, found " +
+                                      std::to_string(seconds));
 }
 
 /// The first row of ascending times in seconds that is not before `t`.
 std::uint64_t lower_bound_row(NpyFile& file, SensorTime t) {
     const auto rows = std::views::iota(std::int64_t{0}, std::int64_t(file.rows()));
     const auto before = [&](std::int64_t row) {
-        return time_of(file.read(std::uint64_t(row), 1)[0]) < t;
+        return time_of(file.read(std::uint64_t(row), 1)[0], file, std::uint64_t(row)) < t;
     };
     return std::uint64_t(std::ranges::partition_point(rows, before) - rows.begin());
 }
@@ -46,10 +50,12 @@ struct Span {
 
 void read_events(const fs::path& folder, const Span& span, ReferenceSequence& into) {
     NpyFile ts{folder / "events_ts.npy"}, xy{folder / "events_xy.npy"}, p{folder / "events_p.npy"};
-    if (xy.rows() != ts.rows() || p.rows() != ts.rows() || xy.row_length() != 2)
+    const bool fit = xy.rows() == ts.rows() && p.rows() == ts.rows();
+    if (!fit ||
+        (ts.rows() > 0 && (xy.row_length() != 2 || ts.row_length() != 1 || p.row_length() != 1)))
         throw Error(ErrorKind::input, folder.string() +
                                           ": expected events_ts, events_xy and events_p of as many "
-                                          "rows, found " +
+                                          "rows (of 1, 2 and 1 numbers), found " +
                                           std::to_string(ts.rows()) + ", " +
                                           std::to_string(xy.rows()) + " and " +
                                           std::to_string(p.rows()));
@@ -62,7 +68,7 @@ void read_events(const fs::path& folder, const Span& span, ReferenceSequence& in
         for (std::size_t i = 0; i < n; ++i) {
             const double x = place[2 * i], y = place[2 * i + 1];
             if (!(x >= 0 && y >= 0 && x < into.width && y < into.height)) continue;
-            into.events.push_back({time_of(t[i]), std::uint16_t(x), std::uint16_t(y),
+            into.events.push_back({time_of(t[i], ts, row + i), std::uint16_t(x), std::uint16_t(y),
                                    polarity[i] > 0 ? Polarity::on : Polarity::off});
         }
     }
@@ -73,16 +79,17 @@ void read_images(const fs::path& folder, const Span& span, ReferenceSequence& in
     const std::vector<std::int64_t>& shape = images.header().shape;
     const bool grey = shape.size() == 3 || (shape.size() == 4 && shape[3] == 1);
     if (!grey || images.header().kind != 'u' || images.header().item_bytes != 1 ||
-        ts.rows() != images.rows() || shape[1] > 65535 || shape[2] > 65535)
+        ts.rows() != images.rows() || (ts.rows() > 0 && ts.row_length() != 1))
         throw Error(ErrorKind::input,
                     folder.string() +
                         ": expected images.npy [image][y][x] of 8 bit and as many "
                         "times in images_ts.npy");
+    check_sensor_size(images.name(), shape[2], shape[1]);
     into.height = int(shape[1]);
     into.width = int(shape[2]);
     const auto times = ts.read(0, ts.rows());
     for (std::size_t i = 0; i < times.size(); ++i) {
-        const SensorTime t = time_of(times[i]);
+        const SensorTime t = time_of(times[i], ts, i);
         if (t < span.from || t > span.to) continue;
         ReferenceImage image;
         image.t = image.exposure_begin = image.exposure_end = t;
@@ -119,7 +126,8 @@ ReferenceSequence read_evreal_sequence(const fs::path& path, std::optional<doubl
     if (is_hdf5_file(path)) return read_mvsec_file(path, from_s, to_s);
     if (!is_npy_folder(path)) return read_reference_sequence(path, from_s, to_s);
     // EVREAL's tools have already moved the first event or image to 0.
-    const Span span{time_of(from_s.value_or(-1e10)), time_of(to_s.value_or(1e10))};
+    const Span span{time_from_seconds(from_s.value_or(-1e12)).value_or(SensorTime::min()),
+                    time_from_seconds(to_s.value_or(1e12)).value_or(SensorTime::max())};
     ReferenceSequence sequence;
     sequence.name = path.filename().string();
     read_images(path, span, sequence);

@@ -57,7 +57,7 @@ std::vector<Plot> error_against_events(const EvaluateReport& report) {
         if (points.empty()) continue;
         plots.push_back({.name = std::string("events_") + measure.name,
                          .title = std::string(measure.label) + " against events per pixel",
-                         .x_label = "events per pixel in the event frame",
+                         .x_label = "events per pixel in the event window",
                          .y_label = measure.label,
                          .series = {grouped(std::move(points), report.model)}});
     }

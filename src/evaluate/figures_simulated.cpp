@@ -191,7 +191,7 @@ std::vector<Plot> temporal_super_resolution(const FigureSettings& what,
             });
         run.finish();
     });
-    return plots_of(groups, {"temporal", "temporal super-resolution", "pictures per event frame"},
+    return plots_of(groups, {"temporal", "temporal super-resolution", "frames per event window"},
                     shared.lpips() ? shared.lpips()->name() : "");
 }
 
@@ -239,7 +239,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
         run.finish();
     });
     std::vector<Plot> plots =
-        plots_of(groups, {"silence", "a scene that stops", "event frames without events", true},
+        plots_of(groups, {"silence", "a scene that stops", "event windows without events", true},
                  shared.lpips() ? shared.lpips()->name() : "");
     Series change{"model", {}, {}, {}};
     for (const int silent : moving.silent_frames) {
@@ -250,7 +250,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
     }
     plots.push_back({.name = "silence_change",
                      .title = "a scene that stops",
-                     .x_label = "event frames without events",
+                     .x_label = "event windows without events",
                      .y_label = "root mean square change of intensity",
                      .series = {change},
                      .log_x = true});

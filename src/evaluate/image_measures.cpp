@@ -22,7 +22,7 @@ std::string size_text(const Array2<float>& image) {
 
 void need_same_size(const Array2<float>& a, const Array2<float>& b) {
     if (a.height() != b.height() || a.width() != b.width() || a.empty())
-        throw Error(ErrorKind::usage, "two pictures to compare: expected the same size, found " +
+        throw Error(ErrorKind::usage, "two images to compare: expected the same size, found " +
                                           size_text(a) + " and " + size_text(b));
 }
 
@@ -78,7 +78,7 @@ double structural_similarity(const Array2<float>& a, const Array2<float>& b) {
     const int height = a.height(), width = a.width();
     if (height < kTaps || width < kTaps)
         throw Error(ErrorKind::usage,
-                    "SSIM: expected pictures of at least 11x11, found " + size_text(a));
+                    "SSIM: expected images of at least 11x11, found " + size_text(a));
     const auto weights = gaussian();
     // Columns first, one row of moments at a time; only pixels whose whole window lies inside
     // count, so that no border rule is needed.

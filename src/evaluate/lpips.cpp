@@ -173,7 +173,7 @@ Lpips::Features Lpips::features(const Array3<float>& image) const {
 Array2<float> Lpips::layer_differences(const Features& a, const Features& b,
                                        std::size_t layer) const {
     if (a.height != b.height || a.width != b.width)
-        throw Error(ErrorKind::usage, name_ + ": expected two pictures of the same size");
+        throw Error(ErrorKind::usage, name_ + ": expected two images of the same size");
     const FeatureMap &fa = a.layers[layer], &fb = b.layers[layer];
     const std::vector<float>& head = network_->heads[layer];
     Array2<float> out(fa.height(), fa.width());

@@ -1,6 +1,8 @@
 // Bin, encode, render: the line of the pipeline as three calls.
 #include "src/evaluate/model_run.h"
 
+#include "src/binning/grid_sums.h"
+
 namespace eventide {
 
 ModelRun::ModelRun(const Model& model, int width, int height, const Options& options, Use use)
@@ -10,12 +12,20 @@ ModelRun::ModelRun(const Model& model, int width, int height, const Options& opt
       encoder_(model, width, height, options.engine),
       renderer_(model, width, height, options.engine),
       grid_(binner_.make_output()),
-      latent_(encoder_.make_output()) {}
+      latent_(encoder_.make_output()) {
+    if (!options_.fuse_images) return;
+    fused_.emplace(renderer_, width, height, options.lookahead);
+    events_ = Array2<float>(height, width);
+}
 
 void ModelRun::push(const Slice& slice) {
     binner_.process(slice, grid_);
     encoder_.encode(grid_, latent_);
     renderer_.push(latent_);
+    if (fused_) {
+        count_events(grid_, events_);
+        fused_->push(grid_.window, events_);
+    }
     render_what_is_ready();
 }
 
@@ -31,6 +41,7 @@ void ModelRun::reset() {
     encoder_.reset();
     renderer_.reset();
     queries_.clear();
+    if (fused_) fused_->reset();
     not_rendered_ = 0;
 }
 
@@ -50,7 +61,12 @@ void ModelRun::render_what_is_ready() {
                                     .lookahead = options_.lookahead,
                                     .sigma_rule = options_.sigma_rule};
         if (frame_.intensity.empty()) frame_ = renderer_.make_output(request);
-        renderer_.render(request, frame_);
+        if (fused_) {
+            fused_->prepare(request);
+            fused_->render(request, frame_);
+        } else {
+            renderer_.render(request, frame_);
+        }
         use_(query, frame_);
     }
 }

@@ -3,10 +3,12 @@
 
 #include "src/binning/binner.h"
 #include "src/model/encoder.h"
+#include "src/model/fused_renderer.h"
 #include "src/model/renderer.h"
 
 #include <deque>
 #include <functional>
+#include <optional>
 
 namespace eventide {
 
@@ -25,6 +27,7 @@ public:
         int lookahead = 0;
         std::optional<SigmaRule> sigma_rule;
         EngineOptions engine;
+        bool fuse_images = false;  ///< give() is going to be called
     };
     using Use = std::function<void(const Query&, const Frame&)>;
 
@@ -34,6 +37,10 @@ public:
 
     /// Times must not decrease, and must not lie before event frames already pushed.
     void ask(Query query) { queries_.push_back(std::move(query)); }
+
+    /// An image of the sensor that corrects what is rendered from its window on. Times must not
+    /// decrease.
+    void give(const ReferenceImage& image) { fused_->give(image); }
 
     /// Renders whatever this event frame makes possible.
     void push(const Slice& slice);
@@ -60,6 +67,8 @@ private:
     LatentMap latent_;
     Frame frame_;
     std::deque<Query> queries_;
+    std::optional<FusedRenderer> fused_;  // none: images are not used
+    Array2<float> events_;                // per pixel, of the newest event frame
     int not_rendered_ = 0;
 };
 

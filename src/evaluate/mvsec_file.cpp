@@ -2,14 +2,15 @@
 #include "src/evaluate/mvsec_file.h"
 
 #include "src/core/error.h"
+#include "src/evaluate/seconds.h"
 
 #include <hdf5.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
+#include <functional>
 #include <mutex>
+#include <numeric>
 #include <ranges>
 #include <utility>
 
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr hsize_t kRowsAtATime = 1 << 18;
 // Of an image's time and its last event's: EVREAL's tolerance.
 constexpr double kIndexTolerance_s = 1e-3;
+constexpr double kMostInflation = 1032;  // of deflate: 258 bytes from 2 bits
 
 /// Something of HDF5's that wants to be closed.
 class Handle {
@@ -62,6 +64,7 @@ public:
         H5Sget_simple_extent_dims(space_.id(), shape_.data(), nullptr);
         if (shape_.size() != rank)
             refuse(name_ + ": expected " + expected + ", found " + shape_text(shape_));
+        check_stored();
     }
 
     hsize_t rows() const { return shape_[0]; }
@@ -87,6 +90,17 @@ public:
     }
 
 private:
+    /// A shape costs nothing to write: HDF5 makes up what the file does not hold.
+    void check_stored() const {
+        const Handle kind{H5Dget_type(set_.id()), H5Tclose};
+        const double needed = std::accumulate(shape_.begin(), shape_.end(),
+                                              double(H5Tget_size(kind.id())), std::multiplies{});
+        const hsize_t stored = H5Dget_storage_size(set_.id());
+        if (needed > double(stored) * kMostInflation)
+            refuse(name_ + ": expected the data of " + shape_text(shape_) + " numbers, found " +
+                   std::to_string(stored) + " bytes");
+    }
+
     std::string name_;
     Handle set_, space_;
     std::vector<hsize_t> shape_;
@@ -105,8 +119,8 @@ struct LeftCamera {
         if (events.size(1) != 4)
             refuse(events.name() + ": expected 4 numbers per event, found " +
                    std::to_string(events.size(1)));
-        if (images.size(1) > 65535 || images.size(2) > 65535)
-            refuse(images.name() + ": expected images of at most 65535 px each way");
+        check_sensor_size(images.name(), std::int64_t(images.size(2)),
+                          std::int64_t(images.size(1)));
         for (const DataSet* other : {&image_times, &image_events})
             if (other->rows() != images.rows())
                 refuse(other->name() + ": expected " + std::to_string(images.rows()) +
@@ -122,7 +136,8 @@ struct LeftCamera {
     }
     /// From the first event or image. Subtracted before it is rounded: times are those of 2017.
     SensorTime time_of(double seconds) const {
-        return from_us(std::llround((seconds - first_s) * 1e6));
+        if (const auto t = time_from_seconds(seconds - first_s)) return *t;
+        refuse(events.name() + ": expected times in seconds, found " + std::to_string(seconds));
     }
     /// The first event that is not before `t`.
     hsize_t first_event_at(SensorTime t) const {
@@ -200,9 +215,10 @@ ReferenceSequence read_mvsec_file(const fs::path& path, std::optional<double> fr
     if (!file.good()) refuse(path.string() + ": expected an HDF5 file, found none");
     const LeftCamera camera{file, path};
     const auto at = [](std::optional<double> s, double otherwise) {
-        return from_us(std::llround(s.value_or(otherwise) * 1e6));
+        return time_from_seconds(s.value_or(otherwise))
+            .value_or(otherwise < 0 ? SensorTime::min() : SensorTime::max());
     };
-    const Span span{at(from_s, -1e10), at(to_s, 1e10)};
+    const Span span{at(from_s, -1e12), at(to_s, 1e12)};
     ReferenceSequence sequence;
     sequence.name = path.stem().string();
     sequence.height = int(camera.images.size(1));

@@ -33,6 +33,7 @@ public:
     /// Throws Error(input).
     explicit NpyFile(const std::filesystem::path& path);
 
+    const std::string& name() const { return name_; }
     const NpyHeader& header() const { return header_; }
     /// The shape's first number; 0 for a single number.
     std::uint64_t rows() const;

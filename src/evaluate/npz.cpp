@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/evaluate/npy.h"
+#include "src/io/input_file.h"
 
 #include <zlib.h>
 
@@ -21,6 +22,7 @@ constexpr std::uint32_t kEndOfDirectory = 0x06054b50, kDirectoryEntry = 0x02014b
                         kLocalEntry = 0x04034b50;
 constexpr std::size_t kEndBytes = 22, kDirectoryBytes = 46, kLocalBytes = 30;
 constexpr std::uint64_t kLargestArrayBytes = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMostInflation = 1032;  // of deflate: 258 bytes from 2 bits
 
 template <typename T>
 T number_at(std::span<const std::byte> bytes, std::size_t offset) {
@@ -36,8 +38,8 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 }  // namespace
 
 NpzFile::NpzFile(const std::filesystem::path& path) : file_(path.string()) {
-    std::ifstream stream{path, std::ios::binary | std::ios::ate};
-    if (!stream) refuse("cannot be opened");
+    std::ifstream stream = open_to_read(path);
+    stream.seekg(0, std::ios::end);
     bytes_.resize(std::size_t(stream.tellg()));
     stream.seekg(0);
     stream.read(reinterpret_cast<char*>(bytes_.data()), std::streamsize(bytes_.size()));
@@ -97,6 +99,10 @@ std::vector<std::byte> NpzFile::unpacked(const std::string& name) const {
         refuse("array '" + name + "' is cut short");
     const auto packed = bytes.subspan(data, std::size_t(entry.packed_bytes));
 
+    // Before memory is taken for what the directory says.
+    if (entry.unpacked_bytes > packed.size() * kMostInflation)
+        refuse("array '" + name + "' is said to be of " + std::to_string(entry.unpacked_bytes) +
+               " bytes, which " + std::to_string(packed.size()) + " packed ones cannot give");
     std::vector<std::byte> out(std::size_t(entry.unpacked_bytes));
     if (entry.method == 0) {
         if (packed.size() != out.size()) refuse("array '" + name + "' has two sizes");

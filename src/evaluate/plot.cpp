@@ -1,13 +1,12 @@
 // Axes, ticks at round numbers, lines, a legend: no more than the figures need.
 #include "src/evaluate/plot.h"
 
-#include "src/core/error.h"
+#include "src/io/output_file.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 
 namespace eventide {
@@ -166,18 +165,13 @@ std::string csv(const Plot& plot) {
     return out;
 }
 
-std::filesystem::path write_plot(const Plot& plot, const std::filesystem::path& folder) {
+std::filesystem::path write_plot(const Plot& plot, const std::filesystem::path& folder,
+                                 bool overwrite) {
     std::filesystem::create_directories(folder);
-    const auto write = [&](const char* extension, const std::string& content) {
-        const std::filesystem::path path = folder / (plot.name + extension);
-        std::ofstream file{path, std::ios::binary};
-        file << content;
-        file.flush();
-        if (!file) throw Error(ErrorKind::failed, path.string() + ": cannot be written");
-        return path;
-    };
-    write(".csv", csv(plot));
-    return write(".svg", svg(plot));
+    const std::filesystem::path drawing = folder / (plot.name + ".svg");
+    write_file(folder / (plot.name + ".csv"), csv(plot), overwrite);
+    write_file(drawing, svg(plot), overwrite);
+    return drawing;
 }
 
 }  // namespace eventide

@@ -27,7 +27,9 @@ std::string svg(const Plot& plot);
 /// Columns series, x, y, spread.
 std::string csv(const Plot& plot);
 
-/// Writes folder/name.svg and folder/name.csv and returns the first. Throws Error(failed).
-std::filesystem::path write_plot(const Plot& plot, const std::filesystem::path& folder);
+/// Writes folder/name.svg and folder/name.csv and returns the first. Throws Error: failed, or usage
+/// for a file that is there and may not be replaced.
+std::filesystem::path write_plot(const Plot& plot, const std::filesystem::path& folder,
+                                 bool overwrite = false);
 
 }  // namespace eventide

@@ -2,8 +2,10 @@
 #include "src/evaluate/reference_sequence.h"
 
 #include "replay/formats.h"
+#include "replay/scan_geometry.h"
 #include "src/binning/slicer.h"
 #include "src/core/error.h"
+#include "src/core/grey.h"
 #include "src/evaluate/bag_file.h"
 
 #include <algorithm>
@@ -123,21 +125,22 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     if (sequence.images.empty())
         refuse("expected reference images to compare with, found none in the time asked for");
     if (sequence.width <= 0 || sequence.height <= 0) refuse("does not say the sensor's size");
+    check_sensor_size(path.string(), sequence.width, sequence.height);
     return sequence;
 }
 
+void check_sensor_size(const std::string& file, std::int64_t width, std::int64_t height) {
+    if (width >= 1 && height >= 1 && width <= kLargestSensorSide && height <= kLargestSensorSide)
+        return;
+    throw Error(ErrorKind::input, file + ": expected a sensor of 1 to " +
+                                      std::to_string(kLargestSensorSide) + " px each way, found " +
+                                      std::to_string(width) + "x" + std::to_string(height));
+}
+
 Array2<float> intensity_of(const ReferenceImage& image) {
-    const int channels = image.channels;
-    Array2<float> out(image.pixels.height(), image.pixels.width() / channels);
+    Array2<float> out(image.pixels.height(), image.pixels.width() / image.channels);
     for (int y = 0; y < out.height(); ++y)
-        for (int x = 0; x < out.width(); ++x) {
-            const auto pixel = image.pixels.row(y).subspan(std::size_t(x * channels));
-            // Rec. 601, as cv::cvtColor: the luma that grey references are made with.
-            const float grey = channels == 1 ? float(pixel[0])
-                                             : .114F * float(pixel[0]) + .587F * float(pixel[1]) +
-                                                   .299F * float(pixel[2]);
-            out(y, x) = grey / 65535;
-        }
+        for (int x = 0; x < out.width(); ++x) out(y, x) = grey_at(image, y, x);
     return out;
 }
 

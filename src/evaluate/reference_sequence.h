@@ -5,6 +5,7 @@
 #include "src/core/event.h"
 #include "src/core/frame_data.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -30,6 +31,10 @@ struct ReferenceSequence {
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s = {},
                                           std::optional<double> to_s = {});
+
+/// Throws Error(input) naming `file` for a sensor that no model is to be made for, whatever the
+/// file says: its memory would be.
+void check_sensor_size(const std::string& file, std::int64_t width, std::int64_t height);
 
 /// A reference image as intensity: grey, 0 to 1.
 Array2<float> intensity_of(const ReferenceImage& image);

@@ -133,7 +133,7 @@ std::string json(const EvaluateReport& report) {
     out["notes"] = report.notes;
     out["sequences"] = Json::array();
     for (const SequenceReport& s : report.sequences) out["sequences"].push_back(json_of(s.scores));
-    return out.dump(2);
+    return out.dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace eventide

@@ -38,7 +38,7 @@ void need_same_size(const Array2<float>& mu, const Array2<float>& sigma,
         return mu.height() == other.height() && mu.width() == other.width();
     };
     if (!same(sigma) || !same(reference) || mu.empty())
-        throw Error(ErrorKind::usage, "mu, sigma and reference: expected pictures of one size");
+        throw Error(ErrorKind::usage, "mu, sigma and reference: expected images of one size");
 }
 
 /// Calls use(z, sigma) for each pixel.

@@ -46,74 +46,123 @@ void narrow_pixels(NarrowRow narrow_row, const float* in, std::size_t pixels, in
 #if defined(__x86_64__)
 namespace {
 
-/// Register block; see Sums in vector_dots-inl.h.
-template <int P, bool kTwo>
-struct Sums {
-    Sums<P - 1, kTwo> before;
-    __m512 a, b;
-
-    EVENTIDE_BF16_INLINE void start(__m512 bias_a, __m512 bias_b) {
-        before.start(bias_a, bias_b);
-        a = bias_a;
-        if (kTwo) b = bias_b;
-    }
-    EVENTIDE_BF16_INLINE void add(const std::uint32_t* in, std::ptrdiff_t step, __m512i weight_a,
-                                  __m512i weight_b) {
-        before.add(in, step, weight_a, weight_b);
-        const auto pair = (__m512bh)_mm512_set1_epi32(int(in[(P - 1) * step]));
-        a = _mm512_dpbf16_ps(a, pair, (__m512bh)weight_a);
-        if (kTwo) b = _mm512_dpbf16_ps(b, pair, (__m512bh)weight_b);
-    }
-    EVENTIDE_BF16_INLINE void store(float* out, std::ptrdiff_t step, __mmask16 mask_a,
-                                    __mmask16 mask_b, __m512 floor) const {
-        before.store(out, step, mask_a, mask_b, floor);
-        float* to = out + (P - 1) * step;
-        _mm512_mask_storeu_ps(to, mask_a, _mm512_max_ps(a, floor));
-        if (kTwo) _mm512_mask_storeu_ps(to + 16, mask_b, _mm512_max_ps(b, floor));
-    }
-};
-template <bool kTwo>
-struct Sums<0, kTwo> {
-    EVENTIDE_BF16_INLINE void start(__m512, __m512) {}
-    EVENTIDE_BF16_INLINE void add(const std::uint32_t*, std::ptrdiff_t, __m512i, __m512i) {}
-    EVENTIDE_BF16_INLINE void store(float*, std::ptrdiff_t, __mmask16, __mmask16, __m512) const {}
-};
-
 EVENTIDE_BF16_INLINE __mmask16 first_lanes(int n) {
     return __mmask16(n >= 16 ? 0xffffu : (1u << unsigned(std::max(n, 0))) - 1u);
 }
 
-template <int P, bool kTwo>
+/// 16 sums in a register, or 8.
+struct Wide {
+    static constexpr int kLanes = 16;
+    using Sum = __m512;
+    using Pairs = __m512i;
+    EVENTIDE_BF16_INLINE static Sum all(float v) { return _mm512_set1_ps(v); }
+    EVENTIDE_BF16_INLINE static Sum load(const float* from) { return _mm512_loadu_ps(from); }
+    EVENTIDE_BF16_INLINE static Pairs load(const std::uint32_t* from) {
+        return _mm512_loadu_si512(from);
+    }
+    EVENTIDE_BF16_INLINE static Pairs all(std::uint32_t pair) {
+        return _mm512_set1_epi32(int(pair));
+    }
+    EVENTIDE_BF16_INLINE static Sum add(Sum sum, Pairs a, Pairs b) {
+        return _mm512_dpbf16_ps(sum, (__m512bh)a, (__m512bh)b);
+    }
+    EVENTIDE_BF16_INLINE static void store(float* to, int n, Sum v, Sum floor) {
+        _mm512_mask_storeu_ps(to, first_lanes(n), _mm512_max_ps(v, floor));
+    }
+};
+struct Narrow {
+    static constexpr int kLanes = 8;
+    using Sum = __m256;
+    using Pairs = __m256i;
+    EVENTIDE_BF16_INLINE static Sum all(float v) { return _mm256_set1_ps(v); }
+    EVENTIDE_BF16_INLINE static Sum load(const float* from) { return _mm256_loadu_ps(from); }
+    EVENTIDE_BF16_INLINE static Pairs load(const std::uint32_t* from) {
+        return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    }
+    EVENTIDE_BF16_INLINE static Pairs all(std::uint32_t pair) {
+        return _mm256_set1_epi32(int(pair));
+    }
+    EVENTIDE_BF16_INLINE static Sum add(Sum sum, Pairs a, Pairs b) {
+        return _mm256_dpbf16_ps(sum, (__m256bh)a, (__m256bh)b);
+    }
+    EVENTIDE_BF16_INLINE static void store(float* to, int n, Sum v, Sum floor) {
+        _mm256_mask_storeu_ps(to, __mmask8(first_lanes(std::min(n, 8))), _mm256_max_ps(v, floor));
+    }
+};
+
+/// Register block; see Sums in vector_dots-inl.h.
+template <class Vector, int P, bool kTwo>
+struct Sums {
+    using Sum = typename Vector::Sum;
+    using Pairs = typename Vector::Pairs;
+    Sums<Vector, P - 1, kTwo> before;
+    Sum a, b;
+
+    EVENTIDE_BF16_INLINE void start(Sum bias_a, Sum bias_b) {
+        before.start(bias_a, bias_b);
+        a = bias_a;
+        if (kTwo) b = bias_b;
+    }
+    EVENTIDE_BF16_INLINE void add(const std::uint32_t* in, std::ptrdiff_t step, Pairs weight_a,
+                                  Pairs weight_b) {
+        before.add(in, step, weight_a, weight_b);
+        const Pairs pair = Vector::all(in[(P - 1) * step]);
+        a = Vector::add(a, pair, weight_a);
+        if (kTwo) b = Vector::add(b, pair, weight_b);
+    }
+    EVENTIDE_BF16_INLINE void store(float* out, std::ptrdiff_t step, int outputs, Sum floor) const {
+        before.store(out, step, outputs, floor);
+        float* to = out + (P - 1) * step;
+        Vector::store(to, outputs, a, floor);
+        if (kTwo) Vector::store(to + Vector::kLanes, outputs - Vector::kLanes, b, floor);
+    }
+};
+template <class Vector, bool kTwo>
+struct Sums<Vector, 0, kTwo> {
+    using Sum = typename Vector::Sum;
+    using Pairs = typename Vector::Pairs;
+    EVENTIDE_BF16_INLINE void start(Sum, Sum) {}
+    EVENTIDE_BF16_INLINE void add(const std::uint32_t*, std::ptrdiff_t, Pairs, Pairs) {}
+    EVENTIDE_BF16_INLINE void store(float*, std::ptrdiff_t, int, Sum) const {}
+};
+
+template <class Vector, int P, bool kTwo>
 EVENTIDE_BF16 void dot_block(const Bf16DotRows& r, const std::uint32_t* in,
                              const std::uint32_t* weight, int first, float* out) {
-    constexpr int kWidth = kTwo ? 32 : 16;
+    constexpr int kWidth = kTwo ? 2 * Vector::kLanes : Vector::kLanes;
     const float* bias = r.bias + first;
-    Sums<P, kTwo> sums;
-    sums.start(_mm512_loadu_ps(bias), _mm512_loadu_ps(bias + kWidth - 16));
+    Sums<Vector, P, kTwo> sums;
+    sums.start(Vector::load(bias), Vector::load(bias + kWidth - Vector::kLanes));
     for (int s = 0; s < r.stretches; ++s) {
         const std::uint32_t* from = in + s * r.pitch;
         for (int k = 0; k < r.length; ++k) {
-            sums.add(from + k, r.step, _mm512_loadu_si512(weight),
-                     _mm512_loadu_si512(weight + kWidth - 16));
+            sums.add(from + k, r.step, Vector::load(weight),
+                     Vector::load(weight + kWidth - Vector::kLanes));
             weight += kWidth;
         }
     }
-    const __m512 floor = _mm512_set1_ps(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
-    sums.store(out, r.out_step, first_lanes(r.outputs - first), first_lanes(r.outputs - first - 16),
-               floor);
+    const auto floor = Vector::all(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
+    sums.store(out, r.out_step, r.outputs - first, floor);
 }
 
-constexpr int kMaxPixels = 14;
+constexpr int kMaxPixels = 18, kMaxPixelsOfTwo = 14;
 using Block = void (*)(const Bf16DotRows&, const std::uint32_t*, const std::uint32_t*, int, float*);
-template <bool kTwo, int... P>
+template <class Vector, bool kTwo, int... P>
 constexpr std::array<Block, sizeof...(P)> blocks(std::integer_sequence<int, P...>) {
-    return {&dot_block<P + 1, kTwo>...};
+    return {&dot_block<Vector, P + 1, kTwo>...};
+}
+
+template <class Vector>
+void dot_rows_by(const Bf16DotRows& r) {
+    static constexpr auto kOne =
+        blocks<Vector, false>(std::make_integer_sequence<int, kMaxPixels>{});
+    static constexpr auto kTwo =
+        blocks<Vector, true>(std::make_integer_sequence<int, kMaxPixelsOfTwo>{});
+    dot_in_blocks(r, Vector::kLanes, kOne, kTwo);
 }
 
 void dot_rows(const Bf16DotRows& r) {
-    static constexpr auto kOne = blocks<false>(std::make_integer_sequence<int, kMaxPixels>{});
-    static constexpr auto kTwo = blocks<true>(std::make_integer_sequence<int, kMaxPixels>{});
-    dot_in_blocks(r, kBf16Lanes, kOne, kTwo);
+    bf16_lanes(r.outputs) == Narrow::kLanes ? dot_rows_by<Narrow>(r) : dot_rows_by<Wide>(r);
 }
 
 EVENTIDE_BF16 void narrow_row(const float* in, std::size_t n, std::uint16_t* out) {
@@ -158,8 +207,9 @@ float second_of(std::uint32_t pair) {
 /// A product of two bf16 numbers is exact in float32, so only the sums round, as in the processor.
 void dot_rows(const Bf16DotRows& r) {
     const std::uint32_t* weight = r.weight;
+    const int lanes = bf16_lanes(r.outputs);
     for (int first = 0; first < r.outputs;) {
-        const int width = r.outputs - first > kBf16Lanes ? 2 * kBf16Lanes : kBf16Lanes;
+        const int width = r.outputs - first > lanes ? 2 * lanes : lanes;
         const std::ptrdiff_t packed = std::ptrdiff_t(r.stretches) * r.length * width;
         for (int p = 0; p < r.pixels; ++p) {
             std::array<float, 2 * kBf16Lanes> sums{};

@@ -8,7 +8,8 @@
 namespace eventide {
 
 /// As DotRows (vector_kernels.h), but `in` holds pairs of bf16 numbers and `length`, `pitch` and
-/// `step` count pairs. Weights: blocks of 32 outputs, then one of 16; [s][pair][output][2].
+/// `step` count pairs. Weights: blocks of two vectors of bf16_lanes(outputs), then one;
+/// [s][pair][output][2].
 struct Bf16DotRows {
     const std::uint32_t* in = nullptr;
     std::ptrdiff_t pitch = 0, step = 0;
@@ -31,7 +32,11 @@ struct Bf16Kernels {
     void (*narrow_row)(const float* in, std::size_t n, std::uint16_t* out);
 };
 
-constexpr int kBf16Lanes = 16;  ///< outputs per vector
+constexpr int kBf16Lanes = 16;  ///< outputs per vector, at most
+/// How many outputs a vector holds for a layer of so many: half a register does for 8.
+constexpr int bf16_lanes(int outputs) {
+    return outputs <= kBf16Lanes / 2 ? kBf16Lanes / 2 : kBf16Lanes;
+}
 
 /// Null where the processor has no such instruction, or limit_kernels_to_avx2() was called.
 const Bf16Kernels* bf16_kernels();

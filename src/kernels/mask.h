@@ -18,33 +18,59 @@ inline bool any_in_row(const Mask& mask, int y) {
     return std::memchr(mask.row(y).data(), 1, mask.row(y).size()) != nullptr;
 }
 
-/// to[x] |= from[x + shift], as far as both are there
-inline void join_row(std::span<const std::uint8_t> from, int shift, std::span<std::uint8_t> to) {
-    const int n = int(to.size());
-    const std::uint8_t* read = from.data() + shift;
-    std::uint8_t* write = to.data();
-    const int begin = std::max(0, -shift), end = std::min(n, n - shift);
-    for (int x = begin; x < end; ++x) write[x] |= read[x];
+/// to[i] |= from[i] of n numbers, eight at a time; from the last to the first where `backwards`, so
+/// that either may lie behind or before the other.
+inline void join_bytes(const std::uint8_t* from, std::uint8_t* to, int n, bool backwards) {
+    const auto join8 = [&](int i) {
+        std::uint64_t a, b;
+        std::memcpy(&a, from + i, 8);
+        std::memcpy(&b, to + i, 8);
+        b |= a;
+        std::memcpy(to + i, &b, 8);
+    };
+    const int whole = n / 8 * 8;
+    if (backwards)
+        for (int i = n - 1; i >= whole; --i) to[i] |= from[i];
+    for (int i = 0; i < whole; i += 8) join8(backwards ? whole - 8 - i : i);
+    if (!backwards)
+        for (int i = whole; i < n; ++i) to[i] |= from[i];
+}
+
+/// Calls step(shift) so that what joined with itself, shifted so, again and again reaches `radius`
+/// further.
+template <typename Step>
+void reach(int radius, Step step) {
+    for (int covered = 1; covered < radius + 1;) {
+        const int shift = std::min(covered, radius + 1 - covered);
+        step(shift);
+        covered += shift;
+    }
 }
 
 /// out = 1 where `in` has a 1 within the (2 radius + 1)^2 square around the pixel. `scratch` has
-/// the size of `in`; `out` may be `in`. Rows without a 1 cost next to nothing.
+/// the size of `in`; `out` may be `in`. First rows, then columns: one copy reaches to the right
+/// (down), one to the left (up), doubling with each step.
 inline void dilate(const Mask& in, int radius, Mask& scratch, Mask& out) {
-    const int height = in.height();
+    const int height = in.height(), width = in.width();
     for (int y = 0; y < height; ++y) {
-        std::ranges::copy(in.row(y), scratch.row(y).begin());
-        if (!any_in_row(in, y)) continue;
-        for (int d = 1; d <= radius; ++d) {
-            join_row(in.row(y), -d, scratch.row(y));
-            join_row(in.row(y), d, scratch.row(y));
-        }
-    }
-    for (int y = 0; y < height; ++y) std::ranges::fill(out.row(y), std::uint8_t{0});
-    for (int y = 0; y < height; ++y) {
+        std::uint8_t *right = scratch.row(y).data(), *left = out.row(y).data();
+        std::ranges::copy(in.row(y), right);
+        if (left != in.row(y).data()) std::ranges::copy(in.row(y), left);
         if (!any_in_row(scratch, y)) continue;
-        for (int to = std::max(0, y - radius); to <= std::min(y + radius, height - 1); ++to)
-            join_row(scratch.row(y), 0, out.row(to));
+        reach(std::min(radius, width - 1), [&](int shift) {
+            join_bytes(right, right + shift, width - shift, true);
+            join_bytes(left + shift, left, width - shift, false);
+        });
+        join_bytes(left, right, width, false);
     }
+    std::ranges::copy(scratch.values(), out.values().begin());
+    reach(std::min(radius, height - 1), [&](int shift) {
+        for (int y = height - 1; y >= shift; --y)
+            join_bytes(scratch.row(y - shift).data(), scratch.row(y).data(), width, false);
+        for (int y = 0; y + shift < height; ++y)
+            join_bytes(out.row(y + shift).data(), out.row(y).data(), width, false);
+    });
+    join_bytes(scratch.values().data(), out.values().data(), int(out.values().size()), false);
 }
 
 /// m_{l+1}: the 3x3 maximum at every second pixel. `out` has half the size of `in`, rounded up.

@@ -18,46 +18,53 @@
 HWY_BEFORE_NAMESPACE();
 namespace eventide::HWY_NAMESPACE {
 
+/// Layers of no more outputs than this use vectors of so many lanes, so that none is computed for
+/// nothing.
+using Narrow = hn::CappedTag<float, kNarrowLanes>;
+
 /// Sums of P pixels x (one or two) vectors of outputs, held in registers. A chain of structs and
 /// not an array, because compilers keep members in registers and arrays often not.
-template <int P, bool kTwo>
+template <class Tag, int P, bool kTwo>
 struct Sums {
-    Sums<P - 1, kTwo> before;
-    V a, b;
+    using Vector = hn::Vec<Tag>;
+    Sums<Tag, P - 1, kTwo> before;
+    Vector a, b;
 
-    HWY_INLINE void start(V bias_a, V bias_b) {
+    HWY_INLINE void start(Vector bias_a, Vector bias_b) {
         before.start(bias_a, bias_b);
         a = bias_a;
         if (kTwo) b = bias_b;
     }
-    HWY_INLINE void add(const float* in, std::ptrdiff_t step, V weight_a, V weight_b) {
+    HWY_INLINE void add(const float* in, std::ptrdiff_t step, Vector weight_a, Vector weight_b) {
         before.add(in, step, weight_a, weight_b);
-        const V value = hn::Set(D(), in[(P - 1) * step]);
+        const Vector value = hn::Set(Tag(), in[(P - 1) * step]);
         a = hn::MulAdd(value, weight_a, a);
         if (kTwo) b = hn::MulAdd(value, weight_b, b);
     }
-    HWY_INLINE void store(float* out, std::ptrdiff_t step, int outputs, V floor) const {
+    HWY_INLINE void store(float* out, std::ptrdiff_t step, int outputs, Vector floor) const {
         before.store(out, step, outputs, floor);
-        const int lanes = int(hn::Lanes(D()));
-        store_some(hn::Max(a, floor), out + (P - 1) * step, std::min(outputs, lanes));
-        if (kTwo) store_some(hn::Max(b, floor), out + (P - 1) * step + lanes, outputs - lanes);
+        const int lanes = int(hn::Lanes(Tag()));
+        store_some(Tag(), hn::Max(a, floor), out + (P - 1) * step, std::min(outputs, lanes));
+        if (kTwo)
+            store_some(Tag(), hn::Max(b, floor), out + (P - 1) * step + lanes, outputs - lanes);
     }
 };
-template <bool kTwo>
-struct Sums<0, kTwo> {
-    HWY_INLINE void start(V, V) {}
-    HWY_INLINE void add(const float*, std::ptrdiff_t, V, V) {}
-    HWY_INLINE void store(float*, std::ptrdiff_t, int, V) const {}
+template <class Tag, bool kTwo>
+struct Sums<Tag, 0, kTwo> {
+    using Vector = hn::Vec<Tag>;
+    HWY_INLINE void start(Vector, Vector) {}
+    HWY_INLINE void add(const float*, std::ptrdiff_t, Vector, Vector) {}
+    HWY_INLINE void store(float*, std::ptrdiff_t, int, Vector) const {}
 };
 
 /// P pixels x one block of outputs.
-template <int P, bool kTwo>
+template <class Tag, int P, bool kTwo>
 HWY_NOINLINE void dot_block(const DotRows& r, const float* in, const float* weight, int first,
                             float* out) {
-    const D d;
+    const Tag d;
     const std::size_t lanes = hn::Lanes(d);
     const float* bias = r.bias + first;
-    Sums<P, kTwo> sums;
+    Sums<Tag, P, kTwo> sums;
     sums.start(hn::LoadU(d, bias), hn::LoadU(d, bias + (kTwo ? lanes : 0)));
     for (int s = 0; s < r.stretches; ++s) {
         const float* from = in + s * r.pitch;
@@ -67,24 +74,32 @@ HWY_NOINLINE void dot_block(const DotRows& r, const float* in, const float* weig
             weight += kTwo ? 2 * lanes : lanes;
         }
     }
-    const V floor = hn::Set(d, r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
+    const auto floor = hn::Set(d, r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
     sums.store(out, r.out_step, r.outputs - first, floor);
 }
 
-/// 16 registers hold 6 x 2 sums beside two weights and a value, 32 hold 14 x 2.
-constexpr int kMaxPixels =
-    HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_NEON ? 14 : 6;
+/// 16 registers hold 6 x 2 sums beside two weights and a value, or 12 beside one; 32 hold 14 x 2
+/// or 18. Fewer than 8 sums would wait for each other.
+constexpr bool kManyRegisters =
+    HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_NEON;
+constexpr int kMaxPixels = kManyRegisters ? 18 : 12, kMaxPixelsOfTwo = kManyRegisters ? 14 : 6;
 
 using Block = void (*)(const DotRows&, const float*, const float*, int, float*);
-template <bool kTwo, int... P>
+template <class Tag, bool kTwo, int... P>
 constexpr std::array<Block, sizeof...(P)> blocks(std::integer_sequence<int, P...>) {
-    return {&dot_block<P + 1, kTwo>...};
+    return {&dot_block<Tag, P + 1, kTwo>...};
+}
+
+template <class Tag>
+void dot_rows_by(const DotRows& r) {
+    static constexpr auto kOne = blocks<Tag, false>(std::make_integer_sequence<int, kMaxPixels>{});
+    static constexpr auto kTwo =
+        blocks<Tag, true>(std::make_integer_sequence<int, kMaxPixelsOfTwo>{});
+    dot_in_blocks(r, int(hn::Lanes(Tag())), kOne, kTwo);
 }
 
 void dot_rows(const DotRows& r) {
-    static constexpr auto kOne = blocks<false>(std::make_integer_sequence<int, kMaxPixels>{});
-    static constexpr auto kTwo = blocks<true>(std::make_integer_sequence<int, kMaxPixels>{});
-    dot_in_blocks(r, int(hn::Lanes(D())), kOne, kTwo);
+    r.lanes == int(hn::Lanes(D())) ? dot_rows_by<D>(r) : dot_rows_by<Narrow>(r);
 }
 
 }  // namespace eventide::HWY_NAMESPACE

@@ -15,11 +15,20 @@ namespace eventide::HWY_NAMESPACE {
 void compress(const float* in, float* out, std::size_t n) {
     map(Compress{}, n, out, in, in, in, in);
 }
-void reset_state(const float* r, float* h, int channels) {
-    map(ResetState{}, std::size_t(channels), h, r, h, h, h);
+void spread(const float* from, float* to, std::ptrdiff_t to_step, int channels, int pixels) {
+    channels <= kNarrowLanes ? spread_pixels(Narrow(), from, to, to_step, channels, pixels)
+                             : spread_pixels(D(), from, to, to_step, channels, pixels);
 }
-void update_state(const float* h, const float* u, const float* c, float* out, int channels) {
-    map(UpdateState{}, std::size_t(channels), out, h, u, c, c);
+void reset_state(const float* r, std::ptrdiff_t r_step, float* h, std::ptrdiff_t h_step,
+                 int channels, int pixels) {
+    channels <= kNarrowLanes ? reset_pixels(Narrow(), r, r_step, h, h_step, channels, pixels)
+                             : reset_pixels(D(), r, r_step, h, h_step, channels, pixels);
+}
+void update_state(const float* h, const float* u, std::ptrdiff_t u_step, const float* candidate,
+                  float* out, int channels, int pixels) {
+    channels <= kNarrowLanes
+        ? update_pixels(Narrow(), h, u, u_step, candidate, out, channels, pixels)
+        : update_pixels(D(), h, u, u_step, candidate, out, channels, pixels);
 }
 void add_relu(const float* a, const float* b, float* out, std::size_t n) {
     map(AddRelu{}, n, out, a, b, a, a);
@@ -83,6 +92,7 @@ const VectorKernels* table() {
                                        int(hn::Lanes(D())),
                                        dot_rows,
                                        compress,
+                                       spread,
                                        reset_state,
                                        update_state,
                                        add_relu,
@@ -125,6 +135,11 @@ void limit_kernels_to_sse4() {
 
 bool kernels_limited() {
     return g_limited;
+}
+
+int dot_lanes(int outputs) {
+    const int lanes = vector_kernels().lanes;
+    return outputs <= kNarrowLanes ? std::min(kNarrowLanes, lanes) : lanes;
 }
 
 std::size_t packed_size(int stretches, int length, int outputs, int lanes) {

@@ -19,7 +19,8 @@ struct DotRows {
     int stretches = 0, length = 0;
     int pixels = 0;
     int outputs = 0;
-    const float* weight = nullptr;  ///< as pack_weights lays them out
+    int lanes = 0;                  ///< dot_lanes(outputs)
+    const float* weight = nullptr;  ///< as pack_weights lays them out for so many lanes
     const float* bias = nullptr;    ///< [outputs rounded up to lanes]
     bool relu = false;
     float* out = nullptr;
@@ -44,10 +45,14 @@ struct VectorKernels {
     void (*dot_rows)(const DotRows&);
     /// out = sign(v) log1p(|v|)
     void (*compress)(const float* in, float* out, std::size_t n);
-    /// h <- sigmoid(r) h, for C channels
-    void (*reset_state)(const float* r, float* h, int channels);
-    /// out = h + sigmoid(u) (tanh(c) - h)
-    void (*update_state)(const float* h, const float* u, const float* c, float* out, int channels);
+    /// Pixels of C channels that lie one after the other, to places `to_step` numbers apart.
+    void (*spread)(const float* from, float* to, std::ptrdiff_t to_step, int channels, int pixels);
+    /// h <- sigmoid(r) h, for pixels of C channels, so many numbers from one to the next.
+    void (*reset_state)(const float* r, std::ptrdiff_t r_step, float* h, std::ptrdiff_t h_step,
+                        int channels, int pixels);
+    /// out = h + sigmoid(u) (tanh(c) - h), for pixels of C channels, all but u one after the other.
+    void (*update_state)(const float* h, const float* u, std::ptrdiff_t u_step, const float* c,
+                         float* out, int channels, int pixels);
     /// out = relu(a + b)
     void (*add_relu)(const float* a, const float* b, float* out, std::size_t n);
     /// out = elu(a[c] scale[c] + shift[c] + skip), for n pixels of C channels; skip may be null
@@ -72,6 +77,12 @@ const VectorKernels& vector_kernels();
 void limit_kernels_to_avx2();
 void limit_kernels_to_sse4();
 bool kernels_limited();
+
+/// Vectors of this many outputs do for layers of so few.
+constexpr int kNarrowLanes = 8;
+
+/// How many outputs a vector holds for a layer of so many.
+int dot_lanes(int outputs);
 
 /// How many numbers pack_weights writes.
 std::size_t packed_size(int stretches, int length, int outputs, int lanes);

@@ -48,18 +48,21 @@ HWY_INLINE void map(Function function, std::size_t n, float* out, const float* a
 }
 
 /// Beyond this exp saturates in both functions to within float's last place.
-HWY_INLINE V exp_within(V v) {
-    const D d;
+template <class Vector>
+HWY_INLINE Vector exp_within(Vector v) {
+    const hn::DFromV<Vector> d;
     return hn::Exp(d, hn::Min(hn::Max(v, hn::Set(d, -40.0F)), hn::Set(d, 40.0F)));
 }
-HWY_INLINE V sigmoid(V v) {
-    const V one = hn::Set(D(), 1.0F);
+template <class Vector>
+HWY_INLINE Vector sigmoid(Vector v) {
+    const Vector one = hn::Set(hn::DFromV<Vector>(), 1.0F);
     return hn::Div(one, hn::Add(one, exp_within(hn::Neg(v))));
 }
 /// 1 - 2 / (1 + exp(2 v)): absolute error of a few 1e-7, which is what a state near 1 has anyway.
-HWY_INLINE V tanh(V v) {
-    const D d;
-    const V one = hn::Set(d, 1.0F);
+template <class Vector>
+HWY_INLINE Vector tanh(Vector v) {
+    const hn::DFromV<Vector> d;
+    const Vector one = hn::Set(d, 1.0F);
     return hn::Sub(one, hn::Div(hn::Set(d, 2.0F), hn::Add(one, exp_within(hn::Add(v, v)))));
 }
 HWY_INLINE V elu_of(V v) {
@@ -77,14 +80,48 @@ struct Compress {
         return hn::CopySign(hn::Log1p(d, size), v);
     }
 };
-struct ResetState {
-    HWY_INLINE V operator()(V r, V h, V, V) const { return hn::Mul(sigmoid(r), h); }
-};
-struct UpdateState {
-    HWY_INLINE V operator()(V h, V u, V c, V) const {
-        return hn::MulAdd(sigmoid(u), hn::Sub(tanh(c), h), h);
-    }
-};
+/// body(first channel, number of channels) over the channels of one pixel: whole vectors, then what
+/// is left.
+template <class Tag, typename Body>
+HWY_INLINE void over_channels(Tag d, int channels, Body body) {
+    const int lanes = int(hn::Lanes(d));
+    int c = 0;
+    for (; c + lanes <= channels; c += lanes) body(c, lanes);
+    if (c < channels) body(c, channels - c);
+}
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> load_upto(Tag d, const float* from, int n) {
+    return n >= int(hn::Lanes(d)) ? hn::LoadU(d, from) : load_some(d, from, std::size_t(n));
+}
+
+template <class Tag>
+HWY_INLINE void spread_pixels(Tag d, const float* from, float* to, std::ptrdiff_t to_step,
+                              int channels, int pixels) {
+    for (int p = 0; p < pixels; ++p, from += channels, to += to_step)
+        over_channels(d, channels, [&](int c, int n) HWY_ATTR {
+            store_some(d, load_upto(d, from + c, n), to + c, n);
+        });
+}
+template <class Tag>
+HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, float* h,
+                             std::ptrdiff_t h_step, int channels, int pixels) {
+    for (int p = 0; p < pixels; ++p, r += r_step, h += h_step)
+        over_channels(d, channels, [&](int c, int n) HWY_ATTR {
+            store_some(d, hn::Mul(sigmoid(load_upto(d, r + c, n)), load_upto(d, h + c, n)), h + c,
+                       n);
+        });
+}
+template <class Tag>
+HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdiff_t u_step,
+                              const float* candidate, float* out, int channels, int pixels) {
+    for (int p = 0; p < pixels;
+         ++p, u += u_step, h += channels, candidate += channels, out += channels)
+        over_channels(d, channels, [&](int c, int n) HWY_ATTR {
+            const auto old = load_upto(d, h + c, n);
+            const auto change = hn::Sub(tanh(load_upto(d, candidate + c, n)), old);
+            store_some(d, hn::MulAdd(sigmoid(load_upto(d, u + c, n)), change, old), out + c, n);
+        });
+}
 struct AddRelu {
     HWY_INLINE V operator()(V a, V b, V, V) const { return hn::Max(hn::Add(a, b), hn::Zero(D())); }
 };

@@ -18,15 +18,19 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 
-HWY_INLINE V load_some(const float* from, std::size_t n) {
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> load_some(Tag d, const float* from, std::size_t n) {
     HWY_ALIGN float whole[HWY_MAX_BYTES / sizeof(float)] = {};
     std::memcpy(whole, from, n * sizeof(float));
-    return hn::Load(D(), whole);
+    return hn::Load(d, whole);
+}
+HWY_INLINE V load_some(const float* from, std::size_t n) {
+    return load_some(D(), from, n);
 }
 
 /// All of v where n is at least its size.
-HWY_INLINE void store_some(V v, float* out, int n) {
-    const D d;
+template <class Tag>
+HWY_INLINE void store_some(Tag d, hn::Vec<Tag> v, float* out, int n) {
     if (n >= int(hn::Lanes(d))) {
         hn::StoreU(v, d, out);
         return;
@@ -34,6 +38,9 @@ HWY_INLINE void store_some(V v, float* out, int n) {
     HWY_ALIGN float whole[HWY_MAX_BYTES / sizeof(float)];
     hn::Store(v, d, whole);
     for (int i = 0; i < n; ++i) out[i] = whole[i];
+}
+HWY_INLINE void store_some(V v, float* out, int n) {
+    store_some(D(), v, out, n);
 }
 
 }  // namespace eventide::HWY_NAMESPACE

@@ -39,6 +39,8 @@ class RendererCore {
 public:
     virtual ~RendererCore() = default;
     virtual std::string description() const = 0;
+    /// Takes the memory that rendering such pictures needs; until then render() takes it.
+    virtual void make_room(const PictureGeometry&) {}
     virtual void push(std::int64_t k, const LatentMap& latent) noexcept = 0;
     virtual void reset() noexcept = 0;
     /// `sigma` is null where not asked for.

@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/model/cores.h"
 #include "src/model/sampling.h"
+#include "src/nn/tiling.h"
 
 #include <utility>
 
@@ -45,6 +46,7 @@ std::string Encoder::description() const {
 LatentMap Encoder::make_output() const {
     LatentMap latent;
     latent.values = {latent_height_, latent_width_, latent_channels_};
+    latent.history.changed.reserve(latent_tiles(latent_height_, latent_width_).size());
     return latent;
 }
 

@@ -13,7 +13,7 @@ namespace eventide {
 class EncoderCore;
 
 /// One thread at a time. After construction nothing fails, and with Engine::fast nothing is
-/// allocated once every buffer has been used.
+/// allocated.
 class Encoder {
 public:
     using Input = VoxelGrid;

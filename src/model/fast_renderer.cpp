@@ -75,9 +75,9 @@ void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
     hoisted_.push(k, latent);
 }
 
-void FastRenderer::lay_out_columns(const PictureGeometry& picture) noexcept {
+void FastRenderer::lay_out_columns(const PictureGeometry& picture) {
     if (same_columns(picture, laid_out_)) return;
-    laid_out_ = picture;
+    laid_out_ = {};  // until all is there
     for (std::size_t side = 0; side < 2; ++side) {
         columns_.pixel[side].clear();
         columns_.column[side].clear();
@@ -94,20 +94,29 @@ void FastRenderer::lay_out_columns(const PictureGeometry& picture) noexcept {
         }
     }
     for (FloatBuffer& sums : row_sums_) sums.resize(3 * std::size_t(picture.part_width));
+    laid_out_ = picture;
+}
+
+AxisSamples FastRenderer::time_samples(const CodeChoice& codes) const noexcept {
+    const bool fades = config_.live_edge == LiveEdge::fade && codes.k > 1;
+    return sample_time(codes.fraction, codes.next[0], fades);
 }
 
 void FastRenderer::render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
                           Array2<float>& intensity, Array2<float>* sigma) noexcept {
     lay_out_columns(picture);
     needs_squares_ = sigma != nullptr && rule == SigmaRule::mixture;
-    const AxisSamples t = sample_time(codes.fraction, codes.next[0]);
+    const AxisSamples t = time_samples(codes);
     std::array<const HoistedLayer::Sums*, 2> hoisted{};  // of the samples with a weight
+    const std::int64_t k = codes.k + t.index;
+    // What a fading live edge shows of the event frame before was made without z_k.
+    const bool whole = t.index == 0 && codes.next[0], next_whole = t.index == 0 && codes.next[1];
     if (t.weight[1] == 0)
-        hoisted[0] = &hoisted_.at(codes.k, codes.next[0]);
+        hoisted[0] = &hoisted_.at(k, whole);
     else if (t.weight[0] == 0)
-        hoisted[1] = &hoisted_.at(codes.k + 1, codes.next[1]);
+        hoisted[1] = &hoisted_.at(k + 1, next_whole);
     else
-        hoisted = hoisted_.pair(codes.k, codes.next[0], codes.next[1]);
+        hoisted = hoisted_.pair(k, whole, next_whole);
     for_each_tile(options_.parallel_for, picture.part_height, [&](int lane, int row) {
         render_row(codes, picture, hoisted, row, rule, intensity.row(row).data(),
                    sigma != nullptr ? sigma->row(row).data() : nullptr, std::size_t(lane));
@@ -120,7 +129,7 @@ void FastRenderer::render_row(const CodeChoice& codes, const PictureGeometry& pi
                               std::size_t lane) noexcept {
     const int width = picture.part_width;
     const auto count = std::size_t(width);
-    const AxisSamples t = sample_time(codes.fraction, codes.next[0]);
+    const AxisSamples t = time_samples(codes);
     const AxisSamples y = sample_axis(picture.y + row, picture.height, picture.sensor_height,
                                       config_.latent_stride, config_.blend);
     float* scratch = scratch_[lane].data();

@@ -15,6 +15,7 @@ public:
                  const EngineOptions& options, const Arithmetic& arithmetic);
 
     std::string description() const override;
+    void make_room(const PictureGeometry& picture) override { lay_out_columns(picture); }
     void push(std::int64_t k, const LatentMap& latent) noexcept override;
     void reset() noexcept override;
     void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
@@ -35,7 +36,8 @@ private:
         std::size_t side;   // left or right
     };
 
-    void lay_out_columns(const PictureGeometry& picture) noexcept;
+    AxisSamples time_samples(const CodeChoice& codes) const noexcept;
+    void lay_out_columns(const PictureGeometry& picture);
     void render_row(const CodeChoice& codes, const PictureGeometry& picture,
                     const std::array<const HoistedLayer::Sums*, 2>& hoisted, int row,
                     SigmaRule rule, float* intensity, float* sigma, std::size_t lane) noexcept;

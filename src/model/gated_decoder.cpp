@@ -113,8 +113,7 @@ void GatedDecoder::join_tile(const PaddedMap& h, const PaddedMap& below, Level& 
     for (int y = near.y0; y < near.y1; ++y) {
         float* to = scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * step;
         double_row(below, y, near.x0, near.x1, to, step);
-        for (int x = near.x0; x < near.x1; ++x, to += step)
-            std::memcpy(to + deeper, h.at(y, x), std::size_t(mine) * sizeof(float));
+        vector_kernels().spread(h.at(y, near.x0), to + deeper, step, int(mine), near.width());
     }
     level.up.run({scratch, row, level.d.at(tile.y0, tile.x0), level.d.pitch(), mine, tile.height(),
                   tile.width()},

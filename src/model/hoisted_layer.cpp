@@ -11,15 +11,15 @@ namespace {
 plain::ConvWeights<float> hoisted_weights(const Model& model, int codes) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const int outputs = int(first.shape[0]), inputs = int(first.shape[1]);
-    const int depth = model.config.latent;
+    const int depth = model.config.latent, side = model.config.unfold, taps = side * side;
     plain::ConvWeights<float> weights{
-        outputs, codes * depth, {}, model.weights.at("renderer.mlp.0.bias").values};
+        outputs, codes * depth, {}, model.weights.at("renderer.mlp.0.bias").values, side};
     for (int o = 0; o < outputs; ++o)
         for (int code = 0; code < codes; ++code)
             for (int d = 0; d < depth; ++d)
-                for (int tap = 0; tap < 9; ++tap)
+                for (int tap = 0; tap < taps; ++tap)
                     weights.weight.push_back(
-                        first.values[std::size_t(o * inputs + (code * 9 + tap) * depth + d)]);
+                        first.values[std::size_t(o * inputs + (code * taps + tap) * depth + d)]);
     return weights;
 }
 
@@ -32,12 +32,15 @@ HoistedLayer::HoistedLayer(const Model& model, int height, int width, const Engi
       width_(width),
       depth_(model.config.latent),
       outputs_(model.config.mlp[0]),
+      reach_(model.config.unfold / 2),
       tiles_(latent_tiles(height, width)),
       tile_columns_(int(std::ranges::count(tiles_, 0, &Tile::y0))) {
     const auto extents = extents_of(tiles_, 0, height, width);
     past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents};
     whole_ = {hoisted_weights(model, 3), 1, false, arithmetic, extents};
     for (PaddedMap& map : codes_) map = {height, width, depth_};
+    for (LatentHistory& history : histories_) history.changed.reserve(tiles_.size());
+    for (Sums& sums : kept_) sums.values = {height, width, outputs_};
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
     constexpr auto kArea = std::size_t(kLatentSide + 2) * std::size_t(kLatentSide + 2);
@@ -133,7 +136,6 @@ const HoistedLayer::Sums& HoistedLayer::bring(std::int64_t k, bool whole,
         return there.whole == whole && there.k <= k ? there.k : std::int64_t{-1};
     };
     Sums& to = worth(kept_[1]) > worth(kept_[0]) ? kept_[1] : kept_[0];
-    if (to.values.empty()) to.values = {height_, width_, outputs_};
     active_.clear();
     for (std::size_t i = 0; i < tiles_.size(); ++i)
         if (!unchanged(to, k, whole, i)) active_.push_back(int(i));
@@ -149,15 +151,15 @@ const HoistedLayer::Sums& HoistedLayer::bring(std::int64_t k, bool whole,
 /// Joins the codes of a tile and its rim pixel by pixel, and runs the convolution over them.
 void HoistedLayer::compute_tile(Sums& to, const Tile& tile, float* scratch) noexcept {
     const std::ptrdiff_t depth = depth_, codes = to.whole ? 3 : 2;
-    const std::ptrdiff_t step = codes * depth, row = (tile.width() + 2) * step;
+    const std::ptrdiff_t step = codes * depth, row = (tile.width() + 2 * reach_) * step;
     const auto bytes = std::size_t(depth) * sizeof(float);
     for (std::ptrdiff_t c = 0; c < codes; ++c) {
         const PaddedMap* z = code(to.k - 1 + c);
         // The map's own border of zeros is what lies outside.
-        for (int y = tile.y0 - 1; y <= tile.y1; ++y) {
-            const float* from = z != nullptr ? z->at(y, tile.x0 - 1) : nullptr;
-            float* out = scratch + (y - tile.y0 + 1) * row + c * depth;
-            for (int x = tile.x0 - 1; x <= tile.x1; ++x, out += step) {
+        for (int y = tile.y0 - reach_; y < tile.y1 + reach_; ++y) {
+            const float* from = z != nullptr ? z->at(y, tile.x0 - reach_) : nullptr;
+            float* out = scratch + (y - tile.y0 + reach_) * row + c * depth;
+            for (int x = tile.x0 - reach_; x < tile.x1 + reach_; ++x, out += step) {
                 if (from == nullptr) {
                     std::memset(out, 0, bytes);
                     continue;
@@ -170,7 +172,7 @@ void HoistedLayer::compute_tile(Sums& to, const Tile& tile, float* scratch) noex
     const PackedConv& conv = to.whole ? whole_ : past_;
     conv.run({scratch, row, to.values.pixel(tile.y0, tile.x0).data(),
               std::ptrdiff_t(width_) * outputs_, outputs_, tile.height(), tile.width()},
-             scratch + (tile.height() + 2) * row);
+             scratch + (tile.height() + 2 * reach_) * row);
 }
 
 }  // namespace eventide

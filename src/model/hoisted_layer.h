@@ -15,7 +15,7 @@
 
 namespace eventide {
 
-/// One thread at a time; nothing is allocated after the second map.
+/// One thread at a time; nothing is allocated after construction.
 class HoistedLayer {
 public:
     /// Layer 1 without its offset part, at every sample of event frame k.
@@ -50,6 +50,7 @@ private:
 
     EngineOptions options_;
     int height_, width_, depth_, outputs_;
+    int reach_;  ///< px, of the first layer: 1, or 0 where it reads codes in time alone
     std::vector<Tile> tiles_;
     int tile_columns_ = 0;
     PackedConv past_, whole_;

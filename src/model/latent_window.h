@@ -8,13 +8,6 @@
 
 namespace eventide {
 
-/// Whether a picture of some time can be made.
-enum class Readiness {
-    ready,
-    later,  ///< latent maps it needs have yet to come
-    gone,   ///< before the first event frame, or its latent maps are no longer kept
-};
-
 /// The times and counts that travel with latent map k.
 struct LatentStamp {
     std::int64_t k = 0;  ///< number of the event frame, from 1; 0: none
@@ -33,8 +26,8 @@ struct FramePosition {
 /// that of event frame k into slot k % kLatentsKept.
 class LatentWindow {
 public:
-    /// Lookahead 2 reads z_{k-1} .. z_{k+2}.
-    static constexpr int kLatentsKept = 4;
+    /// Lookahead 2 reads z_{k-1} .. z_{k+2}, a live edge that fades z_{k-2} .. z_k.
+    static constexpr int kLatentsKept = 5;
 
     /// A new event frame; returns its k.
     std::int64_t push(const LatentMap& latent) noexcept;

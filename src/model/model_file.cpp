@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, Shape>> expected_tensors(const ModelConfig& c
         list_gated(config, list);
     else
         list_thesis(config, list);
-    int in = 27 * config.latent + 3, layer = 0;
+    int in = config.unfolded() + 3, layer = 0;
     for (const int width : config.mlp) {
         list.linear("renderer.mlp." + std::to_string(layer++), width, in);
         in = width;
@@ -153,9 +153,9 @@ Model load_model(const std::filesystem::path& path) {
     return model;
 }
 
-void save_model(const std::filesystem::path& path, const Model& model) {
+void save_model(const std::filesystem::path& path, const Model& model, bool overwrite) {
     check_model(model, path.string());
-    write_safetensors(path, {format_metadata(model.config), model.weights});
+    write_safetensors(path, {format_metadata(model.config), model.weights}, overwrite);
 }
 
 std::string encoder_identity(const Model& model) {

@@ -28,7 +28,7 @@ void check_model(const Model& model, const std::string& file);
 Model load_model(const std::filesystem::path& path);
 
 /// Checks, then writes whole or not at all. Throws Error.
-void save_model(const std::filesystem::path& path, const Model& model);
+void save_model(const std::filesystem::path& path, const Model& model, bool overwrite = true);
 
 /// A number that tells models apart: of the encoder's shape and weights, which a hidden state
 /// belongs to. 16 hexadecimal digits.

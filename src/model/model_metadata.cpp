@@ -3,10 +3,12 @@
 
 #include "src/core/error.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <vector>
 
 namespace eventide {
@@ -98,15 +100,26 @@ Key constant(const char* name, const char* value) {
             [=](const std::string& found, ModelConfig&) { return found == value; }};
 }
 
-/// One of two words.
-template <typename Enum>
-Key choice(const char* name, Enum ModelConfig::*member, std::array<Enum, 2> values,
-           std::array<std::string, 2> words) {
-    return {name, words[0] + " or " + words[1],
-            [=](const ModelConfig& config) { return words[config.*member == values[1]]; },
+/// One of a few words.
+template <typename Enum, std::size_t N>
+Key choice(const char* name, Enum ModelConfig::*member, const Enum (&values)[N],
+           const char* const (&words)[N]) {
+    std::map<std::string, Enum> meaning;
+    std::string expected;
+    for (std::size_t i = 0; i < N; ++i) {
+        meaning[words[i]] = values[i];
+        expected += (i == 0 ? "" : i + 1 == N ? " or " : ", ") + std::string{words[i]};
+    }
+    return {name, expected,
+            [=](const ModelConfig& config) {
+                return std::ranges::find(meaning, config.*member,
+                                         &std::pair<const std::string, Enum>::second)
+                    ->first;
+            },
             [=](const std::string& word, ModelConfig& config) {
-                config.*member = values[word == words[1]];
-                return word == words[0] || word == words[1];
+                const auto found = meaning.find(word);
+                if (found != meaning.end()) config.*member = found->second;
+                return found != meaning.end();
             }};
 }
 
@@ -124,6 +137,7 @@ const std::vector<Key>& keys() {
         optional(whole_number("gate_spread", &ModelConfig::gate_spread)),
         whole_number("latent", &ModelConfig::latent),
         whole_number("latent_stride", &ModelConfig::latent_stride),
+        optional(whole_number("unfold", &ModelConfig::unfold)),
         list("mlp", &ModelConfig::mlp),
         list("lookaheads", &ModelConfig::lookaheads),
         number("log_sigma_min", &ModelConfig::log_sigma_min),
@@ -133,6 +147,8 @@ const std::vector<Key>& keys() {
                {"log_blend", "mixture"}),
         optional(choice("blend", &ModelConfig::blend, {Blend::linear, Blend::smooth},
                         {"linear", "smooth"})),
+        optional(choice("live_edge", &ModelConfig::live_edge, {LiveEdge::jump, LiveEdge::fade},
+                        {"jump", "fade"})),
         text("window", &ModelConfig::window),
         text("card", &ModelConfig::card),
     };
@@ -192,6 +208,8 @@ void check_config(const ModelConfig& config, const std::string& file) {
     check_range(file, "gate_spread", config.gate_spread, 0, kMaxRadius);
     check_range(file, "latent", config.latent, 1, kMaxWidth);
     check_range(file, "latent_stride", config.latent_stride, 1, 2);
+    if (config.unfold != 1 && config.unfold != 3)
+        refuse(file, "unfold", "1 or 3", std::to_string(config.unfold));
     check_list(file, "mlp", config.mlp, kMaxLayers, 1, kMaxWidth);
     check_list(file, "lookaheads", config.lookaheads, 3, 0, 2);
     if (config.log_sigma_min > config.log_sigma_max)

@@ -14,9 +14,10 @@
 
 namespace eventide::plain {
 
-/// z_{k-1} .. z_{k+2}; null where unknown, which reads as zeros.
+/// z_{k-2} .. z_{k+2}; null where unknown, which reads as zeros. Without a z_{k-1} no live edge
+/// fades.
 template <typename T>
-using Codes = std::array<const Array3<T>*, 4>;
+using Codes = std::array<const Array3<T>*, 5>;
 
 template <typename T>
 struct Picture {
@@ -36,7 +37,7 @@ public:
         }
     }
 
-    /// As docs/model.md states it: every query unfolds 27 codes.
+    /// As docs/model.md states it: every query unfolds its codes.
     Picture<T> render_unfolded(const Codes<T>& codes, double fraction,
                                const PictureGeometry& picture, SigmaRule rule) const {
         std::vector<T> input(std::size_t(layers_[0].in));
@@ -52,13 +53,14 @@ public:
     /// latent maps, made once (reconstruction.md section 4).
     Picture<T> render(const Codes<T>& codes, double fraction, const PictureGeometry& picture,
                       SigmaRule rule) const {
-        const bool two = codes[2] != nullptr && fraction > 0;
-        const std::array<Array3<T>, 2> hoisted{hoist(codes, 0),
-                                               two ? hoist(codes, 1) : Array3<T>{}};
+        const AxisSamples t = time_samples(codes, fraction);
+        std::array<Array3<T>, 2> hoisted;
+        for (int n = 0; n < 2; ++n)
+            if (t.weight[std::size_t(n)] != 0) hoisted[std::size_t(n)] = hoist(codes, t.index + n);
         const Layer& first = layers_[0];
         return blend(codes, fraction, picture, rule,
                      [&](int dk, int j, int i, const std::array<double, 3>& offset) {
-                         const auto pixel = hoisted[std::size_t(dk)].pixel(j, i);
+                         const auto pixel = hoisted[std::size_t(dk - t.index)].pixel(j, i);
                          std::vector<T> sum(pixel.begin(), pixel.end());
                          for (std::size_t o = 0; o < sum.size(); ++o)
                              for (std::size_t d = 0; d < 3; ++d)
@@ -94,12 +96,22 @@ private:
         return {sums[0], std::clamp(sums[1], T(config_.log_sigma_min), T(config_.log_sigma_max))};
     }
 
+    AxisSamples time_samples(const Codes<T>& codes, double fraction) const {
+        const bool fades = config_.live_edge == LiveEdge::fade && codes[1] != nullptr;
+        return sample_time(fraction, codes[3] != nullptr, fades);
+    }
+    /// z_{k+dk+dt}; the sample before event frame k is as it was when that had not come yet.
+    static const Array3<T>* code(const Codes<T>& codes, int dk, int dt) {
+        return dk == -1 && dt == 1 ? nullptr : codes[std::size_t(2 + dk + dt)];
+    }
+
     void unfold(const Codes<T>& codes, int dk, int j, int i, std::vector<T>& input) const {
         const auto depth = std::size_t(config_.latent);
         std::ranges::fill(input, T(0));
-        for (int n = 0; n < 27; ++n) {
-            const int dt = n / 9 - 1, y = j + n / 3 % 3 - 1, x = i + n % 3 - 1;
-            const Array3<T>* z = codes[std::size_t(1 + dk + dt)];
+        const int side = config_.unfold, area = side * side, reach = side / 2;
+        for (int n = 0; n < 3 * area; ++n) {
+            const int dt = n / area - 1, y = j + n / side % side - reach, x = i + n % side - reach;
+            const Array3<T>* z = code(codes, dk, dt);
             if (z == nullptr || y < 0 || y >= z->height() || x < 0 || x >= z->width()) continue;
             const auto code = z->pixel(y, x);
             std::copy(code.begin(), code.end(),
@@ -110,16 +122,18 @@ private:
     /// Layer 1 without its offset part at every sample of event frame k + dk.
     Array3<T> hoist(const Codes<T>& codes, int dk) const {
         const Layer& first = layers_[0];
-        Array3<T> sums{codes[1]->height(), codes[1]->width(), first.out};
+        const int side = config_.unfold, area = side * side;
+        Array3<T> sums{codes[2]->height(), codes[2]->width(), first.out};
         for (int dt = -1; dt <= 1; ++dt) {
-            ConvWeights<T> part{first.out, config_.latent, {}, std::vector<T>(first.bias.size())};
+            ConvWeights<T> part{
+                first.out, config_.latent, {}, std::vector<T>(first.bias.size()), side};
             if (dt == -1) part.bias = first.bias;
             for (int o = 0; o < first.out; ++o)
                 for (int d = 0; d < config_.latent; ++d)
-                    for (int tap = 0; tap < 9; ++tap)
+                    for (int tap = 0; tap < area; ++tap)
                         part.weight.push_back(first.weight[std::size_t(
-                            o * first.in + ((dt + 1) * 9 + tap) * config_.latent + d)]);
-            const Array3<T>* z = codes[std::size_t(1 + dk + dt)];
+                            o * first.in + ((dt + 1) * area + tap) * config_.latent + d)]);
+            const Array3<T>* z = code(codes, dk, dt);
             const Array3<T> zeros =
                 z != nullptr ? Array3<T>{} : Array3<T>{sums.height(), sums.width(), config_.latent};
             sums = each(sums, conv(part, z != nullptr ? *z : zeros), std::plus<T>{});
@@ -134,7 +148,7 @@ private:
         const int stride = config_.latent_stride;
         Picture<T> out{{picture.part_height, picture.part_width},
                        {picture.part_height, picture.part_width}};
-        const AxisSamples t = sample_time(fraction, codes[2] != nullptr);
+        const AxisSamples t = time_samples(codes, fraction);
         for (int row = 0; row < picture.part_height; ++row) {
             const AxisSamples y = sample_axis(picture.y + row, picture.height,
                                               picture.sensor_height, stride, config_.blend);
@@ -146,8 +160,9 @@ private:
                     const std::size_t a = n / 4, b = n / 2 % 2, c = n % 2;
                     const T w = T(t.weight[a] * y.weight[b] * x.weight[c]);
                     if (w == 0) continue;
-                    const Member member = evaluate(int(a), y.index + int(b), x.index + int(c),
-                                                   {t.offset[a], x.offset[c], y.offset[b]});
+                    const Member member =
+                        evaluate(t.index + int(a), y.index + int(b), x.index + int(c),
+                                 {t.offset[a], x.offset[c], y.offset[b]});
                     mu += w * member.mu;
                     log_sigma += w * member.log_sigma;
                     square += w * (std::exp(2 * member.log_sigma) + member.mu * member.mu);

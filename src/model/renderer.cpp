@@ -28,11 +28,11 @@ PictureGeometry geometry_of(const RenderRequest& request, int sensor_width, int 
 
 void check_axis(const char* name, int size, int at, int part) {
     if (size < 1 || size > kMaxSide)
-        throw Error(ErrorKind::usage, std::string{"picture "} + name +
+        throw Error(ErrorKind::usage, std::string{"frame "} + name +
                                           ": expected 1 to 65535 px, found " +
                                           std::to_string(size));
     if (at < 0 || part < 1 || at > size - part)
-        throw Error(ErrorKind::usage, std::string{"picture region, "} + name +
+        throw Error(ErrorKind::usage, std::string{"--roi exceeds the frame, "} + name +
                                           ": expected to lie within " + std::to_string(size) +
                                           " px, found " + std::to_string(part) + " from " +
                                           std::to_string(at));
@@ -90,6 +90,7 @@ Frame Renderer::make_output(const RenderRequest& request) const {
     Frame frame;
     frame.intensity = {picture.part_height, picture.part_width};
     if (request.want_sigma) frame.sigma = {picture.part_height, picture.part_width};
+    core_->make_room(picture);
     return frame;
 }
 
@@ -99,7 +100,7 @@ void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
     // A time that is not ready() shows the nearest event frame kept: wrong, but never unsafe.
     if (at.k > window_.newest()) at = {window_.newest(), 1};
     if (at.k == 0)
-        at = {std::max<std::int64_t>(1, window_.newest() - LatentWindow::kLatentsKept + 2), 0};
+        at = {std::max<std::int64_t>(1, window_.newest() - LatentWindow::kLatentsKept + 3), 0};
     const PictureGeometry picture = geometry_of(request, sensor_width_, sensor_height_);
     const CodeChoice codes{at.k,
                            at.fraction,

@@ -14,12 +14,6 @@ namespace eventide {
 
 class RendererCore;
 
-/// A part of the output picture.
-struct Region {
-    int x = 0, y = 0;           ///< px, top left corner
-    int width = 0, height = 0;  ///< px; 0: to the picture's edge
-};
-
 struct RenderRequest {
     SensorTime t{};
     int width = 0, height = 0;              ///< px, of the whole output picture; 0: the sensor's
@@ -30,7 +24,7 @@ struct RenderRequest {
 };
 
 /// One thread at a time. Nothing fails after construction; with Engine::fast nothing is allocated
-/// once warm, as long as frames come in the size make_output() gave.
+/// after make_output(), as long as frames come in the size it gave.
 class Renderer {
 public:
     /// Throws Error where the model does not hold together or the precision is not there.
@@ -55,8 +49,9 @@ public:
         return readiness(t, lookahead) == Readiness::ready;
     }
 
-    /// A frame of the size the request asks for. Throws Error(usage) where the size, region or
-    /// lookahead is impossible: a request that passes here is safe in render().
+    /// A frame of the size the request asks for, and all the memory that rendering it takes. Throws
+    /// Error(usage) where the size, region or lookahead is impossible: a request that passes here
+    /// is safe in render().
     Frame make_output(const RenderRequest& request) const;
     /// Only where ready(request.t, request.lookahead). Fills everything but `index`; intensity is
     /// [y][x] of the region. Resizes the frame where it does not fit.

@@ -46,11 +46,21 @@ inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride,
     return found;
 }
 
-/// The one or two codes around a time in event frame k: k and k + 1 (docs/model.md, "Time").
-inline AxisSamples sample_time(double fraction, bool next_known) {
+/// The one or two samples around a time in event frame k (docs/model.md, "Time"): those of event
+/// frames k + index and k + index + 1. A live edge that fades takes k - 1 as it was shown last
+/// (`from_before`: z_k is not read by it) and k.
+inline AxisSamples sample_time(double fraction, bool next_known, bool from_before) {
     AxisSamples found;
-    found.offset = {fraction, fraction - 1};
-    if (next_known) found.weight = {1 - fraction, fraction};
+    if (next_known) {
+        found.offset = {fraction, fraction - 1};
+        found.weight = {1 - fraction, fraction};
+    } else if (from_before) {
+        found.index = -1;
+        found.offset = {1, fraction};
+        found.weight = {1 - fraction, fraction};
+    } else {
+        found.offset = {fraction, fraction - 1};
+    }
     return found;
 }
 

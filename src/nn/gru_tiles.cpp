@@ -45,19 +45,15 @@ void GruTiles::finish(const PaddedMap& state, std::size_t i, const Mask* mask, c
     const VectorKernels& kernels = vector_kernels();
     const Tile& tile = tiles_[i];
     const std::ptrdiff_t c = channels_;
-    const std::size_t bytes = std::size_t(c) * sizeof(float);
     float* gates = joined + (side_ + 4) * joined_pitch();
     const std::ptrdiff_t gates_pitch = (side_ + 2) * 2 * c;
     float* candidate = gates + (side_ + 2) * gates_pitch;
     const std::ptrdiff_t candidate_pitch = side_ * c;
     float* scratch = candidate + side_ * candidate_pitch;
 
-    for (int y = near.y0; y < near.y1; ++y) {
-        const float* from = state.at(y, near.x0);
-        float* to = joined_at(joined, i, y, near.x0) + c;
-        for (int x = near.x0; x < near.x1; ++x, from += c, to += 2 * c)
-            std::memcpy(to, from, bytes);
-    }
+    for (int y = near.y0; y < near.y1; ++y)
+        kernels.spread(state.at(y, near.x0), joined_at(joined, i, y, near.x0) + c, 2 * c, channels_,
+                       near.width());
 
     const Tile close = tile.grown(1, state.height(), state.width());
     const auto gate_at = [&](int y, int x) {
@@ -67,23 +63,27 @@ void GruTiles::finish(const PaddedMap& state, std::size_t i, const Mask* mask, c
                 gate_at(close.y0, close.x0), gates_pitch, 2 * c, close.height(), close.width()},
                scratch);
     for (int y = close.y0; y < close.y1; ++y)
-        for (int x = close.x0; x < close.x1; ++x)
-            kernels.reset_state(gate_at(y, x) + c, joined_at(joined, i, y, x) + c, channels_);
+        kernels.reset_state(gate_at(y, close.x0) + c, 2 * c, joined_at(joined, i, y, close.x0) + c,
+                            2 * c, channels_, close.width());
 
     candidate_.run({joined_at(joined, i, tile.y0 - 1, tile.x0 - 1), joined_pitch(), candidate,
                     candidate_pitch, c, tile.height(), tile.width()},
                    scratch);
     float* next = next_[i].data();
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x, next += c) {
-            if (mask != nullptr && (*mask)(y, x) == 0)
-                std::memcpy(next, state.at(y, x), bytes);
-            else
-                kernels.update_state(
-                    state.at(y, x), gate_at(y, x),
-                    candidate + (y - tile.y0) * candidate_pitch + (x - tile.x0) * c, next,
-                    channels_);
-        }
+    for (int y = tile.y0; y < tile.y1; ++y, next += tile.width() * c) {
+        const float* row = candidate + (y - tile.y0) * candidate_pitch;
+        kernels.update_state(state.at(y, tile.x0), gate_at(y, tile.x0), 2 * c, row, next, channels_,
+                             tile.width());
+        if (mask != nullptr) keep_unmasked(state, *mask, y, tile, next);
+    }
+}
+
+/// States outside the mask stay as they are, bit for bit.
+void GruTiles::keep_unmasked(const PaddedMap& state, const Mask& mask, int y, const Tile& tile,
+                             float* next) const noexcept {
+    const auto c = std::size_t(channels_);
+    for (int x = tile.x0; x < tile.x1; ++x, next += c)
+        if (mask(y, x) == 0) std::memcpy(next, state.at(y, x), c * sizeof(float));
 }
 
 void GruTiles::commit(PaddedMap& state, std::size_t i) noexcept {

@@ -54,6 +54,8 @@ private:
     float* begin(std::size_t i, float* scratch, const Tile& near) const noexcept;
     void finish(const PaddedMap& state, std::size_t i, const Mask* mask, const Tile& near,
                 float* joined) noexcept;
+    void keep_unmasked(const PaddedMap& state, const Mask& mask, int y, const Tile& tile,
+                       float* next) const noexcept;
 
     int channels_ = 0, side_ = 0;
     std::vector<Tile> tiles_;

@@ -30,15 +30,16 @@ PackedWeights::PackedWeights(int stretches, int pixels, int channels, int output
                 c + 1 < channels ? to_bf16(value(s, pixel, c + 1, o)) : std::uint16_t{0};
             return low | high << 16;
         };
-        narrow_.resize(packed_size(stretches, length_, outputs, kBf16Lanes));
-        pack_weights(stretches, length_, outputs, kBf16Lanes, pair, narrow_.data());
+        lanes_ = bf16_lanes(outputs);
+        narrow_.resize(packed_size(stretches, length_, outputs, lanes_));
+        pack_weights(stretches, length_, outputs, lanes_, pair, narrow_.data());
     } else {
         const auto single = [&](int s, int k, int o) {
             return value(s, k / channels, k % channels, o);
         };
-        const int lanes = vector_kernels().lanes;
-        weight_.resize(packed_size(stretches, length_, outputs, lanes));
-        pack_weights(stretches, length_, outputs, lanes, single, weight_.data());
+        lanes_ = dot_lanes(outputs);
+        weight_.resize(packed_size(stretches, length_, outputs, lanes_));
+        pack_weights(stretches, length_, outputs, lanes_, single, weight_.data());
     }
     const int lanes = std::max(kBf16Lanes, vector_kernels().lanes);
     bias_.resize(std::size_t((outputs + lanes - 1) / lanes * lanes));
@@ -52,32 +53,34 @@ void PackedWeights::run(const void* in, std::ptrdiff_t pitch, std::ptrdiff_t ste
                          count, outputs_, narrow_.data(), bias_.data(), relu_, out, out_step});
     else
         vector_kernels().dot_rows({static_cast<const float*>(in), pitch, step, stretches_, length_,
-                                   count, outputs_, weight_.data(), bias_.data(), relu_, out,
-                                   out_step});
+                                   count, outputs_, lanes_, weight_.data(), bias_.data(), relu_,
+                                   out, out_step});
 }
 
 PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                        const Arithmetic& arithmetic, std::vector<Extent> extents)
-    : stride_(stride) {
-    if (arithmetic.onednn) {
+    : stride_(stride), side_(weights.side) {
+    if (arithmetic.onednn && side_ == 3) {
         onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, arithmetic.bf16(),
                                                      std::move(extents));
         return;
     }
     std::vector<float> values;  // [y][x][in][out]
     values.reserve(weights.weight.size());
-    for (int tap = 0; tap < 9; ++tap)
+    const int taps = side_ * side_;
+    for (int tap = 0; tap < taps; ++tap)
         for (int i = 0; i < weights.in; ++i)
             for (int o = 0; o < weights.out; ++o)
-                values.push_back(weights.weight[std::size_t((o * weights.in + i) * 9 + tap)]);
-    weights_ = {3, 3, weights.in, weights.out, values, weights.bias, relu, arithmetic.products};
+                values.push_back(weights.weight[std::size_t((o * weights.in + i) * taps + tap)]);
+    weights_ = {side_,  side_,        weights.in, weights.out,
+                values, weights.bias, relu,       arithmetic.products};
 }
 
 std::size_t PackedConv::scratch_size(int height, int width) const {
     if (onednn_ != nullptr) return onednn_->scratch_size();
     if (weights_.bf16() == nullptr) return 0;
-    return std::size_t((height - 1) * stride_ + 3) * std::size_t((width - 1) * stride_ + 3) *
-           std::size_t(weights_.step());
+    return std::size_t((height - 1) * stride_ + side_) *
+           std::size_t((width - 1) * stride_ + side_) * std::size_t(weights_.step());
 }
 
 void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
@@ -88,7 +91,8 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
     const void* in = call.in;
     std::ptrdiff_t pitch = call.in_pitch;
     if (const Bf16Kernels* bf16 = weights_.bf16()) {
-        const int rows = (call.height - 1) * stride_ + 3, columns = (call.width - 1) * stride_ + 3;
+        const int rows = (call.height - 1) * stride_ + side_,
+                  columns = (call.width - 1) * stride_ + side_;
         pitch = std::ptrdiff_t(columns) * weights_.step();
         // The scratch holds pairs of bf16 numbers in the room of one float each.
         auto* narrow = reinterpret_cast<std::uint32_t*>(scratch);

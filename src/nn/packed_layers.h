@@ -33,7 +33,7 @@ public:
              std::ptrdiff_t out_step) const noexcept;
 
 private:
-    int stretches_ = 0, length_ = 0, channels_ = 0, outputs_ = 0;
+    int stretches_ = 0, length_ = 0, channels_ = 0, outputs_ = 0, lanes_ = 0;
     bool relu_ = false;
     const Bf16Kernels* bf16_ = nullptr;
     std::vector<float, CacheLineAllocator<float>> weight_, bias_;
@@ -43,7 +43,8 @@ private:
 class PackedConv {
 public:
     PackedConv() = default;
-    /// `extents`: of the regions run() is called for. Our own kernels take any region.
+    /// `extents`: of the regions run() is called for. Our own kernels take any region; they run
+    /// every layer of 1x1.
     PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                const Arithmetic& arithmetic, std::vector<Extent> extents = {});
 
@@ -52,7 +53,7 @@ public:
     void run(const ConvCall& call, float* scratch) const noexcept;
 
 private:
-    int stride_ = 1;
+    int stride_ = 1, side_ = 3;
     PackedWeights weights_;                     // our own kernels'
     std::shared_ptr<const OnednnConv> onednn_;  // or null
 };

@@ -2,6 +2,8 @@
 #include "src/nn/safetensors.h"
 
 #include "src/core/error.h"
+#include "src/io/input_file.h"
+#include "src/io/output_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -151,13 +153,16 @@ std::string shape_text(std::span<const std::int64_t> shape) {
 
 TensorFile parse_safetensors(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.size() < kLengthBytes)
-        refuse(name, "not a safetensors file: only " + std::to_string(bytes.size()) + " bytes");
+        refuse(name,
+               "not a model file (safetensors): only " + std::to_string(bytes.size()) + " bytes");
     std::uint64_t header_size = 0;
     std::memcpy(&header_size, bytes.data(), kLengthBytes);
     if (header_size > kMaxHeaderBytes || header_size > bytes.size() - kLengthBytes)
-        refuse(name, "not a safetensors file, or truncated: a header of " +
-                         std::to_string(header_size) + " bytes in a file of " +
-                         std::to_string(bytes.size()));
+        refuse(name,
+               "not a model file (safetensors), or truncated: expected a header that fits, found "
+               "one of " +
+                   std::to_string(header_size) + " bytes in a file of " +
+                   std::to_string(bytes.size()));
     const auto text = bytes.subspan(kLengthBytes, std::size_t(header_size));
     const auto data = bytes.subspan(kLengthBytes + std::size_t(header_size));
     const Json header =
@@ -182,8 +187,8 @@ TensorFile read_safetensors(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(path, error))
         refuse(path.string(), error ? error.message() : "not a file");
     const auto size = std::filesystem::file_size(path, error);
-    std::ifstream stream{path, std::ios::binary};
-    if (error || !stream) refuse(path.string(), "cannot be read");
+    if (error) refuse(path.string(), "cannot be read: " + error.message());
+    std::ifstream stream = open_to_read(path);
     std::vector<std::byte> bytes(size);
     stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
     if (std::size_t(stream.gcount()) != bytes.size()) refuse(path.string(), "cannot be read");
@@ -217,19 +222,8 @@ std::vector<std::byte> format_safetensors(const TensorFile& file) {
     return bytes;
 }
 
-void write_safetensors(const std::filesystem::path& path, const TensorFile& file) {
-    const std::vector<std::byte> bytes = format_safetensors(file);
-    std::filesystem::path beside = path;
-    beside += ".part";
-    {
-        std::ofstream stream{beside, std::ios::binary | std::ios::trunc};
-        stream.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-        stream.close();
-        if (!stream) throw Error(ErrorKind::failed, path.string() + ": cannot be written");
-    }
-    std::error_code error;
-    std::filesystem::rename(beside, path, error);
-    if (error) throw Error(ErrorKind::failed, path.string() + ": " + error.message());
+void write_safetensors(const std::filesystem::path& path, const TensorFile& file, bool overwrite) {
+    write_file(path, format_safetensors(file), overwrite);
 }
 
 }  // namespace eventide

@@ -44,8 +44,9 @@ TensorFile read_safetensors(const std::filesystem::path& path);
 
 std::vector<std::byte> format_safetensors(const TensorFile& file);
 
-/// Writes beside `path` first and renames, so that no reader ever sees half a file. Throws
-/// Error(failed) where it cannot be written.
-void write_safetensors(const std::filesystem::path& path, const TensorFile& file);
+/// So that no reader ever sees half a file. Throws Error: failed where it cannot be written, usage
+/// for a file that is there and may not be replaced.
+void write_safetensors(const std::filesystem::path& path, const TensorFile& file,
+                       bool overwrite = true);
 
 }  // namespace eventide

@@ -20,7 +20,7 @@ template <typename T>
 ConvWeights<T> conv_weights(const Tensors& tensors, const std::string& name) {
     const auto& shape = tensors.at(name + ".weight").shape;
     return {int(shape[0]), int(shape[1]), vector_of<T>(tensors, name + ".weight"),
-            vector_of<T>(tensors, name + ".bias")};
+            vector_of<T>(tensors, name + ".bias"), int(shape[2])};
 }
 template <typename T>
 GruWeights<T> gru_weights(const Tensors& tensors, const std::string& name) {

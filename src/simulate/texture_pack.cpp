@@ -2,6 +2,8 @@
 #include "src/simulate/texture_pack.h"
 
 #include "src/core/error.h"
+#include "src/io/input_file.h"
+#include "src/io/output_file.h"
 #include "src/simulate/grey_code.h"
 
 #include <algorithm>
@@ -29,8 +31,8 @@ Error bad(const std::filesystem::path& file, const std::string& what) {
 class PackReader {
 public:
     explicit PackReader(const std::filesystem::path& file) : file_(file) {
-        std::ifstream stream{file, std::ios::binary | std::ios::ate};
-        if (!stream) throw bad(file, "no file that can be opened");
+        std::ifstream stream = open_to_read(file);
+        stream.seekg(0, std::ios::end);
         bytes_.resize(std::size_t(stream.tellg()));
         stream.seekg(0);
         stream.read(reinterpret_cast<char*>(bytes_.data()), std::streamsize(bytes_.size()));
@@ -95,11 +97,7 @@ void write_texture_pack(const std::filesystem::path& file, const std::vector<Gre
         put(out, std::uint32_t(code.size()));
         out.insert(out.end(), code.begin(), code.end());
     }
-    std::ofstream stream{file, std::ios::binary};
-    stream.write(reinterpret_cast<const char*>(out.data()), std::streamsize(out.size()));
-    stream.close();
-    if (!stream)
-        throw Error(ErrorKind::failed, file.string() + ": the pack of textures cannot be written");
+    write_file(file, out, true);
 }
 
 std::vector<GreyImage> read_texture_pack(const std::filesystem::path& file) {

@@ -6,15 +6,11 @@
 namespace eventide {
 
 Memory empty_memory(const ModelConfig& config, std::int64_t lanes, std::int64_t height,
-                    std::int64_t width, torch::TensorOptions options, Feedback feedback) {
+                    std::int64_t width, torch::TensorOptions options) {
     const std::int64_t s = config.latent_stride;
-    Memory memory{
-        empty_state(config, lanes, height, width, options),
-        torch::zeros({lanes, config.latent, (height + s - 1) / s, (width + s - 1) / s}, options)
-            .contiguous(torch::MemoryFormat::ChannelsLast)};
-    if (feedback != Feedback::none)
-        memory.state.push_back(torch::zeros({lanes, 1, height, width}, options));
-    return memory;
+    return {empty_state(config, lanes, height, width, options),
+            torch::zeros({lanes, config.latent, (height + s - 1) / s, (width + s - 1) / s}, options)
+                .contiguous(torch::MemoryFormat::ChannelsLast)};
 }
 
 Memory begin_window(const Memory& memory, const std::vector<bool>& fresh) {
@@ -66,24 +62,17 @@ TrainingBatch to_batch(std::span<const LaneWindow> windows, torch::Device device
 }
 
 Pictures run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
-                    const TrainingBatch& batch, int patch, Memory& memory, Feedback feedback) {
-    const bool fed = feedback != Feedback::none;
-    std::vector<torch::Tensor> z{memory.latent};  // z[k + 1] belongs to frame k of the window
-    std::vector<torch::Tensor> pictures;          // at the start of frame k, where fed back
+                    const TrainingBatch& batch, int patch, Memory& memory) {
+    const auto type = parameters.begin()->second.scalar_type();
+    std::vector<torch::Tensor> z{memory.latent.to(type)};  // z[k + 1] belongs to frame k
     for (const torch::Tensor& grid : batch.grids) {
-        if (fed) pictures.push_back(memory.state.back());
-        Encoded encoded = encode(config, parameters,
-                                 fed ? with_picture(grid, pictures.back()) : grid, memory.state);
+        Encoded encoded = encode(config, parameters, grid, memory.state);
         memory.state = std::move(encoded.state);
-        z.push_back(std::move(encoded.latent));
-        if (fed)
-            memory.state.push_back(next_picture(feedback, config, parameters, *(z.end() - 2),
-                                                z.back(), pictures.back()));
+        z.push_back(encoded.latent.to(type));
     }
-    memory.latent = z.back();
+    memory.latent = z.back().to(memory.latent.scalar_type());
 
     std::vector<RenderTask> tasks;
-    std::vector<FedPictures> bases;
     for (std::size_t i = 0; i < batch.f.size(); ++i) {
         const std::size_t k = std::size_t(plan.first_rendered) + i;
         // Codes past the window's end are not known, whatever the lookahead.
@@ -92,14 +81,11 @@ Pictures run_window(const ModelConfig& config, const Parameters& parameters, con
             return known ? z[k + 1 + ahead] : torch::Tensor{};
         };
         tasks.push_back({z[k], z[k + 1], code(1), code(2), batch.f[i]});
-        if (fed)
-            bases.push_back(
-                {pictures[k], code(1).defined() ? pictures[k + 1] : torch::Tensor{}, batch.f[i]});
+        if (config.live_edge == LiveEdge::fade && k > 0) tasks.back().before = z[k - 1];
     }
     const double s = config.latent_stride;
     const PatchGrid points = patch_grid(plan.y0 / s, plan.x0 / s, plan.span / s, patch);
-    const Rendered out = apply_feedback(feedback, parameters,
-                                        render(config, parameters, tasks, points), bases, points);
+    const Rendered out = render(config, parameters, tasks, points);
     return {out.mu, out.log_sigma, batch.truth, batch.weight, std::int64_t(batch.fresh.size())};
 }
 

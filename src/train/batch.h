@@ -2,7 +2,6 @@
 #pragma once
 
 #include "src/train/data.h"
-#include "src/train/feedback.h"
 #include "src/train/losses.h"
 #include "src/train/networks.h"
 #include "src/train/render.h"
@@ -14,13 +13,12 @@ namespace eventide {
 
 /// What N lanes carry from window to window.
 struct Memory {
-    EncoderState state;    ///< and last, with feedback, the picture that is fed back
+    EncoderState state;
     torch::Tensor latent;  ///< of the last event frame, [N][D][h][w]
 };
 
 Memory empty_memory(const ModelConfig& config, std::int64_t lanes, std::int64_t height,
-                    std::int64_t width, torch::TensorOptions options,
-                    Feedback feedback = Feedback::none);
+                    std::int64_t width, torch::TensorOptions options);
 
 /// Lanes with `fresh` begin empty; gradients do not reach into the window before.
 Memory begin_window(const Memory& memory, const std::vector<bool>& fresh);
@@ -36,8 +34,7 @@ TrainingBatch to_batch(std::span<const LaneWindow> windows, torch::Device device
 /// Encodes a window and renders the frames the plan names. `memory` goes in as begin_window() left
 /// it and comes out as it is after the window, still attached.
 Pictures run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
-                    const TrainingBatch& batch, int patch, Memory& memory,
-                    Feedback feedback = Feedback::none);
+                    const TrainingBatch& batch, int patch, Memory& memory);
 
 /// [N][C][H][W] of grids [y][x][channel].
 torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Device device);

@@ -104,16 +104,29 @@ struct Lane::Episode {
           binner(settings.bins, settings.crop, settings.crop),
           grid(binner.make_output()),
           width_s(random.log_uniform(settings.frame_s)),
-          jitter(random.chance(settings.jitter_probability) ? settings.frame_jitter : 0) {}
+          jitter(random.chance(settings.jitter_probability) ? settings.frame_jitter : 0) {
+        // A share of 0 draws nothing, so that runs of before go on as they were.
+        if (settings.content_share > 0 && random.chance(settings.content_share))
+            enough = random.log_uniform(settings.content_epp) * settings.crop * settings.crop;
+    }
 
     void advance() {
         const double s = width_s * std::exp(jitter * (2 * random.uniform() - 1));
-        const SensorDuration width{std::max<std::int64_t>(1, std::llround(s * 1e6))};
+        const double us = enough > 0 ? std::min(s * 1e6, width_by_content()) : s * 1e6;
+        const SensorDuration width{std::max<std::int64_t>(1, std::llround(us))};
         window = {stream.now(), stream.now() + width};
         events.clear();
         stream.advance(window.end, events);
         binner.process({.window = window, .events = events}, grid);
         ++frames;
+    }
+
+    /// us; foreseen from the rate of the window before, so that each is simulated in one step.
+    double width_by_content() const {
+        constexpr double kLeast = 1e3, kGrowth = 2;
+        const double before = frames == 0 ? kLeast : double(window.width().count());
+        const double by_rate = before * enough / std::max(1.0, double(events.size()));
+        return std::max(kLeast, std::min(by_rate, kGrowth * before));
     }
 
     Random random;
@@ -123,6 +136,7 @@ struct Lane::Episode {
     Binner binner;
     VoxelGrid grid;
     double width_s, jitter;
+    double enough = 0;  ///< events that end a window before its time; 0: none do
     Window window;
     std::vector<Event> events;
     int frames = 0;

@@ -33,6 +33,8 @@ struct DataSettings {
     double span_scale_max = 4;       ///< else log-uniform 1..this points per pixel
     double edge_probability = .4;    ///< pictures at the end of their event frame; else anywhere
     int warm_frames = 4;             ///< frames of a new lane that count nothing
+    double content_share = 0;        ///< episodes whose windows end by content, too:
+    Range content_epp{.2, 1};        ///< log-uniform; at so many events per pixel, never under 1 ms
     double thesis_share = 0;  ///< episodes lit, sensed and shown as the thesis' (see `Camera`)
     std::uint64_t seed = 1;
     SceneSettings scene = training_scenes();

@@ -7,6 +7,7 @@
 
 #include "src/train/torch.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,9 @@ torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h);
 /// h + m.u.(c - h) in W. c [N][C][h][w] in T; mask [N][1][h][w] in W, or undefined for 1.
 torch::Tensor update_state(const torch::Tensor& gates, const torch::Tensor& candidate,
                            const torch::Tensor& h, const torch::Tensor& mask);
+
+/// T(v) = sign(v) log1p(|v|) of a voxel grid (no gradient), in `type`.
+torch::Tensor compressed(const torch::Tensor& grid, torch::ScalarType type);
 
 /// Twice the size: out[2 j] = a[j], out[2 j + 1] = (a[j] + a[min(j + 1, last)]) / 2 along both
 /// axes, cut to height x width (each 2 n or 2 n - 1).
@@ -36,8 +40,33 @@ struct Axis {
 torch::Tensor offset_layer(const torch::Tensor& first, const torch::Tensor& dt,
                            const torch::Tensor& offsets, const Axis& y, const Axis& x);
 
+/// Points along one axis with the weight each gives its sample.
+struct WeightedAxis : Axis {
+    std::vector<double> weight;
+};
+
+/// How outputs at samples become a picture.
+struct MemberBlend : torch::CustomClassHolder {
+    std::array<WeightedAxis, 2> y, x;  ///< the lower and the upper neighbour
+    std::vector<double> dt, weight;    ///< per map: offset and weight in time
+    double log_sigma_min = 0, log_sigma_max = 0;
+    bool squares = false;  ///< blends sigma^2 + mu^2 instead of ln sigma
+};
+
+/// Whether members() takes these layers: on the CPU, two hidden ones of one width it knows.
+bool members_fused(const torch::Tensor& first, const std::vector<torch::Tensor>& weights);
+
+/// offset_layer, the layers behind it, and the weighted sum over the four neighbours in space:
+/// [M][2][rows][columns] in W, mu and ln sigma (or the second moment). `weights` and `biases` are
+/// those of all linear layers, of which the first is already in `first`.
+torch::Tensor members(const torch::Tensor& first, const torch::Tensor& offsets,
+                      const std::vector<torch::Tensor>& weights,
+                      const std::vector<torch::Tensor>& biases,
+                      const c10::intrusive_ptr<MemberBlend>& blend);
+
 /// The same by torch's own operations: for other devices, and to judge the above by.
 namespace composed {
+torch::Tensor compressed(const torch::Tensor& grid, torch::ScalarType type);
 torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h);
 torch::Tensor update_state(const torch::Tensor& gates, const torch::Tensor& candidate,
                            const torch::Tensor& h, const torch::Tensor& mask);

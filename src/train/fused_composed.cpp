@@ -13,6 +13,11 @@ torch::Tensor up2_along(const torch::Tensor& a, int dim, std::int64_t size) {
 
 }  // namespace
 
+torch::Tensor compressed(const torch::Tensor& grid, torch::ScalarType type) {
+    const torch::Tensor wide = grid.to(wide_of(type));
+    return (wide.sign() * wide.abs().log1p()).to(type);
+}
+
 torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h) {
     return gates.chunk(2, 1)[1] * h.to(gates.scalar_type());
 }

@@ -3,6 +3,8 @@
 #include "src/train/fused_loops.h"
 #include "src/train/fused_types.h"
 
+#include <cmath>
+
 #include <algorithm>
 
 namespace eventide::fused {
@@ -140,6 +142,20 @@ struct Offset : torch::autograd::Function<Offset> {
 };
 
 }  // namespace
+
+torch::Tensor compressed(const torch::Tensor& grid_in, torch::ScalarType type) {
+    if (!grid_in.is_cpu()) return composed::compressed(grid_in, type);
+    const torch::Tensor grid = packed(grid_in.to(wide_of(type)));
+    torch::Tensor out = torch::zeros_like(grid, grid.options().dtype(type));
+    for_type(type, [&]<typename T, typename W>(T, W) {
+        const W* from = grid.data_ptr<W>();
+        T* to = out.data_ptr<T>();
+        // Most numbers are 0, as most pixels have no events.
+        for (std::int64_t i = 0; i < grid.numel(); ++i)
+            if (const W v = from[i]; v != 0) to[i] = T(std::copysign(std::log1p(std::abs(v)), v));
+    });
+    return out;
+}
 
 torch::Tensor up2(const torch::Tensor& a, std::int64_t height, std::int64_t width) {
     return a.is_cpu() ? Up2::apply(a, height, width) : composed::up2(a, height, width);

@@ -34,6 +34,9 @@ void read_options(const std::vector<std::string>& words, OptionTable& table,
     std::istringstream lines{checkpoint_options(checkpoint)};
     for (std::string line; std::getline(lines, line);) {
         const auto space = line.find(' ');
+        // What older checkpoints say of networks that were fed their own frame; none of these is
+        // left.
+        if (line == "--feedback none") continue;
         if (line.starts_with("--") && space != line.npos)
             table.set(line.substr(2, space - 2), line.substr(space + 1));
     }
@@ -46,6 +49,7 @@ void train(const TrainOptions& options, const std::string& record) {
     Trainer trainer{options, library(options.textures, 1), library(options.validation_textures, 2),
                     [](const std::string& line) { std::cout << line << std::endl; }};
     trainer.run(stop_asked);
+    if (!options.keep.empty()) trainer.keep(options.keep);
     if (!options.export_file.empty()) save_model(options.export_file, trainer.finished_model());
 }
 

@@ -52,10 +52,6 @@ torch::Tensor Layers::norm(const std::string& name, const torch::Tensor& narrow_
     return shape(".gamma") * normed + shape(".beta");
 }
 
-torch::Tensor transform(const torch::Tensor& grid) {
-    return grid.sign() * grid.abs().log1p();
-}
-
 torch::Tensor up2(const torch::Tensor& a, const torch::Tensor& joined) {
     return fused::up2(a, joined.size(2), joined.size(3));
 }
@@ -86,7 +82,7 @@ Encoded encode_gated(const ModelConfig& config, const Layers& layers, const torc
     EncoderState h;
     for (int l = 0; l < levels; ++l) {
         const auto L = std::size_t(l);
-        const auto a = rectify(l == 0 ? layers.conv("in", transform(grid))
+        const auto a = rectify(l == 0 ? layers.conv("in", fused::compressed(grid, layers.type()))
                                       : layers.conv(numbered("down", l), h.back(), 2));
         h.push_back(config.recurrent[L] != 0 ? layers.gru(numbered("gru", l), a, state[L], mask[L])
                                              : state[L] + mask[L] * (layers.widen(a) - state[L]));
@@ -104,7 +100,8 @@ Encoded encode_gated(const ModelConfig& config, const Layers& layers, const torc
 }
 
 Encoded encode_thesis(const Layers& layers, const torch::Tensor& grid, const EncoderState& state) {
-    const auto x0 = F::elu(layers.norm("norm0", layers.conv("in", transform(grid))));
+    const auto x0 =
+        F::elu(layers.norm("norm0", layers.conv("in", fused::compressed(grid, layers.type()))));
     const auto x1 = layers.gru("gru.0", x0.to(layers.type()), state[0], {});
     const auto inner = F::elu(layers.norm("norm1", layers.conv("res.0", x1)));
     const auto x2 = F::elu(x1 + layers.norm("norm2", layers.conv("res.1", inner)));

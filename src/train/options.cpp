@@ -47,14 +47,6 @@ void read_value(const std::string& text, Blend& value) {
     value = text == "smooth" ? Blend::smooth : Blend::linear;
 }
 
-constexpr std::array kFeedbackNames{"none", "input", "change", "physical"};  // as Feedback
-void read_value(const std::string& text, Feedback& value) {
-    const auto found = std::ranges::find(kFeedbackNames, text);
-    if (found == kFeedbackNames.end())
-        throw std::invalid_argument{"none, input, change or physical"};
-    value = Feedback(found - kFeedbackNames.begin());
-}
-
 template <typename T>
 std::string write_value(const T& value) {
     std::ostringstream out;
@@ -83,8 +75,12 @@ std::string write_value(const SigmaRule& value) {
 std::string write_value(const Blend& value) {
     return value == Blend::smooth ? "smooth" : "linear";
 }
-std::string write_value(const Feedback& value) {
-    return kFeedbackNames[std::size_t(value)];
+void read_value(const std::string& text, LiveEdge& value) {
+    if (text != "jump" && text != "fade") throw std::invalid_argument{"jump or fade"};
+    value = text == "fade" ? LiveEdge::fade : LiveEdge::jump;
+}
+std::string write_value(const LiveEdge& value) {
+    return value == LiveEdge::fade ? "fade" : "jump";
 }
 
 }  // namespace
@@ -113,6 +109,10 @@ OptionTable::OptionTable(TrainOptions& o) {
         "model or checkpoint whose weights a new network begins with where names and shapes agree",
         Use::once);
     add("export", o.export_file, "model file to write at the end", Use::once);
+    add("keep", o.keep,
+        "checkpoint to write at the end without the states of streams, which fill again: for a "
+        "repository",
+        Use::once);
     add("card", o.card, "what the model card says first", Use::run);
     add("device", o.device, "cpu or cuda", Use::run);
     add("precision", o.precision, "of activations: f32, bf16 or auto (bf16 where it is quick)");
@@ -125,9 +125,6 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("bins", o.model.bins, "B of the voxel grid");
     add("inputs", o.inputs,
         "channels of the voxel grid that may be used: polarity,mean,std,count,since");
-    add("feedback", o.feedback,
-        "the last picture as an input, or to be changed: none, input, change or physical; such a "
-        "network can't be exported");
     add("widths", o.model.widths, "channels per level");
     add("recurrent", o.model.recurrent, "per level: 1 recurrent, 0 held");
     add("res-blocks", o.model.res_blocks, "at the lowest resolution");
@@ -135,6 +132,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("gate-spread", o.model.gate_spread, "further at the lowest resolution, in its pixels");
     add("latent", o.model.latent, "D");
     add("latent-stride", o.model.latent_stride, "1 or 2");
+    add("unfold", o.model.unfold, "codes in y and x that the renderer reads: 3 (3 x 3) or 1");
+    add("live-edge", o.model.live_edge, "inside the newest event window: jump or fade");
     add("mlp", o.model.mlp, "hidden widths of the renderer");
     add("sigma-rule", o.model.sigma_rule, "log_blend or mixture");
     add("blend", o.model.blend, "weights of latent samples in space: linear or smooth");
@@ -147,6 +146,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("patch", o.data.patch, "px, side of the pictures compared");
     add("episode", o.data.episode, "event frames of one scene");
     add("frame-s", o.data.frame_s, "s, width of event frames");
+    add("content-share", o.data.content_share,
+        "share of scenes whose event windows end by number of events");
+    add("content-epp", o.data.content_epp, "events per pixel that end such a window");
     add("thesis-share", o.data.thesis_share,
         "share of scenes with the thesis' light, threshold and truth");
     add("speed", o.data.scene.wander.speed, "px/s, of scenes");
@@ -179,6 +181,7 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("ssim", o.loss.ssim, "weight in the loss");
     add("contrast", o.loss.contrast, "weight in the loss");
     add("lpips-weight", o.loss.lpips, "weight in the loss");
+    add("lpips-frames", o.lpips_frames, "of the rendered ones, the last, that LPIPS looks at");
     add("nll", o.loss.nll, "weight in the loss");
     add("temporal", o.loss.temporal, "weight in the loss");
     add("rate", o.learning_rate, "largest learning rate");

@@ -3,7 +3,6 @@
 
 #include "src/model/model_config.h"
 #include "src/train/data.h"
-#include "src/train/feedback.h"
 #include "src/train/losses.h"
 #include "src/train/optimiser.h"
 #include "src/train/parameters.h"
@@ -18,17 +17,17 @@ namespace eventide {
 struct TrainOptions {
     ModelConfig model;
     std::vector<std::string> inputs{kGridInputs.begin(), kGridInputs.end()};
-    Feedback feedback = Feedback::none;
     DataSettings data;
     LossWeights loss;
     OptimiserSettings optimiser;
     std::string out = "out/train";
     std::string textures, validation_textures, lpips;
-    std::string resume, initial, export_file, card;
+    std::string resume, initial, export_file, keep, card;
     std::string device = "cpu", precision = "auto";
     double minutes = 60;
     std::string clock = "wall";  ///< that minutes go by: wall, or cpu
     int steps = 0;               ///< where not 0, the budget instead of `minutes`
+    int lpips_frames = 1 << 20;  ///< of the rendered ones, the last, that LPIPS looks at
     int threads = 1, lanes = 2, groups = 4;
     double learning_rate = 1e-3, final_rate = 0.02, constant_share = 0.6;
     int warm_up = 100;

@@ -1,5 +1,6 @@
 // eventide-pack-pictures: photographs into the one file that eventide-train reads.
 #include "src/core/error.h"
+#include "src/io/output_file.h"
 #include "src/simulate/texture_pack.h"
 #include "src/simulate/textures_folder.h"
 
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
         return int(ErrorKind::usage);
     }
     try {
+        refuse_existing(words[0], false);
         const auto images = pictures(words);
         write_texture_pack(words[0], images);
         std::cout << images.size() << " pictures\n";

@@ -4,37 +4,28 @@
 #include "src/train/fused.h"
 #include "src/train/networks.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace eventide {
 namespace {
 
-/// The lower or upper neighbour of each point along one axis.
-struct Neighbour {
-    fused::Axis axis;
-    torch::Tensor weight;  ///< [n]
-    bool empty = true;     ///< all weights are 0
-};
-
-/// Beyond the last sample only that one is used, with its true offset (docs/model.md).
-std::array<Neighbour, 2> neighbours(const std::vector<double>& points, std::int64_t samples,
-                                    Blend blend, torch::TensorOptions options) {
-    std::array<Neighbour, 2> both;
+/// The lower and upper neighbour of each point along one axis. Beyond the last sample only that one
+/// is used, with its true offset (docs/model.md).
+std::array<fused::WeightedAxis, 2> neighbours(const std::vector<double>& points,
+                                              std::int64_t samples, Blend blend) {
+    std::array<fused::WeightedAxis, 2> both;
     for (int side = 0; side < 2; ++side) {
-        Neighbour& neighbour = both[std::size_t(side)];
-        std::vector<double> weight;
+        fused::WeightedAxis& axis = both[std::size_t(side)];
         for (const double p : points) {
             const double low = std::min(std::floor(p), double(samples - 1));
             const double part = low == double(samples - 1) ? 0 : blend_weight(p - low, blend);
             const double sample = std::min(low + side, double(samples - 1));
-            neighbour.axis.index.push_back(std::int64_t(sample));
-            neighbour.axis.offset.push_back(p - sample);
-            weight.push_back(side == 0 ? 1 - part : part);
-            neighbour.empty &= weight.back() == 0;
+            axis.index.push_back(std::int64_t(sample));
+            axis.offset.push_back(p - sample);
+            axis.weight.push_back(side == 0 ? 1 - part : part);
         }
-        const auto wide = torch::TensorOptions().dtype(torch::kDouble);
-        neighbour.weight = torch::tensor(weight, wide).to(options);
     }
     return both;
 }
@@ -49,19 +40,19 @@ public:
             weight_.push_back(parameters.at(name + ".weight"));
             bias_.push_back(parameters.at(name + ".bias"));
         }
-        const int D = config.latent, H = int(weight_[0].size(0));
+        const int D = config.latent, H = int(weight_[0].size(0)), side = config.unfold;
         // [H][dt][dy][dx][D] -> [H][dt, D][dy][dx]
         conv_ = weight_[0]
-                    .narrow(1, 0, 27 * D)
-                    .reshape({H, 3, 3, 3, D})
+                    .narrow(1, 0, config.unfolded())
+                    .reshape({H, 3, side, side, D})
                     .permute({0, 1, 4, 2, 3})
-                    .reshape({H, 3 * D, 3, 3});
-        offset_ = weight_[0].narrow(1, 27 * D, 3);
+                    .reshape({H, 3 * D, side, side});
+        offset_ = weight_[0].narrow(1, config.unfolded(), 3);
     }
 
     /// Layer 1 before its offset and rectifier: [M][H_1][h][w] of codes [M][3 D][h][w].
     torch::Tensor first(const torch::Tensor& codes) const {
-        return torch::conv2d(codes.to(conv_.scalar_type()), conv_, bias_[0], 1, 1);
+        return torch::conv2d(codes.to(conv_.scalar_type()), conv_, bias_[0], 1, conv_.size(2) / 2);
     }
     /// Weights of the offset (t, x, y), [H_1][3].
     const torch::Tensor& offsets() const { return offset_; }
@@ -74,6 +65,9 @@ public:
         }
         return x.to(wide());
     }
+    /// All linear layers.
+    const std::vector<torch::Tensor>& weights() const { return weight_; }
+    const std::vector<torch::Tensor>& biases() const { return bias_; }
     torch::ScalarType wide() const {
         return conv_.scalar_type() == torch::kDouble ? torch::kDouble : torch::kFloat;
     }
@@ -100,6 +94,14 @@ std::vector<Centre> centres(const std::vector<RenderTask>& tasks) {
     for (std::size_t i = 0; i < tasks.size(); ++i) {
         const RenderTask& task = tasks[i];
         const auto &z = task.current, &next = task.next;
+        if (!next.defined() && task.before.defined()) {
+            // What was shown at the beginning of the window, until the newest codes take over.
+            list.push_back({torch::cat({task.before, task.previous, torch::zeros_like(z)}, 1),
+                            torch::ones_like(task.f), 1 - task.f, i});
+            list.push_back(
+                {torch::cat({task.previous, z, torch::zeros_like(z)}, 1), task.f, task.f, i});
+            continue;
+        }
         list.push_back({torch::cat({or_zero(task.previous, z), z, or_zero(next, z)}, 1), task.f,
                         next.defined() ? 1 - task.f : torch::ones_like(task.f), i});
         if (next.defined())
@@ -124,23 +126,46 @@ torch::Tensor moments(const ModelConfig& config, const torch::Tensor& out) {
     return torch::cat({mu, second}, 1);
 }
 
-/// Sums over the up to 4 neighbours in space: [M][2][r][c]. `dt` [M].
+std::vector<double> numbers(const torch::Tensor& x) {
+    const torch::Tensor flat = x.to(torch::kCPU, torch::kDouble).contiguous();
+    return {flat.data_ptr<double>(), flat.data_ptr<double>() + flat.numel()};
+}
+
+/// Weighted sums over the up to 4 neighbours in space: [M][2][r][c]; dt and weight [M].
 torch::Tensor blend_space(const ModelConfig& config, const Mlp& mlp, const torch::Tensor& first,
-                          const torch::Tensor& dt, const PatchGrid& points) {
+                          const torch::Tensor& dt, const torch::Tensor& weight,
+                          const PatchGrid& points) {
+    const auto y = neighbours(points.y, first.size(2), config.blend);
+    const auto x = neighbours(points.x, first.size(3), config.blend);
+    if (fused::members_fused(first, mlp.weights())) {
+        auto blend = c10::make_intrusive<fused::MemberBlend>();
+        blend->y = y;
+        blend->x = x;
+        blend->dt = numbers(dt);
+        blend->weight = numbers(weight);
+        blend->log_sigma_min = config.log_sigma_min;
+        blend->log_sigma_max = config.log_sigma_max;
+        blend->squares = config.sigma_rule == SigmaRule::mixture;
+        return fused::members(first, mlp.offsets(), mlp.weights(), mlp.biases(), blend);
+    }
     const auto options = first.options().dtype(mlp.wide());
+    const auto empty = [](const fused::WeightedAxis& axis) {
+        return std::ranges::all_of(axis.weight, [](double w) { return w == 0; });
+    };
+    const auto share = [&](const fused::WeightedAxis& axis) {
+        return torch::tensor(axis.weight, torch::kDouble).to(options);
+    };
     torch::Tensor sum;
-    for (const Neighbour& ny : neighbours(points.y, first.size(2), config.blend, options)) {
-        if (ny.empty) continue;
-        for (const Neighbour& nx : neighbours(points.x, first.size(3), config.blend, options)) {
-            if (nx.empty) continue;
-            const auto out =
-                mlp.rest(fused::offset_layer(first, dt, mlp.offsets(), ny.axis, nx.axis));
-            const auto part =
-                moments(config, out) * (ny.weight.view({-1, 1}) * nx.weight.view({1, -1}));
+    for (const auto& ny : y) {
+        if (empty(ny)) continue;
+        for (const auto& nx : x) {
+            if (empty(nx)) continue;
+            const auto out = mlp.rest(fused::offset_layer(first, dt, mlp.offsets(), ny, nx));
+            const auto part = moments(config, out) * (share(ny).view({-1, 1}) * share(nx));
             sum = sum.defined() ? sum + part : part;
         }
     }
-    return sum;
+    return weight.view({-1, 1, 1, 1}) * sum;
 }
 
 }  // namespace
@@ -160,8 +185,8 @@ Rendered render(const ModelConfig& config, const Parameters& parameters,
     const std::vector<Centre> list = centres(tasks);
     const torch::Tensor first = mlp.first(concat(list, &Centre::codes));
     const torch::Tensor dt = concat(list, &Centre::offset).to(mlp.wide());
-    const torch::Tensor weight = concat(list, &Centre::weight).view({-1, 1, 1, 1});
-    const torch::Tensor weighted = weight * blend_space(config, mlp, first, dt, points);
+    const torch::Tensor weight = concat(list, &Centre::weight).to(mlp.wide());
+    const torch::Tensor weighted = blend_space(config, mlp, first, dt, weight, points);
     // Back from centres to pictures: each task has one or two centres of N lanes.
     const std::int64_t lanes = tasks.front().f.size(0);
     std::vector<torch::Tensor> pictures(tasks.size());

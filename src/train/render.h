@@ -21,6 +21,7 @@ struct RenderTask {
     torch::Tensor previous, current, next, after;  ///< z_{k-1} .. z_{k+2}, [N][D][h][w]; undefined
                                                    ///< where not known (or before the first)
     torch::Tensor f;                               ///< [N], place in the event frame, (0, 1]
+    torch::Tensor before = {};  ///< z_{k-2}, for a live edge that fades; undefined: it does not
 };
 
 struct Rendered {

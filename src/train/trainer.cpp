@@ -30,13 +30,6 @@ const TrainOptions& sound(const TrainOptions& options) {
     require_blas_for_threads(options.threads);
     if (!options.initial.empty() && !options.resume.empty())
         throw Error(ErrorKind::usage, "--initial: expected no --resume, found both");
-    if (options.feedback == Feedback::none) return options;
-    if (!options.export_file.empty())
-        throw Error(ErrorKind::usage,
-                    "--export: expected --feedback none, as eventide gives a network events alone");
-    if (options.model.latent_stride != 1)
-        throw Error(ErrorKind::usage, "--feedback: expected --latent-stride 1, found " +
-                                          std::to_string(options.model.latent_stride));
     return options;
 }
 
@@ -49,14 +42,6 @@ Parameters first_parameters(const TrainOptions& options, torch::Device device, c
     return parameters;
 }
 
-/// 1 for every weight of the first layer that may be other than 0.
-torch::Tensor mask_of_inputs(const TrainOptions& options, torch::Device device) {
-    const torch::Tensor mask = input_mask(options.model, options.inputs).to(device);
-    if (options.feedback == Feedback::none) return mask;
-    const auto picture = torch::ones_like(mask.narrow(1, 0, 1));  // is always used
-    return torch::cat({mask, picture}, 1);
-}
-
 }  // namespace
 
 Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
@@ -65,9 +50,8 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
       log_(options.out, options.log_every, say),
       device_(device_of(options)),
       type_(arithmetic_type(options)),
-      optimiser_(options.optimiser,
-                 with_feedback(first_parameters(options, device_, say), options.feedback)),
-      input_mask_(mask_of_inputs(options, device_)) {
+      optimiser_(options.optimiser, first_parameters(options, device_, say)),
+      input_mask_(input_mask(options.model, options.inputs).to(device_)) {
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
     {
@@ -85,7 +69,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     if (options.validation_scenes > 0)
         validation_ = std::make_unique<Validation>(
             ValidationSettings{options.validation_scenes, options.validation_frames,
-                               options.validation_crop, 4242, options.feedback},
+                               options.validation_crop, 4242},
             options_.data, std::move(validation_textures), device_);
     feed_ =
         std::make_unique<Feed>(options_.data, std::move(textures), options.threads * options.lanes,
@@ -96,8 +80,8 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
 void Trainer::begin_memories() {
     std::vector<Memory>& memories = progress_.memories;
     const int crop = options_.data.crop;
-    const Memory empty = empty_memory(options_.model, options_.lanes, crop, crop,
-                                      torch::TensorOptions{device_}, options_.feedback);
+    const Memory empty =
+        empty_memory(options_.model, options_.lanes, crop, crop, torch::TensorOptions{device_});
     const auto count = std::size_t(options_.threads * options_.groups);
     if (memories.size() != count || memories[0].latent.sizes() != empty.latent.sizes())
         memories.assign(count, empty);
@@ -130,10 +114,10 @@ Trainer::Share Trainer::run_share(std::span<const LaneWindow> windows, const Win
     memory = begin_window(memory, batch.fresh);
     const Parameters narrow =
         type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
-    const Pictures pictures = run_window(options_.model, narrow, plan, batch, options_.data.patch,
-                                         memory, options_.feedback);
+    const Pictures pictures =
+        run_window(options_.model, narrow, plan, batch, options_.data.patch, memory);
     Share share;
-    share.terms = loss(pictures, options_.loss, perceptual_.get(), options_.data.rendered);
+    share.terms = loss(pictures, options_.loss, perceptual_.get(), options_.lpips_frames);
     std::vector<torch::Tensor> leaves;
     for (const auto& [name, values] : optimiser_.parameters) leaves.push_back(values);
     const auto gradients = torch::autograd::grad({share.terms.total}, leaves, {}, {}, false,
@@ -198,8 +182,7 @@ void Trainer::validate() {
     validation_->write_sheet(file("sheet.pgm"), options_.model, weights, 0);
     if (scores.score < progress_.best_score) {
         progress_.best_score = scores.score;
-        if (options_.feedback == Feedback::none)
-            save_model(file("best.safetensors"), {options_.model, to_tensors(optimiser_.ema)});
+        save_model(file("best.safetensors"), {options_.model, to_tensors(optimiser_.ema)});
     }
 }
 
@@ -229,6 +212,12 @@ void Trainer::run(const std::atomic<bool>& stop) {
     }
     if (finished()) validate();
     checkpoint();
+}
+
+void Trainer::keep(const std::filesystem::path& path) const {
+    Checkpoint without_states = progress_;
+    without_states.memories.clear();
+    save_checkpoint(path, without_states, optimiser_);
 }
 
 Model Trainer::finished_model() const {

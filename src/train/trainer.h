@@ -23,6 +23,9 @@ public:
     /// learning_curve.svg, sheet.pgm.
     void run(const std::atomic<bool>& stop);
 
+    /// Writes the run as it stands, to go on from; its streams then begin anew.
+    void keep(const std::filesystem::path& path) const;
+
     /// The chosen weights (of the best validation, else the running mean), with sigma calibrated
     /// on held-out scenes and the card written.
     Model finished_model() const;

@@ -10,7 +10,7 @@ namespace eventide {
 
 Validation::Validation(const ValidationSettings& settings, DataSettings data,
                        std::shared_ptr<const TextureLibrary> textures, torch::Device device)
-    : data_(std::move(data)), feedback_(settings.feedback) {
+    : data_(std::move(data)) {
     data_.crop = data_.patch = settings.crop;
     data_.frames = settings.frames;
     data_.rendered = std::max(1, settings.frames - data_.warm_frames);
@@ -28,11 +28,11 @@ Pictures Validation::render_scene(const ModelConfig& config, const Parameters& p
                                   std::size_t scene, int lookahead) const {
     const TrainingBatch& batch = scenes_[scene];
     const torch::Tensor& grid = batch.grids[0];
-    Memory memory = empty_memory(config, 1, grid.size(2), grid.size(3),
-                                 grid.options().dtype(torch::kFloat), feedback_);
+    Memory memory =
+        empty_memory(config, 1, grid.size(2), grid.size(3), grid.options().dtype(torch::kFloat));
     WindowPlan plan = plan_;
     std::fill(plan.lookahead.begin(), plan.lookahead.end(), lookahead);
-    return run_window(config, parameters, plan, batch, data_.patch, memory, feedback_);
+    return run_window(config, parameters, plan, batch, data_.patch, memory);
 }
 
 Validation::Scores Validation::judge(const ModelConfig& config, const Parameters& parameters,

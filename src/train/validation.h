@@ -12,7 +12,6 @@ namespace eventide {
 struct ValidationSettings {
     int scenes = 12, frames = 40, crop = 96;
     std::uint64_t seed = 4242;
-    Feedback feedback = Feedback::none;
 };
 
 class Validation {
@@ -42,7 +41,6 @@ private:
                           std::size_t scene, int lookahead) const;
 
     DataSettings data_;
-    Feedback feedback_;
     WindowPlan plan_;
     std::vector<TrainingBatch> scenes_;
 };

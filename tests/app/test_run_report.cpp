@@ -37,19 +37,6 @@ TEST(RunReport, JsonIsOneLineWithEveryCounter) {
     EXPECT_TRUE(nlohmann::json::parse(stats_json({}, {}, false))["newest_frame_us"].is_null());
 }
 
-TEST(RunReport, StatusFitsALineAndNamesWhatIsWrong) {
-    RunProgress progress;
-    progress.total_bytes = 1000;
-    progress.event_rate = 2.5e6;
-    const std::string line = status_line(busy(), progress);
-    EXPECT_LT(line.size(), 140U);
-    for (const char* part :
-         {"50 %", "2.5 M events/s", "frames 42", "lost 2", "skipped 3", "damaged 5"})
-        EXPECT_NE(line.find(part), std::string::npos) << part << " in " << line;
-    progress.in_step = true;
-    EXPECT_NE(status_line(busy(), progress).find("latency 12.0/0.0 ms"), std::string::npos);
-}
-
 TEST(RunReport, SummaryNamesTheReasonsOfDamage) {
     EXPECT_NE(summary_text(busy(), {}).find("unknown_word: 5"), std::string::npos);
 }

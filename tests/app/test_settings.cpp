@@ -1,6 +1,7 @@
 // Every setting of every command: what it shows it reads back, and its names are its own.
 #include "src/app/config.h"
 #include "src/app/program.h"
+#include "src/core/error.h"
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>
@@ -18,6 +19,35 @@ TEST(Settings, ReadBackWhatTheyShow) {
             ASSERT_NO_THROW(setting.set(shown)) << command->name() << " " << setting.key;
             EXPECT_EQ(setting.show(), shown) << command->name() << " " << setting.key;
         }
+}
+
+/// What setting this text throws; empty where it is taken.
+std::string complaint(Setting& setting, const std::string& text) {
+    try {
+        setting.set({text});
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Settings, EveryTimeIsWrittenWithItsUnit) {
+    std::set<std::string> times;
+    for (const auto& command : all_commands())
+        for (Setting& setting : command->settings().settings) {
+            if (setting.value_name != "TIME" && setting.value_name != "WINDOW") continue;
+            const std::string name = command->name() + " " + flag_of(setting);
+            times.insert(name);
+            for (const char* text : {"50s", "50ms", "50us"})
+                EXPECT_EQ(complaint(setting, text), "") << name;
+            EXPECT_NE(complaint(setting, "50").find("50s, 50ms"), std::string::npos)
+                << name << ": " << complaint(setting, "50");
+        }
+    for (const char* known :
+         {"run --from", "run --to", "run --warmup", "run --latency", "run --duration",
+          "run --window", "run --reorder", "info --reorder", "convert --from", "convert --to",
+          "convert --reorder", "evaluate --from", "evaluate --to", "evaluate --window"})
+        EXPECT_TRUE(times.contains(known)) << known;
 }
 
 TEST(Settings, HaveOneNameEachAndAMeaning) {

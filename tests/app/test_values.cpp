@@ -9,7 +9,7 @@ namespace {
 
 TEST(Values, TimesAreExactToTheMicrosecond) {
     EXPECT_EQ(parse_duration("1.5s").count(), 1'500'000);
-    EXPECT_EQ(parse_duration("0.000001").count(), 1);
+    EXPECT_EQ(parse_duration("0.000001s").count(), 1);
     EXPECT_EQ(parse_duration("20ms").count(), 20'000);
     EXPECT_EQ(parse_duration("250us").count(), 250);
     EXPECT_EQ(parse_duration("-1s", true).count(), -1'000'000);
@@ -18,6 +18,16 @@ TEST(Values, TimesAreExactToTheMicrosecond) {
 TEST(Values, TimesReadBack) {
     for (const std::int64_t us : {0LL, 1LL, 999LL, 1000LL, 1'500'000LL, 60'000'000LL})
         EXPECT_EQ(parse_duration(show_duration(SensorDuration{us})).count(), us);
+}
+
+TEST(Values, ATimeWithoutAUnitIsRefusedWithTheWaysToWriteIt) {
+    for (const std::string bare : {"1", "0", "50", "0.5"}) try {
+            parse_duration(bare);
+            ADD_FAILURE() << "took " << bare;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.what(), "expected a time with its unit, " + bare + "s, " + bare +
+                                        "ms or " + bare + "us, found '" + bare + "'");
+        }
 }
 
 TEST(Values, NumbersReadBack) {

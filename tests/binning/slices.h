@@ -78,6 +78,14 @@ inline SlicerSettings by_reference(std::int64_t max_us, std::int64_t wait_us = 1
     return settings;
 }
 
+inline SlicerSettings by_content(double events_per_pixel, std::int64_t max_us = 50'000) {
+    SlicerSettings settings;
+    settings.rule = SliceRule::content;
+    settings.events_per_pixel = events_per_pixel;
+    settings.max_width = SensorDuration{max_us};
+    return settings;
+}
+
 /// Bursts, equal timestamps, pauses of many frames, and a clock reset.
 inline std::vector<Event> eventful_stream(std::mt19937& rng) {
     std::vector<Event> events;

@@ -22,6 +22,7 @@ TEST(Slicer, CutsTheSameFramesHoweverTheStreamIsSplit) {
         {"duration", by_duration(1000)},
         {"count", by_count(50, 5000)},
         {"reference", by_reference(4000)},
+        {"content", by_content(.02, 5000)},
         {"from to", ended},
         {"few events", small}};
     for (const auto& [name, settings] : rules)
@@ -46,7 +47,8 @@ TEST(Slicer, CutsTheSameFramesHoweverTheStreamIsSplit) {
 }
 
 TEST(Slicer, PutsEveryEventInOneFrameAndLeavesNoHoleBetweenFrames) {
-    for (const SlicerSettings& settings : {by_duration(777), by_count(33), by_reference(5000)}) {
+    for (const SlicerSettings& settings :
+         {by_duration(777), by_count(33), by_reference(5000), by_content(.05, 5000)}) {
         std::mt19937 rng{11};
         const auto events = eventful_stream(rng);
         std::vector<Event> seen;

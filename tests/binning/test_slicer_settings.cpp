@@ -35,8 +35,16 @@ TEST(WindowText, NamesReferenceImages) {
     EXPECT_EQ(parse_window("aps,2s").max_width, 2s);
 }
 
+TEST(WindowText, NamesContent) {
+    EXPECT_EQ(parse_window("auto").rule, SliceRule::content);
+    EXPECT_EQ(parse_window("auto").max_width, 50ms);
+    EXPECT_EQ(parse_window("auto").min_width, 1ms);
+    EXPECT_EQ(parse_window("auto,20ms").max_width, 20ms);
+}
+
 TEST(WindowText, IsReadBackAsItWasWritten) {
-    for (const std::string text : {"50ms", "7us", "2s", "20000ev,100ms", "0.35epp,333us", "aps,1s"})
+    for (const std::string text :
+         {"50ms", "7us", "2s", "20000ev,100ms", "0.35epp,333us", "aps,1s", "auto,50ms"})
         EXPECT_EQ(window_text(parse_window(text)), text);
 }
 

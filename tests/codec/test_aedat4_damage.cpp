@@ -102,6 +102,24 @@ TEST(Aedat4Damage, APacketWhoseTimesLeapCostsWhatLeaptAndNothingThatFollows) {
     EXPECT_EQ(parsed.damage.total(), 1000 - kWhole);
 }
 
+TEST(Aedat4Damage, AFirstTimeOfZeroBeforeTimesSince1970IsLeftOut) {
+    Batch batch;
+    batch.events = random_events(5, 1000, kWidth, kHeight, 1'600'000'000'000'000);
+    std::vector<Event> expected = batch.events;
+    batch.events.insert(batch.events.begin(), {from_us(0), 1, 1, Polarity::on});
+    for (const bool one_packet : {true, false}) {
+        std::vector<Batch> packets{batch};
+        if (!one_packet) {
+            packets.assign(2, {});
+            packets[0].events.assign(batch.events.begin(), batch.events.begin() + 1);
+            packets[1].events.assign(batch.events.begin() + 1, batch.events.end());
+        }
+        const Parsed parsed = parse_file(write_file(packets, Aedat4Compression::none));
+        EXPECT_TRUE(parsed.data.events == expected) << one_packet;
+        EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+    }
+}
+
 TEST(Aedat4Damage, SilenceBetweenPacketsIsNoDamage) {
     Batch before, after;
     before.events = random_events(5, 1000, kWidth, kHeight, 1'600'000'000'000'000);

@@ -16,8 +16,9 @@ Parsed parse_text(const std::string& text, const TextOptions& options = {}, int 
                   int height = kHeight) {
     const Bytes bytes = to_bytes(text);
     const TextHeader header = read_text_header(bytes, options);
-    return parse_whole([&] { return std::make_unique<TextParser>(header.layout, width, height); },
-                       std::span(bytes).subspan(header.stream.data_offset));
+    return parse_whole(
+        [&] { return std::make_unique<TextParser>(header.layout, width, height, options.reorder); },
+        std::span(bytes).subspan(header.stream.data_offset));
 }
 
 MakeParser default_parser(TextTimeUnit unit = TextTimeUnit::seconds) {
@@ -97,7 +98,7 @@ TEST(Text, WholeNumbersAreTakenInTheOrderThatMakesMostEvents) {
     ASSERT_EQ(parsed.data.events.size(), 3U);
     EXPECT_EQ(parsed.data.events[2], (Event{from_us(9), 50, 1, Polarity::on}));
     // A damaged row does not overrule the others.
-    EXPECT_EQ(parse_text("90,3,1,7000\n20,9,0,8000\n1,1,1,1\n50,1,1,9000\n").data.events.size(),
+    EXPECT_EQ(parse_text("90,3,1,70000\n20,9,0,80000\n1,1,7,1\n50,1,1,90000\n").data.events.size(),
               3U);
 }
 
@@ -144,10 +145,71 @@ TEST(Text, ALoneLeapIsDamageAndAPauseIsNot) {
     const Parsed leap = parse_text("0.1 1 1 1\n900000.0 1 1 1\n0.2 1 1 1\n0.3 1 1 1\n");
     EXPECT_EQ(leap.data.events.size(), 3U);
     EXPECT_EQ(leap.damage[DamageReason::bad_record], 1U);
-    const Parsed pause = parse_text("0.1 1 1 1\n900000.0 1 1 1\n900000.1 1 1 1\n");
-    EXPECT_EQ(pause.data.events.size(), 3U);
+    const Parsed pause = parse_text("0.1 1 1 1\n0.1 2 1 1\n900000.0 1 1 1\n900000.1 1 1 1\n");
+    EXPECT_EQ(pause.data.events.size(), 4U);
     EXPECT_EQ(pause.damage.total(), 0U);
     EXPECT_EQ(parse_text("0.1 1 1 1\n900000.0 1 1 1\n").data.events.size(), 2U);
+}
+
+TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
+    const auto header_of = [](std::int64_t first, std::int64_t step) {
+        std::string text;
+        for (int i = 0; i < 500; ++i) text += std::to_string(first + step * i) + " 1 2 1\n";
+        return read_text_header(to_bytes(text), {});
+    };
+    struct Case {
+        std::int64_t first, step;
+        TextTimeUnit unit;
+        bool is_said;
+    };
+    for (const Case& c : {Case{0, 10, TextTimeUnit::microseconds, false},
+                          Case{1'600'000'000'000'000, 10, TextTimeUnit::microseconds, false},
+                          Case{0, 500, TextTimeUnit::microseconds, true},
+                          Case{0, 20'000, TextTimeUnit::nanoseconds, true},
+                          Case{1'600'000'000'000'000'000, 500, TextTimeUnit::nanoseconds, true},
+                          Case{0, 50'000'000'000, TextTimeUnit::microseconds, true}}) {
+        const TextHeader header = header_of(c.first, c.step);
+        EXPECT_EQ(header.layout.unit, c.unit) << c.first << " " << c.step;
+        EXPECT_EQ(!header.remarks.empty(), c.is_said) << c.first << " " << c.step;
+    }
+    // A few rows tell no rate.
+    EXPECT_EQ(read_text_header(to_bytes("0 1 2 1\n20000 1 2 1\n"), {}).layout.unit,
+              TextTimeUnit::microseconds);
+}
+
+TEST(Text, AFirstTimeThatNoneOfTheNextAgreesWithIsDamage) {
+    const auto expect_two = [](const std::string& text) {
+        const Parsed parsed = parse_text(text);
+        ASSERT_EQ(parsed.data.events.size(), 2U) << text;
+        EXPECT_EQ(parsed.data.events[0].t, from_us(1'633'953'690'000'000)) << text;
+        EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U) << text;
+    };
+    const std::string agreeing = "1633953690.0 1 1 1\n1633953690.1 1 1 1\n";
+    expect_two("0 5 5 1\n" + agreeing);
+    expect_two("9e12 5 5 1\n" + agreeing);
+    // Events that agree are kept, however long the pause; so is a first one before a short pause.
+    for (const char* text : {"0 1 1 1\n0.1 1 1 1\n1633953690 1 1 1\n1633953691 1 1 1\n",
+                             "0 1 1 1\n50 1 1 1\n50.1 1 1 1\n", "0 1 1 1\n1633953690 1 1 1\n"})
+        EXPECT_EQ(parse_text(text).damage.total(), 0U) << text;
+}
+
+TEST(Text, RowsALittleOutOfOrderAreSortedAndLaterOnesAreCounted) {
+    std::mt19937 random(1);
+    std::string text;
+    for (int i = 0; i < 20'000; ++i)  // up to 9 ms before the newest
+        text += std::to_string(1'000'000 + 10 * i - int(random() % 9000)) + " 1 2 1\n";
+    TextOptions microseconds;
+    microseconds.unit = TextTimeUnit::microseconds;
+    const Parsed sorted = parse_text(text, microseconds);
+    EXPECT_EQ(sorted.data.events.size(), 20'000U);
+    EXPECT_EQ(sorted.damage.total(), 0U);
+    expect_orderly(sorted, kWidth, kHeight);
+    microseconds.reorder = SensorDuration{0};
+    EXPECT_GT(parse_text(text, microseconds).damage[DamageReason::time_backwards], 15'000U);
+    const Parsed late =
+        parse_text("0.08 1 1 1\n0.1 1 1 1\n0.101 1 1 1\n0.05 1 1 1\n0.0995 1 1 1\n");
+    EXPECT_EQ(late.data.events.size(), 4U);
+    EXPECT_EQ(late.damage[DamageReason::time_backwards], 1U);
 }
 
 std::string random_text(unsigned seed, std::size_t n) {

@@ -32,7 +32,9 @@ std::vector<Include> includes_below(const std::vector<std::string>& folders) {
     for (const std::string& folder : folders)
         for (const auto& entry : fs::recursive_directory_iterator{root / folder}) {
             const auto extension = entry.path().extension();
-            if (extension != ".h" && extension != ".cpp" && extension != ".inl") continue;
+            if (extension != ".h" && extension != ".cpp" && extension != ".hpp" &&
+                extension != ".inl")
+                continue;
             std::ifstream file{entry.path()};
             for (std::string line; std::getline(file, line);)
                 if (std::string target = include_target(line); !target.empty())
@@ -61,12 +63,14 @@ const std::vector<Rule> kRules{
     {"src/simulate/",
      {"src/simulate/", "src/app/", "src/train/", "src/evaluate/", "drivers/simulated/"}},
     {"src/evaluate/", {"src/evaluate/", "src/app/", "src/train/"}},
-    {"src/model/", {"src/model/", "src/app/", "src/train/", "src/evaluate/", "pipeline/"}},
-    {"src/nn/", {"src/nn/", "src/model/", "src/train/", "src/evaluate/", "src/app/"}},
+    {"src/model/",
+     {"src/model/", "src/app/", "src/train/", "src/evaluate/", "pipeline/", "library/"}},
+    {"src/nn/", {"src/nn/", "src/model/", "src/train/", "src/evaluate/", "src/app/", "library/"}},
     {"src/kernels/", {"src/kernels/", "src/nn/", "src/model/", "src/binning/", "src/codec/"}},
-    {"drivers/", {"drivers/", "src/app/"}},
-    {"replay/", {"replay/", "src/app/", "src/evaluate/", "src/train/"}},
-    {"pipeline/", {"pipeline/", "replay/", "drivers/", "src/app/", "src/evaluate/"}},
+    {"drivers/", {"drivers/", "src/app/", "library/"}},
+    {"replay/", {"replay/", "src/app/", "src/evaluate/", "src/train/", "library/"}},
+    {"pipeline/", {"pipeline/", "replay/", "drivers/", "src/app/", "src/evaluate/", "library/"}},
+    {"library/", {"library/"}},
 };
 
 bool allowed(const Rule& rule, std::string_view file) {
@@ -89,10 +93,22 @@ std::vector<Include> violations(const std::vector<Include>& includes) {
 }
 
 TEST(Architecture, ArrowsPointOneWay) {
-    const auto includes = includes_below({"src", "pipeline", "drivers", "replay"});
+    const auto includes =
+        includes_below({"src", "pipeline", "drivers", "replay", "library", "include"});
     ASSERT_GT(includes.size(), 50U) << "the sources were not found";
     for (const Include& bad : violations(includes))
         ADD_FAILURE() << bad.file << " may not include " << bad.target;
+}
+
+/// Who installs the headers has neither our sources nor the packages we build with.
+TEST(Architecture, ThePublicFaceStandsAlone) {
+    const auto includes = includes_below({"include"});
+    ASSERT_GT(includes.size(), 20U) << "the headers were not found";
+    for (const Include& include : includes)
+        EXPECT_TRUE(include.target.starts_with("eventide/") ||
+                    include.target.find_first_of("/.") == std::string::npos ||
+                    include.target == "stddef.h" || include.target == "stdint.h")
+            << include.file << " may not include " << include.target;
 }
 
 TEST(Architecture, TheDetectorSeesAViolation) {
@@ -104,9 +120,32 @@ TEST(Architecture, TheDetectorSeesAViolation) {
 
 TEST(Architecture, IncludesStartAtTheRoot) {
     const fs::path root{EVENTIDE_SOURCE_DIR};
-    for (const Include& include : includes_below({"src", "pipeline", "drivers", "replay"}))
+    for (const Include& include :
+         includes_below({"src", "pipeline", "drivers", "replay", "library", "include"}))
         EXPECT_FALSE(include.target.starts_with("../") || include.target.starts_with("./"))
             << include.file << " includes " << include.target;
+}
+
+/// Ways to make or replace a file.
+constexpr std::string_view kWaysToWrite[]{"ofstream", "fopen(", "imwrite(", "O_CREAT",
+                                          "avio_open("};
+
+TEST(Architecture, FilesAreWrittenInOnePlace) {
+    const fs::path root{EVENTIDE_SOURCE_DIR};
+    for (const char* folder : {"src", "pipeline", "drivers", "replay", "library"})
+        for (const auto& entry : fs::recursive_directory_iterator{root / folder}) {
+            const std::string file = fs::relative(entry.path(), root).string();
+            // Training writes into a folder of its own, which it goes on with.
+            if (!entry.is_regular_file() || file.starts_with("src/io/") ||
+                file.starts_with("src/train/"))
+                continue;
+            std::ifstream stream{entry.path()};
+            for (std::string line; std::getline(stream, line);)
+                for (const std::string_view way : kWaysToWrite)
+                    EXPECT_EQ(line.find(way), std::string::npos)
+                        << file << ": src/io/output_file.h is the way to write files\n"
+                        << line;
+        }
 }
 
 }  // namespace

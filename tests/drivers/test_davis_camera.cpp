@@ -96,8 +96,8 @@ TEST(DavisCamera, SaysWhatToDoWhenItCannotStart) {
     EXPECT_THAT(with([](auto& s) { s.firmware = 5; }), HasSubstr("firmware 5, at least 6"));
     EXPECT_THAT(with([](auto& s) { s = davis240_fx2(), s.firmware = 3; }),
                 HasSubstr("firmware 3, at least 4"));
-    EXPECT_THAT(with([](auto& s) { s.logic = 16; }), HasSubstr("logic 16"));
-    EXPECT_THAT(with([](auto& s) { s.patch = 0; }), HasSubstr("logic 18 patch 0"));
+    EXPECT_THAT(with([](auto& s) { s.logic = 16; }), HasSubstr("logic version 16"));
+    EXPECT_THAT(with([](auto& s) { s.patch = 0; }), HasSubstr("logic version 18 patch 0"));
     EXPECT_THAT(with([](auto& s) { s.logic = 9912; }), HasSubstr("another protocol"));
     EXPECT_THAT(with([](auto& s) { s.board_type = 5; }), HasSubstr("second-generation"));
     EXPECT_THAT(with([](auto& s) { s.sensor.dvs_rows = 0; }), HasSubstr("a side of 0 px"));
@@ -121,7 +121,7 @@ TEST(Devices, ListsWhatIsPluggedInAndWhyItCannotBeUsed) {
     bed.plug_in(std::make_shared<DavisModel>(old));
     cameras = list_cameras();
     ASSERT_EQ(cameras.size(), 1U);
-    EXPECT_THAT(cameras[0].problem, HasSubstr("logic 16"));
+    EXPECT_THAT(cameras[0].problem, HasSubstr("logic version 16"));
 }
 
 TEST_P(DavisBoards, StartAndStopAsThisGenerationOfLogicExpects) {

@@ -33,9 +33,9 @@ TEST(DvxplorerFaults, SaysWhatToDoWhenItCannotStart) {
         return words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; });
     };
     EXPECT_THAT(with([](auto& s) { s.firmware = 7; }), HasSubstr("firmware 7, at least 8"));
-    EXPECT_THAT(with([](auto& s) { s.logic = 17; }), HasSubstr("logic 17"));
+    EXPECT_THAT(with([](auto& s) { s.logic = 17; }), HasSubstr("logic version 17"));
     EXPECT_THAT(with([](auto& s) { s.patch = 1; }),
-                HasSubstr("logic 18 patch 1, expected 18 patch 2"));
+                HasSubstr("FPGA logic version 18 patch 1, expected 18 patch 2"));
     EXPECT_THAT(with([](auto& s) { s.board_type = 5; }), HasSubstr("second-generation"));
     EXPECT_THAT(with([](auto& s) { s.sensor.width = 0; }), HasSubstr("a side of 0 px"));
 }

@@ -84,6 +84,18 @@ Batch read_all(V4l2Camera& camera, const V4l2Testbed& bed) {
     return data;
 }
 
+TEST(V4l2Camera, ASequenceThatStandsStillOrFallsIsNoLoss) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open();
+    constexpr std::uint32_t kStandsStill = UINT32_MAX;  // added to a number that then goes on by 1
+    for (unsigned x = 0; x < 8; ++x)
+        bed.give(
+            {bytes_of({time_high(1), time_low(x), row(7), column(x)}), x == 0 ? 0 : kStandsStill});
+    bed.give({bytes_of({time_low(9)}), UINT32_MAX - 3});  // the driver began anew
+    EXPECT_EQ(read_all(camera, bed).events.size(), 8U);
+    EXPECT_EQ(camera.counters().device_dropped, 0U);
+}
+
 class V4l2Planes : public testing::TestWithParam<bool> {};
 
 TEST_P(V4l2Planes, EventsGoOnAcrossBuffers) {

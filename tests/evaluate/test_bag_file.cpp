@@ -42,6 +42,17 @@ BagBytes messages_of(const ReferenceSequence& sequence, const std::string& packi
     return content + chunk(packing, part);
 }
 
+/// The most memory this process had since forget_peak_memory(), bytes.
+std::size_t peak_memory() {
+    std::ifstream status{"/proc/self/status"};
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) << 10;
+    return 0;
+}
+void forget_peak_memory() {
+    std::ofstream{"/proc/self/clear_refs"} << "5";
+}
+
 std::string refusal(const fs::path& path) {
     try {
         read_evreal_sequence(path, {}, {});
@@ -92,6 +103,25 @@ TEST_F(BagFiles, CutShortOrPackedWronglyAreRefused) {
                      bag(record(5, {{"compression", "lz4"}, {"size", little(std::uint32_t{9})}},
                                 packed("lz4", "longer than nine bytes"))))),
         HasSubstr("9 bytes"));
+}
+
+TEST_F(BagFiles, TakeNoMemoryForWhatIsOnlySaid) {
+    for (const char* packing : {"bz2", "lz4"})
+        for (const std::uint32_t said : {0x0FFFFFFFU, 0x3FFFFFFFU}) {
+            forget_peak_memory();
+            const std::size_t before = peak_memory();
+            EXPECT_THAT(
+                refusal(
+                    save("said", bag(record(5, {{"compression", packing}, {"size", little(said)}},
+                                            packed(packing, "a few bytes"))))),
+                HasSubstr(std::to_string(said) + " bytes"));
+            EXPECT_LT(peak_memory(), before + (std::size_t{32} << 20)) << packing;
+        }
+    EXPECT_THAT(
+        refusal(save("sensor",
+                     bag(chunk("none", connection(kEvents, "dvs_msgs/EventArray") +
+                                           message(kEvents, event_array(65535, 65535, {})))))),
+        HasSubstr("65535x65535"));
 }
 
 TEST_F(BagFiles, OfOtherMessagesSayWhatTheyHold) {

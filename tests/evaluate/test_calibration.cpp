@@ -20,7 +20,7 @@ TEST(Calibration, BringsTheCoverageToEightTenthsAndIsWrittenIntoTheModel) {
     const Calibration found = calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
     EXPECT_NEAR(found.picp80_after, .8, .01);
     const fs::path calibrated = fs::path{testing::TempDir()} / "eventide_calibrated.safetensors";
-    write_calibrated(how.model, calibrated, found);
+    write_calibrated(how.model, calibrated, found, true);
     how.model = calibrated;
     const EvaluateReport after = evaluate_recordings(what, how);
     EXPECT_NEAR(*after.overall.picp80, .8, .02);

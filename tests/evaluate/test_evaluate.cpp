@@ -69,6 +69,26 @@ TEST(EvaluateRecordings, WithOtherWindowsAlsoComparesAtTheImagesTimes) {
     }
 }
 
+TEST(EvaluateRecordings, ImagesThatAreGivenAreNotScoredAndCorrectTheOthers) {
+    const fs::path folder = write_recording(fresh_folder("given"), .9, .05, .1);
+    for (const auto& image : fs::directory_iterator{folder / "images"})  // a still scene
+        write_picture(image.path(), picture(kHeight, kWidth, 1));
+    RecordingSettings what;
+    what.recordings = {folder};
+    what.skip_images = 1;
+    for (const int lookahead : {0, 2}) {
+        EvaluateSettings how = small_model();
+        how.lookahead = lookahead;
+        what.given_images = 0;
+        const EvaluateReport without = evaluate_recordings(what, how);
+        what.given_images = 3;  // of nine images those with numbers 0, 3 and 6
+        const EvaluateReport with = evaluate_recordings(what, how);
+        EXPECT_EQ(without.overall.frames, 8);
+        EXPECT_EQ(with.overall.frames, 6);
+        EXPECT_LT(with.overall.raw.mse, .1 * without.overall.raw.mse) << "lookahead " << lookahead;
+    }
+}
+
 TEST(EvaluateRecordings, OfSeveralWeighFrames) {
     const fs::path folder = fresh_folder("several");
     RecordingSettings what;

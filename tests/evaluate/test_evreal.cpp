@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 namespace eventide::test {
@@ -90,6 +91,35 @@ TEST(Evreal, RefusesArraysCutShort) {
     write_npy<double>(folder / "images_ts.npy", "<f8", "1,", {0});
     EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
     write_npy(folder / "images.npy", "|u1", "1, 28, 36, 1", std::vector<std::uint8_t>(28 * 36));
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+}
+
+TEST(Evreal, RefusesTimesThatAreNone) {
+    const fs::path folder = fresh_folder("no_times");
+    write_npy<std::uint8_t>(folder / "images.npy", "|u1", "1, 2, 3", {1, 2, 3, 4, 5, 6});
+    write_npy<double>(folder / "images_ts.npy", "<f8", "1,", {0.1});
+    write_npy<std::int64_t>(folder / "events_xy.npy", "<i8", "3, 2", {0, 0, 1, 1, 2, 1});
+    write_npy<std::int64_t>(folder / "events_p.npy", "<i8", "3,", {0, 1, 0});
+    for (const double wrong : {std::nan(""), 1e300, -1e300, HUGE_VAL}) {
+        write_npy<double>(folder / "events_ts.npy", "<f8", "3,", {0.0, wrong, 0.2});
+        try {
+            read_evreal_sequence(folder, {}, {});
+            FAIL() << wrong << " was taken";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("row 1: expected a time"), std::string::npos)
+                << error.what();
+        }
+    }
+    // Rows of no numbers at all.
+    write_npy<double>(folder / "events_ts.npy", "<f8", "3, 0", {});
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+}
+
+TEST(Evreal, RefusesSensorsLargerThanAny) {
+    const fs::path folder = fresh_folder("large");
+    write_npy<double>(folder / "events_ts.npy", "<f8", "0,", {});
+    write_npy<double>(folder / "images_ts.npy", "<f8", "0,", {});
+    write_npy<std::uint8_t>(folder / "images.npy", "|u1", "0, 65535, 65535", {});
     EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
 }
 

@@ -46,7 +46,7 @@ TEST(Plot, SurvivesNoPointsOnePointAndLogarithmsOfZero) {
 TEST(Plot, IsWrittenAsPictureAndNumbers) {
     const auto folder = std::filesystem::path{testing::TempDir()} / "eventide_plots";
     const Plot plot{.name = "some", .series = {{"s", {1, 2}, {3, 4}, {}}}};
-    EXPECT_EQ(write_plot(plot, folder), folder / "some.svg");
+    EXPECT_EQ(write_plot(plot, folder, true), folder / "some.svg");
     EXPECT_TRUE(std::filesystem::exists(folder / "some.svg"));
     EXPECT_TRUE(std::filesystem::exists(folder / "some.csv"));
     std::ofstream{folder / "file"} << "x";

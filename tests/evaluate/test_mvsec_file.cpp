@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <cmath>
+
 #include <algorithm>
 #include <vector>
 
@@ -127,6 +129,28 @@ TEST(MvsecFile, NamesWhatIsMissingOrOfAnotherShape) {
     const fs::path text = write_file("text", content);
     fs::resize_file(text, 10);
     EXPECT_NE(refusal_of(text).find("expected an HDF5 file"), std::string::npos);
+}
+
+TEST(MvsecFile, RefusesRowsThatTheFileDoesNotHold) {
+    const fs::path path = write_file("rows", small_file(.5, .001, .1), "events");
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hsize_t shape[] = {hsize_t{1} << 40, 4};  // nothing is written of it
+    const hid_t space = H5Screate_simple(2, shape, nullptr);
+    H5Dclose(H5Dcreate2(file, "davis/left/events", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
+                        H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+    H5Fclose(file);
+    EXPECT_NE(refusal_of(path).find("[1099511627776, 4] numbers, found 0 bytes"),
+              std::string::npos);
+}
+
+TEST(MvsecFile, RefusesTimesThatAreNone) {
+    for (const double wrong : {std::nan(""), 1e300}) {
+        Mvsec file = small_file(.5, .001, .1);
+        file.events[4 * 30 + 2] = wrong;
+        EXPECT_NE(refusal_of(write_file("times", file)).find("expected times in seconds"),
+                  std::string::npos);
+    }
 }
 
 TEST(MvsecFile, RefusesIndicesThatSayOtherThanTheTimes) {

@@ -64,6 +64,20 @@ TEST(Npz, SurvivesAnyByteBeingWrong) {
     EXPECT_GT(refused, int(bytes.size()));  // fields nobody reads (dates) may be wrong unseen
 }
 
+TEST(Npz, TakesNoMemoryForASizeThatIsOnlySaid) {
+    std::string bytes = two_arrays().bytes();
+    const std::size_t entry = bytes.rfind("PK\x01\x02");  // of "deflated", in the directory
+    for (std::size_t i = 0; i < 4; ++i) bytes[entry + 24 + i] = "\0\0\0\x70"[i];  // 1.8 GB
+    try {
+        NpzFile{written(bytes)}.array("deflated");
+        FAIL() << "was taken";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("said to be of 1879048192 bytes"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Npz, RefusesAShapeThatDoesNotFitTheData) {
     NpzWriter writer;
     writer.add("stored", {2, 4}, {1, 2, 3, 4, 5, 6}, false);

@@ -21,6 +21,18 @@ ModelConfig config_of(int stride) {
     return config;
 }
 
+/// A renderer that reads codes in time alone, and whose live edge fades.
+ModelConfig fading_config() {
+    ModelConfig config = test::small_config();
+    config.unfold = 1;
+    config.live_edge = LiveEdge::fade;
+    return config;
+}
+
+std::vector<ModelConfig> every_kind() {
+    return {config_of(1), config_of(2), fading_config()};
+}
+
 LatentMap random_latent(const ModelConfig& config, int height, int width, int k,
                         std::uint32_t seed = 1) {
     const int s = config.latent_stride;
@@ -55,16 +67,16 @@ const std::vector<std::pair<int, int>> kOutputs{{1, 1},   {9, 13}, {17, 25}, {18
                                                 {23, 31}, {5, 40}, {9, 1},   {1, 13}};
 
 TEST(Renderer, HoistingChangesNothing) {
-    for (const int stride : {1, 2}) {
-        const ModelConfig config = config_of(stride);
+    for (const ModelConfig& config : every_kind()) {
         const plain::MlpRenderer<double> network{random_model(config, 3)};
         std::vector<Array3<double>> z;
         for (int k = 1; k <= 4; ++k)
             z.push_back(test::as<double>(random_latent(config, 9, 13, k).values));
-        const std::vector<plain::Codes<double>> choices{{nullptr, &z[0], nullptr, nullptr},
-                                                        {&z[0], &z[1], nullptr, nullptr},
-                                                        {&z[0], &z[1], &z[2], nullptr},
-                                                        {&z[0], &z[1], &z[2], &z[3]}};
+        const std::vector<plain::Codes<double>> choices{{nullptr, nullptr, &z[0], nullptr, nullptr},
+                                                        {nullptr, &z[0], &z[1], nullptr, nullptr},
+                                                        {&z[0], &z[1], &z[2], nullptr, nullptr},
+                                                        {nullptr, &z[0], &z[1], &z[2], nullptr},
+                                                        {nullptr, &z[0], &z[1], &z[2], &z[3]}};
         for (const auto& codes : choices)
             for (const auto& [height, width] : kOutputs)
                 for (const double fraction : {0.0, 0.3, 1.0})
@@ -124,8 +136,7 @@ double compare(Renderer a, Renderer b, const ModelConfig& config, int height, in
 }
 
 TEST(Renderer, FastAgreesWithPlainAtEverySizeTimeAndLookahead) {
-    for (const int stride : {1, 2}) {
-        const ModelConfig config = config_of(stride);
+    for (const ModelConfig& config : every_kind()) {
         const Model model = random_model(config, 3);
         for (const test::Backend& backend : test::backends()) {
             if (backend.bf16) continue;
@@ -158,22 +169,22 @@ TEST(Renderer, Bf16StaysNear) {
 }
 
 TEST(Renderer, ThreadsChangeNoBit) {
-    const ModelConfig config = config_of(1);
-    const Model model = random_model(config, 3);
-    for (const test::Backend& backend : test::backends()) {
-        EngineOptions many = backend.options;
-        many.parallel_for = test::with_threads(3);
-        EXPECT_EQ(compare({model, 75, 61, many}, {model, 75, 61, backend.options}, config, 61, 75,
-                          {{61, 75}, {70, 90}}),
-                  0)
-            << backend.name;
+    for (const ModelConfig& config : {config_of(1), fading_config()}) {
+        const Model model = random_model(config, 3);
+        for (const test::Backend& backend : test::backends()) {
+            EngineOptions many = backend.options;
+            many.parallel_for = test::with_threads(3);
+            EXPECT_EQ(compare({model, 75, 61, many}, {model, 75, 61, backend.options}, config, 61,
+                              75, {{61, 75}, {70, 90}}),
+                      0)
+                << backend.name;
+        }
     }
 }
 
-TEST(Renderer, CarryingOverUnchangedTilesChangesNoBit) {
+void expect_carrying_over_changes_no_bit(const ModelConfig& config) {
     EngineOptions all = with(Engine::fast);
     all.skip_quiet = false;
-    const ModelConfig config = config_of(1);
     const Model model = random_model(config, 3);
     Renderer a{model, 75, 61, with(Engine::fast)}, b{model, 75, 61, all};
     LatentMap latent = random_latent(config, 61, 75, 1);
@@ -194,6 +205,38 @@ TEST(Renderer, CarryingOverUnchangedTilesChangesNoBit) {
         ASSERT_EQ(fa.intensity, fb.intensity) << "event frame " << k;
         ASSERT_EQ(fa.sigma, fb.sigma);
     }
+}
+
+TEST(Renderer, CarryingOverUnchangedTilesChangesNoBit) {
+    expect_carrying_over_changes_no_bit(config_of(1));
+    expect_carrying_over_changes_no_bit(fading_config());
+}
+
+/// The largest change of intensity over the first microsecond of an event frame, and over all of
+/// it.
+std::pair<double, double> changes_at_the_live_edge(const ModelConfig& config) {
+    Renderer renderer{random_model(config, 3), 13, 9};
+    for (int k = 1; k <= 3; ++k) renderer.push(random_latent(config, 9, 13, k));
+    const auto shown = [&](SensorTime t) {
+        RenderRequest request;
+        request.t = t;
+        Frame frame = renderer.make_output(request);
+        renderer.render(request, frame);
+        return frame.intensity;
+    };
+    renderer.push(random_latent(config, 9, 13, 4));
+    const Window window = random_latent(config, 1, 1, 4).window;
+    const auto before = shown(window.begin);
+    return {test::worst(before.values(), shown(window.begin + SensorDuration{1}).values()),
+            test::worst(before.values(), shown(window.end).values())};
+}
+
+TEST(Renderer, ALiveEdgeThatFadesBeginsWithWhatWasShownLast) {
+    ModelConfig config = fading_config();
+    const auto [step, whole] = changes_at_the_live_edge(config);
+    EXPECT_LT(step, 1e-4 * whole);
+    config.live_edge = LiveEdge::jump;
+    EXPECT_GT(changes_at_the_live_edge(config).first, 0.1 * whole) << "the test sees a jump";
 }
 
 TEST(Renderer, ARegionIsAPartOfTheWhole) {

@@ -49,13 +49,15 @@ public:
     }
     const Array3<double>& step(const VoxelGrid& grid) {
         codes_.push_back(encoder_.step(test::as<double>(grid.values)));
-        if (codes_.size() > 2) codes_.pop_front();
+        if (codes_.size() > 3) codes_.pop_front();
         return codes_.back();
     }
     /// Of the newest event frame, at the live edge.
     plain::Picture<double> render(double fraction) const {
-        const Array3<double>* before = codes_.size() > 1 ? &codes_.front() : nullptr;
-        return renderer_.render({before, &codes_.back(), nullptr, nullptr}, fraction, picture_,
+        const auto ago = [&](std::size_t n) {
+            return codes_.size() > n ? &codes_[codes_.size() - 1 - n] : nullptr;
+        };
+        return renderer_.render({ago(2), ago(1), ago(0), nullptr, nullptr}, fraction, picture_,
                                 config_.sigma_rule);
     }
 

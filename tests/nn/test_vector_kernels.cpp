@@ -41,10 +41,10 @@ TEST_P(Lengths, GatesAndActivationsAgreeWithDouble) {
         k.compress(a.data(), out.data(), count);
         expect([&](std::size_t i) { return plain::compress(double(a[i])); }, 3e-7, "compress");
         std::copy(h.begin(), h.end(), out.data());
-        k.reset_state(a.data(), out.data(), n);
+        k.reset_state(a.data(), n, out.data(), n, n, 1);
         expect([&](std::size_t i) { return plain::sigmoid(double(a[i])) * h[i]; }, kGateTolerance,
                "reset");
-        k.update_state(h.data(), a.data(), b.data(), out.data(), n);
+        k.update_state(h.data(), a.data(), n, b.data(), out.data(), n, 1);
         expect(
             [&](std::size_t i) {
                 return h[i] + plain::sigmoid(double(a[i])) * (std::tanh(double(b[i])) - h[i]);
@@ -57,14 +57,43 @@ TEST_P(Lengths, GatesAndActivationsAgreeWithDouble) {
     }
 }
 
+/// Gates of the network lie beside each other, [u; r], and a row of pixels is one call.
+TEST(VectorKernels, RowsOfGatesAreTheirPixels) {
+    const VectorKernels& k = vector_kernels();
+    for (const int channels : {1, 4, 8, 12, 16, 24, 40}) {
+        constexpr int kPixels = 5;
+        const auto c = std::size_t(channels), count = kPixels * c;
+        test::Numbers numbers{11};
+        const auto gates = numbers.many(2 * count, Fill::ordinary),
+                   candidate = numbers.many(count, Fill::ordinary),
+                   h = numbers.many(count, Fill::ordinary);
+        test::Guarded next{count}, one{count}, joined{2 * count}, alone{2 * count};
+        k.update_state(h.data(), gates.data(), 2 * channels, candidate.data(), next.data(),
+                       channels, kPixels);
+        std::copy(gates.begin(), gates.end(), joined.data());
+        std::copy(gates.begin(), gates.end(), alone.data());
+        k.reset_state(gates.data() + c, 2 * channels, joined.data() + c, 2 * channels, channels,
+                      kPixels);
+        for (std::size_t p = 0; p < kPixels; ++p) {
+            k.update_state(h.data() + p * c, gates.data() + 2 * p * c, channels,
+                           candidate.data() + p * c, one.data() + p * c, channels, 1);
+            k.reset_state(gates.data() + (2 * p + 1) * c, channels, alone.data() + (2 * p + 1) * c,
+                          channels, channels, 1);
+        }
+        EXPECT_TRUE(next.intact() && joined.intact());
+        EXPECT_TRUE(std::equal(next.data(), next.data() + count, one.data())) << channels;
+        EXPECT_TRUE(std::equal(joined.data(), joined.data() + 2 * count, alone.data())) << channels;
+    }
+}
+
 TEST(VectorKernels, SaturatedGatesAreExact) {
     const float h = 0.25F, r = 0.5F;
     float out = 0;
     for (const float big : {60.0F, 1e30F, std::numeric_limits<float>::max()}) {
         const float small = -big;
-        vector_kernels().update_state(&h, &big, &big, &out, 1);
+        vector_kernels().update_state(&h, &big, 1, &big, &out, 1, 1);
         EXPECT_EQ(out, 1.0F);
-        vector_kernels().update_state(&h, &small, &r, &out, 1);
+        vector_kernels().update_state(&h, &small, 1, &r, &out, 1, 1);
         EXPECT_NEAR(out, h, 1e-7) << "a closed gate keeps the state";
     }
 }
@@ -125,22 +154,27 @@ TEST(Bf16, RowsAreNarrowedNumberByNumber) {
 TEST(Bf16, TheProcessorsProductsAreThePlainOnes) {
     if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
     test::Numbers numbers{5};
-    constexpr int kPixels = 17, kLength = 40, kOutputs = 32;
-    std::vector<std::uint32_t> in(kPixels * kLength), weight(kLength * kOutputs);
-    for (auto* words : {&in, &weight})
-        for (std::uint32_t& word : *words)
-            word = to_bf16(numbers.next(Fill::ordinary)) |
-                   std::uint32_t{to_bf16(numbers.next(Fill::ordinary))} << 16;
-    const std::vector<float> bias(kOutputs, 0.25F);
-    std::vector<float> fast(kPixels * kOutputs), plain(kPixels * kOutputs);
-    Bf16DotRows rows{in.data(),     0,           kLength, 1,       kLength, kPixels, kOutputs,
-                     weight.data(), bias.data(), true,    nullptr, kOutputs};
-    rows.out = fast.data();
-    bf16_kernels()->dot_rows(rows);
-    rows.out = plain.data();
-    plain::bf16_kernels().dot_rows(rows);
-    // The processor may sum a pair's two products before it adds them: one rounding elsewhere.
-    for (std::size_t i = 0; i < fast.size(); ++i) EXPECT_NEAR(fast[i], plain[i], 1e-5);
+    constexpr int kPixels = 17, kLength = 40;
+    for (const int outputs : {1, 8, 9, 16, 32, 40}) {
+        const std::size_t packed = packed_size(1, kLength, outputs, bf16_lanes(outputs));
+        std::vector<std::uint32_t> in(kPixels * kLength), weight(packed);
+        for (auto* words : {&in, &weight})
+            for (std::uint32_t& word : *words)
+                word = to_bf16(numbers.next(Fill::ordinary)) |
+                       std::uint32_t{to_bf16(numbers.next(Fill::ordinary))} << 16;
+        const std::vector<float> bias(packed / kLength, 0.25F);
+        test::Guarded fast{std::size_t(kPixels * outputs)}, plain{std::size_t(kPixels * outputs)};
+        Bf16DotRows rows{in.data(),     0,           kLength, 1,       kLength, kPixels, outputs,
+                         weight.data(), bias.data(), true,    nullptr, outputs};
+        rows.out = fast.data();
+        bf16_kernels()->dot_rows(rows);
+        rows.out = plain.data();
+        plain::bf16_kernels().dot_rows(rows);
+        EXPECT_TRUE(fast.intact() && plain.intact()) << outputs;
+        // The processor may sum a pair's two products before it adds them: one rounding elsewhere.
+        for (int i = 0; i < kPixels * outputs; ++i)
+            EXPECT_NEAR(fast.data()[i], plain.data()[i], 1e-5) << outputs;
+    }
 }
 
 }  // namespace

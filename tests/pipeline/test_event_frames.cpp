@@ -34,8 +34,8 @@ struct Beginning {
         frames.take(packet);
         take();
     }
-    void finish() {
-        frames.finish();
+    void finish(EventFrames::End end = EventFrames::End::of_source) {
+        frames.finish(end);
         take();
     }
     void take() {
@@ -119,6 +119,25 @@ TEST(EventFrames, CarryAGapAndTheParserTakesUpAfterIt) {
     EXPECT_EQ(b.counters.snapshot().gaps, 1U);
     EXPECT_EQ(b.counters.snapshot().events, 2U)
         << "half a record is dropped, the next one is whole";
+}
+
+TEST(EventFrames, EndedOnPurposeHaveNoTruncatedRecord) {
+    const auto truncated_with = [](EventFrames::End end, std::int64_t past_us) {
+        EventFrames::Settings settings = Beginning::settings(10);
+        settings.slicer.end = from_us(50);
+        Counters counters;
+        ToySource source({}, false);
+        EventFrames frames(source, settings, nullptr, nullptr, counters);
+        RawPacket packet;
+        packet.bytes = record(ToyKind::event, past_us);
+        packet.bytes.push_back(std::byte{1});  // the next record begins
+        frames.take(packet);
+        frames.finish(end);
+        return counters.snapshot().damaged[DamageReason::truncated];
+    };
+    EXPECT_EQ(truncated_with(EventFrames::End::of_source, 5), 1U);
+    EXPECT_EQ(truncated_with(EventFrames::End::asked_for, 5), 0U);
+    EXPECT_EQ(truncated_with(EventFrames::End::of_source, 51), 0U) << "--duration was over";
 }
 
 TEST(EventFrames, CountWhatTheParserGivesAndWhatIsDamaged) {

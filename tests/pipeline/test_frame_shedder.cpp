@@ -18,7 +18,7 @@ std::vector<bool> kept_of(FrameShedder& shedder, std::uint64_t due, HostTime::du
     std::vector<bool> kept;
     for (int round = 0; round < rounds; ++round) {
         now += 50ms;
-        shedder.open(due, now);
+        shedder.open({.frames = due}, now);
         kept.assign(due, false);
         for (std::uint64_t i = 0; i < due; ++i) {
             kept[i] = shedder.keeps_next(waiting);

@@ -1,4 +1,5 @@
 // The real model in the line: threads and splits change no bit, and nothing is allocated.
+#include "pipeline/fusion_stage.h"
 #include "pipeline/model_stages.h"
 #include "pipeline/parallel_tbb.h"
 #include "pipeline/pipeline.h"
@@ -82,6 +83,63 @@ TEST(ModelLine, GivesTheSameFramesThreadedAsSequentialWithAnyNumberOfWorkers) {
         ModelRun split(ToySource::packets_of(bytes, 900, &rng), model, settings, options);
         split.pipeline.run();
         EXPECT_EQ(split.sink.seen, whole.sink.seen);
+    }
+}
+
+/// The same with images among the events that correct the frames.
+struct FusedRun : DataObserver {
+    FusedRun(std::vector<std::vector<std::byte>> packets, const Model& model,
+             PipelineSettings settings)
+        : source(std::move(packets), false, kHeight, kWidth),
+          encoder(model, kWidth, kHeight),
+          renderer(model, kWidth, kHeight),
+          encode(encoder),
+          render(renderer, ModelRun::request(settings.lookahead), kWidth, kHeight, images),
+          pipeline({source, encode, render, {&sink}, nullptr, this}, with_counts(settings)) {}
+
+    static PipelineSettings with_counts(PipelineSettings settings) {
+        settings.events_per_pixel = true;
+        return settings;
+    }
+    void see(const Batch& batch) override {
+        std::vector<ReferenceImage> white = batch.images;  // those of the toy camera are empty
+        for (ReferenceImage& image : white) {
+            image.pixels = Array2<std::uint16_t>(kHeight, kWidth);
+            for (std::uint16_t& pixel : image.pixels.values()) pixel = 50'000;
+        }
+        images.put(white);
+    }
+
+    ToySource source;
+    Encoder encoder;
+    Renderer renderer;
+    ImagesOnTheWay images;
+    ModelEncodeStage encode;
+    FusionRenderStage render;
+    ToySink sink;
+    Pipeline pipeline;
+};
+
+TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
+    const Model model = random_model(small_config(), 1);
+    std::vector<std::byte> bytes = moving_scene(300);
+    const auto before = std::ptrdiff_t(bytes.size());
+    append_record(bytes, ToyKind::image, 299'990);
+    const auto later = moving_scene(800);
+    bytes.insert(bytes.end(), later.begin() + before, later.end());
+    for (const int lookahead : {0, 2}) {
+        SCOPED_TRACE(lookahead);
+        const PipelineSettings settings = settings_for(model, lookahead);
+        FusedRun whole({bytes}, model, settings);
+        whole.pipeline.run_sequential();
+        EXPECT_EQ(whole.render.fused().used(), 1U);
+        std::mt19937 rng{2};
+        FusedRun split(ToySource::packets_of(bytes, 900, &rng), model, settings);
+        split.pipeline.run();
+        EXPECT_TRUE(split.sink.seen == whole.sink.seen);
+        ModelRun without({bytes}, model, settings, {});
+        without.pipeline.run_sequential();
+        EXPECT_FALSE(without.sink.seen == whole.sink.seen);
     }
 }
 

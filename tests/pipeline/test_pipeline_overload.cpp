@@ -69,6 +69,35 @@ TEST(Pipeline, ALiveSourceLosesWhatASlowModelCannotTakeAndSaysSo) {
     EXPECT_EQ(line.encoder.resets, 0) << "state is kept over a gap by default";
 }
 
+TEST(Pipeline, WindowsThatWaitForASlowModelBecomeOneAndNothingIsLost) {
+    constexpr std::size_t kPackets = 400, kReleasedAt = 390;
+    PipelineSettings settings = quick_settings();
+    settings.rate = {};
+    settings.buffers = {16, 2, 4};
+    settings.latency = std::chrono::milliseconds{100};
+    Line line(one_frame_per_packet(kPackets), settings, true);
+    std::binary_semaphore released{0};
+    line.encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 1) released.acquire();
+    };
+    // The bin thread has taken all but a few packets while the encoder had one window in hand.
+    line.source.before_read = [&](std::size_t packet) {
+        while (packet > 8 && line.made().snapshot().events + 8 < packet) std::this_thread::yield();
+        if (packet == kReleasedAt) released.release();
+    };
+    line.run();
+    const Snapshot s = line.snapshot();
+    EXPECT_EQ(s.lost_packets, 0U);
+    EXPECT_EQ(s.events, kPackets + 1);
+    EXPECT_GT(s.merged_windows, kReleasedAt - 20);
+    EXPECT_EQ(s.event_frames + s.merged_windows, kPackets + 1) << "each is counted";
+    EXPECT_EQ(s.frames + s.skipped_frames, s.event_frames);
+    for (std::size_t i = 1; i < line.sink.seen.size(); ++i)
+        EXPECT_GE(line.sink.seen[i].begin_us, line.sink.seen[i - 1].end_us);
+    // The toy model counts the events it is given: sigma is 1 more at a window's end.
+    EXPECT_EQ(line.sink.seen.back().sigma.front(), 1.0F + float(kPackets + 1));
+}
+
 TEST(Pipeline, ALiveSourceSkipsTheOldestFramesWhenRenderingIsSlow) {
     constexpr std::size_t kPackets = 60;
     PipelineSettings settings = quick_settings();

@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace eventide {
@@ -16,17 +18,25 @@ using namespace test;
 
 /// Event frames of 10 us from `begin_us` on, given one by one.
 struct Ending {
-    explicit Ending(int lookahead, FrameRate rate = {200'000, 1})  // a frame each 5 us
+    explicit Ending(int lookahead, FrameRate rate = {200'000, 1},  // a frame each 5 us
+                    bool allow_silence = false)
         : presenter(
-              renderer, {&sink}, {rate, {}, lookahead, false, 1}, [] { return 0; }, stop,
-              counters) {
+              renderer, {&sink}, {rate, {}, lookahead, false, 1, allow_silence}, [] { return 0; },
+              stop, counters, keeper) {
         sink.before_write = [this](auto) { pushed.push_back(renderer.pushed()); };
     }
     void give(std::int64_t begin_us, bool reset_before = false) {
         Encoded encoded;
         encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
         encoded.latent.window = {from_us(begin_us), from_us(begin_us + 10)};
+        encoded.latent.events = 1;
         encoded.latent.reset_before = reset_before;
+        presenter.take(encoded);
+    }
+    void give_silence(std::int64_t begin_us, std::int64_t end_us) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(begin_us), from_us(end_us)};
         presenter.take(encoded);
     }
     std::vector<std::int64_t> times() const {
@@ -40,6 +50,7 @@ struct Ending {
     std::vector<std::size_t> pushed;  // latent maps the renderer had, per frame
     StopRequest stop;
     Counters counters;
+    LatencyKeeper keeper{{}};
     Presenter presenter;
 };
 
@@ -87,16 +98,90 @@ TEST(Presenter, FinishesTheOldStreamBeforeANewOne) {
     for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
 }
 
+TEST(Presenter, StopsBeforeFramesWithoutEnd) {
+    Ending e(0);
+    e.give(0);
+    e.give_silence(10, 1000);
+    const auto before = e.sink.count;
+    try {
+        e.give_silence(1000, 1'633'953'690'975'950);  // 54 years
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("--allow-silence"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("from 1000 to 1633953690975950 us"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(e.sink.count, before);
+}
+
+TEST(Presenter, CountsSilenceInARowAndOnlyWhereItIsNotAllowed) {
+    for (const bool allowed : {false, true}) {
+        Ending e(0, {1'000'000, 1}, allowed);
+        e.sink.keeps = false;
+        e.sink.before_write = nullptr;
+        e.give_silence(0, 600'000);
+        e.give(600'000);
+        e.give_silence(600'010, 1'200'000);
+        if (allowed)
+            e.give_silence(1'200'000, 1'800'000);
+        else
+            EXPECT_THROW(e.give_silence(1'200'000, 1'800'000), Error);
+        EXPECT_EQ(e.sink.count, allowed ? 1'800'001U : 1'200'001U);
+    }
+}
+
 TEST(Presenter, ClosesAllSinksThoughOneFails) {
     ToyRenderer renderer;
     ToySink bad, good;
     bad.before_close = [] { throw std::runtime_error("close"); };
     StopRequest stop;
     Counters counters;
+    LatencyKeeper keeper{{}};
     Presenter presenter(
-        renderer, {&bad, &good}, {}, [] { return 0; }, stop, counters);
+        renderer, {&bad, &good}, {}, [] { return 0; }, stop, counters, keeper);
     EXPECT_THROW(presenter.close(), std::runtime_error);
     EXPECT_EQ(good.closed, 1);
+}
+
+/// Its third picture has a NaN.
+class BreakingRenderer final : public RenderStage {
+public:
+    Frame make_output() const override { return good_.make_output(); }
+    void push(const LatentMap& latent) noexcept override { good_.push(latent); }
+    void finish() noexcept override { good_.finish(); }
+    void reset() noexcept override { good_.reset(); }
+    void render(SensorTime t, const Window& window, Frame& frame) noexcept override {
+        good_.render(t, window, frame);
+        if (++rendered_ == 3) frame.intensity(1, 2) = std::numeric_limits<float>::quiet_NaN();
+    }
+
+private:
+    ToyRenderer good_;
+    int rendered_ = 0;
+};
+
+TEST(Presenter, WritesNoFrameThatIsNotFinite) {
+    BreakingRenderer renderer;
+    ToySink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    Presenter presenter(
+        renderer, {&sink}, {{200'000, 1}, {}, 0, false, 1}, [] { return 0; }, stop, counters,
+        keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(100)};
+    try {
+        presenter.take(encoded);
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("frame 2, at 10 us"), std::string::npos);
+    }
+    EXPECT_EQ(sink.count, 2U);
+    EXPECT_EQ(counters.snapshot().broken_frames, 1U);
 }
 
 TEST(Presenter, StopsWhenASinkWantsNoMore) {

@@ -42,17 +42,34 @@ TEST(EcdFolder, GivesItsPicturesInTimeOrderWithTheEvents) {
     EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 2U);
 }
 
+TEST(EcdFolder, ReadsNoPictureOutsideTheFolder) {
+    const TestFolder folder;
+    const std::string secret = folder.write("secret.pgm", picture(20, 10, 's'));
+    folder.write("r/events.txt", "20 10\n0.10 1 2 1\n0.20 3 4 0\n");
+    folder.write("r/images/a.pgm", picture(20, 10, 'a'));
+    folder.write("r/images.txt", "0.11 " + secret + "\n0.12 ../secret.pgm\n" +
+                                     "0.13 images/../../secret.pgm\n0.14 .\n" +
+                                     "0.15 images/../images/./a.pgm\n0.16 " +
+                                     folder.path("r/images/a.pgm") + "\n");
+    const Batch batch = read_everything(*open_recording(folder.path("r")));
+    ASSERT_EQ(batch.images.size(), 2U);
+    for (const ReferenceImage& image : batch.images) EXPECT_EQ(image.pixels(0, 0), 'a' * 257);
+    EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 4U);
+}
+
 TEST(EcdFolder, APictureComesOnceTheEventsHavePassedIt) {
     const TestFolder folder;
     write_folder(folder);
-    const auto recording = open_recording(folder.path("r"));
+    OpenOptions as_they_come;
+    as_they_come.text.reorder = SensorDuration{0};
+    const auto recording = open_recording(folder.path("r"), as_they_come);
     const auto parser = recording->make_parser();
     const auto parse = [&](std::string_view text, Batch& into) {
         parser->parse(std::as_bytes(std::span(text)), into);
         return into.images.size();
     };
     Batch batch;
-    EXPECT_EQ(parse("0.10 1 2 1\n", batch), 1U);
+    EXPECT_EQ(parse("0.10 1 2 1\n", batch), 0U);  // the first event waits for another
     EXPECT_EQ(parse("0.19 1 2 1\n", batch), 1U);
     EXPECT_EQ(parse("0.25 1 2 1\n", batch), 2U);
     parser->resync();
@@ -88,7 +105,7 @@ TEST(EcdFolder, WithoutPicturesTheSizeIsThatOfTheEvents) {
     const TestFolder folder;
     folder.write("r/events.txt", "0.10 1 2 1\n0.20 3 4 0\n");
     const auto recording = open_recording(folder.path("r"));
-    EXPECT_EQ(recording->info().width, 4);
+    EXPECT_EQ(recording->info().width, 128);
     EXPECT_TRUE(read_everything(*recording).images.empty());
 }
 

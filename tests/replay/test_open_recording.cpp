@@ -2,7 +2,7 @@
 #include "replay/formats.h"
 #include "replay/summary.h"
 #include "src/core/error.h"
-#include "tests/replay/recording_files.h"
+#include "tests/replay/made_formats.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -13,6 +13,7 @@
 namespace eventide {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 /// What opening says; empty when it does not refuse.
@@ -44,14 +45,14 @@ TEST(OpenRecording, TheContentCountsAndNotTheName) {
 TEST(OpenRecording, WhatIsNoRecordingIsRefusedByName) {
     const TestFolder folder;
     EXPECT_THAT(refusal(folder.path("missing")), HasSubstr("missing: cannot open"));
-    EXPECT_THAT(refusal(folder.write("empty.txt", "")), HasSubstr("found no bytes"));
+    EXPECT_THAT(refusal(folder.write("empty.txt", "")), HasSubstr("the file is empty"));
     EXPECT_THAT(refusal(folder.path("")), HasSubstr("directory"));
     EXPECT_THAT(refusal(folder.write("x.aedat4", std::string(5000, '\x91'))),
-                HasSubstr("bytes of none of them"));
+                HasSubstr("an unrecognised format"));
     EXPECT_THAT(refusal(folder.write("zeros.raw", std::string(5000, '\0'))),
-                HasSubstr("bytes of none of them"));
+                HasSubstr("an unrecognised format"));
     EXPECT_THAT(refusal(folder.write("prose.txt", "It was a dark and stormy night.\n")),
-                HasSubstr("none of them"));
+                HasSubstr("an unrecognised format"));
     EXPECT_THAT(refusal(folder.write("chip.aedat", "#!AER-DAT2.0\r\n# AEChip: Other\r\n")),
                 HasSubstr("AEChip"));
     EXPECT_THAT(
@@ -76,16 +77,50 @@ TEST(OpenRecording, TheSizeComesFromTheOptionTheLineOrTheEvents) {
               (std::array{346, 260}));
     // A coordinate no sensor has is damage and makes no sensor of 60001 px.
     const auto scanned = open_recording(without);
-    EXPECT_EQ(size_of(*scanned), (std::array{10, 7}));
+    EXPECT_EQ(size_of(*scanned), (std::array{128, 128}));
+    EXPECT_THAT(scanned->remarks(), testing::ElementsAre(HasSubstr("taken for 128x128")));
     EXPECT_EQ(summarize(*scanned).damaged[DamageReason::out_of_range], 1U);
     EXPECT_THAT(refusal(folder.write("c.txt", "t x y p\n0.1 5000 0 1\n")),
                 HasSubstr("--input-size"));
 }
 
+/// DAT without a size: events of a DAVIS240, and some that no sensor has.
+std::string dat_without_size(int events, int outliers) {
+    std::string content("% Version 2\n\x0C\x08");
+    const auto add = [&](int t, unsigned x, unsigned y) {
+        content += little_endian(unsigned(t), 4) + little_endian(x | y << 14 | 1U << 28, 4);
+    };
+    for (int i = 0; i < events; ++i) add(10 * i, unsigned(i * 7 % 240), unsigned(i * 11 % 180));
+    for (int i = 0; i < outliers; ++i) add(10 * events + i, 1541, 3082);
+    return content;
+}
+
+TEST(OpenRecording, AFewDamagedCoordinatesDoNotDecideOnTheSize) {
+    const TestFolder folder;
+    const auto recording = open_recording(folder.write("a.dat", dat_without_size(4480, 2)));
+    EXPECT_EQ(recording->info().width, 240);
+    EXPECT_EQ(recording->info().height, 180);
+    EXPECT_THAT(recording->remarks(), testing::ElementsAre(HasSubstr("but 2 of 4482")));
+    const Summary sum = summarize(*recording);
+    EXPECT_EQ(sum.events, 4480U);
+    EXPECT_EQ(sum.damaged[DamageReason::out_of_range], 2U);
+}
+
+TEST(OpenRecording, ASensorLargerThanAnyKnownHasToBeStated) {
+    const TestFolder folder;
+    const std::string path = folder.write("a.dat", dat_without_size(300, 2));
+    EXPECT_THAT(refusal(path), AllOf(HasSubstr("1542x3083"), HasSubstr("--input-size")));
+    EXPECT_EQ(open_recording(path, {.width = 1542, .height = 3083})->info().width, 1542);
+    // A header's word is taken as it is.
+    const auto stated = open_recording(folder.write("b.txt", "1542 3083\n0.1 1541 3082 1\n"));
+    EXPECT_EQ(stated->info().height, 3083);
+    EXPECT_TRUE(stated->remarks().empty());
+}
+
 TEST(OpenRecording, FilesOfOtherKindsAreCalledByTheirName) {
     const TestFolder folder;
     EXPECT_THAT(refusal(folder.write("a.txt.gz", "\x1F\x8B\x08 rest")), HasSubstr("zcat"));
-    EXPECT_THAT(refusal(folder.write("a.png", "\x89PNG\r\n")), HasSubstr("a picture"));
+    EXPECT_THAT(refusal(folder.write("a.png", "\x89PNG\r\n")), HasSubstr("an image"));
     // It looks like an AEDAT 1 file: a line with '#', then bytes.
     const std::string bag = "#ROSBAG V2.0\n" + std::string(200, '\1');
     EXPECT_THAT(refusal(folder.write("a.bag", bag)), HasSubstr("a ROS 1 bag"));

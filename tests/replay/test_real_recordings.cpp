@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(Prophesee, RealRecordings,
                          testing::Values(Known{"formats/evt2_640x480.raw", "evt2", 640, 480, 539481,
                                                367855, 1317888, 1367888, 0, 0, 0},
-                                         Known{"formats/ncars_4407_td.dat", "dat", 54, 61, 4407,
+                                         Known{"formats/ncars_4407_td.dat", "dat", 128, 128, 4407,
                                                1671, 0, 99937, 0, 0, 0}));
 
 }  // namespace

@@ -50,12 +50,13 @@ int DavisFireHose::control(const UsbSetup& setup, std::span<std::uint8_t> data) 
     };
     const auto before = resets();
     const int n = registers_.control(setup, data);
-    if (!registers_.is_streaming()) running_ = false;
-    if (resets() > before && registers_.is_streaming()) {
-        running_ = true;
+    const bool reset = resets() > before;
+    const bool was_running = running_ && !reset;
+    running_ = registers_.is_streaming() && registers_.read(kDvsRun) == 1;
+    if (running_ && !was_running) {
         begun_ = settings_.now();
         sent_ = 0;
-        marker_sent_ = false;
+        marker_sent_ = !reset;  // there is none without a reset
     }
     return n;
 }

@@ -47,7 +47,7 @@ private:
     FireHoseSettings settings_;
     DavisModel registers_;  ///< answers everything but the data endpoint
     std::vector<std::byte> wrap_;
-    bool running_ = false, marker_sent_ = false;
+    bool running_ = false, marker_sent_ = false;  ///< from DVS run on, and again from each reset
     SensorTime begun_{};
     std::uint64_t sent_ = 0;  ///< bytes since the start, with the dropped ones
     std::uint64_t dropped_ = 0;

@@ -14,6 +14,17 @@ std::uint32_t orientation(bool bit2, bool bit1, bool bit0) {
     return std::uint32_t(bit2 ? 4 : 0) | std::uint32_t(bit1 ? 2 : 0) | std::uint32_t(bit0 ? 1 : 0);
 }
 
+void move_in_time(Batch& data, SensorDuration shift) {
+    for (Event& event : data.events) event.t += shift;
+    for (ImuSample& sample : data.imu) sample.t += shift;
+    for (Trigger& edge : data.triggers) edge.t += shift;
+    for (ReferenceImage& image : data.images) {
+        image.t += shift;
+        image.exposure_begin += shift;
+        image.exposure_end += shift;
+    }
+}
+
 /// Moves the items of `from` with key(item) <= t, from `next` on, to `to`.
 template <typename Item, typename Key>
 void take_until(const std::vector<Item>& from, std::size_t& next, SensorTime t, Key key,
@@ -64,17 +75,37 @@ std::uint32_t DavisModel::read(Register at) const {
 }
 
 void DavisModel::write(Write write) {
+    const bool time_starts = write == Write{kTimestampRun, 1} && read(kTimestampRun) != 1;
     writes_.push_back(write);
     registers_[write.at] = write.value;
-    if (write.at != kTimestampReset || write.value != 1) return;
-    clear_endpoint();
-    event_ = image_ = imu_ = trigger_ = 0;
-    reset_at_ = settings_.now ? settings_.now() : SensorTime{};
-    writer_ = std::make_unique<DavisWriter>(settings_.sensor);
+    asked_ = 0;
+    if (time_starts) begin_time();
+    if (write != Write{kTimestampReset, 1}) return;
+    begin_time();
     StreamHeader header;
     header.width = settings_.sensor.width();
     header.height = settings_.sensor.height();
-    writer_->begin(header, words_);
+    writer_->begin(header, words_);  // the marker
+    begin_scene(SensorDuration{0});
+}
+
+void DavisModel::begin_time() {
+    clear_endpoint();
+    time_began_ = settings_.now ? settings_.now() : SensorTime{};
+    writer_ = std::make_unique<DavisWriter>(settings_.sensor);
+    event_ = image_ = imu_ = trigger_ = 0;
+    scene_began_ = SensorDuration{0};
+    scene_runs_ = false;
+}
+
+void DavisModel::begin_scene(SensorDuration after) {
+    scene_began_ = after;
+    scene_runs_ = true;
+}
+
+bool DavisModel::sees_something() const {
+    return (read(kDvsRun) == 1 && read(kRunChip) == 1) || read(kApsRun) == 1 ||
+           read(kImuRunAccel) == 1 || read(kExtRun) == 1;
 }
 
 UsbModelIdentity DavisModel::identity() const {
@@ -108,6 +139,8 @@ bool DavisModel::is_scene_over() const {
 
 std::size_t DavisModel::send(std::span<std::byte> out) {
     if (!is_streaming() || !writer_) return 0;
+    if (!scene_runs_ && sees_something() && ++asked_ > kSettled)
+        begin_scene(settings_.now ? now().time_since_epoch() : SensorDuration{0});
     while (words_.size() - sent_ < out.size()) {
         const std::size_t before = words_.size();
         make_more(out.size());
@@ -133,21 +166,25 @@ bool DavisModel::is_too_early_for_part_of_a_packet() {
 }
 
 SensorTime DavisModel::now() const {
-    return SensorTime{settings_.now() - reset_at_};
+    return SensorTime{settings_.now() - time_began_};
 }
 
 void DavisModel::make_more(std::size_t bytes) {
     constexpr std::size_t kBytesPerEvent = 4, kFewestEvents = 256;
     constexpr SensorDuration kWrap{1 << 15};
     std::vector<std::byte> stretch;
-    const SensorTime clock = settings_.now ? now() : SensorTime::max();
-    const SensorTime until = end_of_stretch(std::max(kFewestEvents, bytes / kBytesPerEvent), clock);
-    Batch seen = next_stretch(until);
-    if (settings_.fifo_bytes > 0) drop_what_finds_no_room(seen.events);
-    writer_->write(seen, stretch);
+    const SensorTime clock = settings_.now ? now() - scene_began_ : SensorTime::max();
+    SensorTime until = clock;
+    if (scene_runs_) {
+        until = end_of_stretch(std::max(kFewestEvents, bytes / kBytesPerEvent), clock);
+        Batch seen = next_stretch(until);
+        if (settings_.fifo_bytes > 0) drop_what_finds_no_room(seen.events);
+        move_in_time(seen, scene_began_);
+        writer_->write(seen, stretch);
+    }
     // A silent camera still says how time goes by, once a wrap.
-    if (until == clock && settings_.now && clock - writer_->time() >= kWrap)
-        writer_->advance(clock, stretch);
+    if (settings_.now && until == clock && clock + scene_began_ - writer_->time() >= kWrap)
+        writer_->advance(clock + scene_began_, stretch);
     if (settings_.spoil) settings_.spoil(stretch);
     words_.erase(words_.begin(), words_.begin() + std::ptrdiff_t(sent_));
     sent_ = 0;

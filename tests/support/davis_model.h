@@ -38,12 +38,18 @@ struct DavisModelSettings {
 
 /// Registers, and the stream they let flow: words come out only while MUX run, timestamp run and
 /// USB run are 1; events only with DVS run and chip run, images only with APS run, IMU samples only
-/// with its accelerometer on. A timestamp reset drops what was queued, sends the marker, and starts
-/// the scene from its beginning.
+/// with its accelerometer on. Time begins with timestamp run, and nothing else is needed.
+///
+/// The scene is what would be lost on a driver that has not yet switched on all it wants, so it
+/// begins when the driver has: at a timestamp reset, which drops what was queued, sends the marker
+/// and starts the scene anew; without one, when something that sees is on and data were asked for
+/// kSettled times since the last register was written.
 ///
 /// Thread: one at a time; the testbed locks.
 class DavisModel final : public UsbModel {
 public:
+    static constexpr int kSettled = 500;  ///< requests; 50 ms through the testbed
+
     explicit DavisModel(DavisModelSettings settings);
 
     /// What the camera will see, in time order; the first thing is seen at the time it says after a
@@ -61,12 +67,15 @@ public:
     std::size_t send(std::span<std::byte> out) override;
     void clear_endpoint() override;
 
-    bool is_scene_over() const;
+    bool is_scene_over() const;  ///< and its last word was fetched
     std::uint64_t bytes_sent() const { return bytes_sent_; }
 
 private:
     bool is_too_early_for_part_of_a_packet();
     SensorTime now() const;
+    void begin_time();
+    void begin_scene(SensorDuration after);
+    bool sees_something() const;
     void make_more(std::size_t bytes);
     SensorTime end_of_stretch(std::size_t events, SensorTime clock) const;
     Batch next_stretch(SensorTime until);
@@ -78,7 +87,10 @@ private:
     Batch scene_;
     std::size_t event_ = 0, image_ = 0, imu_ = 0, trigger_ = 0;  ///< next of the scene
     SensorTime last_packet_{};
-    SensorTime reset_at_{};  ///< on settings_.now
+    SensorTime time_began_{};       ///< on settings_.now
+    SensorDuration scene_began_{};  ///< after that
+    bool scene_runs_ = false;
+    int asked_ = 0;  ///< for data, since the last write
     std::unique_ptr<DavisWriter> writer_;
     std::vector<std::byte> words_;
     std::size_t sent_ = 0;  ///< of words_

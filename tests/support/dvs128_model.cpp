@@ -25,10 +25,10 @@ int Dvs128Model::control(const UsbSetup& setup, std::span<std::uint8_t> data) {
         case kStart:
         case kStop:
             running_ = setup.request == kStart;
+            if (running_) begin_scene(false);
             break;
         case kResetTime:
-            clear_endpoint();
-            begin_scene();
+            begin_scene(true);
             break;
         case kSetBiases:
             if (data.size() != kBiasBytes) return -1;
@@ -44,7 +44,7 @@ int Dvs128Model::control(const UsbSetup& setup, std::span<std::uint8_t> data) {
 
 /// u16 address (bit 0 OFF, 1-7 x, 8-14 y, 15 sync; both mirrored) and u16 time (14 bits; bit 15 a
 /// wrap, bit 14 a reset), little-endian.
-void Dvs128Model::begin_scene() {
+void Dvs128Model::begin_scene(bool by_reset) {
     constexpr std::int64_t kWrapUs = 1 << 14;
     constexpr std::uint32_t kWrap = 0x80000000, kReset = 0x40000000, kSync = 0x8000;
     std::int64_t wrap_add = 0;
@@ -52,8 +52,9 @@ void Dvs128Model::begin_scene() {
         for (; to_us(at) - wrap_add >= kWrapUs; wrap_add += kWrapUs) append_little(bytes_, kWrap);
         append_little(bytes_, address | (std::uint32_t(to_us(at) - wrap_add) << 16));
     };
+    clear_endpoint();
     begun_ = true;
-    append_little(bytes_, kReset);
+    if (by_reset) append_little(bytes_, kReset);
     std::size_t trigger = 0;
     for (const Event& event : scene_.events) {
         for (; trigger < scene_.triggers.size() && scene_.triggers[trigger].t <= event.t; ++trigger)

@@ -12,8 +12,8 @@
 
 namespace eventide::testing_support {
 
-/// Records flow from START to STOP. A reset of the time drops what was queued, sends its mark, and
-/// the scene begins.
+/// Records flow, and the scene begins, from START to STOP. A reset of the time drops what was
+/// queued, sends its mark, and the scene begins anew.
 class Dvs128Model final : public UsbModel {
 public:
     struct Request {
@@ -35,7 +35,7 @@ public:
     void clear_endpoint() override;
 
 private:
-    void begin_scene();
+    void begin_scene(bool by_reset);
 
     std::uint8_t firmware_;
     std::vector<Request> requests_;

@@ -46,10 +46,12 @@ void DvxplorerModel::write(Write write) {
     writes_.push_back(write);
     if (write.at == settings_.deaf) return;
     registers_[write.at] = write.value;
+    asked_ = 0;
     const Register reset = settings_.mini ? dvxplorer::kTimestampReset : kTimestampReset;
-    if (write.at != reset || write.value != 1) return;
-    clear_endpoint();
-    time_runs_ = true;
+    const bool resets = write == Write{reset, 1};
+    if (!resets && (is_streaming() || !begun_)) return;
+    clear_endpoint();  // a new beginning, or the end
+    was_reset_ = resets;
     begun_ = false;
 }
 
@@ -116,11 +118,13 @@ void DvxplorerModel::begin_scene() {
         return;
     }
     if (is_set(kExtRun)) seen.triggers = scene_.triggers;
-    words_ = fx3_words(seen, settings_.sensor, ranges);
+    words_ = fx3_words(seen, settings_.sensor, ranges, was_reset_);
 }
 
 std::size_t DvxplorerModel::send(std::span<std::byte> out) {
-    if (!time_runs_ || !is_streaming()) return 0;
+    if (!is_streaming()) return 0;
+    const bool sees = is_set(kDvsRun) || is_set(kImuRunAccel) || is_set(kExtRun);
+    if (!begun_ && !was_reset_ && (!sees || ++asked_ <= kSettled)) return 0;
     if (!begun_) begin_scene();
     // A message falls where it belongs: the packet before it is short, and the next waits for it.
     const std::size_t end = told_ < messages_.size() ? messages_[told_].after : words_.size();

@@ -30,12 +30,17 @@ struct DvxplorerModelSettings {
 /// Registers, and the stream they let flow. The FX3 board sends words while MUX run, timestamp run
 /// and USB run are 1; events with DVS run, chip run and the chip's stream mode, from inside its
 /// cropper and of the polarity asked for; IMU samples with the accelerometer on, in its range;
-/// edges with the detector on. The CX3 board has only the chip and DVS run. A timestamp reset drops
-/// what was queued, and the scene begins; without one there is nothing.
+/// edges with the detector on. The CX3 board has only the chip and DVS run.
+///
+/// The scene begins at a timestamp reset, which drops what was queued; without one, when the board
+/// streams, something that sees is on, and data were asked for kSettled times since the last
+/// register was written: by then a driver has switched on all it wants.
 ///
 /// Within one time the scene's events have to be in the order of the readout: by device column.
 class DvxplorerModel final : public UsbModel {
 public:
+    static constexpr int kSettled = 500;  ///< requests; 50 ms through the testbed
+
     explicit DvxplorerModel(DvxplorerModelSettings settings);
 
     void show(Batch scene) { scene_ = std::move(scene); }
@@ -62,8 +67,9 @@ private:
     std::map<davis::Register, std::uint32_t> registers_;
     std::vector<davis::Write> writes_;
     Batch scene_;
-    bool time_runs_ = false;  ///< it was reset; before, nothing is sent
-    bool begun_ = false;      ///< the scene, since the reset
+    bool was_reset_ = false;  ///< since the stream began
+    int asked_ = 0;           ///< for data, since the last write
+    bool begun_ = false;      ///< the scene
     std::vector<std::byte> words_;
     std::vector<MiniStream::Message> messages_;  ///< a Mini's, beside its words
     std::size_t sent_ = 0, told_ = 0;            ///< of words_, of messages_

@@ -64,7 +64,9 @@ ImuScales imu_scales(const DvxplorerSensor& sensor, const ImuRanges& ranges) {
 
 class Fx3Words {
 public:
-    explicit Fx3Words(const ImuRanges& ranges) : ranges_(ranges) { put(0, 1); }
+    Fx3Words(const ImuRanges& ranges, bool after_reset) : ranges_(ranges) {
+        if (after_reset) put(0, 1);
+    }
 
     void time(std::int64_t t) {
         constexpr std::int64_t kWrapUs = 1 << 15;
@@ -130,8 +132,8 @@ std::pair<int, int> device_axes(const Event& event, const DvxplorerSensor& senso
 }
 
 std::vector<std::byte> fx3_words(const Batch& scene, const DvxplorerSensor& sensor,
-                                 const ImuRanges& ranges) {
-    Fx3Words words{ranges};
+                                 const ImuRanges& ranges, bool after_reset) {
+    Fx3Words words{ranges, after_reset};
     const auto octets = octets_of(scene.events, sensor);
     std::size_t imu = 0, trigger = 0;
     const auto time_of = [](const auto& items, std::size_t next) {

@@ -20,9 +20,9 @@ struct ImuRanges {
 /// Column and row of an event on the chip.
 std::pair<int, int> device_axes(const Event& event, const DvxplorerSensor& sensor);
 
-/// The reset marker, then everything in the order of time.
+/// The reset marker where there was one, then everything in the order of time.
 std::vector<std::byte> fx3_words(const Batch& scene, const DvxplorerSensor& sensor,
-                                 const ImuRanges& ranges);
+                                 const ImuRanges& ranges, bool after_reset = true);
 
 /// What a Mini sends on its two endpoints: words, and messages each of which comes after so many
 /// bytes of them.

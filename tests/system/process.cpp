@@ -72,14 +72,20 @@ Process::Process(const std::vector<std::string>& arguments, ProcessSettings sett
     if (settings.output_to_pipe && pipe2(pipe_ends.data(), O_CLOEXEC) != 0)
         throw std::runtime_error("cannot make a pipe");
     int terminal_end = -1;
-    if (settings.error_to_terminal &&
-        openpty(&terminal_, &terminal_end, nullptr, nullptr, nullptr) != 0)
-        throw std::runtime_error("cannot make a terminal");
+    if (settings.error_to_terminal || settings.output_to_terminal) {
+        const winsize size{24, static_cast<unsigned short>(settings.terminal_columns), 0, 0};
+        if (openpty(&terminal_, &terminal_end, nullptr, nullptr, &size) != 0)
+            throw std::runtime_error("cannot make a terminal");
+    }
+    output_to_terminal_ = settings.output_to_terminal;
+    error_to_terminal_ = settings.error_to_terminal;
     child_ = fork();
     if (child_ == 0) {
         redirect(files_ / "input", O_RDONLY, STDIN_FILENO);
         if (settings.output_to_pipe)
             dup2(pipe_ends[1], STDOUT_FILENO);
+        else if (settings.output_to_terminal)
+            dup2(terminal_end, STDOUT_FILENO);
         else
             redirect(files_ / "output", O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
         if (settings.error_to_terminal)
@@ -152,8 +158,10 @@ Result Process::wait() {
         status_ = status;
     }
     result.exit_code = WIFEXITED(*status_) ? WEXITSTATUS(*status_) : 128 + WTERMSIG(*status_);
-    result.output = read_.empty() ? read_text(files_ / "output") : read_;
-    result.error = terminal_ >= 0 ? terminal_text_ : read_text(files_ / "error");
+    result.output = output_to_terminal_ ? terminal_text_
+                    : read_.empty()     ? read_text(files_ / "output")
+                                        : read_;
+    result.error = error_to_terminal_ ? terminal_text_ : read_text(files_ / "error");
     return result;
 }
 

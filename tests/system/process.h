@@ -33,8 +33,10 @@ struct ProcessSettings {
     std::map<std::string, std::string> environment = {};  ///< added to ours; an empty value removes
     std::string input = {};                               ///< on standard input
     std::string folder = {};                              ///< to run in; empty = here
-    bool output_to_pipe = false;     ///< standard output is read by read_output()
-    bool error_to_terminal = false;  ///< standard error is a (pseudo) terminal
+    bool output_to_pipe = false;      ///< standard output is read by read_output()
+    bool error_to_terminal = false;   ///< standard error is a (pseudo) terminal
+    bool output_to_terminal = false;  ///< standard output is, the same one
+    int terminal_columns = 0;         ///< how wide it is; 0: it does not say
 };
 
 struct Result {
@@ -63,6 +65,7 @@ private:
     TempFolder files_;
     pid_t child_ = -1;
     int output_ = -1, terminal_ = -1;
+    bool output_to_terminal_ = false, error_to_terminal_ = false;
     std::string read_, terminal_text_;
     std::optional<int> status_;
 };

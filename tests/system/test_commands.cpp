@@ -55,6 +55,23 @@ TEST_F(Commands, ConvertLosesNoEventAndSaysWhatHasNoPlace) {
     EXPECT_EQ(eventide({"convert", recording(), "d.raw"}).exit_code, 2) << "it exists already";
 }
 
+TEST_F(Commands, ConvertWritesAFolderOfTheEventCameraDatasetAndReadsItBack) {
+    const Json original = info(recording());
+    const Result result = eventide({"convert", recording(), "ecd/"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    expect_same_events(info(temp_ / "ecd"), original);
+    EXPECT_EQ(info(temp_ / "ecd")["frames"], original["frames"]);
+    EXPECT_EQ(probe(temp_ / "ecd/images/frame_00000000.png", "width,height"), "64,48\n");
+    ASSERT_EQ(eventide({"convert", "ecd/", "back.aedat4"}).exit_code, 0);
+    expect_same_events(info(temp_ / "back.aedat4"), original);
+    EXPECT_EQ(info(temp_ / "back.aedat4")["frames"], original["frames"]);
+
+    EXPECT_EQ(eventide({"convert", recording(), "ecd/"}).exit_code, 2) << "it holds something";
+    EXPECT_EQ(eventide({"convert", recording(), "ecd/", "--overwrite"}).exit_code, 0);
+    EXPECT_EQ(eventide({"convert", "ecd/", "ecd/", "--overwrite"}).exit_code, 2) << "its own input";
+    EXPECT_EQ(eventide({"convert", recording(), "b/", "--to-format", "text"}).exit_code, 2);
+}
+
 TEST_F(Commands, ConvertWritesTextToStandardOutput) {
     const Result result =
         eventide({"convert", recording(), "-", "--to-format", "text", "--to", "10ms"});
@@ -113,6 +130,31 @@ TEST_F(Commands, EvaluateMeasuresARecordingAndFolders) {
     EXPECT_EQ(Json::parse(same.output)["raw"]["mse"], 0.0);
 }
 
+TEST_F(Commands, ImagesOfTheCameraCorrectWhatTheModelMissed) {
+    const auto mse_with = [&](const std::string& given) {
+        const Result result =
+            eventide({"evaluate", recording(), "--skip", "1", "--frames", given, "--json", "-"});
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return Json::parse(result.output)["raw"]["mse"].get<double>();
+    };
+    EXPECT_LT(mse_with("2"), .5 * mse_with("0"));
+    EXPECT_EQ(eventide({"evaluate", recording(), "--frames", "1"}).exit_code, 2) << "none is left";
+
+    for (const std::string frames : {"auto", "use", "ignore"}) {
+        const Result result = eventide({"run", recording(), "--frames", frames, "--out", "null"});
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_EQ(result.error.find("of the camera's images") != std::string::npos,
+                  frames != "ignore")
+            << result.error;
+    }
+    ASSERT_EQ(eventide({"convert", recording(), "events.txt"}).exit_code, 0);
+    const Result none = eventide(
+        {"run", "events.txt", "--input-size", "64x48", "--frames", "use", "--out", "null"});
+    EXPECT_EQ(none.exit_code, 0) << none.error;
+    EXPECT_NE(none.error.find("--frames use: no image of the camera"), std::string::npos)
+        << none.error;
+}
+
 TEST_F(Commands, BenchPrintsTheMachineAndARowForEachSize) {
     const Result result = eventide({"bench", "--seconds", "0.3", "--sizes", "32x24", "--sizes",
                                     "48x32", "--json", "bench.json"});
@@ -128,7 +170,7 @@ TEST_F(Commands, BenchMeasuresAsOnAnOlderProcessor) {
     const auto engine_with = [&](const std::string& instructions) {
         const Result result =
             eventide({"bench", "--seconds", "0.2", "--sizes", "32x24", "--precisions", "f32",
-                      "--instructions", instructions, "--json", "bench.json"});
+                      "--instructions", instructions, "--json", "bench.json", "--overwrite"});
         EXPECT_EQ(result.exit_code, 0) << result.error;
         return Json::parse(read_text(temp_ / "bench.json"))["rows"][0]["engine"];
     };

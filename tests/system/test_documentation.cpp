@@ -47,6 +47,29 @@ TEST_F(Documentation, EveryShellBlockOfTheUsagePageRuns) {
     }
 }
 
+TEST_F(Documentation, TheReaderOfStampedFramesReadsThem) {
+    const std::string page = read_text(EVENTIDE_SOURCE_DIR "/docs/usage.md");
+    const std::string begin = "```python\n";
+    const std::size_t at = page.find(begin);
+    ASSERT_NE(at, page.npos);
+    const std::size_t body = at + begin.size();
+    write_text(temp_ / "reader.py", page.substr(body, page.find("```", body) - body));
+    std::filesystem::copy_file(recording(), temp_ / "recording.aedat4");
+    const Result result = run_in_shell(
+        "eventide run recording.aedat4 --fps 50 --out frames/ --out gray8:- --stamp --quiet | "
+        "python3 reader.py 64 48");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    std::istringstream lines{result.output};
+    std::vector<long long> times;
+    long long index = 0, t_us = 0, flags = 0;
+    for (double mean = 0; lines >> index >> t_us >> flags >> mean; times.push_back(t_us)) {
+        EXPECT_EQ(index, times.size());
+        EXPECT_EQ(flags, 0);
+        EXPECT_GT(mean, 0);
+    }
+    EXPECT_EQ(times, column(temp_ / "frames/timestamps.csv", 2));
+}
+
 /// The lines of code blocks that call the program.
 std::vector<std::string> program_lines(const std::string& page) {
     std::vector<std::string> found;

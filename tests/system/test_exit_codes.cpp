@@ -2,13 +2,33 @@
 // not.
 #include "tests/system/program_test.h"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace eventide::test {
 namespace {
 
+namespace fs = std::filesystem;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 class ExitCodes : public ProgramTest {
 protected:
+    /// "recording" and "model.safetensors" are the shared ones.
+    Result in_shell(const std::string& script) const {
+        std::error_code there_already;
+        fs::create_symlink(recording(), temp_ / "recording", there_already);
+        fs::create_symlink(model(), temp_ / "model.safetensors", there_already);
+        return run(
+            {"bash", "-o", "pipefail", "-c",
+             "PATH=" + fs::path{EVENTIDE_PROGRAM}.parent_path().string() + ":$PATH; " + script},
+            {.environment = {{"EVENTIDE_MODELS", fs::path{model()}.parent_path()}},
+             .folder = temp_.path().string()});
+    }
+
     /// Fails with this code, says something with these words, and writes nothing else.
     void expect(int code, const std::vector<std::string>& arguments, const std::string& words,
                 ProcessSettings settings = {}) const {
@@ -63,6 +83,81 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"evaluate", recording(), "--protocol", "folders"}, "two folders");
 }
 
+TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {
+    expect(2, {"run", recording(), "--from", "100s", "--out", "a/"}, "--from 100s: expected a");
+    expect(2, {"run", recording(), "--from", "@99999999999", "--out", "a/"}, "--from @99999999999");
+    expect(2, {"run", recording(), "--to", "@-5", "--out", "a/"}, "--to: expected a time after");
+    std::string text = "16 16\n";
+    for (int i = 0; i < 100; ++i) text += "0." + std::to_string(100'000 + i) + " 1 2 1\n";
+    write_text(temp_ / "no_images.txt", text);
+    expect(2, {"run", "no_images.txt", "--window", "aps", "--out", "a/"}, "reference images");
+    expect(2, {"run", "no_images.txt", "--camera", "a.toml", "--out", "a/"}, "a camera as SOURCE");
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "a")) << "nothing is left behind";
+    const Result aps = eventide({"run", recording(), "--window", "aps", "--out", "null"});
+    EXPECT_EQ(aps.exit_code, 0) << aps.error;
+}
+
+TEST_F(ExitCodes, ThreeIsSilenceWithoutEnd) {
+    std::string text;
+    for (int i = 0; i < 100; ++i) text += "1633953690." + std::to_string(100'000 + i) + " 1 2 1\n";
+    write_text(temp_ / "first_wrong.txt", "16 16\n0 1 1 1\n" + text);
+    const Result one = eventide({"run", "first_wrong.txt", "--out", "null"});
+    EXPECT_EQ(one.exit_code, 0) << one.error;
+    EXPECT_NE(one.error.find("bad_record: 1"), std::string::npos) << one.error;
+    write_text(temp_ / "epoch.txt", "16 16\n" + text);
+    expect(3, {"run", "epoch.txt", "--from", "@0", "--out", "null"}, "--allow-silence");
+}
+
+TEST_F(ExitCodes, ADeliberateEndIsNoDamage) {
+    std::string text = "16 16\n";
+    for (int i = 0; i < 100'000; ++i)
+        text += std::to_string(1'000'000 + 10 * i) + " 1 2 1 a_long_line_that_a_chunk_ends_in\n";
+    write_text(temp_ / "long.txt", text);
+    const Result cut =
+        eventide({"run", "long.txt", "--duration", "30ms", "--out", "null", "--strict"});
+    EXPECT_EQ(cut.exit_code, 0) << cut.error;
+}
+
+TEST_F(ExitCodes, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
+    std::string text = "16 16\n";
+    for (int i = 0; i < 1000; ++i)
+        text += std::to_string(1'000'000 + 500 * i - (i % 3 == 2 ? 250'000 : 0)) + " 1 2 1\n";
+    write_text(temp_ / "mixed.txt", text);
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"info", "mixed.txt"},
+                                                    {"run", "mixed.txt", "--out", "null"},
+                                                    {"convert", "mixed.txt", "mixed.aedat4"}}) {
+        const Result result = eventide(command);
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_NE(result.error.find("events already read; a larger --reorder"), std::string::npos)
+            << command[0] << "\n"
+            << result.error;
+    }
+    EXPECT_EQ(eventide({"info", "mixed.txt", "--reorder", "1s", "--strict"}).exit_code, 0);
+}
+
+/// With so much address space.
+Result with_memory(int mebibytes, const std::vector<std::string>& arguments,
+                   const std::string& folder) {
+    std::vector<std::string> all{"bash", "-c", "ulimit -v $0 && exec \"$@\"",
+                                 std::to_string(mebibytes * 1024), EVENTIDE_PROGRAM};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    ProcessSettings settings;
+    settings.folder = folder;
+    return run(all, std::move(settings));
+}
+
+TEST_F(ExitCodes, OneIsTooLittleMemoryAndItIsSaidBeforeTheFirstFrame) {
+    if (kSanitized) GTEST_SKIP() << "sanitizers take all the address space there is";
+    write_text(temp_ / "large.raw", "% evt 3.0\n% geometry 4096x4096\n% end\n");
+    const std::string folder = temp_.path().string();
+    const Result large =
+        with_memory(3000, {"run", "large.raw", "--model", model(), "--out", "a/"}, folder);
+    EXPECT_EQ(large.exit_code, 1) << large.error;
+    EXPECT_NE(large.error.find("for a sensor of 4096x4096 wants at least"), std::string::npos)
+        << large.error;
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "a"));
+}
+
 TEST_F(ExitCodes, TwoIsAlsoAFullFolderWithoutOverwrite) {
     std::filesystem::create_directory(temp_ / "a");
     write_text(temp_ / "a/mine.txt", "x");
@@ -97,6 +192,59 @@ TEST_F(ExitCodes, FourIsACameraThatIsNotThere) {
 TEST_F(ExitCodes, OneIsFailureWhileRunning) {
     expect(1, {"run", recording(), "--out", "gray8:/dev/full"}, "/dev/full");
     expect(1, {"run", recording(), "--out", "/proc/nowhere/"}, "/proc/nowhere");
+    expect(1, {"run", recording(), "--out", "null", "--stats", "/dev/full"}, "/dev/full");
+    std::filesystem::create_symlink("/dev/full", temp_ / "full.bin");
+    expect(1, {"run", recording(), "--out", "null", "--record", "full.bin"}, "full.bin");
+}
+
+TEST_F(ExitCodes, OneIsStandardOutputThatCannotBeWritten) {
+    for (const char* command : {"info recording", "info model.safetensors", "devices --json",
+                                "doctor", "run --print-config", "simulate --list",
+                                "evaluate recording --json -", "bench --seconds 0.2 --sizes 16x16",
+                                "--help", "run --help", "--version", "--default-config"}) {
+        const Result full = in_shell(std::string{"eventide "} + command + " > /dev/full");
+        EXPECT_EQ(full.exit_code, 1) << command << "\n" << full.error;
+        EXPECT_NE(full.error.find("standard output: cannot be written"), std::string::npos)
+            << command << "\n"
+            << full.error;
+        EXPECT_EQ(in_shell(std::string{"eventide "} + command + " | true").exit_code, 0)
+            << command << ": a reader that goes away is no error";
+    }
+}
+
+TEST_F(ExitCodes, OneIsAFileThatMayNotGrow) {
+    for (const char* command :
+         {"run recording --out a.mp4", "run recording --out a/", "run recording --out gray8:a.raw",
+          "run recording --out null --record a.aedat4", "convert recording c.aedat4",
+          "simulate --seconds 0.3 --out b/"}) {
+        const Result result = in_shell(std::string{"ulimit -f 1; eventide "} + command);
+        EXPECT_EQ(result.exit_code, 1) << command << "\n" << result.error;
+        EXPECT_NE(result.error.find("cannot be written"), std::string::npos) << result.error;
+    }
+}
+
+TEST_F(ExitCodes, OneIsAProcessWithoutFileDescriptors) {
+    const auto said = [&](int descriptors, const std::string& command) {
+        const Result result = in_shell("ulimit -n " + std::to_string(descriptors) +
+                                       "; exec eventide " + command + " --overwrite");
+        const bool told = result.error.find("ulimit -n") != std::string::npos;
+        EXPECT_TRUE(result.exit_code == 0 || (result.exit_code == 1 && told))
+            << descriptors << ", " << command << ": " << result.exit_code << "\n"
+            << result.error;
+        return told;
+    };
+    int refused = 0;
+    for (int n = 5; n < 16; ++n) {
+        refused += said(n, "run recording --out a/ --out b.mp4 --stats s --state-out t");
+        refused += said(n, "convert recording c.aedat4");
+    }
+    EXPECT_GT(refused, 4);
+}
+
+TEST_F(ExitCodes, AClosedStandardStreamGetsNoFile) {
+    EXPECT_EQ(in_shell("eventide run recording --out gray8:a 2>&- >&-").exit_code, 0);
+    EXPECT_EQ(read_text(temp_ / "a").size() % (64 * 48), 0U);
+    EXPECT_EQ(in_shell("eventide info recording >&-").exit_code, 1);
 }
 
 TEST_F(ExitCodes, FiveIsDamageUnderStrictOnly) {
@@ -132,11 +280,74 @@ TEST_F(ExitCodes, AConfigurationFileIsHeldToItsKeys) {
         EXPECT_NE(shown.output.find(part), std::string::npos) << part << "\n" << shown.output;
 }
 
-TEST_F(ExitCodes, TheMovingLineIsForTerminalsThatAreNotToldToBeQuiet) {
+TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
+    expect(2, {"run", "metavision:", "--out", "null"}, "unknown source; expected a file");
+    expect(2, {"run", recording(), "--out", "gray8:"}, "--out gray8: needs a path");
+    expect(2, {"run", recording(), "video.mp4"},
+           "unexpected argument 'video.mp4'; did you mean --out?");
+    expect(2, {"run", recording(), "--roi", "9999,0,5x5", "--out", "null"},
+           "--roi exceeds the frame");
+    write_text(temp_ / "empty.raw", "");
+    expect(3, {"info", "empty.raw"}, "the file is empty");
+    write_text(temp_ / "letters.raw", "letters and nothing else, for a while, which is no format");
+    expect(3, {"info", "letters.raw"}, "unrecognised format");
+    expect(3, {"run", recording(), "--model", "letters.raw", "--out", "null"}, "not a model file");
+    const Result typo =
+        eventide({"info", recording()}, {.environment = {{"EVENTIDE_RUN_FPSS", "3"}}});
+    EXPECT_NE(typo.error.find("unknown variable EVENTIDE_RUN_FPSS in the environment; did you mean "
+                              "EVENTIDE_RUN_FPS?"),
+              std::string::npos)
+        << typo.error;
+    EXPECT_NE(eventide({"convert", recording(), "none.txt", "--from", "@900000000"})
+                  .error.find("wrote 0 events"),
+              std::string::npos);
+}
+
+TEST_F(ExitCodes, AStampWantsARawStream) {
+    expect(2, {"run", recording(), "--out", "a.y4m", "--stamp"}, "--stamp: expected a raw stream");
+}
+
+TEST_F(ExitCodes, FramesAreNotWrittenToATerminalUnlessItIsForced) {
+    const ProcessSettings terminal{.output_to_terminal = true};
+    for (const char* sink : {"-", "gray8:-"}) {
+        const std::vector<std::string> run{"run", recording(), "--duration", "1ms", "--out", sink};
+        expect(2, run, "--force", terminal);
+        std::vector<std::string> forced = run;
+        forced.push_back("--force");
+        const Result result = eventide(forced, terminal);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_NE(result.output, "");
+    }
+    expect(2, {"convert", recording(), "-", "--to-format", "evt3"}, "--force", terminal);
+    const Result text =
+        eventide({"convert", recording(), "-", "--to-format", "text", "--to", "1ms"}, terminal);
+    EXPECT_EQ(text.exit_code, 0) << "people can read it";
+}
+
+/// What stood on the terminal at some time: the line is drawn again after each return.
+std::vector<std::string> drawn_lines(const std::string& text) {
+    std::vector<std::string> lines;
+    std::size_t begin = 0;
+    for (std::size_t end = 0; (end = text.find_first_of("\r\n", begin)) != text.npos;
+         begin = end + 1)
+        lines.push_back(text.substr(begin, std::min(end, text.find("\033[K", begin)) - begin));
+    return lines;
+}
+
+TEST_F(ExitCodes, TheMovingLineFitsTheTerminalAndIsNotForThoseWhoWantQuiet) {
     const std::vector<std::string> run{"run", "sim:demo?size=64x48", "--duration", "700ms", "--out",
                                        "null"};
-    EXPECT_NE(eventide(run, {.error_to_terminal = true}).error.find(" events/s  window"),
-              std::string::npos);
+    for (const int columns : {40, 80, 200}) {
+        const std::string text =
+            eventide(run, {.error_to_terminal = true, .terminal_columns = columns}).error;
+        bool found = false;
+        for (const std::string& line : drawn_lines(text)) {
+            const bool moving = line.find(" %  ") != line.npos;
+            found = found || moving;
+            EXPECT_TRUE(!moving || int(line.size()) < columns) << line;
+        }
+        EXPECT_TRUE(found) << text;
+    }
     EXPECT_EQ(eventide(run).error.find('\r'), std::string::npos);
     std::vector<std::string> quiet = run;
     quiet.push_back("--quiet");

@@ -26,9 +26,9 @@ std::map<std::string, std::string> contents(const std::filesystem::path& folder)
 }
 
 TEST_F(Run, WritesAFolderAVideoAndASheetInOneGo) {
-    const Result result =
-        eventide({"run", recording(), "--fps", "100", "--out", "frames/", "--out", "video.mp4",
-                  "--out", "sheet:sheet.png", "--uncertainty", "side", "--stats", "stats.jsonl"});
+    const Result result = eventide({"run", recording(), "--fps", "100", "--out", "frames/", "--out",
+                                    "video.mp4", "--out", "contact-sheet:sheet.png",
+                                    "--uncertainty", "side", "--stats", "stats.jsonl"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_EQ(result.output, "") << "data go where they were sent, and talk to standard error";
     EXPECT_NE(result.error.find("frames"), std::string::npos);
@@ -64,6 +64,17 @@ TEST_F(Run, OnOneThreadGivesTheSameFilesBitForBit) {
                   .exit_code,
               0);
     EXPECT_EQ(contents(temp_ / "a"), contents(temp_ / "b"));
+}
+
+TEST_F(Run, SlowMotionIsSlowInFilesAndPipes) {
+    const Result result = eventide({"run", recording(), "--duration", "200ms", "--slow", "10",
+                                    "--fps", "25", "--out", "a.mp4", "--out", "a.y4m"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto times = packet_times(temp_ / "a.mp4");
+    ASSERT_EQ(times.size(), 51U) << "25 a second of 2 s, and the first";
+    EXPECT_EQ(times[1], 40'000);
+    EXPECT_EQ(times.back(), 2'000'000);
+    EXPECT_EQ(probe(temp_ / "a.y4m", "r_frame_rate,nb_read_frames"), "25/1,51\n");
 }
 
 TEST_F(Run, StreamsY4mToStandardOutputAndFfmpegReadsIt) {
@@ -106,6 +117,48 @@ TEST_F(Run, BeginsAndEndsWhereItIsTold) {
     ASSERT_FALSE(times.empty());
     EXPECT_NEAR(double(times.front()), 100'000, 1000) << "the first event may be a little late";
     EXPECT_NEAR(double(times.size()), 11, 1);
+}
+
+TEST_F(Run, TheFirstFrameOfAPartIsAsGoodAsThatOfTheWhole) {
+    const auto frame_at = [&](const std::string& folder, long long t_us) {
+        const auto times = column(temp_ / (folder + "timestamps.csv"), 2);
+        const auto found = std::find(times.begin(), times.end(), t_us);
+        EXPECT_NE(found, times.end()) << folder << " " << t_us;
+        char name[64];
+        std::snprintf(name, sizeof name, "frames/frame_%010d.png", int(found - times.begin()));
+        return read_text(temp_ / (folder + name));
+    };
+    const auto run = [&](const std::string& folder, std::vector<std::string> more) {
+        std::vector<std::string> all{"run",   recording(), "--window", "20ms",
+                                     "--fps", "frame",     "--out",    folder};
+        all.insert(all.end(), more.begin(), more.end());
+        const Result result = eventide(all);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+    };
+    run("whole/", {});
+    run("part/", {"--from", "200ms", "--to", "300ms"});
+    run("cold/", {"--from", "200ms", "--to", "300ms", "--warmup", "0s"});
+    // It began where the whole run did, and saw all that it saw.
+    const long long t = column(temp_ / "part/timestamps.csv", 2).front();
+    EXPECT_EQ(frame_at("part/", t), frame_at("whole/", t));
+    const long long cold = column(temp_ / "cold/timestamps.csv", 2).front();
+    EXPECT_NE(read_text(temp_ / "cold/frames/frame_0000000000.png"), frame_at("part/", t)) << cold;
+}
+
+TEST_F(Run, TheFirstAndTheLastEventAreInTheirOwnFrames) {
+    write_text(temp_ / "e.txt", "8 8\n0.100000 1 2 1\n0.150000 3 4 0\n0.200000 5 6 1\n");
+    for (const char* from : {"0s", "@150000", "100ms", "@200000"}) {
+        const Result result =
+            eventide({"run", "e.txt", "--from", from, "--out", "a/", "--overwrite"});
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        const auto events = column(temp_ / "a/timestamps.csv", 5);
+        ASSERT_FALSE(events.empty()) << from;
+        EXPECT_GE(events.front(), 1) << from;
+    }
+    EXPECT_EQ(
+        eventide({"run", "e.txt", "--from", "@200000", "--to", "@200000", "--out", "b/"}).exit_code,
+        0);
+    EXPECT_EQ(column(temp_ / "b/timestamps.csv", 2), (std::vector<long long>{200'000}));
 }
 
 TEST_F(Run, GoesThroughANamedPipe) {

@@ -14,9 +14,11 @@ constexpr const char* kEndless = "sim:demo?size=64x48";
 class Signals : public ProgramTest {};
 
 TEST_F(Signals, TheFirstSigintDrainsAndClosesEverything) {
-    Process process = start({"run", kEndless, "--fps", "100", "--out", "gray8:-", "--out",
-                             "video.mp4", "--out", "frames/", "--stats", "stats.jsonl"},
-                            {.output_to_pipe = true});
+    // Each frame in the pipe is to be one in the files: none is repeated.
+    Process process =
+        start({"run", kEndless, "--fps", "100", "--overload", "skip", "--out", "gray8:-", "--out",
+               "video.mp4", "--out", "frames/", "--stats", "stats.jsonl"},
+              {.output_to_pipe = true});
     ASSERT_EQ(process.read_output(5 * kPixels).size(), 5 * kPixels);
     process.signal(SIGINT);
     const Result result = process.wait();
@@ -41,6 +43,31 @@ TEST_F(Signals, ASecondSignalQuitsAtOnce) {
     EXPECT_EQ(process.wait().exit_code, 128 + SIGTERM);
 }
 
+TEST_F(Signals, AClosedTerminalEndsLikeSigtermHoweverOftenItHangsUp) {
+    Process process = start({"run", kEndless, "--fps", "100", "--out", "gray8:-", "--out",
+                             "video.mp4", "--out", "frames/"},
+                            {.output_to_pipe = true});
+    ASSERT_EQ(process.read_output(5 * kPixels).size(), 5 * kPixels);
+    for (int n = 0; n < 3; ++n) process.signal(SIGHUP);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(packet_times(temp_ / "video.mp4").size(),
+              column(temp_ / "frames/timestamps.csv", 2).size());
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "frames/run.json"));
+}
+
+TEST_F(Signals, NohupIsRespected) {
+    Process process{{"bash", "-c",
+                     "trap '' HUP; exec " EVENTIDE_PROGRAM " run " + std::string{kEndless} +
+                         " --model " + model() + " --fps 100 --out gray8:-"},
+                    {.output_to_pipe = true}};
+    ASSERT_EQ(process.read_output(5 * kPixels).size(), 5 * kPixels);
+    process.signal(SIGHUP);
+    EXPECT_EQ(process.read_output(20 * kPixels).size(), 20 * kPixels) << "it goes on";
+    process.signal(SIGINT);
+    EXPECT_EQ(process.wait().exit_code, 0);
+}
+
 TEST_F(Signals, AReaderThatGoesAwayIsAProperEnd) {
     Process process = start({"run", kEndless, "--out", "-"}, {.output_to_pipe = true});
     EXPECT_EQ(process.read_output(9), "YUV4MPEG2");
@@ -52,8 +79,8 @@ TEST_F(Signals, AReaderThatGoesAwayIsAProperEnd) {
 }
 
 TEST_F(Signals, AKilledRunLeavesAVideoThatPlaysAndFilesThatAreWhole) {
-    Process process = start({"run", kEndless, "--fps", "200", "--out", "video.mp4", "--out",
-                             "frames/", "--out", "gray8:-"},
+    Process process = start({"run", kEndless, "--fps", "200", "--overload", "skip", "--out",
+                             "video.mp4", "--out", "frames/", "--out", "gray8:-"},
                             {.output_to_pipe = true});
     ASSERT_EQ(process.read_output(150 * kPixels).size(), 150 * kPixels);
     process.signal(SIGKILL);

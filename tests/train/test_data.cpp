@@ -70,6 +70,44 @@ TEST(Lane, IsTheSameHoweverOftenTheRunStops) {
     EXPECT_LT(fresh, 12) << "scenes last longer than a window";
 }
 
+/// Events per pixel of each event window of a few lanes.
+std::vector<double> contents(const DataSettings& settings) {
+    std::vector<double> all;
+    const auto add = [&](const Array3<float>& grid) {
+        double events = 0;
+        for (int y = 0; y < grid.height(); ++y)
+            for (int x = 0; x < grid.width(); ++x)
+                for (int b = 0; b < settings.bins; ++b) events += grid(y, x, 4 * b + 3);
+        all.push_back(events / (grid.height() * grid.width()));
+    };
+    for (int n = 0; n < 6; ++n) {
+        Lane lane{settings, few_textures(), {.lane = n}, 0};
+        for (int window = 0; window < 6; ++window)
+            for (const Array3<float>& grid : lane.next().grids) add(grid);
+    }
+    return all;
+}
+
+TEST(Lane, WindowsThatEndByContentHoldAboutSoManyEventsOrEndByTime) {
+    DataSettings settings = tiny_options({}).data;
+    settings.episode = {200, 200};
+    settings.frame_s = {.1, .1};
+    settings.frame_jitter = 0;
+    settings.scene.wander.speed = {200, 400};
+    settings.scene.still_background = settings.scene.faint_probability = 0;
+    settings.scene.pause_start = 0;
+    settings.sensor.threshold = {.1, .1};
+    settings.content_epp = {.2, .2};
+    const auto share_above = [&](double content_share) {
+        settings.content_share = content_share;
+        const std::vector<double> all = contents(settings);
+        return double(std::ranges::count_if(all, [](double n) { return n > .5; })) /
+               double(all.size());
+    };
+    EXPECT_GT(share_above(0), .5) << "by time alone most windows hold far more";
+    EXPECT_LT(share_above(1), .1) << "the rate of the window before is not far off";
+}
+
 TEST(Lane, ThesisScenesShowThePictureWhateverTheLight) {
     DataSettings settings = tiny_options({}).data;
     settings.scene.target_white = {.5, .5};

@@ -77,7 +77,15 @@ std::vector<Case> cases() {
     half.latent_stride = 2;
     ModelConfig mixture = test::small_config();
     mixture.sigma_rule = SigmaRule::mixture;
+    // Two hidden layers of one width: the fused renderer's.
+    ModelConfig fading = test::small_config();
+    fading.unfold = 1;
+    fading.live_edge = LiveEdge::fade;
+    fading.mlp = {16, 16};
     return {{test::small_config(), 0, kWidth, kHeight},
+            {fading, 0, kWidth, kHeight},
+            {fading, 0, 70, 90},
+            {fading, 2, 70, 40},
             {test::small_config(), 1, kWidth, kHeight},
             {test::small_config(), 2, 70, 90},
             {half, 2, kWidth, kHeight},
@@ -119,7 +127,8 @@ TEST_P(SameNetwork, TorchPlainAndFastGiveTheSamePictures) {
     const auto code = [&](int ahead) {
         return ahead <= c.lookahead ? z[k + std::size_t(ahead)] : torch::Tensor{};
     };
-    const RenderTask task{z[k - 1], z[k], code(1), code(2), torch::full({1}, kPart)};
+    RenderTask task{z[k - 1], z[k], code(1), code(2), torch::full({1}, kPart)};
+    if (c.config.live_edge == LiveEdge::fade) task.before = z[k - 2];
     const Rendered judged = render(model.config, to_parameters(model.weights, torch::kCPU), {task},
                                    points_of(model.config, c.width, c.height));
     for (const Engine engine : {Engine::plain, Engine::fast}) {

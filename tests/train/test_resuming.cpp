@@ -13,6 +13,25 @@ TEST(Training, ARunThatStoppedGoesOnAsIfItHadNot) {
     expect_stopping_changes_nothing(options, 5);
 }
 
+TEST(Training, AKeptCheckpointHasNoStreamsAndGoesOn) {
+    const fs::path out = empty_folder("keeps");
+    TrainOptions options = tiny_options(out);
+    options.steps = 3;
+    const auto first = trainer(options);
+    train(*first);
+    const fs::path kept = out / "kept.safetensors";
+    first->keep(kept);
+    EXPECT_LT(fs::file_size(kept), fs::file_size(out / "checkpoint.safetensors"));
+    options.resume = kept.string();
+    options.steps = 5;
+    const auto second = trainer(options);
+    EXPECT_EQ(second->steps(), 3);
+    for (const auto& [name, values] : first->parameters())
+        EXPECT_TRUE(torch::equal(second->parameters().at(name), values)) << name;
+    train(*second);
+    EXPECT_EQ(second->steps(), 5);
+}
+
 TEST(Training, ACheckpointOfAnotherNetworkIsRefusedByName) {
     const fs::path out = empty_folder("refuses");
     TrainOptions options = tiny_options(out);

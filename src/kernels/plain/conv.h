@@ -14,30 +14,34 @@ namespace eventide::plain {
 template <typename T>
 struct ConvWeights {
     int out = 0, in = 0;
-    std::vector<T> weight;  ///< [out][in][3][3]
+    std::vector<T> weight;  ///< [out][in][side][side]
     std::vector<T> bias;    ///< [out]
+    int side = 3;           ///< 3 or 1
 };
 
-/// 3x3, zeros outside. Output j is centred on input stride j; n inputs give (n + stride - 1) /
+/// Zeros outside. Output j is centred on input stride j; n inputs give (n + stride - 1) /
 /// stride.
 template <typename T>
 Array3<T> conv(const ConvWeights<T>& weights, const Array3<T>& in, int stride = 1) {
     assert(in.channels() == weights.in);
+    const int side = weights.side, reach = side / 2;
     Array3<T> out{(in.height() + stride - 1) / stride, (in.width() + stride - 1) / stride,
                   weights.out};
     for (int y = 0; y < out.height(); ++y)
         for (int x = 0; x < out.width(); ++x)
             for (int o = 0; o < weights.out; ++o) {
                 T sum = weights.bias[std::size_t(o)];
-                for (int dy = -1; dy <= 1; ++dy)
-                    for (int dx = -1; dx <= 1; ++dx) {
+                for (int dy = -reach; dy <= reach; ++dy)
+                    for (int dx = -reach; dx <= reach; ++dx) {
                         const int sy = stride * y + dy, sx = stride * x + dx;
                         if (sy < 0 || sy >= in.height() || sx < 0 || sx >= in.width()) continue;
                         const auto pixel = in.pixel(sy, sx);
-                        const int tap = 3 * (dy + 1) + dx + 1;
+                        const int tap = side * (dy + reach) + dx + reach;
                         for (int i = 0; i < weights.in; ++i)
-                            sum += weights.weight[std::size_t((o * weights.in + i) * 9 + tap)] *
-                                   pixel[std::size_t(i)];
+                            sum +=
+                                weights
+                                    .weight[std::size_t((o * weights.in + i) * side * side + tap)] *
+                                pixel[std::size_t(i)];
                     }
                 out(y, x, o) = sum;
             }

@@ -43,6 +43,23 @@ TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {
     EXPECT_EQ(four.at<cv::Vec3b>(30, four.cols - 20), cv::Vec3b(200, 200, 200));
 }
 
+TEST(ContactSheet, NamesTheReferenceImagesAsItIsTold) {
+    const TempFolder temp;
+    const auto sheet = [&](const std::string& caption) {
+        ContactSheetSettings settings{.path = temp / (caption + ".png"), .rows = 1};
+        settings.draw_truth = [](const Frame&, cv::Mat& picture) {
+            picture = cv::Mat(30, 40, CV_8UC1, 200.0);
+        };
+        settings.truth_caption = caption;
+        return sheet_of(2, settings);
+    };
+    const cv::Mat difference = cv::abs(sheet("APS") - sheet("truth"));
+    const cv::Mat caption = difference.rowRange(0, 22),
+                  rest = difference.rowRange(22, difference.rows);
+    EXPECT_GT(cv::sum(caption)[0], 0);
+    EXPECT_EQ(cv::sum(rest)[0], 0);
+}
+
 TEST(ContactSheet, KeepsOneSizeHoweverLongTheRun) {
     const TempFolder temp;
     EXPECT_EQ(sheet_of(5, {.path = temp / "a.png"}).size(),

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,9 @@ TEST(FolderSink, WritesPicturesSigmaAndTimesThatReadBack) {
     const TempFolder temp;
     const Frame first = test::ramp_frame(31, 17, 4, test::odd_time(0));
     const Frame second = test::ramp_frame(31, 17, 9, test::odd_time(1));
-    FolderSink sink{
-        {.path = temp / "out", .lost = [] { return 7; }, .run_json = [] { return "{}"; }}};
+    FolderSink sink{{.path = temp / "out",
+                     .lost = [] { return 7; },
+                     .run_json = [] { return R"({"model": "a name"})"; }}};
     sink.write(first);
     sink.write(second);
     sink.close();
@@ -46,7 +48,10 @@ TEST(FolderSink, WritesPicturesSigmaAndTimesThatReadBack) {
               "frame,index,t_us,window_begin_us,window_end_us,events,lost\n"
               "0,4,1633953690975951,1633953690970951,1633953691020951,104,7\n"
               "1,9,1633953690979283,1633953690974283,1633953691024283,109,7\n");
-    EXPECT_EQ(test::read_text(temp / "out/run.json"), "{}\n");
+    const auto record = nlohmann::json::parse(test::read_text(temp / "out/run.json"));
+    EXPECT_EQ(record["model"], "a name");
+    EXPECT_EQ(record["files"]["frames"], 2);
+    EXPECT_EQ(record["files"]["uncertainty"], 2);
 }
 
 TEST(FolderSink, RefusesAFolderThatHoldsSomethingAndReplacesOnlyItsOwnFiles) {
@@ -71,6 +76,56 @@ TEST(FolderSink, RefusesAFolderThatHoldsSomethingAndReplacesOnlyItsOwnFiles) {
     EXPECT_FALSE(std::filesystem::exists(temp / "out/frames/frame_0000000001.png"));
     EXPECT_FALSE(std::filesystem::exists(temp / "out/uncertainty/unc_0000000001.tiff"));
     EXPECT_EQ(test::read_text(temp / "out/notes.txt"), "mine");
+}
+
+std::string refusal(const FolderSettings& settings) {
+    try {
+        FolderSink sink{settings};
+    } catch (const Error& error) {
+        return error.kind() == ErrorKind::usage ? error.what() : "not usage";
+    }
+    return {};
+}
+
+TEST(FolderSink, OverwritingLeavesWhatNoRunOfOursWrote) {
+    const TempFolder temp;
+    const FolderSettings settings{.path = temp / "out", .overwrite = true};
+    std::filesystem::create_directories(temp / "out/frames");
+    for (const char* name : {"frames/frame_0000000000.png", "timestamps.txt", "run.json"}) {
+        test::write_text(temp / ("out/" + std::string{name}), "mine");
+        EXPECT_NE(refusal(settings).find(name), std::string::npos) << name;
+        EXPECT_EQ(test::read_text(temp / ("out/" + std::string{name})), "mine");
+        std::filesystem::remove(temp / ("out/" + std::string{name}));
+    }
+    for (const char* name : {"frames/frame_7.png", "frames/holiday.png", "notes.txt"})
+        test::write_text(temp / ("out/" + std::string{name}), "mine");
+    { FolderSink{settings}.write(test::ramp_frame(8, 8, 0, test::odd_time(0))); }
+    EXPECT_EQ(test::read_text(temp / "out/frames/holiday.png"), "mine");
+    EXPECT_EQ(test::read_text(temp / "out/frames/frame_7.png"), "mine");
+    EXPECT_EQ(test::read_text(temp / "out/notes.txt"), "mine");
+}
+
+TEST(FolderSink, ARunThatWasKilledCanBeReplaced) {
+    const TempFolder temp;
+    const FolderSettings settings{.path = temp / "out", .overwrite = true};
+    {
+        FolderSink killed{settings};  // without close(), the record says that it did not end
+        for (int n = 0; n < 3; ++n) killed.write(test::ramp_frame(8, 8, n, test::odd_time(n)));
+    }
+    test::write_text(temp / "out/frames/frame_0000000003.png.part", "half of the frame in work");
+    EXPECT_EQ(refusal(settings), "");
+    EXPECT_TRUE(std::filesystem::is_empty(temp / "out/frames"));
+}
+
+TEST(FolderSink, ARunOfAnEarlierVersionCanBeReplaced) {
+    const TempFolder temp;
+    std::filesystem::create_directories(temp / "out/frames");
+    test::write_text(temp / "out/run.json", R"({"program": "eventide 0.1.0", "counters": {}})");
+    test::write_text(temp / "out/timestamps.csv", "frame,index\n0,0\n1,1\n");
+    for (const char* n : {"0", "1"})
+        test::write_text(temp / ("out/frames/frame_000000000" + std::string{n} + ".png"), "old");
+    EXPECT_EQ(refusal({.path = temp / "out", .overwrite = true}), "");
+    EXPECT_TRUE(std::filesystem::is_empty(temp / "out/frames"));
 }
 
 TEST(FolderSink, NegativeTimesKeepTheirSign) {

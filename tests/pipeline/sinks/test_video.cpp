@@ -10,6 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <filesystem>
 #include <sstream>
 
 namespace eventide {
@@ -48,6 +50,54 @@ TEST(VideoSink, KeepsEachFramesTimeToTheMicrosecond) {
                "stream=codec_name,width,height,pix_fmt,color_range,time_base,nb_read_frames"}),
         "h264,64,48,yuv420p,tv,1/1000000,100\n");
     EXPECT_EQ(packet_times(temp / "a.mp4"), expected);
+}
+
+TEST(VideoSink, SlowMotionShowsFramesLaterInProportion) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mp4", .fps = 30, .slow = 10}};
+    // The sensor's clock goes back once: the video goes on after one frame's length.
+    for (const std::int64_t us : {5'000'000, 5'003'333, 5'006'667, 1'000'000, 1'003'333})
+        sink.write(test::ramp_frame(64, 48, 0, from_us(us)));
+    sink.close();
+    EXPECT_EQ(packet_times(temp / "a.mp4"),
+              (std::vector<std::int64_t>{0, 33'330, 66'670, 100'003, 133'333}));
+}
+
+TEST(VideoSink, GifKeepsEveryGreyAndHundredthsOfASecond) {
+    const TempFolder temp;
+    const Frame frame = test::ramp_frame(33, 17, 3, from_us(0));
+    VideoSink sink{{.path = temp / "a.gif", .fps = 50}};
+    for (const std::int64_t us : {0, 20'000, 44'000, 61'000}) {
+        Frame next = test::ramp_frame(33, 17, 3, from_us(us));
+        sink.write(next);
+    }
+    sink.close();
+    EXPECT_EQ(packet_times(temp / "a.gif"), (std::vector<std::int64_t>{0, 2, 4, 6}));
+    const test::Result pixels =
+        test::run({"ffmpeg", "-v", "error", "-i", temp / "a.gif", "-frames:v", "1", "-f",
+                   "rawvideo", "-pix_fmt", "gray", "-"});
+    ASSERT_EQ(pixels.output.size(), 33U * 17U) << pixels.error;
+    for (std::size_t i = 0; i < pixels.output.size(); ++i)
+        EXPECT_EQ(int(std::uint8_t(pixels.output[i])),
+                  std::lround(frame.intensity.values()[i] * 255));
+}
+
+TEST(VideoSink, MotionJpegHasOneRate) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.avi", .uncertainty = Uncertainty::overlay, .fps = 25}};
+    for (int n = 0; n < 10; ++n) sink.write(test::ramp_frame(33, 17, n, from_us(40'000 * n)));
+    sink.close();
+    EXPECT_EQ(probe(temp / "a.avi", {"-count_frames", "-show_entries",
+                                     "stream=codec_name,width,height,r_frame_rate,nb_read_frames"}),
+              "mjpeg,34,18,25/1,10\n");
+}
+
+TEST(VideoSink, GifRefusesWhatPlayersWouldNotShow) {
+    const TempFolder temp;
+    EXPECT_THROW((VideoSink{{.path = temp / "a.gif", .fps = 60}}), Error);
+    EXPECT_THROW((VideoSink{{.path = temp / "a.gif", .uncertainty = Uncertainty::overlay}}), Error);
+    EXPECT_THROW((VideoSink{{.path = temp / "a.mov"}}), Error);
+    EXPECT_FALSE(std::filesystem::exists(temp / "a.gif"));
 }
 
 TEST(VideoSink, MatroskaKeepsMilliseconds) {

@@ -1,0 +1,20 @@
+#!/usr/bin/python3
+"""reconstruct.py RECORDING OUT: intensity and sigma of each frame, as rows of float32."""
+import sys
+
+import eventide
+
+recording, out_name = sys.argv[1:]
+reader = eventide.open(recording)
+reconstructor = eventide.Reconstructor(
+    "default", reader.width, reader.height, window="auto", lookahead=2, precision="f32"
+)
+with open(out_name, "wb") as out:
+    more = True
+    while more:
+        more = reader.read_into(reconstructor)
+        if not more:
+            reconstructor.finish(reader.clock)
+        for frame in reconstructor.frames():
+            frame.intensity.tofile(out)
+            frame.sigma.tofile(out)

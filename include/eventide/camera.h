@@ -1,0 +1,59 @@
+// Live sources: event cameras, real or simulated.
+#pragma once
+
+#include <eventide/event.h>
+#include <eventide/export.h>
+#include <eventide/sensor_info.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+struct CameraSettings {
+    std::filesystem::path file;  ///< of settings, as in share/eventide/cameras; empty: the defaults
+    bool reconnect = false;      ///< wait for an unplugged camera to come back
+};
+
+/// A camera that sends events from the first read() on. Thread: one at a time, stop() excepted.
+class EVENTIDE_API EventCamera {
+public:
+    /// "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
+    /// "v4l2:/dev/video0"; "sim:SCENE" is one in software. Throws Error: usage for a name that
+    /// makes no sense, device for a camera that is missing or cannot be used, with what to do.
+    explicit EventCamera(const std::string& name, const CameraSettings& settings = {});
+    ~EventCamera();
+    EventCamera(EventCamera&&) noexcept;
+    EventCamera& operator=(EventCamera&&) noexcept;
+
+    const SensorInfo& info() const noexcept;
+    int width() const noexcept;   ///< px
+    int height() const noexcept;  ///< px
+
+    /// Waits for data, at most some 20 ms: `batch` is emptied first and stays empty where none came
+    /// in that time. Events are as EventReader::read() gives them. False after stop(). Throws Error
+    /// (device) when the camera is lost.
+    bool read(Batch& batch);
+
+    /// Every event before this time has been read: what Reconstructor::advance() wants, so that
+    /// frames go on while nothing moves. Empty before the first data.
+    std::optional<SensorTime> clock() const;
+
+    /// Whether data were lost before the newest batch: what Reconstructor::mark_gap() wants.
+    bool gap_before() const noexcept;
+
+    std::uint64_t damaged() const noexcept;  ///< places where bytes made no sense, so far
+
+    /// Thread: any. A read() that waits returns false soon.
+    void stop() noexcept;
+
+private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,87 @@
+// What a sensor says: events, and beside them reference images, inertial samples and triggers.
+#pragma once
+
+#include <eventide/array.h>
+#include <eventide/sensor_time.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace eventide {
+
+enum class Polarity : std::uint8_t { off, on };
+
+/// One change of brightness at one pixel.
+struct Event {
+    SensorTime t;
+    std::uint16_t x = 0, y = 0;  ///< px, origin top left
+    Polarity polarity = Polarity::off;
+
+    friend constexpr bool operator==(const Event&, const Event&) = default;
+};
+static_assert(sizeof(Event) == 16);
+
+/// A picture taken by the sensor itself (APS), or given beside a recording: what reconstructions
+/// are compared with.
+struct ReferenceImage {
+    /// The time the image stands for: the middle of the exposure where it is known, else the
+    /// format's own stamp.
+    SensorTime t{};
+    SensorTime exposure_begin{}, exposure_end{};  ///< equal to t where the format does not say
+    int x0 = 0, y0 = 0;            ///< px, top left corner of the image in the sensor
+    int channels = 1;              ///< 1 grey, 3 BGR, 4 BGRA; interleaved in `pixels`
+    Array2<std::uint16_t> pixels;  ///< [y][x * channels], 0 to 65535; 8-bit data are scaled by 257
+
+    friend bool operator==(const ReferenceImage&, const ReferenceImage&) = default;
+};
+
+struct ImuSample {
+    SensorTime t{};
+    std::array<float, 3> acceleration_g{};  ///< x y z, in units of 9.81 m/s^2
+    std::array<float, 3> gyro_dps{};        ///< x y z, degrees per second
+    std::array<float, 3> magnetic_ut{};  ///< x y z, microtesla; zero where there is no magnetometer
+    float temperature_c = 0;
+
+    friend bool operator==(const ImuSample&, const ImuSample&) = default;
+};
+
+/// An edge or pulse on an external input, or a special mark of the camera.
+struct Trigger {
+    enum class Kind : std::uint8_t {
+        timestamp_reset,
+        rising,
+        falling,
+        pulse,
+        frame_begin,
+        frame_end,
+        exposure_begin,
+        exposure_end,
+        other
+    };
+    SensorTime t{};
+    Kind kind = Kind::other;
+    std::uint8_t source = 0;  ///< number of the input
+
+    friend bool operator==(const Trigger&, const Trigger&) = default;
+};
+
+/// What a parser makes of some bytes. Each vector is in the order of the stream.
+struct Batch {
+    std::vector<Event> events;
+    std::vector<ReferenceImage> images;
+    std::vector<ImuSample> imu;
+    std::vector<Trigger> triggers;
+
+    void clear() {
+        events.clear();
+        images.clear();
+        imu.clear();
+        triggers.clear();
+    }
+    bool empty() const {
+        return events.empty() && images.empty() && imu.empty() && triggers.empty();
+    }
+};
+
+}  // namespace eventide

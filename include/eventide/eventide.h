@@ -1,0 +1,199 @@
+/* The library for C and for whatever can call C. Times are microseconds of the sensor's clock,
+ * sizes and coordinates are pixels with the origin at the top left.
+ *
+ * Functions that can fail return an eventide_status; eventide_error_message() then says what was
+ * expected and what was found. Nothing is thrown. A handle is used by one thread at a time,
+ * different handles by as many as there are. NULL for a handle is refused, but may be closed. */
+#ifndef EVENTIDE_EVENTIDE_H
+#define EVENTIDE_EVENTIDE_H
+
+#include <eventide/export.h>
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* C has words of its own: no `using`, and names that nothing else has. */
+/* NOLINTBEGIN(modernize-use-using,readability-identifier-naming) */
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum eventide_status {
+    EVENTIDE_OK = 0,
+    EVENTIDE_FAILED = 1, /* something went wrong while running: a full disk, too little memory */
+    EVENTIDE_USAGE = 2,  /* an argument or option: the caller's to change */
+    EVENTIDE_INPUT = 3,  /* a recording or model that cannot be read or is not what it says */
+    EVENTIDE_DEVICE = 4, /* a camera that is missing, cannot be used, or was lost */
+    EVENTIDE_NONE = 5    /* no error: no frame yet, or the end of a recording */
+} eventide_status;
+
+/* "1.0.0", of the library that is loaded. */
+EVENTIDE_API const char* eventide_version(void);
+
+/* What the last call on this thread that failed said; empty before the first. Valid until the next
+ * failure on this thread. */
+EVENTIDE_API const char* eventide_error_message(void);
+
+typedef struct eventide_event {
+    int64_t t; /* us */
+    uint16_t x, y;
+    uint8_t on; /* 0: darker; anything else: brighter */
+} eventide_event;
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+/* A part of a frame; width or height 0: to the frame's edge. */
+typedef struct eventide_region {
+    int x, y, width, height;
+} eventide_region;
+
+/* How large a frame is to be (1 to 16384 each way, 0: the sensor's), and which part is wanted. */
+typedef struct eventide_frame_size {
+    int width, height;
+    eventide_region region;
+} eventide_frame_size;
+
+/* Fill it by eventide_options_init(), then change what is to differ. Texts are copied. */
+typedef struct eventide_options {
+    size_t struct_size; /* set by eventide_options_init() */
+    const char* window; /* "model", "auto", "50ms", "20000ev", "0.35epp", "aps" */
+    int lookahead;      /* 0, 1 or 2: event windows a frame waits for */
+    const char* fps;    /* of eventide_next(): "30", "30000/1001", "frame" */
+    eventide_frame_size size;
+    int sigma;              /* 0: frames have none, and are rendered faster */
+    const char* hot_pixels; /* "off", "learn", or a file that lists pixels */
+    const char* precision;  /* "auto", "f32", "bf16" */
+    const char* kernels;    /* "auto", "own", "onednn" */
+    int threads;            /* 0: as many as the process may run on */
+    int reset_on_gap;       /* forget the scene where data were lost */
+    int allow_silence;      /* any number of frames in a row without events */
+} eventide_options;
+
+/* The defaults, which are those of ReconstructorOptions. `struct_size` is sizeof(eventide_options).
+ */
+EVENTIDE_API void eventide_options_init(eventide_options* options, size_t struct_size);
+
+/* A rendered frame. The pixels are rows of `width` floats without gaps, valid until the next call
+ * with the same reconstructor. */
+typedef struct eventide_frame {
+    int64_t t;
+    int64_t window_begin, window_end; /* of the event window t lies in, (begin, end] */
+    uint64_t index;                   /* number on the frame clock */
+    uint64_t events;                  /* in that event window */
+    int width, height;
+    const float* intensity; /* 0 black to 1 white; may lie a little outside */
+    const float* sigma;     /* standard deviation of intensity; NULL where not asked for */
+    int gap_before;         /* data were lost before */
+} eventide_frame;
+
+typedef struct eventide_reconstructor eventide_reconstructor;
+
+/* `model`: a name ("default", "small", "thesis") or a safetensors file; names are looked for in
+ * $EVENTIDE_MODELS, then where the library is installed. The sensor is 1 to 4096 px each way.
+ * `options` may be NULL: the defaults. `*opened` is set where EVENTIDE_OK is returned. */
+EVENTIDE_API eventide_status eventide_reconstructor_open(const char* model, int width, int height,
+                                                         const eventide_options* options,
+                                                         eventide_reconstructor** opened);
+EVENTIDE_API void eventide_reconstructor_close(eventide_reconstructor* reconstructor);
+
+/* Events in order of time. One that is earlier than the one before, or outside the sensor, is left
+ * out and counted. */
+EVENTIDE_API eventide_status eventide_push(eventide_reconstructor* reconstructor,
+                                           const eventide_event* events, size_t count);
+
+/* Every event before `now` has been pushed: time goes on where nothing moves. */
+EVENTIDE_API eventide_status eventide_advance(eventide_reconstructor* reconstructor, int64_t now);
+
+/* Data were lost here. */
+EVENTIDE_API eventide_status eventide_mark_gap(eventide_reconstructor* reconstructor);
+
+/* The stream has ended; `end` may be NULL, or the time until which its clock went on. */
+EVENTIDE_API eventide_status eventide_finish(eventide_reconstructor* reconstructor,
+                                             const int64_t* end);
+
+/* The next frame at the rate of the options; EVENTIDE_NONE where it has to wait for events. */
+EVENTIDE_API eventide_status eventide_next(eventide_reconstructor* reconstructor,
+                                           eventide_frame* frame);
+
+/* EVENTIDE_OK where a frame of this time can be rendered, else EVENTIDE_NONE. */
+EVENTIDE_API eventide_status eventide_ready(eventide_reconstructor* reconstructor, int64_t t);
+
+/* The newest time that can be rendered; EVENTIDE_NONE where there is none. */
+EVENTIDE_API eventide_status eventide_newest(eventide_reconstructor* reconstructor, int64_t* t);
+
+/* The frame of one instant that is ready. `size` may be NULL: that of the options. */
+EVENTIDE_API eventide_status eventide_render(eventide_reconstructor* reconstructor, int64_t t,
+                                             const eventide_frame_size* size,
+                                             eventide_frame* frame);
+
+/* As opened: a new stream begins. */
+EVENTIDE_API eventide_status eventide_reset(eventide_reconstructor* reconstructor);
+
+/* What the network remembers of the scene, as a file. */
+EVENTIDE_API eventide_status eventide_save_state(eventide_reconstructor* reconstructor,
+                                                 const char* file, int overwrite);
+EVENTIDE_API eventide_status eventide_restore_state(eventide_reconstructor* reconstructor,
+                                                    const char* file);
+
+/* What became of what was pushed: ReconstructorCounters says what each means. */
+typedef struct eventide_counters {
+    uint64_t events, off_sensor, time_backwards, bad_time, filtered, late, left_out, time_resets;
+    uint64_t event_windows, frames;
+} eventide_counters;
+EVENTIDE_API eventide_status eventide_count(const eventide_reconstructor* reconstructor,
+                                            eventide_counters* counters);
+
+/* ---- recordings and cameras ------------------------------------------------------------------ */
+
+typedef struct eventide_source eventide_source;
+
+/* Any format that eventide reads. `format` may be NULL (found from the content), width and height 0
+ * (what the recording says). */
+EVENTIDE_API eventide_status eventide_recording_open(const char* path, const char* format,
+                                                     int width, int height,
+                                                     eventide_source** opened);
+
+/* "davis:", "dvxplorer:", "dvs128:", "v4l2:/dev/video0", "sim:demo"; `settings` may be NULL, or a
+ * file of settings. */
+EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
+                                                  eventide_source** opened);
+EVENTIDE_API void eventide_source_close(eventide_source* source);
+
+/* Of the sensor; 0 where a recording does not say. */
+EVENTIDE_API int eventide_source_width(const eventide_source* source);
+EVENTIDE_API int eventide_source_height(const eventide_source* source);
+
+/* The next events, valid until the next call with the same source; EVENTIDE_NONE at the end. No
+ * events and EVENTIDE_OK: go on. */
+EVENTIDE_API eventide_status eventide_read(eventide_source* source, const eventide_event** events,
+                                           size_t* count);
+
+/* Reads on and pushes what came: events, times of images, marks of lost data, and a camera's clock.
+ * EVENTIDE_NONE at the end, which eventide_finish() is told with the recording's last time. */
+EVENTIDE_API eventide_status eventide_read_into(eventide_source* source,
+                                                eventide_reconstructor* reconstructor);
+
+/* The newest time the source told so far; EVENTIDE_NONE before the first. */
+EVENTIDE_API eventide_status eventide_source_clock(const eventide_source* source, int64_t* t);
+
+/* Of a recording: goes on from `t`. EVENTIDE_USAGE for a camera. */
+EVENTIDE_API eventide_status eventide_seek(eventide_source* source, int64_t t);
+
+typedef struct eventide_writer eventide_writer;
+
+/* The file appears whole, with eventide_writer_finish(). `format` may be NULL: by the extension. */
+EVENTIDE_API eventide_status eventide_writer_open(const char* path, const char* format, int width,
+                                                  int height, int overwrite,
+                                                  eventide_writer** opened);
+EVENTIDE_API eventide_status eventide_write(eventide_writer* writer, const eventide_event* events,
+                                            size_t count);
+EVENTIDE_API eventide_status eventide_writer_finish(eventide_writer* writer);
+/* Without eventide_writer_finish() nothing is left behind. */
+EVENTIDE_API void eventide_writer_close(eventide_writer* writer);
+
+#ifdef __cplusplus
+}
+#endif
+/* NOLINTEND(modernize-use-using,readability-identifier-naming) */
+
+#endif

@@ -1,0 +1,67 @@
+// Recordings: files of events, in any format that eventide reads.
+#pragma once
+
+#include <eventide/event.h>
+#include <eventide/export.h>
+#include <eventide/sensor_info.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+/// What a recording's bytes do not say, or say wrongly.
+struct ReaderOptions {
+    std::string format;         ///< "aedat4", "evt3", "text", ...; empty: found from the content
+    int width = 0, height = 0;  ///< px, of the sensor; 0: what the recording says. Both or neither
+};
+
+/// AEDAT 1, 2, 3.1 and 4, Prophesee RAW (EVT2, EVT2.1, EVT3) and DAT, text, and folders of the
+/// Event Camera Dataset, found by their content. Read in bounded memory, a batch at a time.
+/// Thread: one at a time.
+class EVENTIDE_API EventReader {
+public:
+    /// "-" is standard input. Throws Error: input naming the path, what was expected and what was
+    /// found; usage for options that make no sense.
+    explicit EventReader(const std::string& path, const ReaderOptions& options = {});
+    ~EventReader();
+    EventReader(EventReader&&) noexcept;
+    EventReader& operator=(EventReader&&) noexcept;
+
+    const SensorInfo& info() const noexcept;
+    int width() const noexcept;   ///< px; 0 where the recording does not say
+    int height() const noexcept;  ///< px; 0 where the recording does not say
+
+    /// What had to be guessed when it was opened: sentences for people.
+    std::vector<std::string> remarks() const;
+
+    /// The next data: `batch` is emptied first and may stay without events where others came.
+    /// Events are inside the sensor and in order of time; one earlier than the one before it means
+    /// that the sensor's clock began anew. False at the end. Throws Error (input) where the file
+    /// cannot be read; damaged bytes are left out and counted.
+    bool read(Batch& batch);
+
+    /// Goes on from `t`: the next events are those from then on, and perhaps some before. Does
+    /// nothing on standard input. Throws Error (input).
+    void seek(SensorTime t);
+
+    /// The newest time the recording told so far, which may lie after its newest event; at the end
+    /// it is the end of the recording. Empty before the first.
+    std::optional<SensorTime> clock() const;
+
+    /// Places where bytes made no sense, so far.
+    std::uint64_t damaged() const noexcept;
+
+    /// Times of the first and the last event; empty where there is none. Reads the whole recording,
+    /// through an opening of its own. Throws Error (usage) for standard input.
+    std::optional<Window> span() const;
+
+private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,147 @@
+// Events in, frames with uncertainty out: one network at work on one sensor's stream.
+#pragma once
+
+#include <eventide/arithmetic.h>
+#include <eventide/event.h>
+#include <eventide/export.h>
+#include <eventide/frame.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace eventide {
+
+/// The defaults are those of `eventide run` on a camera: frames as early as they can be. For a
+/// recording, which can wait, `eventide run` takes window "auto" and lookahead 2, which are better.
+struct ReconstructorOptions {
+    /// How events are cut into event windows, each of which is one step of the network: "model"
+    /// (what the model was trained for), "auto" (by content: short where much moves, 50 ms at
+    /// most), "50ms" (constant time: us, ms or s), "20000ev" (constant number), "0.35epp" (events
+    /// per pixel), "aps" (between reference images); after a comma the longest: "20000ev,200ms".
+    std::string window = "model";
+    int lookahead = 0;  ///< 0, 1 or 2: event windows a frame waits for; more is better and later
+    /// The frames that next() gives, per second of sensor time: "120", "29.97", "30000/1001", at
+    /// most 1000000; "frame": one at the end of each event window.
+    std::string fps = "30";
+    FrameSize size{};                ///< of the frames
+    bool sigma = true;               ///< false: Frame::sigma stays empty, and rendering is faster
+    std::string hot_pixels = "off";  ///< "off", "learn", or a file that lists pixels, "x,y" a line
+    Precision precision = Precision::automatic;
+    Kernels kernels = Kernels::automatic;
+    int threads = 0;             ///< the network may use; 0: as many as the process may run on
+    bool reset_on_gap = false;   ///< forget the scene where data were lost
+    bool allow_silence = false;  ///< next(): any number of frames in a row without events
+};
+
+/// What became of what was pushed, since construction.
+struct ReconstructorCounters {
+    std::uint64_t events = 0;          ///< pushed
+    std::uint64_t off_sensor = 0;      ///< left out: x or y outside the sensor
+    std::uint64_t time_backwards = 0;  ///< left out: earlier than the event before
+    std::uint64_t bad_time = 0;        ///< left out: further from zero than kFarthestTime
+    std::uint64_t filtered = 0;        ///< left out: of hot pixels
+    std::uint64_t late = 0;            ///< moved later: advance() had promised that none would come
+    std::uint64_t left_out = 0;        ///< more in one microsecond than memory is meant to hold
+    std::uint64_t time_resets = 0;     ///< the sensor's clock began anew
+    std::uint64_t event_windows = 0;   ///< steps of the network
+    std::uint64_t frames = 0;          ///< rendered
+};
+
+/// Events of one sensor are pushed as they come, in order of time; frames are asked for. The
+/// network works where frames are asked for, not in push(): until then events wait, 16 bytes each.
+///
+/// Frames are found in two ways, which may be mixed: next() gives those at a constant rate, one
+/// after the other; render() gives any time, as long as ready() says so. The network remembers some
+/// five event windows, so ask in the order of time.
+///
+/// How the events are split into calls changes nothing. With the same model, window, lookahead,
+/// precision and kernels (not automatic ones, which are measured anew in each process) frames are
+/// those of `eventide run --frames ignore`, bit for bit, with any number of threads.
+///
+/// Thread: one at a time; several objects may work side by side. Once warm (the same batch sizes
+/// and frame sizes as before), nothing here allocates memory with Kernels::own and one thread. All
+/// functions but those marked noexcept may throw Error; an object that threw may be used on.
+class EVENTIDE_API Reconstructor {
+public:
+    /// us: no time is further from zero (36000 years).
+    static constexpr std::int64_t kFarthestTime = std::int64_t{1} << 60;
+
+    /// `model`: a name ("default", "small", "thesis") or a safetensors file. Names are looked for
+    /// in $EVENTIDE_MODELS, then where the library is installed. width, height: px of the sensor, 1
+    /// to 4096. Throws Error: input where the model cannot be found or used, usage for an option or
+    /// size out of range.
+    Reconstructor(const std::string& model, int width, int height,
+                  const ReconstructorOptions& options = {});
+    ~Reconstructor();
+    Reconstructor(Reconstructor&&) noexcept;
+    Reconstructor& operator=(Reconstructor&&) noexcept;
+
+    int width() const noexcept;       ///< px, of the sensor
+    int height() const noexcept;      ///< px, of the sensor
+    std::string description() const;  ///< which kernels and numbers run, for people
+
+    /// Events in order of time. One that is earlier than the one before it, outside the sensor or
+    /// at an impossible time is left out and counted. Throws Error (usage) after finish().
+    void push(std::span<const Event> events);
+
+    /// The same with images (window "aps" is cut at their times). An event earlier than the one
+    /// before means here that the sensor's clock began anew, as readers and cameras tell it: the
+    /// frames of the time before are finished, and a new stream begins.
+    void push(const Batch& batch);
+
+    /// Every event before `now` has been pushed: time goes on where nothing moves. For live
+    /// sources, and only as far as is certain. Throws Error (usage) after finish() and for times
+    /// beyond kFarthestTime.
+    void advance(SensorTime now);
+
+    /// Data were lost here: the next frame carries gap_before.
+    void mark_gap() noexcept;
+
+    /// The stream has ended (at `end`, where its clock went on after the last event): what is left
+    /// becomes the last event window, and its frames no longer wait for later ones.
+    void finish(std::optional<SensorTime> end = {});
+
+    /// The next frame at the rate of the options, from the first event's time on. False where it
+    /// has to wait for more events, or after finish() for ever. Throws Error (input) where the
+    /// network gives no finite numbers, or for more than a million frames in a row without events
+    /// (times that are wrong), which are then skipped.
+    bool next(Frame& frame);
+
+    /// Whether a frame of this time can be rendered; takes the network so far as that needs.
+    Readiness readiness(SensorTime t);
+    bool ready(SensorTime t) { return readiness(t) == Readiness::ready; }
+
+    /// The frame of one instant, in the size of the options or another. Buffers of `frame` are used
+    /// again where they fit. Throws Error: usage where it is not ready or the size is impossible,
+    /// input where the network gives no finite numbers.
+    void render(SensorTime t, Frame& frame);
+    void render(SensorTime t, const FrameSize& size, Frame& frame);
+
+    /// The newest time that can be rendered, after all events pushed so far have gone through the
+    /// network; empty where there is none. What was not asked for until then may be gone.
+    std::optional<SensorTime> newest();
+
+    /// As constructed: a new stream begins. Counters and the hot pixels that were learned stay.
+    void reset();
+
+    /// What the network remembers of the scene, after the event windows so far, as a file that
+    /// restore_state() and `eventide run --state-in` read. Throws Error: failed where it cannot be
+    /// written, usage for a file that exists without `overwrite`.
+    void save_state(const std::filesystem::path& file, bool overwrite = false) const;
+
+    /// reset(), and the network remembers what was saved. Throws Error (input) where the file is no
+    /// state, or one of another model or sensor size: then nothing has changed.
+    void restore_state(const std::filesystem::path& file);
+
+    ReconstructorCounters counters() const noexcept;
+
+private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,51 @@
+// Recordings being written.
+#pragma once
+
+#include <eventide/event.h>
+#include <eventide/export.h>
+#include <eventide/sensor_info.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace eventide {
+
+struct WriterOptions {
+    std::string format;      ///< "aedat4", "evt3", "text", ...; empty: by the file's extension
+    bool overwrite = false;  ///< replace a file that exists
+};
+
+/// The file appears under its name, whole, with finish(); without it nothing is left behind.
+/// Thread: one at a time.
+class EVENTIDE_API EventWriter {
+public:
+    /// Of `sensor` width and height must be set (px), name and serial may be. "-" is standard
+    /// output. Throws Error: usage for an unknown format or a file that exists, failed where it
+    /// cannot be written.
+    EventWriter(const std::string& path, const SensorInfo& sensor,
+                const WriterOptions& options = {});
+    ~EventWriter();
+    EventWriter(EventWriter&&) noexcept;
+    EventWriter& operator=(EventWriter&&) noexcept;
+
+    /// Must follow what was written before in time. Throws Error: usage for what the format cannot
+    /// hold (a coordinate too large) and after finish(), failed where the disk is full.
+    void write(std::span<const Event> events);
+
+    /// The same with images, inertial samples and triggers. Kinds that the format has no records
+    /// for are left out and counted.
+    void write(const Batch& batch);
+
+    /// Ends the stream and shows the file. Throws Error (failed).
+    void finish();
+
+    std::uint64_t not_held() const noexcept;  ///< images, samples and triggers left out
+
+private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace eventide

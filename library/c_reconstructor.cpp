@@ -1,0 +1,219 @@
+// The network at work, for C.
+#include "library/c_call.h"
+#include "library/c_handles.h"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+using namespace eventide;
+
+namespace {
+
+template <typename T, std::size_t N>
+T choice_of(const char* text, const char* name,
+            const std::pair<std::string_view, T> (&choices)[N]) {
+    std::string expected;
+    for (const auto& [word, value] : choices) {
+        if (text == word) return value;
+        expected += (expected.empty() ? "" : ", ") + std::string{word};
+    }
+    throw Error(ErrorKind::usage,
+                std::string{name} + ": expected " + expected + ", found '" + text + "'");
+}
+
+Precision precision_of(const char* text) {
+    return choice_of<Precision>(
+        text, "precision",
+        {{"auto", Precision::automatic}, {"f32", Precision::f32}, {"bf16", Precision::bf16}});
+}
+
+Kernels kernels_of(const char* text) {
+    return choice_of<Kernels>(
+        text, "kernels",
+        {{"auto", Kernels::automatic}, {"own", Kernels::own}, {"onednn", Kernels::onednn}});
+}
+
+FrameSize size_of(const eventide_frame_size& size) {
+    const eventide_region& r = size.region;
+    return {size.width, size.height, {r.x, r.y, r.width, r.height}};
+}
+
+/// A caller compiled with older headers has a shorter struct: what it lacks has its default.
+eventide_options whole_options(const eventide_options* given_options) {
+    eventide_options options;
+    eventide_options_init(&options, sizeof options);
+    if (given_options == nullptr) return options;
+    if (given_options->struct_size > sizeof options || given_options->struct_size < sizeof(size_t))
+        throw Error(ErrorKind::usage, "options: expected a struct_size of at most " +
+                                          std::to_string(sizeof options) +
+                                          ", set by eventide_options_init(), found " +
+                                          std::to_string(given_options->struct_size));
+    std::memcpy(&options, given_options, given_options->struct_size);
+    return options;
+}
+
+ReconstructorOptions options_of(const eventide_options* given_options) {
+    const eventide_options c = whole_options(given_options);
+    ReconstructorOptions options;
+    options.window = &given(c.window, "options.window");
+    options.lookahead = c.lookahead;
+    options.fps = &given(c.fps, "options.fps");
+    options.size = size_of(c.size);
+    options.sigma = c.sigma != 0;
+    options.hot_pixels = &given(c.hot_pixels, "options.hot_pixels");
+    options.precision = precision_of(&given(c.precision, "options.precision"));
+    options.kernels = kernels_of(&given(c.kernels, "options.kernels"));
+    options.threads = c.threads;
+    options.reset_on_gap = c.reset_on_gap != 0;
+    options.allow_silence = c.allow_silence != 0;
+    return options;
+}
+
+Reconstructor& it(eventide_reconstructor* reconstructor) {
+    return given(reconstructor, "a reconstructor").it;
+}
+
+eventide_status show(const Frame& from, eventide_frame& frame) {
+    frame.t = to_us(from.t);
+    frame.window_begin = to_us(from.window.begin);
+    frame.window_end = to_us(from.window.end);
+    frame.index = from.index;
+    frame.events = from.events;
+    frame.width = from.intensity.width();
+    frame.height = from.intensity.height();
+    frame.intensity = from.intensity.values().data();
+    frame.sigma = from.sigma.empty() ? nullptr : from.sigma.values().data();
+    frame.gap_before = from.gap_before ? 1 : 0;
+    return EVENTIDE_OK;
+}
+
+}  // namespace
+
+extern "C" {
+
+void eventide_options_init(eventide_options* options, size_t struct_size) {
+    if (options == nullptr) return;
+    const eventide_options defaults{
+        sizeof(eventide_options), "model", 0, "30", {}, 1, "off", "auto", "auto", 0, 0, 0};
+    std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
+    if (struct_size >= sizeof options->struct_size) options->struct_size = struct_size;
+}
+
+eventide_status eventide_reconstructor_open(const char* model, int width, int height,
+                                            const eventide_options* options,
+                                            eventide_reconstructor** opened) {
+    return c_call([&] {
+        given(opened, "a place for the reconstructor") = nullptr;
+        auto made = std::make_unique<eventide_reconstructor>(eventide_reconstructor{
+            Reconstructor{&given(model, "a model"), width, height, options_of(options)}});
+        *opened = made.release();
+        return EVENTIDE_OK;
+    });
+}
+
+void eventide_reconstructor_close(eventide_reconstructor* reconstructor) {
+    delete reconstructor;
+}
+
+eventide_status eventide_push(eventide_reconstructor* reconstructor, const eventide_event* events,
+                              size_t count) {
+    return c_call([&] {
+        Reconstructor& into = it(reconstructor);
+        into.push(events_of(events, count, reconstructor->events));
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_advance(eventide_reconstructor* reconstructor, int64_t now) {
+    return c_call([&] {
+        it(reconstructor).advance(from_us(now));
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_mark_gap(eventide_reconstructor* reconstructor) {
+    return c_call([&] {
+        it(reconstructor).mark_gap();
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_finish(eventide_reconstructor* reconstructor, const int64_t* end) {
+    return c_call([&] {
+        it(reconstructor).finish(end == nullptr ? std::nullopt : std::optional{from_us(*end)});
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_next(eventide_reconstructor* reconstructor, eventide_frame* frame) {
+    return c_call([&] {
+        Reconstructor& from = it(reconstructor);
+        eventide_frame& into = given(frame, "a frame");
+        if (!from.next(reconstructor->frame)) return EVENTIDE_NONE;
+        return show(reconstructor->frame, into);
+    });
+}
+
+eventide_status eventide_ready(eventide_reconstructor* reconstructor, int64_t t) {
+    return c_call(
+        [&] { return it(reconstructor).ready(from_us(t)) ? EVENTIDE_OK : EVENTIDE_NONE; });
+}
+
+eventide_status eventide_newest(eventide_reconstructor* reconstructor, int64_t* t) {
+    return c_call([&] {
+        const auto newest = it(reconstructor).newest();
+        int64_t& into = given(t, "a place for the time");
+        if (!newest) return EVENTIDE_NONE;
+        into = to_us(*newest);
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_render(eventide_reconstructor* reconstructor, int64_t t,
+                                const eventide_frame_size* size, eventide_frame* frame) {
+    return c_call([&] {
+        Reconstructor& from = it(reconstructor);
+        eventide_frame& into = given(frame, "a frame");
+        if (size == nullptr)
+            from.render(from_us(t), reconstructor->frame);
+        else
+            from.render(from_us(t), size_of(*size), reconstructor->frame);
+        return show(reconstructor->frame, into);
+    });
+}
+
+eventide_status eventide_reset(eventide_reconstructor* reconstructor) {
+    return c_call([&] {
+        it(reconstructor).reset();
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_save_state(eventide_reconstructor* reconstructor, const char* file,
+                                    int overwrite) {
+    return c_call([&] {
+        it(reconstructor).save_state(&given(file, "a file's name"), overwrite != 0);
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_restore_state(eventide_reconstructor* reconstructor, const char* file) {
+    return c_call([&] {
+        it(reconstructor).restore_state(&given(file, "a file's name"));
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_count(const eventide_reconstructor* reconstructor,
+                               eventide_counters* counters) {
+    return c_call([&] {
+        const ReconstructorCounters c = given(reconstructor, "a reconstructor").it.counters();
+        given(counters, "counters") = {
+            c.events, c.off_sensor, c.time_backwards, c.bad_time,      c.filtered,
+            c.late,   c.left_out,   c.time_resets,    c.event_windows, c.frames};
+        return EVENTIDE_OK;
+    });
+}
+}

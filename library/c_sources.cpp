@@ -1,0 +1,139 @@
+// Recordings and cameras, for C.
+#include "library/c_call.h"
+#include "library/c_handles.h"
+
+#include <memory>
+
+using namespace eventide;
+
+namespace {
+
+template <typename... Arguments>
+eventide_status open_source(eventide_source** opened, Arguments&&... arguments) {
+    given(opened, "a place for the source") = nullptr;
+    *opened = new eventide_source{{std::forward<Arguments>(arguments)...}};
+    return EVENTIDE_OK;
+}
+
+bool read_on(eventide_source& source) {
+    return std::visit([&](auto& it) { return it.read(source.batch); }, source.it);
+}
+
+std::optional<SensorTime> clock_of(const eventide_source& source) {
+    return std::visit([](const auto& it) { return it.clock(); }, source.it);
+}
+
+}  // namespace
+
+extern "C" {
+
+eventide_status eventide_recording_open(const char* path, const char* format, int width, int height,
+                                        eventide_source** opened) {
+    return c_call([&] {
+        const ReaderOptions options{format == nullptr ? "" : format, width, height};
+        return open_source(opened, EventReader{&given(path, "a recording"), options});
+    });
+}
+
+eventide_status eventide_camera_open(const char* name, const char* settings,
+                                     eventide_source** opened) {
+    return c_call([&] {
+        const CameraSettings chosen{settings == nullptr ? "" : settings, false};
+        return open_source(opened, EventCamera{&given(name, "a camera"), chosen});
+    });
+}
+
+void eventide_source_close(eventide_source* source) {
+    delete source;
+}
+
+int eventide_source_width(const eventide_source* source) {
+    if (source == nullptr) return 0;
+    return std::visit([](const auto& it) { return it.width(); }, source->it);
+}
+
+int eventide_source_height(const eventide_source* source) {
+    if (source == nullptr) return 0;
+    return std::visit([](const auto& it) { return it.height(); }, source->it);
+}
+
+eventide_status eventide_read(eventide_source* source, const eventide_event** events,
+                              size_t* count) {
+    return c_call([&] {
+        eventide_source& from = given(source, "a source");
+        given(events, "a place for events") = nullptr;
+        given(count, "a place for the number of events") = 0;
+        if (!read_on(from)) return EVENTIDE_NONE;
+        from.events.clear();
+        for (const Event& e : from.batch.events)
+            from.events.push_back({to_us(e.t), e.x, e.y, std::uint8_t(e.polarity)});
+        *events = from.events.data();
+        *count = from.events.size();
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_read_into(eventide_source* source, eventide_reconstructor* reconstructor) {
+    return c_call([&] {
+        eventide_source& from = given(source, "a source");
+        Reconstructor& into = given(reconstructor, "a reconstructor").it;
+        if (!read_on(from)) return EVENTIDE_NONE;
+        const auto* camera = std::get_if<EventCamera>(&from.it);
+        if (camera != nullptr && camera->gap_before()) into.mark_gap();
+        into.push(from.batch);
+        if (const auto clock = clock_of(from); camera != nullptr && clock) into.advance(*clock);
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_source_clock(const eventide_source* source, int64_t* t) {
+    return c_call([&] {
+        const auto clock = clock_of(given(source, "a source"));
+        int64_t& into = given(t, "a place for the time");
+        if (!clock) return EVENTIDE_NONE;
+        into = to_us(*clock);
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_seek(eventide_source* source, int64_t t) {
+    return c_call([&] {
+        auto* reader = std::get_if<EventReader>(&given(source, "a source").it);
+        if (reader == nullptr)
+            throw Error(ErrorKind::usage, "seek: expected a recording, found a camera");
+        reader->seek(from_us(t));
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_writer_open(const char* path, const char* format, int width, int height,
+                                     int overwrite, eventide_writer** opened) {
+    return c_call([&] {
+        given(opened, "a place for the writer") = nullptr;
+        const SensorInfo sensor{"", "", "", width, height};
+        const WriterOptions options{format == nullptr ? "" : format, overwrite != 0};
+        *opened = new eventide_writer{{&given(path, "a file's name"), sensor, options}};
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_write(eventide_writer* writer, const eventide_event* events,
+                               size_t count) {
+    return c_call([&] {
+        eventide_writer& into = given(writer, "a writer");
+        into.it.write(events_of(events, count, into.events));
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_writer_finish(eventide_writer* writer) {
+    return c_call([&] {
+        given(writer, "a writer").it.finish();
+        return EVENTIDE_OK;
+    });
+}
+
+void eventide_writer_close(eventide_writer* writer) {
+    delete writer;
+}
+}

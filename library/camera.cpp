@@ -1,0 +1,112 @@
+// Cameras behind the public face.
+#include "drivers/devices.h"
+#include "drivers/simulated/simulated_camera.h"
+#include "pipeline/event_frames.h"
+
+#include <eventide/camera.h>
+
+#include <utility>
+
+namespace eventide {
+namespace {
+
+std::unique_ptr<Camera> open(const std::string& name, const CameraSettings& settings) {
+    if (names_simulation(name)) return open_simulation(name);
+    return open_camera(name, {settings.file, settings.reconnect});
+}
+
+}  // namespace
+
+class EventCamera::Impl {
+public:
+    Impl(const std::string& name, const CameraSettings& settings)
+        : camera_(open(name, settings)), parser_(camera_->make_parser()) {}
+
+    Camera& camera() { return *camera_; }
+    const Parser& parser() const { return *parser_; }
+    bool gap_before() const { return gap_before_; }
+
+    bool read(Batch& batch) {
+        batch.clear();
+        gap_before_ = packet_.gap_before = false;
+        const ReadStatus status = camera_->read(packet_);
+        if (status == ReadStatus::end) return read_rest(batch);
+        now_ = std::chrono::steady_clock::now();
+        if (status == ReadStatus::timeout) return true;
+        now_ = packet_.arrived;
+        gap_before_ = packet_.gap_before;
+        if (gap_before_) note_gap();
+        last_data_ = now_;
+        parser_->parse(packet_.bytes, batch);
+        note_clock();
+        return true;
+    }
+
+    /// In a camera's silence the host's clock goes on for it, less a margin for what is on its way.
+    std::optional<SensorTime> clock() const {
+        if (!clock_ || !camera_->is_live()) return clock_;
+        const SensorDuration margin = EventFrames::Settings{}.silence_margin;
+        const auto silent = std::chrono::duration_cast<SensorDuration>(now_ - clock_arrived_);
+        return silent > margin ? *clock_ + silent - margin : *clock_;
+    }
+
+private:
+    bool read_rest(Batch& batch) {
+        if (!std::exchange(ended_, true)) parser_->finish(batch);
+        return !batch.empty();
+    }
+
+    void note_gap() {
+        parser_->resync();
+        if (last_data_)
+            parser_->expect_passed(std::chrono::duration_cast<SensorDuration>(now_ - *last_data_));
+    }
+
+    void note_clock() {
+        const auto told = parser_->clock();
+        if (!told || told == clock_) return;
+        clock_ = told;
+        clock_arrived_ = now_;
+    }
+
+    std::unique_ptr<Camera> camera_;
+    std::unique_ptr<Parser> parser_;
+    RawPacket packet_;
+    bool gap_before_ = false, ended_ = false;
+    HostTime now_{}, clock_arrived_{};
+    std::optional<HostTime> last_data_;
+    std::optional<SensorTime> clock_;
+};
+
+EventCamera::EventCamera(const std::string& name, const CameraSettings& settings)
+    : impl_(std::make_unique<Impl>(name, settings)) {}
+EventCamera::~EventCamera() = default;
+EventCamera::EventCamera(EventCamera&&) noexcept = default;
+EventCamera& EventCamera::operator=(EventCamera&&) noexcept = default;
+
+const SensorInfo& EventCamera::info() const noexcept {
+    return impl_->camera().info();
+}
+int EventCamera::width() const noexcept {
+    return info().width;
+}
+int EventCamera::height() const noexcept {
+    return info().height;
+}
+bool EventCamera::read(Batch& batch) {
+    return impl_->read(batch);
+}
+std::optional<SensorTime> EventCamera::clock() const {
+    return impl_->clock();
+}
+bool EventCamera::gap_before() const noexcept {
+    return impl_->gap_before();
+}
+std::uint64_t EventCamera::damaged() const noexcept {
+    return impl_->parser().damaged().total();
+}
+void EventCamera::stop() noexcept {
+    impl_->camera().stop();
+}
+
+}  // namespace eventide

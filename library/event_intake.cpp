@@ -1,0 +1,115 @@
+// What a caller pushes -> slices.
+#include "library/event_intake.h"
+
+#include "src/core/error.h"
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+namespace eventide {
+namespace {
+
+bool is_far(SensorTime t) {
+    return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
+}
+
+void check_time(SensorTime t, const char* what) {
+    if (is_far(t))
+        throw Error(ErrorKind::usage, std::string{what} + ": expected a time of at most 2^60 us " +
+                                          "from zero, found " + std::to_string(to_us(t)) + " us");
+}
+
+}  // namespace
+
+EventIntake::EventIntake(const SlicerSettings& settings, int width, int height,
+                         std::unique_ptr<EventFilter> filter, ReconstructorCounters& counters)
+    : width_(unsigned(width)),
+      height_(unsigned(height)),
+      slicer_(settings, width, height),
+      filter_(std::move(filter)),
+      counters_(counters) {}
+
+void EventIntake::push(std::span<const Event> events) {
+    check_open("push");
+    take(events, StepBack::is_disorder);
+}
+
+void EventIntake::push(const Batch& batch) {
+    check_open("push");
+    for (const ReferenceImage& image : batch.images)
+        if (is_far(image.t))
+            ++counters_.bad_time;
+        else
+            slicer_.push_reference(image.t);
+    take(batch.events, StepBack::is_new_clock);
+}
+
+void EventIntake::take(std::span<const Event> events, StepBack step_back) {
+    counters_.events += events.size();
+    taken_.clear();
+    for (const Event& event : events) {
+        if (!is_sound(event)) continue;
+        if (step_back == StepBack::is_disorder && newest_ && event.t < *newest_) {
+            ++counters_.time_backwards;
+            continue;
+        }
+        newest_ = event.t;
+        taken_.push_back(event);
+    }
+    const std::size_t before = taken_.size();
+    if (filter_) filter_->process(taken_);
+    counters_.filtered += before - taken_.size();
+    slicer_.push(taken_, std::chrono::steady_clock::now());
+}
+
+bool EventIntake::is_sound(const Event& event) {
+    if (event.x >= width_ || event.y >= height_) {
+        ++counters_.off_sensor;
+        return false;
+    }
+    if (is_far(event.t)) {
+        ++counters_.bad_time;
+        return false;
+    }
+    return true;
+}
+
+void EventIntake::advance(SensorTime now) {
+    check_open("advance");
+    check_time(now, "advance");
+    slicer_.advance(now, std::chrono::steady_clock::now());
+}
+
+void EventIntake::finish(std::optional<SensorTime> end) {
+    if (finished_) return;
+    if (end) check_time(*end, "finish");
+    // A stream without any event has no frames, even though its clock ran.
+    if (end && slicer_.has_begun()) slicer_.advance(*end, std::chrono::steady_clock::now());
+    slicer_.finish();
+    finished_ = true;
+}
+
+bool EventIntake::next(Slice& slice) {
+    const bool found = slicer_.next(slice);
+    const SlicerCounters& cut = slicer_.counters();
+    counters_.late = cut.late;
+    counters_.left_out = cut.too_many;
+    counters_.time_resets = cut.time_resets;
+    return found;
+}
+
+void EventIntake::reset() {
+    slicer_.reset();
+    newest_.reset();
+    finished_ = false;
+}
+
+void EventIntake::check_open(const char* what) const {
+    if (finished_)
+        throw Error(ErrorKind::usage, std::string{what} +
+                                          ": expected a stream that goes on, found one after "
+                                          "finish(); reset() begins another");
+}
+
+}  // namespace eventide

@@ -1,0 +1,47 @@
+// What a caller pushes -> slices: hostile events are left out and counted, the rest is cut.
+#pragma once
+
+#include "pipeline/stages.h"
+#include "src/binning/slicer.h"
+
+#include <eventide/reconstructor.h>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace eventide {
+
+/// Adds to the counters of whoever owns it; everything is borrowed but the filter.
+class EventIntake {
+public:
+    /// `filter` may be null.
+    EventIntake(const SlicerSettings& settings, int width, int height,
+                std::unique_ptr<EventFilter> filter, ReconstructorCounters& counters);
+
+    void push(std::span<const Event> events);  ///< a step back in time is disorder
+    void push(const Batch& batch);             ///< a step back in time is a new clock
+    void advance(SensorTime now);
+    void mark_gap() noexcept { slicer_.mark_gap(); }
+    void finish(std::optional<SensorTime> end);
+    bool is_finished() const { return finished_; }
+    bool next(Slice& slice);
+    void reset();
+
+private:
+    enum class StepBack { is_disorder, is_new_clock };
+    void take(std::span<const Event> events, StepBack step_back);
+    bool is_sound(const Event& event);
+    void check_open(const char* what) const;
+
+    const unsigned width_, height_;
+    Slicer slicer_;
+    std::unique_ptr<EventFilter> filter_;
+    ReconstructorCounters& counters_;
+    std::vector<Event> taken_;
+    std::optional<SensorTime> newest_;
+    bool finished_ = false;
+};
+
+}  // namespace eventide

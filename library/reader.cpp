@@ -1,0 +1,114 @@
+// Recordings behind the public face.
+#include "replay/formats.h"
+#include "replay/summary.h"
+#include "src/core/error.h"
+
+#include <eventide/reader.h>
+
+#include <string>
+
+namespace eventide {
+namespace {
+
+OpenOptions open_options(const ReaderOptions& options) {
+    if ((options.width == 0) != (options.height == 0) || options.width < 0 || options.height < 0)
+        throw Error(ErrorKind::usage,
+                    "reader: expected width and height of the sensor, both or neither, found " +
+                        std::to_string(options.width) + "x" + std::to_string(options.height));
+    OpenOptions open;
+    open.format = options.format;
+    open.width = options.width;
+    open.height = options.height;
+    return open;
+}
+
+}  // namespace
+
+class EventReader::Impl {
+public:
+    Impl(const std::string& path, const ReaderOptions& options)
+        : path_(path),
+          options_(open_options(options)),
+          recording_(open_recording(path, options_)),
+          parser_(recording_->make_parser()) {}
+
+    const Recording& recording() const { return *recording_; }
+    const Parser& parser() const { return *parser_; }
+
+    bool read(Batch& batch) {
+        batch.clear();
+        if (ended_) return false;
+        if (recording_->read(packet_) == ReadStatus::data) {
+            parser_->parse(packet_.bytes, batch);
+            return true;
+        }
+        ended_ = true;
+        parser_->finish(batch);
+        return !batch.empty();
+    }
+
+    void seek(SensorTime t) {
+        recording_->seek(t);
+        damaged_before_ += parser_->damaged().total();
+        parser_ = recording_->make_parser();
+        ended_ = false;
+    }
+
+    std::uint64_t damaged() const { return damaged_before_ + parser_->damaged().total(); }
+
+    std::optional<Window> span() const {
+        if (path_ == "-")
+            throw Error(ErrorKind::usage,
+                        "span of '-': expected a file that can be read twice, found standard "
+                        "input");
+        const auto again = open_recording(path_, options_);
+        const Summary summary = summarize(*again);
+        if (!summary.first) return std::nullopt;
+        return Window{*summary.first, *summary.last};
+    }
+
+private:
+    const std::string path_;
+    const OpenOptions options_;
+    std::unique_ptr<Recording> recording_;
+    std::unique_ptr<Parser> parser_;
+    RawPacket packet_;
+    std::uint64_t damaged_before_ = 0;  // by parsers before a seek
+    bool ended_ = false;
+};
+
+EventReader::EventReader(const std::string& path, const ReaderOptions& options)
+    : impl_(std::make_unique<Impl>(path, options)) {}
+EventReader::~EventReader() = default;
+EventReader::EventReader(EventReader&&) noexcept = default;
+EventReader& EventReader::operator=(EventReader&&) noexcept = default;
+
+const SensorInfo& EventReader::info() const noexcept {
+    return impl_->recording().info();
+}
+int EventReader::width() const noexcept {
+    return info().width;
+}
+int EventReader::height() const noexcept {
+    return info().height;
+}
+std::vector<std::string> EventReader::remarks() const {
+    return impl_->recording().remarks();
+}
+bool EventReader::read(Batch& batch) {
+    return impl_->read(batch);
+}
+void EventReader::seek(SensorTime t) {
+    impl_->seek(t);
+}
+std::optional<SensorTime> EventReader::clock() const {
+    return impl_->parser().clock();
+}
+std::uint64_t EventReader::damaged() const noexcept {
+    return impl_->damaged();
+}
+std::optional<Window> EventReader::span() const {
+    return impl_->span();
+}
+
+}  // namespace eventide

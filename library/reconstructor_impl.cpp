@@ -1,0 +1,248 @@
+// The network at work.
+#include "library/reconstructor_impl.h"
+
+#include "pipeline/filters/hot_pixels.h"
+#include "pipeline/parallel_tbb.h"
+#include "src/core/error.h"
+#include "src/nn/safetensors.h"
+
+#include <algorithm>
+#include <string>
+
+namespace eventide {
+namespace {
+
+SlicerSettings slicer_of(const ReconstructorOptions& options, const ModelConfig& config) {
+    return parse_window(options.window == "model" ? config.window : options.window);
+}
+
+EngineOptions engine_of(const ReconstructorOptions& options) {
+    EngineOptions engine;
+    engine.precision = options.precision;
+    engine.kernels = options.kernels;
+    engine.parallel_for = parallel_for_with(options.threads);
+    return engine;
+}
+
+FrameRate rate_of(const ReconstructorOptions& options) {
+    return options.fps == "frame" ? FrameRate{} : parse_frame_rate(options.fps);
+}
+
+bool same(const FrameSize& a, const FrameSize& b) {
+    return a.width == b.width && a.height == b.height && a.region.x == b.region.x &&
+           a.region.y == b.region.y && a.region.width == b.region.width &&
+           a.region.height == b.region.height;
+}
+
+std::string us(SensorTime t) {
+    return std::to_string(to_us(t)) + " us";
+}
+
+}  // namespace
+
+Reconstructor::Impl::Impl(const Model& model, int width, int height,
+                          const ReconstructorOptions& options)
+    : options_(options),
+      engine_(engine_of(options)),
+      intake_(slicer_of(options, model.config), width, height,
+              hot_pixel_filter(options.hot_pixels, width, height), counters_),
+      binner_(model.config.bins, height, width),
+      encoder_(model, width, height, engine_),
+      renderer_(model, width, height, engine_),
+      grid_(binner_.make_output()),
+      latent_(encoder_.make_output()),
+      schedule_(rate_of(options)) {
+    request_.lookahead = options.lookahead;
+    request_.want_sigma = options.sigma;
+    make_room(options.size);
+}
+
+// ---- events to memory ------------------------------------------------------------------------
+
+/// One step of the network, where there is one to make.
+bool Reconstructor::Impl::step() {
+    if (new_clock_) {  // what came before means nothing any more
+        encoder_.reset();
+        schedule_.skip(schedule_.due());
+        schedule_.restart();
+        forget_stream();
+        encode();
+        return true;
+    }
+    if (Slice slice; intake_.next(slice)) {
+        bin(slice);
+        if (grid_.reset_before) {
+            renderer_.finish();
+            new_clock_ = ended_ = true;
+        } else {
+            encode();
+        }
+        return true;
+    }
+    if (!intake_.is_finished() || ended_) return false;
+    renderer_.finish();
+    ended_ = true;
+    return true;
+}
+
+void Reconstructor::Impl::bin(const Slice& slice) {
+    if (slice.reset_before || (slice.gap_before && options_.reset_on_gap)) binner_.reset();
+    binner_.process(slice, grid_);
+}
+
+void Reconstructor::Impl::encode() {
+    if (grid_.gap_before && options_.reset_on_gap) encoder_.reset();
+    encoder_.encode(grid_, latent_);
+    renderer_.push(latent_);
+    ++counters_.event_windows;
+    note_window();
+}
+
+/// Where render() went ahead of next(), the frames of windows that the network cannot show any more
+/// are left out: those of the open window first, then those of the oldest that waits.
+void Reconstructor::Impl::note_window() {
+    seen(encoded_++) = {grid_.window, grid_.events, grid_.gap_before};
+    const std::uint64_t waiting = encoded_ - opened_;
+    if (waiting > Presenter::kMostLookahead) schedule_.skip(schedule_.due());
+    if (waiting <= Presenter::kMostLookahead + 1) return;
+    open_next();
+    schedule_.skip(schedule_.due());
+}
+
+void Reconstructor::Impl::forget_stream() {
+    renderer_.reset();
+    seen_.fill({});
+    encoded_ = opened_ = silent_ = 0;
+    new_clock_ = ended_ = false;
+}
+
+// ---- memory to frames ------------------------------------------------------------------------
+
+bool Reconstructor::Impl::next(Frame& frame) {
+    for (;;) {
+        if (schedule_.due() > 0) {
+            render_due(frame);
+            return true;
+        }
+        const std::uint64_t waits = ended_ ? 0 : std::uint64_t(options_.lookahead);
+        if (encoded_ - opened_ > waits) {
+            open_next();
+            check_silence();
+        } else if (!step()) {
+            return false;
+        }
+    }
+}
+
+void Reconstructor::Impl::open_next() {
+    open_ = seen(opened_++);
+    schedule_.open(open_.window);
+    silent_ = open_.events > 0 ? 0 : silent_ + schedule_.due();
+}
+
+void Reconstructor::Impl::check_silence() {
+    if (silent_ <= Presenter::kMostSilentFrames || options_.allow_silence) return;
+    schedule_.skip(schedule_.due());
+    throw Error(ErrorKind::input,
+                "no events from " + us(open_.window.begin) + " to " + us(open_.window.end) +
+                    ": expected at most " + std::to_string(Presenter::kMostSilentFrames) +
+                    " frames in a row without events, found " + std::to_string(silent_) +
+                    "; the option allow_silence, or a lower fps, renders them");
+}
+
+void Reconstructor::Impl::render_due(Frame& frame) {
+    const DueFrame due = schedule_.next();
+    // The stream's first frame may stand at the first window's begin, which is outside it.
+    render_request(std::max(due.t, open_.window.begin + SensorDuration{1}), options_.size, frame);
+    frame.t = due.t;
+    frame.index = due.index;
+    frame.window = open_.window;
+    frame.events = open_.events;
+    frame.gap_before = open_.gap_before;
+}
+
+Readiness Reconstructor::Impl::readiness(SensorTime t) {
+    for (;;) {
+        const Readiness found = renderer_.readiness(t, options_.lookahead);
+        const bool of_next_stream = found == Readiness::gone && new_clock_;
+        if (found != Readiness::later && !of_next_stream) return found;
+        if (!step()) return found;
+    }
+}
+
+void Reconstructor::Impl::render(SensorTime t, const FrameSize& size, Frame& frame) {
+    const Readiness found = readiness(t);
+    if (found != Readiness::ready)
+        throw Error(ErrorKind::usage,
+                    "frame at " + us(t) + ": expected a time that is ready, found one " +
+                        (found == Readiness::later
+                             ? "that waits for events not pushed yet"
+                             : "outside the event windows that the network remembers"));
+    render_request(t, size, frame);
+    frame.index = 0;
+    frame.gap_before = gap_before(t);
+}
+
+void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Frame& frame) {
+    make_room(size);
+    request_.t = t;
+    renderer_.render(request_, frame);
+    ++counters_.frames;
+    if (is_finite(frame.intensity) && is_finite(frame.sigma)) return;
+    throw Error(ErrorKind::input,
+                "frame at " + us(t) +
+                    ": expected finite numbers of the network, found NaN or infinity: its weights "
+                    "or its state are damaged");
+}
+
+bool Reconstructor::Impl::gap_before(SensorTime t) const {
+    return std::ranges::any_of(seen_, [t](const Seen& one) {
+        return one.gap_before && one.window.begin < t && t <= one.window.end;
+    });
+}
+
+/// Throws Error (usage) for an impossible size; rendering cannot fail afterwards.
+void Reconstructor::Impl::make_room(const FrameSize& size) {
+    if (room_for_ && same(size, *room_for_)) return;
+    for (const int side : {size.width, size.height})
+        if (side < 0 || side > kLargestFrameSide)
+            throw Error(ErrorKind::usage,
+                        "frame size: expected 1 to " + std::to_string(kLargestFrameSide) +
+                            " px each way, or 0 for the sensor's, found " + std::to_string(side));
+    RenderRequest request = request_;
+    request.width = size.width;
+    request.height = size.height;
+    request.region = size.region;
+    renderer_.make_output(request);
+    request_ = request;
+    room_for_ = size;
+}
+
+std::optional<SensorTime> Reconstructor::Impl::newest() {
+    while (step()) {
+    }
+    const std::uint64_t waits = ended_ ? 0 : std::uint64_t(options_.lookahead);
+    if (encoded_ <= waits) return std::nullopt;
+    return seen(encoded_ - 1 - waits).window.end;
+}
+
+// ---- beginnings ------------------------------------------------------------------------------
+
+void Reconstructor::Impl::forget_events() {
+    intake_.reset();
+    binner_.reset();
+    forget_stream();
+    schedule_ = FrameSchedule{rate_of(options_)};
+}
+
+void Reconstructor::Impl::reset() {
+    forget_events();
+    encoder_.reset();
+}
+
+void Reconstructor::Impl::restore_state(const std::filesystem::path& file) {
+    encoder_.restore(read_safetensors(file), file.string());
+    forget_events();
+}
+
+}  // namespace eventide

@@ -1,0 +1,79 @@
+// The network at work: windows are encoded when a frame needs them, frames are handed out one by
+// one.
+#pragma once
+
+#include "library/event_intake.h"
+#include "pipeline/frame_clock.h"
+#include "pipeline/presenter.h"
+#include "src/binning/binner.h"
+#include "src/model/encoder.h"
+#include "src/model/renderer.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+namespace eventide {
+
+class Reconstructor::Impl {
+public:
+    /// width and height are sane; everything else is checked here. Throws Error.
+    Impl(const Model& model, int width, int height, const ReconstructorOptions& options);
+
+    EventIntake& intake() { return intake_; }
+    const Encoder& encoder() const { return encoder_; }
+    const ReconstructorCounters& counters() const { return counters_; }
+
+    bool next(Frame& frame);
+    Readiness readiness(SensorTime t);
+    void render(SensorTime t, const FrameSize& size, Frame& frame);
+    void render(SensorTime t, Frame& frame) { render(t, options_.size, frame); }
+    std::optional<SensorTime> newest();
+    void reset();
+    void restore_state(const std::filesystem::path& file);
+
+private:
+    /// What a frame tells of the event window it lies in.
+    struct Seen {
+        Window window;
+        std::uint64_t events = 0;
+        bool gap_before = false;
+    };
+
+    bool step();
+    void bin(const Slice& slice);
+    void encode();
+    void note_window();
+    void forget_stream();
+    void forget_events();
+    void open_next();
+    Seen& seen(std::uint64_t k) { return seen_[k % seen_.size()]; }
+    bool gap_before(SensorTime t) const;
+    void check_silence();
+    void render_due(Frame& frame);
+    void render_request(SensorTime t, const FrameSize& size, Frame& frame);
+    void make_room(const FrameSize& size);
+
+    const ReconstructorOptions options_;
+    const EngineOptions engine_;
+    ReconstructorCounters counters_;
+    EventIntake intake_;
+    Binner binner_;
+    Encoder encoder_;
+    Renderer renderer_;
+    VoxelGrid grid_;
+    LatentMap latent_;
+    RenderRequest request_;
+    std::optional<FrameSize> room_for_;  // the size that was checked last
+
+    FrameSchedule schedule_;
+    std::array<Seen, LatentWindow::kLatentsKept> seen_;  // of event window k in k % kLatentsKept
+    std::uint64_t encoded_ = 0;                          // event windows of this stream
+    std::uint64_t opened_ = 0;  // of those, whose frames next() gave or gives
+    Seen open_;                 // whose frames are due
+    std::uint64_t silent_ = 0;  // frames in a row without events
+    bool ended_ = false;        // the renderer was told that no window follows
+    bool new_clock_ = false;    // grid_ begins another stream, which waits for the frames before
+};
+
+}  // namespace eventide

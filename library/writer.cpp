@@ -1,0 +1,107 @@
+// Recordings being written, behind the public face.
+#include "replay/formats.h"
+#include "replay/recording_file.h"
+#include "src/core/error.h"
+
+#include <eventide/writer.h>
+
+#include <string>
+
+namespace eventide {
+namespace {
+
+const Format& format_of(const std::string& path, const WriterOptions& options) {
+    const Format* format =
+        options.format.empty() ? format_for_writing(path) : find_format(options.format);
+    if (format != nullptr && format->make_writer != nullptr) return *format;
+    std::string names;
+    for (const Format& one : all_formats())
+        if (one.make_writer != nullptr)
+            names += (names.empty() ? "" : ", ") + std::string{one.name};
+    throw Error(ErrorKind::usage,
+                path + ": expected a format that can be written (" + names + "), found " +
+                    (options.format.empty() ? "an extension of none" : options.format));
+}
+
+StreamHeader header_of(const Format& format, const SensorInfo& sensor, const std::string& path) {
+    if (sensor.width < 1 || sensor.height < 1 || sensor.width > 65535 || sensor.height > 65535)
+        throw Error(ErrorKind::usage, path + ": sensor size: expected 1 to 65535 px, found " +
+                                          std::to_string(sensor.width) + "x" +
+                                          std::to_string(sensor.height));
+    StreamHeader header;
+    header.format = format.name;
+    header.width = sensor.width;
+    header.height = sensor.height;
+    header.sensor_name = sensor.name;
+    header.serial = sensor.serial;
+    return header;
+}
+
+}  // namespace
+
+class EventWriter::Impl {
+public:
+    Impl(const std::string& path, const SensorInfo& sensor, const WriterOptions& options)
+        : path_(path),
+          format_(format_of(path, options)),
+          file_(path, options.overwrite, open_writer(format_.name),
+                header_of(format_, sensor, path)) {}
+
+    void write(std::span<const Event> events) {
+        held_.clear();
+        held_.events.assign(events.begin(), events.end());
+        write_held();
+    }
+
+    void write(const Batch& batch) {
+        held_ = batch;
+        const DataCounts left_out = remove_not_held(held_, format_.holds);
+        not_held_ += left_out.events + left_out.images + left_out.imu + left_out.triggers;
+        write_held();
+    }
+
+    void finish() {
+        if (!finished_) file_.finish();
+        finished_ = true;
+    }
+
+    std::uint64_t not_held() const { return not_held_; }
+
+private:
+    void write_held() {
+        if (finished_)
+            throw Error(ErrorKind::usage, path_ +
+                                              ": expected a recording that is being written, "
+                                              "found one after finish()");
+        if (!held_.empty()) file_.write(held_);
+    }
+
+    const std::string path_;
+    const Format& format_;
+    RecordingFile file_;
+    Batch held_;
+    std::uint64_t not_held_ = 0;
+    bool finished_ = false;
+};
+
+EventWriter::EventWriter(const std::string& path, const SensorInfo& sensor,
+                         const WriterOptions& options)
+    : impl_(std::make_unique<Impl>(path, sensor, options)) {}
+EventWriter::~EventWriter() = default;
+EventWriter::EventWriter(EventWriter&&) noexcept = default;
+EventWriter& EventWriter::operator=(EventWriter&&) noexcept = default;
+
+void EventWriter::write(std::span<const Event> events) {
+    impl_->write(events);
+}
+void EventWriter::write(const Batch& batch) {
+    impl_->write(batch);
+}
+void EventWriter::finish() {
+    impl_->finish();
+}
+std::uint64_t EventWriter::not_held() const noexcept {
+    return impl_->not_held();
+}
+
+}  // namespace eventide

@@ -1,0 +1,28 @@
+// The kinds of video file, and what differs between them.
+#pragma once
+
+extern "C" {
+#include <libavutil/pixfmt.h>
+}
+
+#include <filesystem>
+
+namespace eventide {
+
+struct VideoKind {
+    const char* extension;  ///< ".mp4"
+    const char* encoder;    ///< libav's name
+    AVPixelFormat pixels;
+    bool full_range;       ///< of the luma
+    int ticks_per_second;  ///< what times are rounded to; 0: each frame is one tick
+    double most_fps;       ///< of its video time
+    bool colour;
+};
+
+/// Throws Error (usage) for an extension that is none of ours.
+const VideoKind& video_kind_of(const std::filesystem::path& path);
+
+/// By extension only.
+bool names_video(const std::filesystem::path& path);
+
+}  // namespace eventide

@@ -1,0 +1,54 @@
+// Event windows that wait for the encoder, as one.
+#pragma once
+
+#include "src/core/frame_data.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace eventide {
+
+/// Keeps the events of consecutive windows; the window of all of them begins with the first and
+/// ends with the last. Bin thread.
+class WindowMerger {
+public:
+    /// At most so many events in one.
+    explicit WindowMerger(std::uint64_t most_events) : most_events_(most_events) {}
+
+    bool empty() const { return windows_ == 0; }
+
+    /// Whether a window may be one with those kept: nothing is merged over a place where state
+    /// begins anew.
+    bool takes(const Slice& slice, bool new_state_after_gaps) const {
+        if (empty()) return true;
+        return !slice.reset_before && !(slice.gap_before && new_state_after_gaps) &&
+               events_.size() + slice.events.size() <= most_events_;
+    }
+
+    void add(const Slice& slice) {
+        if (empty()) {
+            merged_ = slice;
+            events_.clear();
+        }
+        events_.insert(events_.end(), slice.events.begin(), slice.events.end());
+        merged_.window.end = slice.window.end;
+        merged_.gap_before = merged_.gap_before || slice.gap_before;
+        merged_.arrived = slice.arrived;
+        ++windows_;
+    }
+
+    /// All that is kept, borrowed until the next add(); nothing is kept any more.
+    Slice take() {
+        merged_.events = events_;
+        windows_ = 0;
+        return merged_;
+    }
+
+private:
+    std::uint64_t most_events_;
+    std::vector<Event> events_;
+    Slice merged_;
+    std::uint64_t windows_ = 0;
+};
+
+}  // namespace eventide

@@ -1,0 +1,101 @@
+// Between NumPy's arrays and the library's types.
+#include "python/arrays.h"
+
+#include <eventide/error.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace eventide::python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+std::string joined(std::initializer_list<const char*> names) {
+    std::string text;
+    for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string{name};
+    return text;
+}
+
+/// The field that has one of these names, as 64-bit numbers.
+Numbers field(const py::array& array, std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+        if (!array.dtype().attr("fields").contains(name)) continue;
+        const py::array values = array[name];
+        const char kind = values.dtype().kind();
+        if (kind != 'i' && kind != 'u' && kind != 'b')
+            throw Error(ErrorKind::usage, std::string{"events, field '"} + name +
+                                              "': expected whole numbers, found " +
+                                              std::string(py::str(values.dtype())));
+        return Numbers::ensure(values);
+    }
+    throw Error(ErrorKind::usage, "events: expected a field called " + joined(names) + ", found " +
+                                      std::string(py::str(array.dtype().attr("names"))));
+}
+
+std::uint16_t coordinate(std::int64_t value) {
+    return value < 0 || value > 0xffff ? 0xffff : std::uint16_t(value);
+}
+
+/// Of Event, as it lies in memory.
+py::dtype event_dtype() {
+    static_assert(sizeof(Event) == 16 && offsetof(Event, x) == 8 && offsetof(Event, y) == 10 &&
+                  offsetof(Event, polarity) == 12);
+    py::list names, formats, offsets;
+    for (const auto& [name, format, offset] :
+         {std::tuple{"t", "<i8", 0}, {"x", "<u2", 8}, {"y", "<u2", 10}, {"on", "?", 12}}) {
+        names.append(name);
+        formats.append(format);
+        offsets.append(offset);
+    }
+    return py::dtype(names, formats, offsets, sizeof(Event));
+}
+
+}  // namespace
+
+void append_events(const py::array& array, std::vector<Event>& into) {
+    if (array.dtype().kind() != 'V' || array.dtype().attr("fields").is_none())
+        throw Error(ErrorKind::usage,
+                    "events: expected a structured array with fields t, x, y and p, found " +
+                        std::string(py::str(array.dtype())));
+    if (array.ndim() != 1)
+        throw Error(ErrorKind::usage, "events: expected an array of one dimension, found " +
+                                          std::to_string(array.ndim()));
+    const Numbers t = field(array, {"t", "ts", "timestamp", "time"}), x = field(array, {"x"}),
+                  y = field(array, {"y"}), on = field(array, {"p", "on", "pol", "polarity"});
+    const auto count = std::size_t(array.size());
+    into.reserve(into.size() + count);
+    for (std::size_t i = 0; i < count; ++i)
+        into.push_back({from_us(t.data()[i]), coordinate(x.data()[i]), coordinate(y.data()[i]),
+                        on.data()[i] > 0 ? Polarity::on : Polarity::off});
+}
+
+py::array array_of(std::vector<Event> events) {
+    auto kept = std::make_unique<std::vector<Event>>(std::move(events));
+    const auto size = py::ssize_t(kept->size());
+    const Event* const data = kept->data();
+    const py::capsule owner(kept.release(),
+                            [](void* it) { delete static_cast<std::vector<Event>*>(it); });
+    return {event_dtype(), {size}, {py::ssize_t(sizeof(Event))}, data, owner};
+}
+
+py::array_t<float> array_of(const Array2<float>& plane, py::handle owner) {
+    return py::array_t<float>({plane.height(), plane.width()}, plane.values().data(), owner);
+}
+
+py::array array_of(const ReferenceImage& image) {
+    const int height = image.pixels.height(), channels = std::max(image.channels, 1);
+    const int width = image.pixels.width() / channels;
+    std::vector<py::ssize_t> shape{height, width};
+    if (channels > 1) shape.push_back(channels);
+    return py::array_t<std::uint16_t>(shape, image.pixels.values().data());
+}
+
+}  // namespace eventide::python

@@ -1,0 +1,27 @@
+// Between NumPy's arrays and the library's types.
+#pragma once
+
+#include <eventide/event.h>
+#include <eventide/frame.h>
+
+#include <pybind11/numpy.h>
+
+#include <vector>
+
+namespace eventide::python {
+
+/// The events of a structured array with the fields t, x, y and p, on, pol or polarity, appended to
+/// `into`. Coordinates that no sensor has become ones outside every sensor. Throws Error (usage)
+/// naming the field.
+void append_events(const pybind11::array& array, std::vector<Event>& into);
+
+/// A structured array (t, x, y, on) that owns these events; nothing is copied.
+pybind11::array array_of(std::vector<Event> events);
+
+/// [y][x], as long as `owner` lives; nothing is copied.
+pybind11::array_t<float> array_of(const Array2<float>& plane, pybind11::handle owner);
+
+/// [y][x] or [y][x][channel].
+pybind11::array array_of(const ReferenceImage& image);
+
+}  // namespace eventide::python

@@ -1,0 +1,59 @@
+"""Video with uncertainty from event cameras.
+
+    import eventide
+
+    reader = eventide.open("recording.aedat4")
+    reconstructor = eventide.Reconstructor("default", reader.width, reader.height)
+    for events in reader:
+        reconstructor.push(events)
+        for frame in reconstructor.frames():
+            print(frame.t, frame.intensity.mean(), frame.sigma.mean())
+
+Times are whole microseconds of the sensor's clock, sizes (width, height) in pixels. Events are
+structured arrays with the fields t, x, y and p, on, pol or polarity, in any order and of any width
+of whole numbers. Everything that works long lets other threads run.
+"""
+
+from ._eventide import (
+    Camera,
+    DeviceError,
+    Error,
+    Frame,
+    InputError,
+    Reader,
+    Reconstructor,
+    UsageError,
+    Writer,
+    __version__,
+)
+
+__all__ = [
+    "Camera",
+    "DeviceError",
+    "Error",
+    "Frame",
+    "InputError",
+    "Reader",
+    "Reconstructor",
+    "UsageError",
+    "Writer",
+    "open",
+    "open_camera",
+    "__version__",
+]
+
+
+def open(path, format="", width=0, height=0):
+    """Open a recording, in any format that eventide reads; iterate it for arrays of events.
+
+    format, width and height are for what its bytes do not say. Raises InputError.
+    """
+    return Reader(str(path), format, width, height)
+
+
+def open_camera(name, settings=""):
+    """Open a camera: "davis:", "dvxplorer:", "v4l2:/dev/video0", "sim:demo"; iterate it for events.
+
+    settings is a file. Raises DeviceError, or UsageError for a name that makes no sense.
+    """
+    return Camera(name, str(settings))

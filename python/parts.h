@@ -1,0 +1,49 @@
+// The parts of the module.
+#pragma once
+
+#include <eventide/reconstructor.h>
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace eventide::python {
+
+/// What is used by one thread at a time, guarded: Python's threads run while the library works.
+template <typename T>
+struct Guarded {
+    template <typename... Arguments>
+    explicit Guarded(Arguments&&... arguments) : it(std::forward<Arguments>(arguments)...) {}
+
+    /// Runs `body(it)` without Python's lock.
+    template <typename Body>
+    auto with(Body body) {
+        const pybind11::gil_scoped_release released;
+        const std::lock_guard lock{mutex};
+        return body(it);
+    }
+
+    T it;
+    std::mutex mutex;
+};
+
+using GuardedReconstructor = Guarded<Reconstructor>;
+
+inline std::optional<std::int64_t> us_of(std::optional<SensorTime> t) {
+    return t ? std::optional{to_us(*t)} : std::nullopt;
+}
+
+using FramePointer = std::shared_ptr<Frame>;
+
+/// The array, which keeps `owner`, or None where sigma was not asked for.
+pybind11::object sigma_of(const FramePointer& frame, pybind11::handle owner);
+
+void add_errors(pybind11::module_& module);
+void add_frame(pybind11::module_& module);
+void add_reconstructor(pybind11::module_& module);
+void add_sources(pybind11::module_& module);
+
+}  // namespace eventide::python

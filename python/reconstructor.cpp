@@ -1,0 +1,241 @@
+// Reconstructor for Python.
+#include "python/arrays.h"
+#include "python/parts.h"
+
+#include <eventide/error.h>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace eventide::python {
+
+namespace py = pybind11;
+
+namespace {
+
+using Size = std::optional<std::pair<int, int>>;
+using Roi = std::optional<std::array<int, 4>>;
+
+template <typename T>
+T choice_of(const std::string& text, const char* name, const std::map<std::string, T>& choices) {
+    if (const auto found = choices.find(text); found != choices.end()) return found->second;
+    std::string expected;
+    for (const auto& [word, value] : choices) expected += (expected.empty() ? "" : ", ") + word;
+    throw Error(ErrorKind::usage,
+                std::string{name} + ": expected " + expected + ", found '" + text + "'");
+}
+
+FrameSize size_of(const Size& size, const Roi& roi, FrameSize otherwise = {}) {
+    if (size) {
+        otherwise = {size->first, size->second, {}};
+        if (otherwise.width < 1 || otherwise.height < 1)
+            throw Error(ErrorKind::usage, "size: expected (width, height) of at least 1, found (" +
+                                              std::to_string(size->first) + ", " +
+                                              std::to_string(size->second) + ")");
+    }
+    if (roi) otherwise.region = {(*roi)[0], (*roi)[1], (*roi)[2], (*roi)[3]};
+    return otherwise;
+}
+
+/// With the size of its options, which render() starts from.
+struct SizedReconstructor : GuardedReconstructor {
+    SizedReconstructor(const std::string& model, int width, int height,
+                       const ReconstructorOptions& options)
+        : GuardedReconstructor(model, width, height, options), size(options.size) {}
+    FrameSize size;
+};
+
+std::unique_ptr<SizedReconstructor> make(const std::string& model, int width, int height,
+                                         std::string window, int lookahead, std::string fps,
+                                         Size size, Roi roi, bool sigma, std::string hot_pixels,
+                                         const std::string& precision, const std::string& kernels,
+                                         int threads, bool reset_on_gap, bool allow_silence) {
+    const ReconstructorOptions options{
+        .window = std::move(window),
+        .lookahead = lookahead,
+        .fps = std::move(fps),
+        .size = size_of(size, roi),
+        .sigma = sigma,
+        .hot_pixels = std::move(hot_pixels),
+        .precision = choice_of<Precision>(
+            precision, "precision",
+            {{"auto", Precision::automatic}, {"f32", Precision::f32}, {"bf16", Precision::bf16}}),
+        .kernels = choice_of<Kernels>(
+            kernels, "kernels",
+            {{"auto", Kernels::automatic}, {"own", Kernels::own}, {"onednn", Kernels::onednn}}),
+        .threads = threads,
+        .reset_on_gap = reset_on_gap,
+        .allow_silence = allow_silence};
+    const py::gil_scoped_release released;
+    return std::make_unique<SizedReconstructor>(model, width, height, options);
+}
+
+void push(SizedReconstructor& self, const py::array& events, bool resets) {
+    Batch batch;
+    append_events(events, batch.events);
+    self.with([&](Reconstructor& it) {
+        if (resets)
+            it.push(batch);
+        else
+            it.push(std::span<const Event>{batch.events});
+    });
+}
+
+FramePointer next(SizedReconstructor& self) {
+    auto frame = std::make_shared<Frame>();
+    return self.with([&](Reconstructor& it) { return it.next(*frame); }) ? frame : nullptr;
+}
+
+py::tuple render(SizedReconstructor& self, std::int64_t t, const Size& size, const Roi& roi) {
+    auto frame = std::make_shared<Frame>();
+    const FrameSize wanted = size_of(size, roi, self.size);
+    self.with([&](Reconstructor& it) { it.render(from_us(t), wanted, *frame); });
+    const py::object owner = py::cast(frame);
+    return py::make_tuple(array_of(frame->intensity, owner), sigma_of(frame, owner));
+}
+
+std::map<std::string, std::uint64_t> counters(SizedReconstructor& self) {
+    const auto c = self.with([](Reconstructor& it) { return it.counters(); });
+    return {{"events", c.events},
+            {"off_sensor", c.off_sensor},
+            {"time_backwards", c.time_backwards},
+            {"bad_time", c.bad_time},
+            {"filtered", c.filtered},
+            {"late", c.late},
+            {"left_out", c.left_out},
+            {"time_resets", c.time_resets},
+            {"event_windows", c.event_windows},
+            {"frames", c.frames}};
+}
+
+/// What `for frame in reconstructor.frames()` goes through.
+struct Frames {
+    py::object owner;
+    SizedReconstructor& of;
+};
+
+void add_iterator(py::module_& module) {
+    py::class_<Frames>(module, "_Frames")
+        .def("__iter__", [](const py::object& self) { return self; })
+        .def("__next__", [](Frames& self) {
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            FramePointer frame = next(self.of);
+            if (!frame) throw py::stop_iteration();
+            return frame;
+        });
+}
+
+template <typename Class>
+void add_events_in(Class& it) {
+    it.def(
+          "push", &push, py::arg("events"), py::arg("resets") = false,
+          "Events in order of time: a structured array with the fields t (us), x, y and p, on, pol "
+          "or polarity. One earlier than the one before is left out and counted or, with resets, "
+          "begins a new stream, as after a reset of the camera's clock.")
+        .def(
+            "advance",
+            [](SizedReconstructor& self, std::int64_t now) {
+                self.with([&](Reconstructor& r) { r.advance(from_us(now)); });
+            },
+            py::arg("now"), "Every event before now (us) was pushed: time goes on in silence.")
+        .def(
+            "mark_gap",
+            [](SizedReconstructor& self) { self.with([](Reconstructor& r) { r.mark_gap(); }); },
+            "Data were lost here: the next frame carries gap_before.")
+        .def(
+            "finish",
+            [](SizedReconstructor& self, std::optional<std::int64_t> end) {
+                self.with([&](Reconstructor& r) {
+                    r.finish(end ? std::optional{from_us(*end)} : std::nullopt);
+                });
+            },
+            py::arg("end") = py::none(),
+            "The stream has ended, at end (us) where its clock went on after the last event.")
+        .def(
+            "reset",
+            [](SizedReconstructor& self) { self.with([](Reconstructor& r) { r.reset(); }); },
+            "As constructed: a new stream begins.")
+        .def(
+            "save_state",
+            [](SizedReconstructor& self, const std::filesystem::path& file, bool overwrite) {
+                self.with([&](Reconstructor& r) { r.save_state(file, overwrite); });
+            },
+            py::arg("file"), py::arg("overwrite") = false,
+            "What the network remembers of the scene, as a file.")
+        .def(
+            "restore_state",
+            [](SizedReconstructor& self, const std::filesystem::path& file) {
+                self.with([&](Reconstructor& r) { r.restore_state(file); });
+            },
+            py::arg("file"), "A new stream begins with what was saved.");
+}
+
+template <typename Class>
+void add_frames_out(Class& it) {
+    it.def("next", &next, "The next Frame at the rate fps, or None: more events are needed.")
+        .def(
+            "frames",
+            [](const py::object& self) {
+                return Frames{self, self.cast<SizedReconstructor&>()};
+            },
+            "An iterator over the frames that the events pushed so far give.")
+        .def(
+            "ready",
+            [](SizedReconstructor& self, std::int64_t t) {
+                return self.with([&](Reconstructor& r) { return r.ready(from_us(t)); });
+            },
+            py::arg("t"), "Whether the frame of this time (us) can be rendered.")
+        .def(
+            "newest",
+            [](SizedReconstructor& self) {
+                return us_of(self.with([](Reconstructor& r) { return r.newest(); }));
+            },
+            "The newest time (us) that can be rendered, or None.")
+        .def("render", &render, py::arg("t"), py::arg("size") = py::none(),
+             py::arg("roi") = py::none(),
+             "(intensity, sigma) at a time (us) that is ready: float32 arrays [y, x]. size is "
+             "(width, height), roi (x, y, width, height) of the part wanted; else as constructed.")
+        .def_property_readonly(
+            "width", [](SizedReconstructor& self) { return self.it.width(); }, "px, of the sensor")
+        .def_property_readonly(
+            "height", [](SizedReconstructor& self) { return self.it.height(); },
+            "px, of the sensor")
+        .def_property_readonly(
+            "description", [](SizedReconstructor& self) { return self.it.description(); },
+            "which kernels and numbers run")
+        .def_property_readonly("counters", &counters, "what became of what was pushed");
+}
+
+}  // namespace
+
+void add_reconstructor(py::module_& module) {
+    add_frame(module);
+    add_iterator(module);
+    py::class_<GuardedReconstructor>(module, "_Guarded");
+    py::class_<SizedReconstructor, GuardedReconstructor> it(
+        module, "Reconstructor",
+        "Events in, frames with uncertainty out.\n\n"
+        "model is a name (default, small, thesis) or a file, width and height the sensor's.\n"
+        "window: how events are cut (model, auto, 50ms, 20000ev, 0.35epp); lookahead: windows a\n"
+        "frame waits for, 0 to 2; fps: rate of frames() and next(), a text such as '30' or\n"
+        "'30000/1001'; size: (width, height) of the frames; roi: (x, y, width, height) of the "
+        "part\n"
+        "wanted; hot_pixels: off, learn or a file; precision: auto, f32, bf16; kernels: auto, "
+        "own,\n"
+        "onednn; threads: 0 for all. For recordings window='auto', lookahead=2 is better.");
+    it.def(py::init(&make), py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(),
+           py::arg("window") = "model", py::arg("lookahead") = 0, py::arg("fps") = "30",
+           py::arg("size") = py::none(), py::arg("roi") = py::none(), py::arg("sigma") = true,
+           py::arg("hot_pixels") = "off", py::arg("precision") = "auto",
+           py::arg("kernels") = "auto", py::arg("threads") = 0, py::arg("reset_on_gap") = false,
+           py::arg("allow_silence") = false);
+    add_events_in(it);
+    add_frames_out(it);
+}
+
+}  // namespace eventide::python

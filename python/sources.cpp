@@ -1,0 +1,189 @@
+// Recordings and cameras for Python.
+#include "python/arrays.h"
+#include "python/parts.h"
+
+#include <eventide/camera.h>
+#include <eventide/reader.h>
+#include <eventide/writer.h>
+
+#include <pybind11/stl.h>
+
+#include <string>
+
+namespace eventide::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// A reader or camera with what it read last.
+template <typename T>
+struct Source : Guarded<T> {
+    using Guarded<T>::Guarded;
+    Batch batch;
+};
+
+void check_signals() {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+/// Batches without events are passed over.
+template <typename T>
+py::array next(Source<T>& source) {
+    for (;;) {
+        check_signals();
+        std::vector<Event> events;
+        const bool more = source.with([&](T& it) {
+            if (!it.read(source.batch)) return false;
+            std::swap(events, source.batch.events);
+            return true;
+        });
+        if (!more) throw py::stop_iteration();
+        if (!events.empty()) return array_of(std::move(events));
+    }
+}
+
+void push(const EventReader&, const Batch& batch, Reconstructor& into) {
+    into.push(batch);
+}
+
+void push(const EventCamera& camera, const Batch& batch, Reconstructor& into) {
+    if (camera.gap_before()) into.mark_gap();
+    into.push(batch);
+    if (const auto clock = camera.clock()) into.advance(*clock);
+}
+
+template <typename T>
+bool read_into(Source<T>& source, GuardedReconstructor& reconstructor) {
+    check_signals();
+    return source.with([&](T& it) {
+        if (!it.read(source.batch)) return false;
+        const std::lock_guard lock{reconstructor.mutex};
+        push(it, source.batch, reconstructor.it);
+        return true;
+    });
+}
+
+py::list images(Source<EventReader>& source) {
+    const auto now = source.with([&](EventReader&) { return source.batch.images; });
+    py::list all;
+    for (const ReferenceImage& image : now)
+        all.append(py::make_tuple(to_us(image.t), array_of(image)));
+    return all;
+}
+
+/// What both have.
+template <typename T>
+py::class_<Source<T>> add_source(py::module_& module, const char* name, const char* meaning) {
+    py::class_<Source<T>> made(module, name, meaning);
+    made.def("__iter__", [](const py::object& self) { return self; })
+        .def("__next__", &next<T>)
+        .def("read_into", &read_into<T>, py::arg("reconstructor"),
+             "Reads on and pushes what came, with the times of images and of lost data; False at "
+             "the end.")
+        .def_property_readonly(
+            "width", [](Source<T>& s) { return s.it.width(); }, "px, of the sensor")
+        .def_property_readonly(
+            "height", [](Source<T>& s) { return s.it.height(); }, "px, of the sensor")
+        .def_property_readonly(
+            "format", [](Source<T>& s) { return s.it.info().format; }, "aedat4, evt3, davis, ...")
+        .def_property_readonly(
+            "sensor", [](Source<T>& s) { return s.it.info().name; }, "its name; may be empty")
+        .def_property_readonly(
+            "clock", [](Source<T>& s) { return us_of(s.with([](T& it) { return it.clock(); })); },
+            "us, the newest time told so far, or None")
+        .def_property_readonly(
+            "damaged", [](Source<T>& s) { return s.with([](T& it) { return it.damaged(); }); },
+            "places where bytes made no sense, so far");
+    return made;
+}
+
+void add_reader(py::module_& module) {
+    add_source<EventReader>(module, "Reader",
+                            "A recording; iterate it for structured arrays (t, x, y, on).")
+        .def(py::init([](const std::string& path, std::string format, int width, int height) {
+                 const py::gil_scoped_release released;
+                 return std::make_unique<Source<EventReader>>(
+                     path, ReaderOptions{std::move(format), width, height});
+             }),
+             py::arg("path"), py::arg("format") = "", py::arg("width") = 0, py::arg("height") = 0)
+        .def_property_readonly(
+            "remarks", [](Source<EventReader>& s) { return s.it.remarks(); },
+            "what had to be guessed: sentences")
+        .def_property_readonly("images", &images,
+                               "(t, uint16 array) of each image that came with the newest events")
+        .def(
+            "seek",
+            [](Source<EventReader>& s, std::int64_t t) {
+                s.with([&](EventReader& it) { it.seek(from_us(t)); });
+            },
+            py::arg("t"), "Goes on from t (us).")
+        .def(
+            "span",
+            [](Source<EventReader>& s) -> py::object {
+                const auto span = s.with([](EventReader& it) { return it.span(); });
+                if (!span) return py::none();
+                return py::make_tuple(to_us(span->begin), to_us(span->end));
+            },
+            "us, times of the first and last event, or None; reads all of it.");
+}
+
+void add_camera(py::module_& module) {
+    add_source<EventCamera>(module, "Camera",
+                            "A camera; iterate it for structured arrays (t, x, y, on).")
+        .def(
+            py::init([](const std::string& name, const std::string& settings) {
+                const py::gil_scoped_release released;
+                return std::make_unique<Source<EventCamera>>(name, CameraSettings{settings, false});
+            }),
+            py::arg("name"), py::arg("settings") = "")
+        .def_property_readonly(
+            "gap_before",
+            [](Source<EventCamera>& s) {
+                return s.with([](EventCamera& it) { return it.gap_before(); });
+            },
+            "whether data were lost before the newest events")
+        .def(
+            "stop", [](Source<EventCamera>& s) { s.it.stop(); },
+            "From any thread: iteration ends soon.");
+}
+
+void add_writer(py::module_& module) {
+    using GuardedWriter = Guarded<EventWriter>;
+    const auto finish = [](GuardedWriter& w) { w.with([](EventWriter& it) { it.finish(); }); };
+    py::class_<GuardedWriter>(module, "Writer",
+                              "A recording being written; it appears whole, with finish() or at "
+                              "the end of a with block.")
+        .def(py::init([](const std::string& path, int width, int height, std::string format,
+                         bool overwrite) {
+                 return std::make_unique<GuardedWriter>(
+                     path, SensorInfo{"", "", "", width, height},
+                     WriterOptions{std::move(format), overwrite});
+             }),
+             py::arg("path"), py::arg("width"), py::arg("height"), py::arg("format") = "",
+             py::arg("overwrite") = false)
+        .def(
+            "write",
+            [](GuardedWriter& w, const py::array& events) {
+                std::vector<Event> all;
+                append_events(events, all);
+                w.with([&](EventWriter& it) { it.write(std::span<const Event>{all}); });
+            },
+            py::arg("events"), "Events that follow the ones before in time.")
+        .def("finish", finish, "Ends the recording and shows the file.")
+        .def("__enter__", [](const py::object& self) { return self; })
+        .def("__exit__", [finish](GuardedWriter& w, const py::object& type, const py::object&,
+                                  const py::object&) {
+            if (type.is_none()) finish(w);
+        });
+}
+
+}  // namespace
+
+void add_sources(py::module_& module) {
+    add_reader(module);
+    add_camera(module);
+    add_writer(module);
+}
+
+}  // namespace eventide::python

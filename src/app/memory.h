@@ -1,0 +1,23 @@
+// What a run takes in memory, said before it is taken and when there is too little.
+#pragma once
+
+#include "pipeline/pipeline.h"
+#include "src/core/error.h"
+#include "src/model/model_config.h"
+
+#include <cstdint>
+#include <string>
+
+namespace eventide::app {
+
+/// Of the largest maps alone; the network takes this much at least.
+std::uint64_t network_bytes(const ModelConfig& config, const SensorInfo& sensor);
+
+/// Of the event windows and latent maps on their way, without frames.
+std::uint64_t buffer_bytes(const ModelConfig& config, const SensorInfo& sensor,
+                           const PipelineBuffers& buffers);
+
+/// Of kind failed: what wanted how much, and for which sensor.
+Error out_of_memory(const std::string& what, std::uint64_t bytes, const SensorInfo& sensor);
+
+}  // namespace eventide::app

@@ -1,0 +1,52 @@
+// The files a command was told to read and to write, so that no output lands on an input or on
+// another output.
+#pragma once
+
+#include "src/io/file_identity.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace eventide::app {
+
+/// Files are compared as the system knows them, so that links do not hide that two names are one
+/// file. All are named before anything is opened for writing.
+class NamedFiles {
+public:
+    /// Whether what exists may be replaced (--overwrite).
+    void may_replace(bool overwrite) { overwrite_ = overwrite; }
+
+    /// `option` as the user wrote it: "--model"; an empty path is nothing, "-" standard input.
+    /// Throws Error (usage) where it is an output.
+    void reads(const std::string& option, const std::filesystem::path& path);
+    /// A folder and everything in it.
+    void reads_all(const std::string& option, const std::filesystem::path& folder);
+
+    /// One file; an empty path is nothing, "-" standard output. Throws Error (usage) naming both
+    /// where it is also an input or another output, and for a file with something in it that may
+    /// not be replaced.
+    /// `said` is how the user wrote it, where that is not just the path: "y4m:x".
+    void writes(const std::string& option, const std::filesystem::path& path,
+                const std::string& said = {});
+    /// A folder, of which the files are named one by one.
+    void writes_folder(const std::string& option, const std::filesystem::path& folder);
+    /// A folder that is the output's own, with everything in it.
+    void writes_all(const std::string& option, const std::filesystem::path& folder);
+
+private:
+    struct Named {
+        std::string text;            ///< "--out x.mp4"
+        std::filesystem::path path;  ///< resolved; empty for standard input and output
+        FileIdentity identity;
+        bool whole_folder = false;
+    };
+    static Named named(std::string text, const std::filesystem::path& path);
+    static void refuse_overlap(const Named& named, const std::vector<Named>& others);
+    void add(Named named, std::vector<Named>& to);
+
+    bool overwrite_ = false;
+    std::vector<Named> inputs_, outputs_;
+};
+
+}  // namespace eventide::app

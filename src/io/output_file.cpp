@@ -1,0 +1,227 @@
+// A file being written: made beside its name and renamed, or growing under it.
+#include "src/io/output_file.h"
+
+#include "src/core/error.h"
+#include "src/io/file_identity.h"
+#include "src/io/system_words.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+namespace eventide {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr mode_t kMode = 0666;             // less what umask takes
+constexpr int kMostParts = 1000;           // left behind by as many killed runs
+constexpr std::size_t kLongestStem = 240;  // bytes: with .part below what a name may have
+
+/// Of an open file that the path stands for: what was written to it before, by whomever, stays.
+std::optional<int> descriptor_named(const fs::path& path) {
+    if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
+    if (path == "/dev/stderr") return STDERR_FILENO;
+    if (path.parent_path() != "/dev/fd" && path.parent_path() != "/proc/self/fd") return {};
+    const std::string number = path.filename().string();
+    int descriptor = -1;
+    const char* end = number.data() + number.size();
+    const auto [rest, error] = std::from_chars(number.data(), end, descriptor);
+    return error == std::errc{} && rest == end ? std::optional{descriptor} : std::nullopt;
+}
+
+Error existing_file(const std::string& name) {
+    return {ErrorKind::usage, name + ": exists already; --overwrite replaces it"};
+}
+
+}  // namespace
+
+void OutputFile::fail(const char* doing, int error) const {
+    throw Error(ErrorKind::failed, name_ + ": cannot be " + doing + ": " + system_words(error));
+}
+
+OutputFile::OutputFile(const fs::path& path, OutputOptions options)
+    : name_{path == "-" ? "standard output" : path.string()} {
+    struct stat facts {};
+    if (const auto descriptor = descriptor_named(path)) {
+        owned_ = false;
+        file_ = *descriptor;
+        if (::fstat(file_, &facts) != 0) fail("written", errno);
+        // In a file opened for appending (>>) every write goes to the end.
+        seekable_ = S_ISREG(facts.st_mode) && ::lseek(file_, 0, SEEK_CUR) == 0 &&
+                    (::fcntl(file_, F_GETFL) & O_APPEND) == 0;
+        return;
+    }
+    refuse_existing(path, options.overwrite);
+    const bool exists = ::stat(path.c_str(), &facts) == 0;
+    path_ = exists && !S_ISREG(facts.st_mode) ? path : resolved(path);
+    if (exists && S_ISFIFO(facts.st_mode)) {
+        open_pipe(options.give_up);
+    } else if (exists && !S_ISREG(facts.st_mode)) {
+        file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+        if (file_ < 0) fail("opened", errno);
+    } else if (options.appears == Appears::growing) {
+        open_growing(options.overwrite);
+    } else {
+        replaces_ = exists;
+        open_beside(options.overwrite);
+    }
+}
+
+OutputFile::~OutputFile() {
+    if (owned_ && file_ >= 0) ::close(file_);
+    forget_new_file();
+}
+
+/// open() of a pipe without a reader would wait where no signal can end it; so it is asked again
+/// every 20 ms.
+void OutputFile::open_pipe(const std::function<bool()>& give_up) {
+    for (;;) {
+        file_ = ::open(path_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+        if (file_ >= 0) break;
+        if (errno != ENXIO) fail("opened", errno);
+        if (give_up && give_up()) {
+            reader_gone_ = true;
+            return;
+        }
+        ::poll(nullptr, 0, 20);
+    }
+    // From here on a slow reader makes us wait.
+    ::fcntl(file_, F_SETFL, ::fcntl(file_, F_GETFL) & ~O_NONBLOCK);
+}
+
+void OutputFile::open_growing(bool overwrite) {
+    seekable_ = true;
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+    made_ = file_ >= 0;
+    if (made_) return;
+    if (errno != EEXIST) fail("made", errno);
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    struct stat facts {};
+    if (file_ < 0 || ::fstat(file_, &facts) != 0) fail("opened", errno);
+    // Made by another since refuse_existing() looked.
+    if (facts.st_size > 0 && !overwrite) {
+        ::close(std::exchange(file_, -1));
+        throw existing_file(name_);
+    }
+}
+
+void OutputFile::open_beside(bool overwrite) {
+    seekable_ = true;
+    struct stat facts {};
+    if (replaces_ && (::stat(path_.c_str(), &facts) != 0 || ::access(path_.c_str(), W_OK) != 0))
+        fail("replaced", errno);
+    const std::string stem = path_.filename().string().substr(0, kLongestStem) + ".part";
+    for (int n = 1; file_ < 0; ++n) {
+        part_ = path_.parent_path() / (n == 1 ? stem : stem + std::to_string(n));
+        file_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+        if (file_ >= 0 || (errno == EEXIST && n < kMostParts)) continue;
+        const int error = errno;
+        part_.clear();
+        fail("made", error);
+    }
+    if (replaces_) ::fchmod(file_, facts.st_mode & 07777);
+    replaces_ = replaces_ || overwrite;
+}
+
+/// What the file held goes with the first byte that takes its place.
+void OutputFile::begin() {
+    if (std::exchange(begun_, true) || !owned_ || !seekable_ || made_ || !part_.empty()) return;
+    if (::ftruncate(file_, 0) != 0) fail("emptied", errno);
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+    if (reader_gone_) return;
+    begin();
+    while (!bytes.empty()) {
+        const ssize_t n = ::write(file_, bytes.data(), bytes.size());
+        if (n >= 0) {
+            bytes = bytes.subspan(std::size_t(n));
+        } else if (errno == EPIPE) {
+            reader_gone_ = true;
+            return;
+        } else if (errno == EAGAIN) {
+            // Standard output may have been made non-blocking by whoever shares it.
+            pollfd waiting{file_, POLLOUT, 0};
+            ::poll(&waiting, 1, -1);
+        } else if (errno != EINTR) {
+            fail("written", errno);
+        }
+    }
+}
+
+void OutputFile::write(std::string_view text) {
+    write(std::as_bytes(std::span{text}));
+}
+
+void OutputFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = ::pwrite(file_, bytes.data(), bytes.size(), off_t(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail("written", errno);
+        bytes = bytes.subspan(std::size_t(n));
+        offset += std::uint64_t(n);
+    }
+}
+
+void OutputFile::publish() {
+    if (part_.empty()) return;
+    rename_part();
+    part_.clear();
+}
+
+void OutputFile::rename_part() {
+    if (replaces_) {
+        if (::rename(part_.c_str(), path_.c_str()) != 0) fail("renamed", errno);
+        return;
+    }
+    // Another may have made a file of that name meanwhile: it stays.
+    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE) == 0)
+        return;
+    if (errno == EEXIST) throw existing_file(name_);
+    if (errno != EINVAL && errno != ENOSYS) fail("renamed", errno);
+    // Not every file system knows that flag.
+    refuse_existing(path_, false);
+    if (::rename(part_.c_str(), path_.c_str()) != 0) fail("renamed", errno);
+}
+
+void OutputFile::close() {
+    // Before the renaming: some file systems say only now that there was no space.
+    if (owned_ && file_ >= 0 && ::close(std::exchange(file_, -1)) != 0) fail("written", errno);
+    publish();
+    forget_new_file();
+}
+
+void OutputFile::forget_new_file() {
+    if (!part_.empty()) ::unlink(std::exchange(part_, {}).c_str());
+    if (std::exchange(made_, false) && !begun_) ::unlink(path_.c_str());
+}
+
+void refuse_existing(const fs::path& path, bool overwrite) {
+    std::error_code none;
+    const auto status = fs::status(path, none);
+    if (fs::is_directory(status))
+        throw Error(ErrorKind::usage, path.string() + ": expected a file, found a folder");
+    if (overwrite || !fs::is_regular_file(status) || descriptor_named(path)) return;
+    if (fs::file_size(path, none) > 0) throw existing_file(path.string());
+}
+
+void write_file(const fs::path& path, std::span<const std::byte> bytes, bool overwrite) {
+    OutputFile file{path, {.overwrite = overwrite}};
+    file.write(bytes);
+    file.close();
+}
+
+void write_file(const fs::path& path, std::string_view text, bool overwrite) {
+    write_file(path, std::as_bytes(std::span{text}), overwrite);
+}
+
+}  // namespace eventide

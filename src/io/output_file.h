@@ -1,0 +1,87 @@
+// A file being written: the one place where files of the user are made or replaced.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace eventide {
+
+/// When a file shows under its name.
+enum class Appears {
+    /// At publish(): until then it is written beside, as NAME.part, and then renamed, so that there
+    /// is a whole file or, when that fails, the one from before.
+    whole,
+    /// From its first byte, for what others read while it grows or a killed run must leave behind:
+    /// videos, streams, recordings of cameras. What was there is kept until that first byte.
+    growing
+};
+
+struct OutputOptions {
+    bool overwrite = false;
+    Appears appears = Appears::whole;
+    /// Asked while a named pipe waits for its reader: true gives up. May be empty.
+    std::function<bool()> give_up = {};
+};
+
+class OutputFile {
+public:
+    /// "-" is standard output. Pipes and devices are written to, not replaced. Throws Error: usage
+    /// for a folder, and for a file with something in it without `overwrite`; failed when it cannot
+    /// be made.
+    explicit OutputFile(const std::filesystem::path& path, OutputOptions options = {});
+    /// Without publish() or close() what was written beside is removed.
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    const std::string& name() const { return name_; }  ///< for messages
+    bool is_seekable() const { return seekable_; }
+    /// Whoever read the pipe went away: no error, but nothing is written any more.
+    bool reader_gone() const { return reader_gone_; }
+
+    /// Throws Error (failed) with the system's words.
+    void write(std::span<const std::byte> bytes);
+    void write(std::string_view text);
+    /// Over bytes that were written; only where is_seekable().
+    void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+
+    /// Shows the file under its name; it may be written on.
+    void publish();
+    /// publish(), and the end. A growing file that never got a byte is not left behind.
+    void close();
+
+private:
+    void open_pipe(const std::function<bool()>& give_up);
+    void open_growing(bool overwrite);
+    void open_beside(bool overwrite);
+    void begin();
+    void rename_part();
+    void forget_new_file();
+    [[noreturn]] void fail(const char* doing, int error) const;
+
+    std::filesystem::path path_;  // without links
+    std::filesystem::path part_;  // beside it; empty when there is none (any more)
+    std::string name_;
+    int file_ = -1;
+    bool owned_ = true;  // standard output is not ours to close
+    bool seekable_ = false, reader_gone_ = false;
+    bool replaces_ = false;  // a file was there, and may go
+    bool made_ = false;      // by us, under its own name
+    bool begun_ = false;     // it got a byte
+};
+
+/// Throws Error (usage) when `path` is a folder, or a file with something in it and `overwrite` is
+/// not set: for a word early in long work, since OutputFile asks again.
+void refuse_existing(const std::filesystem::path& path, bool overwrite);
+
+/// A whole file at once. Throws as OutputFile.
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                bool overwrite);
+void write_file(const std::filesystem::path& path, std::string_view text, bool overwrite);
+
+}  // namespace eventide

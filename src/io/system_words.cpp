@@ -1,0 +1,33 @@
+// What the operating system said, in words.
+#include "src/io/system_words.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace eventide {
+
+std::string system_words(int error) {
+    const std::string words = std::generic_category().message(error);
+    switch (error) {
+        case EMFILE:
+            return words + " in this process; ulimit -n raises the limit";
+        case EFBIG:
+            return words + " for the file system or the limit of ulimit -f";
+        default:
+            return words;
+    }
+}
+
+bool out_of_descriptors(int needed) {
+    if (needed == 0) return false;
+    const int probe = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (probe < 0) return errno == EMFILE || errno == ENFILE;
+    const bool out = out_of_descriptors(needed - 1);
+    ::close(probe);
+    return out;
+}
+
+}  // namespace eventide

@@ -1,0 +1,15 @@
+// What the operating system said, in words.
+#pragma once
+
+#include <string>
+
+namespace eventide {
+
+/// For an errno value: the system's own words, and what to do where those alone do not help.
+std::string system_words(int error);
+
+/// Whether this process cannot open so many files more: for libraries that do not say why they
+/// failed.
+bool out_of_descriptors(int needed);
+
+}  // namespace eventide

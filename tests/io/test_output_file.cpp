@@ -1,0 +1,190 @@
+// Files appear whole or not at all, and what was there stays until then.
+#include "src/io/output_file.h"
+
+#include "src/core/error.h"
+#include "tests/support/file_limit.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+#include <filesystem>
+
+namespace eventide {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::read_text;
+using test::TempFolder;
+using test::write_text;
+
+const OutputOptions kReplace{.overwrite = true};
+const OutputOptions kGrow{.appears = Appears::growing};
+const OutputOptions kReplaceGrowing{.overwrite = true, .appears = Appears::growing};
+
+std::size_t files_in(const TempFolder& temp) {
+    return std::size_t(std::distance(fs::directory_iterator{temp.path()}, {}));
+}
+
+std::string refusal(const std::string& path, const OutputOptions& options) {
+    try {
+        OutputFile file{path, options};
+    } catch (const Error& error) {
+        return (error.kind() == ErrorKind::usage ? "usage: " : "failed: ") +
+               std::string{error.what()};
+    }
+    return {};
+}
+
+TEST(OutputFile, AWholeFileShowsWhenItIsClosedAndNotBefore) {
+    const TempFolder temp;
+    OutputFile file{temp / "a"};
+    file.write("one ");
+    file.write("two");
+    EXPECT_FALSE(fs::exists(temp / "a"));
+    file.close();
+    EXPECT_EQ(read_text(temp / "a"), "one two");
+    EXPECT_EQ(files_in(temp), 1U);
+}
+
+TEST(OutputFile, WhatIsNotFinishedLeavesTheOldFileAndNothingBeside) {
+    const TempFolder temp;
+    write_text(temp / "a", "old");
+    {
+        OutputFile file{temp / "a", kReplace};
+        file.write("half");
+    }
+    EXPECT_EQ(read_text(temp / "a"), "old");
+    EXPECT_EQ(files_in(temp), 1U);
+}
+
+TEST(OutputFile, AFullDiskLeavesTheOldFile) {
+    const TempFolder temp;
+    write_text(temp / "a", "old");
+    for (const Appears appears : {Appears::whole, Appears::growing}) {
+        const test::FileLimit disk{0};
+        OutputFile file{temp / "a", {.overwrite = true, .appears = appears}};
+        try {
+            file.write("new");
+            FAIL() << "writing to a full disk went well";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::failed);
+            EXPECT_NE(std::string{error.what()}.find(temp / "a" + ": cannot be written: "),
+                      std::string::npos)
+                << error.what();
+        }
+        if (appears == Appears::whole) {
+            EXPECT_EQ(read_text(temp / "a"), "old");
+        }
+    }
+    EXPECT_EQ(files_in(temp), 1U);
+}
+
+TEST(OutputFile, AFileWithSomethingInItIsKeptUnlessItMayBeReplaced) {
+    const TempFolder temp;
+    write_text(temp / "a", "precious");
+    write_text(temp / "empty", "");
+    for (const OutputOptions& options : {OutputOptions{}, kGrow}) {
+        EXPECT_EQ(refusal(temp / "a", options),
+                  "usage: " + temp / "a" + ": exists already; --overwrite replaces it");
+        EXPECT_NE(refusal(temp.path(), options).find("found a folder"), std::string::npos);
+        EXPECT_EQ(refusal(temp / "empty", options), "");
+    }
+    EXPECT_EQ(read_text(temp / "a"), "precious");
+    write_file(temp / "a", std::string_view{"new"}, true);
+    EXPECT_EQ(read_text(temp / "a"), "new");
+}
+
+TEST(OutputFile, AFileThatAnotherMakesMeanwhileStays) {
+    const TempFolder temp;
+    OutputFile file{temp / "a"};
+    file.write("ours");
+    write_text(temp / "a", "theirs");
+    EXPECT_THROW(file.close(), Error);
+    EXPECT_EQ(read_text(temp / "a"), "theirs");
+}
+
+TEST(OutputFile, ReplacingKeepsLinksAndPermissions) {
+    const TempFolder temp;
+    write_text(temp / "target", "old");
+    fs::permissions(temp / "target", fs::perms{0640});
+    fs::create_symlink("target", temp / "link");
+    write_file(temp / "link", std::string_view{"new"}, true);
+    EXPECT_TRUE(fs::is_symlink(temp / "link"));
+    EXPECT_EQ(read_text(temp / "target"), "new");
+    EXPECT_EQ(fs::status(temp / "target").permissions(), fs::perms{0640});
+}
+
+TEST(OutputFile, ANameOfItsOwnBesideIsLeftToWhoeverHasIt) {
+    const TempFolder temp;
+    write_text(temp / "a.part", "mine");
+    write_file(temp / "a", std::string_view{"new"}, false);
+    EXPECT_EQ(read_text(temp / "a.part"), "mine");
+    EXPECT_EQ(read_text(temp / "a"), "new");
+    const std::string longest(255, 'x');
+    write_file(temp / longest, std::string_view{"new"}, false);
+    EXPECT_EQ(read_text(temp / longest), "new");
+}
+
+TEST(OutputFile, AGrowingFileReplacesWithItsFirstByteOnly) {
+    const TempFolder temp;
+    write_text(temp / "a", "old and long");
+    {
+        OutputFile file{temp / "a", kReplaceGrowing};
+        EXPECT_EQ(read_text(temp / "a"), "old and long");
+        file.write("new");
+        EXPECT_EQ(read_text(temp / "a"), "new");
+        file.write("er");
+    }
+    EXPECT_EQ(read_text(temp / "a"), "newer");
+    { OutputFile never_written{temp / "b", kGrow}; }
+    EXPECT_FALSE(fs::exists(temp / "b"));
+}
+
+TEST(OutputFile, WhatIsPublishedGrowsOn) {
+    const TempFolder temp;
+    OutputFile file{temp / "a"};
+    file.write("one\n");
+    file.publish();
+    EXPECT_EQ(read_text(temp / "a"), "one\n");
+    file.write("two\n");
+    file.close();
+    EXPECT_EQ(read_text(temp / "a"), "one\ntwo\n");
+}
+
+TEST(OutputFile, BytesCanBeMended) {
+    const TempFolder temp;
+    OutputFile file{temp / "a"};
+    ASSERT_TRUE(file.is_seekable());
+    file.write("??ta");
+    file.write_at(0, std::as_bytes(std::span{"da", 2}));
+    file.write("!");
+    file.close();
+    EXPECT_EQ(read_text(temp / "a"), "data!");
+}
+
+TEST(OutputFile, DevicesAreWrittenToAndNotReplaced) {
+    write_file("/dev/null", std::string_view{"x"}, false);
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_THROW(write_file("/dev/full", std::string_view{"x"}, false), Error);
+}
+
+TEST(OutputFile, SaysWhyItCannotBeMade) {
+    EXPECT_EQ(refusal("/nowhere/a", {}),
+              "failed: /nowhere/a: cannot be made: No such file or directory");
+}
+
+TEST(OutputFile, RunningOutOfDescriptorsIsSaidAsSuch) {
+    const TempFolder temp;
+    rlimit before{};
+    getrlimit(RLIMIT_NOFILE, &before);
+    const rlimit none{0, before.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+    const std::string words = refusal(temp / "a", {});
+    setrlimit(RLIMIT_NOFILE, &before);
+    EXPECT_NE(words.find("ulimit -n"), std::string::npos) << words;
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,47 @@
+// The library as a program uses it, beside the program that it must agree with.
+#pragma once
+
+#include "tests/system/program_test.h"
+
+#include <eventide/eventide.hpp>
+
+#include <string>
+#include <vector>
+
+namespace eventide::test {
+
+class LibraryTest : public ProgramTest {
+protected:
+    /// Numbers that are the same in every process.
+    static ReconstructorOptions repeatable(const std::string& window, int lookahead);
+    /// The same for the program.
+    static std::vector<std::string> repeatable_arguments(const std::string& window, int lookahead);
+
+    static Reconstructor reconstructor(const ReconstructorOptions& options);
+
+    /// Intensity and sigma of all frames, as `eventide run` writes them.
+    std::string frames_of_run(const std::vector<std::string>& arguments) const;
+};
+
+/// All events of the recording.
+std::vector<Event> events_of(const std::string& recording);
+
+/// A frame as `--out grayf32: --uncertainty separate` writes it.
+void append_frame(const Frame& frame, std::string& bytes);
+
+/// What next() gives now.
+void append_frames(Reconstructor& reconstructor, std::string& bytes);
+
+/// The words of the error that `body` must throw.
+template <typename Body>
+std::string error_of(Body body, ErrorKind kind = ErrorKind::usage) {
+    try {
+        body();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind) << error.what();
+        return error.what();
+    }
+    return "no error";
+}
+
+}  // namespace eventide::test

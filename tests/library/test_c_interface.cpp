@@ -1,0 +1,174 @@
+// The interface for C: the same frames, and every misuse is a status with words.
+#include "tests/library/library_test.h"
+
+#include <eventide/eventide.h>
+
+#include <cstring>
+
+namespace eventide::test {
+namespace {
+
+class CInterface : public LibraryTest {
+protected:
+    void TearDown() override { eventide_reconstructor_close(reconstructor_); }
+
+    eventide_options repeatable_options() {
+        eventide_options options;
+        eventide_options_init(&options, sizeof options);
+        options.window = "7ms";
+        options.lookahead = 1;
+        options.fps = "100";
+        options.precision = "f32";
+        options.kernels = "own";
+        options.threads = 1;
+        return options;
+    }
+    void open() {
+        const eventide_options options = repeatable_options();
+        ASSERT_EQ(eventide_reconstructor_open(model().c_str(), 64, 48, &options, &reconstructor_),
+                  EVENTIDE_OK)
+            << eventide_error_message();
+    }
+    eventide_status open_with(const eventide_options& options) {
+        return eventide_reconstructor_open(model().c_str(), 64, 48, &options, &reconstructor_);
+    }
+    static bool said(const char* words) {
+        return std::strstr(eventide_error_message(), words) != nullptr;
+    }
+
+    eventide_reconstructor* reconstructor_ = nullptr;
+};
+
+TEST_F(CInterface, GivesTheFramesOfTheOneInCpp) {
+    open();
+    eventide_source* source = nullptr;
+    ASSERT_EQ(eventide_recording_open(recording().c_str(), nullptr, 0, 0, &source), EVENTIDE_OK);
+    EXPECT_EQ(eventide_source_width(source), 64);
+    EXPECT_EQ(eventide_source_height(source), 48);
+    const eventide_event* events = nullptr;
+    std::size_t count = 0;
+    std::string frames;
+    const auto take_frames = [&] {
+        for (eventide_frame f; eventide_next(reconstructor_, &f) == EVENTIDE_OK;) {
+            EXPECT_EQ(f.width, 64);
+            const auto bytes = std::size_t(f.width) * std::size_t(f.height) * sizeof(float);
+            frames.append(reinterpret_cast<const char*>(f.intensity), bytes);
+            frames.append(reinterpret_cast<const char*>(f.sigma), bytes);
+        }
+    };
+    while (eventide_read(source, &events, &count) == EVENTIDE_OK) {
+        EXPECT_EQ(eventide_push(reconstructor_, events, count), EVENTIDE_OK);
+        take_frames();
+    }
+    std::int64_t end = 0;
+    EXPECT_EQ(eventide_source_clock(source, &end), EVENTIDE_OK);
+    EXPECT_EQ(eventide_finish(reconstructor_, &end), EVENTIDE_OK);
+    take_frames();
+    eventide_source_close(source);
+    EXPECT_TRUE(frames == frames_of_run(repeatable_arguments("7ms", 1)));
+    eventide_counters counters;
+    EXPECT_EQ(eventide_count(reconstructor_, &counters), EVENTIDE_OK);
+    EXPECT_EQ(counters.frames * 64 * 48 * 8, frames.size());
+    EXPECT_EQ(counters.off_sensor + counters.time_backwards + counters.bad_time, 0U);
+}
+
+TEST_F(CInterface, RendersAnyReadyTimeInAnySize) {
+    open();
+    std::int64_t t = 0;
+    EXPECT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_NONE);
+    const eventide_event events[]{{1000, 3, 4, 1}, {9000, 5, 6, 0}, {40'000, 63, 47, 255}};
+    ASSERT_EQ(eventide_push(reconstructor_, events, 3), EVENTIDE_OK);
+    ASSERT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_OK);
+    EXPECT_EQ(eventide_ready(reconstructor_, t), EVENTIDE_OK);
+    EXPECT_EQ(eventide_ready(reconstructor_, t + 1), EVENTIDE_NONE);
+    eventide_frame frame;
+    const eventide_frame_size size{128, 96, {10, 20, 30, 40}};
+    ASSERT_EQ(eventide_render(reconstructor_, t, &size, &frame), EVENTIDE_OK);
+    EXPECT_EQ(frame.width, 30);
+    EXPECT_EQ(frame.height, 40);
+    EXPECT_EQ(frame.t, t);
+    EXPECT_EQ(eventide_render(reconstructor_, t + 100'000, nullptr, &frame), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("not pushed yet")) << eventide_error_message();
+    EXPECT_EQ(eventide_save_state(reconstructor_, (temp_ / "state").c_str(), 0), EVENTIDE_OK);
+    EXPECT_EQ(eventide_save_state(reconstructor_, (temp_ / "state").c_str(), 0), EVENTIDE_USAGE);
+    EXPECT_EQ(eventide_restore_state(reconstructor_, (temp_ / "state").c_str()), EVENTIDE_OK);
+    EXPECT_EQ(eventide_reset(reconstructor_), EVENTIDE_OK);
+    EXPECT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_NONE);
+}
+
+TEST_F(CInterface, RefusesWhatMakesNoSenseInWords) {
+    eventide_frame frame;
+    EXPECT_EQ(eventide_next(nullptr, &frame), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("expected a reconstructor, found NULL")) << eventide_error_message();
+    EXPECT_EQ(eventide_reconstructor_open("nobody", 64, 48, nullptr, &reconstructor_),
+              EVENTIDE_INPUT);
+    EXPECT_EQ(reconstructor_, nullptr);
+    EXPECT_TRUE(said("'nobody'"));
+    EXPECT_EQ(eventide_reconstructor_open(nullptr, 64, 48, nullptr, &reconstructor_),
+              EVENTIDE_USAGE);
+    EXPECT_EQ(eventide_reconstructor_open("default", 64, 48, nullptr, nullptr), EVENTIDE_USAGE);
+    eventide_options options = repeatable_options();
+    options.precision = "f64";
+    EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("precision: expected auto, f32, bf16, found 'f64'"));
+    options = repeatable_options();
+    options.struct_size = 9999;
+    EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("struct_size"));
+    options = repeatable_options();
+    options.window = nullptr;
+    EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
+    open();
+    EXPECT_EQ(eventide_push(reconstructor_, nullptr, 0), EVENTIDE_OK) << "nothing is pushed";
+    EXPECT_EQ(eventide_push(reconstructor_, nullptr, 5), EVENTIDE_USAGE);
+    EXPECT_EQ(eventide_next(reconstructor_, nullptr), EVENTIDE_USAGE);
+    eventide_source* source = nullptr;
+    EXPECT_EQ(eventide_recording_open((temp_ / "none").c_str(), nullptr, 0, 0, &source),
+              EVENTIDE_INPUT);
+    EXPECT_EQ(eventide_camera_open("kodak:", nullptr, &source), EVENTIDE_USAGE);
+    EXPECT_EQ(source, nullptr);
+    eventide_source_close(nullptr);
+    eventide_writer_close(nullptr);
+}
+
+TEST_F(CInterface, OfOlderHeadersHasTheDefaultsOfWhatTheyLack) {
+    eventide_options options = repeatable_options();
+    options.struct_size = offsetof(eventide_options, hot_pixels);
+    options.hot_pixels = "beyond what the caller knows";
+    EXPECT_EQ(open_with(options), EVENTIDE_OK) << eventide_error_message();
+}
+
+TEST_F(CInterface, CamerasPushWhatTheyRead) {
+    open();
+    eventide_source* source = nullptr;
+    ASSERT_EQ(eventide_camera_open("sim:demo?seconds=0.2&size=64x48&speed=max", nullptr, &source),
+              EVENTIDE_OK);
+    EXPECT_EQ(eventide_seek(source, 0), EVENTIDE_USAGE);
+    int frames = 0;
+    eventide_frame frame;
+    while (eventide_read_into(source, reconstructor_) == EVENTIDE_OK)
+        while (eventide_next(reconstructor_, &frame) == EVENTIDE_OK) ++frames;
+    EXPECT_GT(frames, 15);
+    eventide_source_close(source);
+}
+
+TEST_F(CInterface, WritesWhatItReadsAgain) {
+    eventide_writer* writer = nullptr;
+    const std::string file = temp_ / "three.aedat4";
+    ASSERT_EQ(eventide_writer_open(file.c_str(), nullptr, 64, 48, 0, &writer), EVENTIDE_OK);
+    const eventide_event events[]{{1000, 3, 4, 1}, {1001, 5, 6, 0}, {2000, 63, 47, 9}};
+    EXPECT_EQ(eventide_write(writer, events, 3), EVENTIDE_OK) << eventide_error_message();
+    EXPECT_EQ(eventide_writer_finish(writer), EVENTIDE_OK);
+    eventide_writer_close(writer);
+    const std::vector<Event> expected{{from_us(1000), 3, 4, Polarity::on},
+                                      {from_us(1001), 5, 6, Polarity::off},
+                                      {from_us(2000), 63, 47, Polarity::on}};
+    EXPECT_EQ(events_of(file), expected);
+}
+
+TEST(CVersion, IsThatOfTheHeaders) {
+    EXPECT_STREQ(eventide_version(), version());
+}
+
+}  // namespace
+}  // namespace eventide::test

@@ -1,0 +1,48 @@
+// A camera in software through the library.
+#include "tests/library/library_test.h"
+
+namespace eventide::test {
+namespace {
+
+class Cameras : public LibraryTest {};
+
+TEST_F(Cameras, GiveEventsAndAClockThatFramesFollow) {
+    EventCamera camera{"sim:demo?seconds=0.3&size=64x48&speed=max"};
+    EXPECT_EQ(camera.width(), 64);
+    EXPECT_EQ(camera.height(), 48);
+    EXPECT_EQ(camera.clock(), std::nullopt);
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    Frame frame;
+    SensorTime newest{};
+    int frames = 0;
+    for (Batch batch; camera.read(batch);) {
+        if (camera.gap_before()) reconstructor.mark_gap();
+        reconstructor.push(batch);
+        if (const auto clock = camera.clock()) {
+            reconstructor.advance(*clock);
+            newest = *clock;
+        }
+        for (; reconstructor.next(frame); ++frames) EXPECT_LE(frame.t, newest);
+    }
+    EXPECT_GE(frames, 26);
+    EXPECT_EQ(camera.damaged(), 0U);
+    EXPECT_EQ(reconstructor.counters().late, 0U) << "the clock keeps its promise";
+}
+
+TEST_F(Cameras, EndWhenTheyAreToldTo) {
+    EventCamera camera{"sim:demo?size=64x48&speed=1"};
+    Batch batch;
+    EXPECT_TRUE(camera.read(batch));
+    camera.stop();
+    while (camera.read(batch)) {
+    }
+}
+
+TEST_F(Cameras, ThatCannotBeOpenedSayWhy) {
+    EXPECT_NE(error_of([] { EventCamera{"kodak:"}; }).find("kodak"), std::string::npos);
+    EXPECT_NE(error_of([] { EventCamera{"v4l2:/dev/none"}; }, ErrorKind::device).find("/dev/none"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace eventide::test

@@ -1,0 +1,190 @@
+// The installed tree as its users have it: found by CMake, pkg-config and Python, wherever it lies.
+#include "tests/system/program_test.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <sstream>
+
+namespace eventide::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Installed : public ProgramTest {
+protected:
+    /// Installed somewhere, and moved from there.
+    static void SetUpTestSuite() {
+        ProgramTest::SetUpTestSuite();
+        place_ = std::make_unique<TempFolder>();
+        const Result made =
+            run({EVENTIDE_CMAKE, "--install", EVENTIDE_BUILD_DIR, "--prefix", *place_ / "first"});
+        ASSERT_EQ(made.exit_code, 0) << made.error;
+        fs::rename(*place_ / "first", *place_ / "eventide");
+    }
+    static void TearDownTestSuite() { place_.reset(); }
+
+    static std::string prefix() { return *place_ / "eventide"; }
+    static std::string library_folder() { return prefix() + "/" EVENTIDE_LIBDIR; }
+    static std::string example(const std::string& name) {
+        return EVENTIDE_SOURCE_DIR "/examples/" + name;
+    }
+
+    void succeed(const std::vector<std::string>& command, ProcessSettings settings = {}) const {
+        const Result result = run(command, std::move(settings));
+        ASSERT_EQ(result.exit_code, 0) << command.front() << "\n" << result.output << result.error;
+    }
+
+    /// The example writes what `eventide run` does, with the installed default model.
+    void expect_frames_of_run(std::vector<std::string> example,
+                              ProcessSettings settings = {}) const {
+        example.insert(example.end(), {recording(), temp_ / "ours"});
+        settings.environment["EVENTIDE_MODELS"] = "";
+        succeed(example, settings);
+        const Result theirs = eventide({"run", recording(), "--frames", "ignore", "--model",
+                                        prefix() + "/share/eventide/models/default.safetensors",
+                                        "--precision", "f32", "--out", "grayf32:theirs",
+                                        "--uncertainty", "separate", "--sigma-white", "1"});
+        ASSERT_EQ(theirs.exit_code, 0) << theirs.error;
+        const std::string frames = read_text(temp_ / "ours");
+        EXPECT_GE(frames.size(), 12U * 64 * 48 * 8);
+        EXPECT_TRUE(frames == read_text(temp_ / "theirs"));
+    }
+
+    inline static std::unique_ptr<TempFolder> place_;
+};
+
+TEST_F(Installed, FindPackageGivesAProgramTheSameFrames) {
+    succeed({EVENTIDE_CMAKE, "-S", example(""), "-B", temp_ / "build",
+             "-DCMAKE_PREFIX_PATH=" + prefix()});
+    succeed({EVENTIDE_CMAKE, "--build", temp_ / "build"});
+    expect_frames_of_run({temp_ / "build/reconstruct"});
+}
+
+TEST_F(Installed, PkgConfigGivesAProgramInCTheSameFrames) {
+    const ProcessSettings where{
+        .environment = {{"PKG_CONFIG_PATH", library_folder() + "/pkgconfig"}}};
+    const Result version = run({"pkg-config", "--modversion", "eventide"}, where);
+    EXPECT_EQ(version.output, EVENTIDE_VERSION "\n") << version.error;
+    succeed({"sh", "-c",
+             "cc -std=c11 -Wall -Wextra -Wpedantic -Werror " + example("reconstruct.c") + " -o " +
+                 (temp_ / "reconstruct") + " $(pkg-config --cflags --libs eventide)"},
+            where);
+    expect_frames_of_run({temp_ / "reconstruct"},
+                         {.environment = {{"LD_LIBRARY_PATH", library_folder()}}});
+}
+
+TEST_F(Installed, PythonGivesTheSameFrames) {
+#ifdef EVENTIDE_PYTHON
+    expect_frames_of_run({EVENTIDE_PYTHON, example("reconstruct.py")},
+                         {.environment = {{"PYTHONPATH", prefix() + "/" EVENTIDE_PYTHON_DIR}}});
+#else
+    GTEST_SKIP() << "built without EVENTIDE_PYTHON";
+#endif
+}
+
+/// The block of the README in this language.
+std::string snippet(const std::string& language) {
+    const std::string page = read_text(EVENTIDE_SOURCE_DIR "/README.md"),
+                      fence = "```" + language + "\n";
+    const std::size_t begin = page.find(fence);
+    if (begin == std::string::npos) return "the README has no block of " + language;
+    return page.substr(begin + fence.size(),
+                       page.find("```\n", begin + fence.size()) - begin - fence.size());
+}
+
+/// "33332 us: 0.42 +- 0.10" without the numbers, which are measured to be fast and not repeatable.
+std::vector<std::string> times_in(const std::string& output) {
+    std::vector<std::string> times;
+    std::istringstream lines{output};
+    for (std::string line; std::getline(lines, line);)
+        times.push_back(line.substr(0, line.find(" us: ")));
+    return times;
+}
+
+TEST_F(Installed, SnippetsOfTheReadmeRunAndAgree) {
+    fs::copy_file(recording(), temp_ / "recording.aedat4");
+    const ProcessSettings where{
+        .environment = {{"PKG_CONFIG_PATH", library_folder() + "/pkgconfig"},
+                        {"LD_LIBRARY_PATH", library_folder()},
+                        {"PYTHONPATH", prefix() + "/" EVENTIDE_PYTHON_DIR}},
+        .folder = temp_.path().string()};
+    write_text(temp_ / "snippet.cpp", snippet("cpp"));
+    write_text(temp_ / "snippet.c", snippet("c"));
+    write_text(temp_ / "snippet.py", snippet("python"));
+    succeed({"sh", "-c",
+             "c++ -std=c++20 -Wall -Wextra -Werror snippet.cpp -o in_cpp $(pkg-config --cflags "
+             "--libs eventide)"},
+            where);
+    succeed({"sh", "-c",
+             "cc -std=c11 -Wall -Wextra -Werror snippet.c -o in_c $(pkg-config --cflags --libs "
+             "eventide)"},
+            where);
+    const Result in_cpp = run({"./in_cpp"}, where), in_c = run({"./in_c"}, where);
+    EXPECT_GT(times_in(in_cpp.output).size(), 8U) << in_cpp.error;
+    EXPECT_EQ(times_in(in_c.output), times_in(in_cpp.output)) << in_c.error;
+#ifdef EVENTIDE_PYTHON
+    const Result in_python = run({EVENTIDE_PYTHON, "snippet.py"}, where);
+    EXPECT_EQ(times_in(in_python.output), times_in(in_cpp.output)) << in_python.error;
+#endif
+}
+
+TEST_F(Installed, HeadersCompileAloneAndWithEveryWarning) {
+    for (const auto& entry : fs::directory_iterator{prefix() + "/include/eventide"}) {
+        const std::string header = entry.path().filename().string();
+        write_text(temp_ / "alone.cpp", "#include <eventide/" + header + ">\nint main() {}\n");
+        succeed({"c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic",
+                 "-Wconversion", "-Wshadow", "-Werror", "-I", prefix() + "/include",
+                 temp_ / "alone.cpp"});
+    }
+}
+
+TEST_F(Installed, TreeHasTheModelsTheCamerasAndTheLicence) {
+    std::size_t models = 0;
+    for (const auto& entry :
+         fs::recursive_directory_iterator{prefix() + "/share/eventide/models"}) {
+        EXPECT_EQ(entry.path().extension(), ".safetensors") << "no folder of checkpoints";
+        ++models;
+    }
+    EXPECT_GE(models, 3U);
+    for (const char* const file :
+         {"share/eventide/cameras/davis346.toml", "share/eventide/default.toml",
+          "share/doc/eventide/LICENSE", "lib/udev/rules.d/65-eventide.rules", "bin/eventide",
+          "share/man/man1/eventide.1", "share/bash-completion/completions/eventide"})
+        EXPECT_TRUE(fs::exists(prefix() + "/" + file)) << file;
+}
+
+/// What dpkg says of a package: one field.
+std::string field(const std::string& package, const std::string& name) {
+    return run({"dpkg-deb", "--field", package, name}).output;
+}
+
+TEST_F(Installed, DebianPackagesHoldTheSameAndSayWhatTheyNeed) {
+    succeed(
+        {"cpack", "--config", EVENTIDE_BUILD_DIR "/CPackConfig.cmake", "-B", temp_ / "packages"});
+    std::map<std::string, std::string> packages;
+    for (const auto& entry : fs::directory_iterator{temp_ / "packages"})
+        if (entry.path().extension() == ".deb") {
+            const std::string name = entry.path().filename().string();
+            packages[name.substr(0, name.find('_'))] = entry.path().string();
+            succeed({"dpkg-deb", "-x", entry.path().string(), temp_ / "root"});
+        }
+    ASSERT_TRUE(packages.contains("libeventide1") && packages.contains("libeventide-dev") &&
+                packages.contains("eventide"));
+    EXPECT_NE(field(packages["libeventide1"], "Depends").find("libtbb12"), std::string::npos);
+    EXPECT_NE(field(packages["eventide"], "Depends").find("libavformat"), std::string::npos);
+    EXPECT_EQ(field(packages["libeventide-dev"], "Depends"),
+              "libeventide1 (= " EVENTIDE_VERSION ")\n");
+    const Result version = run({temp_ / "root/usr/bin/eventide", "--version"});
+    EXPECT_TRUE(version.output.starts_with("eventide " EVENTIDE_VERSION "\n")) << version.error;
+#ifdef EVENTIDE_PYTHON
+    EXPECT_NE(field(packages["python3-eventide"], "Depends").find("python3-numpy"),
+              std::string::npos);
+    expect_frames_of_run(
+        {EVENTIDE_PYTHON, example("reconstruct.py")},
+        {.environment = {{"PYTHONPATH", temp_ / "root/usr/" EVENTIDE_PYTHON_DIR}}});
+#endif
+}
+
+}  // namespace
+}  // namespace eventide::test

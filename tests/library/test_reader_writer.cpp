@@ -1,0 +1,101 @@
+// Recordings through the library: read whole, from a time on, and written again.
+#include "tests/library/library_test.h"
+
+#include <filesystem>
+
+namespace eventide::test {
+namespace {
+
+class Recordings : public LibraryTest {};
+
+TEST_F(Recordings, TellTheirSensorTheirTimesAndTheirImages) {
+    EventReader reader{recording()};
+    EXPECT_EQ(reader.width(), 64);
+    EXPECT_EQ(reader.height(), 48);
+    EXPECT_EQ(reader.info().format, "aedat4");
+    EXPECT_EQ(reader.clock(), std::nullopt);
+    std::vector<Event> events;
+    std::size_t images = 0;
+    for (Batch batch; reader.read(batch);) {
+        events.insert(events.end(), batch.events.begin(), batch.events.end());
+        images += batch.images.size();
+    }
+    EXPECT_GT(events.size(), 1000U);
+    EXPECT_EQ(images, 11U);
+    EXPECT_EQ(reader.damaged(), 0U);
+    Batch left{events, {}, {}, {}};
+    EXPECT_FALSE(reader.read(left)) << "the end stays the end";
+    EXPECT_TRUE(left.events.empty()) << "a batch is emptied before it is filled";
+    EXPECT_GE(reader.clock(), events.back().t);
+    const auto span = EventReader{recording()}.span();
+    ASSERT_TRUE(span);
+    EXPECT_EQ(span->begin, events.front().t);
+    EXPECT_EQ(span->end, events.back().t);
+}
+
+TEST_F(Recordings, AreReadFromATimeOn) {
+    const std::vector<Event> events = events_of(recording());
+    const SensorTime middle = events[events.size() / 2].t;
+    EventReader reader{recording()};
+    Batch batch;
+    while (reader.read(batch)) {
+    }
+    reader.seek(middle);
+    std::vector<Event> rest;
+    while (reader.read(batch)) rest.insert(rest.end(), batch.events.begin(), batch.events.end());
+    ASSERT_GE(events.size(), rest.size());
+    ASSERT_FALSE(rest.empty());
+    EXPECT_LE(rest.front().t, middle);
+    EXPECT_EQ(rest.back(), events.back());
+}
+
+TEST_F(Recordings, ComeBackAsTheyWereWritten) {
+    EventReader reader{recording()};
+    EventWriter events_alone{temp_ / "events.raw", reader.info(), {"evt3", false}};
+    EventWriter all{temp_ / "all.aedat4", reader.info()};
+    std::vector<Event> events;
+    for (Batch batch; reader.read(batch);) {
+        events.insert(events.end(), batch.events.begin(), batch.events.end());
+        events_alone.write(batch);
+        all.write(batch);
+    }
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "all.aedat4")) << "not before it is whole";
+    events_alone.finish();
+    all.finish();
+    EXPECT_EQ(events_alone.not_held(), 11U) << "images";
+    EXPECT_EQ(all.not_held(), 0U);
+    EXPECT_EQ(events_of(temp_ / "events.raw"), events);
+    EXPECT_EQ(events_of(temp_ / "all.aedat4"), events);
+    EXPECT_NE(error_of([&] { all.write(std::span<const Event>{events}); }).find("finish()"),
+              std::string::npos);
+    EventWriter text{temp_ / "events.txt", {"", "", "", 64, 48}};
+    text.write(std::span<const Event>{events});
+    text.finish();
+    EventReader again{temp_ / "events.txt", {"", 64, 48}};
+    EXPECT_EQ(again.width(), 64);
+}
+
+TEST_F(Recordings, ThatAreNoneAreRefusedInWords) {
+    write_text(temp_ / "letter", "Dear Sir or Madam");
+    EXPECT_NE(error_of([&] { EventReader{temp_ / "letter"}; }, ErrorKind::input).find("letter"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] { EventReader{temp_ / "none"}; }, ErrorKind::input).find("none"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] {
+                  EventReader(recording(), {"", 5, 0});
+              }).find("5x0"),
+              std::string::npos);
+    const SensorInfo sensor{"", "", "", 64, 48};
+    EXPECT_NE(error_of([&] { EventWriter(temp_ / "a.jpeg", sensor); }).find("a.jpeg"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] { EventWriter(temp_ / "a.raw", {}); }).find("found 0x0"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] {
+                  EventWriter(temp_ / "letter", sensor, {"aedat4", false});
+              }).find("letter"),
+              std::string::npos);
+    EXPECT_EQ(read_text(temp_ / "letter"), "Dear Sir or Madam") << "what exists is not replaced";
+}
+
+}  // namespace
+}  // namespace eventide::test

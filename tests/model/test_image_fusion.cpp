@@ -1,0 +1,220 @@
+// Images of the camera beside its events: what is added to the model's pictures, where and for how
+// long.
+#include "src/model/encoder.h"
+#include "src/model/fused_renderer.h"
+#include "tests/model/streams.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+using test::GridStream;
+using Kind = GridStream::Kind;
+
+constexpr int kHeight = 30, kWidth = 44;
+
+SensorTime at_ms(double ms) {
+    return SensorTime{SensorDuration{std::int64_t(ms * 1000)}};
+}
+
+ReferenceImage image_of(const Array2<float>& intensity, SensorTime t) {
+    ReferenceImage image;
+    image.t = image.exposure_begin = image.exposure_end = t;
+    image.pixels = Array2<std::uint16_t>(intensity.height(), intensity.width());
+    for (std::size_t i = 0; i < intensity.values().size(); ++i)
+        image.pixels.values()[i] =
+            std::uint16_t(std::lround(65535 * std::clamp(intensity.values()[i], 0.F, 1.F)));
+    return image;
+}
+
+Array2<float> constant(float value, int height = kHeight, int width = kWidth) {
+    Array2<float> map(height, width);
+    std::ranges::fill(map.values(), value);
+    return map;
+}
+
+Array2<float> ramp(int height = kHeight, int width = kWidth) {
+    Array2<float> map(height, width);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) map(y, x) = .1F + .8F * (float(x) + .5F) / float(width);
+    return map;
+}
+
+/// What a model shows that paints everything in one grey.
+Frame grey(float value, SensorTime t, int height = kHeight, int width = kWidth) {
+    Frame frame;
+    frame.t = t;
+    frame.intensity = constant(value, height, width);
+    frame.sigma = constant(.2F, height, width);
+    return frame;
+}
+
+class ImageFusionTest : public testing::Test {
+protected:
+    void advance(double end_ms, float events = 0) {
+        fusion_.advance({at_ms(now_ms_), at_ms(end_ms)}, constant(events));
+        now_ms_ = end_ms;
+    }
+    /// The model's grey of .4, corrected.
+    Frame shown(double ms, const RenderRequest& request = {}) {
+        const int width = request.width > 0 ? request.width : kWidth;
+        const int height = request.height > 0 ? request.height : kHeight;
+        Frame frame =
+            grey(.4F, at_ms(ms), request.region.height > 0 ? request.region.height : height,
+                 request.region.width > 0 ? request.region.width : width);
+        fusion_.prepare(request);
+        fusion_.apply(request, frame);
+        return frame;
+    }
+    bool correct(const Array2<float>& seen, double ms) {
+        return fusion_.correct(image_of(seen, at_ms(ms)), grey(.4F, at_ms(ms)));
+    }
+
+    ImageFusion fusion_{kWidth, kHeight};
+    double now_ms_ = 0;
+};
+
+TEST_F(ImageFusionTest, WithoutImagesNothingIsChanged) {
+    advance(50, 2);
+    const Frame frame = shown(30);
+    for (const float v : frame.intensity.values()) EXPECT_EQ(v, .4F);
+    for (const float v : frame.sigma.values()) EXPECT_NEAR(v, .2F, 1e-6);
+}
+
+TEST_F(ImageFusionTest, OfAStillSceneTheImageIsHeldForAsLongAsNothingHappens) {
+    advance(50);
+    ASSERT_TRUE(correct(ramp(), 40));
+    for (int i = 2; i < 1000; ++i) advance(50 * i);
+    const Frame frame = shown(now_ms_);
+    for (std::size_t i = 0; i < frame.intensity.values().size(); ++i) {
+        ASSERT_NEAR(frame.intensity.values()[i], ramp().values()[i], 1e-4);
+        ASSERT_NEAR(frame.sigma.values()[i], .02F, 1e-3) << "no surer than the image";
+    }
+}
+
+TEST_F(ImageFusionTest, AnImageComesInOverItsWindowWithoutAJump) {
+    advance(50);
+    advance(100);
+    ASSERT_TRUE(correct(constant(.8F), 100));
+    EXPECT_NEAR(shown(50.001).intensity(9, 9), .4F, 1e-4);
+    EXPECT_NEAR(shown(75).intensity(9, 9), .6F, 1e-4);
+    EXPECT_NEAR(shown(100).intensity(9, 9), .8F, 1e-4);
+    advance(150);
+    EXPECT_NEAR(shown(100.001).intensity(9, 9), .8F, 1e-4);
+    EXPECT_NEAR(shown(75).intensity(9, 9), .6F, 1e-4) << "of the window before, too";
+}
+
+TEST_F(ImageFusionTest, OtherSizesAndPartsAreOfTheSamePicture) {
+    advance(50);
+    ASSERT_TRUE(correct(ramp(), 50));
+    const RenderRequest larger{.width = 2 * kWidth, .height = 2 * kHeight};
+    const Frame whole = shown(50, larger);
+    for (int x = 0; x < 2 * kWidth; ++x) {
+        const double on_sensor = double(x) * (kWidth - 1) / (2 * kWidth - 1);  // corners on corners
+        EXPECT_NEAR(whole.intensity(9, x), .1 + .8 * (on_sensor + .5) / kWidth, 1e-3);
+    }
+    RenderRequest part = larger;
+    part.region = {11, 7, 20, 9};
+    const Frame cut = shown(50, part);
+    for (int y = 0; y < 9; ++y)
+        for (int x = 0; x < 20; ++x) ASSERT_EQ(cut.intensity(y, x), whole.intensity(y + 7, x + 11));
+}
+
+TEST_F(ImageFusionTest, ASaturatedImageSaysAtLeastSoBrightAndABlackOneAtMost) {
+    advance(50);
+    ASSERT_TRUE(fusion_.correct(image_of(constant(1), at_ms(50)), grey(1.2F, at_ms(50))));
+    EXPECT_NEAR(shown(50).intensity(5, 5), .4F, 1e-5) << "1.2 may be true: nothing is corrected";
+    ASSERT_TRUE(fusion_.correct(image_of(constant(1), at_ms(50)), grey(.4F, at_ms(50))));
+    EXPECT_NEAR(shown(50).intensity(5, 5), 1, 1e-3) << ".4 can't";
+    fusion_.reset();
+    now_ms_ = 0;
+    advance(50);
+    ASSERT_TRUE(fusion_.correct(image_of(constant(0), at_ms(50)), grey(-.1F, at_ms(50))));
+    EXPECT_NEAR(shown(50).intensity(5, 5), .4F, 1e-5);
+}
+
+TEST_F(ImageFusionTest, WhatMovedSinceALateImageCountsAgainstIt) {
+    const auto sigma_after = [&](double image_ms) {
+        fusion_.reset();
+        now_ms_ = 0;
+        for (int i = 1; i <= 10; ++i) advance(10 * i, .3F);
+        EXPECT_TRUE(correct(ramp(), image_ms));
+        return shown(100).sigma(9, 9);
+    };
+    EXPECT_LT(sigma_after(100), .021F);
+    EXPECT_GT(sigma_after(60), 2 * sigma_after(100));
+    EXPECT_GT(sigma_after(20), sigma_after(60));
+}
+
+TEST_F(ImageFusionTest, AnImageThatIsBlurredByMotionIsTrustedLess) {
+    for (int i = 1; i <= 10; ++i) advance(10 * i, .3F);
+    ReferenceImage image = image_of(ramp(), at_ms(100));
+    image.exposure_begin = at_ms(60);
+    ASSERT_TRUE(fusion_.correct(image, grey(.4F, at_ms(100))));
+    EXPECT_GT(shown(100).sigma(9, 9), .04F);
+}
+
+TEST_F(ImageFusionTest, ImagesOfOtherTimesTellNothing) {
+    EXPECT_FALSE(correct(ramp(), 0)) << "before the first window";
+    advance(500);
+    EXPECT_FALSE(correct(ramp(), 501));
+    EXPECT_FALSE(correct(ramp(), 250));
+    EXPECT_EQ(shown(500).intensity(3, 3), .4F);
+}
+
+TEST_F(ImageFusionTest, APartOfTheSensorCorrectsThatPart) {
+    advance(50);
+    ReferenceImage image = image_of(constant(.9F, 16, 16), at_ms(50));
+    image.x0 = 28;  // reaches to the sensor's edge
+    image.y0 = -4;  // and beyond
+    ASSERT_TRUE(fusion_.correct(image, grey(.4F, at_ms(50))));
+    const Frame frame = shown(50);
+    EXPECT_NEAR(frame.intensity(4, 36), .9F, 1e-3);
+    EXPECT_NEAR(frame.intensity(25, 5), .4F, 1e-3);
+    EXPECT_GT(frame.sigma(25, 5), 2 * frame.sigma(4, 36));
+}
+
+/// The whole chain, for each lookahead: an image in silence is what frames show from then on.
+TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
+    const ModelConfig config = test::small_config();
+    const Model model = random_model(config, 1);
+    for (const int lookahead : {0, 1, 2}) {
+        Encoder encoder{model, kWidth, kHeight};
+        Renderer renderer{model, kWidth, kHeight};
+        FusedRenderer fused{renderer, kWidth, kHeight, lookahead};
+        GridStream stream{config, kHeight, kWidth, 4};
+        LatentMap latent = encoder.make_output();
+        RenderRequest request{.lookahead = lookahead};
+        fused.prepare(request);
+        Frame frame = renderer.make_output(request);
+        for (int i = 0; i < 12; ++i) {
+            const VoxelGrid& grid = stream.next(i < 5 ? Kind::patch : Kind::silence);
+            encoder.encode(grid, latent);
+            latent.window = grid.window;
+            if (i == 8) fused.give(image_of(ramp(), grid.window.end));
+            if (i == 9) request.t = grid.window.end;
+            renderer.push(latent);
+            fused.push(grid.window, constant(i < 5 ? 1.F : 0.F));
+        }
+        fused.render(request, frame);
+        EXPECT_EQ(fused.used(), 1U);
+        EXPECT_EQ(fused.dropped(), 0U);
+        for (std::size_t i = 0; i < frame.intensity.values().size(); ++i)
+            ASSERT_NEAR(frame.intensity.values()[i], ramp().values()[i], 1e-3) << lookahead;
+    }
+}
+
+TEST(FusedRenderer, AFloodOfImagesIsBounded) {
+    const Model model = random_model(test::small_config(), 1);
+    Renderer renderer{model, kWidth, kHeight};
+    FusedRenderer fused{renderer, kWidth, kHeight, 0};
+    for (int i = 0; i < 1000; ++i) fused.give(image_of(ramp(), at_ms(i)));
+    EXPECT_EQ(fused.dropped(), 1000 - FusedRenderer::kMostWaiting);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,145 @@
+// What a correction of pictures keeps while the scene stands still, and loses where it moves.
+#include "src/model/residual_pyramid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace eventide {
+namespace {
+
+Array2<float> constant(int height, int width, float value) {
+    Array2<float> map(height, width);
+    std::ranges::fill(map.values(), value);
+    return map;
+}
+
+Array2<float> noise(int height, int width, std::uint32_t seed) {
+    std::mt19937 random{seed};
+    std::normal_distribution<float> normal;
+    Array2<float> map(height, width);
+    for (float& v : map.values()) v = normal(random);
+    return map;
+}
+
+struct Expectation {
+    Array2<float> correction, variance;
+};
+Expectation expect(ResidualPyramid& pyramid, int height, int width) {
+    Expectation e{Array2<float>(height, width), Array2<float>(height, width)};
+    pyramid.expect(e.correction, e.variance);
+    return e;
+}
+
+ResidualPyramid observed(const Array2<float>& residual, float trust = 1) {
+    const int height = residual.height(), width = residual.width();
+    ResidualPyramid pyramid{width, height};
+    pyramid.observe(residual, constant(height, width, trust), constant(height, width, 0));
+    return pyramid;
+}
+
+TEST(ResidualPyramid, HalvingAndDoublingKeepAPlainSurface) {
+    for (const auto [height, width] : {std::pair{1, 1}, {1, 7}, {5, 1}, {8, 8}, {17, 13}}) {
+        const Array2<float> plain = constant(height, width, .7F);
+        Array2<float> half((height + 1) / 2, (width + 1) / 2), back = constant(height, width, 0);
+        halve(plain, half);
+        add_doubled(half, back);
+        for (const float v : half.values()) EXPECT_FLOAT_EQ(v, .7F);
+        for (const float v : back.values()) EXPECT_FLOAT_EQ(v, .7F);
+    }
+}
+
+TEST(ResidualPyramid, DoublingARampGivesARampBetweenTheOutermostCentres) {
+    Array2<float> half(1, 8), whole(1, 16);
+    for (int x = 0; x < 8; ++x) half(0, x) = float(x);
+    add_doubled(half, whole);
+    for (int x = 1; x < 15; ++x) EXPECT_FLOAT_EQ(whole(0, x), (float(x) + .5F) / 2 - .5F);
+}
+
+TEST(ResidualPyramid, KnowsNothingBeforeTheFirstObservation) {
+    ResidualPyramid pyramid{20, 10};
+    pyramid.forget(constant(10, 20, 3));
+    const Expectation e = expect(pyramid, 10, 20);
+    for (const float v : e.correction.values()) EXPECT_EQ(v, 0);
+    for (const float v : e.variance.values()) EXPECT_NEAR(v, 1, 1e-6);
+}
+
+TEST(ResidualPyramid, GivesBackWhatWasSeenWhileNothingHappens) {
+    for (const auto [height, width] : {std::pair{1, 1}, {1, 33}, {31, 17}, {96, 120}}) {
+        const Array2<float> residual = noise(height, width, 1);
+        ResidualPyramid pyramid = observed(residual);
+        for (int i = 0; i < 1000; ++i) pyramid.forget(constant(height, width, 0));
+        const Expectation e = expect(pyramid, height, width);
+        for (std::size_t i = 0; i < residual.values().size(); ++i) {
+            ASSERT_NEAR(e.correction.values()[i], residual.values()[i], 1e-5) << width;
+            ASSERT_NEAR(e.variance.values()[i], 0, 1e-6);
+        }
+    }
+}
+
+TEST(ResidualPyramid, FineStructureIsForgottenBeforeCoarse) {
+    const int size = 64;
+    Array2<float> fine(size, size), coarse(size, size);
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            fine(y, x) = (x + y) % 2 == 0 ? 1.F : -1.F;
+            coarse(y, x) = x < size / 2 ? 1.F : -1.F;
+        }
+    const auto left = [&](const Array2<float>& residual) {
+        ResidualPyramid pyramid = observed(residual);
+        pyramid.forget(constant(size, size, 1.5F));
+        return expect(pyramid, size, size).correction(20, 10) / residual(20, 10);
+    };
+    EXPECT_LT(left(fine), .1);
+    EXPECT_GT(left(coarse), .8);
+}
+
+TEST(ResidualPyramid, IsForgottenWhereThingsMoveAlone) {
+    const int size = 64;
+    const Array2<float> residual = noise(size, size, 2);
+    ResidualPyramid pyramid = observed(residual);
+    Array2<float> events = constant(size, size, 0);
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < 8; ++x) events(y, x) = 5;
+    pyramid.forget(events);
+    const Expectation e = expect(pyramid, size, size);
+    double here = 0, there = 0;
+    for (int y = 0; y < size; ++y) {
+        here += e.variance(y, 3);
+        there += e.variance(y, size - 4);
+    }
+    EXPECT_GT(here / size, .4);
+    EXPECT_LT(there / size, .05);
+}
+
+TEST(ResidualPyramid, VarianceOnlyGrowsWithEventsAndNeverBeyondTheModels) {
+    const int size = 40;
+    ResidualPyramid pyramid = observed(noise(size, size, 3));
+    float before = 0;
+    for (int i = 0; i < 60; ++i) {
+        pyramid.forget(constant(size, size, 1));
+        const float now = expect(pyramid, size, size).variance(20, 20);
+        EXPECT_GE(now, before - 1e-6F);
+        EXPECT_LE(now, 1 + 1e-5F);
+        before = now;
+    }
+    EXPECT_GT(before, .8F);
+}
+
+TEST(ResidualPyramid, WhatCannotBeTrustedLeavesTheOldKnowledge) {
+    const int size = 32;
+    const Array2<float> residual = noise(size, size, 4);
+    ResidualPyramid pyramid = observed(residual);
+    const Array2<float> said = expect(pyramid, size, size).correction;
+    pyramid.observe(said, constant(size, size, 0), constant(size, size, 100));
+    const Expectation e = expect(pyramid, size, size);
+    // Known as before, but with the events that came since: fine bands are gone, the mean is not.
+    for (const float v : e.variance.values()) EXPECT_GT(v, .3F);
+    ResidualPyramid ignorant = observed(residual, 0);
+    const Expectation nothing = expect(ignorant, size, size);
+    for (const float v : nothing.variance.values()) EXPECT_NEAR(v, 1, 1e-5);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,122 @@
+"""The reconstructor in Python: frames of `eventide run`, arrays that stay, threads that run."""
+
+import threading
+import unittest
+
+import eventide
+import numpy as np
+from recorded import RecordedTest
+
+
+class Frames(RecordedTest):
+    def test_are_those_of_eventide_run(self):
+        expected = self.frames_of_run()
+        reader = eventide.open(self.recording)
+        reconstructor = self.reconstructor()
+        frames = []
+        while reader.read_into(reconstructor):
+            frames += reconstructor.frames()
+        reconstructor.finish(reader.clock)
+        frames += reconstructor.frames()
+        np.testing.assert_array_equal([[f.intensity, f.sigma] for f in frames], expected)
+        self.assertEqual([f.index for f in frames], list(range(len(expected))))
+        self.assertEqual(reconstructor.counters["frames"], len(expected))
+
+    def test_are_the_same_from_arrays(self):
+        expected = self.frames_of_run()
+        reader = eventide.open(self.recording)
+        reconstructor = self.reconstructor()
+        for events in reader:
+            reconstructor.push(events, resets=True)
+        reconstructor.finish(reader.clock)
+        frames = [[f.intensity, f.sigma] for f in reconstructor.frames()]
+        np.testing.assert_array_equal(frames, expected)
+
+    def test_outlive_what_made_them(self):
+        reconstructor = self.reconstructor()
+        reconstructor.push(self.events())
+        intensity, sigma = reconstructor.render(reconstructor.newest())
+        kept = intensity.copy(), sigma.copy()
+        again = reconstructor.render(reconstructor.newest(), size=(32, 24))
+        del reconstructor, again
+        np.testing.assert_array_equal(intensity, kept[0])
+        np.testing.assert_array_equal(sigma, kept[1])
+
+    def test_have_the_size_and_region_asked_for(self):
+        reconstructor = self.reconstructor(sigma=False, size=(32, 24))
+        reconstructor.push(self.events())
+        t = reconstructor.newest()
+        self.assertEqual(reconstructor.render(t)[0].shape, (24, 32))
+        self.assertIsNone(reconstructor.render(t)[1])
+        whole, _ = reconstructor.render(t, size=(100, 80))
+        self.assertEqual((whole.shape, whole.dtype), ((80, 100), np.float32))
+        part, _ = reconstructor.render(t, size=(100, 80), roi=(10, 20, 30, 40))
+        np.testing.assert_array_equal(part, whole[20:60, 10:40])
+
+    def test_wait_for_events(self):
+        reconstructor = self.reconstructor()
+        self.assertIsNone(reconstructor.next())
+        self.assertIsNone(reconstructor.newest())
+        events = self.events()
+        reconstructor.push(events)
+        first = int(events["t"][0])
+        self.assertTrue(reconstructor.ready(first))
+        self.assertFalse(reconstructor.ready(first + 10_000_000))
+        with self.assertRaisesRegex(eventide.UsageError, "not pushed yet"):
+            reconstructor.render(first + 10_000_000)
+        reconstructor.finish()
+        with self.assertRaisesRegex(eventide.UsageError, r"reset\(\)"):
+            reconstructor.push(events)
+        reconstructor.reset()
+        reconstructor.push(events)
+
+    def test_with_a_state_go_on(self):
+        reconstructor = self.reconstructor()
+        reconstructor.push(self.events())
+        reconstructor.newest()
+        file = self.folder / "state.safetensors"
+        reconstructor.save_state(file)
+        with self.assertRaises(eventide.UsageError):
+            reconstructor.save_state(file)
+        reconstructor.restore_state(file)
+        with self.assertRaisesRegex(eventide.InputError, "none"):
+            reconstructor.restore_state(self.folder / "none")
+
+    def test_errors_have_the_library_s_words(self):
+        for options, words in [
+            ({"window": "5 bananas"}, "5 bananas"),
+            ({"lookahead": 7}, "found 7"),
+            ({"precision": "f64"}, "precision: expected auto, bf16, f32, found 'f64'"),
+            ({"size": (0, 5)}, r"found \(0, 5\)"),
+        ]:
+            with self.assertRaisesRegex(eventide.UsageError, words):
+                self.reconstructor(**options)
+        with self.assertRaisesRegex(eventide.InputError, "'nobody'"):
+            eventide.Reconstructor("nobody", 64, 48)
+        for t in (1.5, float("nan")):
+            with self.assertRaises(TypeError):
+                self.reconstructor().render(t)
+
+    def test_threads_share_one_object_and_python_runs_on(self):
+        reconstructor = self.reconstructor()
+        pieces = np.array_split(self.events(), 20)
+        found = []
+
+        def push():
+            for piece in pieces:
+                reconstructor.push(piece)
+
+        def take():
+            while len(found) < 20:
+                found.extend(reconstructor.frames())
+
+        threads = [threading.Thread(target=push), threading.Thread(target=take)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual([f.index for f in found], list(range(len(found))))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,81 @@
+"""Recordings and cameras in Python."""
+
+import unittest
+
+import eventide
+import numpy as np
+from recorded import RecordedTest
+
+
+class Sources(RecordedTest):
+    def test_a_recording_tells_its_sensor_its_times_and_its_images(self):
+        reader = eventide.open(self.recording)
+        self.assertEqual((reader.width, reader.height, reader.format), (64, 48, "aedat4"))
+        self.assertIsNone(reader.clock)
+        arrays, images = [], []
+        for events in reader:
+            arrays.append(events)
+            images += reader.images
+        events = np.concatenate(arrays)
+        self.assertEqual(events.dtype.names, ("t", "x", "y", "on"))
+        self.assertTrue((np.diff(events["t"]) >= 0).all())
+        self.assertEqual(reader.span(), (events["t"][0], events["t"][-1]))
+        self.assertEqual(reader.damaged, 0)
+        self.assertEqual(images[0][1].shape, (48, 64))
+        reader.seek(int(events["t"][len(events) // 2]))
+        self.assertEqual(list(reader)[-1][-1], events[-1])
+
+    def test_arrays_outlive_the_reader(self):
+        reader = eventide.open(self.recording)
+        first = next(reader)
+        kept = first.copy()
+        list(reader)
+        del reader
+        np.testing.assert_array_equal(first, kept)
+
+    def test_what_is_written_comes_back(self):
+        events = self.events()
+        file = str(self.folder / "written.raw")
+        with eventide.Writer(file, 64, 48, format="evt3") as writer:
+            writer.write(events[:100])
+            writer.write(events[100:])
+        np.testing.assert_array_equal(np.concatenate(list(eventide.open(file))), events)
+        with self.assertRaises(eventide.UsageError):
+            eventide.Writer(file, 64, 48)
+
+    def test_a_recording_that_fails_to_be_written_leaves_nothing(self):
+        file = self.folder / "half.aedat4"
+        with self.assertRaises(KeyError):
+            with eventide.Writer(str(file), 64, 48) as writer:
+                writer.write(self.events())
+                raise KeyError
+        del writer
+        self.assertFalse(file.exists())
+
+    def test_a_camera_gives_events_until_it_is_stopped(self):
+        camera = eventide.open_camera("sim:demo?size=64x48&speed=max")
+        reconstructor = self.reconstructor()
+        frames = 0
+        while camera.read_into(reconstructor):
+            frames += len(list(reconstructor.frames()))
+            if frames > 10:
+                camera.stop()
+        self.assertGreater(frames, 10)
+        with self.assertRaisesRegex(eventide.UsageError, "kodak"):
+            eventide.open_camera("kodak:")
+        with self.assertRaisesRegex(eventide.DeviceError, "/dev/none"):
+            eventide.open_camera("v4l2:/dev/none")
+
+    def test_no_recording_is_refused_in_words(self):
+        with self.assertRaisesRegex(eventide.InputError, "/no/such: cannot open"):
+            eventide.open("/no/such")
+
+    def test_everything_is_documented(self):
+        for kind in (eventide.Reconstructor, eventide.Reader, eventide.Camera, eventide.Writer):
+            for name, member in vars(kind).items():
+                if not name.startswith("_"):
+                    self.assertTrue(member.__doc__, f"{kind.__name__}.{name}")
+
+
+if __name__ == "__main__":
+    unittest.main()
