@@ -68,6 +68,7 @@ ReconstructorOptions options_of(const eventide_options* given_options) {
     options.threads = c.threads;
     options.reset_on_gap = c.reset_on_gap != 0;
     options.allow_silence = c.allow_silence != 0;
+    options.noise_filter = &given(c.noise_filter, "options.noise_filter");
     return options;
 }
 

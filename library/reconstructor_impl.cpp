@@ -1,7 +1,7 @@
 // The network at work.
 #include "library/reconstructor_impl.h"
 
-#include "pipeline/filters/hot_pixels.h"
+#include "pipeline/filters/event_filter.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/core/error.h"
 #include "src/nn/safetensors.h"
@@ -45,7 +45,8 @@ Reconstructor::Impl::Impl(const Model& model, int width, int height,
     : options_(options),
       engine_(engine_of(options)),
       intake_(slicer_of(options, model.config), width, height,
-              hot_pixel_filter(options.hot_pixels, width, height), counters_),
+              event_filter({options.hot_pixels, options.noise_filter}, model.config, width, height),
+              counters_),
       binner_(model.config.bins, height, width),
       encoder_(model, width, height, engine_),
       renderer_(model, width, height, engine_),

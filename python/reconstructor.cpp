@@ -53,14 +53,16 @@ struct SizedReconstructor : GuardedReconstructor {
 std::unique_ptr<SizedReconstructor> make(const std::string& model, int width, int height,
                                          std::string window, int lookahead, std::string fps,
                                          Size size, Roi roi, bool sigma, std::string hot_pixels,
-                                         const std::string& precision, const std::string& kernels,
-                                         int threads, bool reset_on_gap, bool allow_silence) {
+                                         std::string noise_filter, const std::string& precision,
+                                         const std::string& kernels, int threads, bool reset_on_gap,
+                                         bool allow_silence) {
     const ReconstructorOptions options{
         .window = std::move(window),
         .lookahead = lookahead,
         .fps = std::move(fps),
         .size = size_of(size, roi),
         .sigma = sigma,
+        .noise_filter = std::move(noise_filter),
         .hot_pixels = std::move(hot_pixels),
         .precision = choice_of<Precision>(
             precision, "precision",
@@ -225,15 +227,17 @@ void add_reconstructor(py::module_& module) {
         "frame waits for, 0 to 2; fps: rate of frames() and next(), a text such as '30' or\n"
         "'30000/1001'; size: (width, height) of the frames; roi: (x, y, width, height) of the "
         "part\n"
-        "wanted; hot_pixels: off, learn or a file; precision: auto, f32, bf16; kernels: auto, "
+        "wanted; hot_pixels: off, learn or a file; noise_filter: model, auto, off or a time "
+        "(\"10ms\"); "
+        "precision: auto, f32, bf16; kernels: auto, "
         "own,\n"
         "onednn; threads: 0 for all. For recordings window='auto', lookahead=2 is better.");
     it.def(py::init(&make), py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("window") = "model", py::arg("lookahead") = 0, py::arg("fps") = "30",
            py::arg("size") = py::none(), py::arg("roi") = py::none(), py::arg("sigma") = true,
-           py::arg("hot_pixels") = "off", py::arg("precision") = "auto",
-           py::arg("kernels") = "auto", py::arg("threads") = 0, py::arg("reset_on_gap") = false,
-           py::arg("allow_silence") = false);
+           py::arg("hot_pixels") = "off", py::arg("noise_filter") = "model",
+           py::arg("precision") = "auto", py::arg("kernels") = "auto", py::arg("threads") = 0,
+           py::arg("reset_on_gap") = false, py::arg("allow_silence") = false);
     add_events_in(it);
     add_frames_out(it);
 }

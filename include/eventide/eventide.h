@@ -60,13 +60,14 @@ typedef struct eventide_options {
     int lookahead;      /* 0, 1 or 2: event windows a frame waits for */
     const char* fps;    /* of eventide_next(): "30", "30000/1001", "frame" */
     eventide_frame_size size;
-    int sigma;              /* 0: frames have none, and are rendered faster */
-    const char* hot_pixels; /* "off", "learn", or a file that lists pixels */
-    const char* precision;  /* "auto", "f32", "bf16" */
-    const char* kernels;    /* "auto", "own", "onednn" */
-    int threads;            /* 0: as many as the process may run on */
-    int reset_on_gap;       /* forget the scene where data were lost */
-    int allow_silence;      /* any number of frames in a row without events */
+    int sigma;                /* 0: frames have none, and are rendered faster */
+    const char* hot_pixels;   /* "off", "learn", or a file that lists pixels */
+    const char* precision;    /* "auto", "f32", "bf16" */
+    const char* kernels;      /* "auto", "own", "onednn" */
+    int threads;              /* 0: as many as the process may run on */
+    int reset_on_gap;         /* forget the scene where data were lost */
+    int allow_silence;        /* any number of frames in a row without events */
+    const char* noise_filter; /* "model", "auto", "off", or a time such as "10ms" */
 } eventide_options;
 
 /* The defaults, which are those of ReconstructorOptions. `struct_size` is sizeof(eventide_options).

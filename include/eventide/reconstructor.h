@@ -27,8 +27,12 @@ struct ReconstructorOptions {
     /// The frames that next() gives, per second of sensor time: "120", "29.97", "30000/1001", at
     /// most 1000000; "frame": one at the end of each event window.
     std::string fps = "30";
-    FrameSize size{};                ///< of the frames
-    bool sigma = true;               ///< false: Frame::sigma stays empty, and rendering is faster
+    FrameSize size{};   ///< of the frames
+    bool sigma = true;  ///< false: Frame::sigma stays empty, and rendering is faster
+    /// Leaves out noise, which is events that fewer than two of the eight pixels around them
+    /// support within some time: "10ms", for example; "auto": 10 to 500 ms, by the noise that is
+    /// found; "off"; "model": as the model was trained.
+    std::string noise_filter = "model";
     std::string hot_pixels = "off";  ///< "off", "learn", or a file that lists pixels, "x,y" a line
     Precision precision = Precision::automatic;
     Kernels kernels = Kernels::automatic;
@@ -43,7 +47,7 @@ struct ReconstructorCounters {
     std::uint64_t off_sensor = 0;      ///< left out: x or y outside the sensor
     std::uint64_t time_backwards = 0;  ///< left out: earlier than the event before
     std::uint64_t bad_time = 0;        ///< left out: further from zero than kFarthestTime
-    std::uint64_t filtered = 0;        ///< left out: of hot pixels
+    std::uint64_t filtered = 0;        ///< left out: of hot pixels, or noise
     std::uint64_t late = 0;            ///< moved later: advance() had promised that none would come
     std::uint64_t left_out = 0;        ///< more in one microsecond than memory is meant to hold
     std::uint64_t time_resets = 0;     ///< the sensor's clock began anew

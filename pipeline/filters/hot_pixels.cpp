@@ -100,10 +100,4 @@ std::uint32_t HotPixelFilter::median_around(int y, int x) const {
     return around[n / 2];
 }
 
-std::unique_ptr<EventFilter> hot_pixel_filter(const std::string& choice, int width, int height) {
-    if (choice == "off") return nullptr;
-    if (choice == "learn") return std::make_unique<HotPixelFilter>(width, height);
-    return std::make_unique<HotPixelFilter>(width, height, choice);
-}
-
 }  // namespace eventide

@@ -5,9 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace eventide {
@@ -49,8 +47,5 @@ private:
     std::vector<std::uint8_t> hot_;      // [y][x]
     std::optional<SensorTime> interval_end_;
 };
-
-/// "off" (null), "learn", or a file that lists pixels. Throws Error (usage).
-std::unique_ptr<EventFilter> hot_pixel_filter(const std::string& choice, int width, int height);
 
 }  // namespace eventide

@@ -41,6 +41,7 @@ class Reconstructor:
         roi: Optional[Tuple[int, int, int, int]] = None,
         sigma: bool = True,
         hot_pixels: str = "off",
+        noise_filter: str = "model",
         precision: str = "auto",
         kernels: str = "auto",
         threads: int = 0,

@@ -103,6 +103,7 @@ SettingTable EvaluateCommand::settings() {
     add(seconds_setting("to", to_, "recordings: score until here; end: all.", "end"));
     add(choice_setting("sigma_rule", sigma_rule_, "As in eventide run.",
                        {"model", "log_blend", "mixture"}));
+    add(text_setting("noise_filter", noise_filter_, "model|auto|off|TIME", "As in eventide run."));
     add(choice_setting("precision", precision_, "As in eventide run.", {"auto", "f32", "bf16"}));
     add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
@@ -153,6 +154,7 @@ EvaluateSettings EvaluateCommand::how(Program& program) const {
         how.sigma_rule =
             sigma_rule_ == SigmaChoice::mixture ? SigmaRule::mixture : SigmaRule::log_blend;
     how.engine.engine = engine_;
+    how.noise_filter = noise_filter_;
     how.engine.precision = precision_;
     how.engine.parallel_for = parallel_for_with(threads_);
     // Of recordings each is long: they come one by one, and the network takes all threads.

@@ -39,6 +39,7 @@ private:
     std::string model_ = "default", lpips_, window_ = "reference";
     int lookahead_ = 0, skip_ = 3, given_images_ = 0, threads_ = 0;
     SigmaChoice sigma_rule_ = SigmaChoice::model;
+    std::string noise_filter_ = "model";
     Precision precision_ = Precision::automatic;
     Engine engine_ = Engine::fast;
     std::string from_ = "start", to_ = "end";

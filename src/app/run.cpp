@@ -48,7 +48,7 @@ Run::Run(Program& program, RunSettings& settings)
       lookahead_{lookahead_of(settings, network_.config(), live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       begun_{std::chrono::steady_clock::now()},
-      filter_{filter_of(settings, sensor_)},
+      filter_{filter_of(settings, network_.config(), sensor_)},
       watch_{sheet_ ? &references_ : nullptr,
              settings.frames == CameraFrames::ignore ? nullptr : &images_},
       encode_{network_.encoder()},

@@ -2,7 +2,7 @@
 #include "src/app/run_plan.h"
 
 #include "drivers/simulated/simulated_name.h"
-#include "pipeline/filters/hot_pixels.h"
+#include "pipeline/filters/event_filter.h"
 #include "src/app/open_sinks.h"
 #include "src/core/error.h"
 
@@ -116,8 +116,10 @@ std::string reference_caption(const SensorInfo& sensor) {
     return sensor.name.empty() ? "reference" : "APS";
 }
 
-std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const SensorInfo& sensor) {
-    return hot_pixel_filter(settings.hot_pixels, sensor.width, sensor.height);
+std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
+                                       const SensorInfo& sensor) {
+    return event_filter({settings.hot_pixels, settings.noise_filter}, model, sensor.width,
+                        sensor.height);
 }
 
 RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead) {

@@ -50,8 +50,9 @@ int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool liv
 /// is named, else (in folders, whose makers are not told) "reference".
 std::string reference_caption(const SensorInfo& sensor);
 
-/// Null when hot pixels stay.
-std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const SensorInfo& sensor);
+/// Null when all events stay.
+std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
+                                       const SensorInfo& sensor);
 
 RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead);
 

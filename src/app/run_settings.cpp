@@ -1,6 +1,7 @@
 // The table behind `eventide run`: names, defaults, meaning, and how each value is written.
 #include "src/app/run_settings.h"
 
+#include "src/binning/noise_filter.h"
 #include "src/binning/slicer_settings.h"
 
 #include <cmath>
@@ -94,6 +95,11 @@ std::string same(const std::string& text) {
 
 std::string check_hot_pixels(const std::string& text) {
     if (text.empty()) complain("off, learn or a file", text);
+    return text;
+}
+
+std::string check_noise_filter(const std::string& text) {
+    parse_noise_filter(text, false);
     return text;
 }
 
@@ -272,6 +278,12 @@ void RunSettings::add_look(SettingTable& table) {
         "Leave out hot pixels: learn finds them while it runs, a file lists "
         "them, one x,y a line.",
         check_hot_pixels, same));
+    add(parsed_setting<std::string>(
+        "noise_filter", noise_filter, "model|auto|off|TIME",
+        "Leave out noise: events that fewer than two of the eight pixels around them support "
+        "within "
+        "TIME. auto: 10 to 500 ms, by the noise that is found; model: as the model was trained.",
+        check_noise_filter, same));
     add(flag_setting("auto_hdr", look.auto_hdr,
                      "Stretch the range the frame uses to black and white, smoothed in time; "
                      "sigma is scaled with it."));

@@ -67,6 +67,7 @@ struct RunSettings {
     bool reset_on_gap = false;
     CameraFrames frames = CameraFrames::automatic;
     std::string hot_pixels = "off";
+    std::string noise_filter = "model";
 
     // to where
     std::vector<std::string> out;

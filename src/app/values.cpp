@@ -1,6 +1,7 @@
 // Text into values.
 #include "src/app/values.h"
 
+#include "src/core/duration_text.h"
 #include "src/core/error.h"
 
 #include <algorithm>
@@ -62,33 +63,17 @@ std::size_t parse_choice(const std::string& text, const std::vector<std::string>
 }
 
 SensorDuration parse_duration(const std::string& text, bool negative) {
-    struct Unit {
-        std::string_view name;
-        double us;
-    };
-    std::string_view number = text;
-    double us_per_unit = 0;
-    for (const Unit& unit : {Unit{"us", 1}, Unit{"ms", 1e3}, Unit{"s", 1e6}})
-        if (number.ends_with(unit.name)) {
-            number.remove_suffix(unit.name.size());
-            us_per_unit = unit.us;
-            break;
-        }
-    double value = 0;
-    if (us_per_unit == 0 && read(number, value))
+    const auto found = read_duration(text);
+    double number = 0;
+    if (!found && read(text, number))
         complain("a time with its unit, " + text + "s, " + text + "ms or " + text + "us", text);
-    // 1e12 s: far past every clock, and exact to the microsecond up to 9e9 s.
-    if (us_per_unit == 0 || !read(number, value) || !(std::abs(value * us_per_unit) <= 1e18) ||
-        (value < 0 && !negative))
+    if (!found || (found->count() < 0 && !negative))
         complain("a time such as 1.5s, 20ms or 250us", text);
-    return SensorDuration{std::llround(value * us_per_unit)};
+    return *found;
 }
 
 std::string show_duration(SensorDuration duration) {
-    const std::int64_t us = duration.count();
-    if (us % 1'000'000 == 0) return std::to_string(us / 1'000'000) + "s";
-    if (us % 1000 == 0) return std::to_string(us / 1000) + "ms";
-    return std::to_string(us) + "us";
+    return duration_text(duration);
 }
 
 Size parse_size(const std::string& text) {

@@ -1,6 +1,7 @@
 // "--window": text <-> settings.
 #include "src/binning/slicer_settings.h"
 
+#include "src/core/duration_text.h"
 #include "src/core/error.h"
 
 #include <charconv>
@@ -47,13 +48,6 @@ std::optional<SensorDuration> duration(Quantity q, std::string_view text) {
     const double us = std::round(q.value * us_per_unit);
     if (us < 1 || us > kUsPerDay) refuse(text, "a width is 1 us to one day");
     return SensorDuration{std::int64_t(us)};
-}
-
-std::string text_of(SensorDuration width) {
-    const auto us = width.count();
-    if (us % 1'000'000 == 0) return std::to_string(us / 1'000'000) + "s";
-    if (us % 1'000 == 0) return std::to_string(us / 1'000) + "ms";
-    return std::to_string(us) + "us";
 }
 
 void parse_rule(std::string_view rule, std::string_view text, SlicerSettings& settings) {
@@ -106,10 +100,10 @@ SlicerSettings parse_window(std::string_view text) {
 }
 
 std::string window_text(const SlicerSettings& settings) {
-    const std::string widest = "," + text_of(settings.max_width);
+    const std::string widest = "," + duration_text(settings.max_width);
     switch (settings.rule) {
         case SliceRule::duration:
-            return text_of(settings.width);
+            return duration_text(settings.width);
         case SliceRule::reference:
             return "aps" + widest;
         case SliceRule::content:

@@ -21,6 +21,8 @@ struct EvaluateSettings {
     std::filesystem::path lpips;          ///< npz; empty: LPIPS is left out
     int lookahead = 0;                    ///< event frames after the picture's own that may be used
     std::optional<SigmaRule> sigma_rule;  ///< else the model's own
+    /// "model" (as the model was trained), "auto", "off" or a time; parse_noise_filter().
+    std::string noise_filter = "model";
     EngineOptions engine;
     bool fuse_images = false;  ///< images will be given to the model (evaluate_recordings sets it)
     /// Over sequences; results do not depend on it. Memory grows with those done at once.

@@ -45,12 +45,12 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
             from = std::max(0., cut->from_s - kWarmUpSeconds);
             to = cut->to_s;
         }
-        const ReferenceSequence sequence = read_evreal_sequence(path, from, to);
+        ReferenceSequence sequence = read_evreal_sequence(path, from, to);
         ScoredImages which;
         // EVREAL's loader never takes a recording's last image.
         if (!cut && sequence.images.size() > 1) which.to = sequence.images.rbegin()[1].t;
         if (cut) which.from = sequence.first + SensorDuration{std::int64_t(cut->from_s * 1e6)};
-        return evaluate_sequence(evaluation, sequence, "reference", which);
+        return evaluate_sequence(evaluation, std::move(sequence), "reference", which);
     });
     if (evaluation.lpips() && evaluation.lpips()->name() != "LPIPS-Alex")
         evaluation.note("EVREAL's tables are in LPIPS-Alex: these LPIPS numbers are " +

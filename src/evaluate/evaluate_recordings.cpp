@@ -1,9 +1,11 @@
 // Real recordings: the model's picture at each reference image's time against that image.
 #include "src/evaluate/evaluate_recordings.h"
 
+#include "src/binning/noise_filter.h"
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -43,8 +45,11 @@ std::vector<std::size_t> scored_images(const ReferenceSequence& sequence,
 
 }  // namespace
 
-SequenceResult evaluate_sequence(const Evaluation& evaluation, const ReferenceSequence& sequence,
+SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence sequence,
                                  const std::string& window, const ScoredImages& which) {
+    if (evaluation.noise_filter())
+        NoiseFilter{sequence.width, sequence.height, *evaluation.noise_filter()}.process(
+            sequence.events);
     const std::vector<std::size_t> scored = scored_images(sequence, which);
     SequenceEvaluation judged{
         evaluation,
@@ -83,7 +88,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         const std::filesystem::path& path = what.recordings[std::size_t(i)];
         std::optional<double> read_from;
         if (what.from_s) read_from = std::max(0., *what.from_s - kWarmUpSeconds);
-        const ReferenceSequence sequence = read_reference_sequence(path, read_from, what.to_s);
+        ReferenceSequence sequence = read_reference_sequence(path, read_from, what.to_s);
         ScoredImages which;
         which.given = what.given_images;
         const int images = int(sequence.images.size());
@@ -92,7 +97,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
                          : std::clamp(what.skip_images, 0, images - 1);
         if (what.from_s)
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
-        return evaluate_sequence(evaluation, sequence, what.window, which);
+        return evaluate_sequence(evaluation, std::move(sequence), what.window, which);
     });
     return evaluation.finish("windows " + what.window + ", first " +
                              (what.skip_images == RecordingSettings::kSkipHalf

@@ -14,7 +14,7 @@ struct ScoredImages {
     bool is_given(std::size_t image) const { return given > 0 && image % std::size_t(given) == 0; }
 };
 
-SequenceResult evaluate_sequence(const Evaluation& evaluation, const ReferenceSequence& sequence,
+SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence sequence,
                                  const std::string& window, const ScoredImages& which);
 
 }  // namespace eventide

@@ -42,16 +42,20 @@ std::shared_ptr<const TextureLibrary> test_textures(const SimulatedSettings& wha
 
 void for_each_simulated_slice(
     const SimulatedSettings& what, const std::shared_ptr<const TextureLibrary>& textures, int i,
+    std::optional<NoiseFilterSettings> noise_filter,
     const std::function<bool(const Slice&, const SimulatedStream&)>& use) {
     const SimulationPreset& preset = simulation_preset(what.preset);
     SimulatedStream stream{preset.scene, preset.sensor, textures,
                            what.width,   what.height,   what.seed + std::uint64_t(i)};
+    std::optional<NoiseFilter> filter;
+    if (noise_filter) filter.emplace(what.width, what.height, *noise_filter);
     const SensorTime begin = stream.now();
     std::vector<Event> events;
     for (int k = 0; k < what.event_frames; ++k) {
         const Window window{begin + k * what.frame_width, begin + (k + 1) * what.frame_width};
         events.clear();
         stream.advance(window.end, events);
+        if (filter) filter->process(events);
         if (!use({.window = window, .events = events}, stream)) return;
     }
 }
@@ -81,7 +85,8 @@ EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateS
              SensorTime{}, scored * int(what.phases.size())}};
         int k = 0;
         for_each_simulated_slice(
-            what, textures, i, [&](const Slice& slice, const SimulatedStream& stream) {
+            what, textures, i, evaluation.noise_filter(),
+            [&](const Slice& slice, const SimulatedStream& stream) {
                 if (is_scored(what, k++))
                     for (const double phase : what.phases)
                         judged.run().ask(truth_query(

@@ -9,7 +9,8 @@ namespace eventide {
 Evaluation::Evaluation(std::string subject, EvaluateSettings settings)
     : settings_(std::move(settings)),
       model_(load_model(settings_.model)),
-      lpips_(load_lpips(settings_.lpips)) {
+      lpips_(load_lpips(settings_.lpips)),
+      noise_filter_(parse_noise_filter(settings_.noise_filter, model_.config.noise_filter)) {
     if (settings_.lookahead < 0 || settings_.lookahead > 2)
         throw Error(ErrorKind::usage,
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(settings_.lookahead));
@@ -31,8 +32,10 @@ void Evaluation::run_sequences(int n, const std::function<SequenceResult(int)>& 
 
 EvaluateReport Evaluation::finish(const std::string& settings_text) {
     const SigmaRule rule = settings_.sigma_rule.value_or(model_.config.sigma_rule);
-    report_.settings = "lookahead " + std::to_string(settings_.lookahead) + ", " + settings_text +
-                       (rule == SigmaRule::mixture ? ", mixture sigma" : ", blended ln sigma");
+    report_.settings =
+        "lookahead " + std::to_string(settings_.lookahead) + ", " + settings_text +
+        (noise_filter_ ? ", noise filter " + noise_filter_text(*noise_filter_) : "") +
+        (rule == SigmaRule::mixture ? ", mixture sigma" : ", blended ln sigma");
     report_.overall = overall_scores(report_.sequences);
     return std::move(report_);
 }

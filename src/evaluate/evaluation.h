@@ -1,11 +1,13 @@
 // The part all evaluations share: the model, the perceptual network, and the report being filled.
 #pragma once
 
+#include "src/binning/noise_filter.h"
 #include "src/evaluate/evaluate.h"
 #include "src/evaluate/model_run.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace eventide {
@@ -29,6 +31,8 @@ public:
     const Model& model() const { return model_; }
     const Lpips* lpips() const { return lpips_.get(); }
     const EvaluateSettings& settings() const { return settings_; }
+    /// None: all events are taken.
+    std::optional<NoiseFilterSettings> noise_filter() const { return noise_filter_; }
 
     /// The report, with the means over everything.
     EvaluateReport finish(const std::string& settings_text);
@@ -37,6 +41,7 @@ private:
     EvaluateSettings settings_;
     Model model_;
     std::unique_ptr<const Lpips> lpips_;
+    std::optional<NoiseFilterSettings> noise_filter_;
     EvaluateReport report_;
 };
 

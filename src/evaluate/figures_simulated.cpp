@@ -110,7 +110,8 @@ std::vector<Plot> spatial_super_resolution(const FigureSettings& what,
         ModelRun run{shared.model(), width, height, options_of(how), use};
         int k = 0;
         for_each_simulated_slice(
-            what.simulated, textures, i, [&](const Slice& slice, const SimulatedStream& stream) {
+            what.simulated, textures, i, shared.noise_filter(),
+            [&](const Slice& slice, const SimulatedStream& stream) {
                 if (is_scored(what.simulated, k++)) {
                     run.ask(truth_query(stream, slice.window.end, width, height));
                     for (const double scale : what.scales)
@@ -176,7 +177,8 @@ std::vector<Plot> temporal_super_resolution(const FigureSettings& what,
         ModelRun run{shared.model(), width, height, options_of(how), use};
         int k = 0;
         for_each_simulated_slice(
-            what.simulated, textures, i, [&](const Slice& slice, const SimulatedStream& stream) {
+            what.simulated, textures, i, shared.noise_filter(),
+            [&](const Slice& slice, const SimulatedStream& stream) {
                 if (k > 0 && is_scored(what.simulated, k))
                     for (const std::int64_t offset : offsets)
                         run.ask(truth_query(stream, slice.window.begin + SensorDuration{offset},
@@ -218,7 +220,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
         };
         ModelRun run{shared.model(), width, height, options_of(how), use};
         Query last;
-        for_each_simulated_slice(moving.simulated, textures, i,
+        for_each_simulated_slice(moving.simulated, textures, i, shared.noise_filter(),
                                  [&](const Slice& slice, const SimulatedStream& stream) {
                                      stop = slice.window.end;
                                      last = truth_query(stream, stop, width, height);

@@ -1,6 +1,7 @@
 // The simulated test set: event frames and their ground truth, sequence by sequence.
 #pragma once
 
+#include "src/binning/noise_filter.h"
 #include "src/core/frame_data.h"
 #include "src/evaluate/evaluate.h"
 #include "src/evaluate/model_run.h"
@@ -9,6 +10,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace eventide {
 
@@ -19,9 +21,11 @@ std::shared_ptr<const TextureLibrary> test_textures(const SimulatedSettings& wha
 bool is_scored(const SimulatedSettings& what, int k);
 
 /// Sequence `i`: calls use(slice, stream) after each event frame, when the truth of any time within
-/// it can be asked of the stream. Ends early where `use` returns false.
+/// it can be asked of the stream. Ends early where `use` returns false. `noise_filter`: none: all
+/// events are taken.
 void for_each_simulated_slice(const SimulatedSettings& what,
                               const std::shared_ptr<const TextureLibrary>& textures, int i,
+                              std::optional<NoiseFilterSettings> noise_filter,
                               const std::function<bool(const Slice&, const SimulatedStream&)>& use);
 
 /// The truth at t as a picture of width x height px, as a query.

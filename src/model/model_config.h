@@ -33,6 +33,7 @@ struct ModelConfig {
     SigmaRule sigma_rule = SigmaRule::log_blend;
     Blend blend = Blend::linear;
     LiveEdge live_edge = LiveEdge::jump;
+    bool noise_filter = false;    ///< it was trained on what NoiseFilter leaves
     std::string window = "50ms";  ///< the event frames it was trained for
     std::string card;             ///< data, budget, scores, limits
 

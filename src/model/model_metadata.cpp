@@ -149,6 +149,8 @@ const std::vector<Key>& keys() {
                         {"linear", "smooth"})),
         optional(choice("live_edge", &ModelConfig::live_edge, {LiveEdge::jump, LiveEdge::fade},
                         {"jump", "fade"})),
+        optional(
+            choice("noise_filter", &ModelConfig::noise_filter, {false, true}, {"off", "auto"})),
         text("window", &ModelConfig::window),
         text("card", &ModelConfig::card),
     };

@@ -1,6 +1,7 @@
 #include "src/train/data.h"
 
 #include "src/binning/binner.h"
+#include "src/binning/noise_filter.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/simulated_stream.h"
 
@@ -108,6 +109,8 @@ struct Lane::Episode {
         // A share of 0 draws nothing, so that runs of before go on as they were.
         if (settings.content_share > 0 && random.chance(settings.content_share))
             enough = random.log_uniform(settings.content_epp) * settings.crop * settings.crop;
+        if (settings.noise_filter)
+            noise_filter.emplace(settings.crop, settings.crop, NoiseFilterSettings{});
     }
 
     void advance() {
@@ -117,6 +120,7 @@ struct Lane::Episode {
         window = {stream.now(), stream.now() + width};
         events.clear();
         stream.advance(window.end, events);
+        if (noise_filter) noise_filter->process(events);
         binner.process({.window = window, .events = events}, grid);
         ++frames;
     }
@@ -136,6 +140,7 @@ struct Lane::Episode {
     Binner binner;
     VoxelGrid grid;
     double width_s, jitter;
+    std::optional<NoiseFilter> noise_filter;
     double enough = 0;  ///< events that end a window before its time; 0: none do
     Window window;
     std::vector<Event> events;

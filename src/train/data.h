@@ -35,6 +35,7 @@ struct DataSettings {
     int warm_frames = 4;             ///< frames of a new lane that count nothing
     double content_share = 0;        ///< episodes whose windows end by content, too:
     Range content_epp{.2, 1};        ///< log-uniform; at so many events per pixel, never under 1 ms
+    bool noise_filter = false;       ///< events are left out as NoiseFilter does
     double thesis_share = 0;  ///< episodes lit, sensed and shown as the thesis' (see `Camera`)
     std::uint64_t seed = 1;
     SceneSettings scene = training_scenes();

@@ -129,6 +129,7 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("recurrent", o.model.recurrent, "per level: 1 recurrent, 0 held");
     add("res-blocks", o.model.res_blocks, "at the lowest resolution");
     add("gate-radius", o.model.gate_radius, "px around events in which states change");
+    add("noise-filter", o.model.noise_filter, "1: events that no neighbours support are left out");
     add("gate-spread", o.model.gate_spread, "further at the lowest resolution, in its pixels");
     add("latent", o.model.latent, "D");
     add("latent-stride", o.model.latent_stride, "1 or 2");

@@ -60,6 +60,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
             weights->at("encoder.in.weight") *= input_mask_;
     }
     options_.data.bins = options.model.bins;
+    options_.data.noise_filter = options.model.noise_filter;
     std::filesystem::create_directories(options.out);
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);

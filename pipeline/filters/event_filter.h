@@ -1,0 +1,21 @@
+// The filters between parser and slicer, as a user chose them.
+#pragma once
+
+#include "pipeline/stages.h"
+#include "src/model/model_config.h"
+
+#include <memory>
+#include <string>
+
+namespace eventide {
+
+struct EventFilterChoice {
+    std::string hot_pixels;    ///< "off", "learn", or a file that lists pixels (HotPixelFilter)
+    std::string noise_filter;  ///< parse_noise_filter()
+};
+
+/// Hot pixels first, then what nothing supports; null where all events stay. Throws Error (usage).
+std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const ModelConfig& model,
+                                          int width, int height);
+
+}  // namespace eventide

@@ -1,0 +1,78 @@
+// Leaves out the events that nothing around them supports: a sensor's noise.
+#pragma once
+
+#include "src/core/event.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eventide {
+
+/// Within which time neighbours support an event; from `shortest` to `longest`, as noisy as the
+/// sensor is. Equal: always that.
+struct NoiseFilterSettings {
+    SensorDuration shortest{10'000}, longest{500'000};
+    friend bool operator==(const NoiseFilterSettings&, const NoiseFilterSettings&) = default;
+};
+
+/// An event stays where at least kSupport of the eight pixels around its own had one, of either
+/// polarity, a short time before it; those left out support others all the same. What moves makes
+/// neighbours fire, noise (shot noise, leak, hot pixels) stands alone. The idea is the background
+/// activity filter of Delbruck (Frame-free dynamic digital vision, 2008), which asks for one
+/// neighbour within a constant time.
+///
+/// Here the time adapts: it is chosen so that of events which come at random as often as the
+/// sensor's noise, kSupport are rarely together (6 %). In the dark it is short; where there is no
+/// noise it is long, and slow motion and fine texture, whose events come one by one too, stay.
+/// Noise is what fires in those parts of the sensor (tiles of kTile x kTile px) in which least
+/// does.
+///
+/// Deterministic: what is left out depends on the events, not on how they are split. Events from
+/// after the present (the clock was reset) support nothing. One thread at a time.
+class NoiseFilter {
+public:
+    static constexpr int kSupport = 2;
+    static constexpr SensorDuration kMaxTime{10'000'000};
+
+    /// Sensor of width x height px, which events must lie on. Throws Error (usage) for times that
+    /// are not from 1 us to kMaxTime.
+    NoiseFilter(int width, int height, const NoiseFilterSettings& settings);
+
+    /// Removes events in place; the order stays.
+    void process(std::vector<Event>& events) noexcept;
+
+    /// Noise events per pixel and second, as known at the newest event.
+    double noise_hz() const { return noise_hz_.value_or(0); }
+    /// Within which time neighbours support an event now.
+    SensorDuration within() const { return within_; }
+
+private:
+    static constexpr int kTile = 8;
+    void measure(const Event& event) noexcept;
+    void end_interval() noexcept;
+    void set_noise(double hz) noexcept;
+    bool is_supported(const SensorTime* own, SensorTime t) const noexcept;
+
+    NoiseFilterSettings settings_;
+    std::size_t stride_;              // a rim of one pixel around the sensor never fires
+    std::vector<SensorTime> newest_;  // [y + 1][x + 1]; of each pixel
+    int tile_rows_, tile_columns_;
+    double tile_pixels_;
+    std::vector<std::uint32_t> counts_, sorted_;  // per whole tile, in the interval; and scratch
+    std::optional<SensorTime> interval_;          // its begin
+    std::optional<double> noise_hz_;              // none: not known yet
+    SensorDuration within_;
+};
+
+/// "auto" or the constant time.
+std::string noise_filter_text(const NoiseFilterSettings& settings);
+
+/// "off"; "auto"; "model": auto where the model was trained so, else off; or a constant time such
+/// as "10ms". Throws Error (usage).
+std::optional<NoiseFilterSettings> parse_noise_filter(std::string_view text, bool models);
+
+}  // namespace eventide

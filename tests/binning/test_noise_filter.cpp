@@ -1,0 +1,154 @@
+#include "src/binning/noise_filter.h"
+
+#include "src/core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <utility>
+
+namespace eventide {
+namespace {
+
+using Events = std::vector<Event>;
+
+Event at(std::int64_t us, int x, int y) {
+    return {from_us(us), std::uint16_t(x), std::uint16_t(y), Polarity::on};
+}
+
+Events filtered(NoiseFilter filter, Events events) {
+    filter.process(events);
+    return events;
+}
+
+NoiseFilterSettings constant(int us) {
+    return {SensorDuration{us}, SensorDuration{us}};
+}
+
+NoiseFilter small_filter() {
+    return {8, 6, constant(1000)};
+}
+
+Events random_events(int n, int width, int height, double us_between) {
+    std::mt19937 random{7};
+    std::exponential_distribution<double> pause{1 / us_between};
+    Events events;
+    double t = 0;
+    for (int i = 0; i < n; ++i)
+        events.push_back(at(std::int64_t(t += pause(random)), int(random() % unsigned(width)),
+                            int(random() % unsigned(height))));
+    return events;
+}
+
+TEST(NoiseFilter, AnEventStaysWhereTwoOfItsNeighboursJustHadOne) {
+    const Events events{at(0, 2, 2), at(10, 3, 2), at(20, 3, 3), at(1009, 2, 3)};
+    // The third has two neighbours, the fourth all three within 1 ms less the first.
+    EXPECT_EQ(filtered(small_filter(), events), (Events{at(20, 3, 3), at(1009, 2, 3)}));
+}
+
+TEST(NoiseFilter, WhatLiesFartherInSpaceOrTimeSupportsNothing) {
+    EXPECT_TRUE(filtered(small_filter(), {at(0, 1, 1), at(1, 2, 1), at(1002, 2, 2)}).empty());
+    EXPECT_TRUE(filtered(small_filter(), {at(0, 0, 2), at(1, 4, 2), at(2, 2, 2)}).empty());
+}
+
+TEST(NoiseFilter, APixelDoesNotSupportItself) {
+    EXPECT_TRUE(filtered(small_filter(), {at(0, 2, 2), at(1, 2, 2), at(2, 2, 2)}).empty());
+}
+
+TEST(NoiseFilter, RowsDoNotNeighbourAcrossTheSensorsEdge) {
+    EXPECT_TRUE(filtered(small_filter(), {at(0, 7, 1), at(1, 7, 2), at(2, 0, 2)}).empty());
+    EXPECT_EQ(filtered(small_filter(), {at(0, 0, 0), at(1, 7, 5), at(2, 6, 5), at(3, 7, 4)}),
+              (Events{at(3, 7, 4)}));
+}
+
+TEST(NoiseFilter, EventsFromBeforeAClockWasResetSupportNothing) {
+    NoiseFilter filter = small_filter();
+    Events before{at(5000, 2, 2), at(5001, 3, 2)};
+    filter.process(before);
+    Events after{at(4900, 2, 3)};
+    filter.process(after);
+    EXPECT_TRUE(after.empty());
+}
+
+TEST(NoiseFilter, DoesNotCareHowTheEventsAreSplit) {
+    const Events all = random_events(5000, 20, 10, 50);
+    const Events expected = filtered({20, 10, constant(1000)}, all);
+    EXPECT_GT(expected.size(), 100U);
+    EXPECT_LT(expected.size(), 4900U);
+    NoiseFilter filter{20, 10, constant(1000)};
+    Events split;
+    std::mt19937 random{3};
+    for (std::size_t i = 0; i < all.size();) {
+        const std::size_t n = std::min<std::size_t>(all.size() - i, random() % 70);
+        Events part(all.begin() + std::ptrdiff_t(i), all.begin() + std::ptrdiff_t(i + n));
+        filter.process(part);
+        split.insert(split.end(), part.begin(), part.end());
+        i += n;
+    }
+    EXPECT_EQ(split.size(), expected.size());
+    EXPECT_TRUE(split == expected);
+}
+
+TEST(NoiseFilter, KeepsTheMovingEdgeAndLeavesOutTheNoise) {
+    // 2 events per pixel and second of noise; an edge of the sensor's height that moves at 1 px/ms.
+    constexpr int kSide = 64;
+    Events noise = random_events(500, kSide, kSide, 1e6 / (2. * kSide * kSide));
+    EXPECT_LT(filtered({kSide, kSide, constant(10'000)}, noise).size(), 25U);
+    Events edge;
+    for (int x = 0; x < kSide; ++x)
+        for (int y = 0; y < kSide; ++y) edge.push_back(at(1000 * x + y, x, y));
+    EXPECT_GT(filtered({kSide, kSide, constant(10'000)}, edge).size(), edge.size() * .95);
+}
+
+TEST(NoiseFilter, LearnsTheNoiseAndChoosesTheTimeByIt) {
+    constexpr int kSide = 64;
+    NoiseFilter filter{kSide, kSide, {}};
+    EXPECT_EQ(filter.within(), NoiseFilterSettings{}.longest);
+    Events noise = random_events(40'000, kSide, kSide, 1e6 / (4. * kSide * kSide));  // 4 Hz, 2.4 s
+    filter.process(noise);
+    EXPECT_NEAR(filter.noise_hz(), 4, .8);
+    EXPECT_NEAR(double(filter.within().count()), .4e6 / (8 * 4), 3000);
+    Events silence{at(10'000'000, 1, 1)};
+    filter.process(silence);
+    EXPECT_EQ(filter.noise_hz(), 0);
+}
+
+TEST(NoiseFilter, KeepsSlowMotionWhereThereIsNoNoise) {
+    // An edge that moves at 50 ms per pixel, every pixel at its own time: most are alone for 10 ms.
+    constexpr int kSide = 48;
+    std::mt19937 random{11};
+    Events slow;
+    for (int x = 0; x < 40; ++x) {
+        Events column;
+        for (int y = 0; y < kSide; ++y)
+            column.push_back(at(50'000 * x + int(random() % 50'000), x, y));
+        std::ranges::sort(column, {}, &Event::t);
+        slow.insert(slow.end(), column.begin(), column.end());
+    }
+    EXPECT_GT(filtered({kSide, kSide, {}}, slow).size(), slow.size() * .9);
+    EXPECT_LT(filtered({kSide, kSide, constant(10'000)}, slow).size(), slow.size() * .5);
+}
+
+TEST(NoiseFilter, TakesSensorsOfAnySize) {
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 640}, {17, 13}, {9, 8}})
+        EXPECT_LE(filtered({width, height, {}}, random_events(3000, width, height, 300)).size(),
+                  3000U);
+}
+
+TEST(NoiseFilter, IsChosenByAWordOrATime) {
+    EXPECT_EQ(parse_noise_filter("off", true), std::nullopt);
+    EXPECT_EQ(parse_noise_filter("auto", false), NoiseFilterSettings{});
+    EXPECT_EQ(parse_noise_filter("model", true), NoiseFilterSettings{});
+    EXPECT_EQ(parse_noise_filter("model", false), std::nullopt);
+    EXPECT_EQ(parse_noise_filter("2.5ms", false), constant(2500));
+    for (const char* bad : {"", "on", "10", "0ms", "-1ms", "11s", "nan s", "1 ms"})
+        EXPECT_THROW(parse_noise_filter(bad, true), Error) << bad;
+    EXPECT_EQ(noise_filter_text(*parse_noise_filter("auto", false)), "auto");
+    EXPECT_EQ(noise_filter_text(*parse_noise_filter("20ms", false)), "20ms");
+    EXPECT_THROW((NoiseFilter{4, 4, constant(0)}), Error);
+}
+
+}  // namespace
+}  // namespace eventide
