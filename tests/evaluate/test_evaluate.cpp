@@ -104,6 +104,23 @@ TEST(EvaluateRecordings, OfSeveralWeighFrames) {
     EXPECT_EQ(report.overall.sequence, "all");
 }
 
+TEST(EvaluateRecordings, LeaveOutNoiseWhereAsked) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("noise"), .9, .001, .1)};  // of lone events
+    const auto events_per_pixel = [&](const char* filter) {
+        EvaluateSettings how = small_model();
+        how.noise_filter = filter;
+        const EvaluateReport report = evaluate_recordings(what, how);
+        EXPECT_EQ(report.settings.find("noise filter") != std::string::npos,
+                  std::string{filter} == "1ms");
+        return report.sequences.at(0).frames.at(0).events_per_pixel;
+    };
+    EXPECT_GT(events_per_pixel("off"), 0);
+    EXPECT_EQ(events_per_pixel("model"), events_per_pixel("off")) << "trained on all events";
+    EXPECT_EQ(events_per_pixel("1ms"), 0);
+    EXPECT_THROW(events_per_pixel("a lot"), Error);
+}
+
 TEST(EvaluateRecordings, NameWhatCannotBeUsed) {
     RecordingSettings what;
     EXPECT_THROW(evaluate_recordings(what, small_model()), Error);

@@ -138,6 +138,15 @@ TEST_F(CInterface, OfOlderHeadersHasTheDefaultsOfWhatTheyLack) {
     EXPECT_EQ(open_with(options), EVENTIDE_OK) << eventide_error_message();
 }
 
+TEST_F(CInterface, RefusesANoiseFilterThatIsNone) {
+    eventide_options options = repeatable_options();
+    options.noise_filter = "a lot";
+    EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
+    EXPECT_NE(std::string{eventide_error_message()}.find("a lot"), std::string::npos);
+    options.noise_filter = "20ms";
+    EXPECT_EQ(open_with(options), EVENTIDE_OK) << eventide_error_message();
+}
+
 TEST_F(CInterface, CamerasPushWhatTheyRead) {
     open();
     eventide_source* source = nullptr;
