@@ -97,7 +97,7 @@ extern "C" {
 void eventide_options_init(eventide_options* options, size_t struct_size) {
     if (options == nullptr) return;
     const eventide_options defaults{
-        sizeof(eventide_options), "model", 0, "30", {}, 1, "off", "auto", "auto", 0, 0, 0};
+        sizeof(eventide_options), "model", 0, "30", {}, 1, "off", "auto", "auto", 0, 0, 0, "model"};
     std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
     if (struct_size >= sizeof options->struct_size) options->struct_size = struct_size;
 }
