@@ -116,7 +116,7 @@ TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
                                        "50",      "--record", "raw.aedat4",  "--out",
                                        "gray8:-", "--stats",  "stats.jsonl"};
     // However busy the machine is, the only gap is the cable's.
-    arguments.insert(arguments.end(), {"--buffers-packets", "10000"});
+    arguments.insert(arguments.end(), {"--buffers-packets", "10000", "--latency", "none"});
     if (reset) arguments.push_back("--reset-on-gap");
     Process process = start(arguments, {.output_to_pipe = true});
     read_frames(process, 8);
@@ -149,8 +149,8 @@ TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
 
 TEST_F(Live, BeforeAWallFramesKeepComingAtTheAskedRate) {
     plug_in(davis_scene(small_camera().sensor, {.events = 2'000}), true);
-    const Result result = eventide({"run", "davis:", "--fps", "50", "--duration", "1s", "--out",
-                                    "frames/", "--stats", "stats.jsonl"});
+    const Result result = eventide({"run", "davis:", "--fps", "50", "--duration", "1s", "--latency",
+                                    "none", "--out", "frames/", "--stats", "stats.jsonl"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const auto times = column(temp_ / "frames/timestamps.csv", 2);
     const Json stats = last_stats();

@@ -220,8 +220,8 @@ TEST_F(Run, RendersOneRegionOnly) {
 }
 
 TEST_F(Run, TakesASimulationInPlaceOfACamera) {
-    const Result result = eventide(
-        {"run", "sim:demo?size=64x48&seconds=0.2&speed=max", "--fps", "50", "--out", "a/"});
+    const Result result = eventide({"run", "sim:demo?size=64x48&seconds=0.2&speed=max", "--fps",
+                                    "50", "--latency", "none", "--out", "a/"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_GE(column(temp_ / "a/timestamps.csv", 0).size(), 9U);
 }
