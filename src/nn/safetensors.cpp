@@ -67,6 +67,23 @@ std::int64_t non_negative(const Json& json, const std::string& file, const std::
     return json.get<std::int64_t>();
 }
 
+std::size_t bytes_of_number(const Tensor& tensor) {
+    return tensor.bf16 ? sizeof(std::uint16_t) : sizeof(float);
+}
+
+/// The upper half of the nearest one, ties to even; numbers that would become infinite stay the
+/// largest.
+std::uint16_t to_bf16(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const std::uint32_t rounded = bits + 0x7fff + (bits >> 16 & 1);
+    const bool overflows = (rounded & 0x7f800000) == 0x7f800000;
+    return std::uint16_t((overflows ? bits : rounded) >> 16);
+}
+
+float from_bf16(std::uint16_t half) {
+    return std::bit_cast<float>(std::uint32_t{half} << 16);
+}
+
 /// Where a tensor lies in the data part.
 struct Extent {
     std::string name;
@@ -79,8 +96,9 @@ Extent parse_extent(const std::string& name, const Json& entry, std::size_t data
     if (!entry.is_object() || !entry.contains("dtype") || !entry.contains("shape") ||
         !entry.contains("data_offsets") || entry.size() != 3)
         refuse(file, what + ": expected dtype, shape and data_offsets, nothing else");
-    if (entry["dtype"] != "F32")
-        refuse(file, what + ": expected dtype F32, found " + entry["dtype"].dump());
+    tensor.bf16 = entry["dtype"] == "BF16";
+    if (!tensor.bf16 && entry["dtype"] != "F32")
+        refuse(file, what + ": expected dtype F32 or BF16, found " + entry["dtype"].dump());
     const Json& shape = entry["shape"];
     const Json& offsets = entry["data_offsets"];
     if (!shape.is_array() || shape.size() > kMaxDimensions)
@@ -100,22 +118,45 @@ Extent parse_extent(const std::string& name, const Json& entry, std::size_t data
     } catch (const Error& error) {
         refuse(file, what + ": " + error.what());
     }
-    if ((end - begin) / sizeof(float) != count || (end - begin) % sizeof(float) != 0)
+    const std::size_t bytes = bytes_of_number(tensor);
+    if ((end - begin) / bytes != count || (end - begin) % bytes != 0)
         refuse(file, what + ": shape " + shape_text(tensor.shape) + " takes " +
-                         std::to_string(count) + " numbers of 4 bytes, found " +
-                         std::to_string(end - begin) + " bytes");
+                         std::to_string(count) + " numbers of " + std::to_string(bytes) +
+                         " bytes, found " + std::to_string(end - begin) + " bytes");
     return {name, begin, end};
 }
 
 void copy_values(std::span<const std::byte> data, const Extent& extent, const std::string& file,
                  Tensor& tensor) {
-    tensor.values.resize((extent.end - extent.begin) / sizeof(float));
+    tensor.values.resize((extent.end - extent.begin) / bytes_of_number(tensor));
     if (tensor.values.empty()) return;
-    std::memcpy(tensor.values.data(), data.data() + extent.begin, extent.end - extent.begin);
+    const std::byte* from = data.data() + extent.begin;
+    if (tensor.bf16)
+        for (float& value : tensor.values) {
+            std::uint16_t half = 0;
+            std::memcpy(&half, from, sizeof half);
+            value = from_bf16(half);
+            from += sizeof half;
+        }
+    else
+        std::memcpy(tensor.values.data(), from, extent.end - extent.begin);
     for (std::size_t i = 0; i < tensor.values.size(); ++i)
         if (!std::isfinite(tensor.values[i]))
             refuse(file, "tensor '" + extent.name + "': number " + std::to_string(i) + " is " +
                              (std::isnan(tensor.values[i]) ? "NaN" : "infinite"));
+}
+
+/// Writes the numbers and returns where the next tensor's begin.
+std::byte* store(const Tensor& tensor, std::byte* out) {
+    if (tensor.values.empty()) return out;
+    if (!tensor.bf16)
+        std::memcpy(out, tensor.values.data(), tensor.values.size() * sizeof(float));
+    else
+        for (std::size_t i = 0; i < tensor.values.size(); ++i) {
+            const std::uint16_t half = to_bf16(tensor.values[i]);
+            std::memcpy(out + i * sizeof half, &half, sizeof half);
+        }
+    return out + tensor.values.size() * bytes_of_number(tensor);
 }
 
 /// The data must be covered once and wholly: a hole or an overlap is damage, or a hiding place.
@@ -200,9 +241,10 @@ std::vector<std::byte> format_safetensors(const TensorFile& file) {
     if (!file.metadata.empty()) header["__metadata__"] = file.metadata;
     std::size_t at = 0;
     for (const auto& [name, tensor] : file.tensors) {
-        const std::size_t size = tensor.values.size() * sizeof(float);
-        header[name] = {
-            {"dtype", "F32"}, {"shape", tensor.shape}, {"data_offsets", {at, at + size}}};
+        const std::size_t size = tensor.values.size() * bytes_of_number(tensor);
+        header[name] = {{"dtype", tensor.bf16 ? "BF16" : "F32"},
+                        {"shape", tensor.shape},
+                        {"data_offsets", {at, at + size}}};
         at += size;
     }
     // Not-UTF-8 bytes in a card must not stop a training run from being saved.
@@ -215,9 +257,7 @@ std::vector<std::byte> format_safetensors(const TensorFile& file) {
     std::memcpy(bytes.data() + kLengthBytes, text.data(), text.size());
     std::byte* out = bytes.data() + kLengthBytes + text.size();
     for (const auto& [name, tensor] : file.tensors) {
-        if (tensor.values.empty()) continue;
-        std::memcpy(out, tensor.values.data(), tensor.values.size() * sizeof(float));
-        out += tensor.values.size() * sizeof(float);
+        out = store(tensor, out);
     }
     return bytes;
 }

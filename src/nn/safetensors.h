@@ -15,6 +15,7 @@ namespace eventide {
 struct Tensor {
     std::vector<std::int64_t> shape;
     std::vector<float> values;  ///< as many as the product of `shape`
+    bool bf16 = false;          ///< in the file, 2 bytes a number: rounded to the nearest bf16
 
     friend bool operator==(const Tensor&, const Tensor&) = default;
 };
@@ -35,8 +36,9 @@ std::size_t element_count(std::span<const std::int64_t> shape);
 std::string shape_text(std::span<const std::int64_t> shape);
 
 /// The file's bytes as tensors. `name` stands for the file in messages. Throws Error(input) where
-/// the bytes are not a whole safetensors file of finite float32 tensors; the message names the
-/// tensor. Never reads outside `bytes` nor allocates more than a small multiple of their number.
+/// the bytes are not a whole safetensors file of finite float32 or bfloat16 tensors; the message
+/// names the tensor. Never reads outside `bytes` nor allocates more than a small multiple of their
+/// number.
 TensorFile parse_safetensors(std::span<const std::byte> bytes, const std::string& name);
 
 /// As parse_safetensors, from a file.

@@ -7,8 +7,11 @@
 namespace eventide {
 namespace {
 
-void put(TensorFile& file, const std::string& prefix, const Parameters& parameters) {
-    for (const auto& [name, values] : parameters) file.tensors[prefix + name] = to_tensor(values);
+void put(TensorFile& file, const std::string& prefix, const Parameters& parameters, bool bf16) {
+    for (const auto& [name, values] : parameters) {
+        Tensor& tensor = file.tensors[prefix + name] = to_tensor(values);
+        tensor.bf16 = bf16;
+    }
 }
 
 const Tensor& tensor_of(const TensorFile& file, const std::string& path, const std::string& name) {
@@ -68,10 +71,13 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
                      {"best_score", exact(checkpoint.best_score)},
                      {"threads", exact(double(checkpoint.memories.size()))},
                      {"options", checkpoint.options}};
-    put(file, "weights.", optimiser.parameters);
-    put(file, "moment1.", optimiser.moment1);
-    put(file, "moment2.", optimiser.moment2);
-    put(file, "ema.", optimiser.ema);
+    // A run that stops and goes on is one that did not stop; one that is kept without its states is
+    // not, and of means of gradients, which are mostly noise, 1/256 is enough.
+    const bool small_moments = checkpoint.memories.empty();
+    put(file, "weights.", optimiser.parameters, false);
+    put(file, "moment1.", optimiser.moment1, small_moments);
+    put(file, "moment2.", optimiser.moment2, small_moments);
+    put(file, "ema.", optimiser.ema, false);
     for (std::size_t i = 0; i < checkpoint.memories.size(); ++i) {
         const Memory& memory = checkpoint.memories[i];
         file.tensors[memory_name(i, "latent")] = to_tensor(memory.latent);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -42,6 +43,23 @@ TensorFile sample() {
 TEST(Safetensors, WhatIsWrittenIsRead) {
     EXPECT_EQ(parse_safetensors(format_safetensors(sample()), "x"), sample());
     EXPECT_EQ(parse_safetensors(format_safetensors({}), "x"), TensorFile{});
+}
+
+TEST(Safetensors, NumbersInTwoBytesAreRoundedToTheNearest) {
+    const float largest = std::numeric_limits<float>::max(), third = 1.F / 3;
+    TensorFile file = sample();
+    file.tensors["odd"] = {{5}, {1, -2.5F, third, -largest, 1 + 1.F / 256}, true};
+    const std::vector<std::byte> bytes = format_safetensors(file);
+    const TensorFile read = parse_safetensors(bytes, "x");
+    const Tensor& odd = read.tensors.at("odd");
+    EXPECT_TRUE(odd.bf16);
+    EXPECT_EQ(odd.values[0], 1);
+    EXPECT_EQ(odd.values[1], -2.5F);
+    EXPECT_NEAR(odd.values[2], third, third / 512);
+    EXPECT_TRUE(std::isfinite(odd.values[3]));
+    EXPECT_EQ(odd.values[4], 1) << "a tie goes to the even one";
+    EXPECT_EQ(read.tensors.at("matrix"), file.tensors.at("matrix"));
+    EXPECT_EQ(format_safetensors(read), bytes) << "what was rounded stays";
 }
 
 TEST(Safetensors, AFileOfAnyOtherLengthIsRefused) {
