@@ -4,6 +4,7 @@
 #include "src/codec/parser.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -56,9 +57,14 @@ void fuzz_parser(std::span<const std::byte> bytes, int width, int height, MakePa
     require(split.triggers == whole.triggers);
     require(first->clock() == second->clock());
 
-    // After a jump the parser goes on, wherever that is.
+    // After a jump the parser goes on, wherever that is and whatever the host's clock says.
     second->resync();
     split.clear();
+    for (std::size_t i = 0; i + 1 < bytes.size() && i < 8; ++i) {
+        second->arrives(HostTime{std::chrono::milliseconds{int(bytes[i]) * int(bytes[i + 1])}});
+        second->parse(bytes.subspan(i, 1 + bytes.size() / 8), split);
+        if (i % 3 == 1) second->resync();
+    }
     parse_for_fuzzer(*second, bytes.subspan(bytes.size() / 3), 7, split);
     for (std::size_t i = 1; i < split.events.size(); ++i)
         require(split.events[i].t >= split.events[i - 1].t);
