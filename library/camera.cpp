@@ -35,8 +35,8 @@ public:
         if (status == ReadStatus::timeout) return true;
         now_ = packet_.arrived;
         gap_before_ = packet_.gap_before;
-        if (gap_before_) note_gap();
-        last_data_ = now_;
+        if (gap_before_) parser_->resync();
+        if (camera_->is_live()) parser_->arrives(now_);
         parser_->parse(packet_.bytes, batch);
         note_clock();
         return true;
@@ -56,12 +56,6 @@ private:
         return !batch.empty();
     }
 
-    void note_gap() {
-        parser_->resync();
-        if (last_data_)
-            parser_->expect_passed(std::chrono::duration_cast<SensorDuration>(now_ - *last_data_));
-    }
-
     void note_clock() {
         const auto told = parser_->clock();
         if (!told || told == clock_) return;
@@ -74,7 +68,6 @@ private:
     RawPacket packet_;
     bool gap_before_ = false, ended_ = false;
     HostTime now_{}, clock_arrived_{};
-    std::optional<HostTime> last_data_;
     std::optional<SensorTime> clock_;
 };
 

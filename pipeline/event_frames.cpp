@@ -14,13 +14,14 @@ EventFrames::EventFrames(const Source& source, const Settings& settings, EventFi
       silence_margin_(settings.silence_margin) {}
 
 void EventFrames::take(const RawPacket& packet) {
-    if (packet.gap_before) note_gap(packet.arrived);
+    if (packet.gap_before) note_gap();
     if (packet.bytes.empty()) {
         advance_in_silence(packet.arrived);
         return;
     }
     last_data_ = packet.arrived;
     counters_.bin.bytes.add(packet.bytes.size());
+    if (live_) parser_->arrives(packet.arrived);
     parser_->parse(packet.bytes, batch_);
     pass_on(packet.arrived);
     if (live_) advance_clock(packet.arrived);
@@ -37,11 +38,9 @@ void EventFrames::finish(End end) {
     counters_.note(parser_->damaged(), slicer_.counters());
 }
 
-void EventFrames::note_gap(HostTime arrived) {
+void EventFrames::note_gap() {
     counters_.bin.gaps.add();
     parser_->resync();
-    if (live_ && last_data_)
-        parser_->expect_passed(std::chrono::duration_cast<SensorDuration>(arrived - *last_data_));
     slicer_.mark_gap();
 }
 

@@ -25,7 +25,6 @@ public:
         /// what is still on its way from the camera is not late. Cameras hold back few events for
         /// some milliseconds.
         SensorDuration silence_margin{30'000};
-        ///< a record
     };
 
     /// filter and observer may be null; both are borrowed.
@@ -40,7 +39,7 @@ public:
     bool is_past_end() const { return slicer_.is_past_end(); }
 
 private:
-    void note_gap(HostTime arrived);
+    void note_gap();
     void pass_on(HostTime arrived);
     void advance_clock(HostTime arrived);
     void advance_in_silence(HostTime now);

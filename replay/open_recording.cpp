@@ -18,11 +18,13 @@ constexpr std::ptrdiff_t kRowsOfStreamToSee = 3;
 
 /// The beginning of the file. Of a pipe only as much as it takes to know the format.
 std::vector<std::byte> read_head(ByteFile& file) {
-    std::vector<std::byte> head(kHeadBytes);
+    std::vector<std::byte> head;
     if (file.is_seekable()) {
+        head.resize(std::size_t(std::min<std::uint64_t>(kHeadBytes, file.size())));
         head.resize(file.read_at(0, head));
         return head;
     }
+    head.resize(kHeadBytes);
     std::size_t size = 0;
     while (size < head.size()) {
         const std::size_t n = file.read_some(std::span(head).subspan(size));

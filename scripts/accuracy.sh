@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures a model: docs/accuracy/tables.md, figures beside it as SVG and CSV, and the bars in docs/accuracy.md.
+# Measures a model: docs/accuracy/tables.md, figures beside it as SVG and CSV, and the targets in docs/accuracy.md.
 #   scripts/accuracy.sh DATA [MODEL [SECTION...]]
 # DATA holds recordings/, images/bsds500/ and perceptual/lpips_squeeze_v0.1.npz; MODEL is a name or a file (default).
 # SECTION: real calibration simulated sigma super-resolution silence; without: all of them.
@@ -36,7 +36,7 @@ mapfile -t held_out < <(recordings davis346_robotarm davis346_desk slider_depth_
 # What is not a path of the project is shown as a name.
 shown() { sed "s|$calibrated|calibrated.safetensors|g; s|$DATA|\$DATA|g; s|$file|$(basename "$file")|g"; }
 
-# Runs one evaluation; command and table go to the section's text, the numbers to NAME.csv for the bars.
+# Runs one evaluation; command and table go to the section's text, the numbers to NAME.csv for the targets.
 measure() { # NAME OPTIONS...
   local csv=(--csv "$kept/$1.csv")
   shift
@@ -87,7 +87,7 @@ section_simulated() {
   measure simulated0 "${simulated[@]}" --sequences "$sequences" "${lpips[@]}" --lookahead 0
   measure simulated1 "${simulated[@]}" --sequences $few "${lpips[@]}" --lookahead 1
 }
-# Between the edges of event frames and between pixels several codes are blended, and the rules for sigma differ.
+# Between the edges of event windows and between pixels several codes are blended, and the rules for sigma differ.
 section_sigma() {
   echo "## Blended ln sigma against mixture variance"
   for rule in log_blend mixture; do
@@ -95,13 +95,13 @@ section_sigma() {
     measure simulated_$rule "${simulated[@]}" --sequences $few --lookahead 2 --scale 1.5 --sigma-rule $rule
   done
 }
-# Pictures six times the sensor's size: a smaller sensor, fewer event frames.
+# Frames six times the sensor's size: a smaller sensor, fewer event windows.
 section_super-resolution() {
   echo "## Super-resolution in space and time"
   figures spatial_lpips spatial_mse spatial_ssim -- "${simulated[@]}" "${lpips[@]}" --lookahead 2 --sequences $few \
-    --event-frames 40 --size 120x80 --figure spatial
+    --event-windows 40 --size 120x80 --figure spatial
   figures temporal_lpips temporal_mse temporal_ssim -- "${simulated[@]}" "${lpips[@]}" --lookahead 2 --sequences $few \
-    --event-frames 40 --size 120x80 --figure temporal
+    --event-windows 40 --size 120x80 --figure temporal
 }
 section_silence() {
   echo "## A scene that stops"
@@ -124,10 +124,10 @@ done
   done
 } > "$out/tables.md"
 
-# The bars of docs/accuracy.md, each held against what was measured; nothing where its section is not there yet.
+# The targets of docs/accuracy.md, each against what was measured; nothing where its section is not there yet.
 cell() { awk -F, -v s="$2" -v c="$3" '$1 == s { v = $c } END { print v }' "$kept/$1.csv" 2>/dev/null || true; }
 point() { awk -F, -v s="$2" -v x="$3" '$1 == s && $2 == x { print $3 }' "$kept/$1.csv" 2>/dev/null || true; }
-bar() { # TEXT LOWEST HIGHEST FOUND
+target() { # TEXT LOWEST HIGHEST FOUND
   awk -v text="$1" -v low="$2" -v high="$3" -v found="$4" 'BEGIN {
     asked = low == "" ? "at most " high : high == "" ? "at least " low : low " to " high
     ok = found != "" && (low == "" || found >= low + 0) && (high == "" || found <= high + 0)
@@ -136,39 +136,39 @@ bar() { # TEXT LOWEST HIGHEST FOUND
 }
 difference() { awk -v a="$1" -v b="$2" 'BEGIN { if (a != "" && b != "") print a - b }'; }
 ratio() { awk -v a="$1" -v b="$2" 'BEGIN { if (a != "" && b != "") print a / b }'; }
-bars() {
+targets() {
   local mse=3 ssim=4 lpips=5 picp80=10 ll=11 name
-  printf '| bar | asked | found | held |\n|---|---|---|---|\n'
-  bar "simulated, $sequences sequences, lookahead 2: MSE" "" .018 "$(cell simulated2 all $mse)"
-  bar "the same: SSIM" .65 "" "$(cell simulated2 all $ssim)"
-  bar "the same: PICP80" .77 .83 "$(cell simulated2 all $picp80)"
-  bar "the same: LL" .76 "" "$(cell simulated2 all $ll)"
-  bar "MSE at lookahead 0 over that at lookahead 2" "" 1.15 "$(ratio "$(cell simulated0 all $mse)" "$(cell simulated2 all $mse)")"
-  # Peers are known per recording (docs/accuracy.md), so the two weigh equally.
+  printf '| measure | target | measured | met |\n|---|---|---|---|\n'
+  target "simulated, $sequences sequences, lookahead 2: MSE" "" .018 "$(cell simulated2 all $mse)"
+  target "the same: SSIM" .65 "" "$(cell simulated2 all $ssim)"
+  target "the same: PICP80" .77 .83 "$(cell simulated2 all $picp80)"
+  target "the same: LL" .76 "" "$(cell simulated2 all $ll)"
+  target "MSE at lookahead 0 over that at lookahead 2" "" 1.15 "$(ratio "$(cell simulated0 all $mse)" "$(cell simulated2 all $mse)")"
+  # Baselines are known per recording (docs/accuracy.md), so the two weigh equally.
   both() { awk -v a="$(cell real0 camerashake_b "$1")" -v b="$(cell real0 slider_depth_head "$1")" \
     'BEGIN { if (a != "" && b != "") print (a + b) / 2 }'; }
-  bar "camerashake_b and slider_depth_head, raw, mean of the two: MSE" "" .04 "$(both $mse)"
-  bar "the same: SSIM (best peer: FireNet, .458)" .458 "" "$(both $ssim)"
-  bar "the same: LPIPS-Squeeze (best peer: PIE-Net-Lite, .290)" "" .29 "$(both $lpips)"
-  bar "camerashake_b alone: SSIM (best peer: FireNet, .510)" .51 "" "$(cell real0 camerashake_b $ssim)"
-  bar "the same: LPIPS-Squeeze (FireNet, .250)" "" .25 "$(cell real0 camerashake_b $lpips)"
-  bar "slider_depth_head alone: SSIM (best peer: PIE-Net-Lite, .490)" .49 "" "$(cell real0 slider_depth_head $ssim)"
-  bar "the same: LPIPS-Squeeze (PIE-Net-Lite, .280)" "" .28 "$(cell real0 slider_depth_head $lpips)"
+  target "camerashake_b and slider_depth_head, raw, mean of the two: MSE" "" .04 "$(both $mse)"
+  target "the same: SSIM (best baseline: FireNet, .458)" .458 "" "$(both $ssim)"
+  target "the same: LPIPS-Squeeze (best baseline: PIE-Net-Lite, .290)" "" .29 "$(both $lpips)"
+  target "camerashake_b alone: SSIM (best baseline: FireNet, .510)" .51 "" "$(cell real0 camerashake_b $ssim)"
+  target "the same: LPIPS-Squeeze (FireNet, .250)" "" .25 "$(cell real0 camerashake_b $lpips)"
+  target "slider_depth_head alone: SSIM (best baseline: PIE-Net-Lite, .490)" .49 "" "$(cell real0 slider_depth_head $ssim)"
+  target "the same: LPIPS-Squeeze (PIE-Net-Lite, .280)" "" .28 "$(cell real0 slider_depth_head $lpips)"
   for name in camerashake_b slider_depth_head; do
-    bar "$name: PICP80 after calibration on other recordings" .7 .9 "$(cell cautious $name $picp80)"
+    target "$name: PICP80 after calibration on other recordings" .7 .9 "$(cell cautious $name $picp80)"
   done
   for scale in 1.5 2 3 4; do
-    bar "$scale times the size: LPIPS less that of cubic" "" 0 \
+    target "$scale times the size: LPIPS less that of cubic" "" 0 \
       "$(difference "$(point spatial_lpips model $scale)" "$(point spatial_lpips cubic $scale)")"
   done
-  bar "6000 silent event frames: change of intensity" "" .01 "$(point silence_change model 6000)"
-  bar "the same: sigma over that at the stop" 1 "" \
+  target "6000 silent event windows: change of intensity" "" .01 "$(point silence_change model 6000)"
+  target "the same: sigma over that at the stop" 1 "" \
     "$(ratio "$(point silence_sigma model 6000)" "$(point silence_sigma model 0)")"
 }
-bars > "$kept/bars.md"
-awk -v text="$kept/bars.md" '
-  /<!-- bars begin -->/ { print; while ((getline line < text) > 0) print line; skip = 1 }
-  /<!-- bars end -->/ { skip = 0 }
+targets > "$kept/targets.md"
+awk -v text="$kept/targets.md" '
+  /<!-- targets begin -->/ { print; while ((getline line < text) > 0) print line; skip = 1 }
+  /<!-- targets end -->/ { skip = 0 }
   !skip' docs/accuracy.md > "$kept/page.md"
 cat "$kept/page.md" > docs/accuracy.md
 echo "accuracy: $out/tables.md" >&2

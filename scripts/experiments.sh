@@ -100,7 +100,7 @@ train_and_score() {
   local evaluate=("$program" --quiet evaluate --model "$folder/model.safetensors" --lpips "$lpips")
   for lookahead in 0 2; do
     "${evaluate[@]}" --protocol simulated --images "$DATA/images/bsds500" --last-images 100 --sequences 4 \
-      --event-frames 60 --size 120x80 --lookahead $lookahead --csv "$folder/simulated$lookahead.csv" > /dev/null
+      --event-windows 60 --size 120x80 --lookahead $lookahead --csv "$folder/simulated$lookahead.csv" > /dev/null
   done
   "${evaluate[@]}" "$DATA/recordings/camerashake_b" "$DATA/recordings/slider_depth_head" \
     --csv "$folder/real.csv" > /dev/null

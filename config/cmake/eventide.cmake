@@ -90,6 +90,8 @@ function(eventide_fuzz name)
   add_executable(fuzz_${name} ${arg_SOURCES})
   eventide_compile(fuzz_${name})
   target_link_libraries(fuzz_${name} PRIVATE ${arg_USES})
+  target_compile_definitions(fuzz_${name} PRIVATE
+    EVENTIDE_FUZZ_MODEL="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus/model/tiny")
   target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
 endfunction()
 

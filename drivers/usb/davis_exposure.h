@@ -28,7 +28,7 @@ public:
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override { parser_.finish(into); }
     void resync() override { parser_.resync(); }
-    void expect_passed(SensorDuration passed) override { parser_.expect_passed(passed); }
+    void arrives(HostTime at) override { parser_.arrives(at); }
     std::optional<SensorTime> clock() const override { return parser_.clock(); }
     const Damage& damaged() const override { return parser_.damaged(); }
 

@@ -1,4 +1,4 @@
-// An owning, row-major picture of numbers, 64-byte aligned: the pixels of a row are neighbours.
+// An owning, row-major two-dimensional array, 64-byte aligned: the pixels of a row are neighbours.
 #pragma once
 
 #include <cassert>

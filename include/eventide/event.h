@@ -22,7 +22,7 @@ struct Event {
 };
 static_assert(sizeof(Event) == 16);
 
-/// A picture taken by the sensor itself (APS), or given beside a recording: what reconstructions
+/// An image taken by the sensor itself (APS), or given beside a recording: what reconstructions
 /// are compared with.
 struct ReferenceImage {
     /// The time the image stands for: the middle of the exposure where it is known, else the

@@ -8,7 +8,7 @@
 
 namespace eventide {
 
-/// One rendered picture of the scene.
+/// One rendered frame.
 struct Frame {
     SensorTime t{};            ///< the instant it shows
     Window window;             ///< of the event window t lies in

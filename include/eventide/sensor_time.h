@@ -27,7 +27,7 @@ constexpr std::int64_t to_us(SensorTime t) {
     return t.time_since_epoch().count();
 }
 
-/// The time span of an event frame, (begin, end]: begin < t <= end.
+/// The time span of an event window, (begin, end]: begin < t <= end.
 struct Window {
     SensorTime begin, end;
 

@@ -123,7 +123,7 @@ double milliseconds(std::chrono::nanoseconds duration) {
 
 void print_table(const std::vector<BenchRow>& rows) {
     std::printf("%-12s %-28s %-10s %11s %9s %9s %7s %16s %8s\n", "model", "engine", "sensor",
-                "events/s", "ms/evfr", "ms/pict", "x real", "latency p50/p99", "MSE");
+                "events/s", "ms/window", "ms/frame", "x real", "latency p50/p99", "MSE");
     for (const BenchRow& row : rows)
         std::printf("%-12s %-28s %-10s %11.0f %9.2f %9.2f %7.2f %8.1f/%-7.1f %8.4f\n",
                     printable(row.model).c_str(), row.engine.c_str(), show_size(row.sensor).c_str(),
@@ -172,7 +172,7 @@ Plot plot_of(const std::vector<BenchRow>& rows) {
 }  // namespace
 
 std::string BenchCommand::examples() const {
-    return "ms/evfr: the network per event window of 50 ms, ms/pict: rendering one frame "
+    return "ms/window: the network per event window of 50 ms, ms/frame: rendering one frame "
            "(medians);\n"
            "x real: sensor time over host time as fast as possible; latency at the pace of the "
            "camera,\n"
@@ -196,8 +196,8 @@ SettingTable BenchCommand::settings() {
                        "What the kernels may use: best (all the processor has), or no more than "
                        "an older one.",
                        {"best", "avx2", "sse4"}));
-    add(number_setting("seconds", seconds_, "S", "Length of each recording.", 0.2, 3600));
-    add(number_setting("scale", scale_, "S", "Frames are so many times the sensor's size.", 0.1,
+    add(number_setting("seconds", seconds_, "S", "Duration of each recording, seconds.", 0.2, 3600));
+    add(number_setting("scale", scale_, "S", "Size of the frames, times the sensor's.", 0.1,
                        16));
     add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));

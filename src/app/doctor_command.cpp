@@ -95,7 +95,7 @@ void print(const Finding& finding) {
 }  // namespace
 
 SettingTable DoctorCommand::settings() {
-    SettingTable table{"doctor", "eventide doctor: what works on this machine.", {}};
+    SettingTable table{"doctor", "eventide doctor: check this machine and suggest fixes.", {}};
     table.settings.push_back(flag_setting("json", json_, "A JSON list instead of lines."));
     return table;
 }

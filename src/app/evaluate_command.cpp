@@ -111,13 +111,13 @@ SettingTable EvaluateCommand::settings() {
     add(text_setting("images", images_, "FOLDER",
                      "simulated: photographs to draw scenes from; empty: procedural textures."));
     add(whole_setting("last_images", last_images_, "N",
-                      "simulated: only the last so many of them by name; 0: all.", 0, 1000000));
+                      "simulated: only the last N of them by name; 0: all.", 0, 1000000));
     add(whole_setting("sequences", sequences_, "N", "simulated: how many.", 1, 100000));
-    add(whole_setting("event_frames", event_frames_, "N", "simulated: in each sequence.", 1,
+    add(whole_setting("event_windows", event_frames_, "N", "simulated: in each sequence.", 1,
                       1000000));
     add(parsed_setting<Size>("size", size_, "WxH", "simulated: sensor size in pixels.", parse_size,
                              show_size));
-    add(number_setting("scale", scale_, "S", "simulated: frames are so many times larger.", 0.1,
+    add(number_setting("scale", scale_, "S", "simulated: size of the frames, times the sensor's.", 0.1,
                        16));
     add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
 

@@ -84,9 +84,9 @@ std::string manual_page(const SettingTable& common, const Commands& commands) {
     for (const auto& command : commands) add_command(*command, page);
     page += ".SH OPTIONS OF ALL COMMANDS\n.TP\n" + bold("--config") +
             " \\fIFILE\\fR\nTOML file with settings.\n.TP\n" + bold("--print-config") +
-            "\nShow each value of the command and where it comes from, and end.\n.TP\n" +
+            "\nShow each value of the command and where it comes from, and exit.\n.TP\n" +
             bold("--default-config") +
-            "\nPrint a configuration file with all keys, their meaning and defaults, and end.\n";
+            "\nPrint a configuration file with all keys, their meaning and defaults, and exit.\n";
     for (const Setting& setting : common.settings) add_setting(setting, page);
     return page + ".SH EXIT STATUS\n" + literal(kExitCodes) + "\n";
 }

@@ -34,7 +34,7 @@ struct CommonSettings {
         SettingTable common{"", "What all commands share.", {}};
         common.settings.push_back(parsed_setting<std::string>(
             "log_level", talk.log_level, "LEVEL",
-            "What is said on standard error: trace, debug, info, warning, error or off.",
+            "Level of the log on standard error: trace, debug, info, warning, error or off.",
             [](const std::string& text) {
                 parse_choice(text, {"trace", "debug", "info", "warning", "error", "off"});
                 return text;

@@ -37,17 +37,11 @@ ReadStatus RecordedSource::read(RawPacket& into) {
 
 void RecordedSource::write(const RawPacket& packet) {
     if (bytes_) return bytes_->write(packet.bytes);
-    if (packet.gap_before) note_gap(packet.arrived);
-    last_data_ = packet.arrived;
+    // As the line's own parser does it, so that both tell the same times.
+    if (packet.gap_before) parser_->resync();
+    if (is_live()) parser_->arrives(packet.arrived);
     parser_->parse(packet.bytes, batch_);
     write_batch();
-}
-
-/// As the line's own parser does it, so that both tell the same times.
-void RecordedSource::note_gap(HostTime arrived) {
-    parser_->resync();
-    if (is_live() && last_data_)
-        parser_->expect_passed(std::chrono::duration_cast<SensorDuration>(arrived - *last_data_));
 }
 
 void RecordedSource::write_batch() {

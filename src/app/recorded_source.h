@@ -33,7 +33,6 @@ public:
 
 private:
     void write(const RawPacket& packet);
-    void note_gap(HostTime arrived);
     void write_batch();
 
     Source& source_;
@@ -41,7 +40,6 @@ private:
     const Format* format_ = nullptr;   // ... or these
     std::unique_ptr<RecordingFile> file_;
     std::unique_ptr<Parser> parser_;
-    std::optional<HostTime> last_data_;
     Batch batch_;
 };
 

@@ -120,15 +120,15 @@ Size SizeChoice::of(const Size& sensor) const {
 SettingTable RunSettings::table() {
     SettingTable table{"run", "eventide run: a recording or camera in, frames and sigma out.", {}};
     add_times(table);
-    table.group_rest("Which frames");
+    table.group_rest("Frames");
     add_outputs(table);
-    table.group_rest("Where they go");
+    table.group_rest("Output");
     add_look(table);
-    table.group_rest("How they look");
+    table.group_rest("Post-processing");
     add_network(table);
-    table.group_rest("The network");
+    table.group_rest("Network");
     input.add_to(table);
-    table.group_rest("Reading recordings");
+    table.group_rest("Input");
     add_machinery(table);
     table.group_rest("Cameras and buffers");
     return table;
@@ -179,7 +179,7 @@ void RunSettings::add_times(SettingTable& table) {
     add(moment_setting("to", to, "end", "Last frame, written as --from; end: the end."));
     add(open_setting<SensorDuration>(
         "warmup", warmup, "TIME",
-        "With --from: begin so much earlier, without frames, so that the network has seen the "
+        "With --from: begin this much earlier, without frames, so that the network has seen the "
         "scene; auto: 1s, or 0s where --state-in tells what was before.",
         "auto", [](const std::string& text) { return parse_duration(text); },
         [](const SensorDuration& d) { return show_duration(d); }));
@@ -187,7 +187,7 @@ void RunSettings::add_times(SettingTable& table) {
                      "Render more than 1000000 frames in a row without events; such a silence is "
                      "usually a wrong time in the recording."));
     add(open_setting<SensorDuration>(
-        "duration", duration, "TIME", "Stop after so much sensor time; all: at the end.", "all",
+        "duration", duration, "TIME", "Stop after this much sensor time; all: at the end.", "all",
         [](const std::string& text) { return parse_duration(text); },
         [](const SensorDuration& d) { return show_duration(d); }));
 }
@@ -290,7 +290,7 @@ void RunSettings::add_look(SettingTable& table) {
     add(number_setting("unsharp", unsharp, "AMOUNT", "Sharpen: 0 is off, 0.3 is moderate.", 0, 10));
     add(choice_setting("flip", look.flip, "Mirror the frame.",
                        {"none", "horizontal", "vertical", "both"}));
-    add(whole_setting("crop", look.crop_px, "PIXELS", "Cut so many pixels off at each side.", 0,
+    add(whole_setting("crop", look.crop_px, "PIXELS", "Crop this many pixels at each side.", 0,
                       kMostPixels));
     add(text_setting("video_preset", video_preset, "PRESET",
                      "x264's preset: ultrafast to veryslow; slower is smaller."));

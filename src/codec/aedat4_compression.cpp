@@ -14,6 +14,7 @@ namespace eventide {
 
 namespace {
 
+constexpr std::size_t kMostAtOnce = std::size_t(256) << 10;  // bytes; more only for who fills them
 constexpr std::uint32_t kLz4Magic = 0x184D2204, kZstdMagic = 0xFD2FB528;
 
 bool begins_with(std::span<const std::byte> bytes, std::uint32_t magic) {
@@ -56,16 +57,13 @@ bool is_zstd_frame(std::span<const std::byte> bytes) {
     return begins_with(bytes, kZstdMagic);
 }
 
+// Made with the first packet that needs one: most files have one kind, and many packets are bare.
 struct Aedat4Unpacker::Contexts {
     LZ4F_dctx* lz4 = nullptr;
     ZSTD_DCtx* zstd = nullptr;
 };
 
-Aedat4Unpacker::Aedat4Unpacker() : contexts_(std::make_unique<Contexts>()) {
-    if (LZ4F_isError(LZ4F_createDecompressionContext(&contexts_->lz4, LZ4F_VERSION)))
-        throw Error(ErrorKind::failed, "LZ4: no memory for a decompression context");
-    contexts_->zstd = ZSTD_createDCtx();
-}
+Aedat4Unpacker::Aedat4Unpacker() : contexts_(std::make_unique<Contexts>()) {}
 
 Aedat4Unpacker::~Aedat4Unpacker() {
     LZ4F_freeDecompressionContext(contexts_->lz4);
@@ -74,6 +72,9 @@ Aedat4Unpacker::~Aedat4Unpacker() {
 
 std::optional<std::size_t> Aedat4Unpacker::unpack_lz4(std::span<const std::byte> packed,
                                                       bool& too_small) {
+    if (contexts_->lz4 == nullptr &&
+        LZ4F_isError(LZ4F_createDecompressionContext(&contexts_->lz4, LZ4F_VERSION)))
+        throw Error(ErrorKind::failed, "LZ4: no memory for a decompression context");
     LZ4F_resetDecompressionContext(contexts_->lz4);
     LZ4F_decompressOptions_t options{};
     options.stableDst = 1;  // all goes to one place, so the history need not be kept elsewhere
@@ -93,6 +94,7 @@ std::optional<std::size_t> Aedat4Unpacker::unpack_lz4(std::span<const std::byte>
 
 std::optional<std::size_t> Aedat4Unpacker::unpack_zstd(std::span<const std::byte> packed,
                                                        bool& too_small) {
+    if (contexts_->zstd == nullptr) contexts_->zstd = ZSTD_createDCtx();
     // In one call: the output is the window, so no memory is taken for what the frame claims.
     const std::size_t n = ZSTD_decompressDCtx(contexts_->zstd, unpacked_.data(), unpacked_.size(),
                                               packed.data(), packed.size());
@@ -105,7 +107,9 @@ std::optional<std::span<const std::byte>> Aedat4Unpacker::unpack(
     std::span<const std::byte> packed) {
     const bool lz4 = is_lz4_frame(packed);
     if (!lz4 && !is_zstd_frame(packed)) return packed;
-    if (unpacked_.empty()) unpacked_.resize(std::size_t(256) << 10);
+    constexpr std::size_t kUsualRatio = 4, kLeastBytes = 4096;
+    const std::size_t likely = std::clamp(kUsualRatio * packed.size(), kLeastBytes, kMostAtOnce);
+    if (unpacked_.size() < likely) unpacked_.resize(likely);
     for (;;) {
         bool too_small = false;
         const auto n = lz4 ? unpack_lz4(packed, too_small) : unpack_zstd(packed, too_small);

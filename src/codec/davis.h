@@ -43,9 +43,7 @@ public:
     const Damage& damaged() const override { return damage_; }
     const DavisStreamFacts& facts() const { return facts_; }
 
-    /// Lost wrap words would leave sensor time behind for ever; with this the next timestamp is the
-    /// one nearest to the guess (right while the guess is better than half a wrap, 16 ms).
-    void expect_passed(SensorDuration passed) override { clock_.expect_passed(passed); }
+    void arrives(HostTime at) override { clock_.arrives(at, damage_); }
 
 private:
     static constexpr std::size_t kStretchWords = 256;  ///< read at a time by plain_words()

@@ -23,7 +23,7 @@ public:
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
     void resync() override;
-    void expect_passed(SensorDuration passed) override { clock_.expect_passed(passed); }
+    void arrives(HostTime at) override { clock_.arrives(at, damage_); }
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
 

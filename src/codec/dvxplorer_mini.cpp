@@ -58,6 +58,7 @@ void DvxplorerMiniParser::reference(std::int64_t us) {
     }
     reference_ = us;
     time_ = std::max(time_, base_ + us);
+    told_at_ = arrived_;
     begun_ = true;
 }
 
@@ -66,12 +67,15 @@ void DvxplorerMiniParser::reference(std::int64_t us) {
 void DvxplorerMiniParser::settle(std::int64_t us) {
     constexpr std::int64_t kBeganAnewUs = 2'000'000;
     if (!begun_) return;
-    const std::int64_t expected = expected_.value_or(time_);
+    const bool host_knows = arrived_ && told_at_;
+    const std::int64_t expected =
+        host_knows
+            ? time_ + std::chrono::duration_cast<SensorDuration>(*arrived_ - *told_at_).count()
+            : time_;
     const double wraps = std::round(double(expected - base_ - us) / double(kReferenceWrapUs));
     base_ += std::max(std::int64_t{0}, std::int64_t(wraps)) * kReferenceWrapUs;
-    const bool far_off = expected_ && std::abs(base_ + us - expected) > kBeganAnewUs;
+    const bool far_off = host_knows && std::abs(base_ + us - expected) > kBeganAnewUs;
     if (far_off || base_ + us < time_) base_ = std::max(time_, expected) - us;
-    expected_.reset();
 }
 
 /// Bits 9-0 x; 20-11 the frame's time after the reference, where bit 21 marks its first column.

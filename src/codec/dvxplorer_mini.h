@@ -32,9 +32,9 @@ public:
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
     void resync() override;
-    /// Where the next reference is far from the guess the camera began anew, and time goes on from
-    /// the guess.
-    void expect_passed(SensorDuration passed) override { expected_ = time_ + passed.count(); }
+    /// Where the first reference after a loss is far from what the host's clock says the camera
+    /// began anew, and time goes on by the host's.
+    void arrives(HostTime at) override { arrived_ = at; }
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
 
@@ -55,7 +55,7 @@ private:
     std::int64_t base_ = 0;        ///< us, of reference 0
     std::int64_t reference_ = -1;  ///< us since base_; -1: not known since the start or a loss
     std::int64_t time_ = 0;        ///< us
-    std::optional<std::int64_t> expected_;
+    std::optional<HostTime> arrived_, told_at_;  ///< of these words; of those that told time_
     bool begun_ = false;
     int column_ = -1;  ///< -1: no frame has begun since the start or a loss
     std::array<std::byte, 64> message_{};

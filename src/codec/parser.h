@@ -3,6 +3,7 @@
 
 #include "src/core/damage.h"
 #include "src/core/event.h"
+#include "src/core/sensor_time.h"
 
 #include <cstddef>
 #include <optional>
@@ -29,10 +30,9 @@ public:
     /// word. Counters stay.
     virtual void resync() = 0;
 
-    /// With resync() on a live source: how much host time passed since the last good bytes. A
-    /// parser whose wire format tells only part of the time finds the rest from it; others need
-    /// nothing.
-    virtual void expect_passed(SensorDuration) {}
+    /// On a live source, before the bytes of each packet: when they arrived. A parser whose wire
+    /// format tells only part of the time finds the rest from it after a loss; others need nothing.
+    virtual void arrives(HostTime) {}
 
     /// The newest time the stream has told, by an event or otherwise (time-high words, wraps,
     /// images, IMU): the clock that goes on while nothing moves. Empty before the first.

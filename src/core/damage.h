@@ -20,6 +20,7 @@ enum class DamageReason : std::uint8_t {
                  ///< parse
     bad_table,   ///< an index (AEDAT4 file table) that is missing or does not fit the data; it was
                  ///< rebuilt
+    time_corrected,  ///< a camera's clock was set right by the host's after a loss
     kCount
 };
 
@@ -27,8 +28,8 @@ constexpr std::size_t kDamageReasons = std::size_t(DamageReason::kCount);
 
 constexpr std::string_view name_of(DamageReason reason) {
     constexpr std::array<std::string_view, kDamageReasons> kNames{
-        "truncated",  "out_of_range",    "time_backwards", "unknown_word",
-        "bad_length", "bad_compression", "bad_record",     "bad_table"};
+        "truncated",       "out_of_range", "time_backwards", "unknown_word",  "bad_length",
+        "bad_compression", "bad_record",   "bad_table",      "time_corrected"};
     return kNames[std::size_t(reason)];
 }
 

@@ -5,6 +5,7 @@
 #include "src/evaluate/bag_file.h"
 #include "src/evaluate/mvsec_file.h"
 #include "src/evaluate/npy.h"
+#include "src/evaluate/rows.h"
 #include "src/evaluate/seconds.h"
 
 #include <algorithm>
@@ -36,11 +37,9 @@ SensorTime time_of(double seconds, const NpyFile& file, std::uint64_t row) {
 
 /// The first row of ascending times in seconds that is not before `t`.
 std::uint64_t lower_bound_row(NpyFile& file, SensorTime t) {
-    const auto rows = std::views::iota(std::int64_t{0}, std::int64_t(file.rows()));
-    const auto before = [&](std::int64_t row) {
-        return time_of(file.read(std::uint64_t(row), 1)[0], file, std::uint64_t(row)) < t;
-    };
-    return std::uint64_t(std::ranges::partition_point(rows, before) - rows.begin());
+    return partition_row(file.rows(), [&](std::uint64_t row) {
+        return time_of(file.read(row, 1)[0], file, row) < t;
+    });
 }
 
 /// Both ends included.

@@ -2,6 +2,7 @@
 #include "src/evaluate/mvsec_file.h"
 
 #include "src/core/error.h"
+#include "src/evaluate/rows.h"
 #include "src/evaluate/seconds.h"
 
 #include <hdf5.h>
@@ -141,9 +142,8 @@ struct LeftCamera {
     }
     /// The first event that is not before `t`.
     hsize_t first_event_at(SensorTime t) const {
-        const auto rows = std::views::iota(std::int64_t{0}, std::int64_t(events.rows()));
-        const auto before = [&](std::int64_t row) { return time_of(event_time(hsize_t(row))) < t; };
-        return hsize_t(std::ranges::partition_point(rows, before) - rows.begin());
+        return partition_row(events.rows(),
+                             [&](hsize_t row) { return time_of(event_time(row)) < t; });
     }
 };
 

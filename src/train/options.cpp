@@ -93,9 +93,9 @@ void OptionTable::add(const std::string& name, T& target, const std::string& hel
 }
 
 OptionTable::OptionTable(TrainOptions& o) {
-    add("out", o.out, "folder for the checkpoint, the logs and the pictures", Use::run);
-    add("textures", o.textures, "pack of pictures to learn from; none: procedural", Use::run);
-    add("validation-textures", o.validation_textures, "pack of pictures to judge by", Use::run);
+    add("out", o.out, "folder for the checkpoint, the logs and the images", Use::run);
+    add("textures", o.textures, "pack of photographs to learn from; none: procedural textures", Use::run);
+    add("validation-textures", o.validation_textures, "pack of photographs to validate with", Use::run);
     add("lpips", o.lpips, "npz file of LPIPS-Squeeze; none: that loss is left out", Use::run);
     add("minutes", o.minutes, "budget of the whole run, resumed parts included", Use::run);
     add("clock", o.clock, "that --minutes go by: wall, or cpu (all threads; for fair comparisons)",
@@ -142,29 +142,29 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("crop", o.data.crop, "px, side of the part of a sensor that is simulated");
     add("sensor-width", o.data.sensor_width,
         "px, of that sensor; its height is three quarters of it");
-    add("frames", o.data.frames, "event frames that gradients flow through");
+    add("frames", o.data.frames, "event windows that gradients flow through");
     add("rendered", o.data.rendered, "of them compared with the truth");
-    add("patch", o.data.patch, "px, side of the pictures compared");
-    add("episode", o.data.episode, "event frames of one scene");
-    add("frame-s", o.data.frame_s, "s, width of event frames");
+    add("patch", o.data.patch, "px, side of the patches compared");
+    add("episode", o.data.episode, "event windows of one scene");
+    add("frame-s", o.data.frame_s, "s, width of event windows");
     add("content-share", o.data.content_share,
         "share of scenes whose event windows end by number of events");
     add("content-epp", o.data.content_epp, "events per pixel that end such a window");
     add("thesis-share", o.data.thesis_share,
         "share of scenes with the thesis' light, threshold and truth");
     add("speed", o.data.scene.wander.speed, "px/s, of scenes");
-    add("pace", o.data.scene.wander.pace, "times the speed, drawn anew as a scene goes on");
+    add("speed-factor", o.data.scene.wander.pace, "times the speed, drawn anew as a scene goes on");
     add("leg-s", o.data.scene.wander.leg_s, "s, between changes of a scene's heading");
     add("turn", o.data.scene.wander.turn, "rad, deviation of each change");
-    add("tremble", o.data.scene.wander.tremble,
+    add("camera-shake", o.data.scene.wander.tremble,
         "share of scenes and objects that shake about one place instead");
     add("still", o.data.scene.still_background, "share of scenes whose camera stands still");
     add("objects", o.data.scene.objects_max, "moving objects at most");
     add("object-size", o.data.scene.object_size,
         "full length of moving and fixed things, over the sensor's height");
-    add("pinned", o.data.scene.pinned_max, "things fixed to the background at most");
-    add("flat", o.data.scene.object_flat, "share of things of one grey all over");
-    add("faint", o.data.scene.faint_probability, "share of scenes of little contrast");
+    add("static-objects", o.data.scene.pinned_max, "objects fixed to the background at most");
+    add("textureless", o.data.scene.object_flat, "share of objects of one grey value");
+    add("low-contrast", o.data.scene.faint_probability, "share of scenes of low contrast");
     add("pauses", o.data.scene.pause_start, "probability that a pause begins, per 50 ms");
     add("light", o.data.scene.white_lux, "lux on the chip where the scene is white");
     add("range", o.data.scene.dynamic_range, "white over black of scenes");
@@ -196,13 +196,21 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("validate-minutes", o.validate_minutes, "between validations", Use::run);
     add("log-every", o.log_every, "steps per line of the log", Use::run);
     add("validation-scenes", o.validation_scenes, "number of scenes to judge by");
-    add("validation-frames", o.validation_frames, "event frames of each");
+    add("validation-frames", o.validation_frames, "event windows of each");
     add("validation-crop", o.validation_crop, "px, side of each");
 }
 
 void OptionTable::set(const std::string& name, const std::string& value) {
+    // Checkpoints keep the options of their run; the older ones have these names.
+    static const std::map<std::string, std::string> kFormerNames{{"pace", "speed-factor"},
+                                                                 {"tremble", "camera-shake"},
+                                                                 {"pinned", "static-objects"},
+                                                                 {"flat", "textureless"},
+                                                                 {"faint", "low-contrast"}};
+    const auto former = kFormerNames.find(name);
+    const std::string& now = former == kFormerNames.end() ? name : former->second;
     for (const Option& option : options_) {
-        if (option.name != name) continue;
+        if (option.name != now) continue;
         try {
             option.read(value);
         } catch (const std::invalid_argument& expected) {

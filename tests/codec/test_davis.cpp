@@ -144,9 +144,10 @@ TEST(DavisWords, NothingIsGuessedAfterALoss) {
 TEST(DavisWords, LostWrapsAreFoundFromTheHostsClock) {
     DavisParser parser{davis240()};
     Batch data;
+    parser.arrives(HostTime{});
     parser.parse(bytes_of({time(1000)}), data);
     parser.resync();
-    parser.expect_passed(SensorDuration{3 * 32768 + 200});  // the guess is 200 us off
+    parser.arrives(HostTime{SensorDuration{3 * 32768 + 200}});  // 200 us later than the last one
     parser.parse(bytes_of({time(1000), addr_y(0), on_x(0)}), data);
     EXPECT_EQ(to_us(data.events.at(0).t), 3 * 32768 + 1000);
 }

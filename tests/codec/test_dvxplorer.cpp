@@ -167,12 +167,13 @@ TEST(DvxplorerMini, ACameraThatCameBackCountsFromZeroAndTimeGoesOn) {
             data);
         return to_us(data.events.back().t);
     };
+    parser.arrives(HostTime{});
     EXPECT_EQ(tell(50'000), 50'000'000);
     parser.resync();
-    parser.expect_passed(SensorDuration{5'000'000});
+    parser.arrives(HostTime{SensorDuration{5'000'000}});
     EXPECT_EQ(tell(55'001), 55'001'000);  // it went on all the time
     parser.resync();
-    parser.expect_passed(SensorDuration{5'000'000});
+    parser.arrives(HostTime{SensorDuration{10'000'000}});
     EXPECT_EQ(tell(3), 60'001'000);  // it was plugged in anew
     EXPECT_EQ(tell(13), 60'011'000);
 }
@@ -283,10 +284,11 @@ TEST(Dvs128, TimeGoesOnThroughAReset) {
 TEST(Dvs128, LostWrapsAreFoundFromTheHostsClock) {
     Dvs128Parser parser;
     Batch data;
+    parser.arrives(HostTime{});
     parser.parse(bytes_of<std::uint32_t>({dvs128(0, 0, false, 100)}), data);
     parser.resync();
     EXPECT_EQ(parser.clock(), std::nullopt);
-    parser.expect_passed(SensorDuration{10 * 16384 + 7});
+    parser.arrives(HostTime{SensorDuration{10 * 16384 + 7}});
     parser.parse(bytes_of<std::uint32_t>({dvs128(0, 0, false, 101)}), data);
     EXPECT_EQ(to_us(data.events.at(1).t), 10 * 16384 + 101);
 }

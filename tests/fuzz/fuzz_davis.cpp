@@ -1,4 +1,4 @@
-// Hostile bytes into DavisParser.
+// Hostile bytes into DavisParser, of a sensor small enough to complete frames.
 #include "src/codec/davis.h"
 #include "tests/fuzz/fuzz_parser.h"
 
@@ -6,7 +6,10 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace eventide;
-    fuzz_parser({reinterpret_cast<const std::byte*>(data), size}, 346, 260,
-                [] { return std::make_unique<DavisParser>(DavisSensor{}); });
+    DavisSensor sensor;
+    sensor.dvs_columns = sensor.aps_columns = 2;
+    sensor.dvs_rows = sensor.aps_rows = 3;
+    fuzz_parser({reinterpret_cast<const std::byte*>(data), size}, sensor.width(), sensor.height(),
+                [&] { return std::make_unique<DavisParser>(sensor); });
     return 0;
 }

@@ -158,7 +158,7 @@ TEST_F(Live, BeforeAWallFramesKeepComingAtTheAskedRate) {
     for (std::size_t i = 1; i < times.size(); ++i)
         EXPECT_EQ((times[i] - times[i - 1]) % 20'000, 0) << i;
     // Few of them are of the scene; all the rest is wall.
-    EXPECT_GT(stats["silent_frames"].get<int>(), stats["event_frames"].get<int>() * 3 / 4);
+    EXPECT_GT(stats["silent_windows"].get<int>(), stats["event_windows"].get<int>() * 3 / 4);
 }
 
 TEST_F(Live, StrictlyWhatTheCameraItselfDroppedIsLostData) {

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Runs every fuzz target for so many seconds, from its corpus, and prints what came of it. What a target learns is kept in
+# build/fuzz/corpus/TARGET and used the next time; an input that broke something is kept in build/fuzz/findings, and the exit code is 1.
+# runs/s are per second of processor time, coverage is of edges.
+#   scripts/fuzz.sh SECONDS [TARGET...]      scripts/fuzz.sh 60 aedat4 config
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seconds=${1:?"fuzz: expected SECONDS [TARGET...]"}
+[[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: expected a whole number of seconds, found $seconds" >&2; exit 2; }
+shift
+
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz ${1:+--target "${@/#/fuzz_}"} >&2
+targets=("$@")
+if [ $# -eq 0 ]; then
+  for program in build/fuzz/tests/fuzz/fuzz_*; do
+    if [ -f "$program" ] && [ -x "$program" ]; then targets+=("${program##*/fuzz_}"); fi
+  done
+fi
+
+# Of what has run: user and system, in ms. So rates do not depend on how busy the machine is.
+look_at_processor() {
+  times >"$findings/times" # in this shell: a pipe's has none of its own
+  processor_ms=$(awk -F '[ms ]+' 'NR == 2 { printf "%d", (($1 + $3) * 60 + $2 + $4) * 1000 }' "$findings/times")
+}
+findings=build/fuzz/findings
+mkdir -p "$findings"
+failed=0
+printf '%-16s %12s %10s %9s %9s %9s\n' target runs runs/s coverage inputs findings
+for target in "${targets[@]}"; do
+  kept=build/fuzz/corpus/$target seeds=tests/fuzz/corpus/$target log=$findings/$target.log
+  mkdir -p "$kept"
+  # Inputs up to twice the largest seed: small ones are quick.
+  longest=$({ find "$seeds" -type f -printf '%s\n' 2>/dev/null || true; } | sort -n | tail -1)
+  most=$((2 * ${longest:-0} > 512 ? 2 * ${longest:-0} : 512))
+  began=$(find "$findings" -name "$target-*" ! -name '*-slow-unit-*' | wc -l)
+  look_at_processor
+  before=$processor_ms
+  "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len="$most" -timeout=10 -print_final_stats=1 \
+    -artifact_prefix="$findings/$target-" "$kept" $([ ! -d "$seeds" ] || echo "$seeds") >"$log" 2>&1 </dev/null || failed=1
+  runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  look_at_processor
+  rate=$((${runs:-0} * 1000 / (processor_ms - before + 1)))
+  found=$(($(find "$findings" -name "$target-*" ! -name '*-slow-unit-*' | wc -l) - began))
+  coverage=$({ grep -o 'cov: [0-9]*' "$log" || true; } | tail -1 | cut -d' ' -f2)
+  printf '%-16s %12s %10s %9s %9s %9s\n' "$target" "${runs:--}" "$rate" "${coverage:--}" "$(find "$kept" -type f | wc -l)" "$found"
+done
+if [ "$failed" -ne 0 ]; then
+  echo "fuzz: failed; inputs and logs are in $findings" >&2
+  exit 1
+fi

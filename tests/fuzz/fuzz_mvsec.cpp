@@ -1,0 +1,15 @@
+// Any bytes as one of MVSEC's HDF5 files: HDF5 itself is trusted, the layout in it is not.
+#include "src/core/error.h"
+#include "src/evaluate/mvsec_file.h"
+#include "tests/fuzz/fuzz_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace eventide;
+    static MemoryFile file;
+    file.hold(data, size);
+    try {
+        read_mvsec_file(file.path(), std::nullopt, std::nullopt);
+    } catch (const Error&) {
+    }
+    return 0;
+}

@@ -1,0 +1,19 @@
+// eventide run as a whole, of any bytes, with the tiniest network: four threads, frames, sigma.
+#include "src/app/program.h"
+#include "src/app/signals.h"
+#include "tests/fuzz/fuzz_file.h"
+
+#include <iostream>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace eventide;
+    static app::Signals signals;
+    static MemoryFile recording;
+    recording.hold(data, size);
+    const int code = app::run_program(
+        signals, {"run", recording.path(), "--model", EVENTIDE_FUZZ_MODEL, "--out",
+                  "gray8:/dev/null", "--overwrite", "--size", "8x6", "--fps", "50", "--duration",
+                  "300ms", "--threads", "1", "--quiet", "--log-level", "off"});
+    if (code != 0 && code != 1 && code != 2 && code != 3) std::abort();
+    return 0;
+}
