@@ -11,6 +11,7 @@
 #include "src/app/progress.h"
 #include "src/app/reference_images.h"
 #include "src/app/version.h"
+#include "src/bench/stage_table.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
 #include "src/evaluate/plot.h"
@@ -34,11 +35,17 @@ using Clock = std::chrono::steady_clock;
 /// Event frames of 50 ms, each ending at an image: so there is a truth for each picture.
 constexpr int kImagesPerSecond = 20;
 
+SimRecordingSettings recording_of(const std::string& scene, const Size& size) {
+    SimRecordingSettings settings = parse_simulated_name("sim:" + scene).recording;
+    settings.width = size.width;
+    settings.height = size.height;
+    return settings;
+}
+
 std::shared_ptr<const RecordedPackets> simulate(const std::string& scene, const Size& size,
                                                 double seconds) {
     SimulatedSourceSettings settings = parse_simulated_name("sim:" + scene);
-    settings.recording.width = size.width;
-    settings.recording.height = size.height;
+    settings.recording = recording_of(scene, size);
     settings.recording.seconds = seconds;
     settings.recording.images_per_second = kImagesPerSecond;
     settings.speed = 0;
@@ -131,10 +138,12 @@ void print_table(const std::vector<BenchRow>& rows) {
                     row.latency_p50_ms, row.latency_p99_ms, row.mse);
 }
 
-std::string json_of(const std::vector<BenchRow>& rows) {
+std::string json_of(const std::vector<bench::StageRow>& stages, const bench::Peaks& peaks,
+                    const std::vector<BenchRow>& rows) {
     nlohmann::ordered_json json;
     json["machine"] = processor_text();
     json["program"] = "eventide " + version() + ", " + compiler_text();
+    json["stages"] = bench::stages_json(stages, peaks);
     json["rows"] = nlohmann::ordered_json::array();
     for (const BenchRow& row : rows)
         json["rows"].push_back({{"model", row.model},
@@ -172,13 +181,19 @@ Plot plot_of(const std::vector<BenchRow>& rows) {
 }  // namespace
 
 std::string BenchCommand::examples() const {
-    return "ms/evfr: the network per event window of 50 ms, ms/pict: rendering one frame "
+    return "First the stages alone, one thread, nothing beside them, everything moving: median "
+           "and\n"
+           "quartiles of processor time; share: useful products a second over the core's own "
+           "peak,\n"
+           "of encoding, a fresh frame, another frame of the same window. Then the pipeline.\n"
+           "ms/evfr: the network per event window of 50 ms, ms/pict: rendering one frame "
            "(medians);\n"
            "x real: sensor time over host time as fast as possible; latency at the pace of the "
            "camera,\n"
            "from the last packet a frame saw to the frame written.\n"
            "Examples:\n"
            "  eventide bench\n"
+           "  eventide bench --stages --sizes 240x180 --lookahead 0\n"
            "  eventide bench --sizes 240x180 --models default --models small --precisions f32 "
            "--precisions bf16\n"
            "  eventide bench --instructions avx2";
@@ -201,6 +216,9 @@ SettingTable BenchCommand::settings() {
                        16));
     add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+    add(flag_setting("stages", stages_, "The stages alone, without the pipeline after them."));
+    add(whole_setting("repetitions", repetitions_, "N", "Of each stage.", bench::kLeastRepetitions,
+                      1'000'000));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
@@ -244,6 +262,10 @@ void BenchCommand::name_bench_files(NamedFiles& files) const {
 
 namespace {
 
+Precision precision_of(const std::string& name) {
+    return Precision(parse_choice(name, {"auto", "f32", "bf16"}));
+}
+
 std::string what_of(const std::string& model, const std::string& precision,
                     const std::string& size) {
     return model + " " + precision + " " + size;
@@ -251,13 +273,35 @@ std::string what_of(const std::string& model, const std::string& precision,
 
 }  // namespace
 
-int BenchCommand::run(Program& program) {
-    limit_instructions(instructions_);
-    name_bench_files(program.files);
-    std::printf("%s; eventide %s, %s; threads %s; scene %s, %g s, lookahead %d (latency: 0)\n",
-                processor_text().c_str(), version().c_str(), compiler_text().c_str(),
-                threads_ == 0 ? "all" : std::to_string(threads_).c_str(), scene_.c_str(), seconds_,
-                lookahead_);
+std::vector<bench::StageRow> BenchCommand::measure_stages(const bench::Peaks& peaks,
+                                                          Program& program) const {
+    constexpr int kWindows = 6;
+    std::vector<bench::StageRow> rows;
+    Progress progress{program.quiet};
+    for (const std::string& size : sizes_) {
+        progress.show(0, "simulating " + size);
+        const auto windows = bench::scene_windows(recording_of(scene_, parse_size(size)), kWindows);
+        for (const std::string& name : models_)
+            for (const std::string& precision : precisions_) {
+                if (program.signals.stopping()) return rows;
+                progress.show(0, "stages of " + what_of(name, precision, size));
+                const std::filesystem::path file = find_model(name);
+                bench::StageSettings settings;
+                settings.width = parse_size(size).width;
+                settings.height = parse_size(size).height;
+                settings.scale = scale_;
+                settings.lookahead = lookahead_;
+                settings.repetitions = repetitions_;
+                settings.engine.engine = engine_;
+                settings.engine.precision = precision_of(precision);
+                rows.push_back(bench::measure_stages(printable(file.stem().string()),
+                                                     load_model(file), windows, settings, peaks));
+            }
+    }
+    return rows;
+}
+
+std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
     std::vector<BenchRow> rows;
     Progress progress{program.quiet};
     for (const std::string& size : sizes_) {
@@ -265,16 +309,31 @@ int BenchCommand::run(Program& program) {
         const auto data = simulate(scene_, parse_size(size), seconds_);
         for (const std::string& model : models_)
             for (const std::string& precision : precisions_) {
-                if (program.signals.stopping()) break;
+                if (program.signals.stopping()) return rows;
                 progress.show(0, what_of(model, precision, size));
-                rows.push_back(measure(data, model,
-                                       Precision(parse_choice(precision, {"auto", "f32", "bf16"})),
-                                       program));
+                rows.push_back(measure(data, model, precision_of(precision), program));
             }
     }
-    progress.clear();
-    print_table(rows);
-    if (!json_.empty()) write_file(json_, json_of(rows), overwrite_);
+    return rows;
+}
+
+int BenchCommand::run(Program& program) {
+    limit_instructions(instructions_);
+    name_bench_files(program.files);
+    std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
+                version().c_str(), compiler_text().c_str(), scene_.c_str(), lookahead_);
+    const bench::Peaks peaks = bench::measure_peaks(instructions_);
+    std::fputs(bench::peaks_text(peaks).c_str(), stdout);
+    const std::vector<bench::StageRow> stages = measure_stages(peaks, program);
+    std::fputs(bench::stages_text(stages).c_str(), stdout);
+    std::vector<BenchRow> rows;
+    if (!stages_) {
+        std::printf("\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
+                    threads_ == 0 ? "all" : std::to_string(threads_).c_str(), seconds_);
+        rows = measure_pipelines(program);
+        print_table(rows);
+    }
+    if (!json_.empty()) write_file(json_, json_of(stages, peaks, rows), overwrite_);
     if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_, overwrite_).string());
     return exit_done;
 }

@@ -5,6 +5,7 @@
 #include "src/app/memory_recording.h"
 #include "src/app/run_settings.h"
 #include "src/app/values.h"
+#include "src/bench/stages.h"
 #include "src/model/instructions.h"
 
 #include <memory>
@@ -38,17 +39,21 @@ public:
 private:
     BenchRow measure(const std::shared_ptr<const RecordedPackets>& data, const std::string& model,
                      Precision precision, Program& program) const;
+    /// Each size, model and precision: the stages alone.
+    std::vector<bench::StageRow> measure_stages(const bench::Peaks& peaks, Program& program) const;
+    /// The same: the pipeline.
+    std::vector<BenchRow> measure_pipelines(Program& program) const;
     void name_bench_files(NamedFiles& files) const;
 
     std::string scene_ = "demo";
     std::vector<std::string> sizes_{"240x180", "346x260", "640x480"}, models_{"default"},
         precisions_{"auto"};
     double seconds_ = 2, scale_ = 1;
-    int threads_ = 0, lookahead_ = 2;
+    int threads_ = 0, lookahead_ = 2, repetitions_ = bench::kLeastRepetitions;
     Engine engine_ = Engine::fast;
     Instructions instructions_ = Instructions::best;
     std::string json_, plots_;
-    bool overwrite_ = false;
+    bool stages_ = false, overwrite_ = false;
 };
 
 }  // namespace eventide::app
