@@ -40,9 +40,6 @@ struct StageRow {
     Stage fresh;             ///< a frame of an event window that none was rendered of before
     Stage again;             ///< another frame of the same window
     double peak_gflops = 0;  ///< of the numbers it multiplies, of as many threads
-
-    /// Encoding and a fresh frame.
-    double window_ms() const { return encode.time.wall_ms.median + fresh.time.wall_ms.median; }
 };
 
 /// `windows`: of a sensor of this size, at least one. Throws what Encoder and Renderer throw.
