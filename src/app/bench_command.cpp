@@ -138,12 +138,14 @@ void print_table(const std::vector<BenchRow>& rows) {
                     row.latency_p50_ms, row.latency_p99_ms, row.mse);
 }
 
-std::string json_of(const std::vector<bench::StageRow>& stages, const bench::Peaks& peaks,
+std::string json_of(const std::vector<bench::StageRow>& stages,
+                    const std::vector<bench::ActivityRow>& activity, const bench::Peaks& peaks,
                     const std::vector<BenchRow>& rows) {
     nlohmann::ordered_json json;
     json["machine"] = processor_text();
     json["program"] = "eventide " + version() + ", " + compiler_text();
     json["stages"] = bench::stages_json(stages, peaks);
+    json["activity"] = bench::activity_json(activity);
     json["rows"] = nlohmann::ordered_json::array();
     for (const BenchRow& row : rows)
         json["rows"].push_back({{"model", row.model},
@@ -217,6 +219,16 @@ SettingTable BenchCommand::settings() {
     add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
     add(flag_setting("stages", stages_, "The stages alone, without the pipeline after them."));
+    add(flag_setting("activity", activity_,
+                     "Cost and error when 0, 1, 5, 25 and 100 % of the scene moves, without the "
+                     "pipeline."));
+    add(number_setting("still_codes", still_codes_, "D",
+                       "With --activity, frames at changing places in the window: a part whose "
+                       "codes changed by no more than this is copied.",
+                       0, 100));
+    add(number_setting("still_time", still_time_, "WINDOWS",
+                       "And no further than this from the place in the window it is copied from.",
+                       0, 1));
     add(whole_setting("repetitions", repetitions_, "N", "Of each stage.", bench::kLeastRepetitions,
                       1'000'000));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
@@ -273,31 +285,55 @@ std::string what_of(const std::string& model, const std::string& precision,
 
 }  // namespace
 
-std::vector<bench::StageRow> BenchCommand::measure_stages(const bench::Peaks& peaks,
-                                                          Program& program) const {
+template <typename Measure>
+void BenchCommand::for_each_stage(const std::string& what, Program& program,
+                                  const Measure& measure) const {
     constexpr int kWindows = 6;
-    std::vector<bench::StageRow> rows;
     Progress progress{program.quiet};
-    for (const std::string& size : sizes_) {
-        progress.show(0, "simulating " + size);
-        const auto windows = bench::scene_windows(recording_of(scene_, parse_size(size)), kWindows);
+    for (const std::string& text : sizes_) {
+        const Size size = parse_size(text);
+        progress.show(0, "simulating " + text);
+        const auto windows = bench::scene_windows(recording_of(scene_, size), kWindows);
         for (const std::string& name : models_)
             for (const std::string& precision : precisions_) {
-                if (program.signals.stopping()) return rows;
-                progress.show(0, "stages of " + what_of(name, precision, size));
+                if (program.signals.stopping()) return;
+                progress.show(0, what + " of " + what_of(name, precision, text));
                 const std::filesystem::path file = find_model(name);
                 bench::StageSettings settings;
-                settings.width = parse_size(size).width;
-                settings.height = parse_size(size).height;
+                settings.width = size.width;
+                settings.height = size.height;
                 settings.scale = scale_;
                 settings.lookahead = lookahead_;
                 settings.repetitions = repetitions_;
                 settings.engine.engine = engine_;
                 settings.engine.precision = precision_of(precision);
-                rows.push_back(bench::measure_stages(printable(file.stem().string()),
-                                                     load_model(file), windows, settings, peaks));
+                settings.engine.still_codes = still_codes_;
+                settings.engine.still_time = still_time_;
+                measure(printable(file.stem().string()), load_model(file), windows, settings);
             }
     }
+}
+
+std::vector<bench::StageRow> BenchCommand::measure_stages(const bench::Peaks& peaks,
+                                                          Program& program) const {
+    std::vector<bench::StageRow> rows;
+    for_each_stage(
+        "stages", program,
+        [&](const auto& name, const auto& model, const auto& windows, const auto& settings) {
+            rows.push_back(bench::measure_stages(name, model, windows, settings, peaks));
+        });
+    return rows;
+}
+
+std::vector<bench::ActivityRow> BenchCommand::measure_activity(Program& program) const {
+    std::vector<bench::ActivityRow> rows;
+    for_each_stage(
+        "activity", program,
+        [&](const auto& name, const auto& model, const auto& windows, const auto& settings) {
+            const auto more =
+                bench::measure_activity(name, model, windows, settings, {0, .01, .05, .25, 1});
+            rows.insert(rows.end(), more.begin(), more.end());
+        });
     return rows;
 }
 
@@ -324,16 +360,28 @@ int BenchCommand::run(Program& program) {
                 version().c_str(), compiler_text().c_str(), scene_.c_str(), lookahead_);
     const bench::Peaks peaks = bench::measure_peaks(instructions_);
     std::fputs(bench::peaks_text(peaks).c_str(), stdout);
-    const std::vector<bench::StageRow> stages = measure_stages(peaks, program);
-    std::fputs(bench::stages_text(stages).c_str(), stdout);
+    std::vector<bench::StageRow> stages;
+    std::vector<bench::ActivityRow> activity;
     std::vector<BenchRow> rows;
-    if (!stages_) {
+    if (activity_) {
+        std::printf(
+            "anywhere: frames at changing places in the window; copied where codes changed "
+            "by at most %g and the place by %g windows\n",
+            still_codes_, still_time_);
+        activity = measure_activity(program);
+        std::fputs(bench::activity_text(activity).c_str(), stdout);
+    }
+    if (stages_ || !activity_) {
+        stages = measure_stages(peaks, program);
+        std::fputs(bench::stages_text(stages).c_str(), stdout);
+    }
+    if (!stages_ && !activity_) {
         std::printf("\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
                     threads_ == 0 ? "all" : std::to_string(threads_).c_str(), seconds_);
         rows = measure_pipelines(program);
         print_table(rows);
     }
-    if (!json_.empty()) write_file(json_, json_of(stages, peaks, rows), overwrite_);
+    if (!json_.empty()) write_file(json_, json_of(stages, activity, peaks, rows), overwrite_);
     if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_, overwrite_).string());
     return exit_done;
 }

@@ -83,4 +83,48 @@ nlohmann::ordered_json stages_json(const std::vector<StageRow>& rows, const Peak
     return json;
 }
 
+std::string activity_text(const std::vector<ActivityRow>& rows) {
+    std::string table =
+        text("%-10s %-26s %-9s %7s %7s %16s %7s %16s %10s %16s %10s %10s\n", "model", "engine",
+             "sensor", "moving", "changed", "encode ms (%)", "exact", "frame ms (%)", "max error",
+             "anywhere ms (%)", "max error", "RMS");
+    for (const ActivityRow& row : rows) {
+        ActivityRow dense = row;
+        for (const ActivityRow& other : rows)
+            if (other.model == row.model && other.engine == row.engine &&
+                other.width == row.width && other.height == row.height && other.moving >= 1)
+                dense = other;
+        const auto with_share = [](const Spread& ms, const Spread& all) {
+            return text("%.3f (%.1f)", ms.median, 100 * ms.median / all.median);
+        };
+        table += text(
+            "%-10s %-26s %-9s %6.1f%% %6.1f%% %16s %7s %16s %10.2g %16s %10.2g %10.2g\n",
+            row.model.c_str(), row.engine.c_str(), text("%dx%d", row.width, row.height).c_str(),
+            100 * row.moving, 100 * row.changed, with_share(row.encode_ms, dense.encode_ms).c_str(),
+            row.is_encode_exact ? "yes" : "NO", with_share(row.render_ms, dense.render_ms).c_str(),
+            row.error.most, with_share(row.anywhere_ms, dense.anywhere_ms).c_str(),
+            row.anywhere.most, row.anywhere.rms);
+    }
+    return table;
+}
+
+nlohmann::ordered_json activity_json(const std::vector<ActivityRow>& rows) {
+    auto json = nlohmann::ordered_json::array();
+    for (const ActivityRow& row : rows)
+        json.push_back({{"model", row.model},
+                        {"engine", row.engine},
+                        {"width", row.width},
+                        {"height", row.height},
+                        {"moving", row.moving},
+                        {"changed", row.changed},
+                        {"encode_ms", row.encode_ms.median},
+                        {"encode_exact", row.is_encode_exact},
+                        {"render_ms", row.render_ms.median},
+                        {"render_max_error", row.error.most},
+                        {"anywhere_ms", row.anywhere_ms.median},
+                        {"anywhere_max_error", row.anywhere.most},
+                        {"anywhere_rms_error", row.anywhere.rms}});
+    return json;
+}
+
 }  // namespace eventide::bench

@@ -1,6 +1,7 @@
 // Stages as text and as JSON.
 #pragma once
 
+#include "src/bench/activity.h"
 #include "src/bench/stages.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -20,5 +21,10 @@ std::string stages_text(const std::vector<StageRow>& rows);
 /// peak_bf16_gflops and share (of encode, render_fresh, render_again), processor time, and beside
 /// them quartiles and wall time.
 nlohmann::ordered_json stages_json(const std::vector<StageRow>& rows, const Peaks& peaks);
+
+/// Milliseconds of processor time, and beside them how many per cent of what a wholly moving scene
+/// takes in the same table; the error of frames against those without skipping.
+std::string activity_text(const std::vector<ActivityRow>& rows);
+nlohmann::ordered_json activity_json(const std::vector<ActivityRow>& rows);
 
 }  // namespace eventide::bench
