@@ -11,6 +11,7 @@
 #include "src/app/progress.h"
 #include "src/app/reference_images.h"
 #include "src/app/version.h"
+#include "src/bench/stage_table.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
 #include "src/evaluate/plot.h"
@@ -34,11 +35,17 @@ using Clock = std::chrono::steady_clock;
 /// Event frames of 50 ms, each ending at an image: so there is a truth for each picture.
 constexpr int kImagesPerSecond = 20;
 
+SimRecordingSettings recording_of(const std::string& scene, const Size& size) {
+    SimRecordingSettings settings = parse_simulated_name("sim:" + scene).recording;
+    settings.width = size.width;
+    settings.height = size.height;
+    return settings;
+}
+
 std::shared_ptr<const RecordedPackets> simulate(const std::string& scene, const Size& size,
                                                 double seconds) {
     SimulatedSourceSettings settings = parse_simulated_name("sim:" + scene);
-    settings.recording.width = size.width;
-    settings.recording.height = size.height;
+    settings.recording = recording_of(scene, size);
     settings.recording.seconds = seconds;
     settings.recording.images_per_second = kImagesPerSecond;
     settings.speed = 0;
@@ -131,10 +138,14 @@ void print_table(const std::vector<BenchRow>& rows) {
                     row.latency_p50_ms, row.latency_p99_ms, row.mse);
 }
 
-std::string json_of(const std::vector<BenchRow>& rows) {
+std::string json_of(const std::vector<bench::StageRow>& stages,
+                    const std::vector<bench::ActivityRow>& activity, const bench::Peaks& peaks,
+                    const std::vector<BenchRow>& rows) {
     nlohmann::ordered_json json;
     json["machine"] = processor_text();
     json["program"] = "eventide " + version() + ", " + compiler_text();
+    json["stages"] = bench::stages_json(stages, peaks);
+    json["activity"] = bench::activity_json(activity);
     json["rows"] = nlohmann::ordered_json::array();
     for (const BenchRow& row : rows)
         json["rows"].push_back({{"model", row.model},
@@ -172,13 +183,19 @@ Plot plot_of(const std::vector<BenchRow>& rows) {
 }  // namespace
 
 std::string BenchCommand::examples() const {
-    return "ms/window: the network per event window of 50 ms, ms/frame: rendering one frame "
+    return "First the stages alone, one thread, nothing beside them, everything moving: median "
+           "and\n"
+           "quartiles of processor time; share: useful products a second over the core's own "
+           "peak,\n"
+           "of encoding, a fresh frame, another frame of the same window. Then the pipeline.\n"
+           "ms/window: the network per event window of 50 ms, ms/frame: rendering one frame "
            "(medians);\n"
            "x real: sensor time over host time as fast as possible; latency at the pace of the "
            "camera,\n"
            "from the last packet a frame saw to the frame written.\n"
            "Examples:\n"
            "  eventide bench\n"
+           "  eventide bench --stages --sizes 240x180 --lookahead 0\n"
            "  eventide bench --sizes 240x180 --models default --models small --precisions f32 "
            "--precisions bf16\n"
            "  eventide bench --instructions avx2";
@@ -196,11 +213,24 @@ SettingTable BenchCommand::settings() {
                        "What the kernels may use: best (all the processor has), or no more than "
                        "an older one.",
                        {"best", "avx2", "sse4"}));
-    add(number_setting("seconds", seconds_, "S", "Duration of each recording, seconds.", 0.2, 3600));
-    add(number_setting("scale", scale_, "S", "Size of the frames, times the sensor's.", 0.1,
-                       16));
+    add(number_setting("seconds", seconds_, "S", "Duration of each recording, seconds.", 0.2,
+                       3600));
+    add(number_setting("scale", scale_, "S", "Size of the frames, times the sensor's.", 0.1, 16));
     add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+    add(flag_setting("stages", stages_, "The stages alone, without the pipeline after them."));
+    add(flag_setting("activity", activity_,
+                     "Cost and error when 0, 1, 5, 25 and 100 % of the scene moves, without the "
+                     "pipeline."));
+    add(number_setting("still_codes", still_codes_, "D",
+                       "With --activity, frames at changing places in the window: a part whose "
+                       "codes changed by no more than this is copied.",
+                       0, 100));
+    add(number_setting("still_time", still_time_, "WINDOWS",
+                       "And no further than this from the place in the window it is copied from.",
+                       0, 1));
+    add(whole_setting("repetitions", repetitions_, "N", "Of each stage.", bench::kLeastRepetitions,
+                      1'000'000));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
@@ -244,6 +274,10 @@ void BenchCommand::name_bench_files(NamedFiles& files) const {
 
 namespace {
 
+Precision precision_of(const std::string& name) {
+    return Precision(parse_choice(name, {"auto", "f32", "bf16"}));
+}
+
 std::string what_of(const std::string& model, const std::string& precision,
                     const std::string& size) {
     return model + " " + precision + " " + size;
@@ -251,13 +285,59 @@ std::string what_of(const std::string& model, const std::string& precision,
 
 }  // namespace
 
-int BenchCommand::run(Program& program) {
-    limit_instructions(instructions_);
-    name_bench_files(program.files);
-    std::printf("%s; eventide %s, %s; threads %s; scene %s, %g s, lookahead %d (latency: 0)\n",
-                processor_text().c_str(), version().c_str(), compiler_text().c_str(),
-                threads_ == 0 ? "all" : std::to_string(threads_).c_str(), scene_.c_str(), seconds_,
-                lookahead_);
+template <typename Measure>
+void BenchCommand::for_each_stage(const std::string& what, Program& program,
+                                  const Measure& measure) const {
+    constexpr int kWindows = 6;
+    Progress progress{program.quiet};
+    for (const std::string& text : sizes_) {
+        const Size size = parse_size(text);
+        progress.show(0, "simulating " + text);
+        const auto windows = bench::scene_windows(recording_of(scene_, size), kWindows);
+        for (const std::string& name : models_)
+            for (const std::string& precision : precisions_) {
+                if (program.signals.stopping()) return;
+                progress.show(0, what + " of " + what_of(name, precision, text));
+                const std::filesystem::path file = find_model(name);
+                bench::StageSettings settings;
+                settings.width = size.width;
+                settings.height = size.height;
+                settings.scale = scale_;
+                settings.lookahead = lookahead_;
+                settings.repetitions = repetitions_;
+                settings.engine.engine = engine_;
+                settings.engine.precision = precision_of(precision);
+                settings.engine.still_codes = still_codes_;
+                settings.engine.still_time = still_time_;
+                measure(printable(file.stem().string()), load_model(file), windows, settings);
+            }
+    }
+}
+
+std::vector<bench::StageRow> BenchCommand::measure_stages(const bench::Peaks& peaks,
+                                                          Program& program) const {
+    std::vector<bench::StageRow> rows;
+    for_each_stage(
+        "stages", program,
+        [&](const auto& name, const auto& model, const auto& windows, const auto& settings) {
+            rows.push_back(bench::measure_stages(name, model, windows, settings, peaks));
+        });
+    return rows;
+}
+
+std::vector<bench::ActivityRow> BenchCommand::measure_activity(Program& program) const {
+    std::vector<bench::ActivityRow> rows;
+    for_each_stage(
+        "activity", program,
+        [&](const auto& name, const auto& model, const auto& windows, const auto& settings) {
+            const auto more =
+                bench::measure_activity(name, model, windows, settings, {0, .01, .05, .25, 1});
+            rows.insert(rows.end(), more.begin(), more.end());
+        });
+    return rows;
+}
+
+std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
     std::vector<BenchRow> rows;
     Progress progress{program.quiet};
     for (const std::string& size : sizes_) {
@@ -265,16 +345,43 @@ int BenchCommand::run(Program& program) {
         const auto data = simulate(scene_, parse_size(size), seconds_);
         for (const std::string& model : models_)
             for (const std::string& precision : precisions_) {
-                if (program.signals.stopping()) break;
+                if (program.signals.stopping()) return rows;
                 progress.show(0, what_of(model, precision, size));
-                rows.push_back(measure(data, model,
-                                       Precision(parse_choice(precision, {"auto", "f32", "bf16"})),
-                                       program));
+                rows.push_back(measure(data, model, precision_of(precision), program));
             }
     }
-    progress.clear();
-    print_table(rows);
-    if (!json_.empty()) write_file(json_, json_of(rows), overwrite_);
+    return rows;
+}
+
+int BenchCommand::run(Program& program) {
+    limit_instructions(instructions_);
+    name_bench_files(program.files);
+    std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
+                version().c_str(), compiler_text().c_str(), scene_.c_str(), lookahead_);
+    const bench::Peaks peaks = bench::measure_peaks(instructions_);
+    std::fputs(bench::peaks_text(peaks).c_str(), stdout);
+    std::vector<bench::StageRow> stages;
+    std::vector<bench::ActivityRow> activity;
+    std::vector<BenchRow> rows;
+    if (activity_) {
+        std::printf(
+            "anywhere: frames at changing places in the window; copied where codes changed "
+            "by at most %g and the place by %g windows\n",
+            still_codes_, still_time_);
+        activity = measure_activity(program);
+        std::fputs(bench::activity_text(activity).c_str(), stdout);
+    }
+    if (stages_ || !activity_) {
+        stages = measure_stages(peaks, program);
+        std::fputs(bench::stages_text(stages).c_str(), stdout);
+    }
+    if (!stages_ && !activity_) {
+        std::printf("\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
+                    threads_ == 0 ? "all" : std::to_string(threads_).c_str(), seconds_);
+        rows = measure_pipelines(program);
+        print_table(rows);
+    }
+    if (!json_.empty()) write_file(json_, json_of(stages, activity, peaks, rows), overwrite_);
     if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_, overwrite_).string());
     return exit_done;
 }

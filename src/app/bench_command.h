@@ -5,6 +5,8 @@
 #include "src/app/memory_recording.h"
 #include "src/app/run_settings.h"
 #include "src/app/values.h"
+#include "src/bench/activity.h"
+#include "src/bench/stages.h"
 #include "src/model/instructions.h"
 
 #include <memory>
@@ -36,19 +38,28 @@ public:
     int run(Program& program) override;
 
 private:
+    /// Calls measure(name, model, windows, settings) for each size, model and precision.
+    template <typename Measure>
+    void for_each_stage(const std::string& what, Program& program, const Measure& measure) const;
     BenchRow measure(const std::shared_ptr<const RecordedPackets>& data, const std::string& model,
                      Precision precision, Program& program) const;
+    /// Each size, model and precision: the stages alone.
+    std::vector<bench::StageRow> measure_stages(const bench::Peaks& peaks, Program& program) const;
+    /// The same: what a part of the scene that moves costs.
+    std::vector<bench::ActivityRow> measure_activity(Program& program) const;
+    /// The same: the pipeline.
+    std::vector<BenchRow> measure_pipelines(Program& program) const;
     void name_bench_files(NamedFiles& files) const;
 
     std::string scene_ = "demo";
     std::vector<std::string> sizes_{"240x180", "346x260", "640x480"}, models_{"default"},
         precisions_{"auto"};
-    double seconds_ = 2, scale_ = 1;
-    int threads_ = 0, lookahead_ = 2;
+    double seconds_ = 2, scale_ = 1, still_codes_ = 0.02, still_time_ = 1;
+    int threads_ = 0, lookahead_ = 2, repetitions_ = bench::kLeastRepetitions;
     Engine engine_ = Engine::fast;
     Instructions instructions_ = Instructions::best;
     std::string json_, plots_;
-    bool overwrite_ = false;
+    bool stages_ = false, activity_ = false, overwrite_ = false;
 };
 
 }  // namespace eventide::app

@@ -51,6 +51,19 @@ void average(const float* a, const float* b, const float* c, const float* d, flo
     map(Average{}, std::size_t(n), out, a, b, c, d);
 }
 
+bool are_near(const float* a, const float* b, float bound, std::size_t n) {
+    const D d;
+    const std::size_t lanes = hn::Lanes(d);
+    const V most = hn::Set(d, bound);
+    std::size_t i = 0;
+    for (; i + lanes <= n; i += lanes)
+        if (!hn::AllTrue(d, hn::Le(hn::AbsDiff(hn::LoadU(d, a + i), hn::LoadU(d, b + i)), most)))
+            return false;
+    return i == n ||
+           hn::AllTrue(d,
+                       hn::Le(hn::AbsDiff(load_some(a + i, n - i), load_some(b + i, n - i)), most));
+}
+
 struct Offset {
     V dx;
     HWY_INLINE V operator()(V sum, V base, V slope, V) const {
@@ -99,6 +112,7 @@ const VectorKernels* table() {
                                        norm_elu,
                                        elu,
                                        average,
+                                       are_near,
                                        offset_rows,
                                        two_outputs};
     return &kernels;

@@ -62,6 +62,8 @@ struct VectorKernels {
     /// out = (a + b + c + d) / 4
     void (*average)(const float* a, const float* b, const float* c, const float* d, float* out,
                     int n);
+    /// Whether |a - b| <= bound for each of n numbers; not where one is NaN.
+    bool (*are_near)(const float* a, const float* b, float bound, std::size_t n);
     void (*offset_rows)(const OffsetRows&);
     /// out[p][0..1] = bias + weight[0..1] . in[p], weight [2][width]
     void (*two_outputs)(const float* in, const float* weight, const float* bias, int pixels,

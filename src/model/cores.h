@@ -46,6 +46,8 @@ public:
     /// `sigma` is null where not asked for.
     virtual void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
                         Array2<float>& intensity, Array2<float>* sigma) noexcept = 0;
+    /// Since construction; a copied pixel does not count.
+    virtual std::uint64_t pixels_rendered() const { return 0; }
 };
 
 std::unique_ptr<RendererCore> make_plain_renderer(const Model& model);

@@ -20,6 +20,11 @@ struct EngineOptions {
     /// Leave out tiles in whose reach nothing happened. The results are the same bit for bit; off
     /// only for tests and measurements.
     bool skip_quiet = true;
+    /// When a part of a frame counts as still and is copied from one rendered before: its codes are
+    /// all within `still_codes` of those it was rendered from, and its place in the event window no
+    /// further than `still_time` windows (0 to 1) from the one then. 0 and 0: only where nothing
+    /// changed, so that frames are the same bit for bit.
+    double still_codes = 0, still_time = 0;
 };
 
 }  // namespace eventide

@@ -26,10 +26,6 @@ std::vector<float> transposed(const Tensor& weight) {
     return values;
 }
 
-bool same_columns(const PictureGeometry& a, const PictureGeometry& b) {
-    return a.width == b.width && a.x == b.x && a.part_width == b.part_width;
-}
-
 }  // namespace
 
 FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_height,
@@ -69,30 +65,20 @@ std::string FastRenderer::description() const {
 
 void FastRenderer::reset() noexcept {
     hoisted_.reset();
+    kept_.reset();
 }
 
 void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
     hoisted_.push(k, latent);
 }
 
-void FastRenderer::lay_out_columns(const PictureGeometry& picture) {
-    if (same_columns(picture, laid_out_)) return;
+void FastRenderer::lay_out(const PictureGeometry& picture) {
+    if (picture == laid_out_) return;
     laid_out_ = {};  // until all is there
-    for (std::size_t side = 0; side < 2; ++side) {
-        columns_.pixel[side].clear();
-        columns_.column[side].clear();
-        columns_.offset[side].clear();
-        columns_.weight[side].clear();
-        for (int i = 0; i < picture.part_width; ++i) {
-            const AxisSamples x = sample_axis(picture.x + i, picture.width, picture.sensor_width,
-                                              config_.latent_stride, config_.blend);
-            if (x.weight[side] == 0) continue;
-            columns_.pixel[side].push_back(i);
-            columns_.column[side].push_back(x.index + int(side));
-            columns_.offset[side].push_back(float(x.offset[side]));
-            columns_.weight[side].push_back(float(x.weight[side]));
-        }
-    }
+    layout_.make(picture, config_.latent_stride, config_.blend, hoisted_.row_edges(),
+                 hoisted_.column_edges());
+    kept_.make_room(picture, layout_.tiles());
+    spans_.reserve(std::size_t(picture.part_height) * std::size_t(layout_.columns.count() / 2 + 1));
     for (FloatBuffer& sums : row_sums_) sums.resize(3 * std::size_t(picture.part_width));
     laid_out_ = picture;
 }
@@ -102,73 +88,149 @@ AxisSamples FastRenderer::time_samples(const CodeChoice& codes) const noexcept {
     return sample_time(codes.fraction, codes.next[0], fades);
 }
 
-void FastRenderer::render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
-                          Array2<float>& intensity, Array2<float>* sigma) noexcept {
-    lay_out_columns(picture);
-    needs_squares_ = sigma != nullptr && rule == SigmaRule::mixture;
-    const AxisSamples t = time_samples(codes);
-    std::array<const HoistedLayer::Sums*, 2> hoisted{};  // of the samples with a weight
+std::array<const HoistedLayer::Sums*, 2> FastRenderer::bring_sums(const CodeChoice& codes,
+                                                                  const AxisSamples& t) noexcept {
     const std::int64_t k = codes.k + t.index;
     // What a fading live edge shows of the event frame before was made without z_k.
     const bool whole = t.index == 0 && codes.next[0], next_whole = t.index == 0 && codes.next[1];
-    if (t.weight[1] == 0)
-        hoisted[0] = &hoisted_.at(k, whole);
-    else if (t.weight[0] == 0)
-        hoisted[1] = &hoisted_.at(k + 1, next_whole);
-    else
-        hoisted = hoisted_.pair(k, whole, next_whole);
-    for_each_tile(options_.parallel_for, picture.part_height, [&](int lane, int row) {
-        render_row(codes, picture, hoisted, row, rule, intensity.row(row).data(),
-                   sigma != nullptr ? sigma->row(row).data() : nullptr, std::size_t(lane));
+    if (t.weight[1] == 0) return {&hoisted_.at(k, whole), nullptr};
+    if (t.weight[0] == 0) return {nullptr, &hoisted_.at(k + 1, next_whole)};
+    return hoisted_.pair(k, whole, next_whole);
+}
+
+void FastRenderer::render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
+                          Array2<float>& intensity, Array2<float>* sigma) noexcept {
+    lay_out(picture);
+    needs_squares_ = sigma != nullptr && rule == SigmaRule::mixture;
+    const AxisSamples t = time_samples(codes);
+    const Job job{picture, rule, t, bring_sums(codes, t)};
+    const Target out{intensity.values().data(),
+                     sigma != nullptr ? sigma->values().data() : nullptr};
+    if (!options_.skip_quiet) {
+        spans_.clear();
+        for (int row = 0; row < picture.part_height; ++row)
+            spans_.push_back({row, 0, layout_.columns.count()});
+        render_spans(job, out);
+        return;
+    }
+    KeptFrame& kept =
+        kept_.choose(kind_of(codes, job, sigma != nullptr), codes.fraction, options_.still_time);
+    find_outdated(codes, kept);
+    render_spans(job, {kept.intensity.data(), sigma != nullptr ? kept.sigma.data() : nullptr});
+    std::ranges::copy(kept.intensity, out.intensity);
+    if (sigma != nullptr) std::ranges::copy(kept.sigma, out.sigma);
+}
+
+FrameKind FastRenderer::kind_of(const CodeChoice& codes, const Job& job,
+                                bool has_sigma) const noexcept {
+    const int index = job.t.index;
+    int newest = index;  // of the sample at `index`, then of the one after it
+    if (index == 0 && codes.next[0]) newest = codes.next[1] ? 2 : 1;
+    if (index < 0) newest = 0;
+    return {job.picture, job.rule, has_sigma, index - 1, newest, index};
+}
+
+bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
+                                 const CodeChoice& codes) const noexcept {
+    const auto r = std::size_t(row), c = std::size_t(column);
+    const auto columns = std::size_t(layout_.columns.count());
+    const KeptFrame::Stamp& stamp = kept.tiles[r * columns + c];
+    if (stamp.k < 1 || stamp.k > codes.k) return false;
+    if (std::abs(stamp.fraction - codes.fraction) > options_.still_time) return false;
+    for (std::size_t y = r; y <= r + layout_.rows.reads_next[r]; ++y)
+        for (std::size_t x = c; x <= c + layout_.columns.reads_next[c]; ++x)
+            if (!hoisted_.still(y * columns + x, stamp.k + kept.kind.oldest,
+                                codes.k + kept.kind.newest))
+                return false;
+    return true;
+}
+
+void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept {
+    spans_.clear();
+    const int columns = layout_.columns.count();
+    for (int r = 0; r < layout_.rows.count(); ++r) {
+        const auto begin = spans_.size();
+        const int first_row = layout_.rows.begin[std::size_t(r)],
+                  last_row = layout_.rows.begin[std::size_t(r) + 1];
+        for (int c = 0; c < columns; ++c) {
+            KeptFrame::Stamp& stamp = kept.tiles[std::size_t(r * columns + c)];
+            const bool is_kept = is_up_to_date(kept, r, c, codes);
+            stamp.k = codes.k;
+            if (is_kept) continue;
+            stamp.fraction = codes.fraction;
+            if (spans_.size() > begin && spans_.back().last == c)
+                spans_.back().last = c + 1;
+            else
+                spans_.push_back({first_row, c, c + 1});
+        }
+        // Rows below the first are cut as it is.
+        const auto end = spans_.size();
+        if (first_row == last_row) spans_.resize(begin);
+        for (int row = first_row + 1; row < last_row; ++row)
+            for (auto i = begin; i < end; ++i)
+                spans_.push_back({row, spans_[i].first, spans_[i].last});
+    }
+}
+
+void FastRenderer::render_spans(const Job& job, const Target& target) noexcept {
+    for (const Span& span : spans_)
+        pixels_rendered_ += std::uint64_t(layout_.columns.begin[std::size_t(span.last)] -
+                                          layout_.columns.begin[std::size_t(span.first)]);
+    for_each_tile(options_.parallel_for, int(spans_.size()), [&](int lane, int i) {
+        render_span(job, spans_[std::size_t(i)], target, std::size_t(lane));
     });
 }
 
-void FastRenderer::render_row(const CodeChoice& codes, const PictureGeometry& picture,
-                              const std::array<const HoistedLayer::Sums*, 2>& hoisted, int row,
-                              SigmaRule rule, float* intensity, float* sigma,
-                              std::size_t lane) noexcept {
-    const int width = picture.part_width;
+void FastRenderer::render_span(const Job& job, const Span& span, const Target& target,
+                               std::size_t lane) noexcept {
+    const int width = job.picture.part_width;
     const auto count = std::size_t(width);
-    const AxisSamples t = time_samples(codes);
-    const AxisSamples y = sample_axis(picture.y + row, picture.height, picture.sensor_height,
-                                      config_.latent_stride, config_.blend);
+    const auto begin = std::size_t(layout_.columns.begin[std::size_t(span.first)]),
+               end = std::size_t(layout_.columns.begin[std::size_t(span.last)]);
+    const AxisSamples y =
+        sample_axis(job.picture.y + span.row, job.picture.height, job.picture.sensor_height,
+                    config_.latent_stride, config_.blend);
     float* scratch = scratch_[lane].data();
     float* blended = row_sums_[lane].data();  // mu, ln sigma, sigma^2 + mu^2
-    std::fill_n(blended, 3 * count, 0.0F);
+    for (std::size_t n = 0; n < 3; ++n) std::fill_n(blended + n * count + begin, end - begin, 0.0F);
     float* base = scratch;
     for (std::size_t n = 0; n < 4; ++n) {
         const std::size_t a = n / 2, b = n % 2;
-        const double weight = t.weight[a] * y.weight[b];
+        const double weight = job.t.weight[a] * y.weight[b];
         if (weight == 0) continue;
         for (std::size_t o = 0; o < std::size_t(first_); ++o)
-            base[o] = slope_[0][o] * float(t.offset[a]) + slope_[2][o] * float(y.offset[b]);
-        const float* sums = hoisted[a]->values.pixel(y.index + int(b), 0).data();
+            base[o] = slope_[0][o] * float(job.t.offset[a]) + slope_[2][o] * float(y.offset[b]);
+        const float* sums = job.hoisted[a]->values.pixel(y.index + int(b), 0).data();
         for (std::size_t side = 0; side < 2; ++side)
-            evaluate({sums, base, float(weight), side}, blended, width, scratch + first_);
+            evaluate({sums, base, float(weight), side}, span, blended, width, scratch + first_);
     }
-    std::copy_n(blended, count, intensity);
-    if (sigma == nullptr) return;
-    for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t row = std::size_t(span.row) * count;
+    std::copy(blended + begin, blended + end, target.intensity + row + begin);
+    if (target.sigma == nullptr) return;
+    for (std::size_t i = begin; i < end; ++i) {
         const float mu = blended[i];
-        const float plain = rule == SigmaRule::log_blend
+        const float plain = job.rule == SigmaRule::log_blend
                                 ? std::exp(blended[count + i])
                                 : std::sqrt(std::max(blended[2 * count + i] - mu * mu, 0.0F));
-        sigma[i] = config_.sigma_scale * plain;
+        target.sigma[row + i] = config_.sigma_scale * plain;
     }
 }
 
-void FastRenderer::evaluate(const Member& member, float* blended, int width,
+void FastRenderer::evaluate(const Member& member, const Span& span, float* blended, int width,
                             float* scratch) const noexcept {
-    const std::vector<int>& pixel = columns_.pixel[member.side];
-    const std::vector<float>& share = columns_.weight[member.side];
+    const PictureColumns& columns = layout_.pixels;
+    const std::vector<int>& pixel = columns.pixel[member.side];
+    const std::vector<float>& share = columns.weight[member.side];
     const auto count = std::size_t(width);
     float* activations = scratch;
     float* outputs = activations + kBlock * widest_;
     float* room = outputs + 2 * kBlock;
-    for (std::size_t begin = 0; begin < pixel.size(); begin += kBlock) {
-        const int pixels = int(std::min<std::size_t>(kBlock, pixel.size() - begin));
-        vector_kernels().offset_rows({member.sums, columns_.column[member.side].data() + begin,
-                                      columns_.offset[member.side].data() + begin, member.base,
+    const std::size_t end = columns.tile[member.side][std::size_t(span.last)];
+    for (std::size_t begin = columns.tile[member.side][std::size_t(span.first)]; begin < end;
+         begin += kBlock) {
+        const int pixels = int(std::min<std::size_t>(kBlock, end - begin));
+        vector_kernels().offset_rows({member.sums, columns.column[member.side].data() + begin,
+                                      columns.offset[member.side].data() + begin, member.base,
                                       slope_[1].data(), pixels, first_, activations});
         const float* last = run_layers(activations, pixels, room);
         vector_kernels().two_outputs(last, last_weight_.data(), last_bias_.data(), pixels,

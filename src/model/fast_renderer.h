@@ -1,8 +1,11 @@
 // The implicit decoder in blocks of pixels: layer 1 is kept per latent map (hoisted_layer.h), the
-// layers behind it run while their numbers are in cache.
+// layers behind it run while their numbers are in cache, and tiles whose inputs are those of a
+// frame rendered before are copied from it (kept_frames.h).
 #pragma once
 
 #include "src/model/hoisted_layer.h"
+#include "src/model/kept_frames.h"
+#include "src/model/picture_layout.h"
 
 #include <array>
 #include <vector>
@@ -15,18 +18,29 @@ public:
                  const EngineOptions& options, const Arithmetic& arithmetic);
 
     std::string description() const override;
-    void make_room(const PictureGeometry& picture) override { lay_out_columns(picture); }
+    void make_room(const PictureGeometry& picture) override { lay_out(picture); }
     void push(std::int64_t k, const LatentMap& latent) noexcept override;
     void reset() noexcept override;
     void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
                 Array2<float>& intensity, Array2<float>* sigma) noexcept override;
+    std::uint64_t pixels_rendered() const override { return pixels_rendered_; }
 
 private:
-    /// What a picture's columns read; the same for all its rows.
-    struct Columns {
-        // By side: the pixels that use their left (0) or right (1) sample.
-        std::array<std::vector<int>, 2> pixel, column;
-        std::array<std::vector<float>, 2> offset, weight;
+    /// A stretch of a row to be rendered: that of the tiles first <= c < last.
+    struct Span {
+        int row, first, last;
+    };
+    /// What the two maps of a frame are written to.
+    struct Target {
+        float* intensity;
+        float* sigma;  ///< may be null
+    };
+    /// Everything about a frame but its pixels.
+    struct Job {
+        const PictureGeometry& picture;
+        SigmaRule rule;
+        AxisSamples t;
+        std::array<const HoistedLayer::Sums*, 2> hoisted;  ///< of the samples with a weight
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
     struct Member {
@@ -37,12 +51,20 @@ private:
     };
 
     AxisSamples time_samples(const CodeChoice& codes) const noexcept;
-    void lay_out_columns(const PictureGeometry& picture);
-    void render_row(const CodeChoice& codes, const PictureGeometry& picture,
-                    const std::array<const HoistedLayer::Sums*, 2>& hoisted, int row,
-                    SigmaRule rule, float* intensity, float* sigma, std::size_t lane) noexcept;
-    /// Adds a member's part to the three sums of every pixel of the row.
-    void evaluate(const Member& member, float* blended, int width, float* scratch) const noexcept;
+    void lay_out(const PictureGeometry& picture);
+    std::array<const HoistedLayer::Sums*, 2> bring_sums(const CodeChoice& codes,
+                                                        const AxisSamples& t) noexcept;
+    FrameKind kind_of(const CodeChoice& codes, const Job& job, bool has_sigma) const noexcept;
+    /// Fills spans_ with what of the kept frame is out of date, and stamps it.
+    void find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept;
+    bool is_up_to_date(const KeptFrame& kept, int row, int column,
+                       const CodeChoice& codes) const noexcept;
+    void render_spans(const Job& job, const Target& target) noexcept;
+    void render_span(const Job& job, const Span& span, const Target& target,
+                     std::size_t lane) noexcept;
+    /// Adds a member's part to the three sums of every pixel of the span.
+    void evaluate(const Member& member, const Span& span, float* blended, int width,
+                  float* scratch) const noexcept;
     /// The hidden layers behind the first; `room` holds 2 kBlock widest_ numbers. Returns where the
     /// result is.
     const float* run_layers(const float* activations, int pixels, float* room) const noexcept;
@@ -56,8 +78,11 @@ private:
     std::array<std::vector<float>, 3> slope_;     // layer 1's columns for t, x, y
     std::vector<float> last_weight_, last_bias_;  // [2][H], [2]
 
-    Columns columns_;
+    PictureLayout layout_;
     PictureGeometry laid_out_;
+    KeptFrames kept_;
+    std::vector<Span> spans_;
+    std::uint64_t pixels_rendered_ = 0;
     bool needs_squares_ = false;
     std::vector<FloatBuffer> scratch_, row_sums_;  // per lane
 };

@@ -1,6 +1,8 @@
 // See hoisted_layer.h; docs/model.md has the formulas.
 #include "src/model/hoisted_layer.h"
 
+#include "src/kernels/vector_kernels.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -51,6 +53,7 @@ HoistedLayer::HoistedLayer(const Model& model, int height, int width, const Engi
 
 void HoistedLayer::reset() noexcept {
     for (Sums& sums : kept_) sums.k = 0;
+    newest_ = 0;
 }
 
 const PaddedMap* HoistedLayer::code(std::int64_t k) const noexcept {
@@ -58,18 +61,29 @@ const PaddedMap* HoistedLayer::code(std::int64_t k) const noexcept {
 }
 
 void HoistedLayer::push(std::int64_t k, const LatentMap& latent) noexcept {
+    newest_ = k;
     const std::size_t slot = LatentWindow::slot(k);
-    PaddedMap& mine = codes_[slot];
     const Outdated outdated{histories_[slot], latent.history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
-        if (!outdated(std::size_t(n))) return;
-        const Tile& tile = tiles_[std::size_t(n)];
-        const auto bytes = std::size_t(tile.width()) * std::size_t(depth_) * sizeof(float);
-        for (int y = tile.y0; y < tile.y1; ++y)
-            std::memcpy(mine.at(y, tile.x0), latent.values.pixel(y, tile.x0).data(), bytes);
+        if (outdated(std::size_t(n))) hold_tile(k, tiles_[std::size_t(n)], latent.values);
     });
     histories_[slot] = latent.history;
     note_changes(k, latent.history);
+}
+
+void HoistedLayer::hold_tile(std::int64_t k, const Tile& tile,
+                             const Array3<float>& latent) noexcept {
+    PaddedMap& mine = codes_[LatentWindow::slot(k)];
+    const PaddedMap* before = options_.skip_quiet && k > 1 ? code(k - 1) : nullptr;
+    const std::size_t numbers = std::size_t(tile.width()) * std::size_t(depth_);
+    bool is_held = before != nullptr && options_.still_codes > 0;
+    for (int y = tile.y0; is_held && y < tile.y1; ++y)
+        is_held = vector_kernels().are_near(latent.pixel(y, tile.x0).data(), before->at(y, tile.x0),
+                                            float(options_.still_codes), numbers);
+    for (int y = tile.y0; y < tile.y1; ++y)
+        std::memcpy(mine.at(y, tile.x0),
+                    is_held ? before->at(y, tile.x0) : latent.pixel(y, tile.x0).data(),
+                    numbers * sizeof(float));
 }
 
 /// Compares z_k with z_{k-1}, where the encoder's own account does not already say they are alike.
@@ -105,12 +119,30 @@ bool HoistedLayer::around(int tile, const Outdated& since) const noexcept {
 bool HoistedLayer::unchanged(const Sums& from, std::int64_t k, bool whole,
                              std::size_t tile) const noexcept {
     if (from.k < 1 || from.whole != whole || k < from.k) return false;
-    const std::int64_t oldest = from.k,
-                       newest = whole ? k + 1 : k;  // changes from.k-1 -> from.k ..
-    if (newest - oldest >= kChangesKept - 1) return false;
-    for (std::int64_t j = oldest; j <= newest; ++j)
+    return still(tile, from.k - 1, whole ? k + 1 : k);
+}
+
+bool HoistedLayer::still(std::size_t tile, std::int64_t from, std::int64_t to) const noexcept {
+    // z_0, before the first, reads as zeros, and changed_ says that z_1 differs from it.
+    if (from < 0 || from <= newest_ - kChangesKept) return false;
+    for (std::int64_t j = from + 1; j <= to; ++j)
         if (changed_[std::size_t(j % kChangesKept)][tile] != 0) return false;
     return true;
+}
+
+std::vector<int> HoistedLayer::row_edges() const {
+    std::vector<int> edges;
+    for (std::size_t i = 0; i < tiles_.size(); i += std::size_t(tile_columns_))
+        edges.push_back(tiles_[i].y0);
+    edges.push_back(height_);
+    return edges;
+}
+
+std::vector<int> HoistedLayer::column_edges() const {
+    std::vector<int> edges;
+    for (std::size_t i = 0; i < std::size_t(tile_columns_); ++i) edges.push_back(tiles_[i].x0);
+    edges.push_back(width_);
+    return edges;
 }
 
 const HoistedLayer::Sums* HoistedLayer::find(std::int64_t k, bool whole) const noexcept {

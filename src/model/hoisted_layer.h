@@ -38,12 +38,22 @@ public:
     /// Those of k and of k + 1 together.
     std::array<const Sums*, 2> pair(std::int64_t k, bool whole, bool next_whole) noexcept;
 
+    /// Whether every code that the samples of a tile read is the same in all of z_from .. z_to.
+    bool still(std::size_t tile, std::int64_t from, std::int64_t to) const noexcept;
+    /// Where tiles begin along an axis, and where the last ends.
+    std::vector<int> row_edges() const;
+    std::vector<int> column_edges() const;
+    int tile_columns() const { return tile_columns_; }
+
 private:
     const Sums* find(std::int64_t k, bool whole) const noexcept;
     const Sums& bring(std::int64_t k, bool whole, const Sums* keep) noexcept;
     void compute_tile(Sums& to, const Tile& tile, float* scratch) noexcept;
     bool around(int tile, const Outdated& since) const noexcept;
     bool unchanged(const Sums& from, std::int64_t k, bool whole, std::size_t tile) const noexcept;
+    /// Writes a tile of z_k; where still_codes allows, z_{k-1} as it is held in its place, so that
+    /// what is held never drifts further off.
+    void hold_tile(std::int64_t k, const Tile& tile, const Array3<float>& latent) noexcept;
     void note_changes(std::int64_t k, const LatentHistory& history) noexcept;
     /// z_k, which must be kept; null before the first, which reads as zeros.
     const PaddedMap* code(std::int64_t k) const noexcept;
@@ -59,6 +69,7 @@ private:
     /// Per event frame (k % size), per tile: whether z_k differs from z_{k-1} in the tile's reach.
     static constexpr std::int64_t kChangesKept = 16;
     std::array<std::vector<std::uint8_t>, kChangesKept> changed_;
+    std::int64_t newest_ = 0;
     std::array<Sums, 2> kept_;
     std::vector<int> active_;           // tiles to be computed
     std::vector<FloatBuffer> scratch_;  // per lane

@@ -63,6 +63,10 @@ std::string Renderer::description() const {
     return core_->description();
 }
 
+std::uint64_t Renderer::pixels_rendered() const noexcept {
+    return core_->pixels_rendered();
+}
+
 void Renderer::push(const LatentMap& latent) noexcept {
     core_->push(window_.push(latent), latent);
 }

@@ -57,6 +57,10 @@ public:
     /// [y][x] of the region. Resizes the frame where it does not fit.
     void render(const RenderRequest& request, Frame& frame) noexcept;
 
+    /// Since construction, with Engine::fast: pixels that were computed and not copied from a frame
+    /// before.
+    std::uint64_t pixels_rendered() const noexcept;
+
 private:
     ModelConfig config_;
     int sensor_width_, sensor_height_;

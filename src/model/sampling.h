@@ -69,6 +69,7 @@ struct PictureGeometry {
     int sensor_width = 0, sensor_height = 0;
     int width = 0, height = 0;                          ///< px, the whole picture
     int x = 0, y = 0, part_width = 0, part_height = 0;  ///< px, the wanted part of it
+    friend bool operator==(const PictureGeometry&, const PictureGeometry&) = default;
 };
 
 }  // namespace eventide

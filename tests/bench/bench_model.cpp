@@ -1,8 +1,10 @@
-// Milliseconds per event frame (encode) and per picture (render), beside oneDNN layer by layer and
-// the processor's own peak. Run with OMP_NUM_THREADS=1, so that oneDNN uses one thread too; add
-// EVENTIDE_BENCH_AVX2=1 and ONEDNN_MAX_CPU_ISA=AVX2 for the figures of a processor without AVX-512.
+// Milliseconds per event frame (encode) and per picture (render) of the shipped models, on one and
+// two threads, beside oneDNN layer by layer and the processor's own peak (`eventide bench --stages`
+// has the stages alone, with shares of the peak). Run with OMP_NUM_THREADS=1, so that oneDNN uses
+// one thread too; add EVENTIDE_BENCH_AVX2=1 and ONEDNN_MAX_CPU_ISA=AVX2 for the figures of a
+// processor without AVX-512.
 #include "pipeline/parallel_tbb.h"
-#include "src/kernels/vector_kernels.h"
+#include "src/bench/products.h"
 #include "src/model/encoder.h"
 #include "src/model/renderer.h"
 #include "src/nn/packed_layers.h"
@@ -25,56 +27,7 @@ namespace eventide {
 namespace {
 
 using Kind = test::GridStream::Kind;
-
-struct Layer {
-    int height, width, in, out, stride;
-    double products() const {
-        return 9.0 * in * out * ((height + stride - 1) / stride) * ((width + stride - 1) / stride);
-    }
-};
-
-/// Every 3x3 convolution of an encoder.
-std::vector<Layer> layers_of(const ModelConfig& config, int height, int width) {
-    std::vector<Layer> layers;
-    const auto& c = config.widths;
-    const auto half = [](int n) { return (n + 1) / 2; };
-    if (config.encoder == EncoderKind::thesis) {
-        const int n = c[0], h = height, w = width;
-        layers = {{h, w, config.input_channels(), n, 1},
-                  {h, w, 2 * n, 3 * n, 1},
-                  {h, w, n, 2 * n, 1},
-                  {h, w, n, n, 2},
-                  {half(h), half(w), 2 * n, 3 * n, 1},
-                  {h, w, 3 * n, n, 1},
-                  {h, w, n, n, 1},
-                  {h, w, n, config.latent, 1}};
-        return layers;
-    }
-    int h = height, w = width;
-    for (std::size_t l = 0; l < c.size(); ++l) {
-        if (l == 0) {
-            layers.push_back({h, w, config.input_channels(), c[0], 1});
-        } else {
-            layers.push_back({h, w, c[l - 1], c[l], 2});
-            h = half(h);
-            w = half(w);
-        }
-        if (config.recurrent[l] != 0) {
-            layers.push_back({h, w, 2 * c[l], 2 * c[l], 1});
-            layers.push_back({h, w, 2 * c[l], c[l], 1});
-        }
-        if (l + 1 < c.size()) layers.push_back({h, w, c[l] + c[l + 1], c[l], 1});
-    }
-    for (int i = 0; i < 2 * config.res_blocks; ++i) layers.push_back({h, w, c.back(), c.back(), 1});
-    layers.push_back({height, width, c[0], config.latent, 1});
-    return layers;
-}
-
-double products_of(const std::vector<Layer>& layers) {
-    double sum = 0;
-    for (const Layer& layer : layers) sum += layer.products();
-    return sum;
-}
+using bench::Layer;
 
 void report(benchmark::State& state, double products) {
     state.counters["GFLOP/s"] =
@@ -83,7 +36,7 @@ void report(benchmark::State& state, double products) {
 
 struct Setting {
     std::string name;
-    ModelConfig config;
+    Model model;
     int width, height, threads;
     Precision precision;
 
@@ -101,24 +54,24 @@ struct Setting {
 };
 
 void encode(benchmark::State& state, const Setting& s, Kind kind) {
-    Encoder encoder{random_model(s.config, 1), s.width, s.height, s.options()};
-    test::GridStream stream{s.config, s.height, s.width, 1};
+    Encoder encoder{s.model, s.width, s.height, s.options()};
+    test::GridStream stream{s.model.config, s.height, s.width, 1};
     LatentMap latent = encoder.make_output();
     encoder.encode(stream.next(Kind::everywhere), latent);
     const VoxelGrid grid = stream.next(kind);
     for (auto _ : state) encoder.encode(grid, latent);
     if (kind == Kind::everywhere)
-        report(state, products_of(layers_of(s.config, s.height, s.width)));
+        report(state, bench::encode_products(s.model.config, s.height, s.width));
     state.SetLabel(encoder.description());
 }
 
 /// One picture at the sensor's size. `fresh`: for each picture a new latent map, wholly changed.
 void render(benchmark::State& state, const Setting& s, int lookahead, double scale, bool fresh) {
-    Renderer renderer{random_model(s.config, 1), s.width, s.height, s.options()};
+    Renderer renderer{s.model, s.width, s.height, s.options()};
     LatentMap latents[2];
     std::mt19937 random{1};
     for (LatentMap& latent : latents) {
-        latent.values = {s.height, s.width, s.config.latent};
+        latent.values = {s.height, s.width, s.model.config.latent};
         for (float& v : latent.values.values()) v = float(random() % 2001) / 1000 - 1;
     }
     std::int64_t k = 0;
@@ -155,7 +108,7 @@ void onednn(benchmark::State& state, const Setting& s) {
         std::unordered_map<int, memory> arguments;
     };
     std::vector<Call> calls;
-    const auto layers = layers_of(s.config, s.height, s.width);
+    const auto layers = bench::encoder_layers(s.model.config, s.height, s.width);
     for (const Layer& l : layers) {
         const int h = (l.height + l.stride - 1) / l.stride, w = (l.width + l.stride - 1) / l.stride;
         const memory::desc in{{1, l.in, l.height, l.width}, type, memory::format_tag::nhwc};
@@ -192,7 +145,7 @@ void onednn(benchmark::State& state, const Setting& s) {
         for (Call& call : calls) call.primitive.execute(queue, call.arguments);
         queue.wait();
     }
-    report(state, products_of(layers));
+    report(state, bench::products_of(layers));
 }
 #endif
 
@@ -204,25 +157,24 @@ void add(const std::string& name, Arguments... arguments) {
         ->MinTime(0.3);
 }
 
+Model shipped(const std::string& name) {
+    return load_model(EVENTIDE_SOURCE_DIR "/config/models/" + name + ".safetensors");
+}
+
 int register_all() {
-    if (std::getenv("EVENTIDE_BENCH_AVX2") != nullptr) limit_kernels_to_avx2();
-    ModelConfig thesis;
-    thesis.encoder = EncoderKind::thesis;
-    thesis.bins = 2;
-    thesis.widths = {24};
-    thesis.recurrent = {1};
-    thesis.mlp = {128, 128, 128, 128};
-    bench::add_peaks();
+    const bool is_avx2 = std::getenv("EVENTIDE_BENCH_AVX2") != nullptr;
+    const Instructions most = is_avx2 ? Instructions::avx2 : Instructions::best;
+    limit_instructions(most);
+    bench::add_peaks(most);
     for (const auto& [width, height] :
          std::vector<std::pair<int, int>>{{240, 180}, {346, 260}, {640, 480}, {1280, 720}})
-        for (const auto& [name, config] : std::vector<std::pair<std::string, ModelConfig>>{
-                 {"default", ModelConfig{}}, {"thesis", thesis}})
+        for (const std::string name : {"default", "small", "thesis"})
             for (const Precision precision : {Precision::f32, Precision::bf16}) {
                 if (precision == Precision::bf16 && !bf16_available()) continue;
                 for (const int threads : {1, 2}) {
-                    const Setting s{name, config, width, height, threads, precision};
+                    const Setting s{name, shipped(name), width, height, threads, precision};
                     add("encode/" + s.text(), encode, s, Kind::everywhere);
-                    if (name == "default") {
+                    if (name != "thesis") {
                         add("encode_patch/" + s.text(), encode, s, Kind::patch);
                         add("encode_silence/" + s.text(), encode, s, Kind::silence);
                     }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 
 namespace eventide {
 namespace {
@@ -54,6 +55,20 @@ TEST_P(Lengths, GatesAndActivationsAgreeWithDouble) {
         expect([&](std::size_t i) { return plain::relu(double(a[i]) + b[i]); }, 1e-7, "add");
         k.elu(a.data(), out.data(), count);
         expect([&](std::size_t i) { return plain::elu(double(a[i])); }, 3e-7, "elu");
+    }
+}
+
+TEST_P(Lengths, NearIsEveryNumberWithinTheBound) {
+    const VectorKernels& k = vector_kernels();
+    const auto count = std::size_t(GetParam());
+    const std::vector<float> a(count, 1.0F);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::vector<float> b = a;
+        b[i] = 1.25F;
+        EXPECT_TRUE(k.are_near(a.data(), b.data(), .25F, count));
+        EXPECT_FALSE(k.are_near(a.data(), b.data(), .2F, count)) << i;
+        b[i] = NAN;
+        EXPECT_FALSE(k.are_near(a.data(), b.data(), .25F, count)) << i;
     }
 }
 

@@ -166,6 +166,21 @@ TEST_F(Commands, BenchPrintsTheMachineAndARowForEachSize) {
     EXPECT_GT(json["rows"][0]["times_real_time"].get<double>(), 0);
 }
 
+TEST_F(Commands, BenchMeasuresTheStagesAlone) {
+    const Result result = eventide({"bench", "--stages", "--sizes", "32x24", "--precisions", "f32",
+                                    "--instructions", "sse4", "--json", "stages.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const Json json = Json::parse(read_text(temp_ / "stages.json"));
+    EXPECT_TRUE(json["rows"].empty()) << "the pipeline ran too";
+    ASSERT_EQ(json["stages"].size(), 1U);
+    const Json& row = json["stages"][0];
+    EXPECT_EQ(row["engine"], "fast, SSE4");
+    EXPECT_EQ(row["peak_bf16_gflops"], 0) << "not allowed to such a processor";
+    for (const char* key : {"encode_ms", "render_fresh_ms", "render_again_ms", "bin_mev_s"})
+        EXPECT_GT(row[key].get<double>(), 0) << key;
+    EXPECT_EQ(eventide({"bench", "--stages", "--repetitions", "3"}).exit_code, 2);
+}
+
 TEST_F(Commands, BenchMeasuresAsOnAnOlderProcessor) {
     const auto engine_with = [&](const std::string& instructions) {
         const Result result =
