@@ -18,7 +18,7 @@ constexpr double kBf16Bound = .02;
 LineOutcome measured(const Bench& bench, const EngineOptions& engine) {
     LineSettings line = bench.line();
     line.engine = engine;
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     const auto length = bench.budget.length(SensorDuration{5 * kSecond}, kSecond);
     return run_line(bench.model,
                     all_of(moving_edge(line.width, line.height, {}, SensorTime{length})), line);

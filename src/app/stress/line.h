@@ -33,7 +33,7 @@ struct LineOutcome {
     Snapshot counters;
     Distance codes, frames;    ///< against double precision
     double largest_state = 0;  ///< of recurrent levels, at the windows looked at
-    std::uint64_t bits = 0;  ///< of all frames and the times between them: equal where all are
+    std::uint64_t bits = 0;    ///< of all frames and the times between them: equal where all are
     Frame last;                ///< the newest frame
     TensorFile state;          ///< at the end
     std::string error;         ///< what the run ended with; empty: nothing

@@ -49,7 +49,7 @@ Result million_steps(const Bench& bench) {
 Result denormals(const Bench& bench) {
     constexpr float kTiny = 3e-41F;
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     const auto events = moving_edge(line.width, line.height, {}, SensorTime{kSecond});
     Encoder encoder{bench.model, line.width, line.height, line.engine};
     line.state = encoder.state();
@@ -152,11 +152,18 @@ Result none_in_state(const Bench& bench) {
     return result;
 }
 
-/// No file holds grids: events are binned into whole sums, so this stands for a fault of memory.
-/// Every channel in turn, at a pixel that has events.
+bool is_finite(const TensorFile& file) {
+    return std::ranges::all_of(file.tensors, [](const auto& named) {
+        return std::ranges::all_of(named.second.values, [](float v) { return std::isfinite(v); });
+    });
+}
+
+/// No input holds grids: events are binned into whole sums, and one that is not finite stands for a
+/// fault of memory. So it need not be refused, but it may not stay: every channel in turn, at the
+/// pixels that have events in one window.
 Result none_in_grid(const Bench& bench) {
     Result result;
-    int ended = 0, tried = 0, silent = 0;
+    int ended = 0, tried = 0, harmless = 0;
     const int channels = bench.model.config.input_channels();
     const int step = bench.budget.length(1, std::max(1, channels / 3));
     for (int channel = 0; channel < channels; channel += step)
@@ -175,15 +182,13 @@ Result none_in_grid(const Bench& bench) {
             const auto events = moving_edge(24, 16, {}, SensorTime{kSecond / 4});
             const LineOutcome outcome = run_line(bench.model, all_of(events), line);
             ++tried;
-            if (outcome.error.find("finite") != std::string::npos)
-                ++ended;
-            else if (outcome.error.empty())
-                ++silent;
+            ended += outcome.error.find("finite") != std::string::npos ? 1 : 0;
+            harmless += outcome.error.empty() && is_finite(outcome.state) ? 1 : 0;
         }
     result.happened = std::to_string(tried) + " runs: " + std::to_string(ended) +
-                      " ended with an error that names the frame, " + std::to_string(silent) +
-                      " gave finite frames";
-    result.expect(ended == tried, "all");
+                      " ended with an error that names the frame, " + std::to_string(harmless) +
+                      " went on with finite frames and states";
+    result.expect(ended + harmless == tried, "all of them either");
     return result;
 }
 

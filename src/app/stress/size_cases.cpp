@@ -114,11 +114,12 @@ Result on_edges(const Bench& bench) {
     for (const int lookahead : {0, 1, 2})
         for (const char* fps : {"20", "frame"}) {
             LineSettings line = bench.line();
-            line.sampling = Sampling{};
+            line.sampling = bench.sampling();
             line.sampling->frames_every = 2;
             line.lookahead = lookahead;
             line.fps = fps;
-            const auto events = moving_edge(line.width, line.height, {}, SensorTime{kSecond});
+            const auto length = bench.budget.length(SensorDuration{kSecond}, kSecond / 4);
+            const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
             const LineOutcome outcome = run_line(bench.model, all_of(events), line);
             const Result result = judged(outcome, "");
             frames += outcome.counters.frames;
@@ -132,10 +133,11 @@ Result on_edges(const Bench& bench) {
 /// One frame every 1000 s.
 Result slowest(const Bench& bench) {
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     line.sampling->frames_every = 1;
     line.fps = "0.001";
-    auto events = moving_edge(line.width, line.height, {}, SensorTime{kSecond});
+    const SensorDuration each = bench.budget.length(kSecond, kSecond / 5);
+    auto events = moving_edge(line.width, line.height, {}, SensorTime{each});
     for (int k = 1; k <= 4; ++k) {
         const auto more = moving_edge(line.width, line.height, SensorTime{k * 1000 * kSecond},
                                       SensorTime{k * 1000 * kSecond + kSecond / 5});
@@ -150,7 +152,7 @@ Result slowest(const Bench& bench) {
 
 Result fastest(const Bench& bench) {
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     line.sampling->frames_every = 101;
     line.fps = "100000";
     const auto length = bench.budget.length(SensorDuration{150'000}, SensorDuration{10'000});

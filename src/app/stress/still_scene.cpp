@@ -2,6 +2,7 @@
 #include "src/app/stress/still_scene.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -30,13 +31,13 @@ SensorTraits traits() {
     return t;
 }
 
-/// Stripes and spots of 6 to 40 px, of 20 to 180 lux.
+/// Stripes and spots of 10 to 80 px, of 20 to 180 lux.
 double light(double x, double y) {
     constexpr double kTurn = 2 * std::numbers::pi;
-    const double coarse = std::sin(kTurn * (x + .3 * y) / 40) * std::cos(kTurn * y / 33);
-    const double fine = std::sin(kTurn * (x - y) / 11) + std::sin(kTurn * (x + 2 * y) / 17);
-    const double spot = std::fmod(std::abs(x) + 100, 14) < 6 && std::fmod(y + 100, 10) < 5 ? 1 : 0;
-    return 60 * std::exp(.5 * coarse + .25 * fine + .4 * spot);
+    const double coarse = std::sin(kTurn * (x + .3 * y) / 80) * std::cos(kTurn * y / 66);
+    const double fine = std::sin(kTurn * (x - y) / 26) + std::sin(kTurn * (x + 2 * y) / 36);
+    const bool spot = std::fmod(std::abs(x) + 100, 28) < 12 && std::fmod(y + 100, 20) < 10;
+    return 60 * std::exp(.5 * coarse + .25 * fine + (spot ? .4 : 0));
 }
 
 }  // namespace
@@ -51,10 +52,13 @@ StillScene::StillScene(int width, int height, SensorDuration moving)
     sensor_.settle(lux_, 1);
 }
 
-/// Round in a circle of 8 px, once a second: every edge is seen to move.
+/// Round in a circle of 6 px, once in three seconds; every edge is seen to move. In the last second
+/// of motion it comes to rest.
 void StillScene::draw(double t_s) {
-    const double angle = 2 * std::numbers::pi * t_s;
-    const double dx = 8 * std::cos(angle), dy = 8 * std::sin(angle);
+    const double slowing = std::max(0.0, t_s + 1 - std::chrono::duration<double>(moving_).count());
+    const double turned = t_s - slowing * slowing / 2;
+    const double angle = 2 * std::numbers::pi * turned / 3;
+    const double dx = 6 * std::cos(angle), dy = 6 * std::sin(angle);
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) lux_(y, x) = float(light(x + dx, y + dy));
 }

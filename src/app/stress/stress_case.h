@@ -58,6 +58,8 @@ struct Bench {
         settings.engine = engine;
         return settings;
     }
+    /// The first windows, and later ones now and then.
+    Sampling sampling() const { return budget.length(Sampling{}, Sampling{12, 2, 40, 7}); }
 };
 
 struct Result {

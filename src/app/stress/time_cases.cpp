@@ -20,7 +20,7 @@ Result from_time(const Bench& bench, SensorTime begin) {
     LineSettings line = bench.line();
     const auto events = moving_edge(line.width, line.height, {}, SensorTime{2 * kSecond});
     const LineOutcome at_zero = run_line(bench.model, all_of(events), line);
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     const LineOutcome there =
         run_line(bench.model, all_of(moved(events, begin.time_since_epoch())), line);
     const bool same = there.bits == at_zero.bits;
@@ -47,8 +47,8 @@ Result wraps(const Bench& bench) {
         LineSettings line = bench.line();
         line.width = wire.width;
         line.height = wire.height;
-        line.fps = "4";
-        line.window = "200ms";
+        line.fps = "2";
+        line.window = "500ms";
         const auto length = bench.budget.length(SensorDuration{3 * kSecond}, 2 * kSecond);
         // A part of the sensor: what is asked about is time.
         const auto events =
@@ -74,7 +74,7 @@ Result wraps(const Bench& bench) {
 /// A camera's clock that begins anew so much earlier: a new stream, as bit for bit as the first.
 Result clock_back(const Bench& bench) {
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     std::vector<Event> events =
         moved(moving_edge(line.width, line.height, {}, SensorTime{kSecond}), 7200 * kSecond);
     std::string happened;
@@ -100,7 +100,7 @@ Result clock_back(const Bench& bench) {
 /// an hour late is left out and counted.
 Result text_back(const Bench& bench) {
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     const auto events =
         moved(moving_edge(line.width, line.height, {}, SensorTime{kSecond}), 7200 * kSecond);
     std::string rows;

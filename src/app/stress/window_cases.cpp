@@ -32,7 +32,7 @@ Result microseconds(const Bench& bench) {
 
 Result an_hour(const Bench& bench) {
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     line.window = "3600s";
     line.fps = "1/600";
     const SensorDuration length = 4 * 3600 * kSecond;
@@ -62,7 +62,7 @@ Result one_event_each(const Bench& bench) {
 /// In the quick form so many fewer.
 Result ten_million_events(const Bench& bench) {
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     const std::int64_t each = bench.budget.length(10'000'000, 100'000);
     line.window = std::to_string(each) + "ev,60s";
     line.fps = "frame";
@@ -83,7 +83,7 @@ Result ten_million_events(const Bench& bench) {
 /// untrained.
 Result with_bins(const Bench& bench, int bins) {
     LineSettings line = bench.line();
-    line.sampling = Sampling{};
+    line.sampling = bench.sampling();
     ModelConfig config = bench.model.config;
     config.bins = bins;
     const Model model = random_model(config, 1);
