@@ -174,9 +174,9 @@ std::vector<stress::Case> StressCommand::chosen() const {
 }
 
 stress::Budget StressCommand::budget(Program& program) const {
-    if (quick_) return stress::Budget::quick();
-    return stress::Budget::minutes(minutes_ / double(models_.size()),
-                                   [&program] { return program.signals.stopping(); });
+    const auto stopping = [&program] { return program.signals.stopping(); };
+    if (quick_) return stress::Budget::quick(stopping);
+    return stress::Budget::minutes(minutes_ / double(models_.size()), stopping);
 }
 
 int StressCommand::run(Program& program) {
@@ -220,13 +220,14 @@ int StressCommand::run_cases(Program& program) {
     std::vector<StressRow> rows;
     for (std::size_t c = 0; c < cases.size(); ++c)
         for (std::size_t m = 0; m < (cases[c].of_model ? models.size() : 1); ++m) {
-            if (program.signals.stopping()) break;
             progress.show(double(c) / double(cases.size()), cases[c].title + ", " + models_[m]);
-            rows.push_back(
+            StressRow row =
                 row_of(cases[c], models_[m],
-                       {models[m], engine_with(threads_), instructions_, budget(program)}));
+                       {models[m], engine_with(threads_), instructions_, budget(program)});
             progress.clear();
-            print_row(rows.back());
+            if (program.signals.stopping()) break;  // it did not come to its end
+            print_row(row);
+            rows.push_back(std::move(row));
         }
     if (!json_.empty()) write_file(json_, json_text(json_of(rows)) + "\n", overwrite_);
     const auto failed =

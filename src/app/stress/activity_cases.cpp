@@ -16,14 +16,15 @@ constexpr SensorDuration kHour = 3600 * kSecond;
 Result silence(const Bench& bench) {
     LineSettings line = bench.line();
     line.sampling = bench.sampling();
-    line.fps = "1";
+    line.fps = "1/10";
+    constexpr SensorDuration kMoving{20 * kSecond};
     const SensorTime end{bench.budget.length(9 * kHour, kHour / 6)};
-    std::vector<Event> events = moving_edge(line.width, line.height, {}, SensorTime{2 * kSecond});
+    std::vector<Event> events = moving_edge(line.width, line.height, {}, SensorTime{kMoving});
     events.push_back({end, 3, 3, Polarity::on});
     Array2<float> before;
     PictureChange after;
     line.on_frame = [&](const Frame& frame) {
-        if (frame.t <= SensorTime{2 * kSecond})
+        if (frame.t <= SensorTime{kMoving})
             before = frame.intensity;
         else if (frame.t < end)
             after = change_between(before, frame.intensity);

@@ -27,6 +27,7 @@ public:
         last_ = frame;
         if (settings_.on_frame) settings_.on_frame(frame);
     }
+    bool wants_more() const override { return !settings_.stopping || !settings_.stopping(); }
     std::uint64_t bits() const { return bits_; }
     Frame take_last() { return std::move(last_); }
 

@@ -23,6 +23,7 @@ struct LineSettings {
     std::optional<Sampling> sampling;  ///< empty: without double precision
     EngineOptions engine;
     std::optional<TensorFile> state;  ///< to begin with
+    std::function<bool()> stopping;   ///< ends the run early; may be empty
     /// Sees every frame. Render thread.
     std::function<void(const Frame&)> on_frame;
     /// Sees every grid before the network does, and may change it. Encode thread.

@@ -18,7 +18,7 @@ Result million_steps(const Bench& bench) {
     line.width = 24;
     line.height = 16;
     line.sampling = Sampling{20, 5, bench.budget.length(9973U, 101U), 1};  // primes: any phase
-    line.fps = "2";
+    line.fps = "1/5";
     line.window = "50ms";
     const std::int64_t steps = bench.budget.length(1'000'000, 600);
     const auto is_late = bench.budget.clock(.35);

@@ -16,13 +16,16 @@ namespace eventide::stress {
 /// everywhere.
 class Budget {
 public:
-    static Budget quick() { return Budget{true, 0, {}}; }
-    /// `stopping` ends long cases early; may be empty.
+    /// `stopping` ends a case early; may be empty.
+    static Budget quick(std::function<bool()> stopping) {
+        return Budget{true, 0, std::move(stopping)};
+    }
     static Budget minutes(double minutes, std::function<bool()> stopping) {
         return Budget{false, minutes * 60, std::move(stopping)};
     }
 
     bool is_quick() const { return quick_; }
+    const std::function<bool()>& stopping() const { return stopping_; }
     /// The length of a case that is worth cutting.
     template <typename Length>
     Length length(Length whole, Length quick) const {
@@ -56,6 +59,7 @@ struct Bench {
     LineSettings line() const {
         LineSettings settings;
         settings.engine = engine;
+        settings.stopping = budget.stopping();
         return settings;
     }
     /// The first windows, and later ones now and then.
