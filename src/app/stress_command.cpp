@@ -128,7 +128,8 @@ std::string StressCommand::examples() const {
 SettingTable StressCommand::settings() {
     SettingTable table{"stress", "eventide stress: hard cases against double precision.", {}};
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(text_setting("cases", cases_, "GLOB", "Only cases with such names; --list shows them."));
+    add(text_setting("cases", cases_, "GLOB",
+                     "Only cases with such names, also as '@(ONE|OTHER)'; --list shows them."));
     add(flag_setting("list", list_, "List the cases, and exit."));
     add(list_setting("models", models_, "NAME|FILE", "Models, any number of times."));
     add(number_setting("minutes", minutes_, "N",
@@ -164,7 +165,8 @@ void StressCommand::name_stress_files(NamedFiles& files) const {
 std::vector<stress::Case> StressCommand::chosen() const {
     std::vector<stress::Case> chosen;
     for (stress::Case& one : stress::all_cases())
-        if (fnmatch(cases_.c_str(), one.name.c_str(), 0) == 0 && (one.in_quick_form || !quick_))
+        if (fnmatch(cases_.c_str(), one.name.c_str(), FNM_EXTMATCH) == 0 &&
+            (one.in_quick_form || !quick_))
             chosen.push_back(std::move(one));
     if (chosen.empty())
         throw Error(ErrorKind::usage,

@@ -80,7 +80,7 @@ protected:
 TEST_F(Faults, ADiskThatIsFullAtAnyWriteEndsTheRunWithItsFilesName) {
     const long all = writes();
     ASSERT_GT(all, 100);
-    for (const long n : drawn(all, moments(24))) {
+    for (const long n : drawn(all, moments(10))) {
         const std::string folder = temp_ / std::to_string(n);
         const Result result = run_into(
             folder, {{"EVENTIDE_FAULT", "full"}, {"EVENTIDE_FAULT_AT", std::to_string(n)}});
@@ -120,7 +120,7 @@ void expect_readable(const std::string& folder, const std::string& moment) {
 
 TEST_F(Faults, KilledAtAnyWriteItLeavesWhatPlaysAndReads) {
     const long all = writes();
-    for (const long n : drawn(all, moments(16))) {
+    for (const long n : drawn(all, moments(8))) {
         const std::string folder = temp_ / std::to_string(n);
         const Result result = run_into(
             folder, {{"EVENTIDE_FAULT", "kill"}, {"EVENTIDE_FAULT_AT", std::to_string(n)}});
@@ -136,7 +136,7 @@ TEST_F(Faults, KilledAtAnyWriteItLeavesWhatPlaysAndReads) {
 }
 
 TEST_F(Faults, AnyLimitOfMemoryIsAnErrorInWordsOrEnough) {
-    const long count = moments(12);
+    const long count = moments(6);
     for (long n = 0; n < count; ++n) {
         const long mebibytes = 150 + n * 600 / count;
         const std::string folder = temp_ / std::to_string(mebibytes);
