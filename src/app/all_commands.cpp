@@ -8,6 +8,7 @@
 #include "src/app/program.h"
 #include "src/app/run_command.h"
 #include "src/app/simulate_command.h"
+#include "src/app/stress_command.h"
 
 namespace eventide::app {
 
@@ -21,6 +22,7 @@ std::vector<std::unique_ptr<Command>> all_commands() {
     commands.push_back(std::make_unique<SimulateCommand>());
     commands.push_back(std::make_unique<EvaluateCommand>());
     commands.push_back(std::make_unique<BenchCommand>());
+    commands.push_back(std::make_unique<StressCommand>());
     return commands;
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -20,10 +21,7 @@ void occupy_closed_streams() {
             ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    occupy_closed_streams();
+int run(int argc, char** argv) {
     try {
         eventide::app::Signals signals;
         return eventide::app::run_program(signals, std::vector<std::string>(argv + 1, argv + argc));
@@ -31,4 +29,23 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "eventide: error: %s\n", error.what());
         return int(error.kind());
     }
+}
+
+/// All is written and closed by now. The ends of libraries are left out: OpenBLAS, which OpenCV
+/// brings along, waits there for threads of its own that ask for memory for ever where there is too
+/// little. Sanitizers report at the ordinary end.
+[[noreturn]] void leave(int code) {
+    std::fflush(nullptr);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    std::exit(code);
+#else
+    std::_Exit(code);
+#endif
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    occupy_closed_streams();
+    leave(run(argc, argv));
 }

@@ -129,7 +129,7 @@ HWY_EXPORT(table);
 bool g_limited = false;
 
 void leave_out(std::int64_t targets) {
-    g_limited = true;
+    g_limited = targets != 0;
     hwy::DisableTargets(targets);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
@@ -145,6 +145,10 @@ void limit_kernels_to_avx2() {
 }
 void limit_kernels_to_sse4() {
     leave_out(HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL);
+}
+
+void lift_kernel_limits() {
+    leave_out(0);
 }
 
 bool kernels_limited() {

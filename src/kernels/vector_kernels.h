@@ -78,6 +78,7 @@ const VectorKernels& vector_kernels();
 /// ONEDNN_MAX_CPU_ISA.
 void limit_kernels_to_avx2();
 void limit_kernels_to_sse4();
+void lift_kernel_limits();  ///< all that the processor has, again
 bool kernels_limited();
 
 /// Vectors of this many outputs do for layers of so few.

@@ -48,8 +48,8 @@ TEST_F(ExitCodes, HelpAndVersionAreData) {
         EXPECT_NE(result.output.find("eventide"), std::string::npos);
         EXPECT_EQ(result.error, "");
     }
-    for (const char* command :
-         {"run", "info", "convert", "devices", "doctor", "simulate", "evaluate", "bench"}) {
+    for (const char* command : {"run", "info", "convert", "devices", "doctor", "simulate",
+                                "evaluate", "bench", "stress"}) {
         const Result result = eventide({command, "--help"});
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_NE(result.output.find("Examples:"), std::string::npos) << command;
@@ -198,10 +198,11 @@ TEST_F(ExitCodes, OneIsFailureWhileRunning) {
 }
 
 TEST_F(ExitCodes, OneIsStandardOutputThatCannotBeWritten) {
-    for (const char* command : {"info recording", "info model.safetensors", "devices --json",
-                                "doctor", "run --print-config", "simulate --list",
-                                "evaluate recording --json -", "bench --seconds 0.2 --sizes 16x16",
-                                "--help", "run --help", "--version", "--default-config"}) {
+    for (const char* command :
+         {"info recording", "info model.safetensors", "devices --json", "doctor",
+          "run --print-config", "simulate --list", "evaluate recording --json -",
+          "bench --seconds 0.2 --sizes 16x16", "stress --quick --cases one-event --models default",
+          "--help", "run --help", "--version", "--default-config"}) {
         const Result full = in_shell(std::string{"eventide "} + command + " > /dev/full");
         EXPECT_EQ(full.exit_code, 1) << command << "\n" << full.error;
         EXPECT_NE(full.error.find("standard output: cannot be written"), std::string::npos)

@@ -69,6 +69,7 @@ TEST_F(HostileText, InNamesOfFiles) {
     expect_safe({"simulate", "--scene", kHostile, "--out", "a.aedat4"}, 2);
     expect_safe({"evaluate", kHostile}, 3);
     expect_safe({"evaluate", recorded, "--model", named, "--json", "-"}, 0);
+    expect_safe({"stress", "--models", kHostile, "--quick", "--cases", "one-event"}, 3);
     expect_safe({"bench", "--models", kHostile, "--seconds", "0.2", "--sizes", "32x24"}, 3);
     expect_safe({"devices", kHostile}, 2);
     expect_safe({"doctor", kHostile}, 2);

@@ -75,9 +75,10 @@ TEST_F(Outputs, ModelsStatesAndSettingsAreInputsToo) {
     expect_refused({"evaluate", "rec.aedat4", "--model", "model.safetensors", "--overwrite",
                     "--calibrated", "model.safetensors"},
                    "--calibrated", "--model");
-    expect_refused(
-        {"bench", "--models", "model.safetensors", "--overwrite", "--json", "model.safetensors"},
-        "--json", "--models");
+    for (const char* command : {"bench", "stress"})
+        expect_refused({command, "--models", "model.safetensors", "--overwrite", "--json",
+                        "model.safetensors"},
+                       "--json", "--models");
 }
 
 TEST_F(Outputs, TwoOutputsAreNotOneFile) {
@@ -116,6 +117,7 @@ TEST_F(Outputs, NothingIsReplacedUnasked) {
     for (const char* option : {"--json", "--csv", "--frame-csv", "--calibrated"})
         expect_refused({"evaluate", "rec.aedat4", option, "mine.txt"}, "mine.txt", "--overwrite");
     expect_refused({"bench", "--json", "mine.txt"}, "mine.txt", "--overwrite");
+    expect_refused({"stress", "--json", "mine.txt"}, "mine.txt", "--overwrite");
     for (const char* file : {"bench.csv", "reliability.csv"}) write_text(temp_ / file, "precious");
     expect_refused({"bench", "--plots", "."}, "bench.csv", "--overwrite");
     expect_refused({"evaluate", "rec.aedat4", "--figure", "reliability", "--plots", "."},
