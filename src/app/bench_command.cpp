@@ -2,6 +2,7 @@
 #include "src/app/bench_command.h"
 
 #include "drivers/simulated/simulated_camera.h"
+#include "pipeline/filters/event_filter.h"
 #include "pipeline/model_stages.h"
 #include "pipeline/pipeline.h"
 #include "replay/paced.h"
@@ -116,7 +117,9 @@ Outcome run_line(Recording& recording, Network& network, const RunSettings& sett
     line.bins = network.config().bins;
     line.event_frames.slicer = parse_window("aps");
     line.lookahead = lookahead;
-    Pipeline pipeline{{recording, encode, render, {&sink}, nullptr, &references}, line};
+    const auto filter =
+        event_filter({"off", "model"}, network.config(), sensor.width, sensor.height);
+    Pipeline pipeline{{recording, encode, render, {&sink}, filter.get(), &references}, line};
     const Stopper stopper{program.signals, [&] { pipeline.stop(); }};
     const auto begun = Clock::now();
     pipeline.run();

@@ -1,6 +1,7 @@
 // One run of the whole pipeline over a made stream.
 #include "src/app/stress/line.h"
 
+#include "pipeline/filters/event_filter.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
 #include "src/model/encoder.h"
@@ -90,7 +91,10 @@ LineOutcome run_line(const Model& model, Source& source, const LineSettings& set
     JudgedRenderStage render{renderer, request, judged};
     FrameWatch watch{settings};
     EncodeStage& first = settings.on_grid ? static_cast<EncodeStage&>(hooked) : encode;
-    Pipeline pipeline{{source, first, render, {&watch}}, pipeline_settings(model, settings)};
+    const auto filter =
+        event_filter({"off", "model"}, model.config, settings.width, settings.height);
+    Pipeline pipeline{{source, first, render, {&watch}, filter.get()},
+                      pipeline_settings(model, settings)};
     LineOutcome outcome;
     try {
         settings.threaded ? pipeline.run() : pipeline.run_sequential();
