@@ -1,7 +1,7 @@
 // What readers of files are fuzzed with: a file in memory, under a path that any of them can open.
 #pragma once
 
-#include <sys/mman.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -15,10 +15,13 @@ namespace eventide {
 
 class MemoryFile {
 public:
-    MemoryFile() : fd_(::memfd_create("fuzz", 0)) {
+    MemoryFile() : fd_(::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC, 0600)) {
         if (fd_ < 0) std::abort();
     }
-    ~MemoryFile() { ::close(fd_); }
+    ~MemoryFile() {
+        ::close(fd_);
+        ::unlink(path_.c_str());
+    }
     MemoryFile(const MemoryFile&) = delete;
     MemoryFile& operator=(const MemoryFile&) = delete;
 
@@ -30,9 +33,11 @@ public:
     void hold(const std::uint8_t* data, std::size_t size) {
         hold({reinterpret_cast<const char*>(data), size});
     }
-    std::string path() const { return "/proc/self/fd/" + std::to_string(fd_); }
+    const std::string& path() const { return path_; }
 
 private:
+    /// With a name: HDF5 takes no file without one.
+    std::string path_ = "/dev/shm/eventide_fuzz_file_" + std::to_string(::getpid());
     int fd_;
 };
 
