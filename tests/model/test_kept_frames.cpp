@@ -39,10 +39,10 @@ EngineOptions with_copies(double still_codes, double still_time) {
 /// What is asked for in every window, one after the other.
 std::vector<RenderRequest> requests(int lookahead) {
     RenderRequest native, larger, part;
-    larger.width = 190;
-    larger.height = 131;
+    larger.width = 130;
+    larger.height = 91;
     part = larger;
-    part.region = {33, 20, 70, 41};
+    part.region = {33, 20, 50, 41};
     part.sigma_rule = SigmaRule::mixture;
     std::vector<RenderRequest> all{native, larger, native, part, native};
     all[2].want_sigma = false;
@@ -82,13 +82,15 @@ void expect_same_frames(const ModelConfig& config, int lookahead,
 }
 
 TEST(KeptFrames, AreTheSameBitForBit) {
-    for (const ModelConfig& config : {test::small_config(), fading_config()})
-        for (const int lookahead : {0, 1, 2}) {
+    const auto expect_same = [](const ModelConfig& config, const std::vector<int>& lookaheads) {
+        for (const int lookahead : lookaheads) {
             const std::vector<RenderRequest> all = requests(lookahead);
             expect_same_frames(config, lookahead, all);
-            for (const std::size_t one : {0, 1, 3})
-                expect_same_frames(config, lookahead, {all[one]});
+            for (const std::size_t one : {0, 3}) expect_same_frames(config, lookahead, {all[one]});
         }
+    };
+    expect_same(test::small_config(), {0, 1, 2});
+    expect_same(fading_config(), {0});
 }
 
 /// Renderers of random codes, of which each window changes what it is told to.
