@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Faults, run for real and many times over: what the tests do at a few moments, at as many as asked for. Minutes to
-# an hour; `scripts/faults.sh 50` kills a run at 50 of its writes, fills the disk at 50, and limits memory 50 ways.
+# an hour; `scripts/faults.sh 50` kills a run at 50 of its writes and fills the disk at 50.
 #   scripts/faults.sh [moments, 50]      needs the preset dev built, with tests
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export EVENTIDE_FAULT_MOMENTS=${1:-50}
 build=build/dev
 
-# A whole run: the disk full at a write, killed (SIGKILL) at a write, ulimit -v at its start.
+# A whole run: the disk full at a write, killed (SIGKILL) at a write.
 "$build/tests/system/test_hard_cases" --gtest_filter='Faults.*'
 
 # Each sink at a disk full at every byte; readers that go away; slow sinks and models; cameras in software, unplugged

@@ -2,12 +2,14 @@
 #include "src/app/program.h"
 #include "src/app/signals.h"
 #include "src/core/error.h"
+#include "src/io/system_words.h"
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,12 @@ int run(int argc, char** argv) {
     } catch (const eventide::Error& error) {
         std::fprintf(stderr, "eventide: error: %s\n", error.what());
         return int(error.kind());
+    } catch (const std::system_error& error) {  // the thread that waits for signals
+        std::fprintf(stderr, "eventide: error: %s\n", eventide::system_words(error).c_str());
+        return int(eventide::ErrorKind::failed);
+    } catch (const std::bad_alloc&) {
+        std::fputs("eventide: error: out of memory\n", stderr);
+        return int(eventide::ErrorKind::failed);
     }
 }
 

@@ -153,6 +153,9 @@ int run_program(Signals& signals, std::vector<std::string> arguments) {
             "out of memory: expected enough for the sensor's size, --size and the buffers, found "
             "less");
         return int(ErrorKind::failed);
+    } catch (const std::system_error& error) {
+        spdlog::error("{}", system_words(error));
+        return int(ErrorKind::failed);
     } catch (const std::exception& error) {
         spdlog::error("{}", error.what());
         return int(ErrorKind::failed);

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
 
 namespace eventide {
 
@@ -16,9 +15,16 @@ std::string system_words(int error) {
             return words + " in this process; ulimit -n raises the limit";
         case EFBIG:
             return words + " for the file system or the limit of ulimit -f";
+        case EAGAIN:  // of threads; writing waits instead
+            return words + ": no memory for a thread (ulimit -v), or too many of them (ulimit -u)";
         default:
             return words;
     }
+}
+
+std::string system_words(const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    return no_thread ? system_words(EAGAIN) : error.what();
 }
 
 bool out_of_descriptors(int needed) {

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <string>
+#include <system_error>
 
 namespace eventide {
 
 /// For an errno value: the system's own words, and what to do where those alone do not help.
 std::string system_words(int error);
+/// For what the standard library throws: a thread that cannot be started says little by itself.
+std::string system_words(const std::system_error& error);
 
 /// Whether this process cannot open so many files more: for libraries that do not say why they
 /// failed.

@@ -1,4 +1,4 @@
-// A whole run that meets a full disk, its own death or too little memory, at any moment.
+// A whole run that meets a full disk or its own death at any moment.
 #include "tests/system/program_test.h"
 
 #include <signal.h>
@@ -130,27 +130,8 @@ TEST_F(Faults, KilledAtAnyWriteItLeavesWhatPlaysAndReads) {
         const std::string table = folder + "/frames/timestamps.csv";
         const std::size_t frames = fs::exists(table) ? column(table, 2).size() : 0;
         // x264 looks 40 frames ahead, and a cluster of Matroska is written when it is full.
-        if (frames > 60) EXPECT_GE(packet_times(folder + "/v.mkv").size(), 1U) << moment;
+        EXPECT_TRUE(frames <= 60 || !packet_times(folder + "/v.mkv").empty()) << moment;
         fs::remove_all(folder);
-    }
-}
-
-TEST_F(Faults, AnyLimitOfMemoryIsAnErrorInWordsOrEnough) {
-    const long count = moments(6);
-    for (long n = 0; n < count; ++n) {
-        const long mebibytes = 150 + n * 600 / count;
-        const std::string folder = temp_ / std::to_string(mebibytes);
-        fs::create_directory(folder);
-        const Result result =
-            run({"bash", "-c", "ulimit -v $0 && exec \"$@\"", std::to_string(mebibytes * 1024),
-                 EVENTIDE_PROGRAM, "run", recording(), "--model", model(), "--out", "frames/",
-                 "--threads", "2"},
-                {.folder = folder});
-        // 127: not even the shared libraries fit.
-        EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1 || result.exit_code == 127)
-            << mebibytes << " MiB: " << result.exit_code << "\n"
-            << result.error;
-        EXPECT_TRUE(result.exit_code == 0 || !result.error.empty());
     }
 }
 
