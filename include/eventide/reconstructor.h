@@ -23,7 +23,8 @@ struct ReconstructorOptions {
     /// most), "50ms" (constant time: us, ms or s), "20000ev" (constant number), "0.35epp" (events
     /// per pixel), "aps" (between reference images); after a comma the longest: "20000ev,200ms".
     std::string window = "model";
-    int lookahead = 0;  ///< 0, 1 or 2: event windows a frame waits for; more: higher quality, more latency
+    int lookahead =
+        0;  ///< 0, 1 or 2: event windows a frame waits for; more: higher quality, more latency
     /// The frames that next() gives, per second of sensor time: "120", "29.97", "30000/1001", at
     /// most 1000000; "frame": one at the end of each event window.
     std::string fps = "30";

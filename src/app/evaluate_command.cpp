@@ -117,8 +117,8 @@ SettingTable EvaluateCommand::settings() {
                       1000000));
     add(parsed_setting<Size>("size", size_, "WxH", "simulated: sensor size in pixels.", parse_size,
                              show_size));
-    add(number_setting("scale", scale_, "S", "simulated: size of the frames, times the sensor's.", 0.1,
-                       16));
+    add(number_setting("scale", scale_, "S", "simulated: size of the frames, times the sensor's.",
+                       0.1, 16));
     add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
 
     add(text_setting("json", json_, "FILE",

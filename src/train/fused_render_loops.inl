@@ -107,8 +107,8 @@ EVENTIDE_INLINE void run_points(const RenderWeights<H, W>& w, const PointBlock<W
 
 /// Adds the block's weighted outputs to out_mu and out_second, of its `count` points in a row.
 template <int H, typename T, typename W>
-void render_forward(const RenderWeights<H, W>& w, const PointBlock<W>& block,
-                                    const T* map, PointRoom<H, W>& room, W* out_mu, W* out_second) {
+void render_forward(const RenderWeights<H, W>& w, const PointBlock<W>& block, const T* map,
+                    PointRoom<H, W>& room, W* out_mu, W* out_second) {
     run_points<H, T, W>(w, block, map, room);
     for (int p = 0; p < block.count; ++p) {
         const auto i = std::size_t(p);
@@ -121,9 +121,9 @@ void render_forward(const RenderWeights<H, W>& w, const PointBlock<W>& block,
 
 /// The block's part of all gradients; g_map has the map's shape.
 template <int H, typename T, typename W>
-void render_backward(const RenderWeights<H, W>& w, const PointBlock<W>& block,
-                                     const T* map, const W* g_mu, const W* g_second,
-                                     PointRoom<H, W>& room, W* g_map, RenderGradients<H, W>& g) {
+void render_backward(const RenderWeights<H, W>& w, const PointBlock<W>& block, const T* map,
+                     const W* g_mu, const W* g_second, PointRoom<H, W>& room, W* g_map,
+                     RenderGradients<H, W>& g) {
     run_points<H, T, W>(w, block, map, room);
     const Row<H, W> last[] = {Row<H, W>::load(w.last.data()), Row<H, W>::load(w.last.data() + H)};
     Row<H, W> g_last[] = {Row<H, W>::load(g.last.data()), Row<H, W>::load(g.last.data() + H)};
@@ -172,4 +172,3 @@ void render_backward(const RenderWeights<H, W>& w, const PointBlock<W>& block,
         to.store(g.offset.data() + d * H);
     }
 }
-

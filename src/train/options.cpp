@@ -94,8 +94,10 @@ void OptionTable::add(const std::string& name, T& target, const std::string& hel
 
 OptionTable::OptionTable(TrainOptions& o) {
     add("out", o.out, "folder for the checkpoint, the logs and the images", Use::run);
-    add("textures", o.textures, "pack of photographs to learn from; none: procedural textures", Use::run);
-    add("validation-textures", o.validation_textures, "pack of photographs to validate with", Use::run);
+    add("textures", o.textures, "pack of photographs to learn from; none: procedural textures",
+        Use::run);
+    add("validation-textures", o.validation_textures, "pack of photographs to validate with",
+        Use::run);
     add("lpips", o.lpips, "npz file of LPIPS-Squeeze; none: that loss is left out", Use::run);
     add("minutes", o.minutes, "budget of the whole run, resumed parts included", Use::run);
     add("clock", o.clock, "that --minutes go by: wall, or cpu (all threads; for fair comparisons)",
