@@ -16,6 +16,8 @@ constexpr double kQuantile = .1;
 // Noise is never more than was seen, and grows at this share of what is seen: while everything
 // moves, nothing tells it.
 constexpr double kGrowth = .1;
+// Until it is known.
+constexpr double kUsualNoiseHz = 2;
 // Noise events of the eight neighbours within the time: 1 - exp(-m) (1 + m) = 6 % see two.
 constexpr double kExpected = .4;
 
@@ -36,6 +38,7 @@ NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& setti
         throw Error(ErrorKind::usage,
                     "noise filter: expected times from 1us to " + duration_text(kMaxTime) +
                         ", found " + duration_text(shortest) + " to " + duration_text(longest));
+    set_noise(kUsualNoiseHz);
 }
 
 void NoiseFilter::process(std::vector<Event>& events) noexcept {
@@ -74,8 +77,7 @@ void NoiseFilter::end_interval() noexcept {
     const auto quiet = sorted_.begin() + std::ptrdiff_t(kQuantile * double(sorted_.size()));
     std::nth_element(sorted_.begin(), quiet, sorted_.end());
     const double hz = *quiet / (tile_pixels_ * 1e-6 * double(kInterval.count()));
-    const double before = noise_hz_.value_or(hz);
-    set_noise(hz < before ? hz : before + kGrowth * (hz - before));
+    set_noise(hz < noise_hz_ ? hz : noise_hz_ + kGrowth * (hz - noise_hz_));
 }
 
 void NoiseFilter::set_noise(double hz) noexcept {

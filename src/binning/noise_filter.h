@@ -45,8 +45,9 @@ public:
     /// Removes events in place; the order stays.
     void process(std::vector<Event>& events) noexcept;
 
-    /// Noise events per pixel and second, as known at the newest event.
-    double noise_hz() const { return noise_hz_.value_or(0); }
+    /// Noise events per pixel and second, as known at the newest event; before the first 250 ms of
+    /// a stream are over, what DVS pixels often have.
+    double noise_hz() const { return noise_hz_; }
     /// Within which time neighbours support an event now.
     SensorDuration within() const { return within_; }
 
@@ -64,7 +65,7 @@ private:
     double tile_pixels_;
     std::vector<std::uint32_t> counts_, sorted_;  // per whole tile, in the interval; and scratch
     std::optional<SensorTime> interval_;          // its begin
-    std::optional<double> noise_hz_;              // none: not known yet
+    double noise_hz_ = 0;
     SensorDuration within_;
 };
 
