@@ -57,10 +57,15 @@ void EventIntake::take(std::span<const Event> events, StepBack step_back) {
         newest_ = event.t;
         taken_.push_back(event);
     }
+    const auto now = std::chrono::steady_clock::now();
+    if (!filter_ || taken_.empty()) return slicer_.push(taken_, now);
+    // Events that are left out tell the time all the same.
+    const SensorTime newest = taken_.back().t;
     const std::size_t before = taken_.size();
-    if (filter_) filter_->process(taken_);
+    filter_->process(taken_);
     counters_.filtered += before - taken_.size();
-    slicer_.push(taken_, std::chrono::steady_clock::now());
+    slicer_.push(taken_, now);
+    slicer_.advance(newest, now);
 }
 
 bool EventIntake::is_sound(const Event& event) {

@@ -50,14 +50,22 @@ void EventFrames::pass_on(HostTime arrived) {
     counters_.bin.imu.add(batch_.imu.size());
     counters_.bin.triggers.add(batch_.triggers.size());
     if (observer_) observer_->see(batch_);
-    if (filter_) {
-        const std::size_t before = batch_.events.size();
-        filter_->process(batch_.events);
-        counters_.bin.filtered_events.add(before - batch_.events.size());
-    }
     for (const ReferenceImage& image : batch_.images) slicer_.push_reference(image.t);
-    slicer_.push(batch_.events, arrived);
+    if (filter_ && !batch_.events.empty())
+        push_filtered(arrived);
+    else
+        slicer_.push(batch_.events, arrived);
     batch_.clear();
+}
+
+/// Events that are left out tell the time all the same.
+void EventFrames::push_filtered(HostTime arrived) {
+    const SensorTime newest = batch_.events.back().t;
+    const std::size_t before = batch_.events.size();
+    filter_->process(batch_.events);
+    counters_.bin.filtered_events.add(before - batch_.events.size());
+    slicer_.push(batch_.events, arrived);
+    slicer_.advance(newest, arrived);
 }
 
 void EventFrames::advance_clock(HostTime arrived) {

@@ -41,6 +41,7 @@ public:
 private:
     void note_gap();
     void pass_on(HostTime arrived);
+    void push_filtered(HostTime arrived);
     void advance_clock(HostTime arrived);
     void advance_in_silence(HostTime now);
 

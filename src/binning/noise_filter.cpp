@@ -46,7 +46,9 @@ void NoiseFilter::process(std::vector<Event>& events) noexcept {
     for (const Event& event : events) {
         measure(event);
         SensorTime* const own = &newest_[(std::size_t(event.y) + 1) * stride_ + event.x + 1];
-        const bool stays = is_supported(own, event.t);
+        const bool begins = !last_ || event.t < *last_;
+        const bool stays = begins || is_supported(own, event.t);
+        last_ = event.t;
         *own = event.t;
         *kept = event;
         kept += stays ? 1 : 0;

@@ -31,8 +31,9 @@ struct NoiseFilterSettings {
 /// Noise is what fires in those parts of the sensor (tiles of kTile x kTile px) in which least
 /// does.
 ///
-/// Deterministic: what is left out depends on the events, not on how they are split. Events from
-/// after the present (the clock was reset) support nothing. One thread at a time.
+/// Deterministic: what is left out depends on the events, not on how they are split. The first
+/// event of a stream stays, and the first after its clock was reset, so that they tell whoever
+/// comes next; events from after the present support nothing. One thread at a time.
 class NoiseFilter {
 public:
     static constexpr int kSupport = 2;
@@ -65,6 +66,7 @@ private:
     double tile_pixels_;
     std::vector<std::uint32_t> counts_, sorted_;  // per whole tile, in the interval; and scratch
     std::optional<SensorTime> interval_;          // its begin
+    std::optional<SensorTime> last_;              // event
     double noise_hz_ = 0;
     SensorDuration within_;
 };

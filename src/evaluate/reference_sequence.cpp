@@ -175,7 +175,9 @@ void for_each_window_slice(const ReferenceSequence& sequence, const std::string&
         slicer.push(events.subspan(at, std::min(kAtATime, events.size() - at)));
         while (slicer.next(slice)) use(slice);
     }
-    slicer.advance(std::max(sequence.images.back().t, events.back().t));
+    SensorTime end = sequence.images.back().t;
+    if (!events.empty()) end = std::max(end, events.back().t);
+    slicer.advance(end);
     slicer.finish();
     while (slicer.next(slice)) use(slice);
 }

@@ -173,5 +173,22 @@ TEST(EventFrames, AreOfWhatTheFilterLeavesAndTheObserverSeesAll) {
     EXPECT_EQ(b.counters.snapshot().filtered_events, 6U);
 }
 
+TEST(EventFrames, EventsThatAreLeftOutTellTheTimeAllTheSame) {
+    struct KeepsTheFirst final : EventFilter {
+        void process(std::vector<Event>& events) override {
+            std::erase_if(events, [](const Event& e) { return e.t > from_us(1); });
+        }
+    } filter;
+    std::vector<std::byte> bytes;
+    for (int t = 1; t <= 99; t += 7) append_record(bytes, ToyKind::event, t);
+    Beginning all(false, 10), filtered(false, 10, &filter);
+    for (Beginning* b : {&all, &filtered}) {
+        b->give(bytes, 0);
+        b->finish();
+    }
+    EXPECT_EQ(filtered.edges, all.edges);
+    EXPECT_EQ(all.edges.size(), 10U);
+}
+
 }  // namespace
 }  // namespace eventide

@@ -89,7 +89,10 @@ Result clock_back(const Bench& bench) {
         Result result =
             judged(outcome, counted(outcome.counters.slicing.time_resets, "new stream, ") +
                                 counted(outcome.counters.frames, "frames"));
-        result.expect(outcome.counters.slicing.time_resets == 1, "one new stream");
+        // Behind an event that was left out as noise, 1 us back is no step back.
+        const bool may_pass = bench.model.config.noise_filter && back == SensorDuration{1};
+        const std::uint64_t resets = outcome.counters.slicing.time_resets;
+        result.expect(resets == 1 || (resets == 0 && may_pass), "one new stream");
         if (!worst || !result.passed || *result.error > *worst->error) worst = result;
         if (!result.passed) break;
     }
