@@ -1,6 +1,8 @@
 // Signals, readers that go away, and the end nobody can catch.
 #include "tests/system/program_test.h"
 
+#include <gmock/gmock.h>
+
 #include <signal.h>
 
 #include <filesystem>
