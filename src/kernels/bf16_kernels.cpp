@@ -19,11 +19,6 @@
 
 namespace eventide {
 
-std::uint16_t to_bf16(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    return std::uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
-}
-
 namespace {
 
 template <typename NarrowRow>

@@ -2,6 +2,7 @@
 // takes two numbers at once, so channels go in pairs.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -42,7 +43,10 @@ constexpr int bf16_lanes(int outputs) {
 const Bf16Kernels* bf16_kernels();
 
 /// One number, rounded to nearest even; finite in, finite out except where it overflows.
-std::uint16_t to_bf16(float value);
+inline std::uint16_t to_bf16(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return std::uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
+}
 
 namespace plain {
 

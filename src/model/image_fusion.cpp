@@ -15,10 +15,6 @@ constexpr SensorDuration kPastSlot{18'200};
 // Standard deviation of a camera's own images.
 constexpr float kImageNoise = .02F;
 
-void fill(Array2<float>& map, float value) {
-    std::ranges::fill(map.values(), value);
-}
-
 /// Where row or column `out` of a frame lies on the sensor (docs/model.md: corners lie on corners).
 LinearTap tap(int out, int out_size, int size) {
     const double at = out_size > 1 ? double(out) * (size - 1) / (out_size - 1) : 0;

@@ -11,10 +11,6 @@ namespace {
 constexpr float kForgottenPerEvent = 2;
 constexpr int kMaxBands = 7;
 
-void fill(Array2<float>& map, float value) {
-    std::ranges::fill(map.values(), value);
-}
-
 /// Where a fine pixel lies between two coarse ones: the first of them, and the weight of the
 /// second.
 struct Between {
@@ -28,6 +24,10 @@ Between between(int fine, int coarse_size) {
 }
 
 }  // namespace
+
+void fill(Array2<float>& map, float value) noexcept {
+    std::ranges::fill(map.values(), value);
+}
 
 void halve(const Array2<float>& from, Array2<float>& to) noexcept {
     for (int y = 0; y < to.height(); ++y) {

@@ -7,6 +7,8 @@
 
 namespace eventide {
 
+void fill(Array2<float>& map, float value) noexcept;
+
 /// Mean of each block of 2 x 2 pixels (of fewer at the edge): [h][w] -> [(h + 1) / 2][(w + 1) / 2].
 void halve(const Array2<float>& from, Array2<float>& to) noexcept;
 

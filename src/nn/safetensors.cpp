@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/io/input_file.h"
 #include "src/io/output_file.h"
+#include "src/kernels/bf16_kernels.h"
 
 #include <nlohmann/json.hpp>
 
@@ -67,17 +68,11 @@ std::int64_t non_negative(const Json& json, const std::string& file, const std::
     return json.get<std::int64_t>();
 }
 
+// Beyond it numbers would be rounded to infinity.
+constexpr float kLargestBf16 = 0x1.fep127F;
+
 std::size_t bytes_of_number(const Tensor& tensor) {
     return tensor.bf16 ? sizeof(std::uint16_t) : sizeof(float);
-}
-
-/// The upper half of the nearest one, ties to even; numbers that would become infinite stay the
-/// largest.
-std::uint16_t to_bf16(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    const std::uint32_t rounded = bits + 0x7fff + (bits >> 16 & 1);
-    const bool overflows = (rounded & 0x7f800000) == 0x7f800000;
-    return std::uint16_t((overflows ? bits : rounded) >> 16);
 }
 
 float from_bf16(std::uint16_t half) {
@@ -153,7 +148,8 @@ std::byte* store(const Tensor& tensor, std::byte* out) {
         std::memcpy(out, tensor.values.data(), tensor.values.size() * sizeof(float));
     else
         for (std::size_t i = 0; i < tensor.values.size(); ++i) {
-            const std::uint16_t half = to_bf16(tensor.values[i]);
+            const std::uint16_t half =
+                to_bf16(std::clamp(tensor.values[i], -kLargestBf16, kLargestBf16));
             std::memcpy(out + i * sizeof half, &half, sizeof half);
         }
     return out + tensor.values.size() * bytes_of_number(tensor);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace eventide::stress {
@@ -110,16 +111,16 @@ std::string refusal(Work work) {
     return {};
 }
 
-/// One number of each tensor in turn.
-Result none_in_weights(const Bench& bench) {
+/// Puts each of kNone into one number of each tensor in turn: `use` must refuse it by the tensor's
+/// name.
+Result refused_by_name(Tensors& tensors, const std::function<void()>& use) {
     Result result;
     int refused = 0, tried = 0;
-    Model model = bench.model;
-    for (auto& [name, tensor] : model.weights)
+    for (auto& [name, tensor] : tensors)
         for (const float none : kNone) {
             float& number = tensor.values[tensor.values.size() / 2];
             const float before = std::exchange(number, none);
-            const std::string words = refusal([&] { check_model(model, "model"); });
+            const std::string words = refusal(use);
             number = before;
             ++tried;
             refused += words.find(name) != std::string::npos ? 1 : 0;
@@ -130,26 +131,17 @@ Result none_in_weights(const Bench& bench) {
     return result;
 }
 
+Result none_in_weights(const Bench& bench) {
+    Model model = bench.model;
+    return refused_by_name(model.weights, [&] { check_model(model, "model"); });
+}
+
 Result none_in_state(const Bench& bench) {
-    Result result;
-    int refused = 0, tried = 0;
     Encoder encoder{bench.model, 24, 16, bench.engine};
     TensorFile state = encoder.state();
-    for (auto& [name, tensor] : state.tensors)
-        for (const float none : kNone) {
-            float& number = tensor.values[tensor.values.size() / 2];
-            const float before = std::exchange(number, none);
-            const std::string words = refusal([&] {
-                encoder.restore(parse_safetensors(format_safetensors(state), "state"), "state");
-            });
-            number = before;
-            ++tried;
-            refused += words.find(name) != std::string::npos ? 1 : 0;
-        }
-    result.happened = std::to_string(refused) + " of " + std::to_string(tried) +
-                      " refused with the tensor's name";
-    result.expect(refused == tried, "all");
-    return result;
+    return refused_by_name(state.tensors, [&] {
+        encoder.restore(parse_safetensors(format_safetensors(state), "state"), "state");
+    });
 }
 
 bool is_finite(const TensorFile& file) {
