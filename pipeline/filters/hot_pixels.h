@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/stages.h"
+#include "src/binning/hot_pixels.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -10,17 +11,11 @@
 
 namespace eventide {
 
-/// Bin thread. Deterministic: what is left out depends on the events, not on how they are split.
-///
-/// Learning: at the end of each interval of sensor time a pixel becomes hot when it fired at least
-/// kHotHz and kTimesNeighbours times as often as the median of the pixels around it (5 x 5): a
-/// moving edge makes whole neighbourhoods fire, a hot pixel stands alone. It stays hot until it
-/// fires at less than half of kHotHz.
+/// Bin thread.
 class HotPixelFilter : public EventFilter {
 public:
-    static constexpr SensorDuration kInterval{250'000};
+    /// Hot from here on, in a quarter of a second (HotPixels).
     static constexpr double kHotHz = 60;
-    static constexpr std::uint32_t kTimesNeighbours = 10;
 
     /// Learns while it works, on a sensor of width x height px.
     HotPixelFilter(int width, int height);
@@ -35,17 +30,9 @@ public:
     std::size_t hot_pixels() const;
 
 private:
-    std::size_t pixel_of(const Event& event) const {
-        return std::size_t(event.y) * std::size_t(width_) + event.x;
-    }
-    void end_interval();
-    std::uint32_t median_around(int y, int x) const;
-
-    int width_, height_;
-    bool learns_;
-    std::vector<std::uint32_t> counts_;  // [y][x], of this interval
-    std::vector<std::uint8_t> hot_;      // [y][x]
-    std::optional<SensorTime> interval_end_;
+    int width_;
+    std::optional<HotPixels> learned_;  // without a list
+    std::vector<std::uint8_t> listed_;  // [y][x]
 };
 
 }  // namespace eventide

@@ -281,8 +281,8 @@ void RunSettings::add_look(SettingTable& table) {
     add(parsed_setting<std::string>(
         "noise_filter", noise_filter, "model|auto|off|TIME",
         "Leave out noise: events that fewer than two of the eight pixels around them support "
-        "within "
-        "TIME. auto: 10 to 500 ms, by the noise that is found; model: as the model was trained.",
+        "within TIME. auto: 10 to 500 ms, by the noise that is found, more where nothing moves, "
+        "and hot pixels; model: as the model was trained.",
         check_noise_filter, same));
     add(flag_setting("auto_hdr", look.auto_hdr,
                      "Stretch the range the frame uses to black and white, smoothed in time; "

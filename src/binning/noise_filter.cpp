@@ -5,6 +5,8 @@
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -12,26 +14,34 @@ namespace {
 constexpr SensorTime kNever = SensorTime::min();
 constexpr SensorDuration kInterval{250'000};
 // Of tiles by number of events: the one that tells the noise. Less, and dead corners tell it.
-constexpr double kQuantile = .1;
-// Noise is never more than was seen, and grows at this share of what is seen: while everything
+constexpr double kQuantile = .1, kBelow = 1.28;
+// What is known of the noise follows what is seen by this share, upwards slowly: while everything
 // moves, nothing tells it.
-constexpr double kGrowth = .1;
+constexpr double kFall = .5, kGrowth = .1;
 // Until it is known.
 constexpr double kUsualNoiseHz = 2;
 // Noise events of the eight neighbours within the time: 1 - exp(-m) (1 + m) = 6 % see two.
 constexpr double kExpected = .4;
+// A tile is quiet while it has no more events than its noise gives it, and so many deviations. Its
+// noise, from the sensor's to so many times that, is learned while it is quiet; slowly, while its
+// events stand alone.
+constexpr double kQuietDeviations = 6, kMostTimes = 4, kLearn = .1, kLearnSlowly = .02;
+// Noise stands alone: of a tile's events, no more have kQuietSupport.
+constexpr double kAloneShare = .02;
+constexpr SensorDuration kHotInterval{2'000'000};
 
 }  // namespace
 
 NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& settings)
     : settings_(settings),
+      hot_pixels_(width, height, kHotHz, kHotInterval),
       stride_(std::size_t(width) + 2),
       newest_(stride_ * (std::size_t(height) + 2), kNever),
       tile_rows_(std::max(1, height / kTile)),
       tile_columns_(std::max(1, width / kTile)),
       tile_pixels_(double(std::min(width, kTile)) * std::min(height, kTile)),
-      counts_(std::size_t(tile_rows_) * std::size_t(tile_columns_)),
-      sorted_(counts_.size()),
+      tiles_(std::size_t(tile_rows_) * std::size_t(tile_columns_)),
+      sorted_(tiles_.size()),
       within_(settings.longest) {
     const auto [shortest, longest] = settings;
     if (shortest < SensorDuration{1} || longest < shortest || longest > kMaxTime)
@@ -44,60 +54,113 @@ NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& setti
 void NoiseFilter::process(std::vector<Event>& events) noexcept {
     auto kept = events.begin();
     for (const Event& event : events) {
-        measure(event);
-        SensorTime* const own = &newest_[(std::size_t(event.y) + 1) * stride_ + event.x + 1];
         const bool begins = !last_ || event.t < *last_;
-        const bool stays = begins || is_supported(own, event.t);
         last_ = event.t;
-        *own = event.t;
+        const bool hot = hot_pixels_.is_hot(event);
+        SensorTime* const own = &newest_[(std::size_t(event.y) + 1) * stride_ + event.x + 1];
+        const Support support = support_of(own, event.t);
+        const bool surely = support.shortly >= kQuietSupport;
+        const bool quiet = measure(event, hot, surely);
+        if (!hot) *own = event.t;
         *kept = event;
-        kept += stays ? 1 : 0;
+        kept += begins || (!hot && (quiet ? surely : support.within >= kSupport)) ? 1 : 0;
     }
     events.erase(kept, events.end());
 }
 
-void NoiseFilter::measure(const Event& event) noexcept {
-    if (!interval_ || event.t < *interval_) {  // a stream begins
-        std::ranges::fill(counts_, 0U);
-        interval_ = event.t;
-    }
+// True where the event's tile is quiet.
+bool NoiseFilter::measure(const Event& event, bool hot, bool supported) noexcept {
+    if (!interval_ || event.t < *interval_) begin_stream(event.t);
     if (event.t - *interval_ >= kInterval) {
         end_interval();
         const auto silent = (event.t - *interval_) / kInterval;
-        if (silent > 0) set_noise(0);
+        if (silent > 0) {
+            for (Tile& tile : tiles_) tile.before = 0;
+            set_noise(0);
+        }
         *interval_ += silent * kInterval;
     }
-    const int row = event.y / kTile, column = event.x / kTile;
-    if (row < tile_rows_ && column < tile_columns_)
-        ++counts_[std::size_t(row) * std::size_t(tile_columns_) + std::size_t(column)];
+    // What a whole number of tiles leaves at the right and bottom belongs to the last ones.
+    const int row = std::min(event.y / kTile, tile_rows_ - 1);
+    const int column = std::min(event.x / kTile, tile_columns_ - 1);
+    Tile& tile = tiles_[std::size_t(row) * std::size_t(tile_columns_) + std::size_t(column)];
+    if (!hot) ++tile.events;
+    if (supported) ++tile.supported;
+    const double of_two = 1 + double((event.t - *interval_).count()) / double(kInterval.count());
+    const bool adapts = settings_.shortest != settings_.longest;
+    return adapts && measured_ && is_quiet(tile, of_two);
+}
+
+void NoiseFilter::begin_stream(SensorTime t) noexcept {
+    for (Tile& tile : tiles_) tile = {};
+    interval_ = t;
+    measured_ = false;
+}
+
+// In the interval before and what there is of this one, together so many intervals.
+bool NoiseFilter::is_quiet(const Tile& tile, double intervals) const noexcept {
+    const double noise = intervals * tile.noise;
+    return tile.events + tile.before <= noise + kQuietDeviations * std::sqrt(noise) + 1;
+}
+
+bool NoiseFilter::is_alone(const Tile& tile) noexcept {
+    return tile.supported <= kAloneShare * tile.events + 1;
 }
 
 void NoiseFilter::end_interval() noexcept {
-    std::ranges::copy(counts_, sorted_.begin());
-    std::ranges::fill(counts_, 0U);
     *interval_ += kInterval;
-    const auto quiet = sorted_.begin() + std::ptrdiff_t(kQuantile * double(sorted_.size()));
-    std::nth_element(sorted_.begin(), quiet, sorted_.end());
-    const double hz = *quiet / (tile_pixels_ * 1e-6 * double(kInterval.count()));
-    set_noise(hz < noise_hz_ ? hz : noise_hz_ + kGrowth * (hz - noise_hz_));
+    std::size_t alone = 0;
+    for (const Tile& tile : tiles_)
+        if (is_alone(tile)) sorted_[alone++] = tile.events;
+    if (alone > 0) {
+        const auto quiet = sorted_.begin() + std::ptrdiff_t(kQuantile * double(alone));
+        std::nth_element(sorted_.begin(), quiet, sorted_.begin() + std::ptrdiff_t(alone));
+        // Counts of random events lie around their mean; this one, below it by so many deviations.
+        const double least = *quiet;
+        const double mean =
+            least > 0 ? least + kBelow * std::sqrt(least) + .5 * kBelow * kBelow : 0;
+        const double hz = mean / (tile_pixels_ * 1e-6 * double(kInterval.count()));
+        const double fall = measured_ ? kFall : 1;
+        set_noise(noise_hz_ + (hz < noise_hz_ ? fall : kGrowth) * (hz - noise_hz_));
+    }
+    const double noise = noise_hz_ * tile_pixels_ * 1e-6 * double(kInterval.count());
+    for (Tile& tile : tiles_) {
+        if (!measured_)
+            tile.noise = noise;
+        else if (is_quiet(tile, 2) || is_alone(tile))
+            tile.noise += (is_quiet(tile, 2) ? kLearn : kLearnSlowly) * (tile.events - tile.noise);
+        tile.noise = std::clamp(tile.noise, noise, kMostTimes * noise);
+        tile.before = std::exchange(tile.events, 0U);
+        tile.supported = 0;
+    }
+    measured_ = true;
 }
 
 void NoiseFilter::set_noise(double hz) noexcept {
     noise_hz_ = hz;
     const double us = hz > 0 ? 1e6 * kExpected / (8 * hz) : double(settings_.longest.count());
-    within_ = std::clamp(SensorDuration{std::int64_t(std::min(us, 1e9))}, settings_.shortest,
-                         settings_.longest);
+    const auto clamped = [this](double time_us) {
+        return std::clamp(SensorDuration{std::int64_t(std::min(time_us, 1e9))}, settings_.shortest,
+                          settings_.longest);
+    };
+    within_ = clamped(us);
+    quiet_within_ = clamped(us / 10);
 }
 
-bool NoiseFilter::is_supported(const SensorTime* own, SensorTime t) const noexcept {
+NoiseFilter::Support NoiseFilter::support_of(const SensorTime* own, SensorTime t) const noexcept {
     // As unsigned numbers, so that one comparison refuses both what is old and what is not yet.
     const auto us = [](SensorTime time) { return std::uint64_t(to_us(time)); };
     const std::uint64_t now = us(t), within = std::uint64_t(within_.count());
-    const auto in_time = [&](const SensorTime* at) { return now - us(*at) <= within ? 1 : 0; };
+    const std::uint64_t shortly = std::uint64_t(quiet_within_.count());
+    Support found;
     const SensorTime *above = own - stride_, *below = own + stride_;
-    return in_time(above - 1) + in_time(above) + in_time(above + 1) + in_time(own - 1) +
-               in_time(own + 1) + in_time(below - 1) + in_time(below) + in_time(below + 1) >=
-           kSupport;
+    for (const SensorTime* at :
+         {above - 1, above, above + 1, own - 1, own + 1, below - 1, below, below + 1}) {
+        const std::uint64_t age = now - us(*at);
+        found.within += age <= within ? 1 : 0;
+        found.shortly += age <= shortly ? 1 : 0;
+    }
+    return found;
 }
 
 std::string noise_filter_text(const NoiseFilterSettings& settings) {

@@ -1,6 +1,7 @@
 // Leaves out the events that nothing around them supports: a sensor's noise.
 #pragma once
 
+#include "src/binning/hot_pixels.h"
 #include "src/core/event.h"
 
 #include <cstddef>
@@ -13,7 +14,7 @@
 namespace eventide {
 
 /// Within which time neighbours support an event; from `shortest` to `longest`, as noisy as the
-/// sensor is. Equal: always that.
+/// sensor is. Equal: always that, whatever fires how much.
 struct NoiseFilterSettings {
     SensorDuration shortest{10'000}, longest{500'000};
     friend bool operator==(const NoiseFilterSettings&, const NoiseFilterSettings&) = default;
@@ -23,20 +24,24 @@ struct NoiseFilterSettings {
 /// polarity, a short time before it; those left out support others all the same. What moves makes
 /// neighbours fire, noise (shot noise, leak, hot pixels) stands alone. The idea is the background
 /// activity filter of Delbruck (Frame-free dynamic digital vision, 2008), which asks for one
-/// neighbour within a constant time.
+/// neighbour within a constant time. Hot pixels (HotPixels, kHotHz) are left out and support
+/// nothing.
 ///
 /// Here the time adapts: it is chosen so that of events which come at random as often as the
 /// sensor's noise, kSupport are rarely together (6 %). In the dark it is short; where there is no
 /// noise it is long, and slow motion and fine texture, whose events come one by one too, stay.
 /// Noise is what fires in those parts of the sensor (tiles of kTile x kTile px) in which least
-/// does.
+/// does. Where a tile fires little more than noise does, nothing moves there or begins to: an event
+/// then needs kQuietSupport neighbours within a tenth of the time, so that an hour of noise does
+/// not wear off what is known of a still scene.
 ///
 /// Deterministic: what is left out depends on the events, not on how they are split. The first
 /// event of a stream stays, and the first after its clock was reset, so that they tell whoever
 /// comes next; events from after the present support nothing. One thread at a time.
 class NoiseFilter {
 public:
-    static constexpr int kSupport = 2;
+    static constexpr int kSupport = 2, kQuietSupport = 3;
+    static constexpr double kHotHz = 5;
     static constexpr SensorDuration kMaxTime{10'000'000};
 
     /// Sensor of width x height px, which events must lie on. Throws Error (usage) for times that
@@ -49,26 +54,41 @@ public:
     /// Noise events per pixel and second, as known at the newest event; before the first 250 ms of
     /// a stream are over, what DVS pixels often have.
     double noise_hz() const { return noise_hz_; }
-    /// Within which time neighbours support an event now.
+    /// Within which time neighbours support an event now; and where nothing moves.
     SensorDuration within() const { return within_; }
+    SensorDuration quiet_within() const { return quiet_within_; }
 
 private:
     static constexpr int kTile = 8;
-    void measure(const Event& event) noexcept;
+    struct Tile {
+        std::uint32_t events = 0, before = 0;  // in this interval, less hot pixels'; in the last
+        std::uint32_t supported = 0;           // of them, as quiet tiles ask for
+        double noise = 0;                      // events per interval
+    };
+    struct Support {
+        int within = 0, shortly = 0;  // neighbours: in within_, in quiet_within_
+    };
+    bool measure(const Event& event, bool hot, bool supported) noexcept;
+    void begin_stream(SensorTime t) noexcept;
+    bool is_quiet(const Tile& tile, double intervals) const noexcept;
+    static bool is_alone(const Tile& tile) noexcept;
     void end_interval() noexcept;
     void set_noise(double hz) noexcept;
-    bool is_supported(const SensorTime* own, SensorTime t) const noexcept;
+    Support support_of(const SensorTime* own, SensorTime t) const noexcept;
 
     NoiseFilterSettings settings_;
+    HotPixels hot_pixels_;
     std::size_t stride_;              // a rim of one pixel around the sensor never fires
     std::vector<SensorTime> newest_;  // [y + 1][x + 1]; of each pixel
     int tile_rows_, tile_columns_;
     double tile_pixels_;
-    std::vector<std::uint32_t> counts_, sorted_;  // per whole tile, in the interval; and scratch
-    std::optional<SensorTime> interval_;          // its begin
-    std::optional<SensorTime> last_;              // event
+    std::vector<Tile> tiles_;             // [row][column]
+    std::vector<std::uint32_t> sorted_;   // scratch
+    std::optional<SensorTime> interval_;  // its begin
+    std::optional<SensorTime> last_;      // event
     double noise_hz_ = 0;
-    SensorDuration within_;
+    bool measured_ = false;  // the noise, once; before, nothing is taken for quiet
+    SensorDuration within_, quiet_within_;
 };
 
 /// "auto" or the constant time.

@@ -139,6 +139,48 @@ TEST(NoiseFilter, KeepsSlowMotionWhereThereIsNoNoise) {
     EXPECT_LT(filtered({kSide, kSide, constant(10'000)}, slow).size(), slow.size() * .5);
 }
 
+TEST(NoiseFilter, LeavesOutTheNoiseOfAStillSceneAndKeepsWhatMovesInIt) {
+    // 1 Hz of noise, three times that in one quarter: once learned, next to nothing of it stays.
+    constexpr int kSide = 64;
+    NoiseFilter filter{kSide, kSide, {}};
+    Events noise = random_events(60'000, kSide, kSide, 1e6 / (1. * kSide * kSide));
+    for (const Event& event : random_events(30'000, 32, 32, 1e6 / (2. * 32 * 32)))
+        noise.push_back(event);
+    std::ranges::stable_sort(noise, {}, &Event::t);
+    const SensorTime learned = from_us(10'000'000), moves = from_us(14'000'000);
+    Events events;
+    for (const Event& event : noise)
+        if (event.t < moves) events.push_back(event);
+    const auto later = std::size_t(
+        std::ranges::count_if(events, [&](const Event& event) { return event.t >= learned; }));
+    filter.process(events);
+    const auto kept = std::size_t(
+        std::ranges::count_if(events, [&](const Event& event) { return event.t >= learned; }));
+    EXPECT_GT(later, 20'000U);
+    EXPECT_LT(kept, later / 1000);
+    Events edge;
+    for (int x = 0; x < kSide; ++x)
+        for (int y = 0; y < kSide; ++y) edge.push_back(at(14'000'000 + 1000 * x + y, x, y));
+    const std::size_t all = edge.size();
+    filter.process(edge);
+    EXPECT_GT(edge.size(), all * 9 / 10);
+}
+
+TEST(NoiseFilter, LeavesOutHotPixelsAndTheirSupport) {
+    constexpr int kSide = 32;
+    Events events = random_events(10'000, kSide, kSide, 1e6 / (1. * kSide * kSide));
+    for (int ms = 0; ms < 9000; ms += 5)
+        for (int x : {10, 11}) events.push_back(at(1000 * ms + x, x, 20));
+    std::ranges::stable_sort(events, {}, &Event::t);
+    const Events kept = filtered({kSide, kSide, {}}, events);
+    EXPECT_EQ(std::ranges::count_if(kept,
+                                    [](const Event& event) {
+                                        return event.t > from_us(4'000'000) && event.y > 17 &&
+                                               event.y < 23 && event.x > 7 && event.x < 14;
+                                    }),
+              0);
+}
+
 TEST(NoiseFilter, TakesSensorsOfAnySize) {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 640}, {17, 13}, {9, 8}})
         EXPECT_LE(filtered({width, height, {}}, random_events(3000, width, height, 300)).size(),

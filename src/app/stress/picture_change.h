@@ -15,11 +15,9 @@ struct PictureChange {
 
 PictureChange change_between(const Array2<float>& then, const Array2<float>& now);
 
-/// A picture that has not faded. Brightness moved by less than the model's own error on scenes
-/// whose truth is known (a mean squared error of .02 to .03, .15 RMS); contrast within a factor
-/// of 1.5, which a person who looks at one after the other just sees; and the same shapes: at a
-/// correlation of .8 noise would have to be of 3/4 of the picture's own deviation.
-constexpr double kMeanMoves = .1, kContrast = 1.5, kCorrelation = .8;
+/// A picture that has not faded: the mean stays within .02 of the range, contrast within a quarter,
+/// and the same shapes are seen.
+constexpr double kMeanMoves = .02, kContrast = 1.25, kCorrelation = .95;
 
 bool is_kept(const PictureChange& change);
 std::string words_of(const PictureChange& change);

@@ -1,0 +1,58 @@
+// Finds the pixels of an event sensor that fire by themselves.
+#include "src/binning/hot_pixels.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace eventide {
+
+HotPixels::HotPixels(int width, int height, double hz, SensorDuration interval)
+    : width_{width},
+      height_{height},
+      hot_count_(std::uint32_t(hz * std::chrono::duration<double>(interval).count())),
+      interval_{interval},
+      counts_(std::size_t(width) * std::size_t(height)),
+      hot_(counts_.size()) {}
+
+std::size_t HotPixels::count() const {
+    return std::size_t(std::ranges::count(hot_, std::uint8_t{1}));
+}
+
+void HotPixels::advance(SensorTime t) noexcept {
+    // After a reset of the clock an old end would never come.
+    if (!interval_end_ || t + interval_ < *interval_end_) interval_end_ = t + interval_;
+    if (t < *interval_end_) return;
+    end_interval();
+    // Intervals without any event change nothing a second time: one step over them.
+    if (t >= *interval_end_) {
+        end_interval();
+        interval_end_ = t + interval_;
+    }
+}
+
+void HotPixels::end_interval() noexcept {
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) {
+            const std::size_t i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
+            if (hot_[i] != 0)
+                hot_[i] = counts_[i] >= hot_count_ / 2;
+            else if (counts_[i] >= hot_count_)
+                hot_[i] = counts_[i] >= kTimesNeighbours * second_busiest_around(y, x);
+        }
+    std::ranges::fill(counts_, 0U);
+    *interval_end_ += interval_;
+}
+
+std::uint32_t HotPixels::second_busiest_around(int y, int x) const noexcept {
+    std::uint32_t first = 0, second = 0;
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height_ - 1); ++v)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width_ - 1); ++u) {
+            if (v == y && u == x) continue;
+            const std::uint32_t n = counts_[std::size_t(v) * std::size_t(width_) + std::size_t(u)];
+            second = std::max(second, std::min(first, n));
+            first = std::max(first, n);
+        }
+    return second;
+}
+
+}  // namespace eventide

@@ -1,0 +1,49 @@
+// Finds the pixels of an event sensor that fire by themselves.
+#pragma once
+
+#include "src/core/event.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace eventide {
+
+/// At the end of each interval of sensor time a pixel becomes hot when it fired at least `hz` and
+/// kTimesNeighbours times as often as the second busiest of the eight around it: what moves or
+/// trembles, and be it a line of one pixel, makes neighbours fire; a hot pixel, or two side by
+/// side, stand alone. It stays hot until it fires at less than half of `hz`.
+///
+/// Deterministic: what is hot depends on the events, not on how they are split. One thread.
+class HotPixels {
+public:
+    static constexpr std::uint32_t kTimesNeighbours = 4;
+
+    /// Sensor of width x height px. hz * interval is at least 2 events.
+    HotPixels(int width, int height, double hz, SensorDuration interval);
+
+    /// Counts an event, which lies on the sensor; true where its pixel was found hot before it.
+    bool is_hot(const Event& event) noexcept {
+        advance(event.t);
+        const std::size_t i = std::size_t(event.y) * std::size_t(width_) + event.x;
+        ++counts_[i];
+        return hot_[i] != 0;
+    }
+
+    /// How many pixels are hot now.
+    std::size_t count() const;
+
+private:
+    void advance(SensorTime t) noexcept;
+    void end_interval() noexcept;
+    std::uint32_t second_busiest_around(int y, int x) const noexcept;
+
+    int width_, height_;
+    std::uint32_t hot_count_;
+    SensorDuration interval_;
+    std::vector<std::uint32_t> counts_;  // [y][x], of this interval
+    std::vector<std::uint8_t> hot_;      // [y][x]
+    std::optional<SensorTime> interval_end_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,52 @@
+#include "src/binning/hot_pixels.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace eventide {
+namespace {
+
+constexpr int kWidth = 20, kHeight = 15;
+
+Event at(std::int64_t us, int x, int y) {
+    return {from_us(us), std::uint16_t(x), std::uint16_t(y), Polarity::on};
+}
+
+/// Pixels that fire every 10 ms for 3 s; how many of them are hot at 20 Hz in half a second.
+std::size_t hot_of(const std::vector<std::pair<int, int>>& pixels) {
+    HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+    for (int ms = 0; ms < 3000; ms += 10)
+        for (const auto& [x, y] : pixels) hot.is_hot(at(1000 * ms, x, y));
+    return hot.count();
+}
+
+TEST(HotPixels, AreThoseThatStandAlone) {
+    EXPECT_EQ(hot_of({{7, 9}}), 1U);
+    EXPECT_EQ(hot_of({{0, 0}, {19, 14}}), 2U);
+    EXPECT_EQ(hot_of({{7, 9}, {8, 9}}), 2U) << "two side by side";
+}
+
+TEST(HotPixels, AreNotWhatTrembles) {
+    EXPECT_EQ(hot_of({{7, 5}, {7, 6}, {7, 7}, {8, 8}, {9, 9}, {9, 10}}), 2U)
+        << "a line of one pixel: its ends alone";
+}
+
+TEST(HotPixels, AreTakenBackWhenTheyHaveCalmedDown) {
+    HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+    for (int ms = 0; ms < 1000; ms += 10) hot.is_hot(at(1000 * ms, 7, 9));
+    EXPECT_TRUE(hot.is_hot(at(1'000'000, 7, 9)));
+    EXPECT_FALSE(hot.is_hot(at(5'000'000, 7, 9)));
+}
+
+TEST(HotPixels, AreOfAnySensor) {
+    for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}}) {
+        HotPixels hot{width, height, 20, SensorDuration{500'000}};
+        for (int ms = 0; ms < 1000; ms += 10) hot.is_hot(at(1000 * ms, 0, 0));
+        EXPECT_TRUE(hot.is_hot(at(1'000'000, width - 1, height - 1)) == (width * height == 1));
+        EXPECT_EQ(hot.count(), 1U);
+    }
+}
+
+}  // namespace
+}  // namespace eventide
