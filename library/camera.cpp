@@ -1,7 +1,7 @@
 // Cameras behind the public face.
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_camera.h"
-#include "pipeline/event_frames.h"
+#include "pipeline/event_windows.h"
 
 #include <eventide/camera.h>
 
@@ -45,7 +45,7 @@ public:
     /// In a camera's silence the host's clock goes on for it, less a margin for what is on its way.
     std::optional<SensorTime> clock() const {
         if (!clock_ || !camera_->is_live()) return clock_;
-        const SensorDuration margin = EventFrames::Settings{}.silence_margin;
+        const SensorDuration margin = EventWindows::Settings{}.silence_margin;
         const auto silent = std::chrono::duration_cast<SensorDuration>(now_ - clock_arrived_);
         return silent > margin ? *clock_ + silent - margin : *clock_;
     }

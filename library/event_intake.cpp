@@ -1,4 +1,4 @@
-// What a caller pushes -> slices.
+// What a caller pushes -> event windows.
 #include "library/event_intake.h"
 
 #include "src/core/error.h"
@@ -95,8 +95,8 @@ void EventIntake::finish(std::optional<SensorTime> end) {
     finished_ = true;
 }
 
-bool EventIntake::next(Slice& slice) {
-    const bool found = slicer_.next(slice);
+bool EventIntake::next(EventWindow& event_window) {
+    const bool found = slicer_.next(event_window);
     const SlicerCounters& cut = slicer_.counters();
     counters_.late = cut.late;
     counters_.left_out = cut.too_many;

@@ -1,4 +1,4 @@
-// What a caller pushes -> slices: hostile events are left out and counted, the rest is cut.
+// What a caller pushes -> event windows: hostile events are left out and counted, the rest is cut.
 #pragma once
 
 #include "pipeline/stages.h"
@@ -26,7 +26,7 @@ public:
     void mark_gap() noexcept { slicer_.mark_gap(); }
     void finish(std::optional<SensorTime> end);
     bool is_finished() const { return finished_; }
-    bool next(Slice& slice);
+    bool next(EventWindow& event_window);
     void reset();
 
 private:

@@ -70,8 +70,8 @@ bool Reconstructor::Impl::step() {
         encode();
         return true;
     }
-    if (Slice slice; intake_.next(slice)) {
-        bin(slice);
+    if (EventWindow event_window; intake_.next(event_window)) {
+        bin(event_window);
         if (grid_.reset_before) {
             renderer_.finish();
             new_clock_ = ended_ = true;
@@ -86,9 +86,10 @@ bool Reconstructor::Impl::step() {
     return true;
 }
 
-void Reconstructor::Impl::bin(const Slice& slice) {
-    if (slice.reset_before || (slice.gap_before && options_.reset_on_gap)) binner_.reset();
-    binner_.process(slice, grid_);
+void Reconstructor::Impl::bin(const EventWindow& event_window) {
+    if (event_window.reset_before || (event_window.gap_before && options_.reset_on_gap))
+        binner_.reset();
+    binner_.process(event_window, grid_);
 }
 
 void Reconstructor::Impl::encode() {
@@ -104,8 +105,8 @@ void Reconstructor::Impl::encode() {
 void Reconstructor::Impl::note_window() {
     seen(encoded_++) = {grid_.window, grid_.events, grid_.gap_before};
     const std::uint64_t waiting = encoded_ - opened_;
-    if (waiting > Presenter::kMostLookahead) schedule_.skip(schedule_.due());
-    if (waiting <= Presenter::kMostLookahead + 1) return;
+    if (waiting > FrameOutput::kMaxLookahead) schedule_.skip(schedule_.due());
+    if (waiting <= FrameOutput::kMaxLookahead + 1) return;
     open_next();
     schedule_.skip(schedule_.due());
 }
@@ -142,11 +143,11 @@ void Reconstructor::Impl::open_next() {
 }
 
 void Reconstructor::Impl::check_silence() {
-    if (silent_ <= Presenter::kMostSilentFrames || options_.allow_silence) return;
+    if (silent_ <= FrameOutput::kMaxSilentFrames || options_.allow_silence) return;
     schedule_.skip(schedule_.due());
     throw Error(ErrorKind::input,
                 "no events from " + us(open_.window.begin) + " to " + us(open_.window.end) +
-                    ": expected at most " + std::to_string(Presenter::kMostSilentFrames) +
+                    ": expected at most " + std::to_string(FrameOutput::kMaxSilentFrames) +
                     " frames in a row without events, found " + std::to_string(silent_) +
                     "; the option allow_silence, or a lower fps, renders them");
 }

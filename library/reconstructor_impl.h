@@ -4,7 +4,7 @@
 
 #include "library/event_intake.h"
 #include "pipeline/frame_clock.h"
-#include "pipeline/presenter.h"
+#include "pipeline/frame_output.h"
 #include "src/binning/binner.h"
 #include "src/model/encoder.h"
 #include "src/model/renderer.h"
@@ -41,7 +41,7 @@ private:
     };
 
     bool step();
-    void bin(const Slice& slice);
+    void bin(const EventWindow& event_window);
     void encode();
     void note_window();
     void forget_stream();

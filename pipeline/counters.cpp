@@ -1,4 +1,4 @@
-// What went through the line, and what did not.
+// What went through the pipeline, and what did not.
 #include "pipeline/counters.h"
 
 namespace eventide {
@@ -35,7 +35,7 @@ Snapshot Counters::snapshot() const {
     s.slicing.late = bin.late.value();
     s.slicing.late_references = bin.late_references.value();
     s.slicing.time_resets = bin.time_resets.value();
-    s.event_frames = bin.event_frames.value();
+    s.event_windows = bin.event_windows.value();
     s.silent_frames = bin.silent_frames.value();
     s.merged_windows = bin.merged_windows.value();
     s.begin = from_us(std::int64_t(bin.begin_us.value()));

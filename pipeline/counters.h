@@ -1,4 +1,4 @@
-// What went through the line, and what did not, by reason.
+// What went through the pipeline, and what did not, by reason.
 #pragma once
 
 #include "pipeline/latency.h"
@@ -30,20 +30,20 @@ struct Snapshot {
     std::uint64_t packets = 0, bytes = 0;            ///< read from the source, also the lost ones
     std::uint64_t lost_packets = 0, lost_bytes = 0;  ///< of those: every buffer was in use
 
-    // parse, slice, bin
+    // parse, event window, bin
     std::uint64_t parsed_bytes = 0;
     std::uint64_t gaps = 0;  ///< places where bytes are missing, here or already at the source
     std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;  ///< parsed
     std::uint64_t filtered_events = 0;                            ///< skipped by the event filter
     Damage damaged;
     SlicerCounters slicing;
-    std::uint64_t event_frames = 0, silent_frames = 0;  ///< silent: of those, without events
+    std::uint64_t event_windows = 0, silent_frames = 0;  ///< silent: of those, without events
     std::uint64_t merged_windows = 0;  ///< became one with the one before, to keep --latency
-    SensorTime begin{};                ///< of the first event frame; valid where event_frames > 0
-    Window window{};                   ///< the newest event frame
+    SensorTime begin{};                ///< of the first event window; valid where event_windows > 0
+    Window window{};                   ///< the newest event window
 
     // encode
-    std::uint64_t encoded = 0;  ///< event frames
+    std::uint64_t encoded = 0;  ///< event windows
     std::uint64_t state_resets = 0;
 
     // render, write
@@ -53,7 +53,7 @@ struct Snapshot {
     SensorTime newest_frame{};         ///< t of the last one written; valid where frames > 0
 
     LatencySummary latency;        ///< from the last packet a frame saw to the frame written
-    LatencySummary bin, encode;    ///< work per event frame
+    LatencySummary bin, encode;    ///< work per event window
     LatencySummary render, write;  ///< work per frame
 
     std::uint64_t lost() const { return lost_packets; }
@@ -68,7 +68,7 @@ struct Counters {
         Counter bytes, gaps, events, images, imu, triggers, filtered_events;
         std::array<Counter, kDamageReasons> damaged;
         Counter before_begin, after_end, too_many, late, late_references, time_resets;
-        Counter event_frames, silent_frames, merged_windows, begin_us, window_begin_us,
+        Counter event_windows, silent_frames, merged_windows, begin_us, window_begin_us,
             window_end_us;
         LatencyHistogram work;
     } bin;

@@ -17,7 +17,7 @@ struct EncoderGateSettings {
 };
 
 /// Bin thread. `lent()` is how many windows the encoder has or will have;
-/// `hand_on(slice)` gives it one more, and waits where there is no room.
+/// `hand_on(event window)` gives it one more, and waits where there is no room.
 template <typename Lent, typename HandOn>
 class EncoderGate {
 public:
@@ -30,13 +30,13 @@ public:
           hand_on_(hand_on) {}
 
     /// One more window, in order.
-    void take(const Slice& slice) {
-        if (!keeper_.is_bound()) return hand_on_(slice);
+    void take(const EventWindow& event_window) {
+        if (!keeper_.is_bound()) return hand_on_(event_window);
         keeper_.adapt(lent_());
-        if (!merger_.takes(slice, settings_.new_state_after_gaps)) flush();
-        if (merger_.empty() && is_open()) return hand_on_(slice);
+        if (!merger_.takes(event_window, settings_.new_state_after_gaps)) flush();
+        if (merger_.empty() && is_open()) return hand_on_(event_window);
         merged_ += merger_.empty() ? 0 : 1;
-        merger_.add(slice);
+        merger_.add(event_window);
         look_again();
     }
 

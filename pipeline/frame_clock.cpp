@@ -18,8 +18,8 @@ namespace {
 __extension__ using Wide = __int128;
 
 constexpr std::int64_t kUsPerSecond = 1'000'000;
-constexpr std::int64_t kMostPerSecond = 1'000'000;
-constexpr std::size_t kMostDigits = 12;  // of numerator and denominator: products fit 128 bits
+constexpr std::int64_t kMaxPerSecond = 1'000'000;
+constexpr std::size_t kMaxDigits = 12;  // of numerator and denominator: products fit 128 bits
 
 [[noreturn]] void refuse(std::string_view text) {
     throw Error(ErrorKind::usage, "frame rate '" + std::string{text} +
@@ -30,7 +30,7 @@ constexpr std::size_t kMostDigits = 12;  // of numerator and denominator: produc
 std::int64_t digits(std::string_view part, std::string_view text) {
     std::int64_t value = 0;
     const char* const end = part.data() + part.size();
-    if (part.empty() || part.size() > kMostDigits || part.front() == '-') refuse(text);
+    if (part.empty() || part.size() > kMaxDigits || part.front() == '-') refuse(text);
     if (const auto result = std::from_chars(part.data(), end, value);
         result.ec != std::errc{} || result.ptr != end)
         refuse(text);
@@ -47,7 +47,7 @@ FrameRate fraction(std::string_view text) {
     std::int64_t scale = 1;
     for (std::size_t i = 0; i < decimals.size(); ++i) scale *= 10;
     const std::int64_t whole = point == 0 ? 0 : digits(text.substr(0, point), text);
-    if (whole > kMostPerSecond) refuse(text);
+    if (whole > kMaxPerSecond) refuse(text);
     return {whole * scale + digits(decimals, text), scale};
 }
 
@@ -56,7 +56,7 @@ FrameRate fraction(std::string_view text) {
 FrameRate parse_frame_rate(std::string_view text) {
     const FrameRate rate = fraction(text);
     if (rate.frames < 1 || rate.seconds < 1) refuse(text);
-    if (rate.frames / rate.seconds > kMostPerSecond - (rate.frames % rate.seconds != 0))
+    if (rate.frames / rate.seconds > kMaxPerSecond - (rate.frames % rate.seconds != 0))
         refuse(text);
     const std::int64_t common = std::gcd(rate.frames, rate.seconds);
     return {rate.frames / common, rate.seconds / common};
@@ -71,7 +71,7 @@ FrameRate slowed(const FrameRate& rate, double slow) {
         return a;
     };
     const Wide common = greatest_common(frames, seconds);
-    if (frames > seconds * kMostPerSecond || frames / common > INT64_MAX ||
+    if (frames > seconds * kMaxPerSecond || frames / common > INT64_MAX ||
         seconds / common > INT64_MAX) {
         std::array<char, 64> found{};
         std::snprintf(found.data(), found.size(), "%.6g x %.6g",

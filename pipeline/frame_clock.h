@@ -12,7 +12,7 @@ namespace eventide {
 
 /// Frames per second as a fraction, so that 29.97 or 30000/1001 do not drift.
 struct FrameRate {
-    std::int64_t frames = 0;  ///< 0: no rate, one frame at the end of each event frame
+    std::int64_t frames = 0;  ///< 0: no rate, one frame at the end of each event window
     std::int64_t seconds = 1;
 
     bool is_set() const { return frames > 0; }
@@ -48,18 +48,18 @@ struct DueFrame {
     std::uint64_t index;
 };
 
-/// Which frames lie in which event frame. Event frames come one by one and follow each other.
+/// Which frames lie in which event window. Event windows come one by one and follow each other.
 class FrameSchedule {
 public:
-    /// t0 is the first event frame's begin, or `from` where that is later: no frame is asked for
-    /// before it (event frames before it warm up the encoder's state).
+    /// t0 is the first event window's begin, or `from` where that is later: no frame is asked for
+    /// before it (event windows before it warm up the encoder's state).
     explicit FrameSchedule(FrameRate rate, std::optional<SensorTime> from = {})
         : rate_(rate), from_(from) {}
 
-    /// The frames with begin < t <= end become due; the first event frame's include its begin.
+    /// The frames with begin < t <= end become due; the first event window's include its begin.
     void open(Window window);
 
-    /// Of the open event frame: how many are still due, and the next of them.
+    /// Of the open event window: how many are still due, and the next of them.
     std::uint64_t due() const { return end_ - next_; }
     std::uint64_t next_index() const { return next_; }
     DueFrame next();

@@ -1,4 +1,4 @@
-// The model as the render stage of the line, corrected by the images that the source gives.
+// The model as the render stage of the pipeline, corrected by the images that the source gives.
 #pragma once
 
 #include "pipeline/stages.h"

@@ -13,7 +13,7 @@ namespace eventide {
 /// Learns what a packet, an event window and a frame cost, and decides before data queue up what is
 /// left out. In this order, each only where the one before did not do:
 ///
-/// 1. frames that would come too late are not rendered (FrameShedder),
+/// 1. frames that would come too late are not rendered (FrameDropper),
 /// 2. the rate of frames is halved, and halved again: what rendering leaves the encoder gets,
 /// 3. event windows wait for the encoder together and become one (WindowMerger),
 /// 4. packets are not taken, where reading alone is too slow.
@@ -47,7 +47,7 @@ public:
         const unsigned halvings = halvings_.load(std::memory_order_relaxed);
         if (lent > 0 && expected(lent) > bound_s_ / 2) {
             calm_ = 0;
-            halvings_.store(std::min(halvings + 1, kMostHalvings), std::memory_order_relaxed);
+            halvings_.store(std::min(halvings + 1, kMaxHalvings), std::memory_order_relaxed);
         } else if (++calm_ >= kCalmWindows && halvings > 0) {
             calm_ = 0;
             halvings_.store(halvings - 1, std::memory_order_relaxed);
@@ -70,7 +70,7 @@ public:
 
 private:
     static constexpr double kShareOfPackets = 0.25;  // of the bound, for parsing and binning
-    static constexpr unsigned kMostHalvings = 2, kCalmWindows = 20;
+    static constexpr unsigned kMaxHalvings = 2, kCalmWindows = 20;
 
     /// What something usually takes, learned by one thread and read by others; 0 where nothing is
     /// known. The first ones are slow for reasons of their own (cold memory), and once in a while

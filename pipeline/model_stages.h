@@ -1,4 +1,4 @@
-// The model as stages of the line.
+// The model as stages of the pipeline.
 #pragma once
 
 #include "pipeline/stages.h"
@@ -24,7 +24,7 @@ private:
 
 class ModelRenderStage final : public RenderStage {
 public:
-    /// Of the request everything but `t` holds for all frames; its lookahead is the line's.
+    /// Of the request everything but `t` holds for all frames; its lookahead is the pipeline's.
     ModelRenderStage(Renderer& renderer, const RenderRequest& request)
         : renderer_(renderer), request_(request) {}
     Frame make_output() const override { return renderer_.make_output(request_); }
@@ -32,7 +32,7 @@ public:
     void finish() noexcept override { renderer_.finish(); }
     void reset() noexcept override { renderer_.reset(); }
     void render(SensorTime t, const Window& window, Frame& frame) noexcept override {
-        // The stream's first picture may stand at the first window's begin, which is outside it.
+        // The stream's first frame may stand at the first window's begin, which is outside it.
         request_.t = std::max(t, window.begin + SensorDuration{1});
         renderer_.render(request_, frame);
     }

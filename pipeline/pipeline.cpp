@@ -21,9 +21,9 @@ std::size_t at_least_one(std::size_t n, const char* name) {
     return n;
 }
 
-Presenter::Settings presenter_settings(const PipelineParts& parts,
-                                       const PipelineSettings& settings) {
-    Presenter::Settings s;
+FrameOutput::Settings presenter_settings(const PipelineParts& parts,
+                                         const PipelineSettings& settings) {
+    FrameOutput::Settings s;
     s.rate = settings.rate;
     s.from = settings.frames_from;
     s.lookahead = settings.lookahead;
@@ -41,7 +41,7 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
     : parts_(parts),
       settings_(settings),
       keeper_(parts.source.is_live() ? settings.latency : std::nullopt),
-      event_frames_(parts.source, settings.event_frames, parts.filter, parts.observer, counters_),
+      event_windows_(parts.source, settings.event_windows, parts.filter, parts.observer, counters_),
       binner_(settings.bins, parts.source.info().height, parts.source.info().width),
       packet_pool_(at_least_one(settings.buffers.packets, "packets"), [] { return RawPacket{}; }),
       grid_pool_(at_least_one(settings.buffers.grids, "grids"),
@@ -55,7 +55,7 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
           parts.renderer, parts.sinks, presenter_settings(parts, settings),
           [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {}
 
-// ---- the line --------------------------------------------------------------------------------
+// ---- the pipeline ----------------------------------------------------------------------------
 
 void Pipeline::read() {  // bytes
     bool gap = false;
@@ -80,22 +80,22 @@ void Pipeline::read() {  // bytes
 void Pipeline::bin() {  // bytes -> events -> grids
     EncoderGate gate{
         keeper_,
-        {grid_pool_.size(), settings_.event_frames.slicer.max_events, settings_.reset_on_gap},
+        {grid_pool_.size(), settings_.event_windows.slicer.max_events, settings_.reset_on_gap},
         [this] { return grid_pool_.lent(); },
-        [this](const Slice& slice) { hand_on(slice); }};
-    const auto take = [&](const Slice& slice) { gate.take(slice); };
+        [this](const EventWindow& event_window) { hand_on(event_window); }};
+    const auto take = [&](const EventWindow& event_window) { gate.take(event_window); };
     const bool complete = for_each(packets_, [&](const RawPacket& packet) {
         const HostTime begun = Clock::now();
-        event_frames_.take(packet);
-        for_each_slice(take);
+        event_windows_.take(packet);
+        for_each_event_window(take);
         gate.look_again();
         counters_.bin.merged_windows.set(gate.merged());
         if (!packet.bytes.empty()) keeper_.packet_took(Clock::now() - begun);
     });
     if (complete)
         guarded([&] {
-            event_frames_.finish(ending());
-            for_each_slice(take);
+            event_windows_.finish(ending());
+            for_each_event_window(take);
             gate.flush();
             counters_.bin.merged_windows.set(gate.merged());
         });
@@ -140,33 +140,35 @@ Pool<RawPacket>::Handle Pipeline::packet_to_fill() {
                                                     : Pool<RawPacket>::Handle{};
 }
 
-void Pipeline::hand_on(const Slice& slice) {
+void Pipeline::hand_on(const EventWindow& event_window) {
     auto grid = grid_pool_.acquire();
-    bin_one(slice, *grid);
+    bin_one(event_window, *grid);
     grids_.push(std::move(grid));
 }
 
 template <typename Body>
-void Pipeline::for_each_slice(Body body) {
-    for (Slice slice; event_frames_.next(slice) && !stop_.is_overdue();) body(slice);
-    if (event_frames_.is_past_end()) parts_.source.stop();
+void Pipeline::for_each_event_window(Body body) {
+    for (EventWindow event_window; event_windows_.next(event_window) && !stop_.is_overdue();)
+        body(event_window);
+    if (event_windows_.is_past_end()) parts_.source.stop();
 }
 
-EventFrames::End Pipeline::ending() const {
-    return stop_.is_set() ? EventFrames::End::asked_for : EventFrames::End::of_source;
+EventWindows::End Pipeline::ending() const {
+    return stop_.is_set() ? EventWindows::End::asked_for : EventWindows::End::of_source;
 }
 
-void Pipeline::bin_one(const Slice& slice, VoxelGrid& grid) {
+void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
     const HostTime begun = Clock::now();
-    if (slice.reset_before || (slice.gap_before && settings_.reset_on_gap)) binner_.reset();
-    binner_.process(slice, grid);
+    if (event_window.reset_before || (event_window.gap_before && settings_.reset_on_gap))
+        binner_.reset();
+    binner_.process(event_window, grid);
     grid.images = counters_.bin.images.value();
-    if (counters_.bin.event_frames.value() == 0)
-        counters_.bin.begin_us.set(std::uint64_t(to_us(slice.window.begin)));
-    counters_.bin.event_frames.add();
-    counters_.bin.silent_frames.add(slice.events.empty() ? 1 : 0);
-    counters_.bin.window_begin_us.set(std::uint64_t(to_us(slice.window.begin)));
-    counters_.bin.window_end_us.set(std::uint64_t(to_us(slice.window.end)));
+    if (counters_.bin.event_windows.value() == 0)
+        counters_.bin.begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
+    counters_.bin.event_windows.add();
+    counters_.bin.silent_frames.add(event_window.events.empty() ? 1 : 0);
+    counters_.bin.window_begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
+    counters_.bin.window_end_us.set(std::uint64_t(to_us(event_window.window.end)));
     counters_.bin.work.record(Clock::now() - begun);
 }
 
@@ -224,8 +226,8 @@ void Pipeline::run_sequential() {
     VoxelGrid grid = binner_.make_output();
     Encoded encoded = make_encoded();
     bool presenting = true;
-    const auto hand_on = [&](const Slice& slice) {
-        bin_one(slice, grid);
+    const auto hand_on = [&](const EventWindow& event_window) {
+        bin_one(event_window, grid);
         encode_one(grid, encoded);
         presenting = presenting && guarded([&] { present_one(encoded); });
     };
@@ -235,14 +237,14 @@ void Pipeline::run_sequential() {
     };
     const bool complete = guarded([&] {
         while (reads()) {
-            event_frames_.take(packet);
-            for_each_slice(hand_on);
+            event_windows_.take(packet);
+            for_each_event_window(hand_on);
         }
     });
     if (complete)
         guarded([&] {
-            event_frames_.finish(ending());
-            for_each_slice(hand_on);
+            event_windows_.finish(ending());
+            for_each_event_window(hand_on);
         });
     if (presenting) guarded([&] { presenter_.finish(); });
     close_and_report();

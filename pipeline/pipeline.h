@@ -2,13 +2,13 @@
 #pragma once
 
 #include "pipeline/counters.h"
-#include "pipeline/event_frames.h"
+#include "pipeline/event_windows.h"
 #include "pipeline/first_error.h"
 #include "pipeline/frame_clock.h"
+#include "pipeline/frame_output.h"
 #include "pipeline/latency_keeper.h"
 #include "pipeline/link.h"
 #include "pipeline/pool.h"
-#include "pipeline/presenter.h"
 #include "pipeline/sink.h"
 #include "pipeline/source.h"
 #include "pipeline/stages.h"
@@ -30,10 +30,10 @@ struct PipelineBuffers {
 
 struct PipelineSettings {
     int bins = 5;  ///< B of the model
-    EventFrames::Settings event_frames;
+    EventWindows::Settings event_windows;
     FrameRate rate;
-    std::optional<SensorTime> frames_from;  ///< earlier event frames only warm up the state
-    int lookahead = 0;                      ///< 0, 1 or 2: event frames a picture waits for
+    std::optional<SensorTime> frames_from;  ///< earlier event windows only warm up the state
+    int lookahead = 0;                      ///< 0, 1 or 2: event windows a frame waits for
     /// Of a live source: what is left out so that frames are no later than this; empty: nothing,
     /// and latency is what the buffers hold. A recording waits in any case.
     std::optional<HostTime::duration> latency;
@@ -85,13 +85,13 @@ private:
     // One step of each, for both kinds of run.
     bool read_one(RawPacket& into);
     Pool<RawPacket>::Handle packet_to_fill();
-    void hand_on(const Slice& slice);
-    void bin_one(const Slice& slice, VoxelGrid& grid);
+    void hand_on(const EventWindow& event_window);
+    void bin_one(const EventWindow& event_window, VoxelGrid& grid);
     void encode_one(const VoxelGrid& grid, Encoded& encoded);
     void present_one(const Encoded& encoded);
     template <typename Body>
-    void for_each_slice(Body body);
-    EventFrames::End ending() const;
+    void for_each_event_window(Body body);
+    EventWindows::End ending() const;
     Encoded make_encoded() const;
 
     template <typename Handle>
@@ -107,10 +107,10 @@ private:
     Counters counters_;
     StopRequest stop_;
     FirstError error_;
-    LatencyKeeper keeper_;      // any thread
-    RawPacket spill_;           // read thread
-    EventFrames event_frames_;  // bin thread
-    Binner binner_;             // bin thread
+    LatencyKeeper keeper_;        // any thread
+    RawPacket spill_;             // read thread
+    EventWindows event_windows_;  // bin thread
+    Binner binner_;               // bin thread
 
     Pool<RawPacket> packet_pool_;  // pools before links: a link may still hold handles when it dies
     Pool<VoxelGrid> grid_pool_;
@@ -119,7 +119,7 @@ private:
     Link<Pool<VoxelGrid>::Handle> grids_;
     Link<Pool<Encoded>::Handle> latents_;
 
-    Presenter presenter_;  // the caller's thread
+    FrameOutput presenter_;  // the caller's thread
 };
 
 }  // namespace eventide

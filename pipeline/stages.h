@@ -1,4 +1,4 @@
-// What the line asks of a model and of whatever stands between parser and slicer.
+// What the pipeline asks of a model and of whatever stands between parser and slicer.
 #pragma once
 
 #include "src/core/event.h"
@@ -13,21 +13,21 @@ class EncodeStage {
 public:
     virtual ~EncodeStage() = default;
     virtual LatentMap make_output() const = 0;
-    /// Fills `latent.values`; the line fills the rest.
+    /// Fills `latent.values`; the pipeline fills the rest.
     virtual void encode(const VoxelGrid& grid, LatentMap& latent) noexcept = 0;
     virtual void reset() noexcept = 0;  ///< as constructed
 };
 
-/// latent window + time -> picture. One at a time; render thread.
+/// latent window + time -> frame. One at a time; render thread.
 class RenderStage {
 public:
     virtual ~RenderStage() = default;
     virtual Frame make_output() const = 0;
-    /// The next event frame's latent map; its window follows the one before.
+    /// The next event window's latent map; its window follows the one before.
     virtual void push(const LatentMap& latent) noexcept = 0;
     /// No latent map will come any more, until reset(): the rest is rendered at the live edge.
     virtual void finish() noexcept = 0;
-    /// Fills `frame.intensity` and `frame.sigma`; the line fills the rest. t lies in `window`,
+    /// Fills `frame.intensity` and `frame.sigma`; the pipeline fills the rest. t lies in `window`,
     /// (begin, end] and for the first one also its begin, which is the newest one pushed or at most
     /// two before it. As many latent maps were pushed as the lookahead says, and not one more.
     virtual void render(SensorTime t, const Window& window, Frame& frame) noexcept = 0;
@@ -43,7 +43,7 @@ public:
 };
 
 /// Sees all data the parser gives (images, inertial samples), before the filter. Bin thread; it
-/// holds up the line for as long as it takes.
+/// holds up the pipeline for as long as it takes.
 class DataObserver {
 public:
     virtual ~DataObserver() = default;

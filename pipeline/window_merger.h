@@ -19,26 +19,26 @@ public:
 
     /// Whether a window may be one with those kept: nothing is merged over a place where state
     /// begins anew.
-    bool takes(const Slice& slice, bool new_state_after_gaps) const {
+    bool takes(const EventWindow& event_window, bool new_state_after_gaps) const {
         if (empty()) return true;
-        return !slice.reset_before && !(slice.gap_before && new_state_after_gaps) &&
-               events_.size() + slice.events.size() <= most_events_;
+        return !event_window.reset_before && !(event_window.gap_before && new_state_after_gaps) &&
+               events_.size() + event_window.events.size() <= most_events_;
     }
 
-    void add(const Slice& slice) {
+    void add(const EventWindow& event_window) {
         if (empty()) {
-            merged_ = slice;
+            merged_ = event_window;
             events_.clear();
         }
-        events_.insert(events_.end(), slice.events.begin(), slice.events.end());
-        merged_.window.end = slice.window.end;
-        merged_.gap_before = merged_.gap_before || slice.gap_before;
-        merged_.arrived = slice.arrived;
+        events_.insert(events_.end(), event_window.events.begin(), event_window.events.end());
+        merged_.window.end = event_window.window.end;
+        merged_.gap_before = merged_.gap_before || event_window.gap_before;
+        merged_.arrived = event_window.arrived;
         ++windows_;
     }
 
     /// All that is kept, borrowed until the next add(); nothing is kept any more.
-    Slice take() {
+    EventWindow take() {
         merged_.events = events_;
         windows_ = 0;
         return merged_;
@@ -47,7 +47,7 @@ public:
 private:
     std::uint64_t most_events_;
     std::vector<Event> events_;
-    Slice merged_;
+    EventWindow merged_;
     std::uint64_t windows_ = 0;
 };
 

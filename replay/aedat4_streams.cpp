@@ -14,7 +14,7 @@ namespace eventide {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 8;
-constexpr std::int32_t kMostStreams = 256;
+constexpr std::int32_t kMaxStreams = 256;
 constexpr std::size_t kLargestFirst = std::size_t{1} << 24;  // bytes that are read for a look
 
 struct Found {
@@ -41,7 +41,7 @@ std::map<std::int32_t, Found> streams_in_packets(const ByteFile& file, const Aed
         if (file.read_at(at, bytes) < kHeaderBytes) break;
         const auto stream = load_little<std::int32_t>(bytes.data());
         const auto size = load_little<std::int32_t>(bytes.data() + 4);
-        const bool good = stream >= 0 && stream < kMostStreams && size > 0 &&
+        const bool good = stream >= 0 && stream < kMaxStreams && size > 0 &&
                           std::size_t(size) <= kLargestAedat4Packet;
         at += kHeaderBytes;
         if (!good || std::uint64_t(size) > end - at) break;

@@ -1,4 +1,4 @@
-// Pictures of an Event Camera Dataset folder, merged with its events by time.
+// Images of an Event Camera Dataset folder, merged with its events by time.
 #include "replay/ecd_folder.h"
 
 #include "replay/image_file.h"
@@ -50,7 +50,7 @@ std::vector<std::vector<std::string>> read_table(const fs::path& path) {
     return table;
 }
 
-/// The picture that a line names, without detours; nothing where that lies outside the folder: a
+/// The image that a line names, without detours; nothing where that lies outside the folder: a
 /// recording from elsewhere must not reach for other files.
 std::optional<std::string> inside(const fs::path& folder, const std::string& name) {
     const fs::path root = fs::absolute(folder).lexically_normal();

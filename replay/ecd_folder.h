@@ -21,16 +21,16 @@ struct EcdImages {
         std::string path;
     };
     std::vector<Entry> entries;     ///< in time order; empty where there is no images.txt
-    int width = 0, height = 0;      ///< px, of the first picture that can be read; else 0
+    int width = 0, height = 0;      ///< px, of the first image that can be read; else 0
     std::uint64_t bad_entries = 0;  ///< lines of images.txt that make no sense or lead elsewhere
 };
 
 /// Reads images.txt ("t file", t in seconds, file in the folder), exposure.txt where there is one
-/// ("begin end" in seconds, a line for each of images.txt), and one picture for the size.
+/// ("begin end" in seconds, a line for each of images.txt), and one image for the size.
 EcdImages read_ecd_images(const std::string& folder);
 
-/// Events with the folder's pictures as reference images: each comes out once the events have
-/// passed its time, the rest at finish(). Pictures that cannot be read count as bad_record.
+/// Events with the folder's images as reference images: each comes out once the events have
+/// passed its time, the rest at finish(). Images that cannot be read count as bad_record.
 class EcdParser final : public Parser {
 public:
     /// `in_the_middle`: of the recording; images before the first event that comes are left out.

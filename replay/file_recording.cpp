@@ -39,7 +39,7 @@ std::unique_ptr<Parser> FileRecording::make_parser() const {
 
 void FileRecording::seek(SensorTime t) {
     if (!file_.is_seekable()) return;
-    begin_ = find_place(file_, stream_.header, stream_.make_parser, stream_.seek, t);
+    begin_ = find_seek_point(file_, stream_.header, stream_.make_parser, stream_.seek, t);
     file_.move_to(begin_.position);
     ahead_.clear();
 }

@@ -47,7 +47,7 @@ private:
     OpenedStream stream_;
     SensorInfo info_;
     std::vector<std::byte> ahead_;
-    Place begin_;  ///< of what is read
+    SeekPoint begin_;  ///< of what is read
     std::uint64_t packets_ = 0;
 };
 

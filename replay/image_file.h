@@ -1,4 +1,4 @@
-// A picture file as a reference image.
+// An image file as a reference image.
 #pragma once
 
 #include "src/core/event.h"
@@ -9,7 +9,7 @@
 namespace eventide {
 
 /// Reads pixels and channels (t stays zero); 8-bit values are scaled by 257. Empty when the file
-/// cannot be read as a picture of 1, 3 or 4 channels.
+/// cannot be read as an image of 1, 3 or 4 channels.
 std::optional<ReferenceImage> read_image_file(const std::string& path);
 
 struct ImageSize {

@@ -26,7 +26,7 @@ public:
     /// What had to be guessed, or was not found, when it was opened: sentences for people.
     virtual std::vector<std::string> remarks() const { return {}; }
 
-    /// A parser whose clock() is that of make_parser(), without costly extras (pictures read from
+    /// A parser whose clock() is that of make_parser(), without costly extras (images read from
     /// files): for whoever needs the time of bytes and not the data.
     virtual std::unique_ptr<Parser> make_clock() const { return make_parser(); }
 };

@@ -68,11 +68,11 @@ std::uint64_t bisect(Probe& probe, std::uint64_t begin, std::uint64_t end, std::
 }
 
 /// Reads from the beginning, and keeps nothing but the parser as it was before the last chunk.
-Place skim(const ByteFile& file, const StreamHeader& header, std::unique_ptr<Parser> parser,
-           const SeekMeans& means, SensorTime t) {
+SeekPoint skim(const ByteFile& file, const StreamHeader& header, std::unique_ptr<Parser> parser,
+               const SeekMeans& means, SensorTime t) {
     std::vector<std::byte> bytes(kCloseEnoughBytes);
     Batch unused;
-    Place place{header.data_offset, means.copy(*parser)};
+    SeekPoint place{header.data_offset, means.copy(*parser)};
     for (;;) {
         const std::size_t n = file.read_at(place.position, bytes);
         parser->parse({bytes.data(), n}, unused);
@@ -85,8 +85,8 @@ Place skim(const ByteFile& file, const StreamHeader& header, std::unique_ptr<Par
 
 }  // namespace
 
-Place find_place(const ByteFile& file, const StreamHeader& header, const MakeParser& make_parser,
-                 const SeekMeans& means, SensorTime t) {
+SeekPoint find_seek_point(const ByteFile& file, const StreamHeader& header,
+                          const MakeParser& make_parser, const SeekMeans& means, SensorTime t) {
     const std::uint64_t begin = header.data_offset;
     if (means.look_up)
         if (const auto found = means.look_up(file, t)) return {*found};

@@ -29,7 +29,7 @@ struct SeekMeans {
 using MakeParser = std::function<std::unique_ptr<Parser>(const StreamHeader&)>;
 
 /// Where reading goes on, and in what state.
-struct Place {
+struct SeekPoint {
     std::uint64_t position = 0;
     /// The parser that has read all before; null where one that comes anew may take up.
     std::shared_ptr<const Parser> parser{};
@@ -38,7 +38,7 @@ struct Place {
 /// A place before which no event at or after `t` lies. By the file's index, by bisection, or by
 /// reading on from the beginning where stamps wrap. The beginning where the times found on the way
 /// contradict each other.
-Place find_place(const ByteFile& file, const StreamHeader& header, const MakeParser& make_parser,
-                 const SeekMeans& means, SensorTime t);
+SeekPoint find_seek_point(const ByteFile& file, const StreamHeader& header,
+                          const MakeParser& make_parser, const SeekMeans& means, SensorTime t);
 
 }  // namespace eventide

@@ -4,7 +4,7 @@
 # DATA holds recordings/, images/bsds500/ and perceptual/lpips_squeeze_v0.1.npz; MODEL is a name or a file (default).
 # SECTION: real calibration simulated sigma super-resolution silence; without: all of them.
 # A section that was measured for this very model is not measured again (out/accuracy keeps them; FRESH=1 does), so the
-# script may be stopped at any time. EVENTIDE names the program; else build/release/src/app/eventide. SEQUENCES: how
+# script may be stopped at any time. EVENTIDE names the program; else build/release/apps/cli/eventide. SEQUENCES: how
 # many simulated ones (20).
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +15,7 @@ model=${2:-default}
 shift $(($# < 2 ? $# : 2))
 wanted=("$@")
 [ $# -gt 0 ] || wanted=("${all[@]}")
-program=${EVENTIDE:-build/release/src/app/eventide}
+program=${EVENTIDE:-build/release/apps/cli/eventide}
 sequences=${SEQUENCES:-20}
 few=$(((sequences + 4) / 5))
 out=docs/accuracy

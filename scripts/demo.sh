@@ -10,7 +10,7 @@ scripts/install-packages.sh
 echo "building (preset release) ..."
 cmake --preset release >/dev/null
 cmake --build --preset release --target eventide
-eventide=build/release/src/app/eventide
+eventide=build/release/apps/cli/eventide
 
 mkdir -p "$out"
 echo "simulating a camera before a moving scene ..."

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Small networks trained at equal budgets and scored alike: the tables of docs/accuracy.md, "Experiments".
+# Small networks trained at equal budgets and scored alike: the tables of research/experiments.md, "Experiments".
 #   scripts/experiments.sh DATA [EXPERIMENT...]     without EXPERIMENT: all of them
 #   scripts/experiments.sh --tables                 only writes the tables again
-# A finished run (a file in docs/accuracy/experiments/) is not repeated, so the script may be stopped at any time. A
+# A finished run (a file in research/experiments/) is not repeated, so the script may be stopped at any time. A
 # run's budget is MINUTES of processor time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK,
 # EVENTIDE name the programs, OUT the folder of the runs (out/experiments).
 set -euo pipefail
@@ -13,8 +13,8 @@ pack=${PACK:-$build/train/eventide-pack-pictures}
 program=${EVENTIDE:-$build/app/eventide}
 minutes=${MINUTES:-5}
 out=${OUT:-out/experiments}
-results=docs/accuracy/experiments
-page=docs/accuracy.md
+results=research/experiments
+page=research/experiments.md
 export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 # An allocator that keeps memory between steps, where there is one (docs/training.md).
 jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { path = $NF } END { print path }')

@@ -16,4 +16,4 @@ ctest --test-dir "$build" --output-on-failure \
   -R '^(FullDisk|Signals|ExitCodes|DavisUnplugged|DavisFaults|DvxplorerFaults|Live)\.|^Pipeline\..*(Slow|Error|Failed)'
 
 # What a thousand times opened and closed leaves behind.
-"$build/src/app/eventide" stress --cases 'open-*'
+"$build/apps/cli/eventide" stress --cases 'open-*'

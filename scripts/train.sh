@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -ge 2 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-build=build/release/src/train
+build=build/release/apps/train
 train=${TRAIN:-$build/eventide-train}
 pack=${PACK:-$build/eventide-pack-pictures}
 out=${OUT:-out/train}

@@ -39,7 +39,7 @@ HostTime SimulatedCamera::due(SensorTime t) {
         const double us = double((t - anchor_->sensor).count()) / speed_;
         return anchor_->host + std::chrono::microseconds(std::llround(us));
     };
-    if (!anchor_ || now - at() > kMostLateness) anchor_ = {now, t};
+    if (!anchor_ || now - at() > kMaxLateness) anchor_ = {now, t};
     return at();
 }
 

@@ -20,7 +20,7 @@ class SimulatedCamera final : public Camera {
 public:
     static constexpr SensorDuration kChunk{2000};             ///< latency of the events
     static constexpr std::chrono::milliseconds kSilence{15};  ///< until read() says timeout
-    static constexpr std::chrono::milliseconds kMostLateness{100};
+    static constexpr std::chrono::milliseconds kMaxLateness{100};
 
     static constexpr std::size_t kProceduralTextures = 25;
 

@@ -145,7 +145,7 @@ std::uint64_t DavisCamera::dropped(UsbDevice& device) {
 }
 
 std::unique_ptr<Parser> DavisCamera::make_parser() const {
-    // Of several parsers (the line's, the recorder's) one at a time adjusts the exposure.
+    // Of several parsers (the pipeline's, the recorder's) one at a time adjusts the exposure.
     const bool nobody_adjusts = exposure_wish_.use_count() == 1;
     if (!settings_.auto_exposure || !settings_.frames || !nobody_adjusts)
         return std::make_unique<DavisParser>(sensor_);

@@ -6,9 +6,9 @@
 namespace eventide {
 namespace {
 
-constexpr double kWantedMean = 0.4;     // of full scale, linear in light
-constexpr double kCloseEnough = 0.15;   // relative: no hunting
-constexpr double kMostSaturated = 0.3;  // share of white pixels past which the mean says nothing
+constexpr double kWantedMean = 0.4;    // of full scale, linear in light
+constexpr double kCloseEnough = 0.15;  // relative: no hunting
+constexpr double kMaxSaturated = 0.3;  // share of white pixels past which the mean says nothing
 constexpr int kShortestUs = 10, kLongestUs = 200'000;
 
 }  // namespace
@@ -24,7 +24,7 @@ int better_exposure_us(const ReferenceImage& frame, int current_us) {
     }
     const double mean = sum / (65535.0 * double(pixels.size()));
     double factor = kWantedMean / std::max(mean, 1e-3);
-    if (double(white) > kMostSaturated * double(pixels.size())) factor = 0.25;
+    if (double(white) > kMaxSaturated * double(pixels.size())) factor = 0.25;
     if (std::abs(factor - 1) < kCloseEnough) return current_us;
     factor = std::clamp(factor, 0.25, 2.0);
     return std::clamp(int(std::lround(std::max(current_us, kShortestUs) * factor)), kShortestUs,

@@ -123,7 +123,7 @@ void add_hot_pixels(Writes& writes, const DavisSettings& settings, const DavisSe
     }
 }
 
-/// In the picture's axes, also on chips whose axes are swapped.
+/// In the frame's axes, also on chips whose axes are swapped.
 void add_region(Writes& writes, const std::optional<SensorRegion>& asked, const char* name,
                 int width, int height, std::array<Register, 4> start_and_end) {
     const SensorRegion region = asked.value_or(SensorRegion{0, 0, width, height});

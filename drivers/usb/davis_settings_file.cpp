@@ -6,18 +6,18 @@ namespace eventide {
 namespace {
 
 void add_hot_pixels(SettingsFile& file, std::vector<std::pair<int, int>>& into) {
-    constexpr std::size_t kMostPixels = 8;
-    constexpr int kMost = 1023;
+    constexpr std::size_t kMaxPixels = 8;
+    constexpr int kMax = 1023;
     file.custom("hot_pixels", [&file, &into](const toml::node& node) {
         const toml::array* pixels = node.as_array();
-        if (pixels == nullptr || pixels->size() > kMostPixels)
+        if (pixels == nullptr || pixels->size() > kMaxPixels)
             file.refuse(node, "hot_pixels: expected a list of up to eight [x, y]");
         for (const toml::node& pixel : *pixels) {
             const toml::array* place = pixel.as_array();
             if (place == nullptr || place->size() != 2)
                 file.refuse(pixel, "hot_pixels: expected [x, y]");
-            into.emplace_back(int(file.checked(*place->get(0), "hot_pixels", 0, kMost)),
-                              int(file.checked(*place->get(1), "hot_pixels", 0, kMost)));
+            into.emplace_back(int(file.checked(*place->get(0), "hot_pixels", 0, kMax)),
+                              int(file.checked(*place->get(1), "hot_pixels", 0, kMax)));
         }
     });
 }

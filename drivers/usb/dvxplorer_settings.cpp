@@ -95,7 +95,7 @@ void add_readout(Writes& writes, const DvxplorerSettings& settings,
     add(writes, kRStart, 8);
     add(writes, kREnd, 10);
     add_bytes(writes, kNextSelXStart, 2, 15);
-    add(writes, kMostEvents, 10);
+    add(writes, kMaxEvents, 10);
     add(writes, kNextGhCount, 10);
     add_bytes(writes, kReadInterval, 2, 48000);
 }

@@ -5,11 +5,11 @@
 namespace eventide {
 
 DvxplorerSettings load_dvxplorer_settings(const std::filesystem::path& file) {
-    constexpr int kMostThreshold = 17, kMost16Bits = 65535;
+    constexpr int kMaxThreshold = 17, kMost16Bits = 65535;
     DvxplorerSettings settings;
     SettingsFile reader{file};
-    reader.number("contrast_on", settings.contrast_on, 0, kMostThreshold);
-    reader.number("contrast_off", settings.contrast_off, 0, kMostThreshold);
+    reader.number("contrast_on", settings.contrast_on, 0, kMaxThreshold);
+    reader.number("contrast_off", settings.contrast_off, 0, kMaxThreshold);
     add_region(reader, "roi", settings.roi);
     add_polarity(reader, "polarity", settings.polarity);
     reader.choice("subsample", settings.subsample, {1, 2, 4, 8});

@@ -83,7 +83,8 @@ bool UsbCamera::wait_for_begin() {
     std::vector<std::byte> bytes;
     while (!stopped_ && std::chrono::steady_clock::now() < deadline) {
         const UsbStream::Status status = stream_->read(bytes, kReadPatience);
-        if (status == UsbStream::Status::lost) throw UsbGone("USB: the camera was unplugged");
+        if (status == UsbStream::Status::lost)
+            throw UsbDisconnected("USB: the camera was unplugged");
         if (const auto halts = stream_->take_halts(); halts > 0) {
             counters_.halts += halts;
             reset_time(*device_);  // the begin may be lost with them
@@ -108,7 +109,7 @@ ReadStatus UsbCamera::read(RawPacket& into) {
         }
         between_transfers(*device_);
         return read_stream(into);
-    } catch (const UsbGone&) {
+    } catch (const UsbDisconnected&) {
         into.bytes.clear();
         return lost();
     }
@@ -121,7 +122,7 @@ ReadStatus UsbCamera::read_stream(RawPacket& into) {
     } else {
         switch (stream_->read(into.bytes, kReadPatience)) {
             case UsbStream::Status::lost:
-                throw UsbGone("USB: the camera was unplugged");
+                throw UsbDisconnected("USB: the camera was unplugged");
             case UsbStream::Status::timeout:
                 into.bytes.clear();
                 return ReadStatus::timeout;

@@ -158,7 +158,7 @@ std::string explain_usb_error(int code) {
 void check_usb(int code, const std::string& what) {
     if (code >= 0) return;
     const std::string message = "USB: " + what + ": " + explain_usb_error(code);
-    if (code == LIBUSB_ERROR_NO_DEVICE || code == LIBUSB_ERROR_IO) throw UsbGone(message);
+    if (code == LIBUSB_ERROR_NO_DEVICE || code == LIBUSB_ERROR_IO) throw UsbDisconnected(message);
     throw Error(ErrorKind::device, message);
 }
 

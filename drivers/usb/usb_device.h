@@ -81,15 +81,15 @@ private:
 };
 
 /// The device is not there any more, or the connection to it broke off.
-class UsbGone : public Error {
+class UsbDisconnected : public Error {
 public:
-    explicit UsbGone(const std::string& message) : Error(ErrorKind::device, message) {}
+    explicit UsbDisconnected(const std::string& message) : Error(ErrorKind::device, message) {}
 };
 
 /// Text of a libusb error code with what a user can do about it.
 std::string explain_usb_error(int code);
 
-/// Throws for a negative code: UsbGone where the device is gone, else Error (device).
+/// Throws for a negative code: UsbDisconnected where the device is gone, else Error (device).
 void check_usb(int code, const std::string& what);
 
 }  // namespace eventide

@@ -16,14 +16,14 @@ void require_inside(const SensorRegion& region, const char* name, int width, int
 }
 
 void add_region(SettingsFile& file, const char* name, std::optional<SensorRegion>& into) {
-    constexpr int kMost = 1024;
+    constexpr int kMax = 1024;
     file.custom(name, [&file, name, &into](const toml::node& node) {
         const toml::array* numbers = node.as_array();
         if (numbers == nullptr || numbers->size() != 4)
             file.refuse(node, std::string{name} + ": expected [x, y, width, height]");
         std::array<int, 4> region{};
         for (std::size_t i = 0; i < 4; ++i)
-            region[i] = int(file.checked(*numbers->get(i), name, i < 2 ? 0 : 1, kMost));
+            region[i] = int(file.checked(*numbers->get(i), name, i < 2 ? 0 : 1, kMax));
         into = {region[0], region[1], region[2], region[3]};
     });
 }

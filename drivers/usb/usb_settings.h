@@ -12,7 +12,7 @@ namespace eventide {
 
 class SettingsFile;
 
-/// Part of a sensor, px, as a person sees the picture.
+/// Part of a sensor, px, as a person sees the frame.
 struct SensorRegion {
     int x = 0, y = 0, width = 0, height = 0;
 };

@@ -12,7 +12,7 @@ namespace eventide {
 namespace {
 
 /// An endpoint that halts as often without giving anything between will not recover.
-constexpr int kMostHaltsInARow = 8;
+constexpr int kMaxHaltsInARow = 8;
 /// As many and as long as libcaer asks for (LC src/dvxplorer.h).
 constexpr int kMessageTransfers = 4;
 constexpr std::size_t kMessageBytes = 64;
@@ -154,7 +154,7 @@ UsbStream::Status UsbStream::take(std::vector<std::byte>& into) {
 /// Nothing comes from a halted endpoint until this was done, and what the device had queued is
 /// lost.
 void UsbStream::clear_halt(Pipe& pipe) {
-    const bool hopeless = ++pipe.halts_in_a_row > kMostHaltsInARow;
+    const bool hopeless = ++pipe.halts_in_a_row > kMaxHaltsInARow;
     if (hopeless && &pipe == &data_)
         throw Error(ErrorKind::device,
                     "USB: the camera's data endpoint stalls again each time it is cleared: plug "
@@ -166,20 +166,19 @@ void UsbStream::clear_halt(Pipe& pipe) {
     for (Transfer* transfer : std::exchange(pipe.resting, {})) resubmit(*transfer);
 }
 
-void UsbStream::handle_events(std::chrono::milliseconds patience) {
+void UsbStream::handle_events(std::chrono::milliseconds timeout) {
     timeval time{};
-    time.tv_sec = long(patience.count() / 1000);
-    time.tv_usec = long(patience.count() % 1000) * 1000;
+    time.tv_sec = long(timeout.count() / 1000);
+    time.tv_usec = long(timeout.count() % 1000) * 1000;
     libusb_handle_events_timeout_completed(context_, &time, nullptr);
 }
 
-UsbStream::Status UsbStream::read(std::vector<std::byte>& into,
-                                  std::chrono::milliseconds patience) {
+UsbStream::Status UsbStream::read(std::vector<std::byte>& into, std::chrono::milliseconds timeout) {
     if (const Status taken = take(into); taken != Status::timeout) return taken;
     for (Pipe* pipe : {&data_, &messages_})
         if (pipe->halted && !pipe->given_up && !lost_) clear_halt(*pipe);
     if (lost_) return Status::lost;
-    handle_events(patience);
+    handle_events(timeout);
     if (const Status taken = take(into); taken != Status::timeout) return taken;
     return lost_ ? Status::lost : Status::timeout;
 }

@@ -34,7 +34,8 @@ class UsbStream {
 public:
     enum class Status { data, message, timeout, lost };
 
-    /// Throws UsbGone, or Error (device) when the kernel has no memory for so many transfers.
+    /// Throws UsbDisconnected, or Error (device) when the kernel has no memory for so many
+    /// transfers.
     UsbStream(libusb_context* context, libusb_device_handle* handle, UsbEndpoints endpoints,
               const UsbStreamSettings& settings);
     /// Cancels what is in flight and waits until libusb has let go of every transfer.
@@ -45,7 +46,7 @@ public:
     /// Source thread. Waits at most `patience`. Data and messages come in the order in which they
     /// arrived. After `lost` the device is gone and nothing more will come. Throws Error (device)
     /// for an endpoint that halts again and again.
-    Status read(std::vector<std::byte>& into, std::chrono::milliseconds patience);
+    Status read(std::vector<std::byte>& into, std::chrono::milliseconds timeout);
 
     /// Bytes were lost before those that read() gave last.
     bool gap_before() const { return gap_before_; }
@@ -75,7 +76,7 @@ private:
     void give_up(Pipe& pipe);
     void clear_halt(Pipe& pipe);
     Status take(std::vector<std::byte>& into);
-    void handle_events(std::chrono::milliseconds patience);
+    void handle_events(std::chrono::milliseconds timeout);
 
     libusb_context* context_;
     libusb_device_handle* handle_;

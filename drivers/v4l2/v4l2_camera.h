@@ -42,7 +42,7 @@ struct V4l2Settings {
 V4l2Settings load_v4l2_settings(const std::filesystem::path& file);
 
 /// The bytes before the end-of-data word that the Raspberry Pi's driver puts after the last good
-/// one, where its receiver always hands over whole "pictures". All bytes where there is none.
+/// one, where its receiver always hands over whole "frames". All bytes where there is none.
 std::span<const std::byte> before_end_of_data(std::span<const std::byte> bytes,
                                               EvtEncoding encoding);
 

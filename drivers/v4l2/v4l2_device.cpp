@@ -126,10 +126,10 @@ void V4l2Device::requeue_held() {
     if (held_) queue(*std::exchange(held_, std::nullopt));
 }
 
-V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds patience) {
+V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds timeout) {
     requeue_held();
     pollfd poll_fd{fd_.get(), POLLIN, 0};
-    const int ready = ::poll(&poll_fd, 1, int(patience.count()));
+    const int ready = ::poll(&poll_fd, 1, int(timeout.count()));
     if (ready == 0 || (ready < 0 && errno == EINTR)) return Status::timeout;
 
     v4l2_buffer buffer{};

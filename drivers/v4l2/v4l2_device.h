@@ -39,7 +39,7 @@ public:
     int height() const { return height_; }
 
     /// Waits at most `patience`, whatever the driver does.
-    Status read(Filled& into, std::chrono::milliseconds patience);
+    Status read(Filled& into, std::chrono::milliseconds timeout);
 
 private:
     struct Buffer {

@@ -1,4 +1,4 @@
-// One picture of a whole run: rows of events, intensity, sigma and truth.
+// One image of a whole run: rows of events, intensity, sigma and truth.
 #include "pipeline/sinks/contact_sheet.h"
 
 #include "src/core/error.h"
@@ -21,9 +21,9 @@ constexpr int kGap = 4, kCaption = 22;  // px
 const cv::Scalar kPaper{255, 255, 255}, kInk{40, 40, 40};
 
 /// As colour, at the given size; nearest neighbour keeps single events visible.
-cv::Mat fitted(const cv::Mat& picture, cv::Size size) {
-    cv::Mat coloured = picture, scaled;
-    if (picture.channels() == 1) cv::cvtColor(picture, coloured, cv::COLOR_GRAY2BGR);
+cv::Mat fitted(const cv::Mat& image, cv::Size size) {
+    cv::Mat coloured = image, scaled;
+    if (image.channels() == 1) cv::cvtColor(image, coloured, cv::COLOR_GRAY2BGR);
     cv::resize(coloured, scaled, size, 0, 0, cv::INTER_NEAREST);
     return scaled;
 }
@@ -58,15 +58,15 @@ ContactSheetSink::Row ContactSheetSink::row_of(const Frame& frame) const {
     const cv::Size size{frame.intensity.width(), frame.intensity.height()};
     Row row;
     row.seconds = std::chrono::duration<double>(frame.t - first_).count();
-    cv::Mat picture;
-    draw(frame, Uncertainty::none, 1.0f, picture);
-    row.intensity = fitted(picture, size);
+    cv::Mat image;
+    draw(frame, Uncertainty::none, 1.0f, image);
+    row.intensity = fitted(image, size);
     if (!frame.sigma.empty()) {
-        draw_sigma(frame, settings_.sigma_white, picture);
-        row.sigma = fitted(picture, size);
+        draw_sigma(frame, settings_.sigma_white, image);
+        row.sigma = fitted(image, size);
     }
-    draw_events(frame, picture);
-    if (!picture.empty()) row.events = fitted(picture, size);
+    draw_events(frame, image);
+    if (!image.empty()) row.events = fitted(image, size);
     if (settings_.draw_truth) {
         cv::Mat truth;
         settings_.draw_truth(frame, truth);
@@ -96,8 +96,8 @@ cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
         caption(sheet, columns[c].first, x, 0);
         for (std::size_t r = 0; r < rows.size(); ++r) {
             const int y = kCaption + int(r) * (cell.height + kCaption);
-            const cv::Mat& picture = rows[r].*columns[c].second;
-            if (!picture.empty()) picture.copyTo(sheet(cv::Rect({x, y}, cell)));
+            const cv::Mat& image = rows[r].*columns[c].second;
+            if (!image.empty()) image.copyTo(sheet(cv::Rect({x, y}, cell)));
             char text[32];
             std::snprintf(text, sizeof text, "%.3f s", rows[r].seconds);
             if (c == 0) caption(sheet, text, x, y + cell.height);

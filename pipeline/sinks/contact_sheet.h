@@ -1,8 +1,8 @@
-// One picture of a whole run: rows of events, intensity, sigma and truth.
+// One image of a whole run: rows of events, intensity, sigma and truth.
 #pragma once
 
 #include "pipeline/sink.h"
-#include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/draw_frame.h"
 
 #include <filesystem>
 #include <functional>
@@ -16,7 +16,7 @@ struct ContactSheetSettings {
     bool overwrite = false;
     float sigma_white = kSigmaWhite;
     int rows = 4;  ///< frames on the sheet, >= 1
-    /// Draws the reference image of a frame, CV_8UC1, or leaves the picture empty where there is
+    /// Draws the reference image of a frame, CV_8UC1, or leaves the image empty where there is
     /// none; may be empty.
     std::function<void(const Frame&, cv::Mat&)> draw_truth = {};
     std::string truth_caption = "truth";  ///< what those images are: a sensor's own are not truth
@@ -35,7 +35,7 @@ public:
     void close() override;
 
 private:
-    /// One frame's pictures, all of one size, CV_8UC3; an empty one where there is nothing to show.
+    /// One frame's images, all of one size, CV_8UC3; an empty one where there is nothing to show.
     struct Row {
         double seconds = 0;
         cv::Mat events, intensity, sigma, truth;

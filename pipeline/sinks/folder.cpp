@@ -68,15 +68,15 @@ void FolderSink::write(const Frame& frame) {
     // 1 = not compressed: deflating float noise costs time and saves nothing.
     static const std::vector<int> kTiff{cv::IMWRITE_TIFF_COMPRESSION, 1};
 
-    draw(frame, settings_.uncertainty, settings_.sigma_white, picture_);
-    write_image(folder_.next(kFrames), picture_, ".png", kPng);
+    draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
+    write_image(folder_.next(kFrames), image_, ".png", kPng);
     if (settings_.uncertainty != Uncertainty::none && !frame.sigma.empty()) {
         const cv::Mat sigma(frame.sigma.height(), frame.sigma.width(), CV_32FC1,
                             const_cast<float*>(frame.sigma.values().data()));
         write_image(folder_.next(kUncertainty), sigma, ".tiff", kTiff);
     }
-    draw_events(frame, picture_);
-    if (!picture_.empty()) write_image(folder_.next(kEvents), picture_, ".png", kPng);
+    draw_events(frame, image_);
+    if (!image_.empty()) write_image(folder_.next(kEvents), image_, ".png", kPng);
     write_times(frame);
     ++frames_;
 }

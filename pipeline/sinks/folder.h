@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/sink.h"
-#include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/draw_frame.h"
 #include "pipeline/sinks/run_folder.h"
 #include "src/io/output_file.h"
 
@@ -35,7 +35,7 @@ struct FolderSettings {
 ///                                 a jump of `index` is a skipped frame
 ///   run.json                      what of this is ours; whole at close
 /// What is written is complete after each frame: a killed run loses at most the frame in work, and
-/// every picture is whole.
+/// every image is whole.
 class FolderSink : public Sink {
 public:
     /// Makes the folder. Throws Error as RunFolder does.
@@ -53,7 +53,7 @@ private:
     FolderSettings settings_;
     RunFolder folder_;
     OutputFile seconds_, table_;
-    cv::Mat picture_;
+    cv::Mat image_;
     std::uint64_t frames_ = 0;
     bool closed_ = false;
 };

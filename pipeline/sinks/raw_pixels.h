@@ -1,7 +1,7 @@
 // Frames as plain numbers, intensity and sigma in one of four arrangements.
 #pragma once
 
-#include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/draw_frame.h"
 
 #include <cstddef>
 #include <vector>

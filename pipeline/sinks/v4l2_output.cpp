@@ -100,9 +100,9 @@ void V4l2OutputSink::fix_format(int width, int height) {
 }
 
 /// Chroma stays at kNoColour.
-void V4l2OutputSink::pack(const cv::Mat& picture) {
+void V4l2OutputSink::pack(const cv::Mat& image) {
     for (int y = 0; y < height_; ++y) {
-        const std::uint8_t* from = picture.ptr<std::uint8_t>(y);
+        const std::uint8_t* from = image.ptr<std::uint8_t>(y);
         const std::size_t at = std::size_t(y) * std::size_t(width_);
         if (format_ == V4l2PixelFormat::yuyv)
             for (int x = 0; x < width_; ++x) bytes_[2 * (at + std::size_t(x))] = from[x];
@@ -112,15 +112,15 @@ void V4l2OutputSink::pack(const cv::Mat& picture) {
 }
 
 void V4l2OutputSink::write(const Frame& frame) {
-    draw(frame, settings_.uncertainty, settings_.sigma_white, picture_);
-    if (width_ == 0) fix_format(picture_.cols, picture_.rows);
-    if (picture_.cols < width_ || picture_.rows < height_ || picture_.cols > width_ + 1 ||
-        picture_.rows > height_ + 1)
+    draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
+    if (width_ == 0) fix_format(image_.cols, image_.rows);
+    if (image_.cols < width_ || image_.rows < height_ || image_.cols > width_ + 1 ||
+        image_.rows > height_ + 1)
         throw Error(ErrorKind::failed, "v4l2:" + settings_.node.string() + " was opened at " +
                                            std::to_string(width_) + "x" + std::to_string(height_) +
-                                           ", a frame of " + std::to_string(picture_.cols) + "x" +
-                                           std::to_string(picture_.rows) + " does not fit");
-    pack(picture_);
+                                           ", a frame of " + std::to_string(image_.cols) + "x" +
+                                           std::to_string(image_.rows) + " does not fit");
+    pack(image_);
     ssize_t written = 0;
     do written = ::write(file_.get(), bytes_.data(), bytes_.size());
     while (written < 0 && errno == EINTR);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/sink.h"
-#include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/draw_frame.h"
 #include "pipeline/video_node.h"
 
 #include <cstddef>
@@ -46,14 +46,14 @@ public:
 private:
     void fix_format(int width, int height);
     bool try_format(V4l2PixelFormat format, int width, int height);
-    void pack(const cv::Mat& picture);
+    void pack(const cv::Mat& image);
     [[noreturn]] void fail(const char* what, int error) const;
 
     V4l2OutputSettings settings_;
     FileDescriptor file_;
     int width_ = 0, height_ = 0;  // 0 until the first frame
     V4l2PixelFormat format_ = V4l2PixelFormat::grey;
-    cv::Mat picture_;
+    cv::Mat image_;
     std::vector<std::uint8_t> bytes_;  // one frame as the device takes it
     std::uint64_t skipped_ = 0;
 };

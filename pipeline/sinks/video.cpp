@@ -54,11 +54,11 @@ std::int64_t VideoSink::microseconds_to_show(SensorTime t) {
 
 void VideoSink::write(const Frame& frame) {
     const std::int64_t t_us = microseconds_to_show(frame.t);
-    draw(frame, settings_.uncertainty, settings_.sigma_white, picture_);
-    intensity_->write(picture_, t_us);
+    draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
+    intensity_->write(image_, t_us);
     if (!sigma_) return;
-    draw_sigma(frame, settings_.sigma_white, picture_);
-    sigma_->write(picture_, t_us);
+    draw_sigma(frame, settings_.sigma_white, image_);
+    sigma_->write(image_, t_us);
 }
 
 void VideoSink::close() {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/sink.h"
-#include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/draw_frame.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -50,7 +50,7 @@ private:
     std::int64_t microseconds_to_show(SensorTime t);
 
     VideoSettings settings_;
-    cv::Mat picture_;
+    cv::Mat image_;
     std::unique_ptr<VideoFile> intensity_, sigma_;
     SensorTime origin_{};  // shown at begin_us_
     std::int64_t begin_us_ = 0;

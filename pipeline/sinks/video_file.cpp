@@ -26,7 +26,7 @@ namespace {
 
 constexpr AVRational kMicroseconds{1, 1'000'000};
 
-/// Frames per group of pictures, and so per MP4 fragment: what a killed run can lose.
+/// Frames per group of images, and so per MP4 fragment: what a killed run can lose.
 constexpr int kKeyInterval = 30;
 
 constexpr int kJpegQuality = 3;  // 1 best to 31: hard to tell from the original
@@ -166,10 +166,10 @@ void VideoFile::put_here(std::span<const std::byte> bytes) {
     size_ = std::max(size_, position_);
 }
 
-void VideoFile::open_encoder(const cv::Mat& picture) {
-    type_ = picture.type();
-    width_ = picture.cols;
-    height_ = picture.rows;
+void VideoFile::open_encoder(const cv::Mat& image) {
+    type_ = image.type();
+    width_ = image.cols;
+    height_ = image.rows;
     encoder_->pix_fmt = kind_.pixels;
     const bool grey = encoder_->pix_fmt == AV_PIX_FMT_GRAY8;
     encoder_->width = grey ? width_ : even(width_);
@@ -219,27 +219,27 @@ void VideoFile::open_encoder(const cv::Mat& picture) {
     check(av_frame_get_buffer(frame_.get(), 0), "making a buffer");
 }
 
-void VideoFile::write(const cv::Mat& picture, std::int64_t t_us) {
-    if (!header_written_) open_encoder(picture);
-    if (picture.cols != width_ || picture.rows != height_ || picture.type() != type_)
+void VideoFile::write(const cv::Mat& image, std::int64_t t_us) {
+    if (!header_written_) open_encoder(image);
+    if (image.cols != width_ || image.rows != height_ || image.type() != type_)
         throw Error(ErrorKind::failed, path_.string() + ": expected frames of " +
                                            std::to_string(width_) + "x" + std::to_string(height_) +
-                                           ", found one of " + std::to_string(picture.cols) + "x" +
-                                           std::to_string(picture.rows));
+                                           ", found one of " + std::to_string(image.cols) + "x" +
+                                           std::to_string(image.rows));
     // The encoder may still read the buffer of the frame before.
     check(av_frame_make_writable(frame_.get()), "making a buffer");
-    fill_frame(picture);
+    fill_frame(image);
     const std::int64_t tick = av_rescale_q(t_us, kMicroseconds, encoder_->time_base);
     frame_->pts = last_tick_ = std::max(tick, last_tick_ + 1);
     encode(frame_.get());
 }
 
-void VideoFile::fill_frame(const cv::Mat& picture) {
+void VideoFile::fill_frame(const cv::Mat& image) {
     if (kind_.pixels == AV_PIX_FMT_GRAY8)
-        return picture.copyTo(cv::Mat(picture.rows, picture.cols, CV_8UC1, frame_->data[0],
-                                      std::size_t(frame_->linesize[0])));
+        return image.copyTo(cv::Mat(image.rows, image.cols, CV_8UC1, frame_->data[0],
+                                    std::size_t(frame_->linesize[0])));
     to_yuv420(
-        picture, kind_.full_range ? YuvRange::full : YuvRange::limited,
+        image, kind_.full_range ? YuvRange::full : YuvRange::limited,
         {Plane{frame_->data[0], frame_->linesize[0]}, Plane{frame_->data[1], frame_->linesize[1]},
          Plane{frame_->data[2], frame_->linesize[2]}});
 }

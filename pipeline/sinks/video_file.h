@@ -38,15 +38,15 @@ public:
     ~VideoFile();
 
     /// CV_8UC1 or CV_8UC3 (BGR), the same size and type each time; `t_us` must grow.
-    void write(const cv::Mat& picture, std::int64_t t_us);
+    void write(const cv::Mat& image, std::int64_t t_us);
 
     /// Drains the encoder and ends the file; without a frame none is left behind. After a write
     /// that failed it only closes.
     void finish();
 
 private:
-    void open_encoder(const cv::Mat& picture);
-    void fill_frame(const cv::Mat& picture);
+    void open_encoder(const cv::Mat& image);
+    void fill_frame(const cv::Mat& image);
     void encode(const AVFrame* frame);
     void check(int result, const char* doing);
 

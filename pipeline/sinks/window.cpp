@@ -105,22 +105,22 @@ void WindowSink::write(const Frame& frame) {
 }
 
 void WindowSink::show(const Frame& frame) {
-    draw(frame, controls_.uncertainty, settings_.sigma_white, picture_);
+    draw(frame, controls_.uncertainty, settings_.sigma_white, image_);
     draw_events(frame, events_);
     if (!events_.empty()) {
-        cv::Mat scaled, coloured = picture_;
+        cv::Mat scaled, coloured = image_;
         cv::resize(events_, scaled, {frame.intensity.width(), frame.intensity.height()}, 0, 0,
                    cv::INTER_NEAREST);
-        if (picture_.channels() == 1) cv::cvtColor(picture_, coloured, cv::COLOR_GRAY2BGR);
-        cv::hconcat(scaled, coloured, picture_);
+        if (image_.channels() == 1) cv::cvtColor(image_, coloured, cv::COLOR_GRAY2BGR);
+        cv::hconcat(scaled, coloured, image_);
     }
     if (!open_) {
         cv::namedWindow(settings_.title, cv::WINDOW_NORMAL | cv::WINDOW_KEEPRATIO);
-        cv::resizeWindow(settings_.title, std::max(640, picture_.cols),
-                         std::max(640, picture_.cols) * picture_.rows / picture_.cols);
+        cv::resizeWindow(settings_.title, std::max(640, image_.cols),
+                         std::max(640, image_.cols) * image_.rows / image_.cols);
         open_ = true;
     }
-    cv::imshow(settings_.title, picture_);
+    cv::imshow(settings_.title, image_);
 }
 
 void WindowSink::react(int wait_ms) {

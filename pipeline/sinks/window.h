@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/sink.h"
-#include "pipeline/sinks/picture.h"
+#include "pipeline/sinks/draw_frame.h"
 
 #include <functional>
 #include <string>
@@ -35,7 +35,7 @@ struct WindowControls {
     void press(int key);
 };
 
-/// Frames with an event preview show it left of the picture.
+/// Frames with an event preview show it left of the image.
 ///
 /// Render thread = the program's main thread, as window systems want it. A pause holds the thread:
 /// a recording waits, a live source goes on and its frames are skipped.
@@ -57,7 +57,7 @@ private:
 
     WindowSettings settings_;
     WindowControls controls_;
-    cv::Mat picture_, events_;
+    cv::Mat image_, events_;
     bool open_ = false;
 };
 

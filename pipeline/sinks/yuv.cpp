@@ -1,4 +1,4 @@
-// BT.709 luma and 4:2:0 chroma; grey pictures have luma only.
+// BT.709 luma and 4:2:0 chroma; grey images have luma only.
 #include "pipeline/sinks/yuv.h"
 
 #include <algorithm>
@@ -33,36 +33,36 @@ std::array<std::uint8_t, 256> luma_table(const Scale& scale) {
     return table;
 }
 
-void grey_rows(const cv::Mat& picture, YuvRange range, const std::array<Plane, 3>& planes) {
+void grey_rows(const cv::Mat& image, YuvRange range, const std::array<Plane, 3>& planes) {
     const auto table = luma_table(scale_of(range));
-    for (int y = 0; y < even(picture.rows); ++y) {
-        const auto* from = picture.ptr<std::uint8_t>(std::min(y, picture.rows - 1));
+    for (int y = 0; y < even(image.rows); ++y) {
+        const auto* from = image.ptr<std::uint8_t>(std::min(y, image.rows - 1));
         std::uint8_t* into = planes[0].data + y * planes[0].stride;
-        for (int x = 0; x < picture.cols; ++x) into[x] = table[from[x]];
-        into[even(picture.cols) - 1] = into[picture.cols - 1];
+        for (int x = 0; x < image.cols; ++x) into[x] = table[from[x]];
+        into[even(image.cols) - 1] = into[image.cols - 1];
     }
     for (std::size_t c = 1; c < 3; ++c)
-        for (int y = 0; y < even(picture.rows) / 2; ++y)
+        for (int y = 0; y < even(image.rows) / 2; ++y)
             std::memset(planes[c].data + y * planes[c].stride, 128,
-                        std::size_t(even(picture.cols) / 2));
+                        std::size_t(even(image.cols) / 2));
 }
 
 float luma_of(const std::uint8_t* bgr) {
     return kBlue * float(bgr[0]) + kGreen * float(bgr[1]) + kRed * float(bgr[2]);
 }
 
-void colour_rows(const cv::Mat& picture, YuvRange range, const std::array<Plane, 3>& planes) {
+void colour_rows(const cv::Mat& image, YuvRange range, const std::array<Plane, 3>& planes) {
     const Scale scale = scale_of(range);
     const auto pixel = [&](int y, int x) {
-        return picture.ptr<std::uint8_t>(std::min(y, picture.rows - 1)) +
-               3 * std::min(x, picture.cols - 1);
+        return image.ptr<std::uint8_t>(std::min(y, image.rows - 1)) +
+               3 * std::min(x, image.cols - 1);
     };
-    for (int y = 0; y < even(picture.rows); ++y)
-        for (int x = 0; x < even(picture.cols); ++x)
+    for (int y = 0; y < even(image.rows); ++y)
+        for (int x = 0; x < even(image.cols); ++x)
             planes[0].data[y * planes[0].stride + x] =
                 byte_of(luma_of(pixel(y, x)) * scale.luma + scale.offset);
-    for (int y = 0; y < even(picture.rows) / 2; ++y)
-        for (int x = 0; x < even(picture.cols) / 2; ++x) {
+    for (int y = 0; y < even(image.rows) / 2; ++y)
+        for (int x = 0; x < even(image.cols) / 2; ++x) {
             float blue = 0, red = 0;
             for (const int dy : {0, 1})
                 for (const int dx : {0, 1}) {
@@ -77,11 +77,11 @@ void colour_rows(const cv::Mat& picture, YuvRange range, const std::array<Plane,
 
 }  // namespace
 
-void to_yuv420(const cv::Mat& picture, YuvRange range, const std::array<Plane, 3>& planes) {
-    if (picture.channels() == 1)
-        grey_rows(picture, range, planes);
+void to_yuv420(const cv::Mat& image, YuvRange range, const std::array<Plane, 3>& planes) {
+    if (image.channels() == 1)
+        grey_rows(image, range, planes);
     else
-        colour_rows(picture, range, planes);
+        colour_rows(image, range, planes);
 }
 
 }  // namespace eventide

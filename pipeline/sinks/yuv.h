@@ -1,4 +1,4 @@
-// 8-bit pictures as Y, U and V planes with 4:2:0 chroma (BT.709): what H.264 players and Y4M
+// 8-bit images as Y, U and V planes with 4:2:0 chroma (BT.709): what H.264 players and Y4M
 // readers take.
 #pragma once
 
@@ -26,8 +26,8 @@ constexpr int even(int size) {
     return size + (size & 1);
 }
 
-/// `picture` is CV_8UC1 or CV_8UC3 (BGR). The Y plane is even(cols) x even(rows), U and V half of
+/// `image` is CV_8UC1 or CV_8UC3 (BGR). The Y plane is even(cols) x even(rows), U and V half of
 /// that in both directions; an added column or row repeats the last.
-void to_yuv420(const cv::Mat& picture, YuvRange range, const std::array<Plane, 3>& planes);
+void to_yuv420(const cv::Mat& image, YuvRange range, const std::array<Plane, 3>& planes);
 
 }  // namespace eventide

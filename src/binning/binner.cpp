@@ -1,4 +1,4 @@
-// event frame -> voxel grid.
+// event window -> voxel grid.
 #include "src/binning/binner.h"
 
 #include "src/core/error.h"
@@ -64,27 +64,27 @@ void Binner::reset() noexcept {
     std::fill(ages_.begin(), ages_.end(), kOldest);
 }
 
-void Binner::process(const Slice& slice, VoxelGrid& grid) noexcept {
+void Binner::process(const EventWindow& event_window, VoxelGrid& grid) noexcept {
     assert(grid.values.height() == height_ && grid.values.width() == width_ &&
            grid.values.channels() == 4 * bins_ + 1 && grid.touched.values().size() == ages_.size());
-    grid.window = slice.window;
-    grid.events = slice.events.size();
-    grid.gap_before = slice.gap_before;
-    grid.reset_before = slice.reset_before;
-    grid.arrived = slice.arrived;
+    grid.window = event_window.window;
+    grid.events = event_window.events.size();
+    grid.gap_before = event_window.gap_before;
+    grid.reset_before = event_window.reset_before;
+    grid.arrived = event_window.arrived;
     std::fill(grid.values.values().begin(), grid.values.values().end(), 0.0F);
 
-    const std::int64_t width_us = slice.window.width().count();
-    const bool ordered = in_time_order(slice.events);
-    std::span<const Event> rest = slice.events;
+    const std::int64_t width_us = event_window.window.width().count();
+    const bool ordered = in_time_order(event_window.events);
+    std::span<const Event> rest = event_window.events;
     for (int bin = 0; bin < bins_ && width_us > 0 && !rest.empty(); ++bin) {
         const BinTicks ticks = ticks_of(bin, width_us);
         if (ordered) {
-            const std::size_t n = first_after(rest, slice.window.begin, ticks.last_dt);
-            add(rest.first(n), slice.window.begin, ticks);
+            const std::size_t n = first_after(rest, event_window.window.begin, ticks.last_dt);
+            add(rest.first(n), event_window.window.begin, ticks);
             rest = rest.subspan(n);
         } else {  // every bin looks at all events
-            add(rest, slice.window.begin, ticks);
+            add(rest, event_window.window.begin, ticks);
         }
         write(bin, std::ldexp(double(width_us), -ticks.shift), grid);
     }

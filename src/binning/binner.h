@@ -1,4 +1,4 @@
-// event frame -> voxel grid (reconstruction.md section 2).
+// event window -> voxel grid (reconstruction.md section 2).
 #pragma once
 
 #include "src/core/frame_data.h"
@@ -25,7 +25,7 @@ public:
     VoxelGrid make_output() const;  ///< values of [height][width][4 bins + 1], touched
 
     /// `grid` is one from make_output(). Events outside the sensor or the window are left out.
-    void process(const Slice& slice, VoxelGrid& grid) noexcept;
+    void process(const EventWindow& event_window, VoxelGrid& grid) noexcept;
 
     /// As constructed: no pixel has had an event.
     void reset() noexcept;

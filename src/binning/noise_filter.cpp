@@ -25,7 +25,7 @@ constexpr double kExpected = .4;
 // A tile is quiet while it has no more events than its noise gives it, and so many deviations. Its
 // noise, from the sensor's to so many times that, is learned while it is quiet; slowly, while its
 // events stand alone.
-constexpr double kQuietDeviations = 6, kMostTimes = 4, kLearn = .1, kLearnSlowly = .02;
+constexpr double kQuietDeviations = 6, kMaxTimes = 4, kLearn = .1, kLearnSlowly = .02;
 // Noise stands alone: of a tile's events, no more have kQuietSupport.
 constexpr double kAloneShare = .02;
 constexpr SensorDuration kHotInterval{2'000'000};
@@ -129,7 +129,7 @@ void NoiseFilter::end_interval() noexcept {
             tile.noise = noise;
         else if (is_quiet(tile, 2) || is_alone(tile))
             tile.noise += (is_quiet(tile, 2) ? kLearn : kLearnSlowly) * (tile.events - tile.noise);
-        tile.noise = std::clamp(tile.noise, noise, kMostTimes * noise);
+        tile.noise = std::clamp(tile.noise, noise, kMaxTimes * noise);
         tile.before = std::exchange(tile.events, 0U);
         tile.supported = 0;
     }

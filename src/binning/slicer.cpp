@@ -1,4 +1,4 @@
-// stream of events -> event frames.
+// stream of events -> event windows.
 #include "src/binning/slicer.h"
 
 #include "src/core/error.h"
@@ -15,7 +15,7 @@ namespace {
 constexpr SensorDuration kMicrosecond{1};
 
 std::uint64_t events_per_frame(const SlicerSettings& settings, int width, int height) {
-    if (settings.rule != SliceRule::count) return settings.max_events;
+    if (settings.rule != WindowRule::count) return settings.max_events;
     const double pixels = double(width) * double(height);
     const std::uint64_t wanted =
         settings.events_per_pixel > 0
@@ -34,13 +34,14 @@ void check(bool good, const char* name, std::int64_t found) {
 
 Slicer::Slicer(const SlicerSettings& settings, int width, int height)
     : settings_(settings),
-      step_(settings.rule == SliceRule::duration ? settings.width : settings.max_width),
+      step_(settings.rule == WindowRule::duration ? settings.width : settings.max_width),
       most_events_(events_per_frame(settings, width, height)) {
     check(step_ >= kMicrosecond, "the (maximum) width in us", step_.count());
     check(most_events_ >= 1, "the number of events", std::int64_t(most_events_));
     check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
     check(width >= 1 && height >= 1, "the sensor's size", std::min(width, height));
-    if (settings.rule == SliceRule::content) activity_ = {settings.events_per_pixel, width, height};
+    if (settings.rule == WindowRule::content)
+        activity_ = {settings.events_per_pixel, width, height};
     reset();
 }
 
@@ -125,7 +126,7 @@ void Slicer::advance(SensorTime now, HostTime arrived) {
 }
 
 void Slicer::push_reference(SensorTime t) {
-    if (settings_.rule != SliceRule::reference) return;
+    if (settings_.rule != WindowRule::reference) return;
     if (begin_ && t <= *begin_) {
         ++counters_.late_references;
         return;
@@ -133,7 +134,7 @@ void Slicer::push_reference(SensorTime t) {
     references_.insert(std::upper_bound(references_.begin(), references_.end(), t), t);
 }
 
-/// Slices are borrowed until the next call, so events leave only here.
+/// EventWindows are borrowed until the next call, so events leave only here.
 void Slicer::drop_consumed() {
     if (head_ == 0) return;
     pending_.erase(pending_.begin(), pending_.begin() + std::ptrdiff_t(head_));
@@ -175,7 +176,7 @@ void Slicer::look_again() {
 }
 
 SensorTime Slicer::natural_edge() const {
-    if (settings_.rule != SliceRule::duration) return *begin_ + step_;
+    if (settings_.rule != WindowRule::duration) return *begin_ + step_;
     return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
 }
 
@@ -194,13 +195,13 @@ std::optional<SensorTime> Slicer::cut() {
     const SensorTime passed = this->passed();
     SensorTime edge = natural_edge(), limit = SensorTime::max();
     SensorDuration wait{0};
-    if (settings_.rule == SliceRule::reference) {
+    if (settings_.rule == WindowRule::reference) {
         if (const auto reference = next_reference())
             edge = std::min(edge, limit = *reference);
         else if (!is_ended())
             wait = settings_.reference_wait;
     }
-    if (settings_.rule == SliceRule::content)
+    if (settings_.rule == WindowRule::content)
         if (const auto busy = busy_at()) edge = std::min(edge, limit = *busy);
     edge = stretched(edge, passed - wait, limit);
     if (segment_end() - head_ >= most_events_) {
@@ -215,18 +216,18 @@ std::optional<SensorTime> Slicer::cut() {
     return std::nullopt;
 }
 
-void Slicer::emit(SensorTime end, Slice& slice) {
+void Slicer::emit(SensorTime end, EventWindow& event_window) {
     const auto first = pending_.begin() + std::ptrdiff_t(head_);
     const auto last =
         std::upper_bound(first, pending_.begin() + std::ptrdiff_t(segment_end()), end,
                          [](SensorTime t, const Event& event) { return t < event.t; });
-    slice.window = {*begin_, end};
-    slice.events = {pending_.data() + head_, std::size_t(last - first)};
-    slice.gap_before = std::exchange(gap_, false);
-    slice.reset_before = std::exchange(reset_, false);
-    slice.arrived = arrived_;
-    silent_ = slice.events.empty() ? std::min(silent_ + 1, settings_.silent_frames) : 0;
-    head_ += slice.events.size();
+    event_window.window = {*begin_, end};
+    event_window.events = {pending_.data() + head_, std::size_t(last - first)};
+    event_window.gap_before = std::exchange(gap_, false);
+    event_window.reset_before = std::exchange(reset_, false);
+    event_window.arrived = arrived_;
+    silent_ = event_window.events.empty() ? std::min(silent_ + 1, settings_.silent_frames) : 0;
+    head_ += event_window.events.size();
     begin_ = end;
     look_again();
 }
@@ -241,10 +242,10 @@ void Slicer::cross_seam() {
     begin_ = origin_ = pending_[head_].t - kMicrosecond;
 }
 
-bool Slicer::next(Slice& slice) {
+bool Slicer::next(EventWindow& event_window) {
     while (begin_) {
         if (const auto end = cut()) {
-            emit(*end, slice);
+            emit(*end, event_window);
             return true;
         }
         if (seams_.empty()) return false;

@@ -1,4 +1,4 @@
-// stream of events -> event frames: consecutive windows (begin, end] without holes.
+// stream of events -> event windows: consecutive windows (begin, end] without holes.
 #pragma once
 
 #include "src/binning/slicer_settings.h"
@@ -13,7 +13,7 @@
 
 namespace eventide {
 
-/// Events taken in that are in no slice, or not at their own time; by reason.
+/// Events taken in that are in no event window, or not at their own time; by reason.
 struct SlicerCounters {
     std::uint64_t before_begin = 0;     ///< left out: before SlicerSettings::begin
     std::uint64_t after_end = 0;        ///< left out: after SlicerSettings::end
@@ -23,16 +23,16 @@ struct SlicerCounters {
     std::uint64_t time_resets = 0;      ///< time went back: a new stream began
 };
 
-/// Give it what the stream says, then take slices until there is none:
+/// Give it what the stream says, then take event windows until there is none:
 ///
 ///     slicer.push(events);
-///     for (Slice slice; slicer.next(slice);) ...
+///     for (EventWindow event window; slicer.next(event window);) ...
 ///
 /// A frame is cut at T when the stream is past T. However the stream is split into calls, the
-/// slices are the same (with the exception that SlicerSettings::silent_frames states).
+/// event windows are the same (with the exception that SlicerSettings::silent_frames states).
 ///
 /// Time that goes back (events are in order, so the camera's clock was reset) ends the open frame
-/// and begins anew; that slice carries reset_before.
+/// and begins anew; that event window carries reset_before.
 class Slicer {
 public:
     /// Sensor of width x height px. Throws Error (usage) for settings out of range.
@@ -47,14 +47,14 @@ public:
     /// The stream's clock says `now`: no event before it will come any more.
     void advance(SensorTime now, HostTime arrived = {});
 
-    /// Bytes were lost here. The next slice carries gap_before.
+    /// Bytes were lost here. The next event window carries gap_before.
     void mark_gap() { gap_ = true; }
 
     /// Nothing more will come: what is open ends at the newest time known.
     void finish() { finished_ = true; }
 
-    /// The next complete slice, borrowed until the next call of anything here.
-    bool next(Slice& slice);
+    /// The next complete event window, borrowed until the next call of anything here.
+    bool next(EventWindow& event_window);
 
     bool has_begun() const { return begin_.has_value(); }
     bool is_past_end() const { return past_end_; }  ///< SlicerSettings::end was reached
@@ -81,7 +81,7 @@ private:
     std::optional<SensorTime> busy_at();
     SensorTime natural_edge() const;
     SensorTime stretched(SensorTime edge, SensorTime passed, SensorTime limit) const;
-    void emit(SensorTime end, Slice& slice);
+    void emit(SensorTime end, EventWindow& event_window);
     void cross_seam();
     void look_again();
 
@@ -93,7 +93,7 @@ private:
     std::size_t scanned_ = 0;
     std::optional<SensorTime> busy_;  // rule content: when the tiles had seen enough
 
-    std::vector<Event> pending_;  // from head_ on not yet in a slice
+    std::vector<Event> pending_;  // from head_ on not yet in a event window
     std::size_t head_ = 0;
     std::vector<Seam> seams_;
     std::vector<SensorTime> references_;  // ascending

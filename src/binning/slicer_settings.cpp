@@ -12,7 +12,7 @@ namespace eventide {
 namespace {
 
 constexpr double kUsPerDay = 24.0 * 3600.0 * 1e6;
-constexpr double kMostEvents = 1e9;
+constexpr double kMaxEvents = 1e9;
 /// Images come 5 to 50 times a second; a frame between two of them must not be cut in two.
 constexpr SensorDuration kReferenceMaxWidth{1'000'000};
 /// Rule content (docs/accuracy.md, "Windows by content").
@@ -52,29 +52,29 @@ std::optional<SensorDuration> duration(Quantity q, std::string_view text) {
 
 void parse_rule(std::string_view rule, std::string_view text, SlicerSettings& settings) {
     if (rule == "aps") {
-        settings.rule = SliceRule::reference;
+        settings.rule = WindowRule::reference;
         settings.max_width = kReferenceMaxWidth;
         return;
     }
     if (rule == "auto") {
-        settings.rule = SliceRule::content;
+        settings.rule = WindowRule::content;
         settings.events_per_pixel = kContentEventsPerPixel;
         settings.max_width = kContentMaxWidth;
         return;
     }
     const Quantity q = quantity(rule, text);
     if (q.unit == "ev") {
-        settings.rule = SliceRule::count;
-        if (q.value < 1 || q.value > kMostEvents || q.value != std::floor(q.value))
+        settings.rule = WindowRule::count;
+        if (q.value < 1 || q.value > kMaxEvents || q.value != std::floor(q.value))
             refuse(text, "a number of events is a whole number from 1 to 1e9");
         settings.events = std::uint64_t(q.value);
     } else if (q.unit == "epp") {
-        settings.rule = SliceRule::count;
+        settings.rule = WindowRule::count;
         if (q.value <= 0 || q.value > 1000)
             refuse(text, "events per pixel are more than 0 and at most 1000");
         settings.events_per_pixel = q.value;
     } else if (const auto width = duration(q, text)) {
-        settings.rule = SliceRule::duration;
+        settings.rule = WindowRule::duration;
         settings.width = *width;
     } else if (q.unit.empty()) {
         const std::string number{rule};
@@ -92,7 +92,7 @@ SlicerSettings parse_window(std::string_view text) {
     const auto comma = text.find(',');
     parse_rule(text.substr(0, comma), text, settings);
     if (comma == text.npos) return settings;
-    if (settings.rule == SliceRule::duration) refuse(text, "a constant width has no maximum");
+    if (settings.rule == WindowRule::duration) refuse(text, "a constant width has no maximum");
     const auto widest = duration(quantity(text.substr(comma + 1), text), text);
     if (!widest) refuse(text, "the maximum width is a duration");
     settings.max_width = *widest;
@@ -102,13 +102,13 @@ SlicerSettings parse_window(std::string_view text) {
 std::string window_text(const SlicerSettings& settings) {
     const std::string widest = "," + duration_text(settings.max_width);
     switch (settings.rule) {
-        case SliceRule::duration:
+        case WindowRule::duration:
             return duration_text(settings.width);
-        case SliceRule::reference:
+        case WindowRule::reference:
             return "aps" + widest;
-        case SliceRule::content:
+        case WindowRule::content:
             return "auto" + widest;
-        case SliceRule::count:
+        case WindowRule::count:
             break;
     }
     if (settings.events_per_pixel <= 0) return std::to_string(settings.events) + "ev" + widest;

@@ -1,4 +1,4 @@
-// How the stream of events is cut into event frames, and the text that says so ("--window").
+// How the stream of events is cut into event windows, and the text that says so ("--window").
 #pragma once
 
 #include "src/core/sensor_time.h"
@@ -10,7 +10,7 @@
 
 namespace eventide {
 
-enum class SliceRule : std::uint8_t {
+enum class WindowRule : std::uint8_t {
     duration,  ///< constant width
     count,     ///< constant number of events, ended early at max_width
     content,   ///< once the busiest tiles have seen enough (tile_activity.h), or at max_width
@@ -18,7 +18,7 @@ enum class SliceRule : std::uint8_t {
 };
 
 struct SlicerSettings {
-    SliceRule rule = SliceRule::duration;
+    WindowRule rule = WindowRule::duration;
     SensorDuration width{50'000};   ///< of each frame, rule duration; >= 1 us
     std::uint64_t events = 20'000;  ///< per frame, rule count; >= 1
     /// Rule count: where > 0, `events` is this times the pixels. Rule content: of the busiest

@@ -10,12 +10,12 @@ namespace {
 
 // As for the words of the camera itself (drivers-and-formats.md A.10): a pixel that was bright
 // already while it was reset, or that reached the end of the scale, would come out dark.
-constexpr int kMostSample = 1023, kLeastReset = 384;
+constexpr int kMaxSample = 1023, kLeastReset = 384;
 constexpr int kTo16Bits = 64;
 
 std::uint16_t intensity_of(int reset, int signal) {
     const bool overexposed = reset < kLeastReset || signal == 0;
-    const int value = overexposed ? kMostSample : std::clamp(reset - signal, 0, kMostSample);
+    const int value = overexposed ? kMaxSample : std::clamp(reset - signal, 0, kMaxSample);
     return std::uint16_t(value * kTo16Bits);
 }
 

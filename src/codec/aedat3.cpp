@@ -149,7 +149,7 @@ void Aedat3Parser::take_many_events(std::span<const std::byte> records, Batch& i
                 const int plain = int(word.is_valid()) & int(word.x() < width) &
                                   int(word.y() < height) & int(stamp >= newest) &
                                   int(stamp <= std::int64_t(kLastStamp)) &
-                                  int(stamp - newest <= EventLine::kLongestStep);
+                                  int(stamp - newest <= EventValidator::kLongestStep);
                 if (plain == 0) break;
                 *out++ = {from_us(base_us_ + stamp), std::uint16_t(word.x()),
                           std::uint16_t(word.y()), Polarity(word.is_on())};

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "src/codec/aedat3_packet.h"
-#include "src/codec/event_line.h"
+#include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
 #include "src/codec/stream.h"
 
@@ -52,7 +52,7 @@ private:
 
     bool lower_left_;
     std::optional<int> source_;
-    EventLine line_;
+    EventValidator line_;
     Damage damage_;
 
     State state_ = State::header;

@@ -17,11 +17,11 @@ Aedat3Packet read_aedat3_packet(const std::byte* p) {
 }
 
 bool is_plausible(const Aedat3Packet& packet) {
-    constexpr std::uint32_t kMostRecords = 1U << 26;
+    constexpr std::uint32_t kMaxRecords = 1U << 26;
     // 2^22 times 36 minutes are 285 years: times since 1970 need a fifth of that.
-    constexpr std::uint32_t kMostOverflow = 1U << 22;
+    constexpr std::uint32_t kMaxOverflow = 1U << 22;
     if (packet.type < 0 || packet.type > Aedat3Packet::kLastType || packet.source < 0) return false;
-    if (packet.overflow > kMostOverflow || packet.capacity > kMostRecords) return false;
+    if (packet.overflow > kMaxOverflow || packet.capacity > kMaxRecords) return false;
     if (packet.number > packet.capacity || packet.valid > packet.number) return false;
     constexpr std::uint32_t kTimeOffset = 4;  // behind the word with the valid bit
     const auto is_record_of = [&](std::uint32_t bytes) {
@@ -38,7 +38,7 @@ bool is_plausible(const Aedat3Packet& packet) {
             return is_record_of(Aedat3Packet::kImu9Bytes);
         case Aedat3Type::frame:  // any of its four stamps, though the end of the frame is usual
             return packet.record_bytes >= Aedat3Packet::kFrameHeaderBytes &&
-                   packet.record_bytes <= Aedat3Packet::kMostFrameBytes &&
+                   packet.record_bytes <= Aedat3Packet::kMaxFrameBytes &&
                    packet.time_offset % 4 == 0 && packet.time_offset >= 4 &&
                    packet.time_offset <= 16;
     }

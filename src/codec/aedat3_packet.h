@@ -13,7 +13,7 @@ struct Aedat3Packet {
     static constexpr std::uint32_t kPolarityBytes = 8, kSpecialBytes = 8, kImu6Bytes = 36,
                                    kImu9Bytes = 48, kFrameHeaderBytes = 36;
     /// A frame of 2048 x 2048 px in four channels; longer records are held for damage.
-    static constexpr std::uint32_t kMostFrameBytes = kFrameHeaderBytes + 2048 * 2048 * 4 * 2;
+    static constexpr std::uint32_t kMaxFrameBytes = kFrameHeaderBytes + 2048 * 2048 * 4 * 2;
     /// Types 5 and above of the format (samples, ear, configuration, points, ...) are passed over.
     static constexpr std::int16_t kLastType = 15;
 

@@ -56,8 +56,8 @@ void append_packets(Aedat3Type type, std::uint32_t record_bytes, const std::vect
 }
 
 void append_event(const Event& event, std::vector<std::byte>& out) {
-    constexpr std::uint16_t kMost = 0x7FFF;
-    if (event.x > kMost || event.y > kMost)
+    constexpr std::uint16_t kMax = 0x7FFF;
+    if (event.x > kMax || event.y > kMax)
         throw Error(ErrorKind::usage, "AEDAT 3.1: expected coordinates up to 32767, found (" +
                                           std::to_string(event.x) + ", " + std::to_string(event.y) +
                                           ")");
@@ -68,7 +68,7 @@ void append_event(const Event& event, std::vector<std::byte>& out) {
 
 void append_image(const ReferenceImage& image, std::vector<std::byte>& out) {
     const std::size_t bytes = Aedat3Packet::kFrameHeaderBytes + 2 * image.pixels.values().size();
-    if (image.pixels.empty() || bytes > Aedat3Packet::kMostFrameBytes || image.x0 < 0 ||
+    if (image.pixels.empty() || bytes > Aedat3Packet::kMaxFrameBytes || image.x0 < 0 ||
         image.y0 < 0)
         throw Error(ErrorKind::usage, "AEDAT 3.1: expected a frame of 1 to 2048 x 2048 px, found " +
                                           std::to_string(image.pixels.width()) + "x" +

@@ -18,7 +18,7 @@ constexpr std::size_t kLookBytes = kPacketHeaderBytes + 12;
 constexpr std::size_t kSmallestPayload = 12;
 // Damage can look like the beginning of many packets, each inside the one before: after so many
 // that were none, whole ones are passed over, so that no byte is unpacked without end.
-constexpr int kMostFailuresInside = 16;
+constexpr int kMaxFailuresInside = 16;
 
 bool is_identifier(const std::byte* four) {
     return std::all_of(four, four + 4, [](std::byte b) {
@@ -36,7 +36,7 @@ std::uint64_t side(int px) {
 
 Aedat4Parser::Aedat4Parser(const Aedat4Header& header, int width, int height)
     : header_(header),
-      line_(side(width), side(height), EventLine::LeapEnds::with_next_packet),
+      line_(side(width), side(height), EventValidator::LeapEnds::with_next_packet),
       chosen_(header.chosen),
       all_streams_(header.streams.empty()),
       position_(header.stream.data_offset) {
@@ -149,7 +149,7 @@ std::size_t Aedat4Parser::drop_packet(std::size_t bytes, DamageReason reason) {
     if (reason != DamageReason::kCount) damage_.count(reason);
     state_ = State::searching;
     missed_packets_ = true;
-    return ++failed_in_a_row_ > kMostFailuresInside ? bytes : 1;
+    return ++failed_in_a_row_ > kMaxFailuresInside ? bytes : 1;
 }
 
 /// False when the bytes are no packet; then nothing was taken.

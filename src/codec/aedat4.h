@@ -6,7 +6,7 @@
 #include "src/codec/aedat4_header.h"
 #include "src/codec/aedat4_records.h"
 #include "src/codec/aedat4_table.h"
-#include "src/codec/event_line.h"
+#include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
 
 #include <array>
@@ -47,7 +47,7 @@ private:
     void run(std::span<const std::byte>& bytes, Batch& into);
 
     Aedat4Header header_;
-    EventLine line_;
+    EventValidator line_;
     Damage damage_;
     Aedat4Unpacker unpacker_;
     std::array<std::optional<std::int32_t>, 4> chosen_;  ///< stream per kind

@@ -14,7 +14,7 @@ namespace eventide {
 
 namespace {
 
-constexpr std::size_t kMostAtOnce = std::size_t(256) << 10;  // bytes; more only for who fills them
+constexpr std::size_t kMaxAtOnce = std::size_t(256) << 10;  // bytes; more only for who fills them
 constexpr std::uint32_t kLz4Magic = 0x184D2204, kZstdMagic = 0xFD2FB528;
 
 bool begins_with(std::span<const std::byte> bytes, std::uint32_t magic) {
@@ -108,7 +108,7 @@ std::optional<std::span<const std::byte>> Aedat4Unpacker::unpack(
     const bool lz4 = is_lz4_frame(packed);
     if (!lz4 && !is_zstd_frame(packed)) return packed;
     constexpr std::size_t kUsualRatio = 4, kLeastBytes = 4096;
-    const std::size_t likely = std::clamp(kUsualRatio * packed.size(), kLeastBytes, kMostAtOnce);
+    const std::size_t likely = std::clamp(kUsualRatio * packed.size(), kLeastBytes, kMaxAtOnce);
     if (unpacked_.size() < likely) unpacked_.resize(likely);
     for (;;) {
         bool too_small = false;

@@ -17,12 +17,12 @@ namespace eventide {
 /// Everything is aligned to its size, counted from the size prefix, as strict readers demand.
 class FlatWriter {
 public:
-    static constexpr std::size_t kMostFields = 16;
+    static constexpr std::size_t kMaxFields = 16;
 
     /// Where a table and its fields lie.
     struct Table {
         std::size_t position = 0;
-        std::array<std::size_t, kMostFields> fields{};
+        std::array<std::size_t, kMaxFields> fields{};
     };
 
     /// Begins a buffer with its root table, whose fields have these sizes in bytes (4 for vectors,
@@ -37,7 +37,7 @@ public:
 
     /// A table that the 4 bytes at `reference` point to; its fields are zero.
     Table begin_table(std::initializer_list<std::size_t> field_bytes, std::size_t reference) {
-        assert(field_bytes.size() <= kMostFields);
+        assert(field_bytes.size() <= kMaxFields);
         const std::size_t vtable_bytes = 4 + 2 * field_bytes.size();
         // The first field follows the table's first 4 bytes and may be 8 bytes wide.
         align(bytes_.size() + vtable_bytes, 8, 4);

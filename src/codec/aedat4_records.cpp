@@ -35,7 +35,7 @@ WireEvent load_event(const std::byte* record) {
 }
 
 /// All records at once when none of them needs more than a look.
-bool take_plain(std::span<const std::byte> records, EventLine& line, Batch& into) {
+bool take_plain(std::span<const std::byte> records, EventValidator& line, Batch& into) {
     constexpr std::size_t kAtOnce = 512;
     std::array<Event, kAtOnce> taken;
     const std::size_t n = records.size() / kAedat4EventBytes;
@@ -43,7 +43,7 @@ bool take_plain(std::span<const std::byte> records, EventLine& line, Batch& into
     const std::int64_t first = load_event(records.data()).t_us;
     const std::int64_t last = load_event(records.data() + records.size() - kAedat4EventBytes).t_us;
     if (!is_aedat4_time(first) || !is_aedat4_time(last)) return false;
-    if (!line.is_plain(first) || last - first > EventLine::kLongestStep) return false;
+    if (!line.is_plain(first) || last - first > EventValidator::kLongestStep) return false;
     const std::uint64_t width = line.width(), height = line.height();
     bool plain = true;
     std::int64_t before = first;
@@ -59,7 +59,7 @@ bool take_plain(std::span<const std::byte> records, EventLine& line, Batch& into
     return true;
 }
 
-void take_one_by_one(std::span<const std::byte> records, EventLine& line, Batch& into,
+void take_one_by_one(std::span<const std::byte> records, EventValidator& line, Batch& into,
                      Damage& damage) {
     for (; !records.empty(); records = records.subspan(kAedat4EventBytes)) {
         const WireEvent event = load_event(records.data());
@@ -117,7 +117,7 @@ void keep_newest(std::optional<std::int64_t>& newest, std::int64_t t_us) {
 
 }  // namespace
 
-std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventLine& line,
+std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& line,
                                                Batch& into, Damage& damage) {
     const auto elements = packet.vector(0, kAedat4EventBytes);
     if (!elements) {
@@ -134,7 +134,7 @@ std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventLin
     return line.newest_us();
 }
 
-std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const EventLine& sensor,
+std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const EventValidator& sensor,
                                               Batch& into, Damage& damage) {
     const int width = frame.scalar<std::int16_t>(6), height = frame.scalar<std::int16_t>(7);
     const auto format = pixel_format(frame.scalar<std::int8_t>(5));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/codec/aedat4_flat.h"
-#include "src/codec/event_line.h"
+#include "src/codec/event_validator.h"
 #include "src/core/damage.h"
 #include "src/core/event.h"
 
@@ -21,9 +21,9 @@ constexpr bool is_aedat4_time(std::int64_t t_us) {
 
 /// Each appends what a packet of its kind holds and counts what makes no sense. The result is the
 /// newest time told; empty when there was none.
-std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventLine& line,
+std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& line,
                                                Batch& into, Damage& damage);
-std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const EventLine& sensor,
+std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const EventValidator& sensor,
                                               Batch& into, Damage& damage);
 std::optional<std::int64_t> take_aedat4_imu(const FlatTable& packet, Batch& into, Damage& damage);
 std::optional<std::int64_t> take_aedat4_triggers(const FlatTable& packet, Batch& into,

@@ -11,7 +11,7 @@ namespace eventide {
 namespace {
 
 constexpr std::int64_t kWrapUs = 1 << 15;
-constexpr std::int64_t kMostWrapsInAWord = 0xFFF;
+constexpr std::int64_t kMaxWrapsInAWord = 0xFFF;
 constexpr std::uint16_t kReset = 1023;  // ADC level of a pixel that has just been reset
 
 void put(std::uint16_t word, std::vector<std::byte>& out) {
@@ -76,7 +76,7 @@ void DavisWriter::time_word(std::int64_t t, std::vector<std::byte>& out) {
                                           " us comes after " + std::to_string(time_) + " us");
     if (time_sent_ && t == time_) return;
     while (t - wrap_add_ >= kWrapUs) {
-        const std::int64_t wraps = std::min((t - wrap_add_) / kWrapUs, kMostWrapsInAWord);
+        const std::int64_t wraps = std::min((t - wrap_add_) / kWrapUs, kMaxWrapsInAWord);
         put(7, int(wraps), out);
         wrap_add_ += wraps * kWrapUs;
     }

@@ -12,7 +12,7 @@ constexpr int kDvxplorerRowsPerGroup = 8;  ///< of the masks that events come as
 
 struct DvxplorerSensor {
     int width = 640, height = 480;  ///< px, as a person sees it; Lite: 320x240
-    bool swapped = false;  ///< orientation bit 2: the chip's columns are the picture's rows
+    bool swapped = false;           ///< orientation bit 2: the chip's columns are the frame's rows
     bool imu_flip_x = false, imu_flip_y = false,
          imu_flip_z = false;  ///< IMU orientation bits 2, 1, 0
 

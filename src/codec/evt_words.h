@@ -72,9 +72,9 @@ private:
 class EventBlock {
 public:
     static constexpr std::size_t kSize = 1024;
-    static constexpr std::size_t kMostAtOnce = 32;  ///< events written between two calls of full()
+    static constexpr std::size_t kMaxAtOnce = 32;  ///< events written between two calls of full()
 
-    EventBlock() : events_(kSize + kMostAtOnce) {}
+    EventBlock() : events_(kSize + kMaxAtOnce) {}
     Event* data() { return events_.data(); }
     static bool full(std::size_t n) { return n >= kSize; }
 

@@ -17,8 +17,8 @@ namespace eventide {
 /// all that is held, so that one wrong time does not keep all after it from being sorted.
 class Reorder {
 public:
-    static constexpr std::int64_t kLeap = 100'000;                  // us
-    static constexpr std::size_t kMostHeld = std::size_t{1} << 20;  // 16 MiB
+    static constexpr std::int64_t kLeap = 100'000;                 // us
+    static constexpr std::size_t kMaxHeld = std::size_t{1} << 20;  // 16 MiB
 
     explicit Reorder(SensorDuration window)
         : window_(window.count()), leap_(std::max(kLeap, window_)) {}
@@ -36,7 +36,7 @@ public:
         }
         if (late || held_.size() - head_ >= next_drain_) drain(take);
         if (late) return take(event);
-        if (held_.size() - head_ >= kMostHeld) take(held_[head_++]);
+        if (held_.size() - head_ >= kMaxHeld) take(held_[head_++]);
         confirmed_ = true;
         insert(event, t);
     }
@@ -49,7 +49,7 @@ public:
             held_.erase(held_.begin(), held_.begin() + std::ptrdiff_t(head_));
             head_ = 0;
         }
-        next_drain_ = std::clamp(2 * (held_.size() - head_), kFewest, kMostHeld);
+        next_drain_ = std::clamp(2 * (held_.size() - head_), kFewest, kMaxHeld);
     }
 
     /// Hands on all.

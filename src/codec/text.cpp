@@ -61,8 +61,8 @@ bool is_separator(char c) {
 
 /// Microseconds of a plain number in a unit of 10^shift us; false where it does not fit.
 bool to_microseconds(const QuickNumber& number, int shift, std::int64_t& t_us) {
-    constexpr std::uint64_t kMostWhole = 9'000'000'000'000;  // times 10^6 still fits 63 bits
-    if (shift < 0 || number.whole > kMostWhole) return false;
+    constexpr std::uint64_t kMaxWhole = 9'000'000'000'000;  // times 10^6 still fits 63 bits
+    if (shift < 0 || number.whole > kMaxWhole) return false;
     std::uint64_t us = number.whole * kPowersOfTen[std::size_t(shift)];
     if (number.decimals <= shift) {
         us += number.fraction * kPowersOfTen[std::size_t(shift - number.decimals)];

@@ -1,7 +1,7 @@
 // Events as lines of text.
 #pragma once
 
-#include "src/codec/event_line.h"
+#include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
 #include "src/codec/reorder.h"
 #include "src/codec/stream.h"
@@ -44,7 +44,7 @@ private:
 
     TextLayout layout_;
     Reorder reorder_;
-    EventLine line_;
+    EventValidator line_;
     bool resyncing_ = false;  ///< what was held before the jump is still to be handed on
     std::size_t time_column_ = 0, x_column_ = 0, y_column_ = 0, polarity_column_ = 0;
     std::string carried_;            ///< the beginning of a line whose end has not come

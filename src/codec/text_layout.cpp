@@ -116,7 +116,7 @@ std::optional<TextLayout> layout_named(const Fields& titles) {
     layout.unit = TextTimeUnit::automatic;
     layout.n_columns = 0;
     std::array<int, 4> seen{};
-    for (std::size_t i = 0; i < std::min(titles.size(), TextLayout::kMostColumns); ++i) {
+    for (std::size_t i = 0; i < std::min(titles.size(), TextLayout::kMaxColumns); ++i) {
         const ColumnName column = column_named(titles[i]);
         layout.columns[i] = column.field;
         if (column.field == TextField::ignored) continue;
@@ -150,7 +150,7 @@ bool is_fractional(std::string_view field) {
 
 /// How many of the rows of whole numbers can be events in this order, none before the last.
 std::size_t rows_that_fit(const std::vector<Fields>& rows, std::string_view order) {
-    constexpr std::int64_t kMostSide = 65536;
+    constexpr std::int64_t kMaxSide = 65536;
     std::size_t fit = 0;
     std::int64_t last = std::numeric_limits<std::int64_t>::min();
     for (const Fields& row : rows) {
@@ -161,7 +161,7 @@ std::size_t rows_that_fit(const std::vector<Fields>& rows, std::string_view orde
         const auto t = whole('t'), x = whole('x'), y = whole('y'), p = whole('p');
         // A polarity in words is no number.
         if (!t || !x || !y || *t < last || (p && (*p < -1 || *p > 1))) continue;
-        if (*x < 0 || *x >= kMostSide || *y < 0 || *y >= kMostSide) continue;
+        if (*x < 0 || *x >= kMaxSide || *y < 0 || *y >= kMaxSide) continue;
         last = *t;
         ++fit;
     }
@@ -281,8 +281,8 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     if (line) {
         if (const auto geometry = geometry_of(split_fields(*line))) {
             const auto [width, height] = *geometry;
-            constexpr int kMostSide = 65536;
-            if (std::min(width, height) < 1 || std::max(width, height) > kMostSide)
+            constexpr int kMaxSide = 65536;
+            if (std::min(width, height) < 1 || std::max(width, height) > kMaxSide)
                 throw Error(ErrorKind::input,
                             "text recording: expected a sensor's size in the line of two numbers, "
                             "each from 1 to 65536, found \"" +

@@ -34,10 +34,10 @@ struct TextOptions {
 enum class TextField : std::uint8_t { time, x, y, polarity, ignored };
 
 struct TextLayout {
-    static constexpr std::size_t kMostColumns = 16;
+    static constexpr std::size_t kMaxColumns = 16;
 
-    std::array<TextField, kMostColumns> columns{TextField::time, TextField::x, TextField::y,
-                                                TextField::polarity};
+    std::array<TextField, kMaxColumns> columns{TextField::time, TextField::x, TextField::y,
+                                               TextField::polarity};
     std::size_t n_columns = 4;                  ///< further ones on a line are ignored
     TextTimeUnit unit = TextTimeUnit::seconds;  ///< never automatic
 };

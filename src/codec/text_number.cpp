@@ -8,11 +8,11 @@ namespace eventide {
 
 namespace {
 
-constexpr int kMostDigits = 19;  // any nineteen fit 64 bits
-constexpr int kMostExponent = 1000;
+constexpr int kMaxDigits = 19;  // any nineteen fit 64 bits
+constexpr int kMaxExponent = 1000;
 
-constexpr std::array<std::uint64_t, kMostDigits + 1> kPowersOfTen = [] {
-    std::array<std::uint64_t, kMostDigits + 1> powers{1};
+constexpr std::array<std::uint64_t, kMaxDigits + 1> kPowersOfTen = [] {
+    std::array<std::uint64_t, kMaxDigits + 1> powers{1};
     for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = powers[i - 1] * 10;
     return powers;
 }();
@@ -34,13 +34,13 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
             continue;
         }
         any = true;
-        if (value.digits < kPowersOfTen[kMostDigits - 1]) {
+        if (value.digits < kPowersOfTen[kMaxDigits - 1]) {
             value.digits = value.digits * 10 + std::uint64_t(text[i] - '0');
             value.exponent -= after_point;
         } else {
             value.exponent += !after_point;  // dropped
         }
-        if (value.exponent > kMostExponent || value.exponent < -kMostExponent) return {};
+        if (value.exponent > kMaxExponent || value.exponent < -kMaxExponent) return {};
     }
     if (!any) return {};
     if (i == text.size()) return value;
@@ -52,7 +52,7 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
     if (i == text.size()) return {};
     int exponent = 0;
     for (; i < text.size(); ++i) {
-        if (!is_digit(text[i]) || exponent > kMostExponent) return {};
+        if (!is_digit(text[i]) || exponent > kMaxExponent) return {};
         exponent = exponent * 10 + (text[i] - '0');
     }
     value.exponent += down ? -exponent : exponent;
@@ -60,24 +60,24 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
 }
 
 std::optional<std::int64_t> scaled_integer(const Decimal& value, int shift) {
-    constexpr auto kMost = std::uint64_t(std::numeric_limits<std::int64_t>::max());
+    constexpr auto kMax = std::uint64_t(std::numeric_limits<std::int64_t>::max());
     const int exponent = value.exponent + shift;
     std::uint64_t result = value.digits;
     if (exponent >= 0) {
         if (result != 0) {
-            if (exponent > kMostDigits) return {};
+            if (exponent > kMaxDigits) return {};
             const std::uint64_t power = kPowersOfTen[std::size_t(exponent)];
-            if (result > kMost / power) return {};
+            if (result > kMax / power) return {};
             result *= power;
         }
-    } else if (-exponent > kMostDigits) {
+    } else if (-exponent > kMaxDigits) {
         result = 0;
     } else {
         const std::uint64_t power = kPowersOfTen[std::size_t(-exponent)];
         const std::uint64_t rest = result % power;
         result = result / power + (rest >= power - rest ? 1 : 0);
     }
-    if (result > kMost) return {};
+    if (result > kMax) return {};
     return value.negative ? -std::int64_t(result) : std::int64_t(result);
 }
 

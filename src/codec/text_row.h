@@ -11,7 +11,8 @@
 
 namespace eventide {
 
-/// The fields of a line: separated by spaces, tabs, a comma or a semicolon, without the line's end.
+/// The fields of a line: separated by spaces, tabs, a comma or a semicolon, without the pipeline's
+/// end.
 std::vector<std::string_view> split_fields(std::string_view line);
 
 /// True for what carries no data and is no damage: blank lines and comments ('#' or '%').

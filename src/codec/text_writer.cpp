@@ -13,11 +13,11 @@ void append(std::vector<std::byte>& out, std::string_view text) {
     out.insert(out.end(), begin, begin + text.size());
 }
 
-constexpr int kMostDigits = 20;  // of 64 bits
-constexpr int kMostLine = 5 * kMostDigits;
+constexpr int kMaxDigits = 20;  // of 64 bits
+constexpr int kMaxLine = 5 * kMaxDigits;
 
 char* write_digits(char* p, std::uint64_t value) {
-    return std::to_chars(p, p + kMostDigits, value).ptr;
+    return std::to_chars(p, p + kMaxDigits, value).ptr;
 }
 
 char* write_seconds(char* p, std::int64_t us) {
@@ -39,7 +39,7 @@ void TextWriter::begin(const StreamHeader& header, std::vector<std::byte>& out) 
 }
 
 void TextWriter::write(const Batch& batch, std::vector<std::byte>& out) {
-    char line[kMostLine];
+    char line[kMaxLine];
     for (const Event& event : batch.events) {
         char* p = write_seconds(line, to_us(event.t));
         *p++ = ' ';

@@ -1,4 +1,4 @@
-// What flows between the stages after the parser: slices, voxel grids, latent maps, frames.
+// What flows between the stages after the parser: event windows, voxel grids, latent maps, frames.
 #pragma once
 
 #include "src/core/array.h"
@@ -13,18 +13,18 @@
 
 namespace eventide {
 
-/// The events of one event frame, in time order. Borrowed from the slicer until its next call.
-struct Slice {
+/// The events of one event window, in time order. Borrowed from the slicer until its next call.
+struct EventWindow {
     Window window;
     std::span<const Event> events;
-    bool gap_before = false;  ///< bytes were lost since the slice before
+    bool gap_before = false;  ///< bytes were lost since the event window before
     HostTime arrived{};       ///< of the last packet that gave an event or moved the clock
     /// The camera's clock was reset: a new stream begins, times may be earlier than before, and
     /// recurrent state means nothing any more.
     bool reset_before = false;
 };
 
-/// One event frame as numbers (reconstruction.md section 2).
+/// One event window as numbers (reconstruction.md section 2).
 struct VoxelGrid {
     Window window;
     /// [y][x][channel], channels 4 b + {0 polarity, 1 mean, 2 std, 3 count} for bin b < B, then 4 B
@@ -34,7 +34,7 @@ struct VoxelGrid {
     std::uint64_t events = 0;
     bool gap_before = false;
     HostTime arrived{};
-    bool reset_before = false;  ///< as in Slice
+    bool reset_before = false;  ///< as in EventWindow
     std::uint64_t images = 0;   ///< reference images the stream had given when the frame was cut
     /// [y][x], 1 where the pixel has events in this frame, else 0; empty where whoever filled the
     /// values did not keep track.
@@ -49,13 +49,13 @@ struct LatentHistory {
     std::vector<std::uint64_t> changed;  ///< per tile (latent_tiles), the step of its last change
 };
 
-/// What the encoder knows after one event frame, one code per sensor pixel.
+/// What the encoder knows after one event window, one code per sensor pixel.
 struct LatentMap {
     Window window;
     Array3<float> values;  ///< [y][x][D]
     std::uint64_t events = 0;
     HostTime arrived{};
-    bool gap_before = false, reset_before = false;  ///< as in Slice
+    bool gap_before = false, reset_before = false;  ///< as in EventWindow
     std::uint64_t images = 0;                       ///< as in VoxelGrid
     Array2<float> events_per_pixel;                 ///< [y][x]; empty where not asked for
     LatentHistory history;

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMostLinks = 40;  // as Linux: more are a circle
+constexpr int kMaxLinks = 40;  // as Linux: more are a circle
 
 bool can_be_shared(mode_t mode) {
     return !S_ISREG(mode) && !S_ISDIR(mode) && !S_ISFIFO(mode) && !S_ISBLK(mode);
@@ -27,7 +27,7 @@ fs::path resolved(const fs::path& path) {
     std::error_code failed;
     fs::path file = fs::absolute(path, failed);
     if (failed) return path;
-    for (int links = 0; links < kMostLinks && fs::is_symlink(file, failed); ++links) {
+    for (int links = 0; links < kMaxLinks && fs::is_symlink(file, failed); ++links) {
         const fs::path target = fs::read_symlink(file, failed);
         if (failed) break;
         file = file.parent_path() / target;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr mode_t kMode = 0666;             // less what umask takes
-constexpr int kMostParts = 1000;           // left behind by as many killed runs
+constexpr int kMaxParts = 1000;            // left behind by as many killed runs
 constexpr std::size_t kLongestStem = 240;  // bytes: with .part below what a name may have
 
 /// Of an open file that the path stands for: what was written to it before, by whomever, stays.
@@ -123,7 +123,7 @@ void OutputFile::open_beside(bool overwrite) {
     for (int n = 1; file_ < 0; ++n) {
         part_ = path_.parent_path() / (n == 1 ? stem : stem + std::to_string(n));
         file_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-        if (file_ >= 0 || (errno == EEXIST && n < kMostParts)) continue;
+        if (file_ >= 0 || (errno == EEXIST && n < kMaxParts)) continue;
         const int error = errno;
         part_.clear();
         fail("made", error);

@@ -22,16 +22,16 @@ namespace eventide {
 namespace {
 
 template <typename NarrowRow>
-void narrow_pixels(NarrowRow narrow_row, const float* in, std::size_t pixels, int channels,
+void narrow_pixels(NarrowRow row_to_bf16, const float* in, std::size_t pixels, int channels,
                    std::uint32_t* out) {
     auto* numbers = reinterpret_cast<std::uint16_t*>(out);
     const auto count = std::size_t(channels);
     if (channels % 2 == 0) {
-        narrow_row(in, pixels * count, numbers);
+        row_to_bf16(in, pixels * count, numbers);
         return;
     }
     for (std::size_t p = 0; p < pixels; ++p) {
-        narrow_row(in + p * count, count, numbers + p * (count + 1));
+        row_to_bf16(in + p * count, count, numbers + p * (count + 1));
         numbers[p * (count + 1) + count] = 0;
     }
 }
@@ -160,16 +160,16 @@ void dot_rows(const Bf16DotRows& r) {
     bf16_lanes(r.outputs) == Narrow::kLanes ? dot_rows_by<Narrow>(r) : dot_rows_by<Wide>(r);
 }
 
-EVENTIDE_BF16 void narrow_row(const float* in, std::size_t n, std::uint16_t* out) {
+EVENTIDE_BF16 void row_to_bf16(const float* in, std::size_t n, std::uint16_t* out) {
     for (std::size_t i = 0; i < n; i += 16) {
         const __mmask16 mask = first_lanes(int(std::min<std::size_t>(n - i, 16)));
-        const __m256bh narrow = _mm512_cvtneps_pbh(_mm512_maskz_loadu_ps(mask, in + i));
-        _mm256_mask_storeu_epi16(out + i, mask, (__m256i)narrow);
+        const __m256bh pixels_to_bf16 = _mm512_cvtneps_pbh(_mm512_maskz_loadu_ps(mask, in + i));
+        _mm256_mask_storeu_epi16(out + i, mask, (__m256i)pixels_to_bf16);
     }
 }
 
-void narrow(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
-    narrow_pixels(narrow_row, in, pixels, channels, out);
+void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
+    narrow_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
 }  // namespace
@@ -177,7 +177,7 @@ void narrow(const float* in, std::size_t pixels, int channels, std::uint32_t* ou
 
 const Bf16Kernels* bf16_kernels() {
 #if defined(__x86_64__)
-    static const Bf16Kernels kKernels{dot_rows, narrow, narrow_row};
+    static const Bf16Kernels kKernels{dot_rows, pixels_to_bf16, row_to_bf16};
     // Compilers' names for processor features are younger than the instruction; avx512bf16 is known
     // to gcc 12 and clang 14.
     static const bool kThere =
@@ -227,17 +227,17 @@ void dot_rows(const Bf16DotRows& r) {
     }
 }
 
-void narrow_row(const float* in, std::size_t n, std::uint16_t* out) {
+void row_to_bf16(const float* in, std::size_t n, std::uint16_t* out) {
     std::transform(in, in + n, out, to_bf16);
 }
-void narrow(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
-    narrow_pixels(narrow_row, in, pixels, channels, out);
+void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
+    narrow_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
 }  // namespace
 
 const Bf16Kernels& bf16_kernels() {
-    static const Bf16Kernels kKernels{dot_rows, narrow, narrow_row};
+    static const Bf16Kernels kKernels{dot_rows, pixels_to_bf16, row_to_bf16};
     return kKernels;
 }
 

@@ -28,9 +28,9 @@ struct Bf16Kernels {
     void (*dot_rows)(const Bf16DotRows&);
     /// `pixels` times `channels` numbers, one after the other, rounded to nearest even; an odd
     /// number of channels gets a zero beside the last.
-    void (*narrow)(const float* in, std::size_t pixels, int channels, std::uint32_t* out);
+    void (*pixels_to_bf16)(const float* in, std::size_t pixels, int channels, std::uint32_t* out);
     /// `n` numbers one after the other.
-    void (*narrow_row)(const float* in, std::size_t n, std::uint16_t* out);
+    void (*row_to_bf16)(const float* in, std::size_t n, std::uint16_t* out);
 };
 
 constexpr int kBf16Lanes = 16;  ///< outputs per vector, at most

@@ -9,15 +9,14 @@ namespace eventide {
 /// `one` and `two` hold a function for each number of pixels from 1 on, which sums one or two
 /// vectors of outputs: block(rows, in, weight, first output, out). As few blocks as possible, of
 /// about the same size; weights lie as pack_weights puts them.
-template <typename Rows, typename Block, std::size_t kMostOfOne, std::size_t kMostOfTwo>
-void dot_in_blocks(const Rows& r, int lanes, const std::array<Block, kMostOfOne>& one,
-                   const std::array<Block, kMostOfTwo>& two) {
+template <typename Rows, typename Block, std::size_t kMaxOfOne, std::size_t kMaxOfTwo>
+void dot_in_blocks(const Rows& r, int lanes, const std::array<Block, kMaxOfOne>& one,
+                   const std::array<Block, kMaxOfTwo>& two) {
     auto weight = r.weight;
     for (int first = 0; first < r.outputs;) {
         const bool is_two = r.outputs - first > lanes;
         const int width = is_two ? 2 * lanes : lanes;
-        const int most = int(is_two ? kMostOfTwo : kMostOfOne),
-                  parts = (r.pixels + most - 1) / most;
+        const int most = int(is_two ? kMaxOfTwo : kMaxOfOne), parts = (r.pixels + most - 1) / most;
         for (int part = 0; part < parts; ++part) {
             const int begin = r.pixels * part / parts, end = r.pixels * (part + 1) / parts;
             const auto n = std::size_t(end - begin - 1);

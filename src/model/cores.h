@@ -28,9 +28,9 @@ std::unique_ptr<EncoderCore> make_plain_encoder(const Model& model, int height, 
 std::unique_ptr<EncoderCore> make_fast_encoder(const Model& model, int height, int width,
                                                const EngineOptions& options);
 
-/// Which codes a picture reads, and where in time it lies.
+/// Which codes a frame reads, and where in time it lies.
 struct CodeChoice {
-    std::int64_t k = 0;   ///< event frame the time lies in
+    std::int64_t k = 0;   ///< event window the time lies in
     double fraction = 0;  ///< within it
     bool next[2] = {};    ///< whether z_{k+1} and z_{k+2} are known
 };
@@ -39,12 +39,12 @@ class RendererCore {
 public:
     virtual ~RendererCore() = default;
     virtual std::string description() const = 0;
-    /// Takes the memory that rendering such pictures needs; until then render() takes it.
-    virtual void make_room(const PictureGeometry&) {}
+    /// Takes the memory that rendering such frames needs; until then render() takes it.
+    virtual void make_room(const FrameGeometry&) {}
     virtual void push(std::int64_t k, const LatentMap& latent) noexcept = 0;
     virtual void reset() noexcept = 0;
     /// `sigma` is null where not asked for.
-    virtual void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
+    virtual void render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
                         Array2<float>& intensity, Array2<float>* sigma) noexcept = 0;
     /// Since construction; a copied pixel does not count.
     virtual std::uint64_t pixels_rendered() const { return 0; }

@@ -28,7 +28,7 @@ public:
 
     int width() const { return width_; }
     int height() const { return height_; }
-    /// Bins per event frame the grids must have.
+    /// Bins per event window the grids must have.
     int bins() const { return bins_; }
     /// Which kernels and numbers run, for reports: "fast, bf16 (AVX512_BF16)".
     std::string description() const;

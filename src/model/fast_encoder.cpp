@@ -34,8 +34,8 @@ std::string FastEncoder::description() const {
     return std::string{"fast, "} + name_of(arithmetic_);
 }
 
-void FastEncoder::hand_out(LatentMap& latent) noexcept {
-    const Outdated outdated{latent.history, history_};
+void FastEncoder::publish(LatentMap& latent) noexcept {
+    const StaleTiles outdated{latent.history, history_};
     runner_.over(latent_tiles_, [&](std::size_t i, const Tile& tile, float*) {
         if (!outdated(i)) return;
         const std::size_t row = std::size_t(tile.width()) * std::size_t(latent_.channels());

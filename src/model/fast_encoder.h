@@ -4,7 +4,7 @@
 
 #include "src/model/cores.h"
 #include "src/nn/arithmetic.h"
-#include "src/nn/gru_tiles.h"
+#include "src/nn/conv_gru.h"
 #include "src/nn/padded_map.h"
 #include "src/nn/tile_runner.h"
 
@@ -27,7 +27,7 @@ protected:
     /// Tile i of latent_ has new values in this step.
     void mark_changed(std::size_t i) noexcept { history_.changed[i] = history_.step; }
     /// Brings `latent` to what latent_ is.
-    void hand_out(LatentMap& latent) noexcept;
+    void publish(LatentMap& latent) noexcept;
 
     EngineOptions options_;
     Arithmetic arithmetic_;
@@ -40,9 +40,9 @@ protected:
 };
 
 /// Which tiles of a copy are out of date: those that changed since, or all.
-class Outdated {
+class StaleTiles {
 public:
-    Outdated(const LatentHistory& copy, const LatentHistory& now)
+    StaleTiles(const LatentHistory& copy, const LatentHistory& now)
         : now_(now), since_(copy.step), known_(now.source != 0 && copy.source == now.source) {}
     bool operator()(std::size_t tile) const { return !known_ || now_.changed[tile] > since_; }
 

@@ -47,7 +47,7 @@ void FastGatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
                      [this](std::size_t tile) { mark_changed(tile); });
         stale_ = false;
     }
-    hand_out(latent);
+    publish(latent);
 }
 
 bool FastGatedEncoder::mark_events(const VoxelGrid& grid) noexcept {

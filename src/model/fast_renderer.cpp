@@ -3,7 +3,7 @@
 
 #include "src/kernels/bf16_kernels.h"
 #include "src/kernels/vector_kernels.h"
-#include "src/nn/typed_weights.h"
+#include "src/nn/load_weights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,15 +72,16 @@ void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
     hoisted_.push(k, latent);
 }
 
-void FastRenderer::lay_out(const PictureGeometry& picture) {
-    if (picture == laid_out_) return;
+void FastRenderer::lay_out(const FrameGeometry& geometry) {
+    if (geometry == laid_out_) return;
     laid_out_ = {};  // until all is there
-    layout_.make(picture, config_.latent_stride, config_.blend, hoisted_.row_edges(),
+    layout_.make(geometry, config_.latent_stride, config_.blend, hoisted_.row_edges(),
                  hoisted_.column_edges());
-    kept_.make_room(picture, layout_.tiles());
-    spans_.reserve(std::size_t(picture.part_height) * std::size_t(layout_.columns.count() / 2 + 1));
-    for (FloatBuffer& sums : row_sums_) sums.resize(3 * std::size_t(picture.part_width));
-    laid_out_ = picture;
+    kept_.make_room(geometry, layout_.tiles());
+    spans_.reserve(std::size_t(geometry.part_height) *
+                   std::size_t(layout_.columns.count() / 2 + 1));
+    for (FloatBuffer& sums : row_sums_) sums.resize(3 * std::size_t(geometry.part_width));
+    laid_out_ = geometry;
 }
 
 AxisSamples FastRenderer::time_samples(const CodeChoice& codes) const noexcept {
@@ -88,27 +89,27 @@ AxisSamples FastRenderer::time_samples(const CodeChoice& codes) const noexcept {
     return sample_time(codes.fraction, codes.next[0], fades);
 }
 
-std::array<const HoistedLayer::Sums*, 2> FastRenderer::bring_sums(const CodeChoice& codes,
-                                                                  const AxisSamples& t) noexcept {
+std::array<const FirstLayerCache::Sums*, 2> FastRenderer::bring_sums(
+    const CodeChoice& codes, const AxisSamples& t) noexcept {
     const std::int64_t k = codes.k + t.index;
-    // What a fading live edge shows of the event frame before was made without z_k.
+    // What a fading live edge shows of the event window before was made without z_k.
     const bool whole = t.index == 0 && codes.next[0], next_whole = t.index == 0 && codes.next[1];
     if (t.weight[1] == 0) return {&hoisted_.at(k, whole), nullptr};
     if (t.weight[0] == 0) return {nullptr, &hoisted_.at(k + 1, next_whole)};
     return hoisted_.pair(k, whole, next_whole);
 }
 
-void FastRenderer::render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
+void FastRenderer::render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
                           Array2<float>& intensity, Array2<float>* sigma) noexcept {
-    lay_out(picture);
+    lay_out(geometry);
     needs_squares_ = sigma != nullptr && rule == SigmaRule::mixture;
     const AxisSamples t = time_samples(codes);
-    const Job job{picture, rule, t, bring_sums(codes, t)};
+    const Job job{geometry, rule, t, bring_sums(codes, t)};
     const Target out{intensity.values().data(),
                      sigma != nullptr ? sigma->values().data() : nullptr};
     if (!options_.skip_quiet) {
         spans_.clear();
-        for (int row = 0; row < picture.part_height; ++row)
+        for (int row = 0; row < geometry.part_height; ++row)
             spans_.push_back({row, 0, layout_.columns.count()});
         render_spans(job, out);
         return;
@@ -127,7 +128,7 @@ FrameKind FastRenderer::kind_of(const CodeChoice& codes, const Job& job,
     int newest = index;  // of the sample at `index`, then of the one after it
     if (index == 0 && codes.next[0]) newest = codes.next[1] ? 2 : 1;
     if (index < 0) newest = 0;
-    return {job.picture, job.rule, has_sigma, index - 1, newest, index};
+    return {job.geometry, job.rule, has_sigma, index - 1, newest, index};
 }
 
 bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
@@ -183,12 +184,12 @@ void FastRenderer::render_spans(const Job& job, const Target& target) noexcept {
 
 void FastRenderer::render_span(const Job& job, const Span& span, const Target& target,
                                std::size_t lane) noexcept {
-    const int width = job.picture.part_width;
+    const int width = job.geometry.part_width;
     const auto count = std::size_t(width);
     const auto begin = std::size_t(layout_.columns.begin[std::size_t(span.first)]),
                end = std::size_t(layout_.columns.begin[std::size_t(span.last)]);
     const AxisSamples y =
-        sample_axis(job.picture.y + span.row, job.picture.height, job.picture.sensor_height,
+        sample_axis(job.geometry.y + span.row, job.geometry.height, job.geometry.sensor_height,
                     config_.latent_stride, config_.blend);
     float* scratch = scratch_[lane].data();
     float* blended = row_sums_[lane].data();  // mu, ln sigma, sigma^2 + mu^2
@@ -218,7 +219,7 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
 
 void FastRenderer::evaluate(const Member& member, const Span& span, float* blended, int width,
                             float* scratch) const noexcept {
-    const PictureColumns& columns = layout_.pixels;
+    const FrameColumns& columns = layout_.pixels;
     const std::vector<int>& pixel = columns.pixel[member.side];
     const std::vector<float>& share = columns.weight[member.side];
     const auto count = std::size_t(width);
@@ -256,9 +257,9 @@ const float* FastRenderer::run_layers(const float* activations, int pixels,
     for (const PackedWeights& layer : layers_) {
         const void* numbers = in;
         if (const Bf16Kernels* bf16 = layer.bf16()) {
-            auto* narrow = reinterpret_cast<std::uint32_t*>(room + 2 * block);
-            bf16->narrow(in, std::size_t(pixels), layer.channels(), narrow);
-            numbers = narrow;
+            auto* pixels_to_bf16 = reinterpret_cast<std::uint32_t*>(room + 2 * block);
+            bf16->pixels_to_bf16(in, std::size_t(pixels), layer.channels(), pixels_to_bf16);
+            numbers = pixels_to_bf16;
         }
         layer.run(numbers, 0, layer.step(), pixels, out, layer.outputs());
         in = out;

@@ -3,9 +3,9 @@
 // frame rendered before are copied from it (kept_frames.h).
 #pragma once
 
-#include "src/model/hoisted_layer.h"
+#include "src/model/first_layer_cache.h"
+#include "src/model/frame_layout.h"
 #include "src/model/kept_frames.h"
-#include "src/model/picture_layout.h"
 
 #include <array>
 #include <vector>
@@ -18,10 +18,10 @@ public:
                  const EngineOptions& options, const Arithmetic& arithmetic);
 
     std::string description() const override;
-    void make_room(const PictureGeometry& picture) override { lay_out(picture); }
+    void make_room(const FrameGeometry& geometry) override { lay_out(geometry); }
     void push(std::int64_t k, const LatentMap& latent) noexcept override;
     void reset() noexcept override;
-    void render(const CodeChoice& codes, const PictureGeometry& picture, SigmaRule rule,
+    void render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
                 Array2<float>& intensity, Array2<float>* sigma) noexcept override;
     std::uint64_t pixels_rendered() const override { return pixels_rendered_; }
 
@@ -37,10 +37,10 @@ private:
     };
     /// Everything about a frame but its pixels.
     struct Job {
-        const PictureGeometry& picture;
+        const FrameGeometry& geometry;
         SigmaRule rule;
         AxisSamples t;
-        std::array<const HoistedLayer::Sums*, 2> hoisted;  ///< of the samples with a weight
+        std::array<const FirstLayerCache::Sums*, 2> hoisted;  ///< of the samples with a weight
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
     struct Member {
@@ -51,9 +51,9 @@ private:
     };
 
     AxisSamples time_samples(const CodeChoice& codes) const noexcept;
-    void lay_out(const PictureGeometry& picture);
-    std::array<const HoistedLayer::Sums*, 2> bring_sums(const CodeChoice& codes,
-                                                        const AxisSamples& t) noexcept;
+    void lay_out(const FrameGeometry& geometry);
+    std::array<const FirstLayerCache::Sums*, 2> bring_sums(const CodeChoice& codes,
+                                                           const AxisSamples& t) noexcept;
     FrameKind kind_of(const CodeChoice& codes, const Job& job, bool has_sigma) const noexcept;
     /// Fills spans_ with what of the kept frame is out of date, and stamps it.
     void find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept;
@@ -73,13 +73,13 @@ private:
     EngineOptions options_;
     Arithmetic arithmetic_;
     int first_ = 0, widest_ = 0;  // outputs of layer 1, of the widest layer
-    HoistedLayer hoisted_;
+    FirstLayerCache hoisted_;
     std::vector<PackedWeights> layers_;           // hidden layers behind the first
     std::array<std::vector<float>, 3> slope_;     // layer 1's columns for t, x, y
     std::vector<float> last_weight_, last_bias_;  // [2][H], [2]
 
-    PictureLayout layout_;
-    PictureGeometry laid_out_;
+    FrameLayout layout_;
+    FrameGeometry laid_out_;
     KeptFrames kept_;
     std::vector<Span> spans_;
     std::uint64_t pixels_rendered_ = 0;

@@ -2,7 +2,7 @@
 #include "src/model/fast_thesis_encoder.h"
 
 #include "src/kernels/vector_kernels.h"
-#include "src/nn/doubling.h"
+#include "src/nn/upsample2x.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +78,7 @@ void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept 
                      scratch);
         mark_changed(i);
     });
-    hand_out(latent);
+    publish(latent);
 }
 
 ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,
@@ -166,7 +166,7 @@ void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, Padde
 void FastThesisEncoder::step_full() noexcept {
     const auto bytes = std::size_t(channels_) * sizeof(float);
     runner_.over(tiles_, [&](std::size_t i, const Tile&, float* scratch) {
-        full_gru_.step(states_[0], i, nullptr, scratch, [&](const GruTiles::Target& target) {
+        full_gru_.step(states_[0], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
             for (int y = region.y0; y < region.y1; ++y)
                 for (int x = region.x0; x < region.x1; ++x)
@@ -183,7 +183,7 @@ void FastThesisEncoder::step_full() noexcept {
 void FastThesisEncoder::step_half() noexcept {
     runner_.over(half_tiles_, [&](std::size_t i, const Tile&, float* scratch) {
         float* narrow = scratch + half_gru_.scratch_size();
-        half_gru_.step(states_[1], i, nullptr, scratch, [&](const GruTiles::Target& target) {
+        half_gru_.step(states_[1], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
             down_.run({x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), target.out,
                        target.pitch, target.step, region.height(), region.width()},

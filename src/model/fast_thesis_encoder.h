@@ -2,8 +2,8 @@
 #pragma once
 
 #include "src/model/fast_encoder.h"
+#include "src/nn/load_weights.h"
 #include "src/nn/packed_layers.h"
-#include "src/nn/typed_weights.h"
 
 #include <vector>
 
@@ -33,7 +33,7 @@ private:
     std::vector<Tile> tiles_, half_tiles_;
     PackedConv in_, res_[2], down_, head_[3];
     std::vector<plain::NormWeights<float>> norms_;
-    GruTiles full_gru_, half_gru_;
+    ConvGru full_gru_, half_gru_;
     PaddedMap x0_, inner_, x2_, y0_, y1_;
     Array3<float> raw_;
     std::vector<double> sums_;          // [tile][sum, sum of squares][C]

@@ -1,4 +1,4 @@
-// A renderer whose pictures are corrected by the camera's own images.
+// A renderer whose frames are corrected by the camera's own images.
 #include "src/model/fused_renderer.h"
 
 #include "src/core/error.h"
@@ -29,7 +29,7 @@ void FusedRenderer::reset() noexcept {
 
 void FusedRenderer::give(ReferenceImage image) {
     images_.push_back(std::move(image));
-    if (images_.size() <= kMostWaiting) return;
+    if (images_.size() <= kMaxWaiting) return;
     images_.pop_front();
     ++dropped_;
 }

@@ -1,4 +1,4 @@
-// A renderer whose pictures are corrected by the camera's own images, window by window.
+// A renderer whose frames are corrected by the camera's own images, window by window.
 #pragma once
 
 #include "src/model/image_fusion.h"
@@ -8,7 +8,7 @@
 
 namespace eventide {
 
-/// Stands beside a Renderer, which it borrows, and sees the same event windows. Pictures of a
+/// Stands beside a Renderer, which it borrows, and sees the same event windows. Frames of a
 /// window know the images that were given before the window was pushed, or before those that its
 /// lookahead waits for. One thread at a time; nothing fails after construction.
 class FusedRenderer {
@@ -18,7 +18,7 @@ public:
 
     void reset() noexcept;
 
-    /// In order of time. Of more than kMostWaiting images whose time has not come, the oldest are
+    /// In order of time. Of more than kMaxWaiting images whose time has not come, the oldest are
     /// dropped.
     void give(ReferenceImage image);
 
@@ -37,7 +37,7 @@ public:
         return dropped_;
     }  ///< images that came too late or in too great a number
 
-    static constexpr std::size_t kMostWaiting = 64;
+    static constexpr std::size_t kMaxWaiting = 64;
 
 private:
     struct Waiting {

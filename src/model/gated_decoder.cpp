@@ -2,8 +2,8 @@
 #include "src/model/gated_decoder.h"
 
 #include "src/kernels/vector_kernels.h"
-#include "src/nn/doubling.h"
-#include "src/nn/typed_weights.h"
+#include "src/nn/load_weights.h"
+#include "src/nn/upsample2x.h"
 
 #include <algorithm>
 #include <cstring>

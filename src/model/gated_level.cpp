@@ -2,7 +2,7 @@
 #include "src/model/gated_level.h"
 
 #include "src/kernels/vector_kernels.h"
-#include "src/nn/typed_weights.h"
+#include "src/nn/load_weights.h"
 
 #include <algorithm>
 #include <cstring>

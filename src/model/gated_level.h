@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/model/model_file.h"
-#include "src/nn/gru_tiles.h"
+#include "src/nn/conv_gru.h"
 #include "src/nn/packed_layers.h"
 #include "src/nn/padded_map.h"
 
@@ -35,7 +35,7 @@ public:
     void commit(std::vector<PaddedMap>& states, std::size_t i) noexcept;
 
 private:
-    using Target = GruTiles::Target;
+    using Target = ConvGru::Target;
     void feed(const Array3<float>& grid, const std::vector<PaddedMap>& states, const Target& target,
               float* scratch) const noexcept;
     void feed_grid(const Array3<float>& grid, const Target& target, float* scratch) const noexcept;
@@ -46,7 +46,7 @@ private:
     std::vector<Tile> tiles_;
     PackedConv in_;  // from the grid, or from the level above
     bool recurrent_;
-    GruTiles gru_;
+    ConvGru gru_;
     std::vector<FloatBuffer> held_;  // next state of a level that is not recurrent, per tile
     Mask mask_;
 };

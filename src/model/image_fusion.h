@@ -1,5 +1,5 @@
 // A camera's own images beside its events: what they show that the network missed is added to every
-// picture, for as long as it holds.
+// frame, for as long as it holds.
 #pragma once
 
 #include "src/core/frame_data.h"
@@ -26,7 +26,7 @@ struct LinearTap {
 /// after construction, nothing fails.
 ///
 /// Between the edges of a window the correction goes over linearly from what it was at the end of
-/// the window before to what it is now, so that an image does not make pictures jump.
+/// the window before to what it is now, so that an image does not make frames jump.
 class ImageFusion {
 public:
     ImageFusion(int sensor_width, int sensor_height);

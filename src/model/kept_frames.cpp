@@ -7,9 +7,9 @@
 
 namespace eventide {
 
-void KeptFrames::make_room(const PictureGeometry& picture, std::size_t tiles) {
-    const std::size_t pixels = std::size_t(picture.part_width) * std::size_t(picture.part_height);
-    count_ = std::clamp<std::size_t>(kMostBytes / (2 * pixels * sizeof(float)), 1, kMostFrames);
+void KeptFrames::make_room(const FrameGeometry& geometry, std::size_t tiles) {
+    const std::size_t pixels = std::size_t(geometry.part_width) * std::size_t(geometry.part_height);
+    count_ = std::clamp<std::size_t>(kMaxBytes / (2 * pixels * sizeof(float)), 1, kMaxFrames);
     // Two sizes that take turns give no memory back.
     if (frames_.size() < count_) frames_.resize(count_);
     for (KeptFrame& frame : std::span{frames_}.first(count_)) {

@@ -13,7 +13,7 @@ namespace eventide {
 /// What a frame is made of besides codes and the place within the event window: two frames of
 /// different kinds have nothing in common.
 struct FrameKind {
-    PictureGeometry picture;
+    FrameGeometry geometry;
     SigmaRule rule{};
     bool has_sigma = false;
     /// Codes it reads, as event windows relative to its own: oldest and newest.
@@ -36,15 +36,15 @@ struct KeptFrame {
     std::uint64_t used = 0;  ///< counts up; the smallest was used longest ago
 };
 
-/// As many frames as fit into kMostBytes, at least one and at most kMostFrames: a rate of frames
+/// As many frames as fit into kMaxBytes, at least one and at most kMaxFrames: a rate of frames
 /// that divides the event window's comes back to the same few places in it.
 class KeptFrames {
 public:
-    static constexpr std::size_t kMostBytes = std::size_t{16} << 20;
-    static constexpr std::size_t kMostFrames = 16;
+    static constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+    static constexpr std::size_t kMaxFrames = 16;
 
     /// For frames of this size; `tiles` each. Nothing is kept of frames of another.
-    void make_room(const PictureGeometry& picture, std::size_t tiles);
+    void make_room(const FrameGeometry& geometry, std::size_t tiles);
     void reset() noexcept;
 
     /// The frame nearest to `fraction` of those of this kind, where there is one within `bound`;

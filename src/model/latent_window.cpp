@@ -32,7 +32,7 @@ Readiness LatentWindow::readiness(SensorTime t, int lookahead) const noexcept {
     const std::int64_t k = newest_ == 0 ? 1 : locate(t).k;
     if (k == 0) return Readiness::gone;
     if (k > newest_) return finished_ ? Readiness::gone : Readiness::later;
-    // Event frame k reads z_{k-2} where its live edge fades: that must still be kept too.
+    // Event window k reads z_{k-2} where its live edge fades: that must still be kept too.
     if (!kept(std::max<std::int64_t>(1, k - 2))) return Readiness::gone;
     if (k + lookahead > newest_ && !finished_) return Readiness::later;
     return Readiness::ready;

@@ -1,4 +1,4 @@
-// The newest few latent maps, and where a time lies among their event frames.
+// The newest few latent maps, and where a time lies among their event windows.
 #pragma once
 
 #include "src/core/frame_data.h"
@@ -10,43 +10,43 @@ namespace eventide {
 
 /// The times and counts that travel with latent map k.
 struct LatentStamp {
-    std::int64_t k = 0;  ///< number of the event frame, from 1; 0: none
+    std::int64_t k = 0;  ///< number of the event window, from 1; 0: none
     Window window{};
     std::uint64_t events = 0;
     HostTime arrived{};
 };
 
-/// Where a time lies: in event frame k, at frame coordinate k - 1 + fraction.
+/// Where a time lies: in event window k, at frame coordinate k - 1 + fraction.
 struct FramePosition {
     std::int64_t k = 0;
     double fraction = 0;  ///< 0 to 1, linear between the window's edges
 };
 
-/// Keeps the stamps of the newest kLatentsKept event frames; whoever keeps the maps themselves puts
-/// that of event frame k into slot k % kLatentsKept.
+/// Keeps the stamps of the newest kLatentsKept event windows; whoever keeps the maps themselves
+/// puts that of event window k into slot k % kLatentsKept.
 class LatentWindow {
 public:
     /// Lookahead 2 reads z_{k-1} .. z_{k+2}, a live edge that fades z_{k-2} .. z_k.
     static constexpr int kLatentsKept = 5;
 
-    /// A new event frame; returns its k.
+    /// A new event window; returns its k.
     std::int64_t push(const LatentMap& latent) noexcept;
-    /// No further event frame will come: the newest times are at the live edge, whatever lookahead
+    /// No further event window will come: the newest times are at the live edge, whatever lookahead
     /// was asked for.
     void finish() noexcept { finished_ = true; }
     void reset() noexcept { *this = {}; }
 
     std::int64_t newest() const { return newest_; }
-    /// The stamp of event frame k, which must be kept.
+    /// The stamp of event window k, which must be kept.
     const LatentStamp& stamp(std::int64_t k) const { return stamps_[slot(k)]; }
     static std::size_t slot(std::int64_t k) { return std::size_t(k % kLatentsKept); }
     bool kept(std::int64_t k) const { return k >= 1 && k <= newest_ && k > newest_ - kLatentsKept; }
-    /// Whether z_j may be read by a picture in event frame k (docs/model.md, "lookahead").
+    /// Whether z_j may be read by a frame in event window k (docs/model.md, "lookahead").
     bool known(std::int64_t j, std::int64_t k, int lookahead) const {
         return kept(j) && j <= k + lookahead;
     }
 
-    /// The event frame a time lies in, (begin, end]; k = 0 before the first kept one, newest() + 1
+    /// The event window a time lies in, (begin, end]; k = 0 before the first kept one, newest() + 1
     /// after the newest.
     FramePosition locate(SensorTime t) const noexcept;
     Readiness readiness(SensorTime t, int lookahead) const noexcept;

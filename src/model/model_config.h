@@ -34,7 +34,7 @@ struct ModelConfig {
     Blend blend = Blend::linear;
     LiveEdge live_edge = LiveEdge::jump;
     bool noise_filter = false;    ///< it was trained on what NoiseFilter leaves
-    std::string window = "50ms";  ///< the event frames it was trained for
+    std::string window = "50ms";  ///< the event windows it was trained for
     std::string card;             ///< data, budget, scores, limits
 
     int input_channels() const { return 4 * bins + 1; }

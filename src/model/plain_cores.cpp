@@ -49,14 +49,14 @@ public:
         codes_[LatentWindow::slot(k)] = latent.values;
     }
     void reset() noexcept override {}
-    void render(const CodeChoice& choice, const PictureGeometry& picture, SigmaRule rule,
+    void render(const CodeChoice& choice, const FrameGeometry& geometry, SigmaRule rule,
                 Array2<float>& intensity, Array2<float>* sigma) noexcept override {
         const auto code = [&](std::int64_t k) { return &codes_[LatentWindow::slot(k)]; };
         const plain::Codes<float> codes{choice.k > 2 ? code(choice.k - 2) : nullptr,
                                         choice.k > 1 ? code(choice.k - 1) : nullptr, code(choice.k),
                                         choice.next[0] ? code(choice.k + 1) : nullptr,
                                         choice.next[1] ? code(choice.k + 2) : nullptr};
-        plain::Picture<float> out = network_.render(codes, choice.fraction, picture, rule);
+        plain::RenderedFrame<float> out = network_.render(codes, choice.fraction, geometry, rule);
         intensity = std::move(out.intensity);
         if (sigma != nullptr) *sigma = std::move(out.sigma);
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/model/model_file.h"
-#include "src/nn/typed_weights.h"
+#include "src/nn/load_weights.h"
 
 #include <map>
 #include <optional>
@@ -57,7 +57,7 @@ public:
                             conv_weights<T>(model.weights, named("res", i) + ".1")});
     }
 
-    /// One event frame; returns z.
+    /// One event window; returns z.
     Array3<T> step(const Array3<T>& grid) {
         advance(grid);
         return read_out();

@@ -4,7 +4,7 @@
 
 #include "src/model/model_file.h"
 #include "src/model/sampling.h"
-#include "src/nn/typed_weights.h"
+#include "src/nn/load_weights.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ template <typename T>
 using Codes = std::array<const Array3<T>*, 5>;
 
 template <typename T>
-struct Picture {
+struct RenderedFrame {
     Array2<T> intensity, sigma;
 };
 
@@ -38,10 +38,10 @@ public:
     }
 
     /// As docs/model.md states it: every query unfolds its codes.
-    Picture<T> render_unfolded(const Codes<T>& codes, double fraction,
-                               const PictureGeometry& picture, SigmaRule rule) const {
+    RenderedFrame<T> render_unfolded(const Codes<T>& codes, double fraction,
+                                     const FrameGeometry& geometry, SigmaRule rule) const {
         std::vector<T> input(std::size_t(layers_[0].in));
-        return blend(codes, fraction, picture, rule,
+        return blend(codes, fraction, geometry, rule,
                      [&](int dk, int j, int i, const std::array<double, 3>& offset) {
                          unfold(codes, dk, j, i, input);
                          std::copy(offset.begin(), offset.end(), input.end() - 3);
@@ -51,14 +51,14 @@ public:
 
     /// The same function: the linear part of layer 1 that reads codes is a convolution of the
     /// latent maps, made once (reconstruction.md section 4).
-    Picture<T> render(const Codes<T>& codes, double fraction, const PictureGeometry& picture,
-                      SigmaRule rule) const {
+    RenderedFrame<T> render(const Codes<T>& codes, double fraction, const FrameGeometry& geometry,
+                            SigmaRule rule) const {
         const AxisSamples t = time_samples(codes, fraction);
         std::array<Array3<T>, 2> hoisted;
         for (int n = 0; n < 2; ++n)
             if (t.weight[std::size_t(n)] != 0) hoisted[std::size_t(n)] = hoist(codes, t.index + n);
         const Layer& first = layers_[0];
-        return blend(codes, fraction, picture, rule,
+        return blend(codes, fraction, geometry, rule,
                      [&](int dk, int j, int i, const std::array<double, 3>& offset) {
                          const auto pixel = hoisted[std::size_t(dk - t.index)].pixel(j, i);
                          std::vector<T> sum(pixel.begin(), pixel.end());
@@ -100,7 +100,7 @@ private:
         const bool fades = config_.live_edge == LiveEdge::fade && codes[1] != nullptr;
         return sample_time(fraction, codes[3] != nullptr, fades);
     }
-    /// z_{k+dk+dt}; the sample before event frame k is as it was when that had not come yet.
+    /// z_{k+dk+dt}; the sample before event window k is as it was when that had not come yet.
     static const Array3<T>* code(const Codes<T>& codes, int dk, int dt) {
         return dk == -1 && dt == 1 ? nullptr : codes[std::size_t(2 + dk + dt)];
     }
@@ -119,7 +119,7 @@ private:
         }
     }
 
-    /// Layer 1 without its offset part at every sample of event frame k + dk.
+    /// Layer 1 without its offset part at every sample of event window k + dk.
     Array3<T> hoist(const Codes<T>& codes, int dk) const {
         const Layer& first = layers_[0];
         const int side = config_.unfold, area = side * side;
@@ -143,18 +143,18 @@ private:
 
     /// Local ensemble: evaluate(dk, j, i, offset) at the samples around each query.
     template <typename Evaluate>
-    Picture<T> blend(const Codes<T>& codes, double fraction, const PictureGeometry& picture,
-                     SigmaRule rule, Evaluate evaluate) const {
+    RenderedFrame<T> blend(const Codes<T>& codes, double fraction, const FrameGeometry& geometry,
+                           SigmaRule rule, Evaluate evaluate) const {
         const int stride = config_.latent_stride;
-        Picture<T> out{{picture.part_height, picture.part_width},
-                       {picture.part_height, picture.part_width}};
+        RenderedFrame<T> out{{geometry.part_height, geometry.part_width},
+                             {geometry.part_height, geometry.part_width}};
         const AxisSamples t = time_samples(codes, fraction);
-        for (int row = 0; row < picture.part_height; ++row) {
-            const AxisSamples y = sample_axis(picture.y + row, picture.height,
-                                              picture.sensor_height, stride, config_.blend);
-            for (int column = 0; column < picture.part_width; ++column) {
-                const AxisSamples x = sample_axis(picture.x + column, picture.width,
-                                                  picture.sensor_width, stride, config_.blend);
+        for (int row = 0; row < geometry.part_height; ++row) {
+            const AxisSamples y = sample_axis(geometry.y + row, geometry.height,
+                                              geometry.sensor_height, stride, config_.blend);
+            for (int column = 0; column < geometry.part_width; ++column) {
+                const AxisSamples x = sample_axis(geometry.x + column, geometry.width,
+                                                  geometry.sensor_width, stride, config_.blend);
                 T mu = 0, log_sigma = 0, square = 0;
                 for (std::size_t n = 0; n < 8; ++n) {
                     const std::size_t a = n / 4, b = n / 2 % 2, c = n % 2;

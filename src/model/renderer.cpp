@@ -11,19 +11,19 @@ namespace {
 
 constexpr int kMaxSide = 65535;
 
-PictureGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height) {
-    PictureGeometry picture;
-    picture.sensor_width = sensor_width;
-    picture.sensor_height = sensor_height;
-    picture.width = request.width != 0 ? request.width : sensor_width;
-    picture.height = request.height != 0 ? request.height : sensor_height;
-    picture.x = request.region.x;
-    picture.y = request.region.y;
-    picture.part_width =
-        request.region.width != 0 ? request.region.width : picture.width - picture.x;
-    picture.part_height =
-        request.region.height != 0 ? request.region.height : picture.height - picture.y;
-    return picture;
+FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height) {
+    FrameGeometry geometry;
+    geometry.sensor_width = sensor_width;
+    geometry.sensor_height = sensor_height;
+    geometry.width = request.width != 0 ? request.width : sensor_width;
+    geometry.height = request.height != 0 ? request.height : sensor_height;
+    geometry.x = request.region.x;
+    geometry.y = request.region.y;
+    geometry.part_width =
+        request.region.width != 0 ? request.region.width : geometry.width - geometry.x;
+    geometry.part_height =
+        request.region.height != 0 ? request.region.height : geometry.height - geometry.y;
+    return geometry;
 }
 
 void check_axis(const char* name, int size, int at, int part) {
@@ -85,37 +85,37 @@ Readiness Renderer::readiness(SensorTime t, int lookahead) const noexcept {
 }
 
 Frame Renderer::make_output(const RenderRequest& request) const {
-    const PictureGeometry picture = geometry_of(request, sensor_width_, sensor_height_);
-    check_axis("width", picture.width, picture.x, picture.part_width);
-    check_axis("height", picture.height, picture.y, picture.part_height);
+    const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
+    check_axis("width", geometry.width, geometry.x, geometry.part_width);
+    check_axis("height", geometry.height, geometry.y, geometry.part_height);
     if (request.lookahead < 0 || request.lookahead > 2)
         throw Error(ErrorKind::usage,
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(request.lookahead));
     Frame frame;
-    frame.intensity = {picture.part_height, picture.part_width};
-    if (request.want_sigma) frame.sigma = {picture.part_height, picture.part_width};
-    core_->make_room(picture);
+    frame.intensity = {geometry.part_height, geometry.part_width};
+    if (request.want_sigma) frame.sigma = {geometry.part_height, geometry.part_width};
+    core_->make_room(geometry);
     return frame;
 }
 
 void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
     if (window_.newest() == 0) return;
     FramePosition at = window_.locate(request.t);
-    // A time that is not ready() shows the nearest event frame kept: wrong, but never unsafe.
+    // A time that is not ready() shows the nearest event window kept: wrong, but never unsafe.
     if (at.k > window_.newest()) at = {window_.newest(), 1};
     if (at.k == 0)
         at = {std::max<std::int64_t>(1, window_.newest() - LatentWindow::kLatentsKept + 3), 0};
-    const PictureGeometry picture = geometry_of(request, sensor_width_, sensor_height_);
+    const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
     const CodeChoice codes{at.k,
                            at.fraction,
                            {window_.known(at.k + 1, at.k, request.lookahead),
                             window_.known(at.k + 2, at.k, request.lookahead)}};
-    fit(frame.intensity, picture.part_height, picture.part_width);
+    fit(frame.intensity, geometry.part_height, geometry.part_width);
     if (request.want_sigma)
-        fit(frame.sigma, picture.part_height, picture.part_width);
+        fit(frame.sigma, geometry.part_height, geometry.part_width);
     else
         frame.sigma = {};
-    core_->render(codes, picture, request.sigma_rule.value_or(config_.sigma_rule), frame.intensity,
+    core_->render(codes, geometry, request.sigma_rule.value_or(config_.sigma_rule), frame.intensity,
                   request.want_sigma ? &frame.sigma : nullptr);
     frame.t = request.t;
     frame.window = window_.stamp(at.k).window;

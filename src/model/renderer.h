@@ -1,4 +1,4 @@
-// The implicit decoder: latent maps in, a picture of any time and any size out.
+// The implicit decoder: latent maps in, a frame of any time and any size out.
 #pragma once
 
 #include "src/core/frame_data.h"
@@ -16,9 +16,9 @@ class RendererCore;
 
 struct RenderRequest {
     SensorTime t{};
-    int width = 0, height = 0;              ///< px, of the whole output picture; 0: the sensor's
+    int width = 0, height = 0;              ///< px, of the whole output frame; 0: the sensor's
     Region region{};                        ///< the part of it that is wanted
-    int lookahead = 0;                      ///< 0 to 2 event frames
+    int lookahead = 0;                      ///< 0 to 2 event windows
     std::optional<SigmaRule> sigma_rule{};  ///< else the model's own
     bool want_sigma = true;
 };
@@ -36,7 +36,7 @@ public:
 
     std::string description() const;
 
-    /// The latent map of the next event frame; it is copied. Every picture wanted of event frames
+    /// The latent map of the next event window; it is copied. Every frame wanted of event windows
     /// that only LatentWindow::kLatentsKept kept must be rendered before.
     void push(const LatentMap& latent) noexcept;
     /// The stream has ended: what is left is rendered at the live edge.

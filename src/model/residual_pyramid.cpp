@@ -1,4 +1,4 @@
-// A correction of pictures, band by band.
+// A correction of frames, band by band.
 #include "src/model/residual_pyramid.h"
 
 #include <algorithm>

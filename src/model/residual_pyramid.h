@@ -1,4 +1,4 @@
-// A correction of pictures, band by band, and how fast each band is forgotten as things move.
+// A correction of frames, band by band, and how fast each band is forgotten as things move.
 #pragma once
 
 #include "src/core/array.h"
@@ -16,7 +16,7 @@ void halve(const Array2<float>& from, Array2<float>& to) noexcept;
 /// twice as large.
 void add_doubled(const Array2<float>& from, Array2<float>& to) noexcept;
 
-/// What a model's pictures lacked when the sensor took an image, as a Laplacian pyramid: band k
+/// What a model's frames lacked when the sensor took an image, as a Laplacian pyramid: band k
 /// holds structure of about 2^k px. Since then each band fades on its own: where n events per pixel
 /// have come, the correlation with what is lacking now is taken to be
 ///
@@ -42,7 +42,7 @@ public:
     void observe(const Array2<float>& residual, const Array2<float>& trust,
                  const Array2<float>& events) noexcept;
 
-    /// What to add to a picture now, and which share of the model's variance is left; [y][x].
+    /// What to add to a frame now, and which share of the model's variance is left; [y][x].
     void expect(Array2<float>& correction, Array2<float>& variance) noexcept;
 
 private:

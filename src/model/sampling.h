@@ -46,7 +46,7 @@ inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride,
     return found;
 }
 
-/// The one or two samples around a time in event frame k (docs/model.md, "Time"): those of event
+/// The one or two samples around a time in event window k (docs/model.md, "Time"): those of event
 /// frames k + index and k + index + 1. A live edge that fades takes k - 1 as it was shown last
 /// (`from_before`: z_k is not read by it) and k.
 inline AxisSamples sample_time(double fraction, bool next_known, bool from_before) {
@@ -64,12 +64,12 @@ inline AxisSamples sample_time(double fraction, bool next_known, bool from_befor
     return found;
 }
 
-/// The picture a renderer is asked for, in whole numbers.
-struct PictureGeometry {
+/// The frame a renderer is asked for, in whole numbers.
+struct FrameGeometry {
     int sensor_width = 0, sensor_height = 0;
-    int width = 0, height = 0;                          ///< px, the whole picture
+    int width = 0, height = 0;                          ///< px, the whole frame
     int x = 0, y = 0, part_width = 0, part_height = 0;  ///< px, the wanted part of it
-    friend bool operator==(const PictureGeometry&, const PictureGeometry&) = default;
+    friend bool operator==(const FrameGeometry&, const FrameGeometry&) = default;
 };
 
 }  // namespace eventide

@@ -182,9 +182,10 @@ const void* OnednnConv::Primitives::gather(const ConvCall& call, void* dense) co
     // Where oneDNN multiplies bf16 numbers, the processor has AVX512_BF16 (onednn_has_bf16).
     const Bf16Kernels& kernels =
         bf16_kernels() != nullptr ? *bf16_kernels() : plain::bf16_kernels();
-    auto* narrow = static_cast<std::uint16_t*>(dense);
+    auto* pixels_to_bf16 = static_cast<std::uint16_t*>(dense);
     for (int y = 0; y < rows; ++y)
-        kernels.narrow_row(call.in + y * call.in_pitch, std::size_t(row), narrow + y * row);
+        kernels.row_to_bf16(call.in + y * call.in_pitch, std::size_t(row),
+                            pixels_to_bf16 + y * row);
     return dense;
 }
 

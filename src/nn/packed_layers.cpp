@@ -95,11 +95,11 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
                   columns = (call.width - 1) * stride_ + side_;
         pitch = std::ptrdiff_t(columns) * weights_.step();
         // The scratch holds pairs of bf16 numbers in the room of one float each.
-        auto* narrow = reinterpret_cast<std::uint32_t*>(scratch);
+        auto* pixels_to_bf16 = reinterpret_cast<std::uint32_t*>(scratch);
         for (int y = 0; y < rows; ++y)
-            bf16->narrow(call.in + y * call.in_pitch, std::size_t(columns), weights_.channels(),
-                         narrow + y * pitch);
-        in = narrow;
+            bf16->pixels_to_bf16(call.in + y * call.in_pitch, std::size_t(columns),
+                                 weights_.channels(), pixels_to_bf16 + y * pitch);
+        in = pixels_to_bf16;
     }
     for (int y = 0; y < call.height; ++y) {
         // Both kinds of number are 4 bytes.

@@ -1,7 +1,7 @@
 // Work on tiles: which of them, on whose threads, with which scratch memory.
 #pragma once
 
-#include "src/nn/gru_tiles.h"
+#include "src/nn/conv_gru.h"
 #include "src/nn/tiling.h"
 
 #include <utility>

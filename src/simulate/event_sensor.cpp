@@ -1,7 +1,7 @@
 // Low-pass, thresholds, refractory time, leak, shot noise and hot pixels.
 #include "src/simulate/event_sensor.h"
 
-#include "src/simulate/lanes.h"
+#include "src/simulate/simd4.h"
 
 #include <algorithm>
 #include <cmath>
@@ -139,7 +139,7 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
     for (int n = 0;; ++n) {
         const bool rises = v1 >= reference + on;
         if (!rises && v1 > reference - off) break;
-        if (n == kMostPerStep) {
+        if (n == kMaxPerStep) {
             reference = v1;
             break;
         }

@@ -23,11 +23,11 @@ public:
     void settle(const Array2<float>& lux, double gain);
 
     /// Light has gone to lux * gain in (begin, end]. Appends the events of that time, not yet in
-    /// order; at most kMostPerStep per pixel, after which the pixel catches up silently.
+    /// order; at most kMaxPerStep per pixel, after which the pixel catches up silently.
     void step(SensorTime begin, SensorTime end, const Array2<float>& lux, double gain,
               std::vector<Event>& events);
 
-    static constexpr int kMostPerStep = 64;
+    static constexpr int kMaxPerStep = 64;
 
     const SensorTraits& traits() const { return traits_; }
 

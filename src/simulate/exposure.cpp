@@ -1,7 +1,7 @@
-// Metering on a coarse grid, and development of whole pictures.
+// Metering on a coarse grid, and development of whole images.
 #include "src/simulate/exposure.h"
 
-#include "src/simulate/lanes.h"
+#include "src/simulate/simd4.h"
 
 #include <algorithm>
 #include <cmath>
@@ -83,9 +83,9 @@ void Exposure::forget(double before_s) {
     while (history_.size() > 2 && history_[1].t_s <= before_s) history_.pop_front();
 }
 
-void Exposure::develop(double t_s, double light_gain, Array2<float>& picture) const {
+void Exposure::develop(double t_s, double light_gain, Array2<float>& image) const {
     using namespace lanes;
-    // The gain of the latest metering before t: a camera changes it between pictures.
+    // The gain of the latest metering before t: a camera changes it between images.
     const auto after = std::ranges::upper_bound(history_, t_s, {}, &Setting::t_s);
     const Setting& now = after == history_.begin() ? *after : *std::prev(after);
     const float power = float(1 / gamma_);
@@ -94,7 +94,7 @@ void Exposure::develop(double t_s, double light_gain, Array2<float>& picture) co
     const auto one = [&](F4 v) {
         return clamp(black + lanes::exp(lanes::log(v) * power + shift), 0, white);
     };
-    const std::span<float> values = picture.values();
+    const std::span<float> values = image.values();
     std::size_t i = 0;
     for (; i + 4 <= values.size(); i += 4) store(values.data() + i, one(load(values.data() + i)));
     for (; i < values.size(); ++i) values[i] = one(splat(values[i]))[0];

@@ -1,4 +1,4 @@
-// The ideal camera beside the events: how light becomes a picture in [0, 1].
+// The ideal camera beside the events: how light becomes an image in [0, 1].
 #pragma once
 
 #include "src/core/array.h"
@@ -23,7 +23,7 @@ public:
     void forget(double before_s);
 
     /// Light -> intensity, in place. t between the latest forget() and meter().
-    void develop(double t_s, double light_gain, Array2<float>& picture) const;
+    void develop(double t_s, double light_gain, Array2<float>& image) const;
 
 private:
     struct Setting {

@@ -1,6 +1,6 @@
-// A scene's picture, row by row: background, then each object over it.
-#include "src/simulate/lanes.h"
+// A scene's image, row by row: background, then each object over it.
 #include "src/simulate/scene.h"
+#include "src/simulate/simd4.h"
 
 #include <algorithm>
 #include <cmath>

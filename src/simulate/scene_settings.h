@@ -27,7 +27,7 @@ struct ThesisMotionSettings {
     double angle_max = 1.7;          ///< rad
     double displacement_max = .6;    ///< half image sizes
     double linear_probability = .5;  ///< else a cubic spline
-    double duration_s = 5;           ///< T event frames of 50 ms
+    double duration_s = 5;           ///< T event windows of 50 ms
 };
 
 /// Endless motion. Speeds are of the sensor's pixels.

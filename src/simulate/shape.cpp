@@ -1,7 +1,7 @@
 // Distances to an outline in pixels, and coverage from them.
 #include "src/simulate/shape.h"
 
-#include "src/simulate/lanes.h"
+#include "src/simulate/simd4.h"
 
 #include <algorithm>
 #include <cmath>

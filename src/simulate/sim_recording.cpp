@@ -18,9 +18,9 @@ const SimRecordingSettings& checked(const SimRecordingSettings& s) {
     if (s.width < 2 || s.width > 8192) refuse("a width from 2 to 8192 px", s.width);
     if (s.height < 2 || s.height > 8192) refuse("a height from 2 to 8192 px", s.height);
     if (!(s.seconds >= 0)) refuse("seconds of 0 or more", s.seconds);
-    constexpr double kMostPerSecond = 1e5;
+    constexpr double kMaxPerSecond = 1e5;
     for (const double rate : {s.images_per_second, s.truths_per_second})
-        if (!(rate >= 0 && rate <= kMostPerSecond)) refuse("0 to 100000 images per second", rate);
+        if (!(rate >= 0 && rate <= kMaxPerSecond)) refuse("0 to 100000 images per second", rate);
     if (!(s.truth_scale > 0 && s.truth_scale <= 64)) refuse("a scale up to 64", s.truth_scale);
     if (s.chunk <= SensorDuration{0}) refuse("a chunk above 0 us", double(s.chunk.count()));
     return s;
@@ -48,22 +48,22 @@ bool SimRecording::due(Ticks& ticks) const {
     return true;
 }
 
-Array2<float> SimRecording::picture(double scale) const {
+Array2<float> SimRecording::view(double scale) const {
     const auto length = [scale](int n) { return int(std::lround((n - 1) * scale)) + 1; };
-    Array2<float> picture(length(settings_.height), length(settings_.width));
-    stream_.truth(stream_.now(), picture);
-    return picture;
+    Array2<float> view(length(settings_.height), length(settings_.width));
+    stream_.truth(stream_.now(), view);
+    return view;
 }
 
 bool SimRecording::next(Batch& batch, std::vector<Truth>& truths) {
     batch.clear();
     truths.clear();
-    const auto take_pictures = [&] {
-        if (due(images_)) batch.images.push_back(reference_image(now(), picture(1)));
-        if (due(truths_)) truths.push_back({now(), picture(settings_.truth_scale)});
+    const auto take_images = [&] {
+        if (due(images_)) batch.images.push_back(reference_image(now(), view(1)));
+        if (due(truths_)) truths.push_back({now(), view(settings_.truth_scale)});
     };
     if (stream_.now() == SensorTime{}) {
-        take_pictures();  // by themselves: no event is before them
+        take_images();  // by themselves: no event is before them
         if (!batch.images.empty() || !truths.empty()) return true;
     }
 
@@ -74,7 +74,7 @@ bool SimRecording::next(Batch& batch, std::vector<Truth>& truths) {
     if (end <= stream_.now()) return false;
     stream_.advance(end, batch.events);
     for (Event& event : batch.events) event.t += offset_;
-    take_pictures();
+    take_images();
     return true;
 }
 
@@ -88,13 +88,13 @@ void simulate_recording(const SimRecordingSettings& settings,
         if (!emit(batch, truths)) return;
 }
 
-ReferenceImage reference_image(SensorTime t, const Array2<float>& picture) {
+ReferenceImage reference_image(SensorTime t, const Array2<float>& view) {
     ReferenceImage image;
     image.t = image.exposure_begin = image.exposure_end = t;
-    image.pixels = Array2<std::uint16_t>(picture.height(), picture.width());
-    for (std::size_t i = 0; i < picture.values().size(); ++i)
+    image.pixels = Array2<std::uint16_t>(view.height(), view.width());
+    for (std::size_t i = 0; i < view.values().size(); ++i)
         image.pixels.values()[i] =
-            std::uint16_t(std::clamp(picture.values()[i], 0.f, 1.f) * 65535 + .5f);
+            std::uint16_t(std::clamp(view.values()[i], 0.f, 1.f) * 65535 + .5f);
     return image;
 }
 

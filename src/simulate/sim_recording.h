@@ -25,10 +25,10 @@ struct SimRecordingSettings {
     SensorDuration chunk{10000};    ///< longest time in one batch
 };
 
-/// The picture at one instant, [y][x] in [0, 1].
+/// The image at one instant, [y][x] in [0, 1].
 struct Truth {
     SensorTime t{};
-    Array2<float> picture;
+    Array2<float> image;
 };
 
 class SimRecording {
@@ -52,7 +52,7 @@ private:
         std::optional<SensorTime> next() const;
     };
     bool due(Ticks& ticks) const;
-    Array2<float> picture(double scale) const;
+    Array2<float> view(double scale) const;
 
     SimRecordingSettings settings_;
     SimulatedStream stream_;
@@ -65,7 +65,7 @@ void simulate_recording(const SimRecordingSettings& settings,
                         std::shared_ptr<const TextureLibrary> textures,
                         const std::function<bool(const Batch&, const std::vector<Truth>&)>& emit);
 
-/// A picture in [0, 1] as a reference image, clipped, of 16 bits.
-ReferenceImage reference_image(SensorTime t, const Array2<float>& picture);
+/// An image in [0, 1] as a reference image, clipped, of 16 bits.
+ReferenceImage reference_image(SensorTime t, const Array2<float>& view);
 
 }  // namespace eventide

@@ -18,7 +18,7 @@ class TextureLibrary;   // textures.h: a folder or pack of images, or procedural
                         // thread
 
 /// A sensor that is a part of a larger one: objects, motion and exposure are of the whole, as they
-/// would be if it were simulated and cut afterwards. Exposure is what matters: a part of a picture
+/// would be if it were simulated and cut afterwards. Exposure is what matters: a part of an image
 /// may be all dark or all bright, and a whole never is.
 struct SensorPart {
     int width = 0, height = 0;              ///< px, of the part; at least 2
@@ -50,7 +50,7 @@ public:
     /// Appends the events in (now(), end], in time order, and moves on to `end`.
     void advance(SensorTime end, std::vector<Event>& events);
 
-    /// The picture an ideal camera shows at t (its exposure follows the scene), intensity [y][x] in
+    /// The image an ideal camera shows at t (its exposure follows the scene), intensity [y][x] in
     /// [0, 1], of size out.height() x out.width(), align-corners over the region [y0, y0 +
     /// span_y] x [x0, x0 + span_x] in px. t must lie in the current or previous advance() step's
     /// span, or be now().

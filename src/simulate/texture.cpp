@@ -2,7 +2,7 @@
 #include "src/simulate/texture.h"
 
 #include "src/core/error.h"
-#include "src/simulate/lanes.h"
+#include "src/simulate/simd4.h"
 
 #include <algorithm>
 #include <bit>

@@ -4,7 +4,7 @@
 #include "src/core/error.h"
 #include "src/io/input_file.h"
 #include "src/io/output_file.h"
-#include "src/simulate/grey_code.h"
+#include "src/simulate/image_codec.h"
 
 #include <algorithm>
 #include <cstdint>

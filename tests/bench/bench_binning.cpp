@@ -38,14 +38,14 @@ void bin(benchmark::State& state, int width, int height) {
     const int bins = int(state.range(0));
     const auto n = std::size_t(state.range(1));
     const auto events = moving_edges(width, height, n, 1'700'000'000'000'000);
-    const Slice slice{{from_us(1'700'000'000'000'000), from_us(1'700'000'000'000'000 + kWidth_us)},
-                      events};
+    const EventWindow event_window{
+        {from_us(1'700'000'000'000'000), from_us(1'700'000'000'000'000 + kWidth_us)}, events};
     Binner binner(bins, height, width);
-    // As in the line: a few grids in turn, so that the one written is not the one just read.
+    // As in the pipeline: a few grids in turn, so that the one written is not the one just read.
     std::vector<VoxelGrid> grids{binner.make_output(), binner.make_output(), binner.make_output()};
     std::size_t turn = 0;
     for (auto _ : state) {
-        binner.process(slice, grids[turn++ % grids.size()]);
+        binner.process(event_window, grids[turn++ % grids.size()]);
         benchmark::ClobberMemory();
     }
     state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(n));
@@ -62,7 +62,7 @@ BENCHMARK(BM_bin_240x180)
     ->ArgNames({"B", "events"});
 BENCHMARK(BM_bin_1280x720)->ArgsProduct({{2, 5}, {200'000, 2'000'000}})->ArgNames({"B", "events"});
 
-void slice(benchmark::State& state, SliceRule rule) {
+void event_window(benchmark::State& state, WindowRule rule) {
     const auto events = moving_edges(240, 180, 500'000, 0);
     constexpr std::size_t kPacket = 4096;  // events of one read
     SlicerSettings settings;
@@ -73,12 +73,13 @@ void slice(benchmark::State& state, SliceRule rule) {
         slicer.reset();
         for (std::size_t i = 0; i < events.size(); i += kPacket) {
             slicer.push({events.data() + i, std::min(kPacket, events.size() - i)});
-            for (Slice slice; slicer.next(slice);) benchmark::DoNotOptimize(slice.events.size());
+            for (EventWindow event_window; slicer.next(event_window);)
+                benchmark::DoNotOptimize(event_window.events.size());
         }
     }
     state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(events.size()));
 }
-BENCHMARK_CAPTURE(slice, duration, SliceRule::duration);
-BENCHMARK_CAPTURE(slice, count, SliceRule::count);
+BENCHMARK_CAPTURE(event_window, duration, WindowRule::duration);
+BENCHMARK_CAPTURE(event_window, count, WindowRule::count);
 
 }  // namespace

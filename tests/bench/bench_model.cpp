@@ -1,10 +1,10 @@
-// Milliseconds per event frame (encode) and per picture (render) of the shipped models, on one and
+// Milliseconds per event window (encode) and per frame (render) of the shipped models, on one and
 // two threads, beside oneDNN layer by layer and the processor's own peak (`eventide bench --stages`
 // has the stages alone, with shares of the peak). Run with OMP_NUM_THREADS=1, so that oneDNN uses
 // one thread too; add EVENTIDE_BENCH_AVX2=1 and ONEDNN_MAX_CPU_ISA=AVX2 for the figures of a
 // processor without AVX-512.
+#include "apps/bench/products.h"
 #include "pipeline/parallel_tbb.h"
-#include "src/bench/products.h"
 #include "src/model/encoder.h"
 #include "src/model/renderer.h"
 #include "src/nn/packed_layers.h"
@@ -65,7 +65,7 @@ void encode(benchmark::State& state, const Setting& s, Kind kind) {
     state.SetLabel(encoder.description());
 }
 
-/// One picture at the sensor's size. `fresh`: for each picture a new latent map, wholly changed.
+/// One frame at the sensor's size. `fresh`: for each frame a new latent map, wholly changed.
 void render(benchmark::State& state, const Setting& s, int lookahead, double scale, bool fresh) {
     Renderer renderer{s.model, s.width, s.height, s.options()};
     LatentMap latents[2];

@@ -2,8 +2,8 @@
 // one thread and two, with AVX2 alone and with all the processor has, in milliseconds.
 //   bench_peers [--sizes 240x180]... [--models default]... [--repetitions 30]
 // Instruction sets are a process' own, so each is measured by a child, one after the other.
+#include "apps/bench/stage_table.h"
 #include "pipeline/parallel_tbb.h"
-#include "src/bench/stage_table.h"
 #include "src/core/error.h"
 #include "src/simulate/presets.h"
 #include "tests/bench/peer_networks.h"

@@ -1,7 +1,7 @@
 // What the processor can do at most, beside a benchmark's figures.
 #pragma once
 
-#include "src/bench/stage_table.h"
+#include "apps/bench/stage_table.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,6 +1,6 @@
 // Useful products of the shipped models, counted by hand for a sensor of 240x180: channels in, out,
 // and 9 for a 3x3 convolution, times pixels.
-#include "src/bench/products.h"
+#include "apps/bench/products.h"
 #include "src/model/model_file.h"
 
 #include <gtest/gtest.h>

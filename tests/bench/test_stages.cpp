@@ -1,5 +1,5 @@
 // What a measurement of stages says, and that it says all of it; not how long they took.
-#include "src/bench/stage_table.h"
+#include "apps/bench/stage_table.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

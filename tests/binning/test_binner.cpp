@@ -16,7 +16,8 @@ namespace {
 constexpr int kHeight = 5, kWidth = 7;
 constexpr std::int64_t kEpoch = 1'700'000'000'000'000;  // 2023, in us
 
-Slice slice_of(const std::vector<Event>& events, std::int64_t begin_us, std::int64_t width_us) {
+EventWindow event_window_of(const std::vector<Event>& events, std::int64_t begin_us,
+                            std::int64_t width_us) {
     return {{from_us(begin_us), from_us(begin_us + width_us)}, events};
 }
 
@@ -25,18 +26,18 @@ Event event(std::int64_t t_us, int x, int y, bool on = true) {
 }
 
 /// Straight from the definition: two passes over the events of each voxel, in long double.
-Array3<float> oracle(const Slice& slice, int bins, int height, int width) {
+Array3<float> oracle(const EventWindow& event_window, int bins, int height, int width) {
     Array3<float> grid(height, width, 4 * bins + 1);
-    const auto frame = (long double)(slice.window.width().count());
+    const auto frame = (long double)(event_window.window.width().count());
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (int b = 0; b < bins; ++b) {
                 long double polarity = 0, sum = 0, squares = 0, n = 0;
                 std::vector<long double> f;
-                for (const Event& e : slice.events) {
+                for (const Event& e : event_window.events) {
                     if (e.x != x || e.y != y) continue;
                     const auto place =
-                        (long double)((e.t - slice.window.begin).count()) * bins / frame - b;
+                        (long double)((e.t - event_window.window.begin).count()) * bins / frame - b;
                     if (place <= 0 || place > 1) continue;  // bins are (begin, end], as frames are
                     f.push_back(place);
                     polarity += e.polarity == Polarity::on ? 1 : -1;
@@ -65,16 +66,17 @@ std::vector<Event> random_events(std::mt19937& rng, std::int64_t begin_us, std::
     return events;
 }
 
-VoxelGrid grid_of(const Slice& slice, int bins, int height = kHeight, int width = kWidth) {
+VoxelGrid grid_of(const EventWindow& event_window, int bins, int height = kHeight,
+                  int width = kWidth) {
     Binner binner(bins, height, width);
     VoxelGrid grid = binner.make_output();
-    binner.process(slice, grid);
+    binner.process(event_window, grid);
     return grid;
 }
 
-void expect_near_oracle(const Slice& slice, int bins, float tolerance) {
-    const VoxelGrid grid = grid_of(slice, bins);
-    const Array3<float> expected = oracle(slice, bins, kHeight, kWidth);
+void expect_near_oracle(const EventWindow& event_window, int bins, float tolerance) {
+    const VoxelGrid grid = grid_of(event_window, bins);
+    const Array3<float> expected = oracle(event_window, bins, kHeight, kWidth);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
             for (int c = 0; c < 4 * bins; ++c)
@@ -90,7 +92,7 @@ TEST(Binner, AgreesWithTheOracleOnRandomStreams) {
             SCOPED_TRACE(testing::Message() << bins << " bins, " << width_us << " us");
             const auto events = random_events(rng, kEpoch, width_us, 500);
             // Two roundings to float, and one of the double in between.
-            expect_near_oracle(slice_of(events, kEpoch, width_us), bins, 2e-7F);
+            expect_near_oracle(event_window_of(events, kEpoch, width_us), bins, 2e-7F);
         }
 }
 
@@ -99,14 +101,14 @@ TEST(Binner, AgreesWithTheOracleOnWindowsOfHoursUpToItsStatedResolution) {
     for (const std::int64_t width_us : {1'000'000LL, 3'600'000'000LL, 1'000'000'000'000'000LL}) {
         SCOPED_TRACE(width_us);
         const auto events = random_events(rng, kEpoch, width_us, 500);
-        expect_near_oracle(slice_of(events, kEpoch, width_us), 5, 4e-6F);
+        expect_near_oracle(event_window_of(events, kEpoch, width_us), 5, 4e-6F);
     }
 }
 
 TEST(Binner, PutsEventsOnBinEdgesIntoTheEarlierBin) {
     const std::vector<Event> events{event(1, 0, 0), event(50, 0, 0), event(51, 1, 0),
                                     event(100, 1, 0)};
-    const VoxelGrid grid = grid_of(slice_of(events, 0, 100), 2);
+    const VoxelGrid grid = grid_of(event_window_of(events, 0, 100), 2);
     EXPECT_EQ(grid.values(0, 0, 3), 2);
     EXPECT_EQ(grid.values(0, 0, 7), 0);
     EXPECT_EQ(grid.values(0, 1, 3), 0);
@@ -117,10 +119,10 @@ TEST(Binner, PutsEventsOnBinEdgesIntoTheEarlierBin) {
 TEST(Binner, DoesNotDependOnTheOrderOfEvents) {
     std::mt19937 rng{3};
     auto events = random_events(rng, kEpoch, 50'000, 3000);
-    const VoxelGrid ordered = grid_of(slice_of(events, kEpoch, 50'000), 5);
+    const VoxelGrid ordered = grid_of(event_window_of(events, kEpoch, 50'000), 5);
     for (int round = 0; round < 5; ++round) {
         std::shuffle(events.begin(), events.end(), rng);
-        EXPECT_EQ(grid_of(slice_of(events, kEpoch, 50'000), 5).values, ordered.values);
+        EXPECT_EQ(grid_of(event_window_of(events, kEpoch, 50'000), 5).values, ordered.values);
     }
 }
 
@@ -129,14 +131,14 @@ TEST(Binner, DoesNotDependOnAbsoluteTime) {
     const auto events = random_events(rng, 0, 50'000, 3000);
     auto moved = events;
     for (Event& e : moved) e.t += SensorDuration{kEpoch};
-    EXPECT_EQ(grid_of(slice_of(moved, kEpoch, 50'000), 5).values,
-              grid_of(slice_of(events, 0, 50'000), 5).values);
+    EXPECT_EQ(grid_of(event_window_of(moved, kEpoch, 50'000), 5).values,
+              grid_of(event_window_of(events, 0, 50'000), 5).values);
 }
 
 TEST(Binner, SumsOfTheGridAreSumsOfTheEvents) {
     std::mt19937 rng{5};
     const auto events = random_events(rng, 0, 12'345, 4000);
-    const VoxelGrid grid = grid_of(slice_of(events, 0, 12'345), 7);
+    const VoxelGrid grid = grid_of(event_window_of(events, 0, 12'345), 7);
     double polarity = 0, count = 0;
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
@@ -155,7 +157,7 @@ TEST(Binner, EqualTimestampsHaveExactlyNoSpread) {
     for (const std::int64_t dt : {1, 3, 49'999, 50'000})
         for (const std::size_t n : {2U, 3U, 7U, 100'000U, 1'000'000U}) {
             const std::vector<Event> events(n, event(kEpoch + dt, 1, 1));
-            const VoxelGrid grid = grid_of(slice_of(events, kEpoch, 50'000), 5);
+            const VoxelGrid grid = grid_of(event_window_of(events, kEpoch, 50'000), 5);
             for (int b = 0; b < 5; ++b)
                 EXPECT_EQ(grid.values(1, 1, 4 * b + 2), 0) << dt << ' ' << n;
         }
@@ -166,7 +168,7 @@ TEST(Binner, AHotPixelOfTenMillionEventsNeitherOverflowsNorLosesItsSpread) {
         std::vector<Event> events(10'000'000);  // half at the very begin, half at the very end
         for (std::size_t i = 0; i < events.size(); ++i)
             events[i] = event(i < events.size() / 2 ? 1 : width_us, 0, 0, false);
-        const VoxelGrid grid = grid_of(slice_of(events, 0, width_us), 1);
+        const VoxelGrid grid = grid_of(event_window_of(events, 0, width_us), 1);
         EXPECT_EQ(grid.values(0, 0, 0), -1e7F);
         EXPECT_NEAR(grid.values(0, 0, 1), 0.5F, 2e-5F);
         EXPECT_NEAR(grid.values(0, 0, 2), 0.5F, 2e-5F);
@@ -179,7 +181,7 @@ TEST(Binner, CountsFramesSinceTheLastEvent) {
     VoxelGrid grid = binner.make_output();
     const std::vector<Event> one{event(10, 2, 3)};
     const auto age_after = [&](bool with_event) {
-        binner.process(slice_of(with_event ? one : std::vector<Event>{}, 0, 100), grid);
+        binner.process(event_window_of(with_event ? one : std::vector<Event>{}, 0, 100), grid);
         return grid.values(3, 2, 8);
     };
     EXPECT_EQ(age_after(false), 1) << "a pixel that never had an event is as old as can be";
@@ -197,7 +199,7 @@ TEST(Binner, SaysWhichPixelsHaveEvents) {
     VoxelGrid grid = binner.make_output();
     for (const std::size_t n : {std::size_t{4}, std::size_t{0}, std::size_t{20}, std::size_t{1}}) {
         const auto events = random_events(rng, kEpoch, 50'000, n);
-        binner.process(slice_of(events, kEpoch, 50'000), grid);
+        binner.process(event_window_of(events, kEpoch, 50'000), grid);
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
                 const bool any =
@@ -214,22 +216,22 @@ TEST(Binner, LeavesNothingOfTheFrameBefore) {
     for (int round = 0; round < 10; ++round) {
         const auto events = random_events(rng, 0, 1000, 100);
         used.reset();
-        used.process(slice_of(events, 0, 1000), grid);
-        EXPECT_EQ(grid.values, grid_of(slice_of(events, 0, 1000), 5).values);
+        used.process(event_window_of(events, 0, 1000), grid);
+        EXPECT_EQ(grid.values, grid_of(event_window_of(events, 0, 1000), 5).values);
     }
 }
 
 TEST(Binner, LeavesOutWhatIsOutsideTheSensorOrTheWindow) {
     const std::vector<Event> events{event(0, 0, 0), event(50, kWidth, 0), event(50, 0, kHeight),
                                     event(101, 0, 0)};
-    const VoxelGrid grid = grid_of(slice_of(events, 0, 100), 2);
+    const VoxelGrid grid = grid_of(event_window_of(events, 0, 100), 2);
     for (const auto& values : {grid.values})
         for (std::size_t i = 0; i < values.values().size(); ++i)
             EXPECT_EQ(values.values()[i], i % 9 == 8 ? 1.0F : 0.0F);
 }
 
 TEST(Binner, AnEmptyWindowOfNoWidthIsAnEmptyGrid) {
-    const VoxelGrid grid = grid_of(slice_of({}, 100, 0), 2);
+    const VoxelGrid grid = grid_of(event_window_of({}, 100, 0), 2);
     EXPECT_EQ(grid.values(0, 0, 3), 0);
 }
 
@@ -241,10 +243,10 @@ TEST(Binner, RefusesShapesThatCannotBe) {
 
 TEST(Binner, TheOracleSeesAWrongBinEdge) {
     const std::vector<Event> events{event(50, 0, 0)};
-    Slice slice = slice_of(events, 0, 100);
-    EXPECT_EQ(oracle(slice, 2, 1, 1)(0, 0, 3), 1);
-    slice.window.begin = from_us(-1);
-    EXPECT_EQ(oracle(slice, 2, 1, 1)(0, 0, 3), 0);
+    EventWindow event_window = event_window_of(events, 0, 100);
+    EXPECT_EQ(oracle(event_window, 2, 1, 1)(0, 0, 3), 1);
+    event_window.window.begin = from_us(-1);
+    EXPECT_EQ(oracle(event_window, 2, 1, 1)(0, 0, 3), 0);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // The slicer: the same frames however the stream is split, and the three ways to cut.
 #include "src/core/error.h"
-#include "tests/binning/slices.h"
+#include "tests/binning/event_windows.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ TEST(Slicer, CutsTheSameFramesHoweverTheStreamIsSplit) {
             SCOPED_TRACE(name + " seed " + std::to_string(seed));
             std::mt19937 rng{seed};
             const auto events = eventful_stream(rng);
-            const std::vector<Kept> whole = slices_of(settings, events);
+            const std::vector<Kept> whole = event_windows_of(settings, events);
             Slicer slicer(settings, 240, 180);
             std::vector<Kept> split;
             for (std::size_t i = 0; i < events.size();) {
@@ -53,15 +53,15 @@ TEST(Slicer, PutsEveryEventInOneFrameAndLeavesNoHoleBetweenFrames) {
         const auto events = eventful_stream(rng);
         std::vector<Event> seen;
         std::int64_t end = 1'699'999'999'999'999 + to_us(events.front().t) - 1'700'000'000'000'000;
-        for (const Kept& slice : slices_of(settings, events)) {
-            if (!slice.reset) {
-                ASSERT_EQ(slice.begin_us, end);
+        for (const Kept& event_window : event_windows_of(settings, events)) {
+            if (!event_window.reset) {
+                ASSERT_EQ(event_window.begin_us, end);
             }
-            end = slice.end_us;
-            ASSERT_LT(slice.begin_us, slice.end_us);
-            for (const Event& event : slice.events) {
-                ASSERT_GT(to_us(event.t), slice.begin_us);
-                ASSERT_LE(to_us(event.t), slice.end_us);
+            end = event_window.end_us;
+            ASSERT_LT(event_window.begin_us, event_window.end_us);
+            for (const Event& event : event_window.events) {
+                ASSERT_GT(to_us(event.t), event_window.begin_us);
+                ASSERT_LE(to_us(event.t), event_window.end_us);
                 seen.push_back(event);
             }
         }
@@ -70,18 +70,19 @@ TEST(Slicer, PutsEveryEventInOneFrameAndLeavesNoHoleBetweenFrames) {
 }
 
 TEST(Slicer, CutsConstantWidthsFromJustBeforeTheFirstEvent) {
-    EXPECT_EQ(edges_of(slices_of(by_duration(10), {at(101), at(110), at(111), at(125)})),
+    EXPECT_EQ(edges_of(event_windows_of(by_duration(10), {at(101), at(110), at(111), at(125)})),
               (Edges{{100, 110}, {110, 120}, {120, 125}}));
 }
 
 TEST(Slicer, CutsAtTheNthEventAndKeepsItsMicrosecondTogether) {
-    const auto slices = slices_of(by_count(2), {at(1), at(5), at(5), at(5), at(6), at(9), at(12)});
-    EXPECT_EQ(edges_of(slices), (Edges{{0, 5}, {5, 9}, {9, 12}}));
-    EXPECT_EQ(slices[0].events.size(), 4U);
+    const auto event_windows =
+        event_windows_of(by_count(2), {at(1), at(5), at(5), at(5), at(6), at(9), at(12)});
+    EXPECT_EQ(edges_of(event_windows), (Edges{{0, 5}, {5, 9}, {9, 12}}));
+    EXPECT_EQ(event_windows[0].events.size(), 4U);
 }
 
 TEST(Slicer, EndsAFrameOfFewEventsAtTheMaximumWidth) {
-    EXPECT_EQ(edges_of(slices_of(by_count(100, 10), {at(1), at(5), at(25)})),
+    EXPECT_EQ(edges_of(event_windows_of(by_count(100, 10), {at(1), at(5), at(25)})),
               (Edges{{0, 10}, {10, 20}, {20, 25}}));
 }
 
@@ -92,31 +93,31 @@ TEST(Slicer, CountsEventsPerPixel) {
     std::vector<Event> events;
     for (int t = 1; t <= 13; ++t) events.push_back(at(t));
     slicer.push(events);
-    std::vector<Kept> slices;
-    take(slicer, slices);
-    EXPECT_EQ(edges_of(slices), (Edges{{0, 6}, {6, 12}}));
+    std::vector<Kept> event_windows;
+    take(slicer, event_windows);
+    EXPECT_EQ(edges_of(event_windows), (Edges{{0, 6}, {6, 12}}));
 }
 
 TEST(Slicer, CutsAtReferenceImagesThatComeEarlyOrLate) {
     const Edges expected{{0, 40}, {40, 80}, {80, 120}, {120, 130}};
     std::vector<Event> events;
     for (int t = 1; t <= 130; ++t) events.push_back(at(t));
-    EXPECT_EQ(edges_of(slices_of(by_reference(1000), events, {40, 80, 120})), expected);
+    EXPECT_EQ(edges_of(event_windows_of(by_reference(1000), events, {40, 80, 120})), expected);
     for (const std::ptrdiff_t delay : {0, 1, 5, 30, 60}) {
         SCOPED_TRACE(delay);
         Slicer slicer(by_reference(1000), 240, 180);
-        std::vector<Kept> slices;
+        std::vector<Kept> event_windows;
         for (const Event& event : events) {
             slicer.push({&event, 1});
             const auto t = to_us(event.t) - delay;
             if (t > 0 && t % 40 == 0) slicer.push_reference(from_us(t));
-            take(slicer, slices);
+            take(slicer, event_windows);
         }
         for (const std::int64_t t : {40, 80, 120})
             if (t + delay > 130) slicer.push_reference(from_us(t));
         slicer.finish();
-        take(slicer, slices);
-        EXPECT_EQ(edges_of(slices), expected);
+        take(slicer, event_windows);
+        EXPECT_EQ(edges_of(event_windows), expected);
         EXPECT_EQ(slicer.counters().late_references, 0U);
     }
 }
@@ -125,29 +126,29 @@ TEST(Slicer, CutsAtAnImageOnlyWhenTheStreamHasPassedIt) {
     Slicer slicer(by_reference(1000), 240, 180);
     slicer.push_reference(from_us(40));
     const std::vector<Event> first{at(1), at(40)}, second{at(40)}, third{at(41)};
-    std::vector<Kept> slices;
+    std::vector<Kept> event_windows;
     for (const auto& events : {first, second}) {
         slicer.push(events);
-        take(slicer, slices);
-        EXPECT_TRUE(slices.empty()) << "more events of that microsecond may come";
+        take(slicer, event_windows);
+        EXPECT_TRUE(event_windows.empty()) << "more events of that microsecond may come";
     }
     slicer.push(third);
-    take(slicer, slices);
-    ASSERT_EQ(slices.size(), 1U);
-    EXPECT_EQ(slices[0].events.size(), 3U);
+    take(slicer, event_windows);
+    ASSERT_EQ(event_windows.size(), 1U);
+    EXPECT_EQ(event_windows[0].events.size(), 3U);
 }
 
 TEST(Slicer, WaitsForALateImageAsLongAsItSaysThenCutsAtTheMaximumWidth) {
     Slicer slicer(by_reference(100, 50), 240, 180);
-    std::vector<Kept> slices;
+    std::vector<Kept> event_windows;
     const std::vector<Event> first{at(1)};
     slicer.push(first);
     slicer.advance(from_us(150));
-    take(slicer, slices);
-    EXPECT_TRUE(slices.empty());
+    take(slicer, event_windows);
+    EXPECT_TRUE(event_windows.empty());
     slicer.advance(from_us(151));
-    take(slicer, slices);
-    EXPECT_EQ(edges_of(slices), (Edges{{0, 100}}));
+    take(slicer, event_windows);
+    EXPECT_EQ(edges_of(event_windows), (Edges{{0, 100}}));
     slicer.push_reference(from_us(60));
     EXPECT_EQ(slicer.counters().late_references, 1U);
 }

@@ -1,5 +1,5 @@
 // Windows by content: short where much moves, wherever on the sensor that is.
-#include "tests/binning/slices.h"
+#include "tests/binning/event_windows.h"
 
 #include <gtest/gtest.h>
 
@@ -21,51 +21,52 @@ std::vector<Event> moving(int columns, int rows, int per_ms, int ms, std::int64_
     return events;
 }
 
-std::int64_t longest(const std::vector<Kept>& slices) {
+std::int64_t longest(const std::vector<Kept>& event_windows) {
     std::int64_t us = 0;
-    for (const Kept& slice : slices) us = std::max(us, slice.end_us - slice.begin_us);
+    for (const Kept& event_window : event_windows)
+        us = std::max(us, event_window.end_us - event_window.begin_us);
     return us;
 }
 
 TEST(SlicerContent, AStillSceneEndsItsWindowsByTime) {
-    const auto slices = slices_of(by_content(.5), moving(7, 5, 1, 400));
-    for (std::size_t i = 0; i + 1 < slices.size(); ++i)
-        EXPECT_EQ(slices[i].end_us - slices[i].begin_us, 50'000) << i;
+    const auto event_windows = event_windows_of(by_content(.5), moving(7, 5, 1, 400));
+    for (std::size_t i = 0; i + 1 < event_windows.size(); ++i)
+        EXPECT_EQ(event_windows[i].end_us - event_windows[i].begin_us, 50'000) << i;
 }
 
 TEST(SlicerContent, TwiceTheMotionGivesHalfTheWidth) {
     const auto width = [](int per_ms) {
-        const auto slices = slices_of(by_content(.5), moving(7, 5, per_ms, 200));
-        return double(slices[0].end_us - slices[0].begin_us);
+        const auto event_windows = event_windows_of(by_content(.5), moving(7, 5, per_ms, 200));
+        return double(event_windows[0].end_us - event_windows[0].begin_us);
     };
     EXPECT_NEAR(width(4000) / width(2000), .5, .02);
     EXPECT_NEAR(width(4000), .5 * 7 * 5 * kSide * kSide / 4, 400) << "the mean of the tiles is .5";
 }
 
 TEST(SlicerContent, ABurstOnAPartOfTheSensorCounts) {
-    const auto slices = slices_of(by_content(.5), moving(2, 2, 200, 200));
+    const auto event_windows = event_windows_of(by_content(.5), moving(2, 2, 200, 200));
     // 4 of 48 tiles, .5 events per pixel in 10 ms: on the whole sensor as many would take 108 ms.
-    EXPECT_LT(longest(slices), 12'000);
+    EXPECT_LT(longest(event_windows), 12'000);
 }
 
 TEST(SlicerContent, OneHotPixelEndsNoWindow) {
     std::vector<Event> events;
     for (std::int64_t us = 1; us <= 200'000; us += 2) events.push_back(at(us, 7));
-    for (const Kept& slice : slices_of(by_content(.5), events))
-        EXPECT_TRUE(slice.end_us == events.back().t.time_since_epoch().count() ||
-                    slice.end_us - slice.begin_us == 50'000);
+    for (const Kept& event_window : event_windows_of(by_content(.5), events))
+        EXPECT_TRUE(event_window.end_us == events.back().t.time_since_epoch().count() ||
+                    event_window.end_us - event_window.begin_us == 50'000);
 }
 
 TEST(SlicerContent, NoEventEndsAWindowBeforeAMillisecond) {
-    const auto slices = slices_of(by_content(.5), moving(7, 5, 100'000, 20));
-    for (std::size_t i = 0; i + 1 < slices.size(); ++i)
-        EXPECT_EQ(slices[i].end_us - slices[i].begin_us, 1'000) << i;
+    const auto event_windows = event_windows_of(by_content(.5), moving(7, 5, 100'000, 20));
+    for (std::size_t i = 0; i + 1 < event_windows.size(); ++i)
+        EXPECT_EQ(event_windows[i].end_us - event_windows[i].begin_us, 1'000) << i;
 }
 
 TEST(SlicerContent, EventsOutsideTheSensorCountNowhere) {
     std::vector<Event> events = moving(2, 1, 2000, 50);
     for (Event& event : events) event.x = std::uint16_t(event.x + 240);
-    EXPECT_GE(longest(slices_of(by_content(.5), events)), 49'000);
+    EXPECT_GE(longest(event_windows_of(by_content(.5), events)), 49'000);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 TEST(WindowText, NamesADuration) {
-    EXPECT_EQ(parse_window("50ms").rule, SliceRule::duration);
+    EXPECT_EQ(parse_window("50ms").rule, WindowRule::duration);
     EXPECT_EQ(parse_window("50ms").width, 50ms);
     EXPECT_EQ(parse_window("0.5s").width, 500ms);
     EXPECT_EQ(parse_window("33333us").width, SensorDuration{33'333});
@@ -21,22 +21,22 @@ TEST(WindowText, NamesADuration) {
 
 TEST(WindowText, NamesANumberOfEvents) {
     const SlicerSettings count = parse_window("20000ev");
-    EXPECT_EQ(count.rule, SliceRule::count);
+    EXPECT_EQ(count.rule, WindowRule::count);
     EXPECT_EQ(count.events, 20'000U);
     EXPECT_EQ(count.max_width, 100ms);
     EXPECT_EQ(parse_window("1ev,200ms").max_width, 200ms);
-    EXPECT_EQ(parse_window("0.35epp").rule, SliceRule::count);
+    EXPECT_EQ(parse_window("0.35epp").rule, WindowRule::count);
     EXPECT_EQ(parse_window("0.35epp").events_per_pixel, 0.35);
 }
 
 TEST(WindowText, NamesReferenceImages) {
-    EXPECT_EQ(parse_window("aps").rule, SliceRule::reference);
+    EXPECT_EQ(parse_window("aps").rule, WindowRule::reference);
     EXPECT_EQ(parse_window("aps").max_width, 1s);
     EXPECT_EQ(parse_window("aps,2s").max_width, 2s);
 }
 
 TEST(WindowText, NamesContent) {
-    EXPECT_EQ(parse_window("auto").rule, SliceRule::content);
+    EXPECT_EQ(parse_window("auto").rule, WindowRule::content);
     EXPECT_EQ(parse_window("auto").max_width, 50ms);
     EXPECT_EQ(parse_window("auto").min_width, 1ms);
     EXPECT_EQ(parse_window("auto,20ms").max_width, 20ms);

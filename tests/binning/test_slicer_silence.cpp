@@ -1,6 +1,6 @@
 // The slicer where nothing comes, where data are missing, and at its limits.
 #include "src/core/error.h"
-#include "tests/binning/slices.h"
+#include "tests/binning/event_windows.h"
 
 #include <gtest/gtest.h>
 
@@ -13,78 +13,83 @@ using namespace std::chrono_literals;
 
 TEST(Slicer, ClosesFramesInSilenceByTheClock) {
     Slicer slicer(by_duration(10), 240, 180);
-    std::vector<Kept> slices;
+    std::vector<Kept> event_windows;
     const std::vector<Event> one{at(1)};
     slicer.push(one);
     slicer.advance(from_us(10));
-    take(slicer, slices);
-    EXPECT_TRUE(slices.empty()) << "more events at 10 may come";
+    take(slicer, event_windows);
+    EXPECT_TRUE(event_windows.empty()) << "more events at 10 may come";
     for (int t = 11; t <= 35; ++t) {
         slicer.advance(from_us(t));
-        take(slicer, slices);
+        take(slicer, event_windows);
     }
-    EXPECT_EQ(edges_of(slices), (Edges{{0, 10}, {10, 20}, {20, 30}}));
+    EXPECT_EQ(edges_of(event_windows), (Edges{{0, 10}, {10, 20}, {20, 30}}));
     slicer.advance(from_us(20));  // a clock that goes back a little changes nothing
     slicer.finish();
-    take(slicer, slices);
-    EXPECT_EQ(slices.back().end_us, 35);
+    take(slicer, event_windows);
+    EXPECT_EQ(event_windows.back().end_us, 35);
 }
 
 TEST(Slicer, BeginsWithTheClockWhereNoEventHasComeYet) {
     Slicer slicer(by_duration(10), 240, 180);
     EXPECT_FALSE(slicer.has_begun());
-    std::vector<Kept> slices;
+    std::vector<Kept> event_windows;
     slicer.advance(from_us(101));
     slicer.advance(from_us(111));
-    take(slicer, slices);
-    EXPECT_EQ(edges_of(slices), (Edges{{100, 110}}));
+    take(slicer, event_windows);
+    EXPECT_EQ(edges_of(event_windows), (Edges{{100, 110}}));
 }
 
 TEST(Slicer, AJumpOfHoursGivesAHandfulOfFrames) {
     constexpr std::int64_t kHours = 5 * 3'600'000'000LL;
     for (const SlicerSettings& settings :
          {by_duration(1000), by_count(10, 1000), by_reference(1000)}) {
-        const auto slices = slices_of(settings, {at(1), at(kHours + 1), at(kHours + 2)});
-        ASSERT_EQ(slices.size(), 1U + 16U + 1U + 1U);
-        EXPECT_EQ(slices[0].events.size(), 1U);
-        EXPECT_EQ(slices[16].end_us - slices[16].begin_us, 1000);
-        EXPECT_EQ(slices[17].end_us % 1000, 0) << "later edges stay where they would have been";
-        EXPECT_EQ(slices[17].end_us, slices[18].begin_us);
-        EXPECT_LE(kHours - slices[18].begin_us, 1000);
-        EXPECT_EQ(slices[18].events.size(), 2U);
+        const auto event_windows =
+            event_windows_of(settings, {at(1), at(kHours + 1), at(kHours + 2)});
+        ASSERT_EQ(event_windows.size(), 1U + 16U + 1U + 1U);
+        EXPECT_EQ(event_windows[0].events.size(), 1U);
+        EXPECT_EQ(event_windows[16].end_us - event_windows[16].begin_us, 1000);
+        EXPECT_EQ(event_windows[17].end_us % 1000, 0)
+            << "later edges stay where they would have been";
+        EXPECT_EQ(event_windows[17].end_us, event_windows[18].begin_us);
+        EXPECT_LE(kHours - event_windows[18].begin_us, 1000);
+        EXPECT_EQ(event_windows[18].events.size(), 2U);
     }
 }
 
 TEST(Slicer, EndsALongSilenceAtAReferenceImage) {
-    const auto slices = slices_of(by_reference(10), {at(1), at(10'000)}, {5'005});
-    const auto edge = std::find_if(slices.begin(), slices.end(),
-                                   [](const Kept& slice) { return slice.end_us == 5'005; });
-    EXPECT_NE(edge, slices.end());
-    EXPECT_LT(slices.size(), 60U);
+    const auto event_windows = event_windows_of(by_reference(10), {at(1), at(10'000)}, {5'005});
+    const auto edge =
+        std::find_if(event_windows.begin(), event_windows.end(),
+                     [](const Kept& event_window) { return event_window.end_us == 5'005; });
+    EXPECT_NE(edge, event_windows.end());
+    EXPECT_LT(event_windows.size(), 60U);
 }
 
-TEST(Slicer, MarksTheSliceAfterALoss) {
+TEST(Slicer, MarksTheEventWindowAfterALoss) {
     Slicer slicer(by_duration(10), 240, 180);
-    std::vector<Kept> slices;
+    std::vector<Kept> event_windows;
     const std::vector<Event> before{at(1), at(12)}, after{at(38)};
     slicer.push(before);
-    take(slicer, slices);
+    take(slicer, event_windows);
     slicer.mark_gap();
     slicer.push(after);
-    take(slicer, slices);
-    ASSERT_EQ(slices.size(), 3U);
-    EXPECT_FALSE(slices[0].gap);
-    EXPECT_TRUE(slices[1].gap);
-    EXPECT_FALSE(slices[2].gap);
+    take(slicer, event_windows);
+    ASSERT_EQ(event_windows.size(), 3U);
+    EXPECT_FALSE(event_windows[0].gap);
+    EXPECT_TRUE(event_windows[1].gap);
+    EXPECT_FALSE(event_windows[2].gap);
 }
 
 TEST(Slicer, TimeGoingBackEndsTheStreamAndBeginsANewOne) {
-    const auto slices = slices_of(by_duration(10), {at(1001), at(1013), at(5), at(21), at(3)});
-    EXPECT_EQ(edges_of(slices), (Edges{{1000, 1010}, {1010, 1013}, {4, 14}, {14, 21}, {2, 3}}));
-    EXPECT_EQ(slices[1].reset, false);
-    EXPECT_EQ(slices[2].reset, true);
-    EXPECT_EQ(slices[3].reset, false);
-    EXPECT_EQ(slices[4].reset, true);
+    const auto event_windows =
+        event_windows_of(by_duration(10), {at(1001), at(1013), at(5), at(21), at(3)});
+    EXPECT_EQ(edges_of(event_windows),
+              (Edges{{1000, 1010}, {1010, 1013}, {4, 14}, {14, 21}, {2, 3}}));
+    EXPECT_EQ(event_windows[1].reset, false);
+    EXPECT_EQ(event_windows[2].reset, true);
+    EXPECT_EQ(event_windows[3].reset, false);
+    EXPECT_EQ(event_windows[4].reset, true);
 }
 
 TEST(Slicer, KeepsToTheAskedSpan) {
@@ -95,11 +100,11 @@ TEST(Slicer, KeepsToTheAskedSpan) {
     const std::vector<Event> events{at(90), at(100), at(101), at(125), at(126), at(400)};
     slicer.push(events);
     EXPECT_TRUE(slicer.is_past_end());
-    std::vector<Kept> slices;
-    take(slicer, slices);
-    EXPECT_EQ(edges_of(slices), (Edges{{100, 110}, {110, 120}, {120, 125}}));
-    EXPECT_EQ(slices[0].events.size(), 1U);
-    EXPECT_EQ(slices[2].events.size(), 1U);
+    std::vector<Kept> event_windows;
+    take(slicer, event_windows);
+    EXPECT_EQ(edges_of(event_windows), (Edges{{100, 110}, {110, 120}, {120, 125}}));
+    EXPECT_EQ(event_windows[0].events.size(), 1U);
+    EXPECT_EQ(event_windows[2].events.size(), 1U);
     EXPECT_EQ(slicer.counters().before_begin, 2U);
     EXPECT_EQ(slicer.counters().after_end, 2U);
 }
@@ -108,30 +113,30 @@ TEST(Slicer, EndsAStreamOfUnknownTimesAfterADurationInSilenceToo) {
     SlicerSettings settings = by_duration(100);
     settings.duration = SensorDuration{250};
     Slicer slicer{settings, 240, 180};
-    std::vector<Kept> slices;
+    std::vector<Kept> event_windows;
     slicer.push(std::vector{at(1001, 1)});
     slicer.advance(from_us(1200));
-    take(slicer, slices);
+    take(slicer, event_windows);
     EXPECT_FALSE(slicer.is_past_end());
     slicer.advance(from_us(5000));
-    take(slicer, slices);
+    take(slicer, event_windows);
     EXPECT_TRUE(slicer.is_past_end());
-    EXPECT_EQ(edges_of(slices), (Edges{{1000, 1100}, {1100, 1200}, {1200, 1250}}));
+    EXPECT_EQ(edges_of(event_windows), (Edges{{1000, 1100}, {1100, 1200}, {1200, 1250}}));
 }
 
 TEST(Slicer, MovesAnEventThatComesAfterItsFrameWasClosed) {
     Slicer slicer(by_duration(10), 240, 180);
-    std::vector<Kept> slices;
+    std::vector<Kept> event_windows;
     const std::vector<Event> first{at(1)}, late{at(7), at(29)};
     slicer.push(first);
     slicer.advance(from_us(25));
-    take(slicer, slices);
+    take(slicer, event_windows);
     slicer.push(late);
     slicer.finish();
-    take(slicer, slices);
+    take(slicer, event_windows);
     EXPECT_EQ(slicer.counters().late, 1U);
-    ASSERT_EQ(slices.size(), 3U);
-    EXPECT_EQ(slices[2].events, (std::vector{at(21), at(29)}));
+    ASSERT_EQ(event_windows.size(), 3U);
+    EXPECT_EQ(event_windows[2].events, (std::vector{at(21), at(29)}));
 }
 
 TEST(Slicer, BoundsMemoryByEndingFramesAndLeavingOutWhatNoCameraSends) {
@@ -142,11 +147,11 @@ TEST(Slicer, BoundsMemoryByEndingFramesAndLeavingOutWhatNoCameraSends) {
     Slicer slicer(settings, 240, 180);
     slicer.push(events);
     slicer.finish();
-    std::vector<Kept> slices;
-    take(slicer, slices);
+    std::vector<Kept> event_windows;
+    take(slicer, event_windows);
     EXPECT_EQ(slicer.counters().too_many, 6U);
-    EXPECT_EQ(edges_of(slices), (Edges{{0, 1}, {1, 5}, {5, 9}, {9, 11}}));
-    for (const Kept& slice : slices) EXPECT_LE(slice.events.size(), 4U);
+    EXPECT_EQ(edges_of(event_windows), (Edges{{0, 1}, {1, 5}, {5, 9}, {9, 11}}));
+    for (const Kept& event_window : event_windows) EXPECT_LE(event_window.events.size(), 4U);
 }
 
 TEST(Slicer, ResetIsAsConstructed) {
@@ -158,16 +163,16 @@ TEST(Slicer, ResetIsAsConstructed) {
     slicer.finish();
     slicer.reset();
     slicer.push(events);
-    std::vector<Kept> slices;
-    take(slicer, slices);
+    std::vector<Kept> event_windows;
+    take(slicer, event_windows);
     slicer.finish();
-    take(slicer, slices);
-    EXPECT_EQ(slices, slices_of(by_duration(1000), events));
+    take(slicer, event_windows);
+    EXPECT_EQ(event_windows, event_windows_of(by_duration(1000), events));
 }
 
 TEST(Slicer, AnEmptyStreamHasNoFrames) {
     for (const SlicerSettings& settings : {by_duration(10), by_count(5), by_reference(10)})
-        EXPECT_TRUE(slices_of(settings, {}).empty());
+        EXPECT_TRUE(event_windows_of(settings, {}).empty());
 }
 
 TEST(Slicer, RefusesSettingsOutOfRange) {

@@ -68,7 +68,7 @@ TEST(Reorder, HoldsSoMuchAndNoMore) {
     Reorder reorder{SensorDuration{100}};
     std::size_t taken = 0;
     const auto take = [&](const Event&) { ++taken; };
-    for (std::size_t i = 0; i < Reorder::kMostHeld + 1000; ++i)
+    for (std::size_t i = 0; i < Reorder::kMaxHeld + 1000; ++i)
         reorder.push({from_us(5), 0, 0, Polarity::on}, take);
     EXPECT_EQ(taken, 1000U);
 }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 const fs::path kRoot = EVENTIDE_SOURCE_DIR;
 
 std::vector<fs::path> documents() {
-    std::vector<fs::path> found{kRoot / "README.md"};
+    std::vector<fs::path> found{kRoot / "README.md", kRoot / "CONTRIBUTING.md"};
     for (const auto& entry : fs::recursive_directory_iterator{kRoot / "docs"})
         if (entry.path().extension() == ".md") found.push_back(entry.path());
     return found;
@@ -58,9 +58,9 @@ TEST(Documents, LinksLeadToFiles) {
 }
 
 TEST(Documents, PathsOfTheSourceTreeAreThere) {
-    // Not behind another path: build/release/src/app is what a build makes.
+    // Not behind another path: build/release/apps/cli is what a build makes.
     const std::regex path{
-        R"((?:^|[\s`("'])((?:src|pipeline|replay|drivers|tests|docs|config|scripts|\.ci)/[\w./*{},-]*[\w*}/]))"};
+        R"((?:^|[\s`("'])((?:src|apps|pipeline|replay|drivers|tests|docs|config|scripts|\.ci)/[\w./*{},-]*[\w*}/]))"};
     std::size_t count = 0;
     for (const fs::path& document : documents())
         for (const std::string& named : matches_of(text_of(document), path)) {

@@ -57,7 +57,7 @@ TEST_P(DavisBoards, EveryOrientationIsTurnedUpright) {
         settings.sensor.aps_swapped = (bits & 4) != 0;
         settings.sensor.aps_flip_x = (bits & 2) != 0;
         settings.sensor.aps_flip_y = (bits & 1) != 0;
-        // The chip's axes, not the picture's, are exchanged with it.
+        // The chip's axes, not the frame's, are exchanged with it.
         settings.sensor.dvs_swapped = settings.sensor.aps_swapped;
         PluggedIn camera_side{settings, {.events = 2'000}};
         DavisCamera camera{at_once()};

@@ -1,7 +1,8 @@
-// A DAVIS sends more than the line takes: the line's own counters, and the mark in the stream.
+// A DAVIS sends more than the pipeline takes: the pipeline's own counters, and the mark in the
+// stream.
 #include "pipeline/pipeline.h"
 #include "tests/drivers/davis_streams.h"
-#include "tests/support/toy_line.h"
+#include "tests/support/toy_stages.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ TEST(DavisOverload, WhatTheLineCannotTakeIsCountedAndTheStreamCarriesAGap) {
     sink.wants = 20;
     PipelineSettings settings;
     settings.bins = 3;
-    settings.event_frames.slicer.width = SensorDuration{1000};
+    settings.event_windows.slicer.width = SensorDuration{1000};
     settings.buffers = {2, 1, 1};
     Pipeline pipeline{{camera, encoder, renderer, {&sink}}, settings};
     // The network takes its time until something was lost.

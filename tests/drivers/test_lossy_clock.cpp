@@ -1,6 +1,6 @@
 // A DAVIS whose bytes are lost at random, for a minute of made time: what is recorded keeps the
 // camera's time, and what the host's clock had to set right is counted.
-#include "pipeline/event_frames.h"
+#include "pipeline/event_windows.h"
 #include "tests/drivers/davis_streams.h"
 
 #include <gtest/gtest.h>
@@ -135,11 +135,11 @@ Minute run(const Faults& faults) {
     LossyCamera camera{faults};
     Errors errors{camera.info().width};
     Counters counters;
-    EventFrames frames{camera, {}, nullptr, &errors, counters};
+    EventWindows frames{camera, {}, nullptr, &errors, counters};
     RawPacket packet;
     while (camera.read(packet) == ReadStatus::data) {
         frames.take(packet);
-        for (Slice slice; frames.next(slice);) continue;
+        for (EventWindow event_window; frames.next(event_window);) continue;
     }
     return {errors, counters.snapshot()};
 }

@@ -206,7 +206,7 @@ TEST(V4l2Camera, GivesWhatTheFileHolds) {
     }
 }
 
-TEST(V4l2Camera, RaspberryPisPicturesEndAtTheMarker) {
+TEST(V4l2Camera, RaspberryPisFramesEndAtTheMarker) {
     V4l2Testbed bed{sensor(V4L2_PIX_FMT_GREY)};
     EXPECT_THAT(failure_of([] { open(); }), HasSubstr("gives format 'GREY', expected PSEE"));
     V4l2Settings settings;

@@ -1,6 +1,6 @@
 // Any bytes as a ROS bag.
 #include "src/core/error.h"
-#include "src/evaluate/bag_file.h"
+#include "src/io/bag_file.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

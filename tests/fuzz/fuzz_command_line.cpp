@@ -1,6 +1,6 @@
 // Any lines as arguments: refused with an Error, answered, or a command with its settings.
-#include "src/app/command_line.h"
-#include "src/app/config.h"
+#include "apps/cli/command_line.h"
+#include "apps/cli/settings/config.h"
 #include "tests/fuzz/fuzz_file.h"
 
 #include <iostream>

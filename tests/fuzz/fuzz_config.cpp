@@ -1,7 +1,7 @@
 // Any bytes as a configuration: refused with an Error, or read, and what --print-config makes of it
 // means the same.
-#include "src/app/config.h"
-#include "src/app/run_command.h"
+#include "apps/cli/commands/run_command.h"
+#include "apps/cli/settings/config.h"
 #include "tests/fuzz/fuzz_file.h"
 
 #include <sstream>

@@ -1,6 +1,6 @@
 // The first bytes of any file: every format's header, whether or not it would be chosen.
-#include "replay/foreign_formats.h"
 #include "replay/formats.h"
+#include "replay/unsupported_formats.h"
 #include "src/codec/aedat_header.h"
 #include "src/codec/evt_header.h"
 #include "src/core/error.h"

@@ -1,6 +1,6 @@
 // Any bytes as one of MVSEC's HDF5 files: HDF5 itself is trusted, the layout in it is not.
+#include "apps/evaluate/mvsec_file.h"
 #include "src/core/error.h"
-#include "src/evaluate/mvsec_file.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

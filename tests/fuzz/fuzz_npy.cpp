@@ -1,6 +1,6 @@
 // Any bytes as a NumPy array that is read in parts.
 #include "src/core/error.h"
-#include "src/evaluate/npy.h"
+#include "src/io/npy.h"
 #include "tests/fuzz/fuzz_file.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Any bytes as a NumPy archive of which the arrays "a" and "b" are asked for.
 #include "src/core/error.h"
-#include "src/evaluate/npz.h"
+#include "src/io/npz.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

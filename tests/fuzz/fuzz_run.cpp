@@ -1,6 +1,6 @@
 // eventide run as a whole, of any bytes, with the tiniest network: four threads, frames, sigma.
-#include "src/app/program.h"
-#include "src/app/signals.h"
+#include "apps/cli/program.h"
+#include "apps/cli/signals.h"
 #include "tests/fuzz/fuzz_file.h"
 
 #include <iostream>

@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const TextHeader header = read_text_header(rows, options);
         require(header.stream.data_offset <= rows.size());
         require(header.layout.unit != TextTimeUnit::automatic);
-        require(header.layout.n_columns <= TextLayout::kMostColumns);
+        require(header.layout.n_columns <= TextLayout::kMaxColumns);
     } catch (const Error&) {
     }
     return 0;

@@ -8,7 +8,7 @@ namespace {
 
 class HostileEvents : public LibraryTest {};
 
-constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
+constexpr auto kMax = std::numeric_limits<std::int64_t>::max();
 
 TEST_F(HostileEvents, AreLeftOutAndCounted) {
     const std::vector<Event> good = events_of(recording());
@@ -19,7 +19,7 @@ TEST_F(HostileEvents, AreLeftOutAndCounted) {
             events.push_back({good[i].t - SensorDuration{5000}, 1, 1, Polarity::on});
             events.push_back({good[i].t, 64, 0, Polarity::on});
             events.push_back({good[i].t, 0, 65535, Polarity::on});
-            events.push_back({from_us(kMost), 1, 1, Polarity::on});
+            events.push_back({from_us(kMax), 1, 1, Polarity::on});
             events.push_back({from_us(std::numeric_limits<std::int64_t>::min()), 1, 1});
         }
     }
@@ -103,14 +103,14 @@ TEST_F(HostileEvents, AndTimesAreRefusedInWords) {
     EXPECT_FALSE(reconstructor.next(frame));
     EXPECT_NE(error_of([&] { reconstructor.render(from_us(5), frame); }).find("not pushed yet"),
               std::string::npos);
-    EXPECT_NE(error_of([&] { reconstructor.advance(from_us(kMost)); }).find("2^60"),
+    EXPECT_NE(error_of([&] { reconstructor.advance(from_us(kMax)); }).find("2^60"),
               std::string::npos);
     reconstructor.push(events_of(recording()));
     const auto newest = reconstructor.newest();
     ASSERT_TRUE(newest);
     EXPECT_NE(error_of([&] { reconstructor.render(from_us(-5), frame); }).find("remembers"),
               std::string::npos);
-    EXPECT_NE(error_of([&] { reconstructor.render(from_us(kMost), frame); }).find("not pushed"),
+    EXPECT_NE(error_of([&] { reconstructor.render(from_us(kMax), frame); }).find("not pushed"),
               std::string::npos);
     reconstructor.finish();
     EXPECT_NE(error_of([&] { reconstructor.push(std::span<const Event>{}); }).find("reset()"),

@@ -1,5 +1,5 @@
 // Does the network stay sound for as long as a camera may run? Drives the encoder of a model for
-// any number of event frames of simulated scenes with pauses and bursts, and says at intervals:
+// any number of event windows of simulated scenes with pauses and bursts, and says at intervals:
 //   NaN        numbers that are none, in states and codes, since the beginning
 //   max|h|     the largest state now; rms h: their root mean square
 //   double     codes of the fast engine against double precision over `segment` steps, both begun
@@ -34,7 +34,7 @@ struct Options {
     std::uint32_t seed = 1;
 };
 
-/// Event frames of 50 ms out of one simulated scene after the other, with pauses of up to 10 s now
+/// Event windows of 50 ms out of one simulated scene after the other, with pauses of up to 10 s now
 /// and then, and frames in which every pixel fires many times.
 class Scenes {
 public:

@@ -11,7 +11,7 @@
 
 namespace eventide::test {
 
-/// Event frames of 50 ms with a patch of activity that wanders, sometimes nothing, sometimes
+/// Event windows of 50 ms with a patch of activity that wanders, sometimes nothing, sometimes
 /// everywhere. The same seed gives the same stream.
 class GridStream {
 public:

@@ -1,4 +1,4 @@
-// All memory is taken before the first step: steps and pictures allocate nothing.
+// All memory is taken before the first step: steps and frames allocate nothing.
 #include "src/model/encoder.h"
 #include "src/model/renderer.h"
 #include "tests/model/backends.h"

@@ -1,4 +1,4 @@
-// Images of the camera beside its events: what is added to the model's pictures, where and for how
+// Images of the camera beside its events: what is added to the model's frames, where and for how
 // long.
 #include "src/model/encoder.h"
 #include "src/model/fused_renderer.h"
@@ -108,7 +108,7 @@ TEST_F(ImageFusionTest, AnImageComesInOverItsWindowWithoutAJump) {
     EXPECT_NEAR(shown(75).intensity(9, 9), .6F, 1e-4) << "of the window before, too";
 }
 
-TEST_F(ImageFusionTest, OtherSizesAndPartsAreOfTheSamePicture) {
+TEST_F(ImageFusionTest, OtherSizesAndPartsAreOfTheSameFrame) {
     advance(50);
     ASSERT_TRUE(correct(ramp(), 50));
     const RenderRequest larger{.width = 2 * kWidth, .height = 2 * kHeight};
@@ -213,7 +213,7 @@ TEST(FusedRenderer, AFloodOfImagesIsBounded) {
     Renderer renderer{model, kWidth, kHeight};
     FusedRenderer fused{renderer, kWidth, kHeight, 0};
     for (int i = 0; i < 1000; ++i) fused.give(image_of(ramp(), at_ms(i)));
-    EXPECT_EQ(fused.dropped(), 1000 - FusedRenderer::kMostWaiting);
+    EXPECT_EQ(fused.dropped(), 1000 - FusedRenderer::kMaxWaiting);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST(LatentHistory, OnlyWhatIsTouchedChanges) {
     EXPECT_LT(changed, std::ssize(z.history.changed));
 }
 
-/// The same latent maps with and without their history give the same pictures.
+/// The same latent maps with and without their history give the same frames.
 TEST(LatentHistory, TheRendererRendersAsWithoutIt) {
     const ModelConfig config = test::small_config();
     const Model model = random_model(config, 1);

@@ -54,13 +54,13 @@ EngineOptions with(Engine engine, Precision precision = Precision::f32) {
     return options;
 }
 
-PictureGeometry picture_of(int height, int width, int out_height, int out_width) {
-    PictureGeometry picture;
-    picture.sensor_height = height;
-    picture.sensor_width = width;
-    picture.height = picture.part_height = out_height;
-    picture.width = picture.part_width = out_width;
-    return picture;
+FrameGeometry frame_geometry_of(int height, int width, int out_height, int out_width) {
+    FrameGeometry geometry;
+    geometry.sensor_height = height;
+    geometry.sensor_width = width;
+    geometry.height = geometry.part_height = out_height;
+    geometry.width = geometry.part_width = out_width;
+    return geometry;
 }
 
 const std::vector<std::pair<int, int>> kOutputs{{1, 1},   {9, 13}, {17, 25}, {18, 26},
@@ -81,9 +81,9 @@ TEST(Renderer, HoistingChangesNothing) {
             for (const auto& [height, width] : kOutputs)
                 for (const double fraction : {0.0, 0.3, 1.0})
                     for (const SigmaRule rule : {SigmaRule::log_blend, SigmaRule::mixture}) {
-                        const auto picture = picture_of(9, 13, height, width);
-                        const auto a = network.render_unfolded(codes, fraction, picture, rule);
-                        const auto b = network.render(codes, fraction, picture, rule);
+                        const auto geometry = frame_geometry_of(9, 13, height, width);
+                        const auto a = network.render_unfolded(codes, fraction, geometry, rule);
+                        const auto b = network.render(codes, fraction, geometry, rule);
                         EXPECT_LE(test::worst(a.intensity.values(), b.intensity.values()),
                                   kDoubleTolerance);
                         EXPECT_LE(test::worst(a.sigma.values(), b.sigma.values()),
@@ -212,7 +212,7 @@ TEST(Renderer, CarryingOverUnchangedTilesChangesNoBit) {
     expect_carrying_over_changes_no_bit(fading_config());
 }
 
-/// The largest change of intensity over the first microsecond of an event frame, and over all of
+/// The largest change of intensity over the first microsecond of an event window, and over all of
 /// it.
 std::pair<double, double> changes_at_the_live_edge(const ModelConfig& config) {
     Renderer renderer{random_model(config, 3), 13, 9};

@@ -1,4 +1,4 @@
-// What a correction of pictures keeps while the scene stands still, and loses where it moves.
+// What a correction of frames keeps while the scene stands still, and loses where it moves.
 #include "src/model/residual_pyramid.h"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ namespace {
 /// Float32 against double: sums of a few hundred products, each rounded to 6e-8, in numbers near 1;
 /// gates keep it from growing.
 constexpr double kFloatTolerance = 2e-4;
-/// bf16 keeps 8 bits of each factor; root mean square over all codes and pictures of a run.
+/// bf16 keeps 8 bits of each factor; root mean square over all codes and frames of a run.
 constexpr double kBf16Share = 0.02;
 
 /// How far something is from double precision.
@@ -38,7 +38,7 @@ struct Distance {
     double share() const { return std::sqrt(squares / power); }
 };
 
-/// The network in double precision: codes of the newest event frames, and pictures of them.
+/// The network in double precision: codes of the newest event windows, and frames of them.
 template <typename Network>
 class Exact {
 public:
@@ -52,8 +52,8 @@ public:
         if (codes_.size() > 3) codes_.pop_front();
         return codes_.back();
     }
-    /// Of the newest event frame, at the live edge.
-    plain::Picture<double> render(double fraction) const {
+    /// Of the newest event window, at the live edge.
+    plain::RenderedFrame<double> render(double fraction) const {
         const auto ago = [&](std::size_t n) {
             return codes_.size() > n ? &codes_[codes_.size() - 1 - n] : nullptr;
         };
@@ -65,7 +65,7 @@ private:
     Network encoder_;
     plain::MlpRenderer<double> renderer_;
     ModelConfig config_;
-    PictureGeometry picture_;
+    FrameGeometry picture_;
     std::deque<Array3<double>> codes_;
 };
 
@@ -76,7 +76,7 @@ struct Run {
     Renderer renderer;
     LatentMap latent;
     Frame frame;
-    Distance codes, pictures;
+    Distance codes, frames;
 
     Run(std::string text, bool narrow, const Model& model, int height, int width,
         const EngineOptions& options)
@@ -106,26 +106,27 @@ void compare(const Model& model, int height, int width, int steps, int render_ev
         RenderRequest request;
         request.t = grid.window.begin + SensorDuration{30'000};
         const bool shown = k % render_every == 0;
-        const plain::Picture<double> picture = shown ? exact.render(0.6) : plain::Picture<double>{};
+        const plain::RenderedFrame<double> geometry =
+            shown ? exact.render(0.6) : plain::RenderedFrame<double>{};
         for (Run& run : runs) {
             run.encoder.encode(grid, run.latent);
             run.renderer.push(run.latent);
             run.codes.add(run.latent.values.values(), z.values());
             if (!shown) continue;
             run.renderer.render(request, run.frame);
-            run.pictures.add(run.frame.intensity.values(), picture.intensity.values());
-            run.pictures.add(run.frame.sigma.values(), picture.sigma.values());
+            run.frames.add(run.frame.intensity.values(), geometry.intensity.values());
+            run.frames.add(run.frame.sigma.values(), geometry.sigma.values());
         }
     }
     for (const Run& run : runs) {
         std::printf("  %-14s codes: worst %.2g, rms %.2g %%; pictures: worst %.2g, rms %.2g %%\n",
-                    run.name.c_str(), run.codes.most, 100 * run.codes.share(), run.pictures.most,
-                    100 * run.pictures.share());
+                    run.name.c_str(), run.codes.most, 100 * run.codes.share(), run.frames.most,
+                    100 * run.frames.share());
         EXPECT_LE(run.codes.share(), run.bf16 ? kBf16Share : kFloatTolerance) << run.name;
-        EXPECT_LE(run.pictures.share(), run.bf16 ? kBf16Share : kFloatTolerance) << run.name;
+        EXPECT_LE(run.frames.share(), run.bf16 ? kBf16Share : kFloatTolerance) << run.name;
         if (run.bf16) continue;
         EXPECT_LE(run.codes.most, kFloatTolerance) << run.name;
-        EXPECT_LE(run.pictures.most, kFloatTolerance) << run.name;
+        EXPECT_LE(run.frames.most, kFloatTolerance) << run.name;
     }
 }
 
@@ -164,10 +165,10 @@ TEST(WholeModel, TheShippedNetworkStaysWithDoubleOverManyTiles) {
     compare<Gated>(load_model(file), 71, 97, 5, 5, false);
 }
 
-/// The bits of codes and pictures after some steps.
+/// The bits of codes and frames after some steps.
 struct Bits {
     std::vector<Array3<float>> codes;
-    std::vector<Array2<float>> pictures;
+    std::vector<Array2<float>> frames;
     friend bool operator==(const Bits&, const Bits&) = default;
 };
 Bits bits_of(const Model& model, int height, int width, const EngineOptions& options) {
@@ -185,8 +186,8 @@ Bits bits_of(const Model& model, int height, int width, const EngineOptions& opt
         Frame frame = renderer.make_output(request);
         renderer.render(request, frame);
         bits.codes.push_back(latent.values);
-        bits.pictures.push_back(frame.intensity);
-        bits.pictures.push_back(frame.sigma);
+        bits.frames.push_back(frame.intensity);
+        bits.frames.push_back(frame.sigma);
     }
     return bits;
 }

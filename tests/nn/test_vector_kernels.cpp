@@ -147,7 +147,7 @@ void expect_narrowed(const Bf16Kernels& kernels) {
         const auto n = std::size_t(channels), pairs = (n + 1) / 2;
         const auto in = numbers.many(3 * n, Fill::mixed);
         std::vector<std::uint32_t> out(3 * pairs + 1, 77);
-        kernels.narrow(in.data(), 3, channels, out.data());
+        kernels.pixels_to_bf16(in.data(), 3, channels, out.data());
         EXPECT_EQ(out.back(), 77U);
         for (std::size_t p = 0; p < 3; ++p)
             for (std::size_t c = 0; c < n; ++c) {
@@ -155,7 +155,7 @@ void expect_narrowed(const Bf16Kernels& kernels) {
                 EXPECT_EQ(std::uint16_t(c % 2 == 0 ? pair : pair >> 16), to_bf16(in[p * n + c]));
             }
         std::vector<std::uint16_t> row(3 * n + 1, 77);
-        kernels.narrow_row(in.data(), 3 * n, row.data());
+        kernels.row_to_bf16(in.data(), 3 * n, row.data());
         EXPECT_EQ(row.back(), 77);
         for (std::size_t i = 0; i < 3 * n; ++i) EXPECT_EQ(row[i], to_bf16(in[i]));
     }

@@ -1,4 +1,4 @@
-// Frames are asked for at t0 + k / fps, for days, whatever the event frames are.
+// Frames are asked for at t0 + k / fps, for days, whatever the event windows are.
 #include "pipeline/frame_clock.h"
 #include "src/core/error.h"
 
@@ -90,7 +90,7 @@ std::vector<Window> random_windows(unsigned seed, std::int64_t begin, std::int64
     return windows;
 }
 
-TEST(FrameSchedule, GivesTheSameFramesHoweverTheEventFramesAreCut) {
+TEST(FrameSchedule, GivesTheSameFramesHoweverTheEventWindowsAreCut) {
     for (const FrameRate rate : {FrameRate{2997, 100}, FrameRate{1000, 1}, FrameRate{3, 1}}) {
         FrameSchedule whole(rate);
         const auto expected = frames_of(whole, {{from_us(123), from_us(2'000'123)}});
@@ -102,7 +102,7 @@ TEST(FrameSchedule, GivesTheSameFramesHoweverTheEventFramesAreCut) {
     }
 }
 
-TEST(FrameSchedule, WithoutARateGivesOneFrameAtTheEndOfEachEventFrame) {
+TEST(FrameSchedule, WithoutARateGivesOneFrameAtTheEndOfEachEventWindow) {
     FrameSchedule schedule({});
     EXPECT_EQ(frames_of(schedule, {{from_us(0), from_us(10)}, {from_us(10), from_us(13)}}),
               (std::vector<std::pair<std::int64_t, std::uint64_t>>{{10, 0}, {13, 1}}));

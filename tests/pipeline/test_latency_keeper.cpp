@@ -1,8 +1,8 @@
 // The line in made time: a source sends a multiple of what the engine can do, and frames are no
-// later than the bound. All decisions are the line's own; only work and waiting are made.
+// later than the bound. All decisions are the pipeline's own; only work and waiting are made.
 #include "pipeline/encoder_gate.h"
 #include "pipeline/frame_clock.h"
-#include "pipeline/frame_shedder.h"
+#include "pipeline/frame_dropper.h"
 #include "pipeline/latency.h"
 #include "pipeline/latency_keeper.h"
 
@@ -63,8 +63,8 @@ private:
     };
     struct HandOn {
         MadeLine* line;
-        void operator()(const Slice& slice) const {
-            line->grids_.push_back({slice.window, slice.arrived});
+        void operator()(const EventWindow& event_window) const {
+            line->grids_.push_back({event_window.window, event_window.arrived});
         }
     };
 
@@ -99,10 +99,10 @@ private:
     }
     void cut(HostTime arrived) {
         for (; window_end_ <= arrived; window_end_ += window_) {
-            Slice slice;
-            slice.window = {sensor_time(window_end_ - window_), sensor_time(window_end_)};
-            slice.arrived = arrived;
-            gate_.take(slice);
+            EventWindow event_window;
+            event_window.window = {sensor_time(window_end_ - window_), sensor_time(window_end_)};
+            event_window.arrived = arrived;
+            gate_.take(event_window);
             most_halvings = std::max(most_halvings, keeper_.halvings());
         }
     }
@@ -164,7 +164,7 @@ private:
     std::optional<Encoding> encoding_;
     EncoderGate<Lent, HandOn> gate_{keeper_, {}, Lent{this}, HandOn{this}};
     FrameSchedule schedule_{{60, 1}};
-    FrameShedder shedder_{2};
+    FrameDropper shedder_{2};
     bool rendering_ = false;
 };
 
@@ -236,12 +236,13 @@ TEST(LatencyKeeper, TakesPacketsWhileTheyCanBeParsedInTime) {
     EXPECT_TRUE((LatencyKeeper{{}}.takes_packet(1000)));
 }
 
-Slice slice_of(std::int64_t begin_us, std::int64_t end_us, const std::vector<Event>& events) {
-    Slice slice;
-    slice.window = {from_us(begin_us), from_us(end_us)};
-    slice.events = events;
-    slice.arrived = HostTime{std::chrono::microseconds{end_us}};
-    return slice;
+EventWindow event_window_of(std::int64_t begin_us, std::int64_t end_us,
+                            const std::vector<Event>& events) {
+    EventWindow event_window;
+    event_window.window = {from_us(begin_us), from_us(end_us)};
+    event_window.events = events;
+    event_window.arrived = HostTime{std::chrono::microseconds{end_us}};
+    return event_window;
 }
 
 TEST(WindowMerger, IsAllItsWindowsAndNothingElse) {
@@ -249,24 +250,24 @@ TEST(WindowMerger, IsAllItsWindowsAndNothingElse) {
         second{{from_us(15), 3, 4, Polarity::off}};
     WindowMerger merger{2};
     EXPECT_TRUE(merger.empty());
-    Slice broken = slice_of(10, 20, second);
+    EventWindow broken = event_window_of(10, 20, second);
     broken.gap_before = true;
-    merger.add(slice_of(0, 10, first));
+    merger.add(event_window_of(0, 10, first));
     EXPECT_TRUE(merger.takes(broken, false));
     EXPECT_FALSE(merger.takes(broken, true)) << "state begins anew there";
-    Slice reset = slice_of(0, 20, second);
+    EventWindow reset = event_window_of(0, 20, second);
     reset.reset_before = true;
     EXPECT_FALSE(merger.takes(reset, false));
     merger.add(broken);
-    EXPECT_FALSE(merger.takes(slice_of(20, 30, first), false)) << "enough events";
-    const Slice merged = merger.take();
+    EXPECT_FALSE(merger.takes(event_window_of(20, 30, first), false)) << "enough events";
+    const EventWindow merged = merger.take();
     EXPECT_EQ(merged.window, (Window{from_us(0), from_us(20)}));
     EXPECT_EQ(merged.events.size(), 2U);
     EXPECT_EQ(merged.events[1].x, 3);
     EXPECT_TRUE(merged.gap_before);
     EXPECT_EQ(merged.arrived, broken.arrived) << "of the newest packet in it";
     EXPECT_TRUE(merger.empty());
-    merger.add(slice_of(20, 30, first));
+    merger.add(event_window_of(20, 30, first));
     EXPECT_EQ(merger.take().events.size(), 1U);
 }
 

@@ -1,4 +1,4 @@
-// The whole line over a toy model: the same frames on four threads as on one; starts and stops.
+// The whole pipeline over a toy model: the same frames on four threads as on one; starts and stops.
 #include "src/core/error.h"
 #include "tests/pipeline/toy_pipeline.h"
 
@@ -21,29 +21,29 @@ TEST(Pipeline, GivesTheSameFramesThreadedAsSequentialForAnySplitOfTheBytes) {
             settings.lookahead = lookahead;
             settings.event_preview = lookahead == 1;
             if (lookahead == 2) {
-                settings.event_frames.slicer = parse_window("40ev,3ms");
+                settings.event_windows.slicer = parse_window("40ev,3ms");
                 settings.buffers = {1, 1, 1};
             }
             variants.push_back(settings);
         }
     variants.push_back(quick_settings());
-    variants.back().event_frames.slicer.begin = from_us(10'000);
-    variants.back().event_frames.slicer.end = from_us(31'500);
+    variants.back().event_windows.slicer.begin = from_us(10'000);
+    variants.back().event_windows.slicer.end = from_us(31'500);
     variants.back().frames_from = from_us(20'500);
 
     const auto bytes = bytes_of(toy_events(3000));
     for (std::size_t v = 0; v < variants.size(); ++v) {
         SCOPED_TRACE(v);
-        Line whole({bytes}, variants[v]);
+        PipelineUnderTest whole({bytes}, variants[v]);
         whole.run_sequential();
         ASSERT_GT(whole.sink.seen.size(), 1U);
         for (const std::size_t size : {5U, 100U, 3000U}) {
             std::mt19937 rng{unsigned(v)};
-            Line split(ToySource::packets_of(bytes, size, &rng), variants[v]);
+            PipelineUnderTest split(ToySource::packets_of(bytes, size, &rng), variants[v]);
             split.run();
             ASSERT_EQ(split.sink.seen, whole.sink.seen) << size;
             EXPECT_EQ(split.sink.closed, 1);
-            if (!variants[v].event_frames.slicer.end) {
+            if (!variants[v].event_windows.slicer.end) {
                 EXPECT_EQ(split.snapshot().events, 3000U);
             }
             EXPECT_EQ(split.snapshot().lost_packets, 0U);
@@ -53,16 +53,16 @@ TEST(Pipeline, GivesTheSameFramesThreadedAsSequentialForAnySplitOfTheBytes) {
 
 TEST(Pipeline, TheComparisonSeesOneEventLess) {
     auto events = toy_events(3000);
-    Line all({bytes_of(events)}, quick_settings());
+    PipelineUnderTest all({bytes_of(events)}, quick_settings());
     all.run();
     events.erase(events.begin() + 1500);
-    Line fewer({bytes_of(events)}, quick_settings());
+    PipelineUnderTest fewer({bytes_of(events)}, quick_settings());
     fewer.run();
     EXPECT_NE(all.sink.seen, fewer.sink.seen);
 }
 
 TEST(Pipeline, AsksForFramesAtTheirTimesWhateverTheEventsDo) {
-    Line line({bytes_of(toy_events(3000))}, quick_settings());
+    PipelineUnderTest line({bytes_of(toy_events(3000))}, quick_settings());
     line.run();
     for (std::size_t i = 0; i < line.sink.seen.size(); ++i) {
         EXPECT_EQ(line.sink.seen[i].index, i);
@@ -72,11 +72,11 @@ TEST(Pipeline, AsksForFramesAtTheirTimesWhateverTheEventsDo) {
     EXPECT_EQ(s.frames, line.sink.seen.size());
     EXPECT_EQ(s.skipped_frames, 0U);
     EXPECT_EQ(s.latency.count, s.frames);
-    EXPECT_EQ(s.encoded, s.event_frames);
+    EXPECT_EQ(s.encoded, s.event_windows);
     EXPECT_EQ(to_us(s.newest_frame), line.sink.seen.back().t_us);
 }
 
-TEST(Pipeline, PreviewsTheSumOfPolaritiesOfTheEventFrame) {
+TEST(Pipeline, PreviewsTheSumOfPolaritiesOfTheEventWindow) {
     std::vector<std::byte> bytes;
     for (int i = 0; i < 5; ++i) append_record(bytes, ToyKind::event, 1 + 100 * i, 2, 3, true);
     append_record(bytes, ToyKind::event, 600, 2, 3, false);
@@ -86,7 +86,7 @@ TEST(Pipeline, PreviewsTheSumOfPolaritiesOfTheEventFrame) {
     settings.rate = {};
     settings.event_preview = true;
     settings.lookahead = 1;
-    Line line({bytes}, settings);
+    PipelineUnderTest line({bytes}, settings);
     line.run();
     ASSERT_EQ(line.sink.seen.size(), 2U);
     EXPECT_EQ(line.sink.seen[0].preview[3 * kToyWidth + 2], 4);
@@ -98,7 +98,7 @@ TEST(Pipeline, PreviewsTheSumOfPolaritiesOfTheEventFrame) {
 TEST(Pipeline, StartsAndStopsAThousandTimes) {
     const auto packets = one_frame_per_packet(50);
     for (int round = 0; round < 1000; ++round) {
-        Line line(packets, quick_settings());
+        PipelineUnderTest line(packets, quick_settings());
         line.sink.keeps = false;
         line.source.endless = true;
         if (round % 4 == 0)
@@ -120,7 +120,7 @@ TEST(Pipeline, StartsAndStopsAThousandTimes) {
 
 TEST(Pipeline, CanBeWatchedWhileItRuns) {
     const auto bytes = bytes_of(toy_events(20'000));
-    Line line(ToySource::packets_of(bytes, 200), quick_settings());
+    PipelineUnderTest line(ToySource::packets_of(bytes, 200), quick_settings());
     line.made();
     std::atomic<bool> done{false};
     std::jthread watcher{[&] {
@@ -137,7 +137,7 @@ TEST(Pipeline, CanBeWatchedWhileItRuns) {
 
 TEST(Pipeline, EndsWhenASinkWantsNoMore) {
     for (const bool threaded : {true, false}) {
-        Line line(one_frame_per_packet(50), quick_settings());
+        PipelineUnderTest line(one_frame_per_packet(50), quick_settings());
         line.source.endless = true;
         line.sink.wants = 10;
         threaded ? line.run() : line.run_sequential();
@@ -150,8 +150,8 @@ TEST(Pipeline, EndsAtTheAskedTime) {
     for (const bool threaded : {true, false}) {
         PipelineSettings settings = quick_settings();
         settings.rate = {};
-        settings.event_frames.slicer.end = from_us(20'500);
-        Line line(one_frame_per_packet(50), settings);
+        settings.event_windows.slicer.end = from_us(20'500);
+        PipelineUnderTest line(one_frame_per_packet(50), settings);
         line.source.endless = true;
         threaded ? line.run() : line.run_sequential();
         EXPECT_EQ(line.sink.seen.back().t_us, 20'500);
@@ -161,7 +161,7 @@ TEST(Pipeline, EndsAtTheAskedTime) {
 
 TEST(Pipeline, OfAnEmptySourceWritesNothingAndClosesItsSinks) {
     for (const bool threaded : {true, false}) {
-        Line line({}, quick_settings());
+        PipelineUnderTest line({}, quick_settings());
         threaded ? line.run() : line.run_sequential();
         EXPECT_EQ(line.sink.count, 0U);
         EXPECT_EQ(line.sink.closed, 1);
@@ -175,7 +175,7 @@ TEST(Pipeline, RefusesImpossibleSettings) {
     no_buffers.buffers.grids = 0;
     far.lookahead = 3;
     for (const auto& settings : {no_bins, no_buffers, far})
-        EXPECT_THROW(Line({}, settings).made(), Error);
+        EXPECT_THROW(PipelineUnderTest({}, settings).made(), Error);
 }
 
 }  // namespace

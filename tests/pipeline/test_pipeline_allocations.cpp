@@ -1,4 +1,4 @@
-// Once warm the line allocates nothing.
+// Once warm the pipeline allocates nothing.
 #include "tests/pipeline/toy_pipeline.h"
 #include "tests/support/allocation_counter.h"
 
@@ -34,7 +34,7 @@ TEST(Pipeline, AllocatesNothingOnceWarm) {
         PipelineSettings settings = quick_settings();
         settings.lookahead = 2;
         settings.event_preview = true;
-        Line line(packets, settings);
+        PipelineUnderTest line(packets, settings);
         line.sink.keeps = false;
         std::int64_t allocations = -1;
         line.sink.before_write = [&](std::uint64_t frame) {

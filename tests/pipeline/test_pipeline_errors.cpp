@@ -1,4 +1,4 @@
-// An error in any part of the line comes out, and takes nothing back.
+// An error in any part of the pipeline comes out, and takes nothing back.
 #include "src/core/error.h"
 #include "tests/pipeline/toy_pipeline.h"
 
@@ -21,8 +21,8 @@ struct FailingFilter final : EventFilter {
     std::size_t seen = 0;
 };
 
-/// Makes one part of the line fail; returns the sentence it fails with.
-std::string break_part(Line& line, const std::string& part, FailingFilter& filter) {
+/// Makes one part of the pipeline fail; returns the sentence it fails with.
+std::string break_part(PipelineUnderTest& line, const std::string& part, FailingFilter& filter) {
     const auto fail = [part](auto... at) {
         const bool now = (true && ... && (at == 20));
         if (now) throw std::runtime_error(part);
@@ -37,14 +37,14 @@ std::string break_part(Line& line, const std::string& part, FailingFilter& filte
 
 TEST(Pipeline, RethrowsAnErrorOfEachPartAndClosesTheSinks) {
     const auto packets = one_frame_per_packet(200);
-    Line healthy(packets, quick_settings());
+    PipelineUnderTest healthy(packets, quick_settings());
     healthy.run();
     for (const std::string part : {"source", "parser", "filter", "sink", "close"})
         for (const bool threaded : {true, false})
             for (int round = 0; round < 20; ++round) {
                 SCOPED_TRACE(part + (threaded ? " threaded" : " sequential"));
                 FailingFilter filter;
-                Line line(packets, quick_settings());
+                PipelineUnderTest line(packets, quick_settings());
                 line.source.endless = part != "close";
                 break_part(line, part, filter);
                 try {
@@ -63,7 +63,7 @@ TEST(Pipeline, RethrowsAnErrorOfEachPartAndClosesTheSinks) {
 
 TEST(Pipeline, WritesWhatWasReadBeforeTheSourceFailed) {
     for (const bool threaded : {true, false}) {
-        Line line(one_frame_per_packet(200), quick_settings());
+        PipelineUnderTest line(one_frame_per_packet(200), quick_settings());
         line.source.before_read = [](std::size_t packet) {
             if (packet == 100) throw Error(ErrorKind::device, "unplugged");
         };
@@ -73,7 +73,7 @@ TEST(Pipeline, WritesWhatWasReadBeforeTheSourceFailed) {
 }
 
 TEST(Pipeline, KeepsTheFirstErrorOfTwo) {
-    Line line(one_frame_per_packet(200), quick_settings());
+    PipelineUnderTest line(one_frame_per_packet(200), quick_settings());
     line.sink.before_write = [](auto frame) {
         if (frame == 3) throw std::runtime_error("first");
     };

@@ -59,11 +59,11 @@ TEST(Pipeline, BeginsANewStreamWhereTheCamerasClockWasReset) {
     auto both = first;
     both.insert(both.end(), second.begin(), second.end());
     for (const bool threaded : {true, false}) {
-        Line line(ToySource::packets_of(bytes_of(both), 333), quick_settings());
+        PipelineUnderTest line(ToySource::packets_of(bytes_of(both), 333), quick_settings());
         threaded ? line.run() : line.run_sequential();
         EXPECT_EQ(line.encoder.resets, 1);
         EXPECT_EQ(line.snapshot().slicing.time_resets, 1U);
-        Line alone({bytes_of(second)}, quick_settings());
+        PipelineUnderTest alone({bytes_of(second)}, quick_settings());
         alone.run();
         ASSERT_GT(line.sink.seen.size(), alone.sink.seen.size());
         ASSERT_EQ(line.sink.seen.back().t_us, alone.sink.seen.back().t_us);

@@ -1,4 +1,4 @@
-// Too much for a part of the line: recordings wait, live sources lose, pictures are skipped.
+// Too much for a part of the pipeline: recordings wait, live sources lose, frames are skipped.
 #include "tests/pipeline/toy_pipeline.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ TEST(Pipeline, ARecordingWaitsForASlowSinkAndLosesNothing) {
     PipelineSettings settings = quick_settings();
     settings.rate = {};
     settings.buffers = {4, 2, 2};
-    Line line(packets, settings);
+    PipelineUnderTest line(packets, settings);
     std::atomic<std::size_t> read{0};
     std::counting_semaphore<> tokens{0};
     std::size_t furthest = 0;
@@ -44,7 +44,7 @@ TEST(Pipeline, ALiveSourceLosesWhatASlowModelCannotTakeAndSaysSo) {
     PipelineSettings settings = quick_settings();
     settings.rate = {};
     settings.buffers = {4, 1, 1};
-    Line line(one_frame_per_packet(kPackets), settings, true);
+    PipelineUnderTest line(one_frame_per_packet(kPackets), settings, true);
     std::binary_semaphore released{0}, goes_on{0};
     line.encoder.before_encode = [&, calls = 0]() mutable {
         if (++calls == 1) released.acquire();
@@ -75,7 +75,7 @@ TEST(Pipeline, WindowsThatWaitForASlowModelBecomeOneAndNothingIsLost) {
     settings.rate = {};
     settings.buffers = {16, 2, 4};
     settings.latency = std::chrono::hours{1};  // room decides, not how busy the machine is
-    Line line(one_frame_per_packet(kPackets), settings, true);
+    PipelineUnderTest line(one_frame_per_packet(kPackets), settings, true);
     std::binary_semaphore released{0};
     line.encoder.before_encode = [&, calls = 0]() mutable {
         if (++calls == 1) released.acquire();
@@ -90,8 +90,8 @@ TEST(Pipeline, WindowsThatWaitForASlowModelBecomeOneAndNothingIsLost) {
     EXPECT_EQ(s.lost_packets, 0U);
     EXPECT_EQ(s.events, kPackets + 1);
     EXPECT_GT(s.merged_windows, kReleasedAt - 20);
-    EXPECT_EQ(s.event_frames + s.merged_windows, kPackets + 1) << "each is counted";
-    EXPECT_EQ(s.frames + s.skipped_frames, s.event_frames);
+    EXPECT_EQ(s.event_windows + s.merged_windows, kPackets + 1) << "each is counted";
+    EXPECT_EQ(s.frames + s.skipped_frames, s.event_windows);
     for (std::size_t i = 1; i < line.sink.seen.size(); ++i)
         EXPECT_GE(line.sink.seen[i].begin_us, line.sink.seen[i - 1].end_us);
     // The toy model counts the events it is given: sigma is 1 more at a window's end.
@@ -101,14 +101,14 @@ TEST(Pipeline, WindowsThatWaitForASlowModelBecomeOneAndNothingIsLost) {
 TEST(Pipeline, ALiveSourceSkipsTheOldestFramesWhenRenderingIsSlow) {
     constexpr std::size_t kPackets = 60;
     PipelineSettings settings = quick_settings();
-    settings.rate = {20'000, 1};  // 20 frames per event frame
+    settings.rate = {20'000, 1};  // 20 frames per event window
     settings.buffers = {64, 2, 4};
-    Line line(one_frame_per_packet(kPackets), settings, true);
+    PipelineUnderTest line(one_frame_per_packet(kPackets), settings, true);
     std::binary_semaphore behind{0};
     line.sink.before_write = [&](std::uint64_t frame) {
         if (frame == 5) behind.acquire();
     };
-    // At the fourth event frame the second and third wait behind the one being rendered.
+    // At the fourth event window the second and third wait behind the one being rendered.
     line.encoder.before_encode = [&, calls = 0]() mutable {
         if (++calls == 4) behind.release();
     };
@@ -125,8 +125,8 @@ TEST(Pipeline, ALiveLineGoesOnGivingFramesInSilence) {
     std::vector<std::vector<std::byte>> packets = one_frame_per_packet(3);
     packets.emplace_back();  // a timeout, again and again
     PipelineSettings settings = quick_settings();
-    settings.event_frames.silence_margin = SensorDuration{1000};
-    Line line(packets, settings, true);
+    settings.event_windows.silence_margin = SensorDuration{1000};
+    PipelineUnderTest line(packets, settings, true);
     line.source.endless = true;
     line.sink.wants = 40;
     line.run();

@@ -1,7 +1,8 @@
-// Real recordings through the line: the same frames on four threads, for other splits of the bytes.
+// Real recordings through the pipeline: the same frames on four threads, for other splits of the
+// bytes.
 #include "pipeline/pipeline.h"
 #include "replay/formats.h"
-#include "tests/support/toy_line.h"
+#include "tests/support/toy_stages.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +48,7 @@ private:
     std::size_t given_ = 0;
 };
 
-/// Keeps a digest of each frame: the pictures would take gigabytes.
+/// Keeps a digest of each frame: the frames would take gigabytes.
 class DigestSink final : public Sink {
 public:
     void write(const Frame& frame) override {
@@ -99,11 +100,11 @@ TEST_P(RealRecordings, GiveTheSameFramesThreadedAsSequential) {
     std::vector<PipelineSettings> variants(2);
     variants[0].rate = {2997, 100};
     variants[0].lookahead = 2;
-    variants[0].event_frames.slicer = parse_window("20ms");
+    variants[0].event_windows.slicer = parse_window("20ms");
     variants[1].bins = 2;
-    variants[1].event_frames.slicer = parse_window("0.35epp,40ms");
+    variants[1].event_windows.slicer = parse_window("0.35epp,40ms");
     for (const PipelineSettings& settings : variants) {
-        SCOPED_TRACE(window_text(settings.event_frames.slicer));
+        SCOPED_TRACE(window_text(settings.event_windows.slicer));
         const Outcome expected = run(path(), settings, How::sequential);
         EXPECT_FALSE(expected.digests.empty());
         EXPECT_GT(expected.snapshot.events, 1000U);
@@ -120,7 +121,7 @@ class RealRecordingsWithImages : public RealRecordings {};
 
 TEST_P(RealRecordingsWithImages, AreCutAtThem) {
     PipelineSettings settings;
-    settings.event_frames.slicer = parse_window("aps");
+    settings.event_windows.slicer = parse_window("aps");
     const Outcome expected = run(path(), settings, How::sequential);
     EXPECT_GE(expected.digests.size() + 1, expected.snapshot.images);
     EXPECT_EQ(expected.snapshot.slicing.late_references, 0U);

@@ -1,8 +1,8 @@
-// The whole line over toy parts, for tests of it.
+// The whole pipeline over toy parts, for tests of it.
 #pragma once
 
 #include "pipeline/pipeline.h"
-#include "tests/support/toy_line.h"
+#include "tests/support/toy_stages.h"
 
 #include <memory>
 #include <utility>
@@ -13,15 +13,15 @@ namespace eventide::test {
 inline PipelineSettings quick_settings() {
     PipelineSettings settings;
     settings.bins = 3;
-    settings.event_frames.slicer.width = SensorDuration{1000};
+    settings.event_windows.slicer.width = SensorDuration{1000};
     settings.rate = {2000, 1};
     return settings;
 }
 
-/// One run of the line over toy parts.
-struct Line {
-    Line(std::vector<std::vector<std::byte>> packets, const PipelineSettings& line_settings,
-         bool live = false)
+/// One run of the pipeline over toy parts.
+struct PipelineUnderTest {
+    PipelineUnderTest(std::vector<std::vector<std::byte>> packets,
+                      const PipelineSettings& line_settings, bool live = false)
         : source(std::move(packets), live), settings(line_settings) {}
 
     Pipeline& made() {
@@ -43,7 +43,7 @@ struct Line {
     std::unique_ptr<Pipeline> pipeline;
 };
 
-/// One event in each of n event frames of 1000 us, one packet each, and one packet that ends them.
+/// One event in each of n event windows of 1000 us, one packet each, and one packet that ends them.
 inline std::vector<std::vector<std::byte>> one_frame_per_packet(std::size_t n) {
     std::vector<std::vector<std::byte>> packets(n + 1);
     for (std::size_t i = 0; i <= n; ++i)

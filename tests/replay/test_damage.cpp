@@ -15,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, OneFlippedBit,
 
 TEST_P(OneFlippedBit, CostsAtMostAPacketOrTheEventsOfAMoment) {
     // 10 us between events on average: a packet of 4096, or 100 ms.
-    constexpr std::size_t kMostLost = 11'000;
+    constexpr std::size_t kMaxLost = 11'000;
     const TestFolder folder;
     const auto events = some_events(60'000, 3'000'000);
     const std::string whole = read_text(write_as(folder, GetParam(), events));
@@ -26,7 +26,7 @@ TEST_P(OneFlippedBit, CostsAtMostAPacketOrTheEventsOfAMoment) {
         const auto bit = random() % 8;
         damaged[at] ^= char(1 << bit);
         const auto recording = open_recording(folder.write("damaged", damaged));
-        EXPECT_GE(read_everything(*recording).events.size(), events.size() - kMostLost)
+        EXPECT_GE(read_everything(*recording).events.size(), events.size() - kMaxLost)
             << "bit " << bit << " of byte " << at;
     }
 }

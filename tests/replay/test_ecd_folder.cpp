@@ -1,4 +1,4 @@
-// Folders in the manner of the Event Camera Dataset: events with their pictures.
+// Folders in the manner of the Event Camera Dataset: events with their images.
 #include "replay/ecd_folder.h"
 
 #include "replay/formats.h"
@@ -9,8 +9,8 @@
 namespace eventide {
 namespace {
 
-/// A grey picture, as text: netpbm is the one format a test can spell out.
-std::string picture(int width, int height, int value) {
+/// A grey image, as text: netpbm is the one format a test can spell out.
+std::string photo(int width, int height, int value) {
     return "P5\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" +
            std::string(std::size_t(width * height), char(value));
 }
@@ -21,10 +21,10 @@ void write_folder(const TestFolder& folder) {
                  "0.35 images/c.pgm\n0.05 images/a.pgm\n0.20 images/b.pgm\n"
                  "0.25 images/missing.pgm\nno time\n0.9 images/d.pgm\n");
     for (const char* name : {"a", "b", "c", "d"})
-        folder.write(std::string("r/images/") + name + ".pgm", picture(20, 10, name[0]));
+        folder.write(std::string("r/images/") + name + ".pgm", photo(20, 10, name[0]));
 }
 
-TEST(EcdFolder, GivesItsPicturesInTimeOrderWithTheEvents) {
+TEST(EcdFolder, GivesItsImagesInTimeOrderWithTheEvents) {
     const TestFolder folder;
     write_folder(folder);
     for (const char* name : {"r", "r/events.txt"}) {
@@ -38,15 +38,15 @@ TEST(EcdFolder, GivesItsPicturesInTimeOrderWithTheEvents) {
         EXPECT_EQ(batch.images[1].pixels(9, 19), 'b' * 257);
         EXPECT_EQ(batch.images[3].t, from_us(900000));
     }
-    // The missing picture and the line without a time.
+    // The missing image and the line without a time.
     EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 2U);
 }
 
-TEST(EcdFolder, ReadsNoPictureOutsideTheFolder) {
+TEST(EcdFolder, ReadsNoImageOutsideTheFolder) {
     const TestFolder folder;
-    const std::string secret = folder.write("secret.pgm", picture(20, 10, 's'));
+    const std::string secret = folder.write("secret.pgm", photo(20, 10, 's'));
     folder.write("r/events.txt", "20 10\n0.10 1 2 1\n0.20 3 4 0\n");
-    folder.write("r/images/a.pgm", picture(20, 10, 'a'));
+    folder.write("r/images/a.pgm", photo(20, 10, 'a'));
     folder.write("r/images.txt", "0.11 " + secret + "\n0.12 ../secret.pgm\n" +
                                      "0.13 images/../../secret.pgm\n0.14 .\n" +
                                      "0.15 images/../images/./a.pgm\n0.16 " +
@@ -57,7 +57,7 @@ TEST(EcdFolder, ReadsNoPictureOutsideTheFolder) {
     EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 4U);
 }
 
-TEST(EcdFolder, APictureComesOnceTheEventsHavePassedIt) {
+TEST(EcdFolder, AnImageComesOnceTheEventsHavePassedIt) {
     const TestFolder folder;
     write_folder(folder);
     OpenOptions as_they_come;
@@ -79,13 +79,13 @@ TEST(EcdFolder, APictureComesOnceTheEventsHavePassedIt) {
     EXPECT_EQ(batch.images.size(), 5U);
 }
 
-TEST(EcdFolder, ExposuresAreReadWhereEachPictureHasOne) {
+TEST(EcdFolder, ExposuresAreReadWhereEachImageHasOne) {
     const TestFolder folder;
     folder.write("r/events.txt", "0.10 1 2 1\n0.90 3 4 0\n");
     folder.write("r/images.txt", "0.35 a.pgm\n0.05 b.pgm\n");
     folder.write("r/exposure.txt", "0.30 0.40\n0.04 0.06\n");
-    folder.write("r/a.pgm", picture(20, 10, 1));
-    folder.write("r/b.pgm", picture(20, 10, 2));
+    folder.write("r/a.pgm", photo(20, 10, 1));
+    folder.write("r/b.pgm", photo(20, 10, 2));
     const auto images = read_everything(*open_recording(folder.path("r"))).images;
     ASSERT_EQ(images.size(), 2U);
     EXPECT_EQ(images[0].exposure_begin, from_us(40'000));
@@ -101,7 +101,7 @@ TEST(EcdFolder, AStatedSizeIsTaken) {
     EXPECT_EQ(open_recording(folder.path("r"), {.width = 64, .height = 48})->info().width, 64);
 }
 
-TEST(EcdFolder, WithoutPicturesTheSizeIsThatOfTheEvents) {
+TEST(EcdFolder, WithoutImagesTheSizeIsThatOfTheEvents) {
     const TestFolder folder;
     folder.write("r/events.txt", "0.10 1 2 1\n0.20 3 4 0\n");
     const auto recording = open_recording(folder.path("r"));

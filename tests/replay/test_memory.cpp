@@ -12,7 +12,7 @@ namespace eventide {
 namespace {
 
 constexpr std::size_t kStreamBytes = std::size_t(96) << 20;
-constexpr std::size_t kMostGrowthBytes = std::size_t(32) << 20;
+constexpr std::size_t kMaxGrowthBytes = std::size_t(32) << 20;
 
 /// Of /proc/self/status, in bytes.
 std::size_t memory(const std::string& key) {
@@ -67,7 +67,7 @@ TEST_P(MemoryOfReading, DoesNotGrowWithTheRecording) {
     forget_peak();
     const std::size_t before = memory("VmRSS");
     const Summary sum = summarize(*stream);
-    EXPECT_LT(memory("VmHWM"), before + kMostGrowthBytes);
+    EXPECT_LT(memory("VmHWM"), before + kMaxGrowthBytes);
     // All of it was read: the first round's events, and the others' as far as time allows.
     EXPECT_GE(sum.events, 100'000U);
     EXPECT_GE(stream->position_bytes(), kStreamBytes);
@@ -77,8 +77,8 @@ TEST_P(MemoryOfReading, DoesNotGrowWithTheRecording) {
 TEST(MemoryOfReading, IsMeasuredByADetectorThatDetects) {
     forget_peak();
     const std::size_t before = memory("VmRSS");
-    const std::string large(2 * kMostGrowthBytes, 'x');
-    EXPECT_GT(memory("VmHWM"), before + kMostGrowthBytes) << large.size();
+    const std::string large(2 * kMaxGrowthBytes, 'x');
+    EXPECT_GT(memory("VmHWM"), before + kMaxGrowthBytes) << large.size();
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ TEST(EventSensor, HasAsManyHotPixelsAsAskedForAndTheyAlwaysFire) {
 TEST(EventSensor, BoundsTheEventsOfOneStep) {
     const auto events = watch(
         plain(.001), .01, [](double t) { return t > 0 ? 10.0 : 0; }, 10000);
-    EXPECT_EQ(double(events.size()), kPixels * EventSensor::kMostPerStep);
+    EXPECT_EQ(double(events.size()), kPixels * EventSensor::kMaxPerStep);
 }
 
 TEST(EventSensor, WorksForSizesThatFillNoWholeLane) {

@@ -27,12 +27,12 @@ TEST(Scene, ShowsTheWholeImageAtTheStartOfAThesisScene) {
     textures->add(image);
     Scene scene{simulation_preset("thesis_train").scene, textures, 65, 33, Random{1}};
     scene.prepare(1);
-    Array2<float> picture(33, 65);
-    scene.render(0, {}, Scene::Show::grey, picture);
+    Array2<float> rendered(33, 65);
+    scene.render(0, {}, Scene::Show::grey, rendered);
     // [-1, 1] are the image's edges and the first and last samples lie on them.
-    EXPECT_NEAR(picture(0, 30), 0, .02);
-    EXPECT_NEAR(picture(16, 30), .5, .02);
-    EXPECT_NEAR(picture(32, 30), 1, .02);
+    EXPECT_NEAR(rendered(0, 30), 0, .02);
+    EXPECT_NEAR(rendered(16, 30), .5, .02);
+    EXPECT_NEAR(rendered(32, 30), 1, .02);
 }
 
 TEST(Scene, LightFollowsTheThesisToneCurve) {
@@ -67,7 +67,7 @@ TEST(Scene, IsDarkestAndBrightestAsTheDynamicRangeSays) {
     }
 }
 
-/// How far apart two pictures of the same size are at most.
+/// How far apart two images of the same size are at most.
 float difference(const Array2<float>& a, const Array2<float>& b) {
     float largest = 0;
     for (std::size_t i = 0; i < a.values().size(); ++i)
@@ -177,7 +177,7 @@ TEST(Scene, PinnedThingsGoWhereTheBackgroundGoes) {
         Array2<float> before(36, 48), after(36, 48);
         scene.render(1, {}, Scene::Show::light, before);
         scene.render(1.2, {}, Scene::Show::light, after);
-        // All of the picture is the one before, moved by one displacement.
+        // All of the image is the one before, moved by one displacement.
         double best = 1e9;
         for (double dy = -5; dy <= 5; dy += .25)
             for (double dx = -5; dx <= 5; dx += .25) {

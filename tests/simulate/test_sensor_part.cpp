@@ -32,16 +32,16 @@ SimulatedStream stream_of(const SensorPart& part, std::uint64_t seed, TargetRule
     return {scene, SensorSettings::ideal(.2), textures(), part, seed};
 }
 
-double mean_of(const Array2<float>& picture) {
+double mean_of(const Array2<float>& image) {
     double sum = 0;
-    for (const float v : picture.values()) sum += double(v);
-    return sum / double(picture.values().size());
+    for (const float v : image.values()) sum += double(v);
+    return sum / double(image.values().size());
 }
 
 Array2<float> truth_of(const SimulatedStream& stream, int width, int height) {
-    Array2<float> picture(height, width);
-    stream.truth(stream.now(), picture);
-    return picture;
+    Array2<float> image(height, width);
+    stream.truth(stream.now(), image);
+    return image;
 }
 
 TEST(SensorPart, GivesTheEventsOfTheWholeInItsPlace) {
@@ -85,7 +85,7 @@ TEST(SensorPart, ShowsTheWholeTruthInItsPlace) {
             part.advance(from_us(120000), events);
             const Array2<float> large = truth_of(whole, kWidth, kHeight);
             const Array2<float> small = truth_of(part, kPart.width, kPart.height);
-            // A whole sensor is metered by its own pixels, a part by a coarser picture of the
+            // A whole sensor is metered by its own pixels, a part by a coarser image of the
             // whole.
             const double tolerance = target == TargetRule::texture ? 1e-3 : .1;
             for (int y = 0; y < kPart.height; ++y)

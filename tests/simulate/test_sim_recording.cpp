@@ -84,11 +84,11 @@ TEST(SimRecording, GivesTruthMoreOftenAndLargerWithoutChangingTheRest) {
     ASSERT_EQ(more.truths.size(), 46u);
     const Truth& third = more.truths[3];
     EXPECT_EQ(third.t, more.batch.images[1].t);
-    EXPECT_EQ(third.picture.width(), 99);
-    EXPECT_EQ(third.picture.height(), 74);
+    EXPECT_EQ(third.image.width(), 99);
+    EXPECT_EQ(third.image.height(), 74);
     for (const int x : {0, 98})  // corners are corners at every scale
-        EXPECT_NEAR(third.picture(73, x),
-                    float(more.batch.images[1].pixels(29, x * 39 / 98)) / 65535, .1);
+        EXPECT_NEAR(third.image(73, x), float(more.batch.images[1].pixels(29, x * 39 / 98)) / 65535,
+                    .1);
 }
 
 TEST(SimRecording, BeginsAtTheTimeAskedFor) {

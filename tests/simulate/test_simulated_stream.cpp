@@ -108,15 +108,15 @@ TEST(SimulatedStream, TruthIsAlignedAtTheCornersAtEverySize) {
         for (int x = 0; x < 12; ++x) EXPECT_NEAR(part(y, x), once(7 + y, 20 + x), 1e-4);
 }
 
-TEST(SimulatedStream, TruthLiesInZeroToOneWhereRealPicturesLie) {
+TEST(SimulatedStream, TruthLiesInZeroToOneWhereRealImagesLie) {
     double mean = 0, deviation = 0;
     const int scenes = 60;
     for (std::uint64_t seed = 0; seed < std::uint64_t(scenes); ++seed) {
         SimulatedStream stream = wide(seed);
-        Array2<float> picture(kHeight, kWidth);
-        stream.truth(stream.now(), picture);
+        Array2<float> image(kHeight, kWidth);
+        stream.truth(stream.now(), image);
         double sum = 0, square = 0;
-        for (const float v : picture.values()) {
+        for (const float v : image.values()) {
             ASSERT_TRUE(v >= 0 && v <= 1);
             sum += double(v) / (kWidth * kHeight);
             square += double(v) * double(v) / (kWidth * kHeight);
@@ -200,13 +200,13 @@ TEST(SimulatedStream, AutoExposureFollowsTheLightAndFixedExposureDoesNot) {
         for (std::uint64_t seed = 0; seed < 6; ++seed) {
             SimulatedStream stream{scene, {}, textures(), kWidth, kHeight, seed};
             std::vector<Event> events;
-            Array2<float> picture(kHeight, kWidth);
+            Array2<float> image(kHeight, kWidth);
             double low = 1, high = 0;
             for (int i = 1; i <= 40; ++i) {
                 stream.advance(from_us(i * 50000), events);
-                stream.truth(stream.now(), picture);
+                stream.truth(stream.now(), image);
                 double mean = 0;
-                for (const float v : picture.values()) mean += double(v) / (kWidth * kHeight);
+                for (const float v : image.values()) mean += double(v) / (kWidth * kHeight);
                 low = std::min(low, mean);
                 high = std::max(high, mean);
             }
@@ -227,9 +227,9 @@ TEST(SimulatedStream, RunsForMinutesWithoutTrouble) {
     SimulatedStream stream{scene, SensorSettings::ideal(.3), textures(), 8, 8, 1};
     std::vector<Event> events;
     stream.advance(from_us(600'000'000), events);
-    Array2<float> picture(8, 8);
-    stream.truth(stream.now(), picture);
-    for (const float v : picture.values()) EXPECT_TRUE(std::isfinite(v));
+    Array2<float> image(8, 8);
+    stream.truth(stream.now(), image);
+    for (const float v : image.values()) EXPECT_TRUE(std::isfinite(v));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Looking textures up: interpolation, mirrors, sizes, and the lanes under it.
 #include "src/core/error.h"
-#include "src/simulate/lanes.h"
 #include "src/simulate/shape.h"
+#include "src/simulate/simd4.h"
 #include "src/simulate/textures.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Packs of images: nothing lost, damage refused; and images from a folder.
 #include "src/core/error.h"
-#include "src/simulate/grey_code.h"
+#include "src/simulate/image_codec.h"
 #include "src/simulate/random.h"
 #include "src/simulate/texture_pack.h"
 #include "src/simulate/textures_folder.h"
@@ -74,7 +74,7 @@ TEST_F(TexturePack, RefusesEveryCutAndAForeignFile) {
     EXPECT_THROW(read_texture_pack(folder_ / "missing"), Error);
 }
 
-TEST_F(TexturePack, DamagedBytesGiveAnErrorOrAnotherPictureButNeverMore) {
+TEST_F(TexturePack, DamagedBytesGiveAnErrorOrAnotherImageButNeverMore) {
     write_texture_pack(file(), some_images());
     const std::string whole = bytes();
     Random random{1};

@@ -29,7 +29,7 @@ DavisFireHose::DavisFireHose(FireHoseSettings settings)
         put(kTime | std::uint64_t(t), wrap_);
         for (int i = 0; i < settings_.events_per_us; ++i, ++k) {
             const Event e = event(k);
-            put(kRow | e.x, wrap_);  // DAVIS346: the chip's rows are the picture's columns
+            put(kRow | e.x, wrap_);  // DAVIS346: the chip's rows are the frame's columns
             put((kOffColumn + (e.polarity == Polarity::on ? 0x1000 : 0)) | e.y, wrap_);
         }
     }

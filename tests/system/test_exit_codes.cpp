@@ -356,18 +356,18 @@ TEST_F(ExitCodes, TheMovingLineFitsTheTerminalAndIsNotForThoseWhoWantQuiet) {
 }
 
 TEST_F(ExitCodes, ColourIsForTerminalsAndNoColorIsRespected) {
-    const auto complain = [&](ProcessSettings settings) {
+    const auto throw_usage = [&](ProcessSettings settings) {
         return eventide({"run", "nothing.raw", "--out", "null"}, std::move(settings)).error;
     };
     const std::string escape = "\033[";
-    EXPECT_EQ(complain({}).find(escape), std::string::npos);
+    EXPECT_EQ(throw_usage({}).find(escape), std::string::npos);
     EXPECT_NE(
-        complain({.environment = {{"TERM", "xterm"}}, .error_to_terminal = true}).find(escape),
+        throw_usage({.environment = {{"TERM", "xterm"}}, .error_to_terminal = true}).find(escape),
         std::string::npos);
-    EXPECT_EQ(
-        complain({.environment = {{"TERM", "xterm"}, {"NO_COLOR", "1"}}, .error_to_terminal = true})
-            .find(escape),
-        std::string::npos);
+    EXPECT_EQ(throw_usage({.environment = {{"TERM", "xterm"}, {"NO_COLOR", "1"}},
+                           .error_to_terminal = true})
+                  .find(escape),
+              std::string::npos);
 }
 
 }  // namespace

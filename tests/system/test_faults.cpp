@@ -98,19 +98,19 @@ bool ends_with(const fs::path& file, const std::string& end) {
 /// What has its own name is whole; what grows can be read.
 void expect_readable(const std::string& folder, const std::string& moment) {
     const std::string png_end{"IEND\xae\x42\x60\x82", 8};
-    std::size_t pictures = 0;
+    std::size_t images = 0;
     if (fs::exists(fs::path{folder} / "frames/frames"))
         for (const auto& entry : fs::directory_iterator{fs::path{folder} / "frames/frames"})
             if (entry.path().extension() == ".png") {
                 EXPECT_TRUE(ends_with(entry.path(), png_end)) << moment << ": " << entry.path();
-                ++pictures;
+                ++images;
             }
     const fs::path sheet = fs::path{folder} / "c.png";
     EXPECT_TRUE(!fs::exists(sheet) || ends_with(sheet, png_end)) << moment;
     const fs::path table = fs::path{folder} / "frames/timestamps.csv";
     const std::string rows = fs::exists(table) ? read_text(table) : "";
     const auto lines = std::size_t(std::ranges::count(rows, '\n'));
-    EXPECT_GE(lines + 1, pictures) << moment;
+    EXPECT_GE(lines + 1, images) << moment;
     const fs::path copy = fs::path{folder} / "copy.aedat4";
     if (fs::exists(copy) && fs::file_size(copy) > 4096) {
         const Result info = run({EVENTIDE_PROGRAM, "info", copy.string(), "--json"});

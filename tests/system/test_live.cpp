@@ -121,7 +121,7 @@ TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
     Process process = start(arguments, {.output_to_pipe = true});
     read_frames(process, 8);
     bed_.unplug();
-    read_frames(process, 5);  // the picture stays, and time goes on
+    read_frames(process, 5);  // the frame stays, and time goes on
     const auto again = plug_in(seen, true);
     for (bool over = false; !over;) {
         read_frames(process, 1);

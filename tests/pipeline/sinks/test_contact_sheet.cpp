@@ -28,13 +28,13 @@ cv::Mat sheet_of(int frames, ContactSheetSettings settings, bool with_events = f
 TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {
     const TempFolder temp;
     const cv::Mat two = sheet_of(50, {.path = temp / "two.png", .rows = 3});
-    const cv::Mat four = sheet_of(
-        50,
-        {.path = temp / "four.png",
-         .rows = 3,
-         .draw_truth = [](const Frame&,
-                          cv::Mat& picture) { picture = cv::Mat(30, 40, CV_8UC1, 200.0); }},
-        true);
+    const cv::Mat four =
+        sheet_of(50,
+                 {.path = temp / "four.png",
+                  .rows = 3,
+                  .draw_truth = [](const Frame&,
+                                   cv::Mat& image) { image = cv::Mat(30, 40, CV_8UC1, 200.0); }},
+                 true);
     ASSERT_FALSE(two.empty());
     ASSERT_FALSE(four.empty());
     EXPECT_EQ(two.rows, four.rows);
@@ -47,8 +47,8 @@ TEST(ContactSheet, NamesTheReferenceImagesAsItIsTold) {
     const TempFolder temp;
     const auto sheet = [&](const std::string& caption) {
         ContactSheetSettings settings{.path = temp / (caption + ".png"), .rows = 1};
-        settings.draw_truth = [](const Frame&, cv::Mat& picture) {
-            picture = cv::Mat(30, 40, CV_8UC1, 200.0);
+        settings.draw_truth = [](const Frame&, cv::Mat& image) {
+            image = cv::Mat(30, 40, CV_8UC1, 200.0);
         };
         settings.truth_caption = caption;
         return sheet_of(2, settings);
@@ -68,7 +68,7 @@ TEST(ContactSheet, KeepsOneSizeHoweverLongTheRun) {
               sheet_of(5, {.path = temp / "d.png"}).rows);
 }
 
-TEST(ContactSheet, WantsThePictureFormatsName) {
+TEST(ContactSheet, WantsTheImageFormatsName) {
     const TempFolder temp;
     EXPECT_THROW((ContactSheetSink{{.path = temp / "a.xyz"}}), Error);
 }

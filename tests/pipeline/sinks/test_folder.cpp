@@ -17,7 +17,7 @@ namespace {
 
 using test::TempFolder;
 
-TEST(FolderSink, WritesPicturesSigmaAndTimesThatReadBack) {
+TEST(FolderSink, WritesImagesSigmaAndTimesThatReadBack) {
     const TempFolder temp;
     const Frame first = test::ramp_frame(31, 17, 4, test::odd_time(0));
     const Frame second = test::ramp_frame(31, 17, 9, test::odd_time(1));
@@ -28,13 +28,12 @@ TEST(FolderSink, WritesPicturesSigmaAndTimesThatReadBack) {
     sink.write(second);
     sink.close();
 
-    const cv::Mat picture =
+    const cv::Mat image =
         cv::imread(temp / "out/frames/frame_0000000001.png", cv::IMREAD_UNCHANGED);
-    ASSERT_EQ(picture.type(), CV_8UC1);
+    ASSERT_EQ(image.type(), CV_8UC1);
     for (int y = 0; y < 17; ++y)
         for (int x = 0; x < 31; ++x)
-            EXPECT_EQ(int(picture.at<std::uint8_t>(y, x)),
-                      std::lround(second.intensity(y, x) * 255));
+            EXPECT_EQ(int(image.at<std::uint8_t>(y, x)), std::lround(second.intensity(y, x) * 255));
 
     const cv::Mat sigma =
         cv::imread(temp / "out/uncertainty/unc_0000000000.tiff", cv::IMREAD_UNCHANGED);

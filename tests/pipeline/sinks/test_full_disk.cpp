@@ -1,7 +1,7 @@
 // A disk that is full after any number of bytes is an error with the file's name, for every sink.
 #include "pipeline/sinks/contact_sheet.h"
 #include "pipeline/sinks/folder.h"
-#include "pipeline/sinks/stream.h"
+#include "pipeline/sinks/raw_stream.h"
 #include "pipeline/sinks/video.h"
 #include "src/core/error.h"
 #include "tests/pipeline/sinks/frames.h"

@@ -1,0 +1,116 @@
+// See stages.h.
+#include "apps/bench/stages.h"
+
+#include "apps/bench/products.h"
+#include "src/binning/binner.h"
+#include "src/model/encoder.h"
+#include "src/model/renderer.h"
+
+#include <cmath>
+
+namespace eventide::bench {
+namespace {
+
+constexpr SensorDuration kWindow{50'000};
+
+Spread time_binning(int bins, const std::vector<SceneWindow>& windows, const StageSettings& s) {
+    Binner binner{bins, s.height, s.width};
+    VoxelGrid grid = binner.make_output();
+    double events = 0;
+    for (const SceneWindow& window : windows) events += double(window.events.size());
+    const Spread ms = timed(s.repetitions, [&](int) {
+                          for (const SceneWindow& window : windows)
+                              binner.process(window.event_window(), grid);
+                      }).cpu_ms;
+    return {events / (1e3 * ms.median), events / (1e3 * ms.high), events / (1e3 * ms.low)};
+}
+
+/// Encodes the windows again and again; leaves the codes of the last ones in `latents`.
+Timing time_encoding(Encoder& encoder, const std::vector<SceneWindow>& windows,
+                     const StageSettings& s, std::vector<LatentMap>& latents) {
+    Binner binner{encoder.bins(), s.height, s.width};
+    std::vector<VoxelGrid> grids;
+    for (const SceneWindow& window : windows)
+        binner.process(window.event_window(), grids.emplace_back(binner.make_output()));
+    for (LatentMap& latent : latents) latent = encoder.make_output();
+    return timed(s.repetitions, [&](int i) {
+        encoder.encode(grids[std::size_t(i) % grids.size()],
+                       latents[std::size_t(i) % latents.size()]);
+    });
+}
+
+/// A fresh frame of one event window after the other, and another of the same.
+void time_rendering(Renderer& renderer, std::vector<LatentMap>& latents, const StageSettings& s,
+                    StageRow& row) {
+    // The same maps are given again and again: no history is true of them.
+    for (LatentMap& latent : latents) latent.history = {};
+    RenderRequest request;
+    request.width = int(std::lround(s.width * s.scale));
+    request.height = int(std::lround(s.height * s.scale));
+    request.lookahead = s.lookahead;
+    Frame frame = renderer.make_output(request);
+    SensorTime end{};
+    const auto push = [&](int i) {
+        LatentMap& latent = latents[std::size_t(i) % latents.size()];
+        latent.window = {end, end + kWindow};
+        end += kWindow;
+        renderer.push(latent);
+    };
+    const auto render_at = [&](int thousandths) {
+        request.t = end - kWindow * (s.lookahead + 1) + kWindow * thousandths / 1000;
+        renderer.render(request, frame);
+    };
+    constexpr int kWarm = 6;  // all that a lookahead waits for, and all buffers
+    Stopwatch fresh, again;
+    for (int i = 0; i < kWarm; ++i) push(i), render_at(500);
+    for (int i = 0; i < s.repetitions; ++i) {
+        fresh.start();
+        push(kWarm + i);
+        render_at(400);
+        fresh.stop();
+        again.start();
+        render_at(700);
+        again.stop();
+    }
+    row.fresh.time = fresh.timing();
+    row.again.time = again.timing();
+}
+
+FrameGeometry frame_geometry_of(const StageSettings& s) {
+    FrameGeometry geometry;
+    geometry.sensor_width = s.width;
+    geometry.sensor_height = s.height;
+    geometry.width = geometry.part_width = int(std::lround(s.width * s.scale));
+    geometry.height = geometry.part_height = int(std::lround(s.height * s.scale));
+    return geometry;
+}
+
+}  // namespace
+
+StageRow measure_stages(const std::string& name, const Model& model,
+                        const std::vector<SceneWindow>& windows, const StageSettings& settings,
+                        const Peaks& peaks) {
+    StageSettings s = settings;
+    s.engine.skip_quiet = false;
+    Encoder encoder{model, s.width, s.height, s.engine};
+    Renderer renderer{model, s.width, s.height, s.engine};
+    StageRow row;
+    row.model = name;
+    row.engine = encoder.description();
+    row.width = s.width;
+    row.height = s.height;
+    row.bf16 = row.engine.find("bf16") != std::string::npos;
+    row.peak_gflops = row.bf16 ? peaks.bf16 : peaks.f32();
+    row.bin_mev_s = time_binning(model.config.bins, windows, s);
+    std::vector<LatentMap> latents(4);
+    row.encode.time = time_encoding(encoder, windows, s, latents);
+    row.encode.products = encode_products(model.config, s.height, s.width);
+    time_rendering(renderer, latents, s, row);
+    const RenderProducts products =
+        render_products(model.config, frame_geometry_of(s), s.lookahead);
+    row.fresh.products = products.first + products.frame;
+    row.again.products = products.frame;
+    return row;
+}
+
+}  // namespace eventide::bench

@@ -1,0 +1,225 @@
+// CLI11's part: options out of tables of settings, help, and what to say when it is not understood.
+#include "apps/cli/command_line.h"
+
+#include "apps/cli/program.h"
+#include "apps/cli/suggestion.h"
+#include "apps/cli/version.h"
+#include "src/core/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <iostream>
+#include <sstream>
+#include <utility>
+
+namespace eventide::app {
+
+namespace {
+
+/// Lines of at most 78 columns beside CLI11's column of names.
+std::string wrapped(const std::string& text) {
+    constexpr std::size_t kWidth = 48;
+    std::string lines, line;
+    std::istringstream words{text};
+    for (std::string word; words >> word;) {
+        if (!line.empty() && line.size() + 1 + word.size() > kWidth)
+            lines += std::exchange(line, "") + "\n";
+        line += (line.empty() ? "" : " ") + word;
+    }
+    return lines + line;
+}
+
+std::string help_of(const Setting& setting) {
+    const std::vector<std::string> value = setting.show();
+    const bool tell = setting.kind != ValueKind::flag && !value.empty() && !value.back().empty();
+    return wrapped(setting.help + (tell ? " [" + value.back() + "]" : ""));
+}
+
+std::string group_of(const Setting& setting) {
+    return setting.group.empty() ? "Options" : setting.group;
+}
+
+/// One table's settings as options of a CLI11 command.
+class Options {
+public:
+    void add(CLI::App& app, const SettingTable& table) {
+        for (const Setting& setting : table.settings)
+            if (setting.kind == ValueKind::flag)
+                add_flag(app, setting);
+            else
+                add_option(app, setting);
+    }
+
+    FlagValues given() const {
+        FlagValues values;
+        for (const Entry& entry : entries_) {
+            const bool off = entry.opposite != nullptr && entry.opposite->count() > 0;
+            if (entry.option->count() == 0 && !off) continue;
+            if (off && entry.option->count() > 0)
+                throw Error(ErrorKind::usage, "--" + entry.option->get_lnames().front() +
+                                                  " and --" + entry.opposite->get_lnames().front() +
+                                                  " contradict each other");
+            values[entry.key] = off ? std::vector<std::string>{"false"} : entry.option->results();
+        }
+        return values;
+    }
+
+private:
+    struct Entry {
+        std::string key;
+        CLI::Option* option = nullptr;
+        CLI::Option* opposite = nullptr;  // --no-x, to overrule file and environment; not in --help
+    };
+
+    void add_flag(CLI::App& app, const Setting& setting) {
+        const std::string flag = flag_of(setting);
+        CLI::Option* opposite = app.add_flag("--no-" + flag.substr(2))->group("");
+        const std::string help = help_of(setting);
+        CLI::Option* option = app.add_flag(flag, help)->group(group_of(setting));
+        entries_.push_back({setting.key, option, opposite});
+    }
+
+    void add_option(CLI::App& app, const Setting& setting) {
+        const std::string flag = flag_of(setting);
+        const std::string names =
+            setting.short_flag.empty() ? flag : setting.short_flag + "," + flag;
+        const std::string help = help_of(setting);
+        CLI::Option* option = app.add_option(names, help);
+        // One value each: `--out a/ b` must not swallow b.
+        option->group(group_of(setting))
+            ->type_name(setting.value_name)
+            ->expected(1)
+            ->multi_option_policy(setting.kind == ValueKind::list
+                                      ? CLI::MultiOptionPolicy::TakeAll
+                                      : CLI::MultiOptionPolicy::TakeLast);
+        option->allow_extra_args(false);
+        entries_.push_back({setting.key, option, nullptr});
+    }
+
+    std::vector<Entry> entries_;
+};
+
+void add(CLI::App& app, const Positional& positional) {
+    const std::string help = wrapped(positional.help);
+    CLI::Option* option = positional.value != nullptr
+                              ? app.add_option(positional.name, *positional.value, help)
+                              : app.add_option(positional.name, *positional.values, help);
+    option->type_name("");
+}
+
+/// The command that was given; empty: none.
+std::string command_of(const CLI::App& app) {
+    const auto given = app.get_subcommands();
+    return given.empty() ? "" : given.front()->get_name();
+}
+
+std::vector<std::string> flags_of(const CLI::App& app) {
+    std::vector<std::string> flags;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+    return flags;
+}
+
+/// Of all arguments that were not expected, the first says most.
+[[noreturn]] void complain_about_extras(const std::vector<std::string>& arguments,
+                                        const CLI::App& app, const std::string& command) {
+    const std::string help = help_hint(command);
+    if (command.empty()) {
+        std::vector<std::string> names;
+        for (const CLI::App* sub : app.get_subcommands(nullptr)) names.push_back(sub->get_name());
+        const auto first = std::find_if(arguments.begin(), arguments.end(),
+                                        [](const auto& text) { return !text.starts_with("-"); });
+        if (first != arguments.end())
+            throw Error(ErrorKind::usage,
+                        "there is no command '" + *first + "'" + suggestion(*first, names) + help);
+    }
+    std::vector<std::string> flags = flags_of(app);
+    if (!command.empty()) {
+        const auto own = flags_of(*app.get_subcommand(command));
+        flags.insert(flags.end(), own.begin(), own.end());
+    }
+    for (const std::string& argument : arguments) {
+        const std::string flag = argument.substr(0, argument.find('='));
+        if (flag.starts_with("--") && std::find(flags.begin(), flags.end(), flag) == flags.end())
+            throw Error(ErrorKind::usage,
+                        "there is no option " + flag + suggestion(flag, flags) + help);
+    }
+    std::string left;
+    bool output = false;
+    for (const std::string& each : app.remaining(true)) {
+        left.insert(0, "'" + each + (left.empty() ? "'" : "' "));
+        output = output || (command == "run" && !each.starts_with("-"));
+    }
+    throw Error(ErrorKind::usage,
+                "unexpected argument " + left + (output ? "; did you mean --out?" : "") + help);
+}
+
+}  // namespace
+
+std::string help_hint(const std::string& command) {
+    return "; see eventide " + (command.empty() ? "" : command + " ") + "--help";
+}
+
+Parsed parse_command_line(const std::vector<std::string>& arguments, const SettingTable& common) {
+    CLI::App app{"Video with uncertainty from event cameras, in real time.", "eventide"};
+    app.footer(std::string{"Examples:\n"
+                           "  eventide run recording.aedat4 --out video.mp4\n"
+                           "  eventide info recording.raw\n"
+                           "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"} +
+               kExitCodes);
+    app.set_version_flag("--version", version_text());
+    app.require_subcommand(0, 1);
+    app.fallthrough();
+    Invocation invocation;
+    bool print_defaults = false;
+    app.add_option("--config", invocation.config_file, "TOML file with settings")
+        ->type_name("FILE")
+        ->envname("EVENTIDE_CONFIG");
+    app.add_flag("--print-config", invocation.print_config,
+                 wrapped("Show each value of the command and where it comes from, and exit"));
+    app.add_flag("--default-config", print_defaults,
+                 wrapped("Print a configuration file with all keys, their meaning and defaults, "
+                         "and exit"));
+    Options common_options;
+    common_options.add(app, common);
+
+    auto commands = all_commands();
+    std::vector<Options> options(commands.size());
+    std::vector<CLI::App*> apps;
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+        CLI::App* sub = app.add_subcommand(commands[i]->name(), commands[i]->summary());
+        sub->footer(commands[i]->examples());
+        for (const Positional& positional : commands[i]->positionals()) add(*sub, positional);
+        options[i].add(*sub, commands[i]->settings());
+        apps.push_back(sub);
+    }
+    try {
+        // CLI11 takes them from the back.
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::Success& success) {  // --help, --version
+        app.exit(success, std::cout, std::cerr);
+        return {};
+    } catch (const CLI::ExtrasError&) {
+        complain_about_extras(arguments, app, command_of(app));
+    } catch (const CLI::ParseError& error) {
+        throw Error(ErrorKind::usage, error.what() + help_hint(command_of(app)));
+    }
+    if (print_defaults) {
+        std::cout << default_config();
+        return {};
+    }
+    for (std::size_t i = 0; i < commands.size(); ++i)
+        if (apps[i]->parsed()) {
+            invocation.command_flags = options[i].given();
+            invocation.command = std::move(commands[i]);
+        }
+    invocation.common_flags = common_options.given();
+    if (!invocation.command && !invocation.print_config) {
+        std::cerr << app.help();
+        return {{}, int(ErrorKind::usage)};
+    }
+    return {std::move(invocation), 0};
+}
+
+}  // namespace eventide::app

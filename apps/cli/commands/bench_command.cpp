@@ -1,0 +1,392 @@
+// eventide bench: the pipeline on simulated recordings of several sizes, against their truth.
+#include "apps/cli/commands/bench_command.h"
+
+#include "apps/bench/stage_table.h"
+#include "apps/cli/printable.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/run/loaded_model.h"
+#include "apps/cli/run/reference_images.h"
+#include "apps/cli/settings/model_path.h"
+#include "apps/cli/version.h"
+#include "apps/evaluate/plot.h"
+#include "drivers/simulated/simulated_camera.h"
+#include "pipeline/filters/event_filter.h"
+#include "pipeline/model_stages.h"
+#include "pipeline/pipeline.h"
+#include "replay/real_time_playback.h"
+#include "src/binning/slicer_settings.h"
+#include "src/core/error.h"
+#include "src/io/output_file.h"
+
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+
+namespace eventide::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Event windows of 50 ms, each ending at an image: so there is a truth for each frame.
+constexpr int kImagesPerSecond = 20;
+
+SimRecordingSettings recording_of(const std::string& scene, const Size& size) {
+    SimRecordingSettings settings = parse_simulated_name("sim:" + scene).recording;
+    settings.width = size.width;
+    settings.height = size.height;
+    return settings;
+}
+
+std::shared_ptr<const RecordedPackets> simulate(const std::string& scene, const Size& size,
+                                                double seconds) {
+    SimulatedSourceSettings settings = parse_simulated_name("sim:" + scene);
+    settings.recording = recording_of(scene, size);
+    settings.recording.seconds = seconds;
+    settings.recording.images_per_second = kImagesPerSecond;
+    settings.speed = 0;
+    const auto camera = std::make_shared<SimulatedCamera>(settings);
+    auto data = std::make_shared<RecordedPackets>();
+    data->info = camera->info();
+    data->make_parser = [camera] { return camera->make_parser(); };
+    for (RawPacket packet; camera->read(packet) == ReadStatus::data;) {
+        data->bytes += packet.bytes.size();
+        data->packets.push_back(packet.bytes);
+    }
+    return data;
+}
+
+/// Compares each frame with the image of its time. Render thread.
+class ErrorSink : public Sink {
+public:
+    ErrorSink(const ReferenceImages& references, const Size& sensor)
+        : references_{references}, sensor_{sensor} {}
+
+    void write(const Frame& frame) override {
+        cv::Mat truth;
+        references_.draw(frame, sensor_.width, sensor_.height, truth);
+        if (truth.empty() || frame.intensity.width() != truth.cols ||
+            frame.intensity.height() != truth.rows)
+            return;
+        double sum = 0;
+        for (int y = 0; y < truth.rows; ++y) {
+            const auto* row = truth.ptr<std::uint8_t>(y);
+            const auto shown = frame.intensity.row(y);
+            for (std::size_t x = 0; x < shown.size(); ++x) {
+                const double error = std::clamp(double(shown[x]), 0.0, 1.0) - row[x] / 255.0;
+                sum += error * error;
+            }
+        }
+        sum_ += sum / double(truth.total());
+        ++images_;
+    }
+    double mse() const { return images_ == 0 ? std::nan("") : sum_ / images_; }
+
+private:
+    const ReferenceImages& references_;
+    Size sensor_;
+    double sum_ = 0;
+    int images_ = 0;
+};
+
+struct Outcome {
+    Snapshot counters;
+    double seconds = 0, mse = 0;
+};
+
+Outcome run_pipeline(Recording& recording, Network& network, const RunSettings& settings,
+                     int lookahead, Program& program) {
+    const Size sensor{recording.info().width, recording.info().height};
+    const Size size = settings.size.of(sensor);
+    RenderRequest request;
+    request.width = size.width;
+    request.height = size.height;
+    request.lookahead = lookahead;
+    network.encoder().reset();
+    network.renderer().reset();
+    ModelEncodeStage encode{network.encoder()};
+    ModelRenderStage render{network.renderer(), request};
+    ReferenceImages references;
+    ErrorSink sink{references, sensor};
+    PipelineSettings line;
+    line.bins = network.config().bins;
+    line.event_windows.slicer = parse_window("aps");
+    line.lookahead = lookahead;
+    const auto filter =
+        event_filter({"off", "model"}, network.config(), sensor.width, sensor.height);
+    Pipeline pipeline{{recording, encode, render, {&sink}, filter.get(), &references}, line};
+    const Stopper stopper{program.signals, [&] { pipeline.stop(); }};
+    const auto begun = Clock::now();
+    pipeline.run();
+    return {pipeline.snapshot(), std::chrono::duration<double>(Clock::now() - begun).count(),
+            sink.mse()};
+}
+
+double milliseconds(std::chrono::nanoseconds duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+void print_table(const std::vector<BenchRow>& rows) {
+    std::printf("%-12s %-28s %-10s %11s %9s %9s %7s %16s %8s\n", "model", "engine", "sensor",
+                "events/s", "ms/window", "ms/frame", "x real", "latency p50/p99", "MSE");
+    for (const BenchRow& row : rows)
+        std::printf("%-12s %-28s %-10s %11.0f %9.2f %9.2f %7.2f %8.1f/%-7.1f %8.4f\n",
+                    printable(row.model).c_str(), row.engine.c_str(), show_size(row.sensor).c_str(),
+                    row.event_rate, row.encode_ms, row.render_ms, row.times_real_time,
+                    row.latency_p50_ms, row.latency_p99_ms, row.mse);
+}
+
+std::string json_of(const std::vector<bench::StageRow>& stages,
+                    const std::vector<bench::ActivityRow>& activity, const bench::Peaks& peaks,
+                    const std::vector<BenchRow>& rows) {
+    nlohmann::ordered_json json;
+    json["machine"] = processor_text();
+    json["program"] = "eventide " + version() + ", " + compiler_text();
+    json["stages"] = bench::stages_json(stages, peaks);
+    json["activity"] = bench::activity_json(activity);
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const BenchRow& row : rows)
+        json["rows"].push_back({{"model", row.model},
+                                {"engine", row.engine},
+                                {"width", row.sensor.width},
+                                {"height", row.sensor.height},
+                                {"events_per_s", row.event_rate},
+                                {"encode_ms", row.encode_ms},
+                                {"render_ms", row.render_ms},
+                                {"times_real_time", row.times_real_time},
+                                {"latency_p50_ms", row.latency_p50_ms},
+                                {"latency_p99_ms", row.latency_p99_ms},
+                                {"mse", row.mse}});
+    return json_text(json) + "\n";
+}
+
+/// Error over work, one line per sensor size.
+Plot plot_of(const std::vector<BenchRow>& rows) {
+    Plot plot{.name = "bench",
+              .title = "Error against work per event window and frame",
+              .x_label = "ms",
+              .y_label = "MSE",
+              .log_x = true};
+    std::map<std::string, Series> by_size;
+    for (const BenchRow& row : rows) {
+        Series& series = by_size[show_size(row.sensor)];
+        series.label = show_size(row.sensor);
+        series.x.push_back(row.encode_ms + row.render_ms);
+        series.y.push_back(row.mse);
+    }
+    for (auto& [size, series] : by_size) plot.series.push_back(std::move(series));
+    return plot;
+}
+
+}  // namespace
+
+std::string BenchCommand::examples() const {
+    return "First the stages alone, one thread, nothing beside them, everything moving: median "
+           "and\n"
+           "quartiles of processor time; share: useful products a second over the core's own "
+           "peak,\n"
+           "of encoding, a fresh frame, another frame of the same window. Then the pipeline.\n"
+           "ms/window: the network per event window of 50 ms, ms/frame: rendering one frame "
+           "(medians);\n"
+           "x real: sensor time over host time as fast as possible; latency at the pace of the "
+           "camera,\n"
+           "from the last packet a frame saw to the frame written.\n"
+           "Examples:\n"
+           "  eventide bench\n"
+           "  eventide bench --stages --sizes 240x180 --lookahead 0\n"
+           "  eventide bench --sizes 240x180 --models default --models small --precisions f32 "
+           "--precisions bf16\n"
+           "  eventide bench --instructions avx2";
+}
+
+SettingTable BenchCommand::settings() {
+    SettingTable table{"bench", "eventide bench: speed against error.", {}};
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(text_setting("scene", scene_, "NAME", "Scene of the simulated recordings."));
+    add(list_setting("sizes", sizes_, "WxH", "Sensor sizes, any number of times."));
+    add(list_setting("models", models_, "NAME|FILE", "Models, any number of times."));
+    add(list_setting("precisions", precisions_, "P", "auto, f32 or bf16, any number of times."));
+    add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
+    add(choice_setting("instructions", instructions_,
+                       "What the kernels may use: best (all the processor has), or no more than "
+                       "an older one.",
+                       {"best", "avx2", "sse4"}));
+    add(number_setting("seconds", seconds_, "S", "Duration of each recording, seconds.", 0.2,
+                       3600));
+    add(number_setting("scale", scale_, "S", "Size of the frames, times the sensor's.", 0.1, 16));
+    add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
+    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+    add(flag_setting("stages", stages_, "The stages alone, without the pipeline after them."));
+    add(flag_setting("activity", activity_,
+                     "Cost and error when 0, 1, 5, 25 and 100 % of the scene moves, without the "
+                     "pipeline."));
+    add(number_setting("still_codes", still_codes_, "D",
+                       "With --activity, frames at changing places in the window: a part whose "
+                       "codes changed by no more than this is copied.",
+                       0, 100));
+    add(number_setting("still_time", still_time_, "WINDOWS",
+                       "And no further than this from the place in the window it is copied from.",
+                       0, 1));
+    add(whole_setting("repetitions", repetitions_, "N", "Of each stage.", bench::kLeastRepetitions,
+                      1'000'000));
+    add(text_setting("json", json_, "FILE", "Also as JSON."));
+    add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
+    add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
+    return table;
+}
+
+BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& data,
+                               const std::string& model, Precision precision,
+                               Program& program) const {
+    RunSettings settings;
+    settings.model = model;
+    settings.precision = precision;
+    settings.engine = engine_;
+    settings.threads = threads_;
+    settings.size.scale = scale_;
+    Network network{settings, data->info};
+    MemoryRecording fast{data};
+    const Outcome free = run_pipeline(fast, network, settings, lookahead_, program);
+    RealTimePlayback paced{std::make_unique<MemoryRecording>(data), 1};
+    const Outcome live = run_pipeline(paced, network, settings, 0, program);
+    return {network.file().stem().string(),
+            network.encoder().description(),
+            {data->info.width, data->info.height},
+            double(free.counters.events) / seconds_,
+            milliseconds(free.counters.encode.p50),
+            milliseconds(free.counters.render.p50),
+            seconds_ / free.seconds,
+            milliseconds(live.counters.latency.p50),
+            milliseconds(live.counters.latency.p99),
+            free.mse};
+}
+
+void BenchCommand::name_bench_files(NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    for (const std::string& model : models_) files.reads("--models", find_model(model));
+    files.writes("--json", json_);
+    if (plots_.empty()) return;
+    for (const char* name : {"bench.svg", "bench.csv"})
+        files.writes("--plots", std::filesystem::path{plots_} / name);
+}
+
+namespace {
+
+Precision precision_of(const std::string& name) {
+    return Precision(parse_choice(name, {"auto", "f32", "bf16"}));
+}
+
+std::string what_of(const std::string& model, const std::string& precision,
+                    const std::string& size) {
+    return model + " " + precision + " " + size;
+}
+
+}  // namespace
+
+template <typename Measure>
+void BenchCommand::for_each_stage(const std::string& what, Program& program,
+                                  const Measure& measure) const {
+    constexpr int kWindows = 6;
+    Progress progress{program.quiet};
+    for (const std::string& text : sizes_) {
+        const Size size = parse_size(text);
+        progress.show(0, "simulating " + text);
+        const auto windows = bench::scene_windows(recording_of(scene_, size), kWindows);
+        for (const std::string& name : models_)
+            for (const std::string& precision : precisions_) {
+                if (program.signals.stopping()) return;
+                progress.show(0, what + " of " + what_of(name, precision, text));
+                const std::filesystem::path file = find_model(name);
+                bench::StageSettings settings;
+                settings.width = size.width;
+                settings.height = size.height;
+                settings.scale = scale_;
+                settings.lookahead = lookahead_;
+                settings.repetitions = repetitions_;
+                settings.engine.engine = engine_;
+                settings.engine.precision = precision_of(precision);
+                settings.engine.still_codes = still_codes_;
+                settings.engine.still_time = still_time_;
+                measure(printable(file.stem().string()), load_model(file), windows, settings);
+            }
+    }
+}
+
+std::vector<bench::StageRow> BenchCommand::measure_stages(const bench::Peaks& peaks,
+                                                          Program& program) const {
+    std::vector<bench::StageRow> rows;
+    for_each_stage(
+        "stages", program,
+        [&](const auto& name, const auto& model, const auto& windows, const auto& settings) {
+            rows.push_back(bench::measure_stages(name, model, windows, settings, peaks));
+        });
+    return rows;
+}
+
+std::vector<bench::ActivityRow> BenchCommand::measure_activity(Program& program) const {
+    std::vector<bench::ActivityRow> rows;
+    for_each_stage(
+        "activity", program,
+        [&](const auto& name, const auto& model, const auto& windows, const auto& settings) {
+            const auto more =
+                bench::measure_activity(name, model, windows, settings, {0, .01, .05, .25, 1});
+            rows.insert(rows.end(), more.begin(), more.end());
+        });
+    return rows;
+}
+
+std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
+    std::vector<BenchRow> rows;
+    Progress progress{program.quiet};
+    for (const std::string& size : sizes_) {
+        progress.show(0, "simulating " + size);
+        const auto data = simulate(scene_, parse_size(size), seconds_);
+        for (const std::string& model : models_)
+            for (const std::string& precision : precisions_) {
+                if (program.signals.stopping()) return rows;
+                progress.show(0, what_of(model, precision, size));
+                rows.push_back(measure(data, model, precision_of(precision), program));
+            }
+    }
+    return rows;
+}
+
+int BenchCommand::run(Program& program) {
+    limit_instructions(instructions_);
+    name_bench_files(program.files);
+    std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
+                version().c_str(), compiler_text().c_str(), scene_.c_str(), lookahead_);
+    const bench::Peaks peaks = bench::measure_peaks(instructions_);
+    std::fputs(bench::peaks_text(peaks).c_str(), stdout);
+    std::vector<bench::StageRow> stages;
+    std::vector<bench::ActivityRow> activity;
+    std::vector<BenchRow> rows;
+    if (activity_) {
+        std::printf(
+            "anywhere: frames at changing places in the window; copied where codes changed "
+            "by at most %g and the place by %g windows\n",
+            still_codes_, still_time_);
+        activity = measure_activity(program);
+        std::fputs(bench::activity_text(activity).c_str(), stdout);
+    }
+    if (stages_ || !activity_) {
+        stages = measure_stages(peaks, program);
+        std::fputs(bench::stages_text(stages).c_str(), stdout);
+    }
+    if (!stages_ && !activity_) {
+        std::printf("\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
+                    threads_ == 0 ? "all" : std::to_string(threads_).c_str(), seconds_);
+        rows = measure_pipelines(program);
+        print_table(rows);
+    }
+    if (!json_.empty()) write_file(json_, json_of(stages, activity, peaks, rows), overwrite_);
+    if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_, overwrite_).string());
+    return exit_done;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,65 @@
+// eventide bench: how fast, and how good, on this machine.
+#pragma once
+
+#include "apps/bench/activity.h"
+#include "apps/bench/stages.h"
+#include "apps/cli/command.h"
+#include "apps/cli/commands/recording_in_memory.h"
+#include "apps/cli/settings/run_settings.h"
+#include "apps/cli/settings/values.h"
+#include "src/model/instructions.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eventide::app {
+
+/// One line of the table.
+struct BenchRow {
+    std::string model, engine;
+    Size sensor;
+    double event_rate = 0;       ///< per second of sensor time
+    double encode_ms = 0;        ///< per event window, median
+    double render_ms = 0;        ///< per frame, median
+    double times_real_time = 0;  ///< sensor time over host time, everything included
+    double latency_p50_ms = 0, latency_p99_ms = 0;  ///< at the pace of the camera
+    double mse = 0;                                 ///< against the truth at the frames' times
+};
+
+class BenchCommand : public Command {
+public:
+    std::string name() const override { return "bench"; }
+    std::string summary() const override {
+        return "Speed against error on this machine, one table";
+    }
+    std::string examples() const override;
+    SettingTable settings() override;
+    int run(Program& program) override;
+
+private:
+    /// Calls measure(name, model, windows, settings) for each size, model and precision.
+    template <typename Measure>
+    void for_each_stage(const std::string& what, Program& program, const Measure& measure) const;
+    BenchRow measure(const std::shared_ptr<const RecordedPackets>& data, const std::string& model,
+                     Precision precision, Program& program) const;
+    /// Each size, model and precision: the stages alone.
+    std::vector<bench::StageRow> measure_stages(const bench::Peaks& peaks, Program& program) const;
+    /// The same: what a part of the scene that moves costs.
+    std::vector<bench::ActivityRow> measure_activity(Program& program) const;
+    /// The same: the pipeline.
+    std::vector<BenchRow> measure_pipelines(Program& program) const;
+    void name_bench_files(NamedFiles& files) const;
+
+    std::string scene_ = "demo";
+    std::vector<std::string> sizes_{"240x180", "346x260", "640x480"}, models_{"default"},
+        precisions_{"auto"};
+    double seconds_ = 2, scale_ = 1, still_codes_ = 0.02, still_time_ = 1;
+    int threads_ = 0, lookahead_ = 2, repetitions_ = bench::kLeastRepetitions;
+    Engine engine_ = Engine::fast;
+    Instructions instructions_ = Instructions::best;
+    std::string json_, plots_;
+    bool stages_ = false, activity_ = false, overwrite_ = false;
+};
+
+}  // namespace eventide::app

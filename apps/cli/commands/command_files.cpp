@@ -1,0 +1,37 @@
+// Inputs and outputs that are more than one file, named file by file.
+#include "apps/cli/commands/command_files.h"
+
+#include "replay/ecd_folder.h"
+
+namespace eventide::app {
+
+namespace fs = std::filesystem;
+
+void name_recording(const std::string& option, const std::string& path, NamedFiles& files) {
+    const auto folder = find_ecd_folder(path);
+    files.reads(option, path);
+    if (!folder) return;
+    files.reads(option, *folder);
+    for (const char* name : {"events.txt", "images.txt", "exposure.txt"})
+        files.reads(option, fs::path{*folder} / name);
+    for (const auto& image : read_ecd_images(*folder).entries) files.reads(option, image.path);
+}
+
+void name_files(const std::string& option, const fs::path& path, NamedFiles& files) {
+    std::error_code none;
+    if (fs::is_directory(path, none))
+        files.reads_all(option, path);
+    else
+        files.reads(option, path);
+}
+
+void name_run_folder(const std::string& option, const fs::path& folder,
+                     const RunFolderFiles& written, NamedFiles& files) {
+    files.writes_folder(option, folder);
+    for (const std::string& name : written.single) files.writes(option, folder / name);
+    files.writes(option, folder / kRunRecord);
+    for (const NumberedFiles& numbered : written.numbered)
+        files.writes_all(option, folder / numbered.folder);
+}
+
+}  // namespace eventide::app

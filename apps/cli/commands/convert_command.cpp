@@ -1,0 +1,145 @@
+// eventide convert: a recording in another format.
+#include "apps/cli/commands/convert_command.h"
+
+#include "apps/cli/commands/command_files.h"
+#include "apps/cli/commands/disorder.h"
+#include "apps/cli/commands/recording_out.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/settings/time_point.h"
+#include "replay/convert.h"
+#include "replay/formats.h"
+#include "src/core/error.h"
+
+#include <spdlog/spdlog.h>
+
+namespace eventide::app {
+
+namespace {
+
+std::string names_of_writable() {
+    std::string names;
+    for (const Format& format : all_formats())
+        if (format.make_writer != nullptr)
+            names += (names.empty() ? "" : ", ") + std::string{format.name};
+    return names;
+}
+
+/// Null for a folder.
+const Format* target_format(const std::string& file, const std::string& name) {
+    if (names_folder(file)) {
+        if (name == "auto") return nullptr;
+        throw Error(ErrorKind::usage,
+                    "--to-format " + name +
+                        ": expected a file as TO, found the "
+                        "folder " +
+                        file + ", which is written as events.txt, images.txt and images/");
+    }
+    const Format* format = name == "auto" ? format_for_writing(file) : find_format(name);
+    if (format == nullptr)
+        throw Error(ErrorKind::usage, file +
+                                          ": expected a folder (ending in /) or an extension of a "
+                                          "format that can be written; --to-format takes " +
+                                          names_of_writable());
+    return format;
+}
+
+/// "3 events, 2 images"; what there is none of goes unsaid.
+std::string text_of(const DataCounts& counts) {
+    std::string text;
+    const auto add = [&text](std::uint64_t n, const char* what) {
+        if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+    };
+    add(counts.events, "events");
+    add(counts.images, "images");
+    add(counts.imu, "imu samples");
+    add(counts.triggers, "triggers");
+    return text.empty() ? "0 events" : text;
+}
+
+void say(const std::string& source, const std::string& source_format, const std::string& file,
+         const ConvertReport& report) {
+    spdlog::info("{}: wrote {} ({} bytes)", file, text_of(report.written), report.bytes_written);
+    if (!(report.not_held == DataCounts{}))
+        spdlog::warn("{}: its format cannot hold {}, which were left out", file,
+                     text_of(report.not_held));
+    if (const std::string why =
+            disorder_text(source, source_format, report.written.events, report.damaged);
+        !why.empty())
+        spdlog::warn("{}", why);
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        if (const auto n = report.damaged[DamageReason(i)];
+            n > 0 && DamageReason(i) != DamageReason::time_backwards)
+            spdlog::warn("damaged input: {} {}", name_of(DamageReason(i)), n);
+}
+
+}  // namespace
+
+std::string ConvertCommand::examples() const {
+    return "Examples:\n"
+           "  eventide convert events.txt events.aedat4 --input-size 240x180\n"
+           "  eventide convert recording.raw part.raw --from 2s --to 3s\n"
+           "  eventide convert recording.aedat4 ecd/\n"
+           "  eventide convert recording.aedat4 - --to-format text | head";
+}
+
+std::vector<Positional> ConvertCommand::positionals() {
+    return {{"FROM", "Recording, or - for standard input", &from_file_},
+            {"TO", "File to write, folder/ with events.txt and images/, or - for standard output",
+             &to_file_}};
+}
+
+SettingTable ConvertCommand::settings() {
+    SettingTable table{"convert", "eventide convert: a recording in another format.", {}};
+    table.settings.push_back(
+        text_setting("to_format", to_format_, "FORMAT",
+                     "Format to write, auto: by the extension; " + names_of_writable() + "."));
+    table.settings.push_back(
+        time_point_setting("from", from_, "start",
+                           "First data: 2.5s or 20ms after the first event, or "
+                           "@MICROSECONDS of the sensor; start: all."));
+    table.settings.push_back(
+        time_point_setting("to", to_, "end", "Last data, written as --from; end: all."));
+    table.settings.push_back(
+        flag_setting("overwrite", overwrite_,
+                     "Replace files that exist; of a folder, what an earlier run "
+                     "wrote."));
+    table.settings.push_back(flag_setting(
+        "force", force_, "Write to standard output even where it is a terminal, other than text."));
+    table.settings.push_back(
+        flag_setting("strict", strict_,
+                     "End with exit code 5 when something was damaged or could not be held."));
+    input_.add_to(table);
+    return table;
+}
+
+int ConvertCommand::run(Program& program) {
+    const Format* format = target_format(to_file_, to_format_);
+    const OpenOptions options = input_.options();
+    if (to_file_ == "-" && format->name != "text") refuse_terminal("TO -", force_);
+    program.files.may_replace(overwrite_);
+    name_recording("FROM", from_file_, program.files);
+    if (format == nullptr)
+        name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
+    else
+        program.files.writes("TO", to_file_);
+    const auto recording = open_input(from_file_, input_);
+    const TimePointReader moments{from_file_, options};
+    ConvertOptions how;
+    if (from_) how.from = moments.time_of(*from_);
+    if (to_) how.to = moments.time_of(*to_);
+    RecordingOut target{to_file_, overwrite_, format, header_of(*recording)};
+    Progress progress{program.quiet};
+    const ConvertReport report = convert(*recording, target, how, [&] {
+        if (recording->size_bytes() > 0)
+            progress.show(double(recording->position_bytes()) / double(recording->size_bytes()));
+        return !program.signals.stopping();
+    });
+    progress.clear();
+    if (program.signals.stopping())
+        spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
+    say(from_file_, recording->info().format, to_file_, report);
+    const bool incomplete = report.damaged.total() > 0 || !(report.not_held == DataCounts{});
+    return strict_ && incomplete ? exit_data_lost : exit_done;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,81 @@
+// A recording as a folder in the manner of the Event Camera Dataset.
+#include "apps/cli/commands/ecd_writer.h"
+
+#include "replay/formats.h"
+#include "src/core/error.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+namespace eventide::app {
+
+namespace fs = std::filesystem;
+
+RunFolderFiles EcdWriter::files() {
+    return {{{"images", "frame_", 8, ".png"}}, {"events.txt", "images.txt"}, "images.txt"};
+}
+
+EcdWriter::EcdWriter(const fs::path& folder, bool overwrite, int width, int height)
+    : width_{width},
+      height_{height},
+      folder_{folder, overwrite, files()},
+      list_{folder / "images.txt", {.appears = Appears::growing}} {
+    StreamHeader header;
+    header.format = "text";
+    header.width = width;
+    header.height = height;
+    events_ = std::make_unique<RecordingFile>((folder / "events.txt").string(), false,
+                                              open_writer("text"), header);
+}
+
+void EcdWriter::write(const Batch& batch) {
+    Batch events;
+    events.events = batch.events;
+    if (!events.empty()) events_->write(events);
+    for (const ReferenceImage& image : batch.images) write(image);
+}
+
+void EcdWriter::write(const ReferenceImage& image) {
+    std::vector<unsigned char> png;
+    const fs::path file = folder_.next(0);
+    if (!cv::imencode(".png", covering_sensor(image), png))
+        throw Error(ErrorKind::failed, file.string() + ": cannot be encoded");
+    // Before the image: what is in the folder is in the list, also after a crash.
+    const std::int64_t us = std::abs(to_us(image.t));
+    char seconds[48];
+    std::snprintf(seconds, sizeof seconds, "%s%" PRId64 ".%06" PRId64 " ",
+                  to_us(image.t) < 0 ? "-" : "", us / 1'000'000, us % 1'000'000);
+    const std::string line = seconds + ("images/" + file.filename().string()) + "\n";
+    list_.write(line);
+    write_file(file, std::as_bytes(std::span{png}), false);
+    image_bytes_ += line.size() + png.size();
+}
+
+/// In 8 bits, as the dataset's images are, on black where the image is of a part of the sensor: the
+/// folder has no place for where that part lies.
+cv::Mat EcdWriter::covering_sensor(const ReferenceImage& image) const {
+    const int width = image.pixels.width() / image.channels, height = image.pixels.height();
+    const cv::Mat wide(height, width, CV_MAKETYPE(CV_16U, image.channels),
+                       const_cast<std::uint16_t*>(image.pixels.values().data()));
+    cv::Mat narrow;
+    wide.convertTo(narrow, CV_8U, 1.0 / 257);
+    const cv::Rect sensor{0, 0, width_, height_}, whole{image.x0, image.y0, width, height};
+    if (whole == sensor) return narrow;
+    cv::Mat covering = cv::Mat::zeros(height_, width_, narrow.type());
+    const cv::Rect place = whole & sensor;
+    narrow(place - cv::Point{image.x0, image.y0}).copyTo(covering(place));
+    return covering;
+}
+
+void EcdWriter::finish() {
+    events_->finish();
+    list_.close();
+    folder_.finish();
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,296 @@
+// eventide evaluate: how good a model's frames and sigma are.
+#include "apps/cli/commands/evaluate_command.h"
+
+#include "apps/cli/commands/command_files.h"
+#include "apps/cli/printable.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/settings/model_path.h"
+#include "pipeline/parallel_tbb.h"
+#include "src/binning/slicer_settings.h"
+#include "src/core/error.h"
+#include "src/io/output_file.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <utility>
+
+namespace eventide::app {
+
+namespace {
+
+/// To a file, or to standard output for "-".
+void write_text(const std::string& file, const std::string& text, bool overwrite) {
+    if (file == "-")
+        std::cout << text;
+    else if (!file.empty())
+        write_file(file, text, overwrite);
+}
+
+std::optional<double> seconds_of(const std::string& text, const char* open) {
+    if (text == open) return std::nullopt;
+    return std::chrono::duration<double>(parse_duration(text)).count();
+}
+
+Setting seconds_setting(std::string key, std::string& value, std::string help, std::string open) {
+    return parsed_setting<std::string>(
+        std::move(key), value, "TIME", std::move(help),
+        [open](const std::string& text) {
+            if (text != open) parse_duration(text);
+            return text;
+        },
+        [](const std::string& text) { return text; });
+}
+
+}  // namespace
+
+std::string EvaluateCommand::examples() const {
+    return "Tables go to standard output; LPIPS needs --lpips.\n"
+           "Examples:\n"
+           "  eventide evaluate recording.aedat4 ecd/slider_depth --json scores.json\n"
+           "  eventide evaluate ECD/ --protocol evreal --lpips lpips_squeeze_v0.1.npz\n"
+           "  eventide evaluate --protocol simulated --lookahead 2\n"
+           "  eventide evaluate frames/ references/ --protocol folders\n"
+           "  eventide evaluate --protocol simulated --figure reliability --figure spatial --plots "
+           "plots/\n"
+           "  eventide evaluate held_out.aedat4 --calibrated model.safetensors";
+}
+
+std::vector<Positional> EvaluateCommand::positionals() {
+    return {{"INPUT",
+             "Recordings with reference images; a folder of sequences (evreal); two folders of "
+             "images (folders); nothing (simulated)",
+             nullptr, &inputs_}};
+}
+
+// Long, because it is a list: one line per option.
+SettingTable EvaluateCommand::settings() {
+    SettingTable table{"evaluate", "eventide evaluate: measures of a model.", {}};
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(choice_setting("protocol", protocol_,
+                       "recordings: between their reference images; evreal: ECD, MVSEC and HQF as "
+                       "EVREAL does; simulated: the project's test set; folders: images against "
+                       "images.",
+                       {"recordings", "evreal", "simulated", "folders"}));
+    add(text_setting("model", model_, "NAME|FILE", "As in eventide run."));
+    add(text_setting(
+        "lpips", lpips_, "FILE",
+        "Weights of LPIPS as npz (lpips_squeeze_v0.1.npz); empty: LPIPS is left out."));
+    add(whole_setting("lookahead", lookahead_, "0|1|2",
+                      "Event windows after the frame's own that may be used.", 0, 2));
+    add(parsed_setting<std::string>(
+        "window", window_, "WINDOW",
+        "recordings: reference (an event window between reference images), or as in eventide run.",
+        [](const std::string& text) {
+            if (text != "reference") parse_window(text);
+            return text;
+        },
+        [](const std::string& text) { return text; }));
+    add(whole_setting("skip", skip_, "N",
+                      "The first N images are not scored: the state is still empty.", 0, 1000000));
+    add(whole_setting(
+        "frames", given_images_, "N",
+        "recordings: give one image of N to the model, which corrects its frames, and "
+        "score the others; 0: none.",
+        0, 1000000));
+    add(seconds_setting("from", from_,
+                        "recordings: score from here, after the first event; start: "
+                        "all.",
+                        "start"));
+    add(seconds_setting("to", to_, "recordings: score until here; end: all.", "end"));
+    add(choice_setting("sigma_rule", sigma_rule_, "As in eventide run.",
+                       {"model", "log_blend", "mixture"}));
+    add(text_setting("noise_filter", noise_filter_, "model|auto|off|TIME", "As in eventide run."));
+    add(choice_setting("precision", precision_, "As in eventide run.", {"auto", "f32", "bf16"}));
+    add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
+    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+
+    add(text_setting("images", images_, "FOLDER",
+                     "simulated: photographs to draw scenes from; empty: procedural textures."));
+    add(whole_setting("last_images", last_images_, "N",
+                      "simulated: only the last N of them by name; 0: all.", 0, 1000000));
+    add(whole_setting("sequences", sequences_, "N", "simulated: how many.", 1, 100000));
+    add(whole_setting("event_windows", event_windows_, "N", "simulated: in each sequence.", 1,
+                      1000000));
+    add(parsed_setting<Size>("size", size_, "WxH", "simulated: sensor size in pixels.", parse_size,
+                             show_size));
+    add(number_setting("scale", scale_, "S", "simulated: size of the frames, times the sensor's.",
+                       0.1, 16));
+    add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
+
+    add(text_setting("json", json_, "FILE",
+                     "All measures as JSON; -: on standard output, instead of "
+                     "the table."));
+    add(text_setting("csv", csv_, "FILE", "A line per sequence; - as for --json."));
+    add(text_setting("frame_csv", frame_csv_, "FILE", "A line per frame; - as for --json."));
+    std::string names;
+    for (const std::string& figure : figure_names()) names += (names.empty() ? "" : ", ") + figure;
+    add(list_setting(
+        "figure", figures_, "NAME",
+        "Figures as SVG and CSV: " + names +
+            "; spatial, temporal and silence from simulated sequences of their own, instead of a "
+            "table; the others beside the table, of what is evaluated."));
+    add(text_setting("plots", plots_, "FOLDER", "Where figures go."));
+    add(choice_setting("calibration", calibration_,
+                       "What --calibrated fits: coverage (PICP80 becomes .8), cautious (in the "
+                       "sequence that needs it most) or likelihood.",
+                       {"coverage", "likelihood", "cautious"}));
+    add(text_setting(
+        "calibrated", calibrated_, "FILE",
+        "Fit one factor for sigma on what was evaluated, and write the model with it."));
+    add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
+    return table;
+}
+
+EvaluateSettings EvaluateCommand::how(Program& program) const {
+    EvaluateSettings how;
+    if (protocol_ != Protocol::folders) how.model = find_model(model_);
+    how.lpips = lpips_;
+    how.lookahead = lookahead_;
+    if (sigma_rule_ != SigmaChoice::model)
+        how.sigma_rule =
+            sigma_rule_ == SigmaChoice::mixture ? SigmaRule::mixture : SigmaRule::log_blend;
+    how.engine.engine = engine_;
+    how.noise_filter = noise_filter_;
+    how.engine.precision = precision_;
+    how.engine.parallel_for = parallel_for_with(threads_);
+    // Of recordings each is long: they come one by one, and the network takes all threads.
+    if (protocol_ == Protocol::simulated) how.parallel_for = how.engine.parallel_for;
+    how.progress = [progress = std::make_shared<Progress>(program.quiet),
+                    &signals = program.signals](const std::string& sequence, double share) {
+        progress->show(share, sequence);
+        if (share >= 1) progress->clear();
+        if (signals.stopping()) throw Error(ErrorKind::failed, "stopped before the end");
+    };
+    return how;
+}
+
+SimulatedSettings EvaluateCommand::simulated() const {
+    SimulatedSettings what;
+    what.images = images_;
+    what.last_images = last_images_;
+    what.sequences = sequences_;
+    what.event_windows = event_windows_;
+    what.width = size_.width;
+    what.height = size_.height;
+    what.scale = scale_;
+    what.seed = std::uint64_t(seed_);
+    return what;
+}
+
+void EvaluateCommand::require_inputs() const {
+    const std::size_t n = inputs_.size();
+    const char* expected = nullptr;
+    if (protocol_ == Protocol::recordings && n < 1) expected = "one or more recordings";
+    if (protocol_ == Protocol::evreal && n != 1) expected = "one folder";
+    if (protocol_ == Protocol::folders && n != 2)
+        expected = "two folders: images and what they are to be";
+    if (protocol_ == Protocol::simulated && n != 0) expected = "no input";
+    if (expected != nullptr)
+        throw Error(ErrorKind::usage,
+                    std::string{"evaluate: expected "} + expected + ", found " + std::to_string(n));
+}
+
+EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
+    switch (protocol_) {
+        case Protocol::evreal:
+            return evaluate_evreal(inputs_[0], how);
+        case Protocol::simulated:
+            return evaluate_simulated(simulated(), how);
+        case Protocol::folders:
+            return evaluate_folders(inputs_[0], inputs_[1], lpips_);
+        case Protocol::recordings:
+            break;
+    }
+    RecordingSettings what;
+    what.recordings.assign(inputs_.begin(), inputs_.end());
+    what.window = window_;
+    what.skip_images = skip_;
+    if (given_images_ == 1)
+        throw Error(
+            ErrorKind::usage,
+            "--frames 1: all images would be given and none scored; expected 0, or 2 or more");
+    what.given_images = given_images_;
+    what.from_s = seconds_of(from_, "start");
+    what.to_s = seconds_of(to_, "end");
+    return evaluate_recordings(what, how);
+}
+
+void EvaluateCommand::write_plots(const std::vector<Plot>& plots) const {
+    for (const Plot& plot : plots)
+        spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());
+}
+
+void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const {
+    FigureSettings what;
+    what.simulated = simulated();
+    for (const std::string& figure : figures_)
+        if (!is_report_figure(figure)) write_plots(make_figure(figure, what, how));
+}
+
+void EvaluateCommand::write(const EvaluateReport& report) const {
+    if (json_ != "-" && csv_ != "-" && frame_csv_ != "-")
+        std::cout << printable(text_table(report), Lines::keep);
+    write_text(json_, json(report) + "\n", overwrite_);
+    write_text(csv_, csv(report), overwrite_);
+    write_text(frame_csv_, frame_csv(report), overwrite_);
+}
+
+void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSettings& how) const {
+    const Calibration found = eventide::calibrate(report, calibration_);
+    write_calibrated(how.model, calibrated_, found, overwrite_);
+    spdlog::info("{}: sigma times {:.4f}; PICP80 {:.3f} to {:.3f}, LL {:.3f} to {:.3f}",
+                 calibrated_, found.factor, found.picp80_before, found.picp80_after,
+                 found.ll_before, found.ll_after);
+}
+
+/// What the figures' names begin with in --plots; the rest depends on what is measured.
+void EvaluateCommand::name_plots(NamedFiles& files) const {
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator{plots_, none})
+        for (std::string figure : figures_) {
+            std::ranges::replace(figure, '-', '_');
+            const std::string kind = entry.path().extension();
+            if ((kind == ".svg" || kind == ".csv") &&
+                (entry.path().stem() == figure ||
+                 entry.path().stem().string().starts_with(figure + "_")))
+                files.writes("--plots", entry.path());
+        }
+}
+
+void EvaluateCommand::name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    for (const std::string& input : inputs_)
+        if (protocol_ == Protocol::recordings)
+            name_recording("INPUT", input, files);
+        else
+            name_files("INPUT", input, files);
+    files.reads("--model", how.model);
+    files.reads("--lpips", lpips_);
+    name_files("--images", images_, files);
+    for (const auto& [option, file] :
+         {std::pair{"--json", &json_}, {"--csv", &csv_}, {"--frame-csv", &frame_csv_}})
+        if (*file != "-") files.writes(option, *file);
+    files.writes("--calibrated", calibrated_);
+    name_plots(files);
+}
+
+int EvaluateCommand::run(Program& program) {
+    const EvaluateSettings settings = how(program);
+    name_evaluation_files(settings, program.files);
+    make_simulated_figures(settings);
+    const bool table = figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
+    if (!table) return exit_done;
+    require_inputs();
+    const EvaluateReport report = evaluate(settings);
+    write(report);
+    for (const std::string& figure : figures_)
+        if (is_report_figure(figure)) write_plots(report_figure(figure, report));
+    if (!calibrated_.empty()) calibrate(report, settings);
+    return exit_done;
+}
+
+}  // namespace eventide::app

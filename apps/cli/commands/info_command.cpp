@@ -1,0 +1,117 @@
+// eventide info: reads a recording to its end and says what was in it.
+#include "apps/cli/commands/info_command.h"
+
+#include "apps/cli/commands/disorder.h"
+#include "apps/cli/printable.h"
+#include "apps/cli/progress.h"
+#include "replay/formats.h"
+#include "replay/summary.h"
+#include "src/core/error.h"
+#include "src/model/model_file.h"
+#include "src/model/model_metadata.h"
+
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <iostream>
+
+namespace eventide::app {
+
+namespace {
+
+void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t bytes) {
+    const auto line = [](const char* name, const std::string& value) {
+        std::cout << name << std::string(12 - std::string{name}.size(), ' ') << printable(value)
+                  << '\n';
+    };
+    const auto whole = [](std::uint64_t n) { return std::to_string(n); };
+    line("format", summary.format);
+    if (!sensor.name.empty())
+        line("sensor", sensor.name + (sensor.serial.empty() ? "" : ", serial " + sensor.serial));
+    line("size",
+         whole(std::uint64_t(summary.width)) + " x " + whole(std::uint64_t(summary.height)));
+    if (bytes > 0) line("bytes", whole(bytes));
+    line("events", whole(summary.events) + " (" + whole(summary.on) + " on)");
+    if (summary.first && summary.last) {
+        const double seconds =
+            std::chrono::duration<double>(*summary.last - *summary.first).count();
+        char text[96];
+        std::snprintf(text, sizeof text, "%lld .. %lld us (%.6f s)",
+                      static_cast<long long>(to_us(*summary.first)),
+                      static_cast<long long>(to_us(*summary.last)), seconds);
+        line("time", text);
+        if (seconds > 0) line("rate", short_count(double(summary.events) / seconds) + " events/s");
+    }
+    line("images", whole(summary.frames));
+    line("imu", whole(summary.imu));
+    line("triggers", whole(summary.triggers));
+    std::string damage = whole(summary.damaged.total());
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        if (const auto n = summary.damaged[DamageReason(i)]; n > 0)
+            damage += ", " + std::string{name_of(DamageReason(i))} + " " + whole(n);
+    line("damaged", damage);
+}
+
+}  // namespace
+
+/// What a model is, from its own metadata.
+int InfoCommand::describe_model() const {
+    const Model model = load_model(file_);
+    std::size_t weights = 0;
+    for (const auto& [name, tensor] : model.weights) weights += tensor.values.size();
+    std::map<std::string, std::string> facts = format_metadata(model.config);
+    facts["weights"] = std::to_string(weights);
+    facts["identity"] = encoder_identity(model);
+    if (json_) {
+        std::cout << json_text(facts) << '\n';
+        return exit_done;
+    }
+    for (const auto& [key, value] : facts)
+        std::cout << key << std::string(key.size() < 16 ? 16 - key.size() : 1, ' ')
+                  << printable(value, Lines::keep) << '\n';
+    return exit_done;
+}
+
+std::string InfoCommand::examples() const {
+    return "Examples:\n  eventide info recording.aedat4\n  eventide info model.safetensors\n  "
+           "eventide info recording.raw --json | jq "
+           ".events";
+}
+
+std::vector<Positional> InfoCommand::positionals() {
+    return {{"FILE", "Recording, - for standard input, or a model", &file_}};
+}
+
+SettingTable InfoCommand::settings() {
+    SettingTable table{"info", "eventide info: what a recording holds.", {}};
+    table.settings.push_back(flag_setting("json", json_, "One JSON object instead of a table."));
+    table.settings.push_back(
+        flag_setting("strict", strict_, "End with exit code 5 when something is damaged."));
+    input_.add_to(table);
+    return table;
+}
+
+int InfoCommand::run(Program& program) {
+    if (file_.ends_with(".safetensors")) return describe_model();
+    const auto recording = open_input(file_, input_);
+    Progress progress{program.quiet};
+    const Summary summary = summarize(*recording, [&] {
+        if (recording->size_bytes() > 0)
+            progress.show(double(recording->position_bytes()) / double(recording->size_bytes()));
+        return !program.signals.stopping();
+    });
+    progress.clear();
+    if (program.signals.stopping()) throw Error(ErrorKind::failed, "stopped before the end");
+    if (const std::string why =
+            disorder_text(file_, summary.format, summary.events, summary.damaged);
+        !why.empty())
+        spdlog::warn("{}", why);
+    if (json_)
+        std::cout << to_json(summary) << '\n';
+    else
+        print_table(recording->info(), summary, recording->size_bytes());
+    return strict_ && summary.damaged.total() > 0 ? exit_data_lost : exit_done;
+}
+
+}  // namespace eventide::app

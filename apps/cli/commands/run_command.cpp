@@ -1,0 +1,35 @@
+// eventide run: what it is called with.
+#include "apps/cli/commands/run_command.h"
+
+#include "apps/cli/run/run.h"
+#include "apps/cli/run/run_files.h"
+#include "src/core/error.h"
+
+namespace eventide::app {
+
+std::string RunCommand::examples() const {
+    return "SOURCE is a recording, an ECD folder, davis:[serial], dvxplorer:[serial], "
+           "dvs128:[serial], v4l2:/dev/videoN, sim:SCENE, or - for text on standard input.\n"
+           "Examples:\n"
+           "  eventide run recording.aedat4 --out video.mp4\n"
+           "  eventide run recording.raw --fps 1000 --size 2.5x --out frames/ --out video.mp4 "
+           "--uncertainty side\n"
+           "  eventide run recording.aedat4 --slow 8 --out - | ffmpeg -i - slow.mp4\n"
+           "  eventide run recording.aedat4 --from 2s --duration 500ms --out cut/\n"
+           "  eventide run davis: --out window --record raw.aedat4\n"
+           "  zcat events.txt.gz | eventide run - --input-size 240x180 --out frames/";
+}
+
+std::vector<Positional> RunCommand::positionals() {
+    return {{"SOURCE", "Recording, camera, or - for standard input", &settings_.source}};
+}
+
+int RunCommand::run(Program& program) {
+    if (settings_.out.empty())
+        throw Error(ErrorKind::usage,
+                    "expected at least one --out, such as --out video.mp4 or --out window");
+    name_run_files(settings_, program.files);
+    return Run{program, settings_}.run();
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,185 @@
+// eventide simulate: recordings whose truth is known.
+#include "apps/cli/commands/simulate_command.h"
+
+#include "apps/cli/commands/command_files.h"
+#include "apps/cli/commands/recording_out.h"
+#include "apps/cli/progress.h"
+#include "pipeline/sinks/folder.h"
+#include "replay/formats.h"
+#include "src/core/error.h"
+#include "src/simulate/presets.h"
+#include "src/simulate/texture_pack.h"
+#include "src/simulate/textures_folder.h"
+
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <iostream>
+#include <limits>
+
+namespace eventide::app {
+
+namespace {
+
+/// Null for a folder.
+const Format* format_of(const std::string& path) {
+    if (names_folder(path)) return nullptr;
+    const Format* format = format_for_writing(path);
+    if (format == nullptr)
+        throw Error(ErrorKind::usage, "--out " + path +
+                                          ": expected a folder (ending in /) or the extension "
+                                          "of a format that can be written, such as .aedat4");
+    return format;
+}
+
+StreamHeader header_of(const SimRecordingSettings& what) {
+    StreamHeader header;
+    header.width = what.width;
+    header.height = what.height;
+    header.sensor_name = "simulated";
+    return header;
+}
+
+/// Events, and images where the target has a place for them.
+Batch held_of(const Batch& batch, const FormatHolds& holds) {
+    Batch held;
+    held.events = batch.events;
+    if (holds.images) held.images = batch.images;
+    return held;
+}
+
+/// As many procedural ones as give a scene of 30 objects little repetition.
+std::shared_ptr<const TextureLibrary> open_textures(const std::string& path) {
+    if (path.empty()) return procedural_textures(48);
+    if (std::filesystem::is_directory(path)) return textures_from_folder(path);
+    return textures_from_pack(path);
+}
+
+void print_scenes() {
+    for (const SimulationPreset& preset : simulation_presets())
+        std::cout << preset.name << std::string(16 - preset.name.size(), ' ') << preset.what
+                  << '\n';
+}
+
+}  // namespace
+
+std::string SimulateCommand::examples() const {
+    return "The truth is what an ideal camera shows, at any rate and size.\n"
+           "Examples:\n"
+           "  eventide simulate --scene demo --seconds 4 --out recording.aedat4\n"
+           "  eventide simulate --scene wide --seed 7 --size 346x260 --out sequence/ --truth "
+           "truth/ "
+           "--truth-scale 2";
+}
+
+SettingTable SimulateCommand::settings() {
+    SettingTable table{"simulate", "eventide simulate: recordings whose truth is known.", {}};
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(text_setting("scene", scene_, "NAME", "What is simulated; --list shows the names."));
+    add(flag_setting("list", list_, "List the scenes, and exit."));
+    Setting out =
+        text_setting("out", out_, "FILE|FOLDER/",
+                     "Where the recording goes: x.aedat4 or another format with images, or "
+                     "a folder/ with events.txt, images.txt and images/.");
+    out.short_flag = "-o";
+    add(std::move(out));
+    add(number_setting("seconds", seconds_, "S", "Recording duration, seconds.", 0.001, 1e6));
+    add(parsed_setting<Size>("size", size_, "WxH", "Sensor size in pixels.", parse_size,
+                             show_size));
+    add(parsed_setting<std::string>(
+        "seed", seed_, "N",
+        "Random seed: the same seed, the same recording; auto: the "
+        "scene's own.",
+        [](const std::string& text) {
+            if (text != "auto") parse_whole(text, 0, std::numeric_limits<int>::max());
+            return text;
+        },
+        [](const std::string& text) { return text; }));
+    add(number_setting("images_per_second", images_per_second_, "N",
+                       "Reference images in the recording; 0: none.", 0, 1e5));
+    add(text_setting("truth", truth_, "FOLDER",
+                     "Also write the truth as frames, laid out as the "
+                     "folder sink does."));
+    add(number_setting("truths_per_second", truths_per_second_, "N", "Rate of the truth.", 0.001,
+                       1e5));
+    add(number_setting(
+        "truth_scale", truth_scale_, "S",
+        "Size of the truth: (width - 1) S + 1 columns, so that corners stay corners.", 0.1, 16));
+    add(text_setting("textures", textures_, "PATH",
+                     "Folder of images or pack of textures to draw the scene from; empty: "
+                     "procedural textures."));
+    add(flag_setting("overwrite", overwrite_,
+                     "Replace files that exist; of a folder, what an earlier run wrote."));
+    return table;
+}
+
+SimRecordingSettings SimulateCommand::plan() const {
+    const SimulationPreset& preset = simulation_preset(scene_);
+    SimRecordingSettings plan;
+    plan.scene = preset.scene;
+    plan.sensor = preset.sensor;
+    plan.width = size_.width;
+    plan.height = size_.height;
+    plan.seed = seed_ == "auto" ? preset.seed : std::uint64_t(std::stoull(seed_));
+    plan.seconds = seconds_;
+    plan.images_per_second = images_per_second_;
+    plan.truths_per_second = truth_.empty() ? 0 : truths_per_second_;
+    plan.truth_scale = truth_scale_;
+    return plan;
+}
+
+void SimulateCommand::name_output_files(NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    name_files("--textures", textures_, files);
+    if (names_folder(out_))
+        name_run_folder("--out", out_, EcdWriter::files(), files);
+    else
+        files.writes("--out", out_);
+    if (!truth_.empty()) name_run_folder("--truth", truth_, FolderSink::files(), files);
+}
+
+int SimulateCommand::run(Program& program) {
+    if (list_) {
+        print_scenes();
+        return exit_done;
+    }
+    if (out_.empty())
+        throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
+    name_output_files(program.files);
+    const SimRecordingSettings what = plan();
+    const auto textures = open_textures(textures_);
+    RecordingOut out{out_, overwrite_, format_of(out_), header_of(what)};
+    if (!out.holds().images && what.images_per_second > 0)
+        spdlog::warn("{}: its format cannot hold reference images", out_);
+    std::unique_ptr<FolderSink> truth;
+    if (!truth_.empty())
+        truth = std::make_unique<FolderSink>(FolderSettings{
+            .path = truth_, .overwrite = overwrite_, .uncertainty = Uncertainty::none});
+    Progress progress{program.quiet};
+    std::uint64_t events = 0, images = 0, truths = 0;
+    simulate_recording(what, textures, [&](const Batch& batch, const std::vector<Truth>& seen) {
+        if (const Batch held = held_of(batch, out.holds()); !held.empty()) out.write(held);
+        events += batch.events.size();
+        images += batch.images.size();
+        for (const Truth& view : seen) {
+            Frame frame;
+            frame.t = view.t;
+            frame.index = truths++;
+            frame.window = {view.t, view.t};
+            frame.intensity = view.image;
+            truth->write(frame);
+        }
+        if (!batch.events.empty())
+            progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));
+        return !program.signals.stopping();
+    });
+    progress.clear();
+    out.finish();
+    if (truth) truth->close();
+    if (program.signals.stopping())
+        spdlog::warn("{}: stopped before the end; it holds what was simulated until then", out_);
+    spdlog::info("{}: {} events, {} images, {} truths", out_, events, images, truths);
+    return exit_done;
+}
+
+}  // namespace eventide::app

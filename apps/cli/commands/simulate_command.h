@@ -1,0 +1,31 @@
+// eventide simulate: recordings whose truth is known.
+#pragma once
+
+#include "apps/cli/command.h"
+#include "apps/cli/settings/values.h"
+#include "src/simulate/sim_recording.h"
+
+namespace eventide::app {
+
+class SimulateCommand : public Command {
+public:
+    std::string name() const override { return "simulate"; }
+    std::string summary() const override {
+        return "Simulate a camera before a moving scene: events, images, truth";
+    }
+    std::string examples() const override;
+    SettingTable settings() override;
+    int run(Program& program) override;
+
+private:
+    SimRecordingSettings plan() const;
+    void name_output_files(NamedFiles& files) const;
+
+    std::string scene_ = "demo", out_, truth_, textures_;
+    std::string seed_ = "auto";
+    Size size_{240, 180};
+    double seconds_ = 4, images_per_second_ = 25, truths_per_second_ = 25, truth_scale_ = 1;
+    bool overwrite_ = false, list_ = false;
+};
+
+}  // namespace eventide::app

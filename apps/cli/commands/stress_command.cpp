@@ -1,0 +1,277 @@
+// eventide stress: hard cases through the whole pipeline.
+#include "apps/cli/commands/stress_command.h"
+
+#include "apps/cli/printable.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/settings/model_path.h"
+#include "apps/cli/stress/soak.h"
+#include "apps/cli/version.h"
+#include "apps/evaluate/plot.h"
+#include "pipeline/parallel_tbb.h"
+#include "src/core/error.h"
+#include "src/io/output_file.h"
+#include "src/model/model_trial.h"
+
+#include <fnmatch.h>
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+namespace eventide::app {
+namespace {
+
+using stress::short_number;
+
+const char* verdict(const stress::Result& result) {
+    if (!result.ran) return "not run";
+    return result.passed ? "passed" : "FAILED";
+}
+
+std::string number_or_dash(const std::optional<double>& number) {
+    return number ? short_number(*number) : "-";
+}
+
+void print_head() {
+    std::printf(
+        "| case | model | what happened | worst error | bound | verdict |\n"
+        "|---|---|---|---|---|---|\n");
+}
+
+/// Also a row of a table in Markdown.
+void print_row(const StressRow& row) {
+    std::printf("| %s | %s | %s | %s | %s | %s |\n", row.title.c_str(),
+                printable(row.model).c_str(), printable(row.result.happened).c_str(),
+                number_or_dash(row.result.error).c_str(), number_or_dash(row.result.bound).c_str(),
+                verdict(row.result));
+    std::fflush(stdout);
+}
+
+nlohmann::ordered_json json_of(const std::vector<StressRow>& rows) {
+    nlohmann::ordered_json json;
+    json["machine"] = processor_text();
+    json["program"] = "eventide " + version() + ", " + compiler_text();
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const StressRow& row : rows) {
+        nlohmann::ordered_json one{{"case", row.name},
+                                   {"title", row.title},
+                                   {"model", row.model},
+                                   {"happened", row.result.happened},
+                                   {"verdict", verdict(row.result)},
+                                   {"seconds", row.seconds}};
+        if (row.result.error) one["worst_error"] = *row.result.error;
+        if (row.result.bound) one["bound"] = *row.result.bound;
+        json["rows"].push_back(std::move(one));
+    }
+    return json;
+}
+
+/// What a case throws is its failure, not that of the others.
+StressRow row_of(const stress::Case& one, const std::string& model, const stress::Bench& bench) {
+    StressRow row{one.name, one.title, one.of_model ? model : "-", {}, 0};
+    const auto begun = std::chrono::steady_clock::now();
+    try {
+        row.result = one.run(bench);
+    } catch (const std::exception& error) {
+        row.result.expect(false, std::string{"no error: "} + error.what());
+    }
+    row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    return row;
+}
+
+Plot plot_of(const std::string& name, const std::string& title, const std::string& unit) {
+    return {.name = name, .title = title, .x_label = "hours of stream time", .y_label = unit};
+}
+
+/// Memory, latency and states over stream time.
+std::vector<Plot> plots_of(const std::vector<stress::SoakSample>& samples) {
+    Plot memory = plot_of("soak_memory", "Resident memory", "MiB");
+    Plot latency = plot_of("soak_latency", "Latency at full speed", "ms");
+    Plot state = plot_of("soak_state", "Recurrent states", "absolute value");
+    memory.series = {{"resident", {}, {}, {}}};
+    latency.series = {{"p50", {}, {}, {}}, {"p99", {}, {}, {}}};
+    state.series = {{"largest", {}, {}, {}}, {"root mean square", {}, {}, {}}};
+    const auto put = [](Series& series, double x, double y) {
+        series.x.push_back(x);
+        series.y.push_back(y);
+    };
+    for (const stress::SoakSample& sample : samples) {
+        const double x = sample.stream_hours;
+        put(memory.series[0], x, sample.resident_mib);
+        put(latency.series[0], x, sample.latency_p50_ms);
+        put(latency.series[1], x, sample.latency_p99_ms);
+        put(state.series[0], x, sample.largest_state);
+        put(state.series[1], x, sample.rms_state);
+    }
+    return {memory, latency, state};
+}
+
+}  // namespace
+
+std::string StressCommand::examples() const {
+    return "Hard cases go through the whole pipeline with each model, and codes and frames are "
+           "compared\n"
+           "with double precision. Errors are relative to the larger of 1 and the map's largest "
+           "number.\n"
+           "Exit code 1 when a case fails. Long cases are cut where time is short, and say what "
+           "they ran.\n"
+           "Examples:\n"
+           "  eventide stress\n"
+           "  eventide stress --cases 'sensor-*' --models default\n"
+           "  eventide stress --minutes 30 --json cases.json\n"
+           "  eventide stress --instructions avx2\n"
+           "  eventide stress --soak 24 --models default --plots soak/";
+}
+
+SettingTable StressCommand::settings() {
+    SettingTable table{"stress", "eventide stress: hard cases against double precision.", {}};
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(text_setting("cases", cases_, "GLOB",
+                     "Only cases with such names, also as '@(ONE|OTHER)'; --list shows them."));
+    add(flag_setting("list", list_, "List the cases, and exit."));
+    add(list_setting("models", models_, "NAME|FILE", "Models, any number of times."));
+    add(number_setting("minutes", minutes_, "N",
+                       "About how long it may take; what has a natural length takes that long.",
+                       0.1, 1e5));
+    add(flag_setting("quick", quick_,
+                     "The form that tests run: short lengths, the same on every machine."));
+    add(number_setting("soak", soak_hours_, "HOURS",
+                       "Instead of the cases: so many hours of stream time as fast as possible, "
+                       "with pauses and bursts.",
+                       0, 1e4));
+    add(choice_setting("instructions", instructions_, "As in eventide bench.",
+                       {"best", "avx2", "sse4"}));
+    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+    add(text_setting("json", json_, "FILE", "Also as JSON."));
+    add(text_setting("plots", plots_, "FOLDER",
+                     "Of --soak: memory, latency and states, SVG and "
+                     "CSV."));
+    add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
+    return table;
+}
+
+void StressCommand::name_stress_files(NamedFiles& files) const {
+    files.may_replace(overwrite_);
+    for (const std::string& model : models_) files.reads("--models", found_model(model));
+    files.writes("--json", json_);
+    if (plots_.empty()) return;
+    for (const Plot& plot : plots_of({}))
+        for (const char* extension : {".svg", ".csv"})
+            files.writes("--plots", std::filesystem::path{plots_} / (plot.name + extension));
+}
+
+std::vector<stress::Case> StressCommand::chosen() const {
+    std::vector<stress::Case> chosen;
+    for (stress::Case& one : stress::all_cases())
+        if (fnmatch(cases_.c_str(), one.name.c_str(), FNM_EXTMATCH) == 0 &&
+            (one.in_quick_form || !quick_))
+            chosen.push_back(std::move(one));
+    if (chosen.empty())
+        throw Error(ErrorKind::usage,
+                    "--cases: expected names of cases (--list shows them), found '" + cases_ +
+                        "', which none has");
+    return chosen;
+}
+
+stress::Budget StressCommand::budget(Program& program) const {
+    const auto stopping = [&program] { return program.signals.stopping(); };
+    if (quick_) return stress::Budget::quick(stopping);
+    return stress::Budget::minutes(minutes_ / double(models_.size()), stopping);
+}
+
+int StressCommand::run(Program& program) {
+    if (list_) {
+        for (const stress::Case& one : chosen())
+            std::printf("%-18s %s\n", one.name.c_str(), one.title.c_str());
+        return exit_done;
+    }
+    name_stress_files(program.files);
+    limit_instructions(instructions_);
+    return soak_hours_ > 0 ? run_soak(program) : run_cases(program);
+}
+
+namespace {
+
+EngineOptions engine_with(int threads) {
+    EngineOptions engine;
+    engine.precision = Precision::f32;
+    engine.kernels = Kernels::own;
+    engine.parallel_for = parallel_for_with(threads);
+    return engine;
+}
+
+Model load_tried(const std::string& name) {
+    const std::filesystem::path file = find_model(name);
+    Model model = load_model(file);
+    try_model(model, file.string());
+    return model;
+}
+
+}  // namespace
+
+int StressCommand::run_cases(Program& program) {
+    const std::vector<stress::Case> cases = chosen();
+    std::vector<Model> models;
+    for (const std::string& name : models_) models.push_back(load_tried(name));
+    std::printf("%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
+                compiler_text().c_str());
+    print_head();
+    Progress progress{program.quiet};
+    std::vector<StressRow> rows;
+    for (std::size_t c = 0; c < cases.size(); ++c)
+        for (std::size_t m = 0; m < (cases[c].of_model ? models.size() : 1); ++m) {
+            progress.show(double(c) / double(cases.size()), cases[c].title + ", " + models_[m]);
+            StressRow row =
+                row_of(cases[c], models_[m],
+                       {models[m], engine_with(threads_), instructions_, budget(program)});
+            progress.clear();
+            if (program.signals.stopping()) break;  // it did not come to its end
+            print_row(row);
+            rows.push_back(std::move(row));
+        }
+    if (!json_.empty()) write_file(json_, json_text(json_of(rows)) + "\n", overwrite_);
+    const auto failed =
+        std::ranges::count_if(rows, [](const StressRow& row) { return !row.result.passed; });
+    const auto left_out =
+        std::ranges::count_if(rows, [](const StressRow& row) { return !row.result.ran; });
+    std::printf("\n%zu rows, %zu failed, %zu not run\n", rows.size(), std::size_t(failed),
+                std::size_t(left_out));
+    return failed == 0 ? exit_done : int(ErrorKind::failed);
+}
+
+int StressCommand::run_soak(Program& program) {
+    if (models_.size() != 1 && !plots_.empty())
+        throw Error(ErrorKind::usage,
+                    "--soak with --plots: expected one model (--models NAME), "
+                    "found " +
+                        std::to_string(models_.size()));
+    std::printf("%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
+                compiler_text().c_str());
+    print_head();
+    std::vector<StressRow> rows;
+    Progress progress{program.quiet};
+    for (const std::string& name : models_) {
+        stress::SoakSettings settings;
+        settings.hours = soak_hours_;
+        settings.stopping = [&] { return program.signals.stopping(); };
+        settings.on_sample = [&](const stress::SoakSample& sample) {
+            progress.show(sample.stream_hours / soak_hours_, name);
+        };
+        const auto samples = stress::soak(load_tried(name), engine_with(threads_), settings);
+        progress.clear();
+        rows.push_back({"soak", short_number(soak_hours_) + " h of pauses and bursts", name,
+                        stress::soak_verdict(samples), 0});
+        print_row(rows.back());
+        if (plots_.empty()) continue;
+        for (const Plot& plot : plots_of(samples))
+            spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());
+    }
+    if (!json_.empty()) write_file(json_, json_text(json_of(rows)) + "\n", overwrite_);
+    const bool passed =
+        std::ranges::all_of(rows, [](const StressRow& row) { return row.result.passed; });
+    return passed ? exit_done : int(ErrorKind::failed);
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,71 @@
+// The files a command was told to read and to write.
+#include "apps/cli/named_files.h"
+
+#include "src/core/error.h"
+#include "src/io/output_file.h"
+
+#include <unistd.h>
+
+#include <utility>
+
+namespace eventide::app {
+
+namespace fs = std::filesystem;
+
+NamedFiles::Named NamedFiles::named(std::string text, const fs::path& path) {
+    return {std::move(text), resolved(path), FileIdentity::of(path)};
+}
+
+void NamedFiles::refuse_overlap(const Named& named, const std::vector<Named>& others) {
+    const auto holds = [](const Named& folder, const Named& file) {
+        return folder.whole_folder && lies_in(file.path, folder.path);
+    };
+    for (const Named& other : others) {
+        const bool same = named.identity.is_same_file(other.identity);
+        if (!same && !holds(named, other) && !holds(other, named)) continue;
+        const std::string kind = named.identity.is_folder() ? "folder" : "file";
+        throw Error(ErrorKind::usage,
+                    named.text +
+                        (same ? ": is the same " + kind + " as " : ": is in the same folder as ") +
+                        other.text + "; expected a " + kind + " of its own");
+    }
+}
+
+void NamedFiles::add(Named named, std::vector<Named>& to) {
+    if (&to == &outputs_) refuse_overlap(named, inputs_);
+    refuse_overlap(named, outputs_);
+    to.push_back(std::move(named));
+}
+
+void NamedFiles::reads(const std::string& option, const fs::path& path) {
+    if (path == "-")
+        add({option + " -", {}, FileIdentity::of_descriptor(STDIN_FILENO)}, inputs_);
+    else if (!path.empty())
+        add(named(option + " " + path.string(), path), inputs_);
+}
+
+void NamedFiles::reads_all(const std::string& option, const fs::path& folder) {
+    Named all = named(option + " " + folder.string(), folder);
+    all.whole_folder = true;
+    add(std::move(all), inputs_);
+}
+
+void NamedFiles::writes(const std::string& option, const fs::path& path, const std::string& said) {
+    if (path.empty()) return;
+    if (path == "-")
+        return add({option + " -", {}, FileIdentity::of_descriptor(STDOUT_FILENO)}, outputs_);
+    add(named(option + " " + (said.empty() ? path.string() : said), path), outputs_);
+    refuse_existing(path, overwrite_);
+}
+
+void NamedFiles::writes_folder(const std::string& option, const fs::path& folder) {
+    add(named(option + " " + folder.string(), folder), outputs_);
+}
+
+void NamedFiles::writes_all(const std::string& option, const fs::path& folder) {
+    Named all = named(option + " " + folder.string(), folder);
+    all.whole_folder = true;
+    add(std::move(all), outputs_);
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,45 @@
+// A model file as a network that runs, made for one sensor.
+#include "apps/cli/run/loaded_model.h"
+
+#include "apps/cli/run/memory_use.h"
+#include "apps/cli/settings/model_path.h"
+#include "pipeline/parallel_tbb.h"
+#include "src/model/model_trial.h"
+#include "src/nn/safetensors.h"
+
+#include <new>
+
+namespace eventide::app {
+
+namespace {
+
+/// A model file whose network was seen to work.
+Model load_tried_model(const std::filesystem::path& file) {
+    Model model = load_model(file);
+    try_model(model, file.string());
+    return model;
+}
+
+template <typename Part>
+Part made_for(const Model& model, const SensorInfo& sensor, const EngineOptions& engine) {
+    try {
+        return Part{model, sensor.width, sensor.height, engine};
+    } catch (const std::bad_alloc&) {
+        throw out_of_memory("the network", network_bytes(model.config, sensor), sensor);
+    }
+}
+
+}  // namespace
+
+Network::Network(const RunSettings& settings, const SensorInfo& sensor)
+    : file_{find_model(settings.model)},
+      model_{load_tried_model(file_)},
+      engine_{settings.engine, settings.precision, settings.kernels,
+              parallel_for_with(settings.threads)},
+      encoder_{made_for<Encoder>(model_, sensor, engine_)},
+      renderer_{made_for<Renderer>(model_, sensor, engine_)} {
+    if (!settings.state_in.empty())
+        encoder_.restore(read_safetensors(settings.state_in), settings.state_in);
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,131 @@
+// SINK on the command line becomes a sink of frames.
+#include "apps/cli/run/open_sinks.h"
+
+#include "apps/cli/settings/sink_name.h"
+#include "pipeline/sinks/contact_sheet.h"
+#include "pipeline/sinks/folder.h"
+#include "pipeline/sinks/null.h"
+#include "pipeline/sinks/raw_stream.h"
+#include "pipeline/sinks/v4l2_output.h"
+#include "pipeline/sinks/video.h"
+#include "pipeline/sinks/window.h"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+namespace eventide::app {
+
+namespace {
+
+std::unique_ptr<Sink> open_folder(const std::string& path, const RunSettings& settings,
+                                  const SinkPlan& plan) {
+    return std::make_unique<FolderSink>(
+        FolderSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
+                       plan.questions.lost, plan.questions.run_json});
+}
+
+std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& settings,
+                                 const SinkPlan& plan) {
+    if (path.ends_with(".mkv"))
+        spdlog::warn("{}: Matroska rounds times to 1 ms; MP4 keeps microseconds", path);
+    return std::make_unique<VideoSink>(
+        VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
+                      settings.video_preset, settings.video_crf, plan.fps, settings.slow});
+}
+
+std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
+                                  const RunSettings& settings, const SinkPlan& plan) {
+    StreamSettings stream;
+    stream.path = path;
+    stream.format = format;
+    stream.overwrite = settings.overwrite;
+    stream.uncertainty = settings.uncertainty;
+    stream.sigma_white = float(settings.sigma_white);
+    stream.fps = plan.fps;
+    stream.stamp = settings.stamp;
+    stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
+    stream.give_up = plan.questions.stopping;
+    return std::make_unique<StreamSink>(std::move(stream));
+}
+
+std::unique_ptr<Sink> open_window(const RunSettings& settings, const SinkPlan& plan) {
+    WindowSettings window;
+    window.title = "eventide: " + settings.source;
+    window.uncertainty = settings.uncertainty;
+    window.sigma_white = float(settings.sigma_white);
+    window.speed = plan.speed;
+    window.speed_changed = plan.questions.speed_changed;
+    window.give_up = plan.questions.stopping;
+    return std::make_unique<WindowSink>(std::move(window));
+}
+
+std::unique_ptr<Sink> open_v4l2(const std::string& node, const RunSettings& settings) {
+    V4l2OutputSettings loopback;
+    loopback.node = node;
+    loopback.uncertainty = settings.uncertainty;
+    loopback.sigma_white = float(settings.sigma_white);
+    return std::make_unique<V4l2OutputSink>(std::move(loopback));
+}
+
+std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& settings,
+                                 const SinkPlan& plan) {
+    ContactSheetSettings sheet;
+    sheet.path = path;
+    sheet.overwrite = settings.overwrite;
+    sheet.sigma_white = float(settings.sigma_white);
+    sheet.rows = settings.sheet_rows;
+    sheet.truth_caption = plan.reference_caption;
+    if (plan.references != nullptr)
+        sheet.draw_truth = [references = plan.references, sensor = plan.sensor](const Frame& frame,
+                                                                                cv::Mat& image) {
+            references->draw(frame, sensor.width, sensor.height, image);
+        };
+    return std::make_unique<ContactSheetSink>(std::move(sheet));
+}
+
+std::unique_ptr<Sink> open_sink(const std::string& text, const RunSettings& settings,
+                                const SinkPlan& plan) {
+    const SinkName sink = parse_sink(text);
+    switch (sink.kind) {
+        case SinkKind::window:
+            return open_window(settings, plan);
+        case SinkKind::folder:
+            return open_folder(sink.path, settings, plan);
+        case SinkKind::video:
+            return open_video(sink.path, settings, plan);
+        case SinkKind::stream:
+            return open_stream(sink.path, sink.format, settings, plan);
+        case SinkKind::sheet:
+            return open_sheet(sink.path, settings, plan);
+        case SinkKind::v4l2:
+            return open_v4l2(sink.path, settings);
+        case SinkKind::nothing:
+            break;
+    }
+    return std::make_unique<NullSink>();
+}
+
+}  // namespace
+
+bool is_window(const std::string& sink) {
+    return sink == "window";
+}
+
+bool is_contact_sheet(const std::string& sink) {
+    return sink.starts_with("contact-sheet:");
+}
+
+std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {
+    std::vector<std::unique_ptr<Sink>> plain, looked;
+    LookSettings look = settings.look;
+    look.unsharp = float(settings.unsharp);
+    for (const std::string& sink : settings.out) {
+        auto& where = look.changes_nothing() || is_contact_sheet(sink) ? plain : looked;
+        where.push_back(open_sink(sink, settings, plan));
+    }
+    if (!looked.empty()) plain.push_back(std::make_unique<LookSink>(look, std::move(looked)));
+    return plain;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,40 @@
+// SINK on the command line becomes a sink of frames.
+#pragma once
+
+#include "apps/cli/run/reference_images.h"
+#include "apps/cli/settings/run_settings.h"
+#include "pipeline/sink.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eventide::app {
+
+/// What sinks ask of the run while it goes on; any member may be empty. Render thread.
+struct SinkQuestions {
+    std::function<std::uint64_t()> lost;
+    std::function<std::string()> run_json;
+    std::function<bool()> stopping;
+    std::function<void(double)> speed_changed;
+};
+
+struct SinkPlan {
+    double fps = 30;            ///< nominal
+    bool constant_rate = true;  ///< and no frame for each event window
+    double speed = 1;           ///< of the recording, for the window
+    Size sensor;                ///< px
+    ReferenceImages* references = nullptr;
+    std::string reference_caption;  ///< for people
+    SinkQuestions questions;
+};
+
+bool is_window(const std::string& sink);
+bool is_contact_sheet(const std::string& sink);
+
+/// Opens all of settings.out, with the look controls in front of all but the contact sheet. Throws
+/// Error (usage) for what names no sink or contradicts --uncertainty.
+std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan);
+
+}  // namespace eventide::app

@@ -1,0 +1,78 @@
+// SOURCE on the command line becomes a source of bytes.
+#include "apps/cli/run/open_source.h"
+
+#include "drivers/devices.h"
+#include "drivers/simulated/simulated_camera.h"
+#include "replay/formats.h"
+#include "replay/scan_geometry.h"
+#include "src/core/error.h"
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace eventide::app {
+
+namespace {
+
+/// "metavision:" is no file that is missing.
+void refuse_unknown_prefix(const std::string& source) {
+    const std::size_t colon = source.find(':');
+    std::error_code none;
+    if (colon == source.npos || source.find('/') < colon || std::filesystem::exists(source, none))
+        return;
+    throw Error(ErrorKind::usage,
+                source +
+                    ": unknown source; expected a file or folder, davis:, dvxplorer:, dvs128:, "
+                    "v4l2:/dev/videoN, sim:SCENE, or - for standard input");
+}
+
+OpenedSource open_file(const RunSettings& settings, double speed) {
+    refuse_unknown_prefix(settings.source);
+    auto recording = open_input(settings.source, settings.input);
+    OpenedSource opened;
+    if (speed > 0) {
+        auto paced = std::make_unique<RealTimePlayback>(std::move(recording), speed);
+        opened.recording = opened.paced = paced.get();
+        opened.source = std::move(paced);
+    } else {
+        opened.recording = recording.get();
+        opened.source = std::move(recording);
+    }
+    return opened;
+}
+
+void check_size(const Source& source, const std::string& name) {
+    const int width = source.info().width, height = source.info().height;
+    if (width < 1 || height < 1)
+        throw Error(ErrorKind::usage, name +
+                                          ": the recording does not say the sensor's size; "
+                                          "--input-size 240x180 tells it");
+    // A header that lies must not make us ask for all the memory there is.
+    if (width > kLargestSensorSide || height > kLargestSensorSide)
+        throw Error(ErrorKind::input,
+                    name + ": expected a sensor of at most " + std::to_string(kLargestSensorSide) +
+                        " px each way, found " + std::to_string(width) + "x" +
+                        std::to_string(height) + "; --input-size states another size");
+}
+
+}  // namespace
+
+OpenedSource open_source(const RunSettings& settings, double speed) {
+    OpenedSource opened;
+    if (!settings.camera.empty() && !names_camera(settings.source))
+        throw Error(ErrorKind::usage, "--camera " + settings.camera +
+                                          ": expected a camera as SOURCE, found " +
+                                          settings.source);
+    if (names_simulation(settings.source))
+        opened.source = open_simulation(settings.source);
+    else if (names_camera(settings.source))
+        opened.source = open_camera(settings.source, {settings.camera, settings.reconnect});
+    else
+        opened = open_file(settings, speed);
+    check_size(*opened.source, settings.source);
+    return opened;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,22 @@
+// SOURCE on the command line becomes a source of bytes.
+#pragma once
+
+#include "apps/cli/settings/run_settings.h"
+#include "replay/real_time_playback.h"
+#include "replay/recording.h"
+
+#include <memory>
+
+namespace eventide::app {
+
+/// What the command line named, in the one of three shapes that it has.
+struct OpenedSource {
+    std::unique_ptr<Source> source;
+    Recording* recording = nullptr;     ///< the same object, where it is a recording
+    RealTimePlayback* paced = nullptr;  ///< the same, where it keeps a pace
+};
+
+/// `speed`: 0 is as fast as it goes. Throws Error.
+OpenedSource open_source(const RunSettings& settings, double speed);
+
+}  // namespace eventide::app

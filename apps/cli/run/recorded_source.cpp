@@ -1,0 +1,60 @@
+// A source whose data are also written down.
+#include "apps/cli/run/recorded_source.h"
+
+#include "src/core/error.h"
+
+namespace eventide::app {
+
+RecordedSource::RecordedSource(Source& source, const std::string& path, bool overwrite)
+    : source_{source} {
+    if (path.ends_with(".bin")) {
+        bytes_.emplace(path, OutputOptions{.overwrite = overwrite, .appears = Appears::growing});
+        return;
+    }
+    format_ = format_for_writing(path);
+    if (format_ == nullptr)
+        throw Error(ErrorKind::usage, "--record " + path +
+                                          ": expected the extension of a format that can be "
+                                          "written (.aedat4, .raw, .txt, ...) or .bin");
+    StreamHeader header;
+    header.format = format_->name;
+    header.width = source.info().width;
+    header.height = source.info().height;
+    header.sensor_name = source.info().name;
+    header.serial = source.info().serial;
+    file_ = std::make_unique<RecordingFile>(path, overwrite, open_writer(format_->name), header,
+                                            Appears::growing);
+    parser_ = source.make_parser();
+}
+
+RecordedSource::~RecordedSource() = default;
+
+ReadStatus RecordedSource::read(RawPacket& into) {
+    const ReadStatus status = source_.read(into);
+    if (status == ReadStatus::data) write(into);
+    return status;
+}
+
+void RecordedSource::write(const RawPacket& packet) {
+    if (bytes_) return bytes_->write(packet.bytes);
+    // As the pipeline's own parser does it, so that both tell the same times.
+    if (packet.gap_before) parser_->resync();
+    if (is_live()) parser_->arrives(packet.arrived);
+    parser_->parse(packet.bytes, batch_);
+    write_batch();
+}
+
+void RecordedSource::write_batch() {
+    remove_not_held(batch_, format_->holds);
+    if (!batch_.empty()) file_->write(batch_);
+    batch_.clear();
+}
+
+void RecordedSource::finish() {
+    if (bytes_) return bytes_->close();
+    parser_->finish(batch_);
+    write_batch();
+    file_->finish();
+}
+
+}  // namespace eventide::app

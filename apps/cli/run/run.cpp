@@ -1,0 +1,204 @@
+// One run of the pipeline.
+#include "apps/cli/run/run.h"
+
+#include "apps/cli/commands/disorder.h"
+#include "apps/cli/commands/look_ahead.h"
+#include "apps/cli/printable.h"
+#include "apps/cli/run/memory_use.h"
+#include "apps/cli/run/status.h"
+#include "apps/cli/version.h"
+#include "src/core/error.h"
+#include "src/io/output_file.h"
+#include "src/nn/safetensors.h"
+
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <new>
+
+namespace eventide::app {
+
+namespace {
+
+std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source) {
+    if (settings.record.empty()) return nullptr;
+    return std::make_unique<RecordedSource>(source, settings.record, settings.overwrite);
+}
+
+/// Null: not asked for.
+std::unique_ptr<OutputFile> stats_of(const RunSettings& settings) {
+    if (settings.stats.empty()) return nullptr;
+    return std::make_unique<OutputFile>(settings.stats == "-" ? "/dev/stderr" : settings.stats,
+                                        OutputOptions{.overwrite = settings.overwrite});
+}
+
+}  // namespace
+
+Run::Run(Program& program, RunSettings& settings)
+    : program_{program},
+      settings_{settings},
+      speed_{speed_of(settings)},
+      opened_{open_source(settings, speed_)},
+      sensor_{opened_.source->info()},
+      span_{span_of(settings, live())},
+      network_{settings, sensor_},
+      slicer_{slicer_of(settings, network_.config(), span_, live())},
+      rate_{rate_of(settings, slicer_)},
+      lookahead_{lookahead_of(settings, network_.config(), live())},
+      sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
+      begun_{std::chrono::steady_clock::now()},
+      filter_{filter_of(settings, network_.config(), sensor_)},
+      watch_{sheet_ ? &references_ : nullptr,
+             settings.frames == CameraFrames::ignore ? nullptr : &images_},
+      encode_{network_.encoder()},
+      render_{network_.renderer(), request_of(settings, sensor_, lookahead_)} {
+    check_recording(settings, span_, slicer_);
+    if (settings.frames != CameraFrames::ignore)
+        fusion_.emplace(network_.renderer(), request_of(settings, sensor_, lookahead_),
+                        sensor_.width, sensor_.height, images_);
+    if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
+    if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
+        bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
+    recorded_ = recorder_of(settings, *opened_.source);
+    sinks_ = open_sinks(settings_, sink_plan());
+    stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
+    try {
+        pipeline_.emplace(parts(), line());
+    } catch (const std::bad_alloc&) {
+        const auto& config = network_.config();
+        throw out_of_memory(
+            "the network with its buffers (--buffers-grids, --buffers-latents)",
+            network_bytes(config, sensor_) + buffer_bytes(config, sensor_, line().buffers),
+            sensor_);
+    }
+}
+
+Source& Run::source() {
+    if (recorded_) return *recorded_;
+    return *opened_.source;
+}
+
+SinkPlan Run::sink_plan() {
+    SinkPlan plan;
+    plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
+    plan.constant_rate = rate_.is_set();
+    plan.speed = speed_ > 0 ? speed_ : 1;
+    plan.sensor = {sensor_.width, sensor_.height};
+    plan.references = sheet_ ? &references_ : nullptr;
+    plan.reference_caption = reference_caption(sensor_);
+    plan.questions.stopping = [this] { return program_.signals.stopping(); };
+    plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
+    plan.questions.run_json = [this] { return run_json(); };
+    if (opened_.paced != nullptr)
+        plan.questions.speed_changed = [this](double factor) { opened_.paced->set_speed(factor); };
+    return plan;
+}
+
+PipelineParts Run::parts() {
+    RenderStage& render = fusion_ ? static_cast<RenderStage&>(*fusion_) : render_;
+    PipelineParts parts{source(), encode_, render, {}, filter_.get(), &watch_};
+    for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
+    return parts;
+}
+
+PipelineSettings Run::line() const {
+    PipelineSettings line;
+    line.bins = network_.config().bins;
+    line.event_windows.slicer = slicer_;
+    line.rate = rate_;
+    line.frames_from = span_.frames_from;
+    line.lookahead = lookahead_;
+    line.latency = latency_of(settings_, live());
+    line.reset_on_gap = settings_.reset_on_gap;
+    line.allow_silence = settings_.allow_silence;
+    line.event_preview = settings_.events || sheet_;
+    line.events_per_pixel = fusion_.has_value();
+    line.buffers = {std::size_t(settings_.buffers_packets), std::size_t(settings_.buffers_grids),
+                    std::size_t(settings_.buffers_latents)};
+    return line;
+}
+
+RunProgress Run::progress() const {
+    RunProgress progress;
+    progress.elapsed = std::chrono::steady_clock::now() - begun_;
+    progress.in_step = live() || speed_ > 0;
+    progress.total_bytes = bytes_to_read_;
+    progress.end = span_.end;
+    progress.duration = span_.duration;
+    return progress;
+}
+
+int Run::run() {
+    const Stopper stopper{program_.signals, [this] { pipeline_->stop(); }};
+    Status status{[this] { return pipeline_->snapshot(); }, progress(), std::move(stats_),
+                  program_.quiet};
+    run_pipeline();
+    if (!settings_.state_out.empty())
+        write_safetensors(settings_.state_out, network_.encoder().state(), settings_.overwrite);
+    const RunProgress end = status.finish();
+    const Snapshot counters = pipeline_->snapshot();
+    const CameraCounters camera = camera_counters();
+    spdlog::info("{}{}", summary_text(counters, end), camera_text(camera));
+    if (const std::string why =
+            disorder_text(settings_.source, sensor_.format, counters.events, counters.damaged);
+        !why.empty())
+        spdlog::warn("{}", why);
+    if (const std::string why = why_no_frames(counters);
+        !why.empty() && !program_.signals.stopping())
+        spdlog::warn("{}", why);
+    if (fusion_ && fusion_->fused().used() > 0)
+        spdlog::info("frames corrected by {} of the camera's images", fusion_->fused().used());
+    else if (settings_.frames == CameraFrames::use)
+        spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
+                     counters.images);
+    const bool lost = lost_data(counters) || camera.device_dropped > 0;
+    return settings_.strict && lost ? exit_data_lost : exit_done;
+}
+
+/// Also when it fails, what arrived until then is a whole recording.
+void Run::run_pipeline() {
+    try {
+        if (settings_.sequential)
+            pipeline_->run_sequential();
+        else
+            pipeline_->run();
+    } catch (...) {
+        if (recorded_) recorded_->finish();
+        throw;
+    }
+    if (recorded_) recorded_->finish();
+}
+
+CameraCounters Run::camera_counters() const {
+    const auto* camera = dynamic_cast<const Camera*>(opened_.source.get());
+    return camera == nullptr ? CameraCounters{} : camera->counters();
+}
+
+/// What was asked, with what, and what came out.
+std::string Run::run_json() {
+    const RunProgress now = progress();
+    nlohmann::ordered_json json;
+    json["program"] = "eventide " + version();
+    json["arguments"] = program_.arguments;
+    json["source"] = {{"name", settings_.source}, {"format", sensor_.format},
+                      {"sensor", sensor_.name},   {"serial", sensor_.serial},
+                      {"width", sensor_.width},   {"height", sensor_.height}};
+    json["model"] = {{"file", network_.file().string()},
+                     {"encoder", encoder_identity(network_.model())},
+                     {"engine", network_.encoder().description()},
+                     {"card", network_.config().card}};
+    nlohmann::ordered_json values;
+    for (const Setting& setting : settings_.table().settings) {
+        const auto texts = setting.show();
+        if (setting.kind == ValueKind::list)
+            values[setting.key] = texts;
+        else
+            values[setting.key] = texts.back();
+    }
+    json["settings"] = values;
+    json["counters"] = nlohmann::ordered_json::parse(stats_json(pipeline_->snapshot(), now, true));
+    return json_text(json);
+}
+
+}  // namespace eventide::app

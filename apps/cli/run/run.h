@@ -1,0 +1,84 @@
+// One run of the pipeline: everything that was named is opened, connected, run and closed.
+#pragma once
+
+#include "apps/cli/command.h"
+#include "apps/cli/run/loaded_model.h"
+#include "apps/cli/run/open_sinks.h"
+#include "apps/cli/run/open_source.h"
+#include "apps/cli/run/recorded_source.h"
+#include "apps/cli/run/reference_images.h"
+#include "apps/cli/run/run_plan.h"
+#include "apps/cli/run/run_report.h"
+#include "pipeline/fusion_stage.h"
+#include "pipeline/model_stages.h"
+#include "pipeline/pipeline.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace eventide::app {
+
+/// Hands reference images on, where somebody wants them (not null). Bin thread.
+class Watch : public DataObserver {
+public:
+    Watch(ReferenceImages* references, ImagesOnTheWay* images)
+        : references_{references}, images_{images} {}
+    void see(const Batch& batch) override {
+        if (references_ != nullptr) references_->see(batch);
+        if (images_ != nullptr) images_->put(batch.images);
+    }
+
+private:
+    ReferenceImages* references_;
+    ImagesOnTheWay* images_;
+};
+
+/// Inputs are opened before outputs, so that a wrong input leaves nothing behind.
+class Run {
+public:
+    /// Throws Error.
+    Run(Program& program, RunSettings& settings);
+
+    /// Returns the exit code. Throws Error.
+    int run();
+
+private:
+    Source& source();
+    bool live() const { return opened_.source->is_live(); }
+    SinkPlan sink_plan();
+    PipelineParts parts();
+    PipelineSettings line() const;
+    void run_pipeline();
+    CameraCounters camera_counters() const;
+    RunProgress progress() const;
+    std::string run_json();
+
+    Program& program_;
+    RunSettings& settings_;
+    const double speed_;
+    OpenedSource opened_;
+    const SensorInfo sensor_;
+    const Span span_;
+    Network network_;
+    const SlicerSettings slicer_;
+    const FrameRate rate_;
+    const int lookahead_;
+    const bool sheet_;
+    const std::chrono::steady_clock::time_point begun_;
+    std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known
+    ReferenceImages references_;
+    ImagesOnTheWay images_;
+    std::unique_ptr<RecordedSource> recorded_;  // null: nothing is recorded
+    std::unique_ptr<OutputFile> stats_;         // null: not asked for, or taken by run()
+    std::unique_ptr<EventFilter> filter_;
+    Watch watch_;
+    ModelEncodeStage encode_;
+    ModelRenderStage render_;
+    std::optional<FusionRenderStage> fusion_;  // none: the camera's images are ignored
+    std::vector<std::unique_ptr<Sink>> sinks_;
+    std::optional<Pipeline> pipeline_;
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,13 @@
+// Every file that eventide run was told to read or to write.
+#pragma once
+
+#include "apps/cli/named_files.h"
+#include "apps/cli/settings/run_settings.h"
+
+namespace eventide::app {
+
+/// Before anything is opened. Throws Error: usage where an output is also an input or another
+/// output, or may not be replaced.
+void name_run_files(const RunSettings& settings, NamedFiles& files);
+
+}  // namespace eventide::app

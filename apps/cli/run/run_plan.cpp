@@ -1,0 +1,140 @@
+// What was asked for becomes what is to be done.
+#include "apps/cli/run/run_plan.h"
+
+#include "apps/cli/run/open_sinks.h"
+#include "drivers/simulated/simulated_name.h"
+#include "pipeline/filters/event_filter.h"
+#include "src/core/error.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace eventide::app {
+
+namespace {
+
+/// Half a dozen of the widest windows and more of the usual ones: what a scene has to show in that
+/// time the network has seen.
+constexpr SensorDuration kWarmup{1'000'000};
+
+/// As long before the first frame as was asked for, and no earlier than the first event: silence
+/// teaches nothing. Standard input cannot be asked for its first event.
+SensorTime warm_up_from(const RunSettings& settings, const TimePointReader& moments,
+                        SensorTime frames_from) {
+    const SensorDuration usual = settings.state_in.empty() ? kWarmup : SensorDuration{0};
+    const SensorTime begin = frames_from - settings.warmup.value_or(usual);
+    if (settings.source == "-" || begin == frames_from) return begin;
+    return std::min(std::max(begin, moments.time_of({})), frames_from);
+}
+
+}  // namespace
+
+Span span_of(const RunSettings& settings, bool live) {
+    Span span;
+    if (live) {
+        if (settings.from || settings.to)
+            throw Error(ErrorKind::usage,
+                        "--from and --to are for recordings; --duration ends a live source");
+        span.duration = settings.duration;
+        return span;
+    }
+    const TimePointReader moments =
+        names_simulation(settings.source)
+            ? TimePointReader{SimRecordingSettings{}.begin}
+            : TimePointReader{settings.source, settings.input.options()};
+    if (settings.from) {
+        span.frames_from = moments.time_of(*settings.from);
+        span.begin = warm_up_from(settings, moments, *span.frames_from);
+    }
+    if (settings.to) span.end = moments.time_of(*settings.to);
+    if (settings.duration) {
+        const SensorTime begin = span.frames_from ? *span.frames_from : moments.time_of({});
+        const SensorTime end = begin + *settings.duration;
+        span.end = span.end ? std::min(*span.end, end) : end;
+    }
+    if (span.end && span.frames_from && *span.end < *span.frames_from)
+        throw Error(ErrorKind::usage, "--to lies before --from");
+    return span;
+}
+
+double speed_of(const RunSettings& settings) {
+    if (settings.speed == "max") return 0;
+    if (settings.speed == "auto")
+        return std::ranges::any_of(settings.out, is_window) ? 1 / settings.slow : 0;
+    return parse_number(settings.speed, 0.001, 1000);
+}
+
+std::optional<HostTime::duration> latency_of(const RunSettings& settings, bool live) {
+    constexpr std::chrono::milliseconds kUsual{250};
+    if (settings.latency == "none") return {};
+    if (settings.latency == "auto")
+        return live ? std::optional<HostTime::duration>{kUsual} : std::nullopt;
+    if (!live)
+        throw Error(ErrorKind::usage,
+                    "--latency " + settings.latency + ": expected a camera as SOURCE, found " +
+                        settings.source + "; a recording waits, and loses nothing");
+    return parse_duration(settings.latency);
+}
+
+SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span,
+                         bool live) {
+    // Short windows cost more: what a recording waits for, a camera would lose.
+    const bool of_model = settings.window == "model" || (settings.window == "auto" && live);
+    SlicerSettings slicer = parse_window(of_model ? model.window : settings.window);
+    // A window is (begin, end]: the event of the very moment asked for is in it.
+    if (span.begin) slicer.begin = *span.begin - SensorDuration{1};
+    slicer.end = span.end;
+    slicer.duration = span.duration;
+    return slicer;
+}
+
+FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer) {
+    if (!settings.fps.automatic) return slowed(settings.fps.rate, settings.slow);
+    return slicer.rule == WindowRule::reference ? FrameRate{} : slowed({30, 1}, settings.slow);
+}
+
+double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer, double slow) {
+    if (rate.is_set()) return double(rate.frames) / double(rate.seconds) / slow;
+    return slicer.rule == WindowRule::duration ? 1e6 / double(slicer.width.count()) / slow : 30;
+}
+
+int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool live) {
+    const int lookahead = settings.lookahead.value_or(live ? 0 : 2);
+    if (std::ranges::find(model.lookaheads, lookahead) == model.lookaheads.end()) {
+        if (settings.lookahead) {
+            spdlog::warn("the model was not trained for lookahead {}", lookahead);
+        } else {
+            const auto best = std::ranges::max_element(model.lookaheads);
+            return best == model.lookaheads.end() ? lookahead : *best;
+        }
+    }
+    return lookahead;
+}
+
+std::string reference_caption(const SensorInfo& sensor) {
+    if (sensor.name.starts_with("simulated")) return "truth";
+    return sensor.name.empty() ? "reference" : "APS";
+}
+
+std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
+                                       const SensorInfo& sensor) {
+    return event_filter({settings.hot_pixels, settings.noise_filter}, model, sensor.width,
+                        sensor.height);
+}
+
+RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead) {
+    const Size size = settings.size.of({sensor.width, sensor.height});
+    RenderRequest request;
+    request.width = size.width;
+    request.height = size.height;
+    if (settings.region) request.region = *settings.region;
+    request.lookahead = lookahead;
+    if (settings.sigma_rule != SigmaChoice::model)
+        request.sigma_rule =
+            settings.sigma_rule == SigmaChoice::mixture ? SigmaRule::mixture : SigmaRule::log_blend;
+    request.want_sigma = settings.uncertainty != Uncertainty::none;
+    return request;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,59 @@
+// What was asked for becomes what is to be done: spans, windows, rates, sizes.
+#pragma once
+
+#include "apps/cli/settings/run_settings.h"
+#include "pipeline/source.h"
+#include "pipeline/stages.h"
+#include "src/binning/slicer_settings.h"
+#include "src/model/model_config.h"
+#include "src/model/renderer.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace eventide::app {
+
+/// Where a recording is to begin and end, in its own time; of a live source only how long it runs.
+struct Span {
+    std::optional<SensorTime> frames_from, begin, end;
+    std::optional<SensorDuration> duration;
+};
+
+/// May read the beginning of the recording to find its first event. Throws Error (usage) for what
+/// cannot be had: --from of a live source or, relative, of standard input.
+Span span_of(const RunSettings& settings, bool live);
+
+/// Of a recording: 0 is as fast as it goes.
+double speed_of(const RunSettings& settings);
+
+/// The bound of a live source's latency; empty where there is none. Throws Error (usage) for a
+/// bound of a recording, which waits and loses nothing.
+std::optional<HostTime::duration> latency_of(const RunSettings& settings, bool live);
+
+SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span,
+                         bool live);
+
+/// Of sensor time: --slow 10 asks for ten times the frames of the video's rate. Throws Error
+/// (usage) for more than sensor time has microseconds.
+FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer);
+
+/// Frames per second of the video, as far as it can be said before the run; `rate` is of sensor
+/// time.
+double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer, double slow);
+
+/// What was asked for, else 0 for live sources and 2 for recordings, or the most the model was
+/// trained for.
+int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool live);
+
+/// What a source's reference images are to people: "truth" of a simulation, "APS" of a camera that
+/// is named, else (in folders, whose makers are not told) "reference".
+std::string reference_caption(const SensorInfo& sensor);
+
+/// Null when all events stay.
+std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
+                                       const SensorInfo& sensor);
+
+RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead);
+
+}  // namespace eventide::app

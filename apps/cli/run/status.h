@@ -1,0 +1,54 @@
+// While a run goes on: the moving line on a terminal, and the JSON lines of --stats.
+#pragma once
+
+#include "apps/cli/run/run_report.h"
+#include "apps/cli/run/status_line.h"
+#include "apps/cli/terminal.h"
+#include "src/io/output_file.h"
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace eventide::app {
+
+class Status {
+public:
+    /// `snapshot` may be called from any thread. `stats` may be null; it shows under its name with
+    /// its first line and grows from then on.
+    Status(std::function<Snapshot()> snapshot, RunProgress fixed, std::unique_ptr<OutputFile> stats,
+           bool quiet);
+    ~Status();
+    Status(const Status&) = delete;
+    Status& operator=(const Status&) = delete;
+
+    /// Ends the line and writes the last JSON line. Once, after the run. Throws Error (failed)
+    /// where a line could not be written.
+    RunProgress finish();
+
+private:
+    void tick();
+    RunProgress progress(const Snapshot& now);
+    void write_stats(const Snapshot& now, bool final);
+
+    std::function<Snapshot()> snapshot_;
+    RunProgress fixed_;
+    std::unique_ptr<OutputFile> stats_;  // null: not asked for, or it failed
+    std::exception_ptr stats_failure_;
+    ProgressLine line_;
+    std::chrono::steady_clock::time_point begun_;
+    std::uint64_t last_events_ = 0;
+    std::chrono::duration<double> last_elapsed_{0};
+    double event_rate_ = 0;
+
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    bool end_ = false;
+    std::jthread thread_;
+};
+
+}  // namespace eventide::app

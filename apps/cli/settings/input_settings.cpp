@@ -1,0 +1,69 @@
+// What the user may say about an input.
+#include "apps/cli/settings/input_settings.h"
+
+#include "replay/formats.h"
+
+#include <spdlog/spdlog.h>
+
+namespace eventide::app {
+
+void InputSettings::add_to(SettingTable& table) {
+    std::string names;
+    for (const Format& format : all_formats())
+        names += (names.empty() ? "" : ", ") + std::string{format.name};
+    table.settings.push_back(parsed_setting<std::string>(
+        "input_format", open.format, "FORMAT",
+        "Format of the recording: auto (by its content), " + names + ".",
+        [](const std::string& text) {
+            if (text == "auto") return std::string{};
+            if (find_format(text) == nullptr) throw_usage("auto or the name of a format", text);
+            return text;
+        },
+        [](const std::string& text) { return text.empty() ? "auto" : text; }));
+    table.settings.push_back(parsed_setting<std::optional<Size>>(
+        "input_size", size, "WxH",
+        "Size of the sensor in pixels, such as 240x180, for recordings that do not say it; auto "
+        "takes what the recording says.",
+        [](const std::string& text) {
+            return text == "auto" ? std::nullopt : std::optional{parse_size(text)};
+        },
+        [](const std::optional<Size>& s) { return s ? show_size(*s) : "auto"; }));
+    table.settings.push_back(parsed_setting<std::string>(
+        "input_columns", open.text.columns, "ORDER",
+        "Columns of a text recording, such as txyp or xypt; auto takes them from a header row, or "
+        "from the numbers themselves.",
+        [](const std::string& text) { return text == "auto" ? std::string{} : text; },
+        [](const std::string& text) { return text.empty() ? "auto" : text; }));
+    table.settings.push_back(choice_setting(
+        "input_time_unit", open.text.unit,
+        "Unit of the times in a text recording; auto: seconds where there is a decimal point, else "
+        "microseconds, or what makes sense of the rate of events.",
+        {"auto", "s", "ms", "us", "ns"}));
+    table.settings.push_back(parsed_setting<SensorDuration>(
+        "reorder", open.text.reorder, "TIME",
+        "Put rows of a text recording in order that come at most so long after a later one; 0s "
+        "takes them as they come. What comes later still is left out.",
+        [](const std::string& text) { return parse_duration(text); },
+        [](const SensorDuration& d) { return show_duration(d); }));
+    table.settings.push_back(flag_setting(
+        "input_dvs128_one_is_on", open.dvs128_one_is_on,
+        "In AEDAT 1.0 and 2.0 files of a DVS128, polarity bit 1 means on; jAER's files, the usual "
+        "ones, have it the other way round."));
+}
+
+OpenOptions InputSettings::options() const {
+    OpenOptions options = open;
+    if (size) {
+        options.width = size->width;
+        options.height = size->height;
+    }
+    return options;
+}
+
+std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input) {
+    auto recording = open_recording(path, input.options());
+    for (const std::string& remark : recording->remarks()) spdlog::warn("{}: {}", path, remark);
+    return recording;
+}
+
+}  // namespace eventide::app

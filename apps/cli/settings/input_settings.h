@@ -1,0 +1,27 @@
+// What the user may say about an input, the same for every command that reads one.
+#pragma once
+
+#include "apps/cli/settings/setting.h"
+#include "apps/cli/settings/values.h"
+#include "replay/open_options.h"
+#include "replay/recording.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace eventide::app {
+
+struct InputSettings {
+    OpenOptions open;
+    std::optional<Size> size;  ///< of the sensor, where the recording does not say
+
+    /// Appends the settings, all beginning with "input_".
+    void add_to(SettingTable& table);
+    OpenOptions options() const;
+};
+
+/// open_recording(), and its remarks as warnings.
+std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input);
+
+}  // namespace eventide::app

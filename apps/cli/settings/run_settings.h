@@ -1,0 +1,110 @@
+// Everything `eventide run` can be told.
+#pragma once
+
+#include "apps/cli/settings/input_settings.h"
+#include "apps/cli/settings/setting.h"
+#include "apps/cli/settings/time_point.h"
+#include "pipeline/frame_clock.h"
+#include "pipeline/sinks/adjust.h"
+#include "pipeline/sinks/draw_frame.h"
+#include "pipeline/sinks/raw_stream.h"
+#include "src/model/engine.h"
+#include "src/model/renderer.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eventide::app {
+
+/// "auto", "frame" (one frame at the end of each event window) or a rate.
+struct FpsChoice {
+    bool automatic = true;
+    FrameRate rate;
+};
+
+/// "2.5x" of the sensor's size, or "640x480".
+struct SizeChoice {
+    double scale = 1;
+    std::optional<Size> exact;
+
+    /// The output for a sensor of this size. Throws Error (usage) when it is too large.
+    Size of(const Size& sensor) const;
+};
+
+enum class SigmaChoice { model, log_blend, mixture };
+
+/// What becomes of the camera's own images: automatic uses them where some come.
+enum class CameraFrames { automatic, use, ignore };
+
+struct RunSettings {
+    // what
+    std::string source;
+    InputSettings input;
+    std::string camera;  ///< settings file of a camera
+    bool reconnect = false;
+    std::optional<TimePoint> from, to;
+    bool allow_silence = false;
+    std::optional<SensorDuration> warmup;  ///< before `from`; empty: warmup_of() decides
+    std::optional<SensorDuration> duration;
+    std::string speed = "auto";    ///< auto, max, or a factor
+    std::string latency = "auto";  ///< auto, none, or a time
+    double slow = 1;               ///< seconds of video for one of sensor time
+
+    // how
+    std::string model = "default";
+    std::string window = "auto";
+    FpsChoice fps;
+    SizeChoice size;
+    std::optional<Region> region;
+    std::optional<int> lookahead;
+    SigmaChoice sigma_rule = SigmaChoice::model;
+    Precision precision = Precision::automatic;
+    Kernels kernels = Kernels::automatic;
+    Engine engine = Engine::fast;
+    int threads = 0;
+    std::string state_in, state_out;
+    bool reset_on_gap = false;
+    CameraFrames frames = CameraFrames::automatic;
+    std::string hot_pixels = "off";
+    std::string noise_filter = "model";
+
+    // to where
+    std::vector<std::string> out;
+    bool overwrite = false;
+    bool force = false;  ///< frames onto a terminal
+    bool stamp = false;
+    Overload overload = Overload::repeat;
+    Uncertainty uncertainty = Uncertainty::automatic;
+    double sigma_white = 0.3;  // kSigmaWhite, in fewer digits
+    bool events = false;
+    std::string record;
+    std::string stats;
+    bool strict = false;
+
+    // look
+    LookSettings look;
+    double unsharp = 0;
+    std::string video_preset = "veryfast";
+    int video_crf = 18;
+    int sheet_rows = 4;
+
+    // machinery
+    int buffers_packets = 64, buffers_grids = 3, buffers_latents = 4;
+    bool sequential = false;
+
+    RunSettings() = default;
+    RunSettings(const RunSettings&) = delete;  // table() points into it
+    RunSettings& operator=(const RunSettings&) = delete;
+
+    SettingTable table();
+
+private:
+    void add_times(SettingTable& table);
+    void add_network(SettingTable& table);
+    void add_outputs(SettingTable& table);
+    void add_look(SettingTable& table);
+    void add_machinery(SettingTable& table);
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,73 @@
+// Names of settings, and the kinds most of them are.
+#include "apps/cli/settings/setting.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace eventide::app {
+
+std::string flag_of(const Setting& setting) {
+    std::string flag = "--" + setting.key;
+    std::ranges::replace(flag, '_', '-');
+    return flag;
+}
+
+std::string environment_of(const SettingTable& table, const Setting& setting) {
+    std::string name =
+        "EVENTIDE_" + (table.section.empty() ? "" : table.section + "_") + setting.key;
+    std::ranges::transform(name, name.begin(),
+                           [](unsigned char c) { return char(std::toupper(c)); });
+    return name;
+}
+
+void SettingTable::group_rest(const std::string& heading) {
+    for (Setting& setting : settings)
+        if (setting.group.empty()) setting.group = heading;
+}
+
+Setting text_setting(std::string key, std::string& value, std::string value_name,
+                     std::string help) {
+    return parsed_setting<std::string>(
+        std::move(key), value, std::move(value_name), std::move(help),
+        [](const std::string& text) { return text; }, [](const std::string& text) { return text; });
+}
+
+Setting flag_setting(std::string key, bool& value, std::string help) {
+    Setting setting{std::move(key), ValueKind::flag, "", std::move(help), {}, {}, {}, {}};
+    setting.set = [&value](const std::vector<std::string>& texts) {
+        value = parse_choice(texts.back(), {"false", "true"}) == 1;
+    };
+    setting.show = [&value] { return std::vector<std::string>{value ? "true" : "false"}; };
+    return setting;
+}
+
+Setting list_setting(std::string key, std::vector<std::string>& value, std::string value_name,
+                     std::string help) {
+    Setting setting{
+        std::move(key), ValueKind::list, std::move(value_name), std::move(help), {}, {}, {}, {}};
+    setting.set = [&value](const std::vector<std::string>& texts) { value = texts; };
+    setting.show = [&value] { return value; };
+    return setting;
+}
+
+Setting whole_setting(std::string key, int& value, std::string value_name, std::string help,
+                      int least, int most) {
+    Setting setting = parsed_setting<int>(
+        std::move(key), value, std::move(value_name), std::move(help),
+        [least, most](const std::string& text) { return parse_whole(text, least, most); },
+        [](const int& v) { return std::to_string(v); });
+    setting.kind = ValueKind::number;
+    return setting;
+}
+
+Setting number_setting(std::string key, double& value, std::string value_name, std::string help,
+                       double least, double most) {
+    Setting setting = parsed_setting<double>(
+        std::move(key), value, std::move(value_name), std::move(help),
+        [least, most](const std::string& text) { return parse_number(text, least, most); },
+        [](const double& v) { return show_number(v); });
+    setting.kind = ValueKind::number;
+    return setting;
+}
+
+}  // namespace eventide::app

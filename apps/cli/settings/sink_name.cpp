@@ -1,0 +1,119 @@
+// SINK as it is written on the command line, taken apart.
+#include "apps/cli/settings/sink_name.h"
+
+#include "apps/cli/commands/command_files.h"
+#include "apps/cli/terminal.h"
+#include "pipeline/sinks/folder.h"
+#include "pipeline/sinks/video.h"
+#include "pipeline/sinks/video_kind.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace eventide::app {
+
+namespace {
+
+constexpr StreamFormat kStreamFormats[]{StreamFormat::y4m, StreamFormat::y4m_mono,
+                                        StreamFormat::gray8, StreamFormat::gray16,
+                                        StreamFormat::grayf32};
+
+/// What is after "name:", or nothing.
+std::optional<std::string> after_prefix(const std::string& sink, std::string_view name) {
+    if (!sink.starts_with(std::string{name} + ":")) return std::nullopt;
+    return sink.substr(name.size() + 1);
+}
+
+std::optional<SinkName> with_prefix(const std::string& sink) {
+    if (const auto path = after_prefix(sink, "contact-sheet"))
+        return SinkName{SinkKind::sheet, *path};
+    if (const auto node = after_prefix(sink, "v4l2")) return SinkName{SinkKind::v4l2, *node};
+    if (const auto path = after_prefix(sink, "folder")) return SinkName{SinkKind::folder, *path};
+    for (const StreamFormat format : kStreamFormats)
+        if (const auto path = after_prefix(sink, name_of(format)))
+            return SinkName{SinkKind::stream, *path, format};
+    return std::nullopt;
+}
+
+/// Two sinks on standard output would mix their bytes, and a terminal would show them as letters.
+void check_standard_output(const std::vector<std::string>& sinks, bool force) {
+    const auto is_standard_output = [](const std::string& sink) {
+        return sink == "-" || sink.ends_with(":-");
+    };
+    const auto first = std::ranges::find_if(sinks, is_standard_output);
+    if (first == sinks.end()) return;
+    if (std::any_of(first + 1, sinks.end(), is_standard_output))
+        throw Error(ErrorKind::usage, "--out: only one sink can have standard output");
+    refuse_terminal("--out " + *first, force);
+}
+
+/// A setting that changes nothing is a misunderstanding.
+void check_stamp(const RunSettings& settings) {
+    if (!settings.stamp) return;
+    const bool raw = std::ranges::any_of(settings.out, [](const std::string& text) {
+        const SinkName sink = parse_sink(text);
+        return sink.kind == SinkKind::stream && sink.format != StreamFormat::y4m &&
+               sink.format != StreamFormat::y4m_mono;
+    });
+    if (!raw)
+        throw Error(ErrorKind::usage,
+                    "--stamp: expected a raw stream such as --out gray8:-, found none; Y4M has the "
+                    "times in its frame headers (XT=) without it");
+}
+
+}  // namespace
+
+SinkName parse_sink(const std::string& sink) {
+    if (sink == "null") return {};
+    if (sink == "window") return {SinkKind::window, {}};
+    if (sink == "-") return {SinkKind::stream, sink};
+    if (const auto name = with_prefix(sink)) {
+        if (name->path.empty())
+            throw Error(ErrorKind::usage, "--out " + sink + " needs a path, such as --out " + sink +
+                                              (name->kind == SinkKind::v4l2 ? "/dev/video9" : "x"));
+        return *name;
+    }
+    if (names_video(sink)) return {SinkKind::video, sink};
+    if (sink.ends_with(".y4m")) return {SinkKind::stream, sink};
+    if (sink.ends_with('/') || std::filesystem::is_directory(sink)) return {SinkKind::folder, sink};
+    if (std::filesystem::is_fifo(sink)) return {SinkKind::stream, sink};
+    throw Error(
+        ErrorKind::usage,
+        "--out " + sink +
+            ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
+            "named pipe, "
+            "window, null, v4l2:/dev/videoN, contact-sheet:x.png, or y4m:, y4m-mono:, gray8:, "
+            "gray16:, grayf32: and a file, pipe or -");
+}
+
+void name_sink_files(const RunSettings& settings, NamedFiles& files) {
+    check_standard_output(settings.out, settings.force);
+    check_stamp(settings);
+    for (const std::string& text : settings.out) {
+        const SinkName sink = parse_sink(text);
+        switch (sink.kind) {
+            case SinkKind::folder:
+                name_run_folder("--out", sink.path, FolderSink::files(), files);
+                break;
+            case SinkKind::video:
+                files.writes("--out", sink.path, text);
+                if (settings.uncertainty == Uncertainty::separate)
+                    files.writes("--out", sigma_path(sink.path));
+                break;
+            case SinkKind::stream:
+            case SinkKind::sheet:
+                files.writes("--out", sink.path, text);
+                break;
+            case SinkKind::nothing:
+            case SinkKind::window:
+            case SinkKind::v4l2:
+                break;
+        }
+    }
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,61 @@
+// Moments of a recording, as users say them.
+#include "apps/cli/settings/time_point.h"
+
+#include "replay/formats.h"
+#include "src/core/error.h"
+
+#include <charconv>
+#include <system_error>
+
+namespace eventide::app {
+
+TimePoint parse_time_point(const std::string& text) {
+    if (!text.starts_with('@')) return {false, parse_duration(text)};
+    std::int64_t us = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data() + 1, end, us);
+    if (error != std::errc{} || rest != end) throw_usage("@ and microseconds", text);
+    return {true, SensorDuration{us}};
+}
+
+std::string show_time_point(const TimePoint& moment) {
+    return moment.absolute ? "@" + std::to_string(moment.value.count())
+                           : show_duration(moment.value);
+}
+
+Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std::string word,
+                           std::string help) {
+    return parsed_setting<std::optional<TimePoint>>(
+        std::move(key), value, "TIME", std::move(help),
+        [word](const std::string& text) {
+            return text == word ? std::nullopt : std::optional{parse_time_point(text)};
+        },
+        [word](const std::optional<TimePoint>& moment) {
+            return moment ? show_time_point(*moment) : word;
+        });
+}
+
+SensorTime TimePointReader::time_of(const TimePoint& moment) const {
+    if (moment.absolute) return SensorTime{moment.value};
+    if (!first_) first_ = first_time();
+    return *first_ + moment.value;
+}
+
+SensorTime TimePointReader::first_time() const {
+    if (path_ == "-")
+        throw Error(ErrorKind::usage,
+                    "standard input cannot be read twice to find its first event; expected times "
+                    "as @MICROSECONDS of the sensor");
+    const auto recording = open_recording(path_, options_);
+    const auto parser = recording->make_parser();
+    RawPacket packet;
+    Batch batch;
+    while (batch.events.empty() && recording->read(packet) == ReadStatus::data)
+        parser->parse(packet.bytes, batch);
+    parser->finish(batch);
+    if (batch.events.empty())
+        throw Error(ErrorKind::input, path_ + ": there is no event to count times from");
+    return batch.events.front().t;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,48 @@
+// Moments of a recording, as users say them: after its first event, or in the sensor's own time.
+#pragma once
+
+#include "apps/cli/settings/setting.h"
+#include "replay/open_options.h"
+#include "src/core/sensor_time.h"
+
+#include <optional>
+#include <string>
+
+namespace eventide::app {
+
+/// "2.5s" or "20ms" after the first event, or "@1633953690975951", the sensor's microseconds.
+struct TimePoint {
+    bool absolute = false;
+    SensorDuration value{};
+};
+
+/// Throws Error (usage).
+TimePoint parse_time_point(const std::string& text);
+std::string show_time_point(const TimePoint& moment);
+
+/// `word` stands for an empty value.
+Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std::string word,
+                           std::string help);
+
+/// Knows when a recording begins, once somebody asks.
+class TimePointReader {
+public:
+    TimePointReader(std::string path, OpenOptions options)
+        : path_{std::move(path)}, options_{std::move(options)} {}
+    /// For what begins at a time that is known.
+    explicit TimePointReader(SensorTime first) : first_{first} {}
+
+    /// Reads the beginning of the recording, through an opening of its own, for the first relative
+    /// moment. Throws Error: usage for a relative moment of standard input, input where there is no
+    /// event.
+    SensorTime time_of(const TimePoint& moment) const;
+
+private:
+    SensorTime first_time() const;
+
+    std::string path_;
+    OpenOptions options_;
+    mutable std::optional<SensorTime> first_;
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,144 @@
+// Every way of computing the same thing, against double precision and each other.
+#include "apps/cli/stress/stress_case.h"
+#include "src/model/instructions.h"
+#include "src/nn/arithmetic.h"
+#include "src/nn/onednn_conv.h"
+
+#include <atomic>
+#include <thread>
+
+namespace eventide::stress {
+namespace {
+
+constexpr SensorDuration kSecond{1'000'000};
+
+/// bf16 keeps 8 bits of each factor; root mean square over all codes and frames of a run.
+constexpr double kBf16Bound = .02;
+
+PipelineOutcome measured(const Bench& bench, const EngineOptions& engine) {
+    PipelineRunSettings line = bench.line();
+    line.engine = engine;
+    line.sampling = bench.sampling();
+    const auto length = bench.budget.length(SensorDuration{5 * kSecond}, kSecond);
+    return run_pipeline(bench.model,
+                        all_of(moving_edge(line.width, line.height, {}, SensorTime{length})), line);
+}
+
+EngineOptions with(const Bench& bench, Precision precision, Kernels kernels) {
+    EngineOptions engine = bench.engine;
+    engine.precision = precision;
+    engine.kernels = kernels;
+    return engine;
+}
+
+void add(const PipelineOutcome& outcome, const std::string& name, Result& result) {
+    const Result one = judged(outcome, "");
+    result.happened += (result.happened.empty() ? "" : ", ") + name + " " +
+                       short_number(*one.error) + one.happened;
+    result.passed &= one.passed;
+    result.error = std::max(result.error.value_or(0), *one.error);
+    result.bound = kFloatBound;
+}
+
+/// Worst numbers in float32.
+Result float_kernels(const Bench& bench) {
+    Result result;
+    EngineOptions plain = bench.engine;
+    plain.engine = Engine::plain;
+    add(measured(bench, plain), "plain", result);
+    add(measured(bench, with(bench, Precision::f32, Kernels::own)), "built-in", result);
+    if (onednn_available())
+        add(measured(bench, with(bench, Precision::f32, Kernels::onednn)), "oneDNN", result);
+    return result;
+}
+
+/// Back to what was asked for, whatever happens.
+class InstructionsHere {
+public:
+    explicit InstructionsHere(Instructions asked) : asked_{asked} {}
+    ~InstructionsHere() { limit_instructions(asked_); }
+
+private:
+    Instructions asked_;
+};
+
+Result instruction_sets(const Bench& bench) {
+    Result result;
+    const InstructionsHere asked{bench.instructions};
+    for (const auto& [name, most] :
+         {std::pair{"SSE4", Instructions::sse4}, std::pair{"AVX2", Instructions::avx2},
+          std::pair{"best", Instructions::best}}) {
+        if (most < bench.instructions) continue;  // the enumerators go down
+        limit_instructions(most);
+        const PipelineOutcome outcome = measured(bench, with(bench, Precision::f32, Kernels::own));
+        add(outcome, outcome.engine, result);
+    }
+    return result;
+}
+
+/// Root mean square: single numbers may be further away.
+Result bf16(const Bench& bench) {
+    Result result;
+    result.bound = kBf16Bound;
+    const auto note = [&](const char* name, Precision precision, Kernels kernels) {
+        const PipelineOutcome outcome = measured(bench, with(bench, precision, kernels));
+        const double rms = std::max(outcome.codes.rms(), outcome.frames.rms());
+        result.happened += (result.happened.empty() ? "RMS: " : ", ") + std::string{name} + " " +
+                           short_number(rms) + outcome.error;
+        result.error = std::max(result.error.value_or(0), rms);
+        result.passed &= outcome.error.empty() && rms <= kBf16Bound;
+    };
+    note("emulated", Precision::bf16_emulated, Kernels::own);
+    if (bf16_available()) note("built-in", Precision::bf16, Kernels::own);
+    if (bf16_available() && onednn_has_bf16()) note("oneDNN", Precision::bf16, Kernels::onednn);
+    return result;
+}
+
+/// So many threads, however few cores there are.
+ParallelFor threads(int count) {
+    return [count](int n, const std::function<void(int)>& body) {
+        std::atomic<int> next{0};
+        const auto work = [&] {
+            for (int i = next++; i < n; i = next++) body(i);
+        };
+        std::vector<std::jthread> others;
+        for (int i = 1; i < std::min(count, n); ++i) others.emplace_back(work);
+        work();
+    };
+}
+
+Result thread_counts(const Bench& bench) {
+    Result result;
+    std::optional<std::uint64_t> alone;
+    bool same = true;
+    const auto length = bench.budget.length(SensorDuration{kSecond}, kSecond / 5);
+    for (const int count : {1, 2, 16})
+        for (const bool threaded : {false, true}) {
+            PipelineRunSettings line = bench.line();
+            line.width = 97;  // many tiles of odd sizes
+            line.height = 71;
+            line.engine.parallel_for = threads(count);
+            line.threaded = threaded;
+            line.lookahead = 1;
+            const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
+            const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+            if (!alone) alone = outcome.bits;
+            same &= outcome.bits == *alone && outcome.error.empty();
+            result.happened = counted(outcome.counters.frames, "frames");
+        }
+    result.happened += " by 1, 2 and 16 threads, the pipeline on one thread and on four: " +
+                       std::string{same ? "the same bits" : "other bits"};
+    result.expect(same, "the same");
+    return result;
+}
+
+}  // namespace
+
+std::vector<Case> agreement_cases() {
+    return {{"float32", "plain, built-in and oneDNN kernels, float32", float_kernels},
+            {"instructions", "SSE4, AVX2 and the best, float32", instruction_sets},
+            {"bf16", "bfloat16", bf16},
+            {"threads", "one thread, two, sixteen", thread_counts}};
+}
+
+}  // namespace eventide::stress

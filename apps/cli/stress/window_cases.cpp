@@ -1,0 +1,107 @@
+// Event windows that are short, long, nearly empty or full, and bins few and many.
+#include "apps/cli/stress/stress_case.h"
+
+namespace eventide::stress {
+namespace {
+
+constexpr SensorDuration kSecond{1'000'000};
+
+std::string windows_of(const PipelineOutcome& outcome) {
+    return counted(outcome.counters.event_windows, "windows, ") +
+           counted(outcome.counters.events, "events");
+}
+
+Result microseconds(const Bench& bench) {
+    PipelineRunSettings line = bench.line();
+    line.sampling = Sampling{50, 3, 200, 5};
+    line.window = "1us";
+    line.fps = "frame";
+    const auto length = bench.budget.length(SensorDuration{5000}, SensorDuration{200});
+    std::vector<Event> events;
+    for (int us = 1; us <= length.count(); ++us)
+        for (int n = 0; n < 3; ++n)
+            events.push_back({from_us(us), std::uint16_t(us / 40 % line.width),
+                              std::uint16_t((us + 7 * n) % line.height),
+                              us % 3 == 0 ? Polarity::off : Polarity::on});
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(events)), line);
+    Result result = judged(outcome, windows_of(outcome));
+    result.expect(outcome.counters.event_windows == std::uint64_t(length.count()),
+                  "one window each microsecond");
+    return result;
+}
+
+Result an_hour(const Bench& bench) {
+    PipelineRunSettings line = bench.line();
+    line.sampling = bench.sampling();
+    line.window = "3600s";
+    line.fps = "1/600";
+    const SensorDuration length = 4 * 3600 * kSecond;
+    const std::int64_t step = bench.budget.length(10'000, 1'000'000);
+    std::int64_t at = 0;
+    const auto make = [=, width = line.width, height = line.height](auto& into) mutable {
+        for (int n = 0; n < 10'000 && at < length.count(); ++n, at += step)
+            into.push_back({from_us(at + 1), std::uint16_t(at / step % width),
+                            std::uint16_t(at / step / width % height),
+                            at / step % 5 < 2 ? Polarity::off : Polarity::on});
+    };
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    return judged(outcome, windows_of(outcome));
+}
+
+Result one_event_each(const Bench& bench) {
+    PipelineRunSettings line = bench.line();
+    line.sampling = Sampling{50, 3, 100, 5};
+    line.window = "1ev";
+    line.fps = "frame";
+    const auto length = bench.budget.length(SensorDuration{2 * kSecond}, kSecond / 5);
+    const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+    return judged(outcome, windows_of(outcome));
+}
+
+/// In the quick form so many fewer.
+Result ten_million_events(const Bench& bench) {
+    PipelineRunSettings line = bench.line();
+    line.sampling = bench.sampling();
+    const std::int64_t each = bench.budget.length(10'000'000, 100'000);
+    line.window = std::to_string(each) + "ev,60s";
+    line.fps = "frame";
+    std::int64_t at = 0;
+    const auto make = [=, width = line.width, height = line.height](auto& into) mutable {
+        for (int n = 0; n < 50'000 && at < 2 * each; ++n, ++at)
+            into.push_back({from_us(at + 1), std::uint16_t((at / 7 + at / 1000) % width),
+                            std::uint16_t(at * 5 / 3 % height),
+                            at % 7 < 3 ? Polarity::off : Polarity::on});
+    };
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    Result result = judged(outcome, windows_of(outcome));
+    result.expect(outcome.counters.event_windows == 2, "two windows");
+    return result;
+}
+
+/// The shape of the shipped model with other bins; its weights belong to its own, so these are
+/// untrained.
+Result with_bins(const Bench& bench, int bins) {
+    PipelineRunSettings line = bench.line();
+    line.sampling = bench.sampling();
+    ModelConfig config = bench.model.config;
+    config.bins = bins;
+    const Model model = random_model(config, 1);
+    const auto length = bench.budget.length(SensorDuration{2 * kSecond}, kSecond / 2);
+    const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
+    const PipelineOutcome outcome = run_pipeline(model, all_of(events), line);
+    return judged(outcome, "untrained network of its shape: " + windows_of(outcome));
+}
+
+}  // namespace
+
+std::vector<Case> window_cases() {
+    return {{"window-1us", "windows of 1 us", microseconds},
+            {"window-1h", "windows of an hour", an_hour},
+            {"window-1ev", "windows of 1 event", one_event_each},
+            {"window-1e7ev", "windows of 10^7 events", ten_million_events},
+            {"bins-1", "1 bin", [](const Bench& bench) { return with_bins(bench, 1); }},
+            {"bins-64", "64 bins", [](const Bench& bench) { return with_bins(bench, 64); }}};
+}
+
+}  // namespace eventide::stress

@@ -1,0 +1,108 @@
+// Standard error: the logger, and one moving line.
+#include "apps/cli/terminal.h"
+
+#include "apps/cli/printable.h"
+#include "src/core/error.h"
+
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace eventide::app {
+
+namespace {
+
+/// The message in a log line, with nothing in it that a terminal would obey: it may hold names and
+/// texts out of files.
+class PrintableMessage final : public spdlog::custom_flag_formatter {
+public:
+    void format(const spdlog::details::log_msg& message, const std::tm&,
+                spdlog::memory_buf_t& into) override {
+        const std::string text =
+            printable({message.payload.data(), message.payload.size()}, Lines::keep);
+        into.append(text.data(), text.data() + text.size());
+    }
+    std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
+        return std::make_unique<PrintableMessage>();
+    }
+};
+
+}  // namespace
+
+void start_talk(const TalkSettings& settings) {
+    auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>(
+        colour_allowed() ? spdlog::color_mode::always : spdlog::color_mode::never);
+    auto logger = std::make_shared<spdlog::logger>("eventide", std::move(sink));
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<PrintableMessage>('*').set_pattern("%n: %^%l%$: %*");
+    logger->set_formatter(std::move(formatter));
+    auto level = spdlog::level::from_str(settings.log_level);
+    if (settings.quiet) level = std::max(level, spdlog::level::warn);
+    logger->set_level(level);
+    spdlog::set_default_logger(std::move(logger));
+}
+
+bool on_terminal() {
+    return isatty(STDERR_FILENO) == 1;
+}
+
+void refuse_terminal(const std::string& option, bool force) {
+    if (force || isatty(STDOUT_FILENO) != 1) return;
+    throw Error(ErrorKind::usage, option +
+                                      ": expected a pipe or a file as standard output, found a "
+                                      "terminal; --force writes to it all the same");
+}
+
+bool colour_allowed() {
+    const char* refused = std::getenv("NO_COLOR");
+    const char* terminal = std::getenv("TERM");
+    return on_terminal() && (refused == nullptr || *refused == '\0') &&
+           (terminal == nullptr || std::string_view{terminal} != "dumb");
+}
+
+std::size_t ProgressLine::columns() const {
+    constexpr std::size_t kUsual = 80;
+    winsize size{};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+    return (known ? size.ws_col : kUsual) - 1;  // the last column would begin a new line
+}
+
+void ProgressLine::show(std::string_view text) {
+    if (!active_) return;
+    const std::string safe = printable(text);
+    text = std::string_view{safe}.substr(0, columns());
+    // Return to the first column, write, clear what is left of the line before.
+    std::fprintf(stderr, "\r%.*s\033[K", int(text.size()), text.data());
+    std::fflush(stderr);
+    drawn_ = true;
+}
+
+void ProgressLine::clear() {
+    if (!drawn_) return;
+    std::fputs("\r\033[K", stderr);
+    std::fflush(stderr);
+    drawn_ = false;
+}
+
+std::string short_count(double n) {
+    const char* unit = "";
+    for (const char* next : {" k", " M", " G", " T"}) {
+        if (n < 999.5) break;
+        n /= 1000;
+        unit = next;
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, n < 99.95 && *unit != '\0' ? "%.1f%s" : "%.0f%s", n, unit);
+    return text;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,80 @@
+// Images on disk against images on disk: any method's output can be judged.
+#include "apps/evaluate/evaluate.h"
+#include "src/core/error.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <algorithm>
+#include <set>
+
+namespace eventide {
+namespace {
+
+namespace fs = std::filesystem;
+
+Array2<float> read_intensity(const fs::path& path) {
+    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+    if (image.empty() || (image.depth() != CV_8U && image.depth() != CV_16U))
+        throw Error(ErrorKind::input, path.string() + ": expected an image of 8 or 16 bit");
+    cv::Mat scaled;
+    image.convertTo(scaled, CV_32F, image.depth() == CV_8U ? 1. / 255 : 1. / 65535);
+    Array2<float> out(scaled.rows, scaled.cols);
+    for (int y = 0; y < scaled.rows; ++y)
+        std::copy_n(scaled.ptr<float>(y), scaled.cols, out.row(y).begin());
+    return out;
+}
+
+std::vector<fs::path> images_in(const fs::path& folder) {
+    static const std::set<std::string> kKinds{".png", ".jpg", ".jpeg", ".pgm",
+                                              ".bmp", ".tif", ".tiff"};
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator{folder})
+        if (entry.is_regular_file() && kKinds.count(entry.path().extension().string()) > 0)
+            found.push_back(entry.path());
+    std::ranges::sort(found);
+    return found;
+}
+
+SequenceReport compare(const std::string& name, const std::vector<fs::path>& frames,
+                       const fs::path& references, Judge& judge) {
+    const std::vector<fs::path> truths = images_in(references);
+    if (truths.size() != frames.size())
+        throw Error(ErrorKind::input, name + ": expected as many images as references, found " +
+                                          std::to_string(frames.size()) + " and " +
+                                          std::to_string(truths.size()));
+    SequenceReport out;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        out.frames.push_back(judge.judge(read_intensity(frames[i]), {}, read_intensity(truths[i])));
+    out.scores = mean_scores(name, out.frames);
+    return out;
+}
+
+}  // namespace
+
+EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& references,
+                                const fs::path& lpips_file) {
+    for (const fs::path& folder : {frames, references})
+        if (!fs::is_directory(folder))
+            throw Error(ErrorKind::input, folder.string() + ": expected a folder of images");
+    const auto lpips = load_lpips(lpips_file);
+    Judge judge{lpips.get()};
+    EvaluateReport report;
+    report.subject = "folders " + frames.string() + " against " + references.string();
+    if (lpips) report.lpips_name = lpips->name();
+    std::vector<fs::path> both;
+    for (const fs::directory_entry& entry : fs::directory_iterator{references})
+        if (entry.is_directory() && fs::is_directory(frames / entry.path().filename()))
+            both.push_back(entry.path().filename());
+    std::ranges::sort(both);
+    for (const fs::path& name : both)
+        if (const auto images = images_in(frames / name); !images.empty())
+            report.sequences.push_back(compare(name.string(), images, references / name, judge));
+    if (const auto images = images_in(frames); !images.empty())
+        report.sequences.push_back(compare(frames.filename().string(), images, references, judge));
+    if (report.sequences.empty())
+        throw Error(ErrorKind::input, frames.string() + ": expected images, found none");
+    report.overall = overall_scores(report.sequences);
+    return report;
+}
+
+}  // namespace eventide

@@ -1,0 +1,177 @@
+// Axes, ticks at round numbers, lines, a legend: no more than the figures need.
+#include "apps/evaluate/plot.h"
+
+#include "src/io/output_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace eventide {
+namespace {
+
+constexpr double kWidth = 640, kHeight = 400, kLeft = 72, kRight = 16, kTop = 36, kBottom = 52;
+constexpr std::array<const char*, 6> kColours{"#1b6ca8", "#d1495b", "#2e8b57",
+                                              "#8a5cb8", "#c77d0a", "#555555"};
+
+std::string number(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", v);
+    return text;
+}
+
+std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text)
+        out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : c == '>' ? "&gt;" : std::string(1, c);
+    return out;
+}
+
+/// One axis: data to pixels.
+struct Axis {
+    double low = 0, high = 1, from = 0, to = 1;
+    bool logarithmic = false;
+
+    double scaled(double v) const { return logarithmic ? std::log10(std::max(v, low)) : v; }
+    double at(double v) const {
+        const double a = scaled(low), b = scaled(high);
+        return from + (to - from) * (b > a ? (scaled(v) - a) / (b - a) : .5);
+    }
+    std::vector<double> ticks() const {
+        std::vector<double> out;
+        if (logarithmic) {
+            for (double v = std::pow(10, std::floor(std::log10(low))); v <= high * 1.001; v *= 10)
+                for (const double m : {1., 3.})
+                    if (v * m >= low * .999 && v * m <= high * 1.001) out.push_back(v * m);
+            return out;
+        }
+        const double rough = (high - low) / 6, power = std::pow(10, std::floor(std::log10(rough)));
+        const double m = rough / power;
+        const double step = power * (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10);
+        for (double v = std::ceil(low / step) * step; v <= high + step * 1e-6; v += step)
+            out.push_back(std::abs(v) < step * 1e-6 ? 0 : v);
+        return out;
+    }
+};
+
+struct Axes {
+    Axis x, y;
+};
+
+Axes axes_of(const Plot& plot) {
+    double x0 = std::numeric_limits<double>::max(), x1 = std::numeric_limits<double>::lowest();
+    double y0 = x0, y1 = x1;
+    for (const Series& s : plot.series)
+        for (std::size_t i = 0; i < s.x.size(); ++i) {
+            if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
+            if (plot.log_x && s.x[i] <= 0) continue;
+            const double spread = i < s.spread.size() ? s.spread[i] : 0;
+            x0 = std::min(x0, s.x[i]);
+            x1 = std::max(x1, s.x[i]);
+            y0 = std::min(y0, s.y[i] - spread);
+            y1 = std::max(y1, s.y[i] + spread);
+        }
+    if (x0 > x1) x0 = plot.log_x ? 1 : 0, x1 = plot.log_x ? 10 : 1, y0 = 0, y1 = 1;
+    if (y0 > 0 && y0 < .6 * y1) y0 = 0;  // show zero where it is near
+    if (y1 <= y0) y0 = std::min(0., y0), y1 = y1 > 0 ? 1.25 * y1 : y0 + 1;
+    if (x1 <= x0) x1 = x0 + 1;
+    const double margin = .04 * (y1 - y0);
+    return {{x0, x1, kLeft, kWidth - kRight, plot.log_x},
+            {y0 == 0 ? 0 : y0 - margin, y1 + margin, kHeight - kBottom, kTop, false}};
+}
+
+std::string line(double x1, double y1, double x2, double y2, const std::string& style) {
+    return "<line x1='" + number(x1) + "' y1='" + number(y1) + "' x2='" + number(x2) + "' y2='" +
+           number(y2) + "' " + style + "/>\n";
+}
+
+std::string text(double x, double y, const std::string& what, const std::string& style) {
+    return "<text x='" + number(x) + "' y='" + number(y) + "' " + style + ">" + escaped(what) +
+           "</text>\n";
+}
+
+std::string frame_of(const Plot& plot, const Axes& axes) {
+    std::string out;
+    for (const double v : axes.x.ticks()) {
+        const double x = axes.x.at(v);
+        out += line(x, kTop, x, kHeight - kBottom, "stroke='#e4e4e4'");
+        out += text(x, kHeight - kBottom + 16, number(v), "text-anchor='middle'");
+    }
+    for (const double v : axes.y.ticks()) {
+        const double y = axes.y.at(v);
+        out += line(kLeft, y, kWidth - kRight, y, "stroke='#e4e4e4'");
+        out += text(kLeft - 6, y + 4, number(v), "text-anchor='end'");
+    }
+    out += text((kLeft + kWidth - kRight) / 2, 22, plot.title,
+                "text-anchor='middle' font-weight='bold'");
+    out += text((kLeft + kWidth - kRight) / 2, kHeight - 14, plot.x_label, "text-anchor='middle'");
+    const double middle = (kTop + kHeight - kBottom) / 2;
+    return out + text(18, middle, plot.y_label,
+                      "text-anchor='middle' transform='rotate(-90 18 " + number(middle) + ")'");
+}
+
+std::string drawn(const Series& s, const Axes& axes, const std::string& colour) {
+    std::string path, above, below, dots;
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+        if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
+        const std::string x = number(axes.x.at(s.x[i])), y = number(axes.y.at(s.y[i]));
+        path += x + "," + y + " ";
+        dots += "<circle cx='" + x + "' cy='" + y + "' r='2.5' fill='" + colour + "'/>\n";
+        if (i >= s.spread.size()) continue;
+        above += x + "," + number(axes.y.at(s.y[i] + s.spread[i])) + " ";
+        below = x + "," + number(axes.y.at(s.y[i] - s.spread[i])) + " " + below;
+    }
+    std::string out;
+    if (!above.empty())
+        out += "<polygon points='" + above + below + "' fill='" + colour + "' opacity='.15'/>\n";
+    return out + "<polyline points='" + path + "' fill='none' stroke='" + colour +
+           "' stroke-width='1.8'/>\n" + dots;
+}
+
+}  // namespace
+
+std::string svg(const Plot& plot) {
+    const Axes axes = axes_of(plot);
+    std::string out = "<svg xmlns='http://www.w3.org/2000/svg' width='" + number(kWidth) +
+                      "' height='" + number(kHeight) +
+                      "' font-family='sans-serif' font-size='12'>\n"
+                      "<rect width='100%' height='100%' fill='white'/>\n" +
+                      frame_of(plot, axes);
+    if (plot.diagonal) {
+        const double low = std::max(axes.x.low, axes.y.low);
+        const double high = std::min(axes.x.high, axes.y.high);
+        out += line(axes.x.at(low), axes.y.at(low), axes.x.at(high), axes.y.at(high),
+                    "stroke='#888' stroke-dasharray='5 4'");
+    }
+    double y = kTop + 14;
+    for (std::size_t i = 0; i < plot.series.size(); ++i, y += 16) {
+        const std::string colour = kColours[i % kColours.size()];
+        out += drawn(plot.series[i], axes, colour);
+        out +=
+            line(kLeft + 10, y - 4, kLeft + 28, y - 4, "stroke='" + colour + "' stroke-width='2'");
+        out += text(kLeft + 34, y, plot.series[i].label, "");
+    }
+    return out + "</svg>\n";
+}
+
+std::string csv(const Plot& plot) {
+    std::string out = "series,x,y,spread\n";
+    for (const Series& s : plot.series)
+        for (std::size_t i = 0; i < s.x.size(); ++i)
+            out += s.label + "," + number(s.x[i]) + "," + number(s.y[i]) + "," +
+                   (i < s.spread.size() ? number(s.spread[i]) : "") + "\n";
+    return out;
+}
+
+std::filesystem::path write_plot(const Plot& plot, const std::filesystem::path& folder,
+                                 bool overwrite) {
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path drawing = folder / (plot.name + ".svg");
+    write_file(folder / (plot.name + ".csv"), csv(plot), overwrite);
+    write_file(drawing, svg(plot), overwrite);
+    return drawing;
+}
+
+}  // namespace eventide

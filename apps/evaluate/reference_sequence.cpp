@@ -1,0 +1,185 @@
+// Reading a recording into memory, and cutting it.
+#include "apps/evaluate/reference_sequence.h"
+
+#include "replay/formats.h"
+#include "replay/scan_geometry.h"
+#include "src/binning/slicer.h"
+#include "src/core/error.h"
+#include "src/core/grey.h"
+#include "src/io/bag_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+SensorDuration seconds(double s) {
+    return SensorDuration{std::int64_t(std::llround(s * 1e6))};
+}
+
+/// Keeps what lies inside the times asked for.
+class Keeper {
+public:
+    Keeper(ReferenceSequence& into, std::optional<double> from_s, std::optional<double> to_s)
+        : into_(into), from_s_(from_s), to_s_(to_s) {}
+
+    void take(Batch& batch) {
+        if (!begun_ && !batch.events.empty()) begin(batch);
+        for (const Event& event : batch.events)
+            if (event.t >= from_ && event.t <= to_) into_.events.push_back(event);
+        for (ReferenceImage& image : batch.images) into_.images.push_back(std::move(image));
+        batch.clear();
+        // Images before the first event wait for it to say which are wanted.
+        if (begun_) drop_images();
+    }
+    bool past_end(std::optional<SensorTime> clock) const {
+        // Images may come a while after the events around them.
+        return begun_ && to_s_ && clock && *clock > to_ + SensorDuration{1'000'000};
+    }
+
+private:
+    void begin(const Batch& batch) {
+        begun_ = true;
+        SensorTime first = batch.events.front().t;
+        if (!into_.images.empty()) first = std::min(first, into_.images.front().t);
+        if (!batch.images.empty()) first = std::min(first, batch.images.front().t);
+        into_.first = first;
+        if (from_s_) from_ = first + seconds(*from_s_);
+        if (to_s_) to_ = first + seconds(*to_s_);
+    }
+    void drop_images() {
+        std::erase_if(into_.images, [this](const ReferenceImage& image) {
+            return image.t < from_ || image.t > to_;
+        });
+    }
+    ReferenceSequence& into_;
+    std::optional<double> from_s_, to_s_;
+    SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
+    bool begun_ = false;
+};
+
+void mend_times(std::vector<ReferenceImage>& images) {
+    for (std::size_t i = 1; i + 1 < images.size(); ++i)
+        if (images[i].t > images[i + 1].t)
+            images[i].t = images[i - 1].t + (images[i + 1].t - images[i - 1].t) / 2;
+    std::ranges::stable_sort(images, {}, &ReferenceImage::t);
+}
+
+std::string name_of(const std::filesystem::path& path) {
+    const auto plain = path.lexically_normal();
+    return (plain.has_filename() ? plain : plain.parent_path()).stem().string();
+}
+
+void read_recording(const std::filesystem::path& path, Keeper& keeper, ReferenceSequence& into) {
+    const auto recording = open_recording(path.string());
+    const auto parser = recording->make_parser();
+    into.width = recording->info().width;
+    into.height = recording->info().height;
+    RawPacket packet;
+    Batch batch;
+    while (!keeper.past_end(parser->clock()) && recording->read(packet) != ReadStatus::end) {
+        parser->parse(packet.bytes, batch);
+        keeper.take(batch);
+    }
+    parser->finish(batch);
+    keeper.take(batch);
+}
+
+void read_bag(const std::filesystem::path& path, Keeper& keeper, ReferenceSequence& into) {
+    BagFile bag{path};
+    Batch batch;
+    for (std::optional<SensorTime> clock; !keeper.past_end(clock) && bag.read(batch);) {
+        if (!batch.events.empty()) clock = batch.events.back().t;
+        keeper.take(batch);
+    }
+    into.width = bag.width();
+    into.height = bag.height();
+    if (into.events.empty() && into.images.empty())
+        throw Error(ErrorKind::input, path.string() +
+                                          ": expected dvs_msgs/EventArray and sensor_msgs/Image in "
+                                          "the time asked for, found " +
+                                          bag.types());
+    // Messages of one camera may overlap by a little.
+    std::ranges::stable_sort(into.events, {}, &Event::t);
+}
+
+}  // namespace
+
+ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
+                                          std::optional<double> from_s,
+                                          std::optional<double> to_s) {
+    ReferenceSequence sequence;
+    sequence.name = name_of(path);
+    Keeper keeper{sequence, from_s, to_s};
+    if (is_bag_file(path))
+        read_bag(path, keeper, sequence);
+    else
+        read_recording(path, keeper, sequence);
+    mend_times(sequence.images);
+
+    const auto refuse = [&](const std::string& what) {
+        throw Error(ErrorKind::input, path.string() + ": " + what);
+    };
+    if (sequence.events.empty()) refuse("expected events, found none in the time asked for");
+    if (sequence.images.empty())
+        refuse("expected reference images to compare with, found none in the time asked for");
+    if (sequence.width <= 0 || sequence.height <= 0) refuse("does not say the sensor's size");
+    check_sensor_size(path.string(), sequence.width, sequence.height);
+    return sequence;
+}
+
+void check_sensor_size(const std::string& file, std::int64_t width, std::int64_t height) {
+    if (width >= 1 && height >= 1 && width <= kLargestSensorSide && height <= kLargestSensorSide)
+        return;
+    throw Error(ErrorKind::input, file + ": expected a sensor of 1 to " +
+                                      std::to_string(kLargestSensorSide) + " px each way, found " +
+                                      std::to_string(width) + "x" + std::to_string(height));
+}
+
+Array2<float> intensity_of(const ReferenceImage& image) {
+    Array2<float> out(image.pixels.height(), image.pixels.width() / image.channels);
+    for (int y = 0; y < out.height(); ++y)
+        for (int x = 0; x < out.width(); ++x) out(y, x) = grey_at(image, y, x);
+    return out;
+}
+
+void for_each_reference_window(const ReferenceSequence& sequence,
+                               const std::function<void(const EventWindow&)>& use) {
+    const std::vector<ReferenceImage>& images = sequence.images;
+    const auto after = [&](SensorTime t) {
+        return std::ranges::upper_bound(sequence.events, t, {}, &Event::t);
+    };
+    // The empty frame before the first image is as wide as the one after it.
+    const SensorDuration first_width =
+        images.size() > 1 ? images[1].t - images[0].t : SensorDuration{50'000};
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const SensorTime end = images[i].t;
+        const SensorTime begin =
+            i == 0 ? end - std::max(first_width, SensorDuration{1}) : images[i - 1].t;
+        if (begin == end) continue;  // an image stored twice
+        EventWindow event_window{.window = {begin, end}, .events = {}};
+        if (i > 0) event_window.events = {after(begin), after(end)};
+        use(event_window);
+    }
+}
+
+void for_each_cut_window(const ReferenceSequence& sequence, const std::string& window,
+                         const std::function<void(const EventWindow&)>& use) {
+    Slicer slicer{parse_window(window), sequence.width, sequence.height};
+    for (const ReferenceImage& image : sequence.images) slicer.push_reference(image.t);
+    constexpr std::size_t kAtATime = 1 << 16;
+    const std::span<const Event> events{sequence.events};
+    EventWindow event_window;
+    for (std::size_t at = 0; at < events.size(); at += kAtATime) {
+        slicer.push(events.subspan(at, std::min(kAtATime, events.size() - at)));
+        while (slicer.next(event_window)) use(event_window);
+    }
+    SensorTime end = sequence.images.back().t;
+    if (!events.empty()) end = std::max(end, events.back().t);
+    slicer.advance(end);
+    slicer.finish();
+    while (slicer.next(event_window)) use(event_window);
+}
+
+}  // namespace eventide

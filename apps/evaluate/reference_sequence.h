@@ -1,0 +1,52 @@
+// A recording as an evaluation needs it: all events, all reference images, and how they are cut
+// into event windows.
+#pragma once
+
+#include "src/core/event.h"
+#include "src/core/frame_data.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+struct ReferenceSequence {
+    std::string name;  ///< of the folder or file
+    int width = 0, height = 0;
+    /// Of the recording's first event or image, also where that was not kept: times in seconds are
+    /// told from here.
+    SensorTime first{};
+    std::vector<Event> events;           ///< in order of time
+    std::vector<ReferenceImage> images;  ///< in order of time
+};
+
+/// Reads a recording of any format, or a ROS bag (bag_file.h). Where given, only data in [from, to]
+/// (s from `first`) are kept. A single image time that lies after the next one is taken as the
+/// middle of its neighbours, as EVREAL does (HQF has one). Throws Error(input) where there are no
+/// events, no images, or no sensor size.
+ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
+                                          std::optional<double> from_s = {},
+                                          std::optional<double> to_s = {});
+
+/// Throws Error(input) naming `file` for a sensor that no model is to be made for, whatever the
+/// file says: its memory would be.
+void check_sensor_size(const std::string& file, std::int64_t width, std::int64_t height);
+
+/// A reference image as intensity: grey, 0 to 1.
+Array2<float> intensity_of(const ReferenceImage& image);
+
+/// One event window between consecutive images, in order: frame i ends with image i, and the first
+/// has no events. An event belongs to the frame in which begin < t <= end, which is EVREAL's
+/// searchsorted(times, t, right) - 1 as the last event of a frame.
+void for_each_reference_window(const ReferenceSequence& sequence,
+                               const std::function<void(const EventWindow&)>& use);
+
+/// Event windows as `window` says (slicer_settings.h).
+void for_each_cut_window(const ReferenceSequence& sequence, const std::string& window,
+                         const std::function<void(const EventWindow&)>& use);
+
+}  // namespace eventide

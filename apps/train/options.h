@@ -1,0 +1,70 @@
+// The command line of eventide-train: one table that is parsed, printed as help, and recorded.
+#pragma once
+
+#include "apps/train/data_loader.h"
+#include "apps/train/losses.h"
+#include "apps/train/optimiser.h"
+#include "apps/train/parameters.h"
+#include "src/model/model_config.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+struct TrainOptions {
+    ModelConfig model;
+    std::vector<std::string> inputs{kGridInputs.begin(), kGridInputs.end()};
+    DataSettings data;
+    LossWeights loss;
+    OptimiserSettings optimiser;
+    std::string out = "out/train";
+    std::string textures, validation_textures, lpips;
+    std::string resume, initial, export_file, keep, card;
+    std::string device = "cpu", precision = "auto";
+    double minutes = 60;
+    std::string clock = "wall";  ///< that minutes go by: wall, or cpu
+    int steps = 0;               ///< where not 0, the budget instead of `minutes`
+    int lpips_frames = 1 << 20;  ///< of the rendered ones, the last, that LPIPS looks at
+    int threads = 1, streams = 2, groups = 4;
+    double learning_rate = 1e-3, final_rate = 0.02, constant_share = 0.6;
+    int warm_up = 100;
+    double checkpoint_minutes = 3, validate_minutes = 5;
+    int log_every = 25;
+    int validation_scenes = 12, validation_frames = 40, validation_crop = 96;
+};
+
+/// Words and their meaning: "--name value".
+class OptionTable {
+public:
+    explicit OptionTable(TrainOptions& options);
+
+    /// Throws Error(usage) naming the word, what was expected and what was found.
+    void parse(const std::vector<std::string>& words);
+    void set(const std::string& name, const std::string& value);
+
+    std::string help() const;
+    /// "--name value", one per line: all that a resumed run has to know.
+    std::string record() const;
+
+    /// "--name value" in one line: all that decides what is learned, without names of files.
+    std::string settings() const;
+
+private:
+    /// What a value decides: what is learned; where things lie and for how long; one call only.
+    enum class Use { learning, run, once };
+    struct Option {
+        std::string name, help;
+        Use use;
+        std::function<void(const std::string&)> read;
+        std::function<std::string()> write;
+    };
+    template <typename T>
+    void add(const std::string& name, T& target, const std::string& help, Use use = Use::learning);
+
+    std::vector<Option> options_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,252 @@
+#include "apps/train/trainer.h"
+
+#include "apps/train/blas.h"
+#include "apps/train/device.h"
+#include "apps/train/warm_start.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+#include <thread>
+
+namespace eventide {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The options, once what no single one can say of itself holds. Throws Error(usage).
+const TrainOptions& sound(const TrainOptions& options) {
+    if (options.clock != "wall" && options.clock != "cpu")
+        throw Error(ErrorKind::usage,
+                    "--clock: expected wall or cpu, found '" + options.clock + "'");
+    require_blas_for_threads(options.threads);
+    if (!options.initial.empty() && !options.resume.empty())
+        throw Error(ErrorKind::usage, "--initial: expected no --resume, found both");
+    return options;
+}
+
+Parameters first_parameters(const TrainOptions& options, torch::Device device, const LogSink& say) {
+    Parameters parameters = initial_parameters(options.model, options.data.seed, device);
+    if (options.initial.empty()) return parameters;
+    std::string left;
+    for (const std::string& name : warm_start(options.initial, parameters)) left += " " + name;
+    say("initial weights of " + options.initial + ", new:" + (left.empty() ? " none" : left));
+    return parameters;
+}
+
+}  // namespace
+
+Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
+                 std::shared_ptr<const TextureLibrary> validation_textures, const LogSink& say)
+    : options_(sound(options)),
+      log_(options.out, options.log_every, say),
+      device_(device_of(options)),
+      type_(arithmetic_type(options)),
+      optimiser_(options.optimiser, first_parameters(options, device_, say)),
+      input_mask_(input_mask(options.model, options.inputs).to(device_)) {
+    // One thread per share: libgomp's barriers cost more than they give where cores are shared.
+    at::set_num_threads(1);
+    {
+        const torch::NoGradGuard none;
+        for (Parameters* weights : {&optimiser_.parameters, &optimiser_.ema})
+            weights->at("encoder.in.weight") *= input_mask_;
+    }
+    options_.data.bins = options.model.bins;
+    options_.data.noise_filter = options.model.noise_filter;
+    std::filesystem::create_directories(options.out);
+    if (!options.lpips.empty())
+        perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
+    if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
+    progress_.options = OptionTable{options_}.record();
+    begin_memories();
+    if (options.validation_scenes > 0)
+        validation_ = std::make_unique<Validation>(
+            ValidationSettings{options.validation_scenes, options.validation_frames,
+                               options.validation_crop, 4242},
+            options_.data, std::move(validation_textures), device_);
+    feed_ = std::make_unique<DataLoader>(options_.data, std::move(textures),
+                                         options.threads * options.streams, options.groups,
+                                         progress_.window);
+}
+
+/// A run may go on with other lanes or another crop: its states then begin empty.
+void Trainer::begin_memories() {
+    std::vector<RecurrentState>& memories = progress_.memories;
+    const int crop = options_.data.crop;
+    const RecurrentState empty = empty_recurrent_state(options_.model, options_.streams, crop, crop,
+                                                       torch::TensorOptions{device_});
+    const auto count = std::size_t(options_.threads * options_.groups);
+    if (memories.size() != count || memories[0].latent.sizes() != empty.latent.sizes())
+        memories.assign(count, empty);
+}
+
+std::filesystem::path Trainer::file(const char* name) const {
+    return std::filesystem::path{options_.out} / name;
+}
+
+bool Trainer::finished() const {
+    return options_.steps > 0 ? progress_.window >= options_.steps
+                              : progress_.elapsed_minutes >= options_.minutes;
+}
+
+double Trainer::learning_rate() const {
+    const double done = options_.steps > 0 ? double(progress_.window) / options_.steps
+                                           : progress_.elapsed_minutes / options_.minutes;
+    const double rise = std::min(1.0, double(progress_.window + 1) / (options_.warm_up + 1));
+    const double falling =
+        std::clamp((done - options_.constant_share) / (1 - options_.constant_share), 0.0, 1.0);
+    const double cosine = 0.5 * (1 + std::cos(std::numbers::pi * falling));
+    return options_.learning_rate * rise *
+           (options_.final_rate + (1 - options_.final_rate) * cosine);
+}
+
+Trainer::Share Trainer::run_share(std::span<const StreamWindow> windows, const WindowPlan& plan,
+                                  RecurrentState& memory) {
+    at::set_num_threads(1);  // libgomp keeps the number per thread
+    const TrainingBatch batch = to_batch(windows, device_);
+    memory = begin_window(memory, batch.fresh);
+    const Parameters narrow =
+        type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
+    const Images images =
+        run_window(options_.model, narrow, plan, batch, options_.data.patch, memory);
+    Share share;
+    share.terms = loss(images, options_.loss, perceptual_.get(), options_.lpips_frames);
+    std::vector<torch::Tensor> leaves;
+    for (const auto& [name, values] : optimiser_.parameters) leaves.push_back(values);
+    const auto gradients = torch::autograd::grad({share.terms.total}, leaves, {}, {}, false,
+                                                 /*allow_unused=*/true);
+    std::size_t i = 0;
+    for (const auto& [name, values] : optimiser_.parameters) {
+        const torch::Tensor& g = gradients[i++];
+        share.gradients[name] = g.defined() ? g : torch::zeros_like(values);
+    }
+    memory = {detach(memory.state), memory.latent.detach()};
+    return share;
+}
+
+void Trainer::step() {
+    const auto start = Clock::now();
+    const double cpu_start = cpu_seconds();
+    const WindowPlan plan = window_plan(options_.data, progress_.window);
+    const std::vector<StreamWindow> windows = feed_->next();
+    std::vector<Share> shares(std::size_t(options_.threads));
+    const std::span<RecurrentState> memories = std::span{progress_.memories}.subspan(
+        std::size_t(progress_.window % options_.groups) * shares.size(), shares.size());
+    const auto streams = std::size_t(options_.streams);
+    {
+        std::vector<std::jthread> threads;
+        const auto work = [&](std::size_t i) {
+            shares[i] =
+                run_share(std::span{windows}.subspan(i * streams, streams), plan, memories[i]);
+        };
+        for (std::size_t i = 1; i < shares.size(); ++i) threads.emplace_back(work, i);
+        work(0);
+    }
+    Parameters& gradients = shares[0].gradients;
+    LossTerms& terms = shares[0].terms;
+    for (auto& [name, g] : gradients) {
+        for (std::size_t i = 1; i < shares.size(); ++i) g = g + shares[i].gradients.at(name);
+        g = g / double(shares.size());
+    }
+    for (std::size_t k = 0; k < terms.means.size(); ++k) {
+        for (std::size_t i = 1; i < shares.size(); ++i) terms.means[k] += shares[i].terms.means[k];
+        terms.means[k] /= double(shares.size());
+    }
+    torch::Tensor& of_inputs = gradients.at("encoder.in.weight");
+    of_inputs = of_inputs * input_mask_;  // what starts at 0 stays there
+    const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
+    if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next windows
+        ++skipped_;
+        for (RecurrentState& memory : memories)
+            memory = begin_window(memory, std::vector<bool>(streams, true));
+    }
+    ++progress_.window;
+    const double seconds = seconds_since(start);
+    progress_.elapsed_minutes +=
+        (options_.clock == "cpu" ? cpu_seconds() - cpu_start : seconds) / 60;
+    log_.step(mark(), terms, {rate, norm, seconds, skipped_});
+}
+
+void Trainer::validate() {
+    if (validation_ == nullptr) return;
+    const Parameters weights = cast(optimiser_.ema, type_);
+    const auto scores =
+        validation_->judge(options_.model, weights, 0, options_.loss, perceptual_.get());
+    log_.validation(mark(), scores);
+    validation_->write_sheet(file("sheet.pgm"), options_.model, weights, 0);
+    if (scores.score < progress_.best_score) {
+        progress_.best_score = scores.score;
+        save_model(file("best.safetensors"), {options_.model, to_tensors(optimiser_.ema)});
+    }
+}
+
+void Trainer::checkpoint() {
+    save_checkpoint(file("checkpoint.safetensors"), progress_, optimiser_);
+}
+
+void Trainer::run(const std::atomic<bool>& stop) {
+    const auto due = [](double minutes) { return std::chrono::duration<double>(minutes * 60); };
+    auto saved = Clock::now(), judged = saved;
+    // A resumed run may be judged by other scenes than before: its best begins with what it
+    // resumes.
+    if (!options_.resume.empty() && !finished()) {
+        progress_.best_score = std::numeric_limits<double>::infinity();
+        validate();
+    }
+    while (!finished() && !stop) {
+        step();
+        if (Clock::now() - judged >= due(options_.validate_minutes)) {
+            validate();
+            judged = Clock::now();
+        }
+        if (Clock::now() - saved >= due(options_.checkpoint_minutes)) {
+            checkpoint();
+            saved = Clock::now();
+        }
+    }
+    if (finished()) validate();
+    checkpoint();
+}
+
+void Trainer::keep(const std::filesystem::path& path) const {
+    Checkpoint without_states = progress_;
+    without_states.memories.clear();
+    save_checkpoint(path, without_states, optimiser_);
+}
+
+Model Trainer::finished_model() const {
+    Model model{options_.model, to_tensors(optimiser_.ema)};
+    if (std::filesystem::exists(file("best.safetensors")))
+        model.weights = load_model(file("best.safetensors")).weights;
+    std::ostringstream card;
+    card << options_.card << (options_.card.empty() ? "" : " ")
+         << "Trained by eventide-train: " << progress_.window << " steps, "
+         << std::lround(progress_.elapsed_minutes) << " minutes. ";
+    if (validation_ != nullptr) {
+        const Parameters weights = to_parameters(model.weights, device_);
+        model.config.sigma_scale = float(validation_->sigma_scale(options_.model, weights, 0));
+        for (const int lookahead : {0, 2}) {
+            const auto scores = validation_->judge(options_.model, weights, lookahead,
+                                                   options_.loss, perceptual_.get());
+            card << "Held-out simulated scenes, lookahead " << lookahead
+                 << ", sigma not yet scaled:";
+            for (std::size_t k = 0; k < scores.means.size(); ++k)
+                card << " " << kLossNames[k] << " " << scores.means[k];
+            card << ". ";
+        }
+    }
+    TrainOptions options = options_;
+    card << "Options: " << OptionTable{options}.settings();
+    model.config.card = card.str();
+    return model;
+}
+
+}  // namespace eventide

@@ -1,0 +1,65 @@
+// The loop: windows in, weights out, until the budget is spent or somebody asks it to stop.
+#pragma once
+
+#include "apps/train/checkpoint.h"
+#include "apps/train/options.h"
+#include "apps/train/training_log.h"
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace eventide {
+
+class Trainer {
+public:
+    /// Starts anew, or where options.resume says. Throws Error.
+    Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
+            std::shared_ptr<const TextureLibrary> validation_textures, const LogSink& say);
+
+    /// Trains until the budget is spent or `stop` is set, then writes a checkpoint. Files in the
+    /// output folder: checkpoint.safetensors, best.safetensors, log.csv, validation.csv,
+    /// learning_curve.svg, sheet.pgm.
+    void run(const std::atomic<bool>& stop);
+
+    /// Writes the run as it stands, to go on from; its streams then begin anew.
+    void keep(const std::filesystem::path& path) const;
+
+    /// The chosen weights (of the best validation, else the running mean), with sigma calibrated
+    /// on held-out scenes and the card written.
+    Model finished_model() const;
+
+    std::int64_t steps() const { return progress_.window; }
+    const Parameters& parameters() const { return optimiser_.parameters; }
+
+private:
+    struct Share {  // what one thread of a step gives
+        Parameters gradients;
+        LossTerms terms;
+    };
+    void begin_memories();
+    bool finished() const;
+    double learning_rate() const;
+    void step();
+    Share run_share(std::span<const StreamWindow> windows, const WindowPlan& plan,
+                    RecurrentState& memory);
+    Mark mark() const { return {progress_.window, progress_.elapsed_minutes}; }
+    void validate();
+    void checkpoint();
+    std::filesystem::path file(const char* name) const;
+
+    TrainOptions options_;
+    TrainingLog log_;
+    torch::Device device_;
+    torch::ScalarType type_;
+    Optimiser optimiser_;
+    torch::Tensor input_mask_;
+    std::unique_ptr<Perceptual> perceptual_;
+    std::unique_ptr<Validation> validation_;
+    std::unique_ptr<DataLoader> feed_;
+    Checkpoint progress_;
+    int skipped_ = 0;
+};
+
+}  // namespace eventide

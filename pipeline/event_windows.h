@@ -1,0 +1,62 @@
+// packets -> event windows: parser, filter and slicer in a row, and the clock that goes on in
+// silence.
+#pragma once
+
+#include "pipeline/counters.h"
+#include "pipeline/source.h"
+#include "pipeline/stages.h"
+#include "src/binning/slicer.h"
+
+#include <memory>
+#include <optional>
+
+namespace eventide {
+
+/// Give it packets, then take event windows until there is none. Bin thread.
+///
+/// What closes event windows: in a recording the events alone (and at the end the parser's clock),
+/// so that frames do not depend on how the file was split: in a file, what tells the clock may lie
+/// before events that are older. On a live source the parser's clock, too; and where the camera
+/// says nothing at all, the host's clock from the last word on, less a margin.
+class EventWindows {
+public:
+    struct Settings {
+        SlicerSettings slicer;
+        /// Live silence: how far sensor time that is told by the host's clock stays behind, so that
+        /// what is still on its way from the camera is not late. Cameras hold back few events for
+        /// some milliseconds.
+        SensorDuration silence_margin{30'000};
+    };
+
+    /// filter and observer may be null; both are borrowed.
+    EventWindows(const Source& source, const Settings& settings, EventFilter* filter,
+                 DataObserver* observer, Counters& counters);
+
+    void take(const RawPacket& packet);
+    /// After the last packet. Where the end was asked for, half a record in hand is no damage.
+    enum class End { of_source, asked_for };
+    void finish(End end);
+    bool next(EventWindow& event_window) { return slicer_.next(event_window); }
+    bool is_past_end() const { return slicer_.is_past_end(); }
+
+private:
+    void note_gap();
+    void pass_on(HostTime arrived);
+    void push_filtered(HostTime arrived);
+    void advance_clock(HostTime arrived);
+    void advance_in_silence(HostTime now);
+
+    std::unique_ptr<Parser> parser_;
+    Slicer slicer_;
+    EventFilter* filter_;
+    DataObserver* observer_;
+    Counters& counters_;
+    Batch batch_;
+    const bool live_;
+    const SensorDuration silence_margin_;
+    std::optional<SensorTime> clock_;    // the newest the stream told
+    HostTime clock_arrived_{};           // when it did
+    std::optional<HostTime> last_data_;  // when bytes last came
+};
+
+}  // namespace eventide

@@ -1,0 +1,152 @@
+// latent maps -> frames -> sinks.
+#include "pipeline/frame_output.h"
+
+#include "src/core/error.h"
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <ratio>
+#include <string>
+#include <utility>
+
+namespace eventide {
+
+using Clock = std::chrono::steady_clock;
+
+FrameOutput::FrameOutput(RenderStage& renderer, std::vector<Sink*> sinks, const Settings& settings,
+                         std::function<std::size_t()> waiting, const StopRequest& stop,
+                         Counters& counters, LatencyKeeper& keeper)
+    : renderer_(renderer),
+      sinks_(std::move(sinks)),
+      settings_(settings),
+      waiting_(std::move(waiting)),
+      stop_(stop),
+      counters_(counters),
+      keeper_(keeper),
+      schedule_(settings.rate, settings.from),
+      shedder_(settings.waits_at_most),
+      frame_(renderer.make_output()) {
+    if (settings.lookahead < 0 || settings.lookahead > kMaxLookahead)
+        throw Error(ErrorKind::usage,
+                    "lookahead: expected 0, 1 or 2, found " + std::to_string(settings.lookahead));
+}
+
+bool FrameOutput::take(const Encoded& encoded) {
+    const LatentMap& latent = encoded.latent;
+    if (latent.reset_before) {
+        finish();
+        renderer_.reset();
+        schedule_.restart();
+    }
+    renderer_.push(latent);
+    arrived_ = latent.arrived;
+    Waiting& held = held_[(oldest_ + held_count_++) % held_.size()];
+    held.window = latent.window;
+    held.events = latent.events;
+    held.gap_before = latent.gap_before;
+    held.event_preview = encoded.event_preview;
+    if (held_count_ > std::size_t(settings_.lookahead)) present_oldest();
+    return wanted_;
+}
+
+bool FrameOutput::finish() {
+    renderer_.finish();
+    while (held_count_ > 0) present_oldest();
+    return wanted_;
+}
+
+void FrameOutput::present_oldest() {
+    Waiting& held = held_[oldest_];
+    oldest_ = (oldest_ + 1) % held_.size();
+    --held_count_;
+    schedule_.open(held.window);
+    check_silence(held);
+    if (settings_.live) open_shedder();
+    while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
+        const DueFrame due = schedule_.next();
+        if (!settings_.live) {
+            present(due, held);
+        } else if (shedder_.keeps_next(waiting_())) {
+            const HostTime begun = Clock::now();
+            present(due, held);
+            const HostTime::duration work = Clock::now() - begun;
+            shedder_.took(work);
+            keeper_.frame_took(work);
+        } else {
+            counters_.present.skipped_frames.add();
+        }
+    }
+}
+
+void FrameOutput::open_shedder() {
+    const HostTime now = Clock::now();
+    shedder_.open({schedule_.next_index(), schedule_.due(), keeper_.halvings(),
+                   keeper_.frames_in_time(now - arrived_)},
+                  now);
+}
+
+/// Before any of the window's frames: a long silence comes as one wide window.
+void FrameOutput::check_silence(const Waiting& held) {
+    silent_ = held.events > 0 ? 0 : silent_ + schedule_.due();
+    if (silent_ <= kMaxSilentFrames || settings_.live || settings_.allow_silence) return;
+    const double hours =
+        std::chrono::duration<double, std::ratio<3600>>(held.window.end - held.window.begin)
+            .count();
+    char length[32];
+    std::snprintf(length, sizeof length, "%.1f", hours);
+    throw Error(ErrorKind::input,
+                "no events from " + std::to_string(to_us(held.window.begin)) + " to " +
+                    std::to_string(to_us(held.window.end)) + " us (" + length +
+                    " hours): expected at most " + std::to_string(kMaxSilentFrames) +
+                    " frames in a row without events, found " + std::to_string(silent_) +
+                    "; choose a part with --from and --to, fewer frames with --fps, or "
+                    "--allow-silence");
+}
+
+void FrameOutput::present(const DueFrame& due, Waiting& from) {
+    const HostTime begun = Clock::now();
+    renderer_.render(due.t, from.window, frame_);
+    frame_.t = due.t;
+    frame_.index = due.index;
+    frame_.window = from.window;
+    frame_.events = from.events;
+    frame_.gap_before = from.gap_before;
+    frame_.arrived = arrived_;
+    std::swap(frame_.event_preview, from.event_preview);
+    check_finite();
+    const HostTime rendered = Clock::now();
+    for (Sink* sink : sinks_) {
+        sink->write(frame_);
+        wanted_ = wanted_ && sink->wants_more();
+    }
+    std::swap(frame_.event_preview, from.event_preview);
+    const HostTime written = Clock::now();
+    counters_.present.frames.add();
+    counters_.present.newest_us.set(std::uint64_t(to_us(due.t)));
+    counters_.present.render.record(rendered - begun);
+    counters_.present.write.record(written - rendered);
+    counters_.present.latency.record(written - arrived_);
+}
+
+/// A state that has a NaN keeps it, so no later frame will be better.
+void FrameOutput::check_finite() {
+    if (is_finite(frame_.intensity) && is_finite(frame_.sigma)) return;
+    counters_.present.broken_frames.add();
+    throw Error(ErrorKind::input, "frame " + std::to_string(frame_.index) + ", at " +
+                                      std::to_string(to_us(frame_.t)) +
+                                      " us: expected finite numbers of the network, found NaN or "
+                                      "infinity: its weights or its state are damaged");
+}
+
+void FrameOutput::close() {
+    std::exception_ptr first;
+    for (Sink* sink : sinks_) try {
+            sink->close();
+        } catch (...) {
+            if (!first) first = std::current_exception();
+        }
+    if (first) std::rethrow_exception(first);
+}
+
+}  // namespace eventide

@@ -1,0 +1,91 @@
+// latent maps -> frames -> sinks: what the frame clock asks for, when its latent maps are there.
+#pragma once
+
+#include "pipeline/counters.h"
+#include "pipeline/frame_clock.h"
+#include "pipeline/frame_dropper.h"
+#include "pipeline/latency_keeper.h"
+#include "pipeline/sink.h"
+#include "pipeline/stages.h"
+#include "pipeline/stop_request.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace eventide {
+
+/// What the encode thread hands on.
+struct Encoded {
+    LatentMap latent;
+    Array2<float> event_preview;  ///< empty where not asked for
+};
+
+/// Render thread. A frame whose time lies in event window k is rendered when latent map k +
+/// lookahead has come; at the end of the stream, and before the camera's clock begins anew, without
+/// those that will not come (the live edge).
+class FrameOutput {
+public:
+    static constexpr int kMaxLookahead = 2;
+    /// Of a recording, in a row and without events: more are times that are wrong (a stamp of 0
+    /// before times since 1970), and would fill any disk. 9 hours at 30 frames/s.
+    static constexpr std::uint64_t kMaxSilentFrames = 1'000'000;
+
+    struct Settings {
+        FrameRate rate;
+        std::optional<SensorTime> from;  ///< no frame before
+        int lookahead = 0;               ///< 0 to kMaxLookahead
+        bool live = false;               ///< may skip frames
+        std::size_t waits_at_most =
+            1;                       ///< event windows behind this one, before frames are skipped
+        bool allow_silence = false;  ///< no limit to frames in a row without events
+    };
+
+    /// `waiting()` tells how many event windows stand behind the one at hand.
+    FrameOutput(RenderStage& renderer, std::vector<Sink*> sinks, const Settings& settings,
+                std::function<std::size_t()> waiting, const StopRequest& stop, Counters& counters,
+                LatencyKeeper& keeper);
+
+    /// Throws what a sink throws, and Error (input) before it writes more than kMaxSilentFrames
+    /// in a row or one that is not finite. False when no more frames are wanted.
+    bool take(const Encoded& encoded);
+
+    /// Nothing more comes: the frames that still wait for later latent maps.
+    bool finish();
+
+    /// Closes all sinks, whatever happened; then throws the first error of those.
+    void close();
+
+private:
+    /// An event window whose frames are not rendered yet.
+    struct Waiting {
+        Window window;
+        std::uint64_t events = 0;
+        bool gap_before = false;
+        Array2<float> event_preview;
+    };
+    void present_oldest();
+    void open_shedder();
+    void check_silence(const Waiting& held);
+    void check_finite();
+    void present(const DueFrame& due, Waiting& from);
+
+    RenderStage& renderer_;
+    std::vector<Sink*> sinks_;
+    const Settings settings_;
+    std::function<std::size_t()> waiting_;
+    const StopRequest& stop_;
+    Counters& counters_;
+    LatencyKeeper& keeper_;
+    FrameSchedule schedule_;
+    FrameDropper shedder_;
+    std::array<Waiting, kMaxLookahead + 1> held_;  // a ring
+    std::size_t oldest_ = 0, held_count_ = 0;
+    std::uint64_t silent_ = 0;  // frames in a row without events
+    HostTime arrived_{};        // of the newest latent map
+    Frame frame_;
+    bool wanted_ = true;
+};
+
+}  // namespace eventide

@@ -1,0 +1,160 @@
+// Frames as bytes into standard output, a named pipe or a file.
+#include "pipeline/sinks/raw_stream.h"
+
+#include "pipeline/sinks/raw_pixels.h"
+#include "pipeline/sinks/yuv.h"
+#include "src/codec/byte_order.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <numeric>
+#include <utility>
+
+namespace eventide {
+
+namespace {
+
+bool is_y4m(StreamFormat format) {
+    return format == StreamFormat::y4m || format == StreamFormat::y4m_mono;
+}
+
+bool supports(StreamFormat format, Uncertainty how) {
+    switch (how) {
+        case Uncertainty::automatic:
+        case Uncertainty::none:
+        case Uncertainty::side:
+            return true;
+        case Uncertainty::overlay:
+            return format == StreamFormat::y4m;
+        case Uncertainty::separate:
+        case Uncertainty::alpha:
+            return !is_y4m(format);
+    }
+    return false;
+}
+
+/// A frame rate as the fraction of integers Y4M wants; thousandths are exact.
+std::string rate_of(double fps) {
+    const auto thousandths = std::uint64_t(std::llround(fps * 1000));
+    const std::uint64_t common = std::gcd(thousandths, std::uint64_t(1000));
+    return std::to_string(thousandths / common) + ":" + std::to_string(1000 / common);
+}
+
+void append_text(std::vector<std::byte>& bytes, std::string_view text) {
+    for (const char c : text) bytes.push_back(std::byte(c));
+}
+
+std::string header_of(const cv::Mat& image, StreamFormat format, double fps) {
+    const bool mono = format == StreamFormat::y4m_mono;
+    // 4:2:0 readers disagree about odd sizes, so there are none.
+    const int width = mono ? image.cols : even(image.cols);
+    const int height = mono ? image.rows : even(image.rows);
+    return "YUV4MPEG2 W" + std::to_string(width) + " H" + std::to_string(height) + " F" +
+           rate_of(fps) + " Ip A1:1 " + (mono ? "Cmono" : "C420jpeg") + " XCOLORRANGE=FULL\n";
+}
+
+}  // namespace
+
+std::string_view name_of(StreamFormat format) {
+    constexpr std::array<std::string_view, 5> kNames{"y4m", "y4m-mono", "gray8", "gray16",
+                                                     "grayf32"};
+    return kNames[std::size_t(format)];
+}
+
+void FrameStamp::write_to(std::span<std::byte> bytes) const {
+    constexpr std::string_view kMagic = "EVF";
+    for (std::size_t i = 0; i < kMagic.size(); ++i) bytes[i] = std::byte(kMagic[i]);
+    bytes[3] = std::byte(flags);
+    std::ranges::copy(little_bytes(index), bytes.begin() + 4);
+    std::ranges::copy(little_bytes(t_us), bytes.begin() + 8);
+}
+
+StreamSink::StreamSink(StreamSettings settings) : settings_{std::move(settings)} {
+    if (!supports(settings_.format, settings_.uncertainty))
+        throw Error(ErrorKind::usage,
+                    settings_.path + ": " + std::string{name_of(settings_.format)} +
+                        " cannot carry --uncertainty " +
+                        std::string{name_of(settings_.uncertainty)} +
+                        (is_y4m(settings_.format) ? "; expected none, side or (y4m) overlay"
+                                                  : "; expected none, side, separate or alpha"));
+    file_.emplace(settings_.path, OutputOptions{.overwrite = settings_.overwrite,
+                                                .appears = Appears::growing,
+                                                .give_up = settings_.give_up});
+}
+
+void StreamSink::write(const Frame& frame) {
+    if (begun_ && settings_.overload == Overload::repeat) repeat_until(frame.index);
+    if (!wants_more()) return;
+    index_ = frame.index;
+    bytes_.clear();
+    if (is_y4m(settings_.format))
+        append_y4m(frame);
+    else
+        append_raw(frame);
+    file_->write(bytes_);
+    begun_ = true;
+}
+
+/// What was skipped before frame `index`.
+void StreamSink::repeat_until(std::uint64_t index) {
+    while (index_ + 1 < index && wants_more()) {
+        stamp_.index = std::uint32_t(++index_);
+        stamp_.flags = FrameStamp::kRepeat;
+        if (settings_.stamp) stamp_.write_to(bytes_);
+        file_->write(bytes_);
+    }
+}
+
+void StreamSink::append_y4m(const Frame& frame) {
+    draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
+    if (!begun_) {
+        append_text(bytes_, header_of(image_, settings_.format, settings_.fps));
+        file_->write(bytes_);  // apart, so that a frame that is repeated is a frame alone
+        bytes_.clear();
+    }
+    // A tag of our own, which readers pass over: the stream's rate says nothing of sensor time.
+    append_text(bytes_, "FRAME XT=" + std::to_string(to_us(frame.t)) + "\n");
+    const std::size_t start = bytes_.size();
+    const auto width = std::size_t(even(image_.cols)), height = std::size_t(even(image_.rows));
+    if (settings_.format == StreamFormat::y4m_mono) {
+        const auto* pixels = reinterpret_cast<const std::byte*>(image_.data);
+        bytes_.insert(bytes_.end(), pixels, pixels + image_.total());
+        return;
+    }
+    bytes_.resize(start + width * height * 3 / 2);
+    auto* luma = reinterpret_cast<std::uint8_t*>(bytes_.data() + start);
+    const auto half = std::ptrdiff_t(width / 2);
+    std::uint8_t* chroma = luma + width * height;
+    to_yuv420(image_, YuvRange::full,
+              {Plane{luma, std::ptrdiff_t(width)}, Plane{chroma, half},
+               Plane{chroma + width * height / 4, half}});
+}
+
+void StreamSink::append_raw(const Frame& frame) {
+    const RawLayout layout{settings_.uncertainty, settings_.sigma_white};
+    if (settings_.stamp) {
+        stamp_ = {frame.gap_before ? FrameStamp::kGap : std::uint8_t(0), std::uint32_t(frame.index),
+                  to_us(frame.t)};
+        bytes_.resize(FrameStamp::kBytes);
+        stamp_.write_to(bytes_);
+    }
+    switch (settings_.format) {
+        case StreamFormat::gray8:
+            return append_pixels<std::uint8_t>(frame, layout, bytes_);
+        case StreamFormat::gray16:
+            return append_pixels<std::uint16_t>(frame, layout, bytes_);
+        default:
+            return append_pixels<float>(frame, layout, bytes_);
+    }
+}
+
+void StreamSink::close() {
+    if (file_) file_->close();
+    file_.reset();
+}
+
+}  // namespace eventide

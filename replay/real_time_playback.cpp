@@ -1,0 +1,141 @@
+// Bytes at the pace of their own clock.
+#include "replay/real_time_playback.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace eventide {
+
+namespace {
+
+// A few dozen events: milliseconds even where little moves.
+constexpr std::size_t kPieceBytes = 256;
+
+}  // namespace
+
+RealTimePlayback::RealTimePlayback(std::unique_ptr<Recording> recording, double speed)
+    : recording_(std::move(recording)), clock_(recording_->make_clock()), speed_(speed) {
+    if (!(speed > 0) || !std::isfinite(speed))
+        throw Error(ErrorKind::usage,
+                    "speed: expected a number above 0, found " + std::to_string(speed));
+}
+
+/// Parses on by one piece, of the next chunk where this one is used up; false at the end.
+bool RealTimePlayback::next_piece() {
+    if (parsed_ == chunk_.bytes.size()) {
+        parsed_ = given_ = 0;
+        if (recording_->read(chunk_) != ReadStatus::data) {
+            chunk_.bytes.clear();
+            return false;
+        }
+    }
+    const std::size_t n = std::min(kPieceBytes, chunk_.bytes.size() - parsed_);
+    clock_->parse(std::span(chunk_.bytes).subspan(parsed_, n), unused_);
+    unused_.clear();
+    parsed_ += n;
+    return true;
+}
+
+HostTime RealTimePlayback::due(SensorTime t) const {
+    const double us = double((t - anchor_->sensor).count()) / speed_;
+    return anchor_->host + std::chrono::microseconds(std::llround(us));
+}
+
+bool RealTimePlayback::needs_anchor(SensorTime t, HostTime now) const {
+    if (!anchor_ || (last_ && (t < *last_ || t - *last_ > kLongestWait))) return true;
+    return now - due(t) > kMaxLateness;
+}
+
+/// False when stopped.
+bool RealTimePlayback::wait_until_due(SensorTime t) {
+    if (start_at_ && t < *start_at_) return true;
+    start_at_.reset();
+    std::unique_lock lock(mutex_);
+    while (!stopped_) {
+        if (speed_ == 0) {
+            changed_.wait(lock);
+            continue;
+        }
+        const HostTime now = std::chrono::steady_clock::now();
+        if (needs_anchor(t, now)) anchor_ = {now, t};
+        const HostTime when = due(t);
+        last_ = t;
+        if (when <= now) return true;
+        changed_.wait_until(lock, when);
+    }
+    return false;
+}
+
+ReadStatus RealTimePlayback::read(RawPacket& into) {
+    into.bytes.clear();
+    if (given_ == parsed_ && !next_piece()) return ReadStatus::end;
+    // The first piece is waited for; what else is due by then goes with it.
+    for (bool first = true;; first = false) {
+        if (const auto t = clock_->clock()) {
+            if (first && !wait_until_due(*t)) return ReadStatus::end;
+            if (!first) {
+                const std::lock_guard lock(mutex_);
+                const bool early = start_at_ && *t < *start_at_;
+                const bool is_due = anchor_ && speed_ > 0 && (!last_ || *t >= *last_) &&
+                                    due(*t) <= std::chrono::steady_clock::now();
+                if (!early && (!is_due || start_at_)) break;
+                last_ = t;
+            }
+        }
+        const auto begin = chunk_.bytes.begin();
+        into.bytes.insert(into.bytes.end(), begin + std::ptrdiff_t(given_),
+                          begin + std::ptrdiff_t(parsed_));
+        given_ = parsed_;
+        if (parsed_ == chunk_.bytes.size() || !next_piece()) break;
+    }
+    into.arrived = std::chrono::steady_clock::now();
+    into.gap_before = std::exchange(chunk_.gap_before, false);
+    into.sequence = chunk_.sequence;
+    return ReadStatus::data;
+}
+
+void RealTimePlayback::stop() noexcept {
+    recording_->stop();
+    {
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
+    }
+    changed_.notify_all();
+}
+
+void RealTimePlayback::seek(SensorTime t) {
+    recording_->seek(t);
+    clock_ = recording_->make_clock();
+    chunk_.bytes.clear();
+    given_ = parsed_ = 0;
+    start_at_ = t;
+    last_.reset();
+    const std::lock_guard lock(mutex_);
+    anchor_.reset();
+}
+
+std::uint64_t RealTimePlayback::position_bytes() const {
+    return recording_->position_bytes() - (chunk_.bytes.size() - given_);
+}
+
+void RealTimePlayback::set_speed(double speed) {
+    if (!(speed >= 0) || !std::isfinite(speed))
+        throw Error(ErrorKind::usage,
+                    "speed: expected a number, 0 or above, found " + std::to_string(speed));
+    {
+        const std::lock_guard lock(mutex_);
+        speed_ = speed;
+        anchor_.reset();  // the new pace begins with the next piece
+    }
+    changed_.notify_all();
+}
+
+double RealTimePlayback::speed() const {
+    const std::lock_guard lock(mutex_);
+    return speed_;
+}
+
+}  // namespace eventide

@@ -1,0 +1,112 @@
+// Records are: u32 length and fields, u32 length and data; all little-endian
+// (drivers-and-formats.md D, wiki.ros.org/Bags/Format/2.0).
+#include "src/io/bag_records.h"
+
+#include "src/core/error.h"
+#include "src/io/bag_unpack.h"
+
+#include <algorithm>
+
+namespace eventide {
+namespace {
+
+constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+// Of a record or an unpacked chunk. rosbag closes a chunk at 768 KiB, or after one longer message.
+constexpr std::uint32_t kLongest = 1U << 28;
+
+}  // namespace
+
+std::map<std::string, std::string_view, std::less<>> bag_fields(std::span<const std::byte> bytes) {
+    std::map<std::string, std::string_view, std::less<>> fields;
+    for (BlockReader reader{bytes};;) {
+        const std::string_view field = text_of(reader.block());
+        if (!reader.good() || field.empty()) return fields;
+        const std::size_t equals = std::min(field.find('='), field.size() - 1);
+        fields[std::string{field.substr(0, equals)}] = field.substr(equals + 1);
+    }
+}
+
+BagRecords::BagRecords(const std::filesystem::path& path)
+    : path_(path), file_(path, std::ios::binary) {
+    std::string magic(kMagic.size(), '\0');
+    if (!file_.read(magic.data(), std::streamsize(magic.size())) || magic != kMagic)
+        refuse("expected a ROS bag that begins with '#ROSBAG V2.0', found something else");
+    left_ = std::filesystem::file_size(path) - kMagic.size();
+}
+
+bool BagRecords::read(const std::function<void(const BagRecord&)>& use) {
+    const auto bytes = next_bytes();
+    if (!bytes) return false;
+    std::span<const std::byte> rest{*bytes};
+    const BagRecord record = parse(rest);
+    if (record.op != BagRecord::chunk) {
+        use(record);
+        return true;
+    }
+    const std::vector<std::byte> unpacked = unpack(record);
+    for (rest = unpacked; !rest.empty();) use(parse(rest));
+    return true;
+}
+
+/// The two lengths and what they announce, in one piece.
+std::optional<std::vector<std::byte>> BagRecords::next_bytes() {
+    if (left_ == 0) return {};
+    std::vector<std::byte> bytes;
+    for (int part = 0; part < 2; ++part) {
+        const auto grow = [&](std::size_t n) {
+            if (n > left_)
+                refuse("expected " + std::to_string(n) + " more bytes of a record, found " +
+                       std::to_string(left_) + ": the file is cut short");
+            const std::size_t at = bytes.size();
+            bytes.resize(at + n);
+            file_.read(reinterpret_cast<char*>(bytes.data() + at), std::streamsize(n));
+            if (!file_) refuse("cannot be read");
+            left_ -= n;
+            return bytes.data() + at;
+        };
+        const auto length = load_little<std::uint32_t>(grow(4));
+        if (length > kLongest)
+            refuse("expected records of at most 256 MiB, found one of " + std::to_string(length) +
+                   " bytes");
+        grow(length);
+    }
+    return bytes;
+}
+
+BagRecord BagRecords::parse(std::span<const std::byte>& bytes) const {
+    BlockReader reader{bytes};
+    const auto header = reader.block();
+    BagRecord record;
+    record.data = reader.block();
+    if (!reader.good()) refuse("expected whole records inside a chunk, found one cut short");
+    bytes = bytes.subspan(8 + header.size() + record.data.size());
+    record.fields = bag_fields(header);
+    const auto op = record.fields.find("op");
+    if (op != record.fields.end() && op->second.size() == 1)
+        record.op = static_cast<unsigned char>(op->second[0]);
+    return record;
+}
+
+std::uint32_t BagRecords::number(const BagRecord& record, std::string_view field) const {
+    const auto found = record.fields.find(field);
+    if (found == record.fields.end() || found->second.size() != 4)
+        refuse("expected a field '" + std::string{field} + "' of 4 bytes, found none");
+    return load_little<std::uint32_t>(reinterpret_cast<const std::byte*>(found->second.data()));
+}
+
+std::vector<std::byte> BagRecords::unpack(const BagRecord& chunk) const {
+    const std::uint32_t size = number(chunk, "size");
+    const auto packing = chunk.fields.find("compression");
+    const std::string name{packing == chunk.fields.end() ? "none" : packing->second};
+    auto bytes = size <= kLongest ? unpack_bag_chunk(name, chunk.data, size) : std::nullopt;
+    if (!bytes)
+        refuse("expected a chunk that unpacks (none, bz2 or lz4) to " + std::to_string(size) +
+               " bytes, found one that does not ('" + name + "')");
+    return *std::move(bytes);
+}
+
+void BagRecords::refuse(const std::string& what) const {
+    throw Error(ErrorKind::input, path_.string() + ": " + what);
+}
+
+}  // namespace eventide

@@ -1,0 +1,32 @@
+// How far one image is from another: mean squared error, structural similarity, and the gain
+// and offset that would bring them together.
+#pragma once
+
+#include "src/core/array.h"
+
+namespace eventide {
+
+/// A copy with every number brought into [0, 1]; not-a-number becomes 0.
+Array2<float> clipped(const Array2<float>& image);
+
+/// Mean of (a - b)^2. Both of one size, else Error(usage).
+double mean_squared_error(const Array2<float>& a, const Array2<float>& b);
+
+/// SSIM as scikit-image's structural_similarity(gaussian_weights=True, sigma=1.5,
+/// use_sample_covariance=False, data_range=1): Gaussian cut at 3.5 sigma, so 11 x 11 weights,
+/// constants .01^2 and .03^2, the mean over all but 5 px at each border. Both of one size, at least
+/// 11 x 11 px, else Error(usage).
+double structural_similarity(const Array2<float>& a, const Array2<float>& b);
+
+/// image * gain + offset.
+struct AffineFit {
+    double gain = 1, offset = 0;
+};
+
+/// The gain and offset that bring `image` nearest to `reference` in the mean square. A constant
+/// image has gain 0 and the reference's mean.
+AffineFit affine_fit(const Array2<float>& image, const Array2<float>& reference);
+
+Array2<float> applied(const AffineFit& fit, const Array2<float>& image);
+
+}  // namespace eventide

@@ -1,0 +1,69 @@
+// The manual page and the completion know every command and every flag.
+#include "apps/cli/command_line.h"
+#include "apps/cli/program.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace eventide::app {
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// As man writes it: hyphens that can be typed again.
+std::string typed(std::string flag) {
+    std::string out;
+    for (const char c : flag) out += c == '-' ? "\\-" : std::string{c};
+    return out;
+}
+
+TEST(Manual, HasEveryCommandFlagAndExitCode) {
+    const std::string page = manual_page();
+    for (const auto& command : all_commands()) {
+        EXPECT_TRUE(has(page, ".SS \\fBeventide " + command->name())) << command->name();
+        for (const Setting& setting : command->settings().settings)
+            EXPECT_TRUE(has(page, typed(flag_of(setting)) + "\\fR")) << flag_of(setting);
+    }
+    EXPECT_TRUE(has(page, typed("--log-level")));
+    EXPECT_TRUE(has(page, "5 finished but data were lost"));
+}
+
+TEST(Manual, IsTextToMan) {
+    const std::string page = manual_page();
+    std::istringstream lines{page};
+    const std::vector<std::string> macros{".TH", ".SH", ".SS", ".TP", ".PP", ".nf", ".fi"};
+    for (std::string line; std::getline(lines, line);) {
+        const bool is_macro = line.starts_with(".") || line.starts_with("'");
+        EXPECT_TRUE(!is_macro || std::ranges::count(macros, line.substr(0, 3)) == 1) << line;
+    }
+}
+
+/// What bash offers for the last of these words.
+std::string offered(const std::string& words) {
+    const test::TempFolder temp;
+    test::write_text(temp / "completion", bash_completion());
+    const test::Result result =
+        test::run({"bash", "-euc",
+                   ". " + (temp / "completion") + "; COMP_WORDS=(" + words +
+                       "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); COMPREPLY=(); _eventide; "
+                       "echo \"${COMPREPLY[*]}\""});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return result.output;
+}
+
+TEST(Completion, OffersCommandsFlagsAndWords) {
+    EXPECT_EQ(offered("eventide con"), "convert\n");
+    EXPECT_EQ(offered("eventide run --looka"), "--lookahead\n");
+    EXPECT_EQ(offered("eventide run a.raw --precision ''"), "auto f32 bf16\n");
+    EXPECT_EQ(offered("eventide run a.raw --precision b"), "bf16\n");
+    EXPECT_EQ(offered("eventide run rec"), "\n") << "files are bash's own";
+    EXPECT_EQ(offered("eventide info --log"), "--log-level\n");
+}
+
+}  // namespace
+}  // namespace eventide::app

@@ -1,0 +1,73 @@
+// No output lands on an input or on another output.
+#include "apps/cli/named_files.h"
+
+#include "src/core/error.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace eventide::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class NamedFilesTest : public testing::Test {
+protected:
+    NamedFilesTest() {
+        fs::create_directory(temp_ / "d");
+        test::write_text(temp_ / "d/in", "x");
+        files_.may_replace(true);
+    }
+    /// What the naming is refused with.
+    template <typename Name>
+    std::string refusal(Name name) {
+        try {
+            name();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            return error.what();
+        }
+        return {};
+    }
+    test::TempFolder temp_;
+    NamedFiles files_;
+};
+
+TEST_F(NamedFilesTest, AnOutputThatIsAnInputIsRefusedWithBothNames) {
+    fs::create_symlink("d/in", temp_ / "link");
+    files_.reads("SOURCE", temp_ / "d/in");
+    EXPECT_EQ(refusal([&] { files_.writes("--record", temp_ / "link"); }),
+              "--record " + temp_ / "link" + ": is the same file as SOURCE " + temp_ / "d/in" +
+                  "; expected a file of its own");
+    EXPECT_EQ(refusal([&] { files_.writes("--record", temp_ / "d/new"); }), "");
+    EXPECT_EQ(refusal([&] { files_.reads("--model", temp_ / "d/in"); }), "")
+        << "two inputs may be one file";
+}
+
+TEST_F(NamedFilesTest, TwoOutputsAreTwoFiles) {
+    files_.writes("--out", temp_ / "d/new");
+    EXPECT_NE(refusal([&] { files_.writes("--out", temp_ / "d/../d/new"); }), "");
+    EXPECT_NE(refusal([&] { files_.reads("--state-in", temp_ / "d/new"); }), "");
+    files_.writes("--stats", "/dev/null");
+    EXPECT_EQ(refusal([&] { files_.writes("--record", "/dev/null"); }), "");
+}
+
+TEST_F(NamedFilesTest, NothingElseIsReadOrWrittenInAFolderThatIsTakenWhole) {
+    files_.reads_all("INPUT", temp_ / "d");
+    files_.writes_all("--out", temp_ / "frames");
+    EXPECT_NE(refusal([&] { files_.writes("--json", temp_ / "d/in"); }), "");
+    EXPECT_NE(refusal([&] { files_.writes("--json", temp_ / "frames/a/b"); }), "");
+    EXPECT_NE(refusal([&] { files_.writes_all("--truth", temp_.path()); }), "");
+    EXPECT_EQ(refusal([&] { files_.writes("--json", temp_ / "scores"); }), "");
+}
+
+TEST_F(NamedFilesTest, WhatExistsIsNotReplacedUnasked) {
+    files_.may_replace(false);
+    EXPECT_NE(refusal([&] { files_.writes("--stats", temp_ / "d/in"); }).find("--overwrite"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace eventide::app

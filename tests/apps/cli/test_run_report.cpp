@@ -1,0 +1,93 @@
+// The counters of a run, as JSON and as words.
+#include "apps/cli/run/run_report.h"
+#include "apps/cli/terminal.h"
+
+#include <nlohmann/json.hpp>
+
+#include <gtest/gtest.h>
+
+namespace eventide::app {
+namespace {
+
+Snapshot busy() {
+    Snapshot now;
+    now.events = 1'234'567;
+    now.bytes = 500;
+    now.frames = 42;
+    now.skipped_frames = 3;
+    now.lost_packets = 2;
+    now.damaged.count(DamageReason::unknown_word, 5);
+    now.window = {from_us(1'000'000), from_us(1'050'000)};
+    now.newest_frame = from_us(1'040'000);
+    now.latency.p50 = std::chrono::milliseconds{12};
+    return now;
+}
+
+TEST(RunReport, JsonIsOneLineWithEveryCounter) {
+    const std::string line = stats_json(busy(), {}, true);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    const auto json = nlohmann::json::parse(line);
+    EXPECT_EQ(json["final"], true);
+    EXPECT_EQ(json["events"], 1'234'567);
+    EXPECT_EQ(json["lost_packets"], 2);
+    EXPECT_EQ(json["damaged"]["unknown_word"], 5);
+    EXPECT_EQ(json["damaged"].size(), kDamageReasons);
+    EXPECT_EQ(json["latency_ms"]["p50"], 12.0);
+    EXPECT_EQ(json["newest_frame_us"], 1'040'000);
+    EXPECT_TRUE(nlohmann::json::parse(stats_json({}, {}, false))["newest_frame_us"].is_null());
+}
+
+TEST(RunReport, SummaryNamesTheReasonsOfDamage) {
+    EXPECT_NE(summary_text(busy(), {}).find("unknown_word: 5"), std::string::npos);
+}
+
+TEST(RunReport, LatencyIsOfRunsInStepWithTheWorld) {
+    EXPECT_EQ(summary_text(busy(), {}).find("latency"), std::string::npos);
+    RunProgress live;
+    live.in_step = true;
+    EXPECT_NE(summary_text(busy(), live).find("latency 12.0/0.0 ms"), std::string::npos);
+}
+
+TEST(RunReport, TheFinalEventRateIsTheMean) {
+    RunProgress progress;
+    progress.elapsed = std::chrono::seconds{2};
+    progress.event_rate = 5;
+    const auto rate = [&](bool final) {
+        return nlohmann::json::parse(stats_json(busy(), progress, final))["event_rate"];
+    };
+    EXPECT_EQ(rate(false), 5.0);
+    EXPECT_EQ(rate(true), 617'283.5);
+}
+
+TEST(RunReport, ARunWithoutFramesSaysWhy) {
+    EXPECT_EQ(why_no_frames(busy()), "");
+    Snapshot none;
+    EXPECT_NE(why_no_frames(none).find("no event was read"), std::string::npos);
+    none.events = none.slicing.before_begin = 7;
+    EXPECT_NE(why_no_frames(none).find("before --from"), std::string::npos);
+    none.events = 9;
+    none.slicing.after_end = 2;
+    EXPECT_NE(why_no_frames(none).find("between --from and --to"), std::string::npos);
+    none.events = 10;
+    EXPECT_NE(why_no_frames(none).find("--fps"), std::string::npos);
+}
+
+TEST(RunReport, StrictMeansLossAndDamageAndNotSkippedFrames) {
+    Snapshot now;
+    now.skipped_frames = 9;
+    EXPECT_FALSE(lost_data(now));
+    now.gaps = 1;
+    EXPECT_TRUE(lost_data(now));
+    EXPECT_TRUE(lost_data(busy()));
+}
+
+TEST(RunReport, ShortCountsKeepTheirSize) {
+    EXPECT_EQ(short_count(0), "0");
+    EXPECT_EQ(short_count(999), "999");
+    EXPECT_EQ(short_count(1234), "1.2 k");
+    EXPECT_EQ(short_count(999'700), "1.0 M");
+    EXPECT_EQ(short_count(123.4e6), "123 M");
+}
+
+}  // namespace
+}  // namespace eventide::app

@@ -1,0 +1,25 @@
+// Words that were not understood, and what may have been meant.
+#include "apps/cli/suggestion.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide::app {
+namespace {
+
+const std::vector<std::string> kFlags{"--fps", "--from", "--size", "--uncertainty"};
+
+TEST(Suggestion, IsTheNearestWord) {
+    EXPECT_EQ(suggestion("--frm", kFlags), "; did you mean --from?");
+    EXPECT_EQ(suggestion("--fsp", kFlags), "; did you mean --fps?");
+    EXPECT_EQ(suggestion("--uncertanty", kFlags), "; did you mean --uncertainty?");
+    EXPECT_EQ(suggestion("rnu", {"run", "info"}), "; did you mean run?");
+}
+
+TEST(Suggestion, IsEmptyWhereNothingIsNear) {
+    EXPECT_EQ(suggestion("--threads", kFlags), "");
+    EXPECT_EQ(suggestion("", kFlags), "");
+    EXPECT_EQ(suggestion("--fps", {}), "");
+}
+
+}  // namespace
+}  // namespace eventide::app

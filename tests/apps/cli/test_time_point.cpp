@@ -1,0 +1,35 @@
+// Moments count from a recording's first event, or are the sensor's own.
+#include "apps/cli/settings/time_point.h"
+#include "src/core/error.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide::app {
+namespace {
+
+TEST(TimePoint, ReadsBack) {
+    for (const char* text : {"0s", "20ms", "1500us", "@1633953690975951", "@-5"})
+        EXPECT_EQ(show_time_point(parse_time_point(text)), text);
+    EXPECT_THROW(parse_time_point("@"), Error);
+    EXPECT_THROW(parse_time_point("@1.5"), Error);
+    EXPECT_THROW(parse_time_point("later"), Error);
+}
+
+TEST(TimePoint, CountsFromTheFirstEvent) {
+    const test::TempFolder temp;
+    test::write_text(temp / "e.txt", "8 8\n2.000001 1 1 1\n2.5 2 2 0\n");
+    const TimePointReader reader{temp / "e.txt", {}};
+    EXPECT_EQ(to_us(reader.time_of(parse_time_point("0s"))), 2'000'001);
+    EXPECT_EQ(to_us(reader.time_of(parse_time_point("0.25s"))), 2'250'001);
+    EXPECT_EQ(to_us(reader.time_of(parse_time_point("@7"))), 7);
+}
+
+TEST(TimePoint, OfStandardInputMustBeAbsolute) {
+    const TimePointReader reader{"-", {}};
+    EXPECT_EQ(to_us(reader.time_of(parse_time_point("@7"))), 7);
+    EXPECT_THROW(reader.time_of(parse_time_point("1s")), Error);
+}
+
+}  // namespace
+}  // namespace eventide::app

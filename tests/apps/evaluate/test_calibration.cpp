@@ -1,0 +1,63 @@
+// One factor for sigma, found on held-out data and kept in the model.
+#include "apps/evaluate/evaluate.h"
+#include "src/core/error.h"
+#include "src/model/model_file.h"
+#include "tests/apps/evaluate/recordings.h"
+#include "tests/apps/evaluate/small_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace eventide::test {
+namespace {
+
+TEST(Calibration, BringsTheCoverageToEightTenthsAndIsWrittenIntoTheModel) {
+    const fs::path folder = write_recording(fresh_folder("calibration"), .9, .001, .1);
+    RecordingSettings what;
+    what.recordings = {folder};
+    EvaluateSettings how = small_model();
+    const Calibration found = calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
+    EXPECT_NEAR(found.picp80_after, .8, .01);
+    const fs::path calibrated = fs::path{testing::TempDir()} / "eventide_calibrated.safetensors";
+    write_calibrated(how.model, calibrated, found, true);
+    how.model = calibrated;
+    const EvaluateReport after = evaluate_recordings(what, how);
+    EXPECT_NEAR(*after.overall.picp80, .8, .02);
+    EXPECT_NEAR(*after.overall.ll, found.ll_after, .02);
+    EXPECT_NE(load_model(calibrated).config.card.find("calibrated"), std::string::npos);
+}
+
+TEST(Calibration, CautiouslyHoldsInEverySequence) {
+    const fs::path folder = fresh_folder("cautious");
+    RecordingSettings what;
+    what.recordings = {write_recording(folder / "a", .4, .002, .1),
+                       write_recording(folder / "b", .9, .002, .3)};
+    what.skip_images = 0;
+    const EvaluateSettings how = small_model();
+    const EvaluateReport report = evaluate_recordings(what, how);
+    const double cautious = calibrate(report, CalibrationRule::cautious).factor;
+    double largest = 0;
+    for (const fs::path& one : what.recordings) {
+        RecordingSettings alone = what;
+        alone.recordings = {one};
+        largest = std::max(
+            largest, calibrate(evaluate_recordings(alone, how), CalibrationRule::coverage).factor);
+    }
+    EXPECT_EQ(cautious, largest);
+    EXPECT_GE(cautious, calibrate(report, CalibrationRule::coverage).factor);
+}
+
+TEST(Calibration, ByLikelihoodIsNeverLessLikely) {
+    const fs::path folder = write_recording(fresh_folder("likelihood"), .5, .001, .1);
+    RecordingSettings what;
+    what.recordings = {folder};
+    const EvaluateReport report = evaluate_recordings(what, small_model());
+    const Calibration found = calibrate(report, CalibrationRule::likelihood);
+    EXPECT_GE(found.ll_after, found.ll_before);
+    EXPECT_GE(found.ll_after, calibrate(report, CalibrationRule::coverage).ll_after);
+    EXPECT_THROW(calibrate(EvaluateReport{}, CalibrationRule::coverage), Error);
+}
+
+}  // namespace
+}  // namespace eventide::test

@@ -1,0 +1,132 @@
+// The protocol of EVREAL on small data sets in its layouts.
+#include "apps/evaluate/evaluate.h"
+#include "apps/evaluate/evreal_sequence.h"
+#include "src/core/error.h"
+#include "tests/apps/evaluate/recordings.h"
+#include "tests/apps/evaluate/small_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace eventide::test {
+namespace {
+
+TEST(Evreal, CutsBySequenceNameAndStartsBeforeTheCut) {
+    const fs::path dataset = fresh_folder("ecd");
+    write_recording(dataset / "slider_depth", 3.05, .01, .25);
+    write_recording(dataset / "unknown", 1.05, .01, .25);
+    const EvaluateReport report = evaluate_evreal(dataset, small_model());
+    ASSERT_EQ(report.sequences.size(), 2U);
+    EXPECT_EQ(report.sequences[0].scores.sequence, "slider_depth");
+    EXPECT_EQ(report.sequences[0].scores.frames, 7);  // 1 to 2.5 s, both included
+    EXPECT_NEAR(report.sequences[0].frames.front().time_s, 1, 1e-6);
+    EXPECT_EQ(report.sequences[1].scores.frames, 4);  // in full, but for the last
+}
+
+TEST(Evreal, StartsEachSequenceAnew) {
+    const fs::path dataset = fresh_folder("ecd_twice");
+    write_recording(dataset / "a", .6, .002, .1);
+    write_recording(dataset / "b", .6, .002, .1);
+    const EvaluateReport report = evaluate_evreal(dataset, small_model());
+    EXPECT_EQ(report.sequences[0].scores.raw.mse, report.sequences[1].scores.raw.mse);
+}
+
+/// An .npy file of these bytes per number.
+template <typename T>
+void write_npy(const fs::path& path, const std::string& kind, const std::string& shape,
+               const std::vector<T>& values) {
+    const std::string header =
+        "{'descr': '" + kind + "', 'fortran_order': False, 'shape': (" + shape + "), }\n";
+    std::ofstream file{path, std::ios::binary};
+    file << std::string{"\x93NUMPY\x01\x00", 8} << char(header.size()) << '\0' << header;
+    file.write(reinterpret_cast<const char*>(values.data()),
+               std::streamsize(values.size() * sizeof(T)));
+}
+
+TEST(Evreal, ReadsTheSameFromItsOwnArraysAsFromText) {
+    const fs::path dataset = fresh_folder("ecd_npy");
+    const ReferenceSequence text =
+        read_reference_sequence(write_recording(dataset / "text", 1.05, .001, .1));
+    std::vector<double> ts, images_ts;
+    std::vector<std::int64_t> xy, p;
+    std::vector<std::uint8_t> images;
+    for (const Event& event : text.events) {
+        ts.push_back(double(to_us(event.t)) * 1e-6);
+        xy.insert(xy.end(), {event.x, event.y});
+        p.push_back(event.polarity == Polarity::on ? 1 : 0);
+    }
+    for (const ReferenceImage& image : text.images) {
+        images_ts.push_back(double(to_us(image.t)) * 1e-6);
+        for (const std::uint16_t v : image.pixels.values()) images.push_back(std::uint8_t(v / 257));
+    }
+    const fs::path folder = dataset / "arrays";
+    fs::create_directories(folder);
+    const std::string n = std::to_string(ts.size()), m = std::to_string(images_ts.size());
+    write_npy(folder / "events_ts.npy", "<f8", n + ",", ts);
+    write_npy(folder / "events_xy.npy", "<i8", n + ", 2", xy);
+    write_npy(folder / "events_p.npy", "<i8", n + ",", p);
+    write_npy(folder / "images_ts.npy", "<f8", m + ", 1", images_ts);
+    write_npy(folder / "images.npy", "|u1", m + ", 28, 36, 1", images);
+
+    const ReferenceSequence arrays = read_evreal_sequence(folder, {}, {});
+    EXPECT_EQ(arrays.events, text.events);
+    EXPECT_EQ(arrays.images, text.images);
+    const ReferenceSequence part = read_evreal_sequence(folder, .2, .5);
+    const ReferenceSequence text_part = read_reference_sequence(dataset / "text", .2, .5);
+    EXPECT_EQ(part.events, text_part.events);
+    EXPECT_EQ(part.images, text_part.images);
+    EXPECT_EQ(part.images.size(), 4U);
+
+    const EvaluateReport report = evaluate_evreal(dataset, small_model());
+    ASSERT_EQ(report.sequences.size(), 2U);
+    EXPECT_EQ(report.sequences[0].scores.raw.mse, report.sequences[1].scores.raw.mse);
+}
+
+TEST(Evreal, RefusesArraysCutShort) {
+    const fs::path folder = fresh_folder("short");
+    write_npy<double>(folder / "events_ts.npy", "<f8", "1000000000000,", {1, 2});
+    write_npy<std::uint8_t>(folder / "images.npy", "|u1", "1, 28, 36, 1", {0});
+    write_npy<double>(folder / "images_ts.npy", "<f8", "1,", {0});
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+    write_npy(folder / "images.npy", "|u1", "1, 28, 36, 1", std::vector<std::uint8_t>(28 * 36));
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+}
+
+TEST(Evreal, RefusesTimesThatAreNone) {
+    const fs::path folder = fresh_folder("no_times");
+    write_npy<std::uint8_t>(folder / "images.npy", "|u1", "1, 2, 3", {1, 2, 3, 4, 5, 6});
+    write_npy<double>(folder / "images_ts.npy", "<f8", "1,", {0.1});
+    write_npy<std::int64_t>(folder / "events_xy.npy", "<i8", "3, 2", {0, 0, 1, 1, 2, 1});
+    write_npy<std::int64_t>(folder / "events_p.npy", "<i8", "3,", {0, 1, 0});
+    for (const double wrong : {std::nan(""), 1e300, -1e300, HUGE_VAL}) {
+        write_npy<double>(folder / "events_ts.npy", "<f8", "3,", {0.0, wrong, 0.2});
+        try {
+            read_evreal_sequence(folder, {}, {});
+            FAIL() << wrong << " was taken";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("row 1: expected a time"), std::string::npos)
+                << error.what();
+        }
+    }
+    // Rows of no numbers at all.
+    write_npy<double>(folder / "events_ts.npy", "<f8", "3, 0", {});
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+}
+
+TEST(Evreal, RefusesSensorsLargerThanAny) {
+    const fs::path folder = fresh_folder("large");
+    write_npy<double>(folder / "events_ts.npy", "<f8", "0,", {});
+    write_npy<double>(folder / "images_ts.npy", "<f8", "0,", {});
+    write_npy<std::uint8_t>(folder / "images.npy", "|u1", "0, 65535, 65535", {});
+    EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
+}
+
+TEST(Evreal, NamesWhatItCannotRead) {
+    const fs::path dataset = fresh_folder("nothing");
+    EXPECT_THROW(evaluate_evreal(dataset, small_model()), Error);
+}
+
+}  // namespace
+}  // namespace eventide::test

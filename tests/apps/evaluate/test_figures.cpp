@@ -1,0 +1,120 @@
+// Plots and the figures made with them.
+#include "apps/evaluate/figures.h"
+#include "src/core/error.h"
+#include "tests/apps/evaluate/small_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace eventide {
+namespace {
+
+int count(const std::string& text, const std::string& what) {
+    int n = 0;
+    for (auto at = text.find(what); at != text.npos; at = text.find(what, at + 1)) ++n;
+    return n;
+}
+
+TEST(Plot, DrawsEachPointOnceAndLeavesOutWhatIsNotFinite) {
+    const Plot plot{
+        .name = "p",
+        .title = "a < b",
+        .x_label = "x",
+        .y_label = "y",
+        .series = {{"one", {1, 2, 3}, {4, NAN, 5}, {.1, .1, .1}}, {"two", {1}, {2}, {}}}};
+    const std::string drawn = svg(plot);
+    EXPECT_EQ(count(drawn, "<circle"), 3);
+    EXPECT_EQ(count(drawn, "<polygon"), 1);
+    EXPECT_NE(drawn.find("a &lt; b"), std::string::npos);
+    EXPECT_EQ(drawn.find("nan"), std::string::npos);
+    EXPECT_EQ(count(csv(plot), "\n"), 5);
+}
+
+TEST(Plot, SurvivesNoPointsOnePointAndLogarithmsOfZero) {
+    for (const bool log_x : {false, true})
+        for (const auto& x : {std::vector<double>{}, {3.}, {0., 10., 1000.}}) {
+            Plot plot{.name = "p", .series = {{"s", x, x, {}}}, .log_x = log_x, .diagonal = true};
+            const std::string drawn = svg(plot);
+            EXPECT_EQ(count(drawn, "<circle"), int(x.size()));
+            EXPECT_EQ(drawn.find("nan"), std::string::npos);
+            EXPECT_EQ(drawn.find("inf"), std::string::npos);
+        }
+}
+
+TEST(Plot, IsWrittenAsImageAndNumbers) {
+    const auto folder = std::filesystem::path{testing::TempDir()} / "eventide_plots";
+    const Plot plot{.name = "some", .series = {{"s", {1, 2}, {3, 4}, {}}}};
+    EXPECT_EQ(write_plot(plot, folder, true), folder / "some.svg");
+    EXPECT_TRUE(std::filesystem::exists(folder / "some.svg"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "some.csv"));
+    std::ofstream{folder / "file"} << "x";
+    EXPECT_THROW(write_plot(plot, folder / "file"), std::exception);
+}
+
+FigureSettings small_figures() {
+    FigureSettings what;
+    what.simulated = small_simulation();
+    what.simulated.score_every = 3;
+    what.scales = {1, 2};
+    what.phases_max = 3;
+    what.moving_frames = 4;
+    what.silent_frames = {0, 1, 5};
+    return what;
+}
+
+TEST(Figures, AreEachMadeByTheirName) {
+    const EvaluateSettings how = small_model();
+    for (const std::string& name : figure_names())
+        for (const Plot& plot : make_figure(name, small_figures(), how)) {
+            ASSERT_FALSE(plot.series.empty()) << name;
+            for (const Series& series : plot.series) {
+                EXPECT_FALSE(series.label.empty() && plot.series.size() > 1);
+                EXPECT_EQ(series.x.size(), series.y.size());
+                if (name != "patch-size") {
+                    EXPECT_FALSE(series.x.empty()) << plot.name;
+                }
+            }
+        }
+    EXPECT_THROW(make_figure("nonsense", small_figures(), how), Error);
+}
+
+const Series& series_of(const std::vector<Plot>& plots, const std::string& plot,
+                        const std::string& label) {
+    for (const Plot& one : plots)
+        for (const Series& series : one.series)
+            if (one.name == plot && series.label == label) return series;
+    throw std::runtime_error("no series " + label + " in " + plot);
+}
+
+TEST(SpatialFigure, ComparesWithCubicWhichIsTheModelItselfAtTheSensorsSize) {
+    const auto plots = spatial_super_resolution(small_figures(), small_model());
+    const Series& model = series_of(plots, "spatial_mse", "model");
+    const Series& cubic = series_of(plots, "spatial_mse", "cubic");
+    EXPECT_EQ(model.x, (std::vector<double>{1, 2}));
+    EXPECT_EQ(cubic.x, model.x);
+    EXPECT_NEAR(cubic.y[0], model.y[0], 1e-7);
+    EXPECT_NE(cubic.y[1], model.y[1]);
+}
+
+TEST(TemporalFigure, OfOneImagePerFrameIsTheImageAtItsEdge) {
+    const auto plots = temporal_super_resolution(small_figures(), small_model());
+    const Series& model = series_of(plots, "temporal_mse", "model");
+    const Series& blend = series_of(plots, "temporal_mse", "blend of edges");
+    EXPECT_EQ(model.x, (std::vector<double>{1, 2, 3}));
+    EXPECT_NEAR(blend.y[0], model.y[0], 1e-7);
+    EXPECT_NE(blend.y[1], model.y[1]);
+}
+
+TEST(SilenceFigure, OfAGatedModelDoesNotChange) {
+    const auto plots = error_against_silence(small_figures(), small_model());
+    const Series& change = series_of(plots, "silence_change", "model");
+    EXPECT_EQ(change.x, (std::vector<double>{0, 1, 5}));
+    EXPECT_EQ(change.y[0], 0);
+    // The voxel grid of the first silent frame still tells ages, but no gate opens.
+    EXPECT_EQ(change.y[2], change.y[1]);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,45 @@
+// The command line of eventide-train.
+#include "apps/train/options.h"
+#include "src/core/error.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace eventide {
+namespace {
+
+TEST(Options, WhatIsRecordedCanBeReadBack) {
+    TrainOptions first, second;
+    OptionTable table{first}, other{second};
+    table.parse(
+        {"--widths", "8,16", "--rate", "0.002", "--episode", "10,20", "--encoder", "thesis"});
+    std::istringstream lines{table.record()};
+    std::vector<std::string> words;
+    for (std::string line; std::getline(lines, line);) {
+        const auto space = line.find(' ');
+        words.insert(words.end(), {line.substr(0, space), line.substr(space + 1)});
+    }
+    other.parse(words);
+    EXPECT_EQ(other.record(), table.record());
+    EXPECT_EQ(second.model.widths, (std::vector{8, 16}));
+    EXPECT_EQ(second.model.encoder, EncoderKind::thesis);
+}
+
+TEST(Options, AWrongWordIsRefusedByName) {
+    TrainOptions options;
+    OptionTable table{options};
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"--lanes", "many"}, {"--nonsense", "1"}, {"--rate"}}) {
+        try {
+            table.parse(words);
+            ADD_FAILURE() << words[0] << " was taken";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_NE(std::string{error.what()}.find(words[0]), std::string::npos) << error.what();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace eventide

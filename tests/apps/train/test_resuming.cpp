@@ -1,0 +1,111 @@
+// Runs that stop and go on, and networks that begin with what another has learned.
+#include "src/core/error.h"
+#include "tests/apps/train/tiny_run.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+TEST(Training, ARunThatStoppedGoesOnAsIfItHadNot) {
+    TrainOptions options = tiny_options(empty_folder("whole"));
+    options.steps = 12;
+    expect_stopping_changes_nothing(options, 5);
+}
+
+TEST(Training, AKeptCheckpointHasNoStreamsAndGoesOn) {
+    const fs::path out = empty_folder("keeps");
+    TrainOptions options = tiny_options(out);
+    options.steps = 3;
+    const auto first = trainer(options);
+    train(*first);
+    const fs::path kept = out / "kept.safetensors";
+    first->keep(kept);
+    EXPECT_LT(fs::file_size(kept), fs::file_size(out / "checkpoint.safetensors"));
+    options.resume = kept.string();
+    options.steps = 5;
+    const auto second = trainer(options);
+    EXPECT_EQ(second->steps(), 3);
+    for (const auto& [name, values] : first->parameters())
+        EXPECT_TRUE(torch::equal(second->parameters().at(name), values)) << name;
+    train(*second);
+    EXPECT_EQ(second->steps(), 5);
+}
+
+TEST(Training, ACheckpointOfAnotherNetworkIsRefusedByName) {
+    const fs::path out = empty_folder("refuses");
+    TrainOptions options = tiny_options(out);
+    options.steps = 1;
+    train(*trainer(options));
+    options.resume = (out / "checkpoint.safetensors").string();
+    options.model.widths = {8, 12};
+    try {
+        trainer(options);
+        FAIL() << "a checkpoint of other widths was taken";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string{error.what()}.find("encoder."), std::string::npos) << error.what();
+    }
+}
+
+TEST(Training, ADeeperNetworkBeginsWithWhatAShallowerOneHasLearned) {
+    const fs::path out = empty_folder("inherits");
+    TrainOptions options = tiny_options(out / "shallow");
+    options.steps = 3;
+    const auto shallow = trainer(options);
+    train(*shallow);
+    save_model(out / "shallow.safetensors", shallow->finished_model());
+
+    options.model.widths = {8, 8, 8};
+    options.model.recurrent = {1, 1, 1};
+    options.out = (out / "deep").string();
+    for (const char* file : {"shallow.safetensors", "shallow/checkpoint.safetensors"}) {
+        options.initial = (out / file).string();
+        const auto deep = trainer(options);
+        for (const auto& [name, values] : shallow->finished_model().weights) {
+            const torch::Tensor inherited = deep->parameters().at(name).detach().cpu();
+            EXPECT_EQ(to_tensor(inherited).values, values.values) << file << " " << name;
+        }
+        // The new join: its own level through the middle, a tenth of a start for the rest.
+        const torch::Tensor join = deep->parameters().at("encoder.up.1.weight").detach();
+        EXPECT_GT(join[3][8 + 3][1][1].item<float>(), 0.8F);
+        EXPECT_LT(join[3][8 + 4].abs().max().item<float>(), 0.2F);
+        EXPECT_EQ(deep->steps(), 0);
+        train(*deep);
+    }
+}
+
+TEST(Training, WeightsOfAnotherNetworkAreRefused) {
+    const fs::path out = empty_folder("foreign");
+    TrainOptions options = tiny_options(out);
+    options.model.widths = {6, 6};
+    options.model.mlp = {12};
+    options.model.latent = 5;
+    save_model(out / "other.safetensors",
+               {options.model,
+                to_tensors(initial_parameters(options.model, 1, torch::Device{torch::kCPU}))});
+    options = tiny_options(out);
+    options.model.bins = 3;
+    options.initial = (out / "other.safetensors").string();
+    try {
+        trainer(options);
+        FAIL() << "expected an error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string{error.what()}.find("other.safetensors"), std::string::npos);
+    }
+}
+
+TEST(Training, ARunBeginsOrGoesOnNotBoth) {
+    TrainOptions options = tiny_options(empty_folder("both"));
+    options.initial = options.resume = "no-such-file";
+    try {
+        trainer(options);
+        FAIL() << "expected an error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+        EXPECT_NE(std::string{error.what()}.find("--initial"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace eventide

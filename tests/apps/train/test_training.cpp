@@ -1,0 +1,76 @@
+// The loop as a whole, at a size that takes seconds.
+#include "src/core/error.h"
+#include "tests/apps/train/tiny_run.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+namespace eventide {
+namespace {
+
+std::vector<double> logged(const fs::path& folder, std::size_t column) {
+    std::ifstream in{folder / "log.csv"};
+    std::vector<double> values;
+    std::string line;
+    for (std::getline(in, line); std::getline(in, line);) {
+        std::istringstream cells{line};
+        std::string cell;
+        for (std::size_t i = 0; i <= column; ++i) std::getline(cells, cell, ',');
+        values.push_back(std::stod(cell));
+    }
+    return values;
+}
+
+TEST(Training, AFewStepsMakeTheErrorSmaller) {
+    const fs::path out = empty_folder("learns");
+    train(*trainer(tiny_options(out)));
+    const auto l1 = logged(out, 3), nll = logged(out, 6);
+    ASSERT_EQ(l1.size(), 20U);
+    const auto mean = [](const std::vector<double>& v, std::size_t from) {
+        return std::accumulate(v.begin() + long(from), v.begin() + long(from) + 6, 0.0) / 6;
+    };
+    EXPECT_LT(mean(l1, 14) + 0.1 * mean(nll, 14), mean(l1, 0) + 0.1 * mean(nll, 0));
+    EXPECT_TRUE(fs::exists(out / "checkpoint.safetensors"));
+}
+
+TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
+    const fs::path out = empty_folder("exports");
+    TrainOptions options = tiny_options(out);
+    options.steps = 3;
+    options.validation_scenes = 2;
+    options.validation_frames = 8;
+    options.validation_crop = 32;
+    const auto run = trainer(options);
+    train(*run);
+    save_model(out / "model.safetensors", run->finished_model());
+    const Model model = load_model(out / "model.safetensors");
+    EXPECT_GT(model.config.sigma_scale, 0);
+    EXPECT_NE(model.config.card.find("3 steps"), std::string::npos);
+    EXPECT_NE(model.config.card.find("--widths 8,8"), std::string::npos);
+    EXPECT_EQ(model.config.card.find(out.string()), std::string::npos) << "no names of files";
+    EXPECT_TRUE(fs::exists(out / "learning_curve.svg"));
+    EXPECT_TRUE(fs::exists(out / "best.safetensors"));
+}
+
+TEST(Training, AnInputThatIsNotUsedHasNoWeightInTheModel) {
+    const fs::path out = empty_folder("inputs");
+    TrainOptions options = tiny_options(out);
+    options.steps = 4;
+    options.inputs = {"polarity", "since"};
+    const auto run = trainer(options);
+    train(*run);
+    const auto per_channel =
+        run->parameters().at("encoder.in.weight").detach().abs().sum(torch::IntArrayRef{0, 2, 3});
+    ASSERT_EQ(per_channel.size(0), 9);  // B = 2
+    for (const int channel : {0, 4, 8}) EXPECT_GT(per_channel[channel].item<float>(), 0) << channel;
+    for (const int channel : {1, 2, 3, 5, 6, 7})
+        EXPECT_EQ(per_channel[channel].item<float>(), 0) << channel;
+    options.inputs = {"colour"};
+    EXPECT_THROW(trainer(options), Error);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,110 @@
+// Sigma judged where it is known to be right, and where it is known to be wrong.
+#include "src/metrics/uncertainty.h"
+
+#include "tests/metrics/images.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+namespace eventide {
+namespace {
+
+/// A truth drawn from N(mu, (true_scale sigma)^2).
+struct Drawn {
+    Array2<float> mu, sigma, truth;
+    explicit Drawn(float true_scale, int height = 200, int width = 300) {
+        mu = test_image(height, width, 1);
+        sigma = mapped(test_image(height, width, 2), [](float v) { return .02F + .1F * v; });
+        truth = mu;
+        std::mt19937 random{7};
+        std::normal_distribution<float> normal;
+        for (std::size_t i = 0; i < truth.values().size(); ++i)
+            truth.values()[i] += true_scale * sigma.values()[i] * normal(random);
+    }
+};
+
+TEST(Coverage, OfGaussianErrorsIsEightTenths) {
+    const Drawn drawn{1};
+    EXPECT_NEAR(coverage_80(drawn.mu, drawn.sigma, drawn.truth), .80, .005);
+}
+
+TEST(Coverage, SeesASigmaThatIsTooSmallOrTooLarge) {
+    const Drawn bold{2}, shy{.5};
+    EXPECT_LT(coverage_80(bold.mu, bold.sigma, bold.truth), .55);
+    EXPECT_GT(coverage_80(shy.mu, shy.sigma, shy.truth), .97);
+}
+
+TEST(LogLikelihood, IsTheFormula) {
+    Array2<float> mu(1, 2), sigma(1, 2), truth(1, 2);
+    mu(0, 0) = .25F;
+    truth(0, 0) = .5F;
+    sigma(0, 0) = .5F;
+    mu(0, 1) = truth(0, 1) = .75F;
+    sigma(0, 1) = .125F;
+    const double expected =
+        -.5 * std::log(2 * std::numbers::pi) - .5 * (std::log(.5) + .5 * .25 + std::log(.125));
+    EXPECT_NEAR(log_likelihood(mu, sigma, truth), expected, 1e-12);
+}
+
+TEST(LogLikelihood, IsLargestForTheTrueSigma) {
+    const Drawn drawn{1};
+    const double right = log_likelihood(drawn.mu, drawn.sigma, drawn.truth);
+    for (const float scale : {.8F, 1.25F}) {
+        const auto wrong = mapped(drawn.sigma, [&](float s) { return s * scale; });
+        EXPECT_LT(log_likelihood(drawn.mu, wrong, drawn.truth), right);
+    }
+}
+
+TEST(Reliability, OfTheTruthLiesOnTheDiagonal) {
+    const Drawn drawn{1};
+    Reliability diagram;
+    diagram.add(drawn.mu, drawn.sigma, drawn.truth);
+    EXPECT_EQ(diagram.pixels(), 60000U);
+    for (int i = 0; i < Reliability::kLevels; ++i) {
+        EXPECT_NEAR(diagram.inside(i), Reliability::level(i), .01);
+        EXPECT_NEAR(diagram.below(i), Reliability::level(i), .01);
+    }
+}
+
+TEST(Reliability, SagsWhereSigmaIsTooSmall) {
+    const Drawn drawn{2};
+    Reliability diagram;
+    diagram.add(drawn.mu, drawn.sigma, drawn.truth);
+    for (int i = 0; i < Reliability::kLevels; ++i)
+        EXPECT_LT(diagram.inside(i), Reliability::level(i));
+}
+
+TEST(SigmaScale, FindsTheFactorThatIsMissing) {
+    const Drawn drawn{1.7F};
+    SigmaScale scale;
+    scale.add(drawn.mu, drawn.sigma, drawn.truth);
+    EXPECT_NEAR(scale.by_likelihood(), 1.7, .02);
+    EXPECT_NEAR(scale.by_coverage(), 1.7, .03);
+}
+
+TEST(SigmaScale, IsOneBeforeAnyImage) {
+    EXPECT_EQ(SigmaScale{}.by_likelihood(), 1);
+    EXPECT_EQ(SigmaScale{}.by_coverage(), 1);
+}
+
+TEST(Correlation, IsOneForALineMinusOneForAFallingOneAndNothingForAConstant) {
+    const std::vector<double> a{1, 2, 4, 8};
+    EXPECT_NEAR(*correlation(a, {3, 5, 9, 17}), 1, 1e-12);
+    EXPECT_NEAR(*correlation(a, {-1, -2, -4, -8}), -1, 1e-12);
+    EXPECT_FALSE(correlation(a, {2, 2, 2, 2}));
+    EXPECT_FALSE(correlation({1}, {1}));
+}
+
+TEST(Patches, AreWholeOnesFromTheTopLeft) {
+    Array2<float> map(5, 7);
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 7; ++x) map(y, x) = float(10 * y + x);
+    EXPECT_EQ(patch_means(map, 2), (std::vector<double>{5.5, 7.5, 9.5, 25.5, 27.5, 29.5}));
+    EXPECT_EQ(patch_medians(map, 3), (std::vector<double>{11, 14}));
+    EXPECT_TRUE(patch_means(map, 6).empty());
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,194 @@
+// What closes event windows: events, the stream's clock, the host's clock in silence; gaps.
+#include "pipeline/event_windows.h"
+#include "tests/support/toy_stages.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace test;
+
+using Edges = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+/// A line's beginning over a toy source, fed by hand.
+struct Beginning {
+    explicit Beginning(bool live, std::int64_t width_us = 10, EventFilter* filter = nullptr,
+                       DataObserver* observer = nullptr)
+        : source({}, live), frames(source, settings(width_us), filter, observer, counters) {}
+
+    static EventWindows::Settings settings(std::int64_t width_us) {
+        EventWindows::Settings s;
+        s.slicer.width = SensorDuration{width_us};
+        s.silence_margin = SensorDuration{100};
+        return s;
+    }
+    void give(const std::vector<std::byte>& bytes, std::int64_t host_us, bool gap = false) {
+        RawPacket packet;
+        packet.bytes = bytes;
+        packet.arrived = HostTime{std::chrono::microseconds{host_us}};
+        packet.gap_before = gap;
+        frames.take(packet);
+        take();
+    }
+    void finish(EventWindows::End end = EventWindows::End::of_source) {
+        frames.finish(end);
+        take();
+    }
+    void take() {
+        for (EventWindow event_window; frames.next(event_window);) {
+            edges.emplace_back(to_us(event_window.window.begin), to_us(event_window.window.end));
+            gaps.push_back(event_window.gap_before);
+        }
+    }
+
+    Counters counters;
+    ToySource source;
+    EventWindows frames;
+    Edges edges;
+    std::vector<bool> gaps;
+};
+
+std::vector<std::byte> record(ToyKind kind, std::int64_t t_us) {
+    std::vector<std::byte> bytes;
+    append_record(bytes, kind, t_us);
+    return bytes;
+}
+
+TEST(EventWindows, OfARecordingAreClosedByEventsNotByItsClock) {
+    Beginning b(false);
+    b.give(record(ToyKind::event, 1), 0);
+    b.give(record(ToyKind::clock, 95), 0);
+    b.give({}, 1'000'000);
+    EXPECT_TRUE(b.edges.empty());
+    b.give(record(ToyKind::event, 12), 0);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}}));
+    EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
+    b.finish();
+    EXPECT_EQ(b.edges.back().second, 95) << "the recording's trailing silence is part of it";
+}
+
+TEST(EventWindows, OfALiveSourceAreClosedByItsClockToo) {
+    Beginning b(true);
+    b.give(record(ToyKind::event, 1), 0);
+    b.give(record(ToyKind::clock, 25), 0);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}, {10, 20}}));
+}
+
+TEST(EventWindows, GoOnByTheHostsClockInSilence) {
+    Beginning b(true);
+    b.give(record(ToyKind::event, 1), 5000);
+    b.give({}, 5100);
+    EXPECT_TRUE(b.edges.empty()) << "within the margin the silence may be the cable's";
+    b.give({}, 5125);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}, {10, 20}}));
+    b.give({}, 5145);
+    EXPECT_EQ(b.edges.size(), 4U);
+    b.give(record(ToyKind::event, 46), 5150);
+    b.give(record(ToyKind::event, 61), 5170);
+    EXPECT_EQ(b.edges.size(), 6U);
+    EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
+}
+
+TEST(EventWindows, DoNotBeginByTheHostsClock) {
+    Beginning b(true);
+    b.give({}, 5'000'000);
+    b.finish();
+    EXPECT_TRUE(b.edges.empty());
+}
+
+TEST(EventWindows, OfAStreamWithoutEventsAreNone) {
+    Beginning b(false);
+    b.give(record(ToyKind::clock, 500), 0);
+    b.finish();
+    EXPECT_TRUE(b.edges.empty());
+}
+
+TEST(EventWindows, CarryAGapAndTheParserTakesUpAfterIt) {
+    Beginning b(true);
+    auto half = record(ToyKind::event, 1);
+    const auto more = record(ToyKind::event, 2);
+    half.insert(half.end(), more.begin(), more.begin() + 5);
+    b.give(half, 0);
+    b.give(record(ToyKind::event, 35), 0, true);
+    EXPECT_EQ(b.edges, (Edges{{0, 10}, {10, 20}, {20, 30}}));
+    EXPECT_EQ(b.gaps, (std::vector{true, false, false}));
+    EXPECT_EQ(b.counters.snapshot().gaps, 1U);
+    EXPECT_EQ(b.counters.snapshot().events, 2U)
+        << "half a record is dropped, the next one is whole";
+}
+
+TEST(EventWindows, EndedOnPurposeHaveNoTruncatedRecord) {
+    const auto truncated_with = [](EventWindows::End end, std::int64_t past_us) {
+        EventWindows::Settings settings = Beginning::settings(10);
+        settings.slicer.end = from_us(50);
+        Counters counters;
+        ToySource source({}, false);
+        EventWindows frames(source, settings, nullptr, nullptr, counters);
+        RawPacket packet;
+        packet.bytes = record(ToyKind::event, past_us);
+        packet.bytes.push_back(std::byte{1});  // the next record begins
+        frames.take(packet);
+        frames.finish(end);
+        return counters.snapshot().damaged[DamageReason::truncated];
+    };
+    EXPECT_EQ(truncated_with(EventWindows::End::of_source, 5), 1U);
+    EXPECT_EQ(truncated_with(EventWindows::End::asked_for, 5), 0U);
+    EXPECT_EQ(truncated_with(EventWindows::End::of_source, 51), 0U) << "--duration was over";
+}
+
+TEST(EventWindows, CountWhatTheParserGivesAndWhatIsDamaged) {
+    Beginning b(false);
+    auto bytes = record(ToyKind::event, 1);
+    const auto image = record(ToyKind::image, 3);
+    bytes.insert(bytes.end(), image.begin(), image.end());
+    bytes.resize(bytes.size() + 3);
+    b.give(bytes, 0);
+    b.finish();
+    const Snapshot s = b.counters.snapshot();
+    EXPECT_EQ(s.events, 1U);
+    EXPECT_EQ(s.images, 1U);
+    EXPECT_EQ(s.damaged[DamageReason::truncated], 1U);
+}
+
+struct DropsOff final : EventFilter, DataObserver {
+    void process(std::vector<Event>& events) override {
+        std::erase_if(events, [](const Event& e) { return e.polarity == Polarity::off; });
+    }
+    void see(const Batch& batch) override { seen += batch.events.size(); }
+    std::size_t seen = 0;
+};
+
+TEST(EventWindows, AreOfWhatTheFilterLeavesAndTheObserverSeesAll) {
+    DropsOff both;
+    Beginning b(false, 10, &both, &both);
+    std::vector<std::byte> bytes;
+    for (int t = 1; t <= 9; ++t) append_record(bytes, ToyKind::event, t, 0, 0, t % 3 == 0);
+    b.give(bytes, 0);
+    EXPECT_EQ(both.seen, 9U);
+    EXPECT_EQ(b.counters.snapshot().events, 9U);
+    EXPECT_EQ(b.counters.snapshot().filtered_events, 6U);
+}
+
+TEST(EventWindows, EventsThatAreLeftOutTellTheTimeAllTheSame) {
+    struct KeepsTheFirst final : EventFilter {
+        void process(std::vector<Event>& events) override {
+            std::erase_if(events, [](const Event& e) { return e.t > from_us(1); });
+        }
+    } filter;
+    std::vector<std::byte> bytes;
+    for (int t = 1; t <= 99; t += 7) append_record(bytes, ToyKind::event, t);
+    Beginning all(false, 10), filtered(false, 10, &filter);
+    for (Beginning* b : {&all, &filtered}) {
+        b->give(bytes, 0);
+        b->finish();
+    }
+    EXPECT_EQ(filtered.edges, all.edges);
+    EXPECT_EQ(all.edges.size(), 10U);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,65 @@
+// What is rendered when not all can be: the newest always, the rest evenly.
+#include "pipeline/frame_dropper.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Which of `due` frames are kept, with event windows every 50 ms and frames of `cost`.
+std::vector<bool> kept_of(FrameDropper& shedder, std::uint64_t due, HostTime::duration cost,
+                          int rounds, std::size_t waiting = 0) {
+    static HostTime now{};  // goes on over all calls
+    std::vector<bool> kept;
+    for (int round = 0; round < rounds; ++round) {
+        now += 50ms;
+        shedder.open({.frames = due}, now);
+        kept.assign(due, false);
+        for (std::uint64_t i = 0; i < due; ++i) {
+            kept[i] = shedder.keeps_next(waiting);
+            if (kept[i]) shedder.took(cost);
+        }
+    }
+    return kept;
+}
+
+TEST(FrameDropper, KeepsAllWhereThereIsTime) {
+    FrameDropper shedder(2);
+    for (const bool kept : kept_of(shedder, 10, 1ms, 20)) EXPECT_TRUE(kept);
+}
+
+TEST(FrameDropper, KeepsAsManyAsThereIsTimeForEvenlyAndTheNewest) {
+    FrameDropper shedder(2);
+    const auto kept = kept_of(shedder, 100, 1ms, 50);
+    EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 45);
+    EXPECT_TRUE(kept.back());
+    for (std::size_t i = 0; i + 3 < kept.size(); ++i)
+        EXPECT_TRUE(kept[i] || kept[i + 1] || kept[i + 2]) << i;
+}
+
+TEST(FrameDropper, KeepsTheNewestHoweverSlowRenderingIs) {
+    FrameDropper shedder(2);
+    const auto kept = kept_of(shedder, 7, 500ms, 50);
+    EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 1);
+    EXPECT_TRUE(kept.back());
+}
+
+TEST(FrameDropper, RecoversWhenRenderingIsQuickAgain) {
+    FrameDropper shedder(2);
+    kept_of(shedder, 10, 500ms, 50);
+    for (const bool kept : kept_of(shedder, 10, 1ms, 100)) EXPECT_TRUE(kept);
+}
+
+TEST(FrameDropper, LeavesFramesOutWhileEventWindowsPileUp) {
+    FrameDropper shedder(2);
+    for (const bool kept : kept_of(shedder, 10, 1ms, 5, 2)) EXPECT_FALSE(kept);
+    for (const bool kept : kept_of(shedder, 10, 1ms, 5, 1)) EXPECT_TRUE(kept);
+}
+
+}  // namespace
+}  // namespace eventide

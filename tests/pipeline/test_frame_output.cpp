@@ -1,0 +1,199 @@
+// Frames are rendered when the latent maps they need are there, and with no other.
+#include "pipeline/frame_output.h"
+#include "src/core/error.h"
+#include "tests/support/toy_stages.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using namespace test;
+
+/// Event windows of 10 us from `begin_us` on, given one by one.
+struct Ending {
+    explicit Ending(int lookahead, FrameRate rate = {200'000, 1},  // a frame each 5 us
+                    bool allow_silence = false)
+        : presenter(
+              renderer, {&sink}, {rate, {}, lookahead, false, 1, allow_silence}, [] { return 0; },
+              stop, counters, keeper) {
+        sink.before_write = [this](auto) { pushed.push_back(renderer.pushed()); };
+    }
+    void give(std::int64_t begin_us, bool reset_before = false) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(begin_us), from_us(begin_us + 10)};
+        encoded.latent.events = 1;
+        encoded.latent.reset_before = reset_before;
+        presenter.take(encoded);
+    }
+    void give_silence(std::int64_t begin_us, std::int64_t end_us) {
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(begin_us), from_us(end_us)};
+        presenter.take(encoded);
+    }
+    std::vector<std::int64_t> times() const {
+        std::vector<std::int64_t> times;
+        for (const auto& seen : sink.seen) times.push_back(seen.t_us);
+        return times;
+    }
+
+    ToyRenderer renderer;
+    ToySink sink;
+    std::vector<std::size_t> pushed;  // latent maps the renderer had, per frame
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput presenter;
+};
+
+TEST(FrameOutput, RendersEachFrameWithItsLookahead) {
+    for (const int lookahead : {0, 1, 2}) {
+        Ending e(lookahead);
+        for (int k = 0; k < 4; ++k) e.give(10 * k);
+        const auto before_end = e.sink.seen.size();
+        EXPECT_EQ(before_end, std::size_t(1 + 2 * (4 - lookahead)));
+        e.presenter.finish();
+        EXPECT_TRUE(e.renderer.finished);
+        EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 15, 20, 25, 30, 35, 40}));
+        for (std::size_t i = 0; i < before_end; ++i) {
+            const std::size_t k = i == 0 ? 1 : (i + 1) / 2;  // the event window, from 1
+            EXPECT_EQ(e.pushed[i], k + std::size_t(lookahead)) << i;
+        }
+        for (const auto& seen : e.sink.seen) {
+            EXPECT_LE(seen.t_us, seen.end_us);
+            EXPECT_GE(seen.t_us, seen.begin_us);
+        }
+    }
+}
+
+TEST(FrameOutput, GivesNoneOneOrManyFramesPerEventWindow) {
+    Ending seldom(0, {40'000, 1});  // each 25 us
+    for (int k = 0; k < 6; ++k) seldom.give(10 * k);
+    EXPECT_EQ(seldom.times(), (std::vector<std::int64_t>{0, 25, 50}));
+    Ending often(0, {1'000'000, 1});
+    for (int k = 0; k < 6; ++k) often.give(10 * k);
+    EXPECT_EQ(often.sink.seen.size(), 61U);
+    Ending without_rate(1, {});
+    for (int k = 0; k < 3; ++k) without_rate.give(10 * k);
+    without_rate.presenter.finish();
+    EXPECT_EQ(without_rate.times(), (std::vector<std::int64_t>{10, 20, 30}));
+}
+
+TEST(FrameOutput, FinishesTheOldStreamBeforeANewOne) {
+    Ending e(2);
+    for (int k = 0; k < 3; ++k) e.give(1000 + 10 * k);
+    e.give(3, true);
+    EXPECT_EQ(e.times().back(), 1030);
+    EXPECT_EQ(e.renderer.pushed(), 1U);
+    e.presenter.finish();
+    EXPECT_EQ(e.times().back(), 13);
+    for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
+}
+
+TEST(FrameOutput, StopsBeforeFramesWithoutEnd) {
+    Ending e(0);
+    e.give(0);
+    e.give_silence(10, 1000);
+    const auto before = e.sink.count;
+    try {
+        e.give_silence(1000, 1'633'953'690'975'950);  // 54 years
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("--allow-silence"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("from 1000 to 1633953690975950 us"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(e.sink.count, before);
+}
+
+TEST(FrameOutput, CountsSilenceInARowAndOnlyWhereItIsNotAllowed) {
+    for (const bool allowed : {false, true}) {
+        Ending e(0, {1'000'000, 1}, allowed);
+        e.sink.keeps = false;
+        e.sink.before_write = nullptr;
+        e.give_silence(0, 600'000);
+        e.give(600'000);
+        e.give_silence(600'010, 1'200'000);
+        if (allowed)
+            e.give_silence(1'200'000, 1'800'000);
+        else
+            EXPECT_THROW(e.give_silence(1'200'000, 1'800'000), Error);
+        EXPECT_EQ(e.sink.count, allowed ? 1'800'001U : 1'200'001U);
+    }
+}
+
+TEST(FrameOutput, ClosesAllSinksThoughOneFails) {
+    ToyRenderer renderer;
+    ToySink bad, good;
+    bad.before_close = [] { throw std::runtime_error("close"); };
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput presenter(
+        renderer, {&bad, &good}, {}, [] { return 0; }, stop, counters, keeper);
+    EXPECT_THROW(presenter.close(), std::runtime_error);
+    EXPECT_EQ(good.closed, 1);
+}
+
+/// Its third frame has a NaN.
+class BreakingRenderer final : public RenderStage {
+public:
+    Frame make_output() const override { return good_.make_output(); }
+    void push(const LatentMap& latent) noexcept override { good_.push(latent); }
+    void finish() noexcept override { good_.finish(); }
+    void reset() noexcept override { good_.reset(); }
+    void render(SensorTime t, const Window& window, Frame& frame) noexcept override {
+        good_.render(t, window, frame);
+        if (++rendered_ == 3) frame.intensity(1, 2) = std::numeric_limits<float>::quiet_NaN();
+    }
+
+private:
+    ToyRenderer good_;
+    int rendered_ = 0;
+};
+
+TEST(FrameOutput, WritesNoFrameThatIsNotFinite) {
+    BreakingRenderer renderer;
+    ToySink sink;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput presenter(
+        renderer, {&sink}, {{200'000, 1}, {}, 0, false, 1}, [] { return 0; }, stop, counters,
+        keeper);
+    Encoded encoded;
+    encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+    encoded.latent.window = {from_us(0), from_us(100)};
+    try {
+        presenter.take(encoded);
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_NE(std::string(error.what()).find("frame 2, at 10 us"), std::string::npos);
+    }
+    EXPECT_EQ(sink.count, 2U);
+    EXPECT_EQ(counters.snapshot().broken_frames, 1U);
+}
+
+TEST(FrameOutput, StopsWhenASinkWantsNoMore) {
+    Ending e(0);
+    e.sink.wants = 3;
+    for (int k = 0; k < 4; ++k) e.give(10 * k);
+    EXPECT_EQ(e.sink.count, 3U);
+}
+
+TEST(FrameOutput, RefusesAnImpossibleLookahead) {
+    for (const int lookahead : {-1, 3}) EXPECT_THROW(Ending{lookahead}, Error);
+}
+
+}  // namespace
+}  // namespace eventide

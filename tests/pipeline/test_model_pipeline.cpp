@@ -1,0 +1,168 @@
+// The real model in the pipeline: threads and splits change no bit, and nothing is allocated.
+#include "pipeline/fusion_stage.h"
+#include "pipeline/model_stages.h"
+#include "pipeline/parallel_tbb.h"
+#include "pipeline/pipeline.h"
+#include "tests/model/streams.h"
+#include "tests/support/allocation_counter.h"
+#include "tests/support/toy_stages.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using namespace test;
+
+constexpr int kHeight = 45, kWidth = 61;
+
+/// Edges that wander, 5 events in each millisecond, a pause in between.
+std::vector<std::byte> moving_scene(int milliseconds) {
+    std::mt19937 rng{9};
+    std::vector<std::byte> bytes;
+    for (int ms = 0; ms < milliseconds; ++ms) {
+        if (ms % 400 > 300) continue;
+        for (int n = 0; n < 5; ++n)
+            append_record(bytes, ToyKind::event, 1000 * ms + 1 + 190 * n,
+                          (ms / 7 + int(rng() % 9)) % kWidth, int(rng() % unsigned(kHeight)),
+                          rng() % 2 == 0);
+    }
+    return bytes;
+}
+
+struct ModelRun {
+    ModelRun(std::vector<std::vector<std::byte>> packets, const Model& model,
+             const PipelineSettings& settings, const EngineOptions& options)
+        : source(std::move(packets), false, kHeight, kWidth),
+          encoder(model, kWidth, kHeight, options),
+          renderer(model, kWidth, kHeight, options),
+          encode(encoder),
+          render(renderer, request(settings.lookahead)),
+          pipeline({source, encode, render, {&sink}}, settings) {}
+
+    static RenderRequest request(int lookahead) {
+        RenderRequest request;
+        request.lookahead = lookahead;
+        return request;
+    }
+
+    ToySource source;
+    Encoder encoder;
+    Renderer renderer;
+    ModelEncodeStage encode;
+    ModelRenderStage render;
+    ToySink sink;
+    Pipeline pipeline;
+};
+
+PipelineSettings settings_for(const Model& model, int lookahead) {
+    PipelineSettings settings;
+    settings.bins = model.config.bins;
+    settings.event_windows.slicer = parse_window("20ms");
+    settings.rate = {120, 1};
+    settings.lookahead = lookahead;
+    return settings;
+}
+
+TEST(ModelLine, GivesTheSameFramesThreadedAsSequentialWithAnyNumberOfWorkers) {
+    const Model model = random_model(small_config(), 1);
+    const auto bytes = moving_scene(700);
+    for (const int lookahead : {0, 1, 2}) {
+        SCOPED_TRACE(lookahead);
+        EngineOptions options;
+        options.precision = Precision::f32;
+        const PipelineSettings settings = settings_for(model, lookahead);
+        ModelRun whole({bytes}, model, settings, options);
+        whole.pipeline.run_sequential();
+        ASSERT_GT(whole.sink.seen.size(), 80U);
+        options.parallel_for = parallel_for_with(2);
+        std::mt19937 rng{2};
+        ModelRun split(ToySource::packets_of(bytes, 900, &rng), model, settings, options);
+        split.pipeline.run();
+        EXPECT_EQ(split.sink.seen, whole.sink.seen);
+    }
+}
+
+/// The same with images among the events that correct the frames.
+struct FusedRun : DataObserver {
+    FusedRun(std::vector<std::vector<std::byte>> packets, const Model& model,
+             PipelineSettings settings)
+        : source(std::move(packets), false, kHeight, kWidth),
+          encoder(model, kWidth, kHeight),
+          renderer(model, kWidth, kHeight),
+          encode(encoder),
+          render(renderer, ModelRun::request(settings.lookahead), kWidth, kHeight, images),
+          pipeline({source, encode, render, {&sink}, nullptr, this}, with_counts(settings)) {}
+
+    static PipelineSettings with_counts(PipelineSettings settings) {
+        settings.events_per_pixel = true;
+        return settings;
+    }
+    void see(const Batch& batch) override {
+        std::vector<ReferenceImage> white = batch.images;  // those of the toy camera are empty
+        for (ReferenceImage& image : white) {
+            image.pixels = Array2<std::uint16_t>(kHeight, kWidth);
+            for (std::uint16_t& pixel : image.pixels.values()) pixel = 50'000;
+        }
+        images.put(white);
+    }
+
+    ToySource source;
+    Encoder encoder;
+    Renderer renderer;
+    ImagesOnTheWay images;
+    ModelEncodeStage encode;
+    FusionRenderStage render;
+    ToySink sink;
+    Pipeline pipeline;
+};
+
+TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
+    const Model model = random_model(small_config(), 1);
+    std::vector<std::byte> bytes = moving_scene(300);
+    const auto before = std::ptrdiff_t(bytes.size());
+    append_record(bytes, ToyKind::image, 299'990);
+    const auto later = moving_scene(800);
+    bytes.insert(bytes.end(), later.begin() + before, later.end());
+    for (const int lookahead : {0, 2}) {
+        SCOPED_TRACE(lookahead);
+        const PipelineSettings settings = settings_for(model, lookahead);
+        FusedRun whole({bytes}, model, settings);
+        whole.pipeline.run_sequential();
+        EXPECT_EQ(whole.render.fused().used(), 1U);
+        std::mt19937 rng{2};
+        FusedRun split(ToySource::packets_of(bytes, 900, &rng), model, settings);
+        split.pipeline.run();
+        EXPECT_TRUE(split.sink.seen == whole.sink.seen);
+        ModelRun without({bytes}, model, settings, {});
+        without.pipeline.run_sequential();
+        EXPECT_FALSE(without.sink.seen == whole.sink.seen);
+    }
+}
+
+TEST(ModelLine, AllocatesNothingPerEventWindowOnceWarm) {
+    if (!can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
+    const Model model = random_model(small_config(), 1);
+    const auto bytes = moving_scene(6000);
+    for (const bool threaded : {true, false}) {
+        EngineOptions options;
+        options.precision = Precision::f32;
+        PipelineSettings settings = settings_for(model, 2);
+        settings.buffers.packets = 4;  // warm is when every buffer has been used
+        ModelRun run(ToySource::packets_of(bytes, 1000), model, settings, options);
+        run.sink.keeps = false;
+        std::int64_t allocations = -1;
+        run.sink.before_write = [&](std::uint64_t frame) {
+            if (frame == 300) start_counting_allocations();
+            if (frame == 600) allocations = stop_counting_allocations();
+        };
+        threaded ? run.pipeline.run() : run.pipeline.run_sequential();
+        EXPECT_EQ(allocations, 0) << (threaded ? "threaded" : "sequential");
+    }
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,99 @@
+// A paced recording gives the same bytes, and stops at once when told.
+#include "replay/real_time_playback.h"
+
+#include "replay/formats.h"
+#include "src/core/error.h"
+#include "tests/replay/recording_files.h"
+
+#include <limits>
+#include <thread>
+
+namespace eventide {
+namespace {
+
+constexpr double kFasterThanAnyClock = 1e12, kForEver = 1e-9;
+
+using Bytes = std::vector<std::byte>;
+
+Bytes all_bytes(Recording& recording) {
+    Bytes bytes;
+    RawPacket packet;
+    while (recording.read(packet) == ReadStatus::data)
+        bytes.insert(bytes.end(), packet.bytes.begin(), packet.bytes.end());
+    return bytes;
+}
+
+TEST(RealTimePlayback, GivesTheSameBytes) {
+    const TestFolder folder;
+    for (const char* format : {"text", "aedat3"}) {
+        const std::string path = write_recording(folder.path("a"), format, some_events(30'000));
+        RealTimePlayback paced(open_recording(path), kFasterThanAnyClock);
+        EXPECT_TRUE(all_bytes(paced) == all_bytes(*open_recording(path)));
+        EXPECT_EQ(paced.position_bytes(), paced.size_bytes());
+    }
+}
+
+TEST(RealTimePlayback, WhatIsNotDueIsNotGiven) {
+    const TestFolder folder;
+    const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
+    RealTimePlayback paced(open_recording(path), kForEver);
+    RawPacket packet;
+    ASSERT_EQ(paced.read(packet), ReadStatus::data);
+    EXPECT_LT(packet.bytes.size(), 1000U);  // of a chunk of 128 KiB
+}
+
+TEST(RealTimePlayback, StopEndsAWait) {
+    const TestFolder folder;
+    const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
+    RealTimePlayback paced(open_recording(path), kForEver);
+    RawPacket packet;
+    ASSERT_EQ(paced.read(packet), ReadStatus::data);
+    std::jthread stopper([&] { paced.stop(); });
+    EXPECT_EQ(paced.read(packet), ReadStatus::end);
+    EXPECT_EQ(paced.read(packet), ReadStatus::end);
+}
+
+TEST(RealTimePlayback, AChangeOfSpeedIsHeardByAReadThatWaits) {
+    const TestFolder folder;
+    const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
+    RealTimePlayback paced(open_recording(path), kForEver);
+    RawPacket packet;
+    ASSERT_EQ(paced.read(packet), ReadStatus::data);
+    std::size_t bytes = packet.bytes.size();
+    std::jthread changer([&] {
+        paced.set_speed(0);
+        paced.set_speed(kFasterThanAnyClock);
+    });
+    bytes += all_bytes(paced).size();
+    EXPECT_EQ(bytes, all_bytes(*open_recording(path)).size());
+    EXPECT_EQ(paced.speed(), kFasterThanAnyClock);
+}
+
+TEST(RealTimePlayback, AfterASeekWhatLiesBeforeIsNotWaitedFor) {
+    const TestFolder folder;
+    const auto events = some_events(30'000);
+    const std::string path = write_recording(folder.path("a"), "text", events);
+    OpenOptions as_they_come;  // else an event waits for ones 10 ms later
+    as_they_come.text.reorder = SensorDuration{0};
+    RealTimePlayback paced(open_recording(path, as_they_come), kForEver);
+    paced.seek(events[20'000].t);
+    const auto parser = paced.make_parser();
+    Batch batch;
+    RawPacket packet;
+    while (batch.events.empty() || batch.events.back().t < events[20'000].t) {
+        ASSERT_EQ(paced.read(packet), ReadStatus::data);
+        parser->parse(packet.bytes, batch);
+    }
+}
+
+TEST(RealTimePlayback, OnlyPositiveSpeedsAreTaken) {
+    const TestFolder folder;
+    const std::string path = folder.write("a.txt", "9 9\n0.1 1 2 1\n");
+    for (const double speed : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity()})
+        EXPECT_THROW(RealTimePlayback(open_recording(path), speed), Error);
+    EXPECT_THROW(RealTimePlayback(open_recording(path), 1).set_speed(-1), Error);
+}
+
+}  // namespace
+}  // namespace eventide
