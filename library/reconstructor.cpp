@@ -1,7 +1,7 @@
 // The public face of the network at work.
 #include "library/reconstructor_impl.h"
-#include "replay/scan_geometry.h"
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 #include "src/model/model_folders.h"
 #include "src/model/model_trial.h"
 #include "src/nn/safetensors.h"

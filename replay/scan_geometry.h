@@ -2,11 +2,9 @@
 #pragma once
 
 #include "replay/file_recording.h"
+#include "src/core/sensor_limits.h"
 
 namespace eventide {
-
-/// Larger coordinates than any sensor has are damage and not taken for the size.
-constexpr int kLargestSensorSide = 4096;
 
 /// Reads the whole file once, in bounded memory, and sets width and height of the header to those
 /// of the smallest known sensor that holds all its events but damaged ones (one in a thousand), and

@@ -2,10 +2,10 @@
 #include "apps/evaluate/reference_sequence.h"
 
 #include "replay/formats.h"
-#include "replay/scan_geometry.h"
 #include "src/binning/slicer.h"
 #include "src/core/error.h"
 #include "src/core/grey.h"
+#include "src/core/sensor_limits.h"
 #include "src/io/bag_file.h"
 
 #include <algorithm>

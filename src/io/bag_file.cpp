@@ -1,7 +1,7 @@
 // Messages as dvs_msgs and sensor_msgs define them (drivers-and-formats.md D).
 #include "src/io/bag_file.h"
 
-#include "replay/scan_geometry.h"
+#include "src/core/sensor_limits.h"
 
 namespace eventide {
 namespace {

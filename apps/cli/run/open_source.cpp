@@ -4,8 +4,8 @@
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_camera.h"
 #include "replay/formats.h"
-#include "replay/scan_geometry.h"
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <filesystem>
 #include <string>
