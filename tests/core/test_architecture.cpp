@@ -55,6 +55,8 @@ const std::vector<Rule> kRules{
      {"pipeline/sinks/", "src/app/", "src/simulate/", "src/evaluate/", "src/train/",
       "replay/image_file"}},
     {"libusb", {"drivers/usb/"}},
+    {"httplib.h", {"pipeline/sinks/http/"}},
+    {"pipeline/sinks/http/", {"pipeline/sinks/http/", "src/app/"}},
     {"concurrentqueue.h", {"pipeline/link.h", "pipeline/pool.h"}},
     {"torch/", {"src/train/"}},
     {"oneapi/dnnl", {"src/nn/", "src/kernels/", "src/evaluate/"}},
