@@ -13,11 +13,11 @@ namespace eventide::app {
 
 struct LiveControlsPlan {
     const RunSettings& settings;
-    LiveChanges& changes;  ///< borrowed by the controls
-    Size sensor;           ///< px
-    double fps = 30;       ///< of the video, at the start
-    int lookahead = 0;     ///< at the start
-    double speed = 0;      ///< of a recording at a pace, at the start
+    LiveChanges& changes;                        ///< borrowed by the controls
+    Size sensor;                                 ///< px
+    double fps = 30;                             ///< of the video, at the start
+    int lookahead = 0;                           ///< at the start
+    double speed = 0;                            ///< of a recording at a pace, at the start
     std::function<void(double)> set_speed = {};  ///< empty: the source has one speed
     bool live = false;
     std::string window = {};  ///< as --window writes it

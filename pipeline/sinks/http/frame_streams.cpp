@@ -19,8 +19,8 @@ class Frames {
 public:
     Frames(NewestFrame& newest, double fps, std::shared_ptr<const void> place)
         : newest_{newest},
-          step_{std::chrono::duration_cast<Clock::duration>(
-              std::chrono::duration<double>(1 / fps))},
+          step_{
+              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps))},
           place_{std::move(place)} {}
 
     /// Null where none came for a while, or it is over.

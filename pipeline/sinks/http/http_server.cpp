@@ -51,11 +51,10 @@ HttpServer::HttpServer(const HttpAddress& address, Answers answers) : address_{a
     }
     svr_sock_ = listening_;
     set_payload_max_length(Connection::kMostRequestBytes);
-    set_pre_routing_handler(
-        [head = std::move(answers.head)](const httplib::Request& request,
-                                         httplib::Response& response) {
-            return head(request, response) ? HandlerResponse::Handled : HandlerResponse::Unhandled;
-        });
+    set_pre_routing_handler([head = std::move(answers.head)](const httplib::Request& request,
+                                                             httplib::Response& response) {
+        return head(request, response) ? HandlerResponse::Handled : HandlerResponse::Unhandled;
+    });
     Post(answers.post_path, std::move(answers.post));
 }
 

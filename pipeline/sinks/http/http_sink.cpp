@@ -75,9 +75,10 @@ private:
 std::unique_ptr<HttpSink> open_http(HttpSettings settings) {
     const Uncertainty how = settings.uncertainty;
     if (how == Uncertainty::alpha || how == Uncertainty::separate)
-        throw Error(ErrorKind::usage, "--out http: expected --uncertainty none, side or overlay, "
-                                      "found " +
-                                          std::string{name_of(how)});
+        throw Error(ErrorKind::usage,
+                    "--out http: expected --uncertainty none, side or overlay, "
+                    "found " +
+                        std::string{name_of(how)});
     return std::make_unique<HttpSinkInThreads>(std::move(settings));
 }
 

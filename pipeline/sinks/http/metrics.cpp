@@ -56,8 +56,7 @@ void add_line(Text& text, const Snapshot& now) {
     text.counter("triggers_total", "Triggers.", now.triggers);
     text.head("damaged_total", "Places in the stream that made no sense, by reason.", "counter");
     for (std::size_t i = 0; i < kDamageReasons; ++i)
-        text.line("damaged_total",
-                  "{reason=\"" + std::string{name_of(DamageReason(i))} + "\"}",
+        text.line("damaged_total", "{reason=\"" + std::string{name_of(DamageReason(i))} + "\"}",
                   double(now.damaged[DamageReason(i)]));
     text.counter("event_windows_total", "Event windows cut.", now.event_frames);
     text.counter("merged_windows_total", "Event windows that became one with the one before.",

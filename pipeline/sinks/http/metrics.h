@@ -12,7 +12,7 @@ namespace eventide {
 struct HttpCounters {
     std::uint64_t viewers = 0, listeners = 0;  ///< now: of pictures, of statistics
     std::uint64_t requests = 0, refused = 0;   ///< since the start
-    std::uint64_t copied = 0;                    ///< frames, for viewers, since the start
+    std::uint64_t copied = 0;                  ///< frames, for viewers, since the start
 };
 
 /// The text format 0.0.4. Names end in units; totals only grow.

@@ -49,7 +49,7 @@ private:
     Clock::time_point copied_{};
     bool held_ = false;  // newest_ is what is offered again and again
     std::atomic<std::uint64_t> copied_frames_{0};
-    int waiting_ = 0;    // viewers, since newest_ was copied
+    int waiting_ = 0;  // viewers, since newest_ was copied
     bool closed_ = false;
 };
 

@@ -19,8 +19,8 @@ void encode(const char* extension, const cv::Mat& picture, const std::vector<int
     try {
         if (cv::imencode(extension, picture, bytes, options)) return;
     } catch (const cv::Exception& error) {
-        throw Error(ErrorKind::failed, std::string{"a frame cannot be made a "} + extension + ": " +
-                                           error.what());
+        throw Error(ErrorKind::failed,
+                    std::string{"a frame cannot be made a "} + extension + ": " + error.what());
     }
     throw Error(ErrorKind::failed, std::string{"a frame cannot be made a "} + extension);
 }

@@ -33,9 +33,10 @@ public:
 
     // Throw Error (failed) where the encoder does; jpeg() of sigma of a frame without is black.
     const Bytes& jpeg(Show show) const;
-    const Bytes& png() const;     ///< intensity, 8 bits
-    const Bytes& tiff() const;    ///< sigma, 32-bit floats; empty where the frame has none
-    const Bytes& events() const;  ///< PNG of bytes: 0 off, 128 none, 255 on; empty without a preview
+    const Bytes& png() const;   ///< intensity, 8 bits
+    const Bytes& tiff() const;  ///< sigma, 32-bit floats; empty where the frame has none
+    const Bytes& events()
+        const;  ///< PNG of bytes: 0 off, 128 none, 255 on; empty without a preview
     /// For the page: a head and the pictures behind it, as page.js reads them.
     const Bytes& message() const;
 
