@@ -92,8 +92,7 @@ TEST_F(Page, SlidersChangeTheRun) {
     Browser browser{1280, 900};
     browser.open(address_of(process));
     ASSERT_TRUE(browser.becomes_true("document.getElementById('control-fps') !== null", kLong));
-    // Twelve seconds of sensor time at 2 frames/s and at 30 cannot be taken for each other: frames
-    // are counted against the sensor's clock, which a busy machine does not change.
+    // Frames are counted against the sensor's clock, which a busy machine does not change.
     const std::string rate =
         "(async () => { const one = async () => { const n = eventide.shown;"
         " while (eventide.shown === n) await new Promise(r => setTimeout(r, 5));"

@@ -138,7 +138,6 @@ async function draw(message) {
     await Promise.all([message.intensity, message.sigma, message.preview].map(decode));
   await new Promise(requestAnimationFrame);
   fit($("intensity"), intensity);
-  $("intensity").parentElement.style.aspectRatio = intensity.width + " / " + intensity.height;
   $("intensity").getContext("2d", { willReadFrequently: true }).drawImage(intensity, 0, 0);
   $("sigma").hidden = !sigma;
   grey = sigma;
@@ -215,7 +214,7 @@ function makeRow(control) {
   label.textContent = control.label;
   slider.id = "control-" + control.name;
   label.htmlFor = slider.id;
-  const made = { row, value, slider, why, held: 0, control };
+  const made = { row, value, slider, why, held: -Infinity, control };
   slider.addEventListener("input", () => {
     const c = made.control, v = rounded(c, fromSlider(c, Number(slider.value)));
     made.held = performance.now();
