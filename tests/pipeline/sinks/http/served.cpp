@@ -31,6 +31,10 @@ void RawClient::send(const std::string& text) const {
     }
 }
 
+void RawClient::finish() const {
+    shutdown(file_, SHUT_WR);
+}
+
 std::string RawClient::receive(std::size_t size) const {
     std::string text;
     char part[4096];

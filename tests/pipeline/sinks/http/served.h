@@ -67,6 +67,8 @@ public:
     RawClient& operator=(RawClient&&) = delete;
 
     void send(const std::string& text) const;
+    /// Nothing more is sent; answers are still heard.
+    void finish() const;
     /// Until `size` bytes came or the other end closed.
     std::string receive(std::size_t size) const;
     std::string receive_all() const { return receive(std::size_t(-1)); }
