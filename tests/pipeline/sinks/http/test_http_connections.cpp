@@ -1,6 +1,7 @@
 // Clients that are many, slow, gone, or up to no good: every byte of theirs is ours.
 #include "tests/pipeline/sinks/http/served.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -80,7 +81,10 @@ TEST(HttpConnections, CloseEndsAllOfThem) {
     for (const RawClient& client : clients) client.receive_all();  // ends
 }
 
+/// More by hand: EVENTIDE_CONNECTIONS=10000 test_http_sink --gtest_filter=*Dropped*.
 TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
+    const char* const asked = std::getenv("EVENTIDE_CONNECTIONS");
+    const int connections = asked == nullptr ? 400 : std::atoi(asked);
     const auto sink = open_page();
     const Frames frames{*sink};
     ASSERT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
@@ -97,7 +101,7 @@ TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
                                            "{"),
                                    "\r\n\r\n",
                                    request("GET /frame.png")};
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < connections; ++i) {
         RawClient client{*sink};
         const std::string& text = beginnings[std::size_t(i) % std::size(beginnings)];
         client.send(text);
