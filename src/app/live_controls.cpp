@@ -76,7 +76,7 @@ HttpControl scale_control(const LiveControlsPlan& plan, std::string why_not) {
 
 HttpControl lookahead_control(const LiveControlsPlan& plan) {
     const Value value = made(plan.lookahead);
-    HttpControl lookahead = control("lookahead", "Lookahead", "windows", value);
+    HttpControl lookahead = control("lookahead", "Lookahead", "event windows", value);
     lookahead.most = 2;
     lookahead.set = [value, &changes = plan.changes](double wanted) {
         changes.set_lookahead(int(wanted));

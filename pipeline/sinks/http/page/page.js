@@ -19,7 +19,8 @@ function short(n) {
     if (Math.abs(n) >= scale) return (n / scale).toFixed(n / scale < 10 ? 2 : 1) + unit;
   return n < 10 && n % 1 ? n.toFixed(1) : Math.round(n) + "";
 }
-const milliseconds = (ms) => (isFinite(ms) ? ms.toFixed(ms < 10 ? 1 : 0) + " ms" : "–");
+const milliseconds = (ms) =>
+  !isFinite(ms) ? "–" : ms >= 1000 ? (ms / 1000).toFixed(1) + " s" : ms.toFixed(ms < 10 ? 1 : 0) + " ms";
 
 function setState(state, words) {
   $("state").dataset.state = state;
@@ -284,8 +285,8 @@ const kSpan = 60_000;  // ms shown
 let latencies = [], last = null, lastMessage = 0, lastShown = { at: performance.now(), shown: 0 };
 
 class Plot {
-  constructor(canvas, colours, unit) {
-    Object.assign(this, { canvas, colours, unit, points: [] });
+  constructor(canvas, colours, words) {
+    Object.assign(this, { canvas, colours, words, points: [] });
   }
   add(now, ...values) {
     this.points.push([now, ...values]);
@@ -312,7 +313,7 @@ class Plot {
       c.lineTo(width, Math.round(y(most * share)) + 0.5);
       c.stroke();
     }
-    c.fillText(short(most) + this.unit, 2, y(most) + 10);
+    c.fillText(this.words(most), 2, y(most) + 10);
     c.fillText("−60 s", 2, height - 2);
     c.textAlign = "right";
     c.fillText("now", width - 2, height - 2);
@@ -342,10 +343,11 @@ class Plot {
   }
 }
 
+const perSecond = (n) => short(n) + "/s";
 const plots = {
-  events: new Plot($("plot-events"), ["--accent"], "/s"),
-  frames: new Plot($("plot-frames"), ["--quiet", "--accent"], "/s"),
-  latency: new Plot($("plot-latency"), ["--warn", "--accent"], " ms"),
+  events: new Plot($("plot-events"), ["--accent"], perSecond),
+  frames: new Plot($("plot-frames"), ["--quiet", "--accent"], perSecond),
+  latency: new Plot($("plot-latency"), ["--warn", "--accent"], milliseconds),
 };
 
 function showCounters(run) {
@@ -389,7 +391,7 @@ function showStatistics(message) {
   plots.events.add(now, run.event_rate);
   plots.frames.add(now, shown, rate);
   plots.latency.add(now, worst, middle);
-  $("event-rate").textContent = short(run.event_rate) + "/s";
+  $("event-rate").textContent = perSecond(run.event_rate);
   $("frame-rate").textContent = rate.toFixed(1) + "/s";
   $("shown-rate").textContent = shown.toFixed(1) + "/s";
   $("latency").textContent = milliseconds(middle);
