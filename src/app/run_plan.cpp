@@ -62,7 +62,8 @@ double speed_of(const RunSettings& settings) {
     if (settings.speed == "auto")
         return std::ranges::any_of(settings.out, is_window) ||
                        std::ranges::any_of(settings.out, is_http)
-                   ? 1 / settings.slow : 0;
+                   ? 1 / settings.slow
+                   : 0;
     return parse_number(settings.speed, 0.001, 1000);
 }
 

@@ -86,13 +86,13 @@ SinkName parse_sink(const std::string& sink) {
     if (sink.ends_with(".y4m")) return {SinkKind::stream, sink};
     if (sink.ends_with('/') || std::filesystem::is_directory(sink)) return {SinkKind::folder, sink};
     if (std::filesystem::is_fifo(sink)) return {SinkKind::stream, sink};
-    throw Error(
-        ErrorKind::usage,
-        "--out " + sink +
-            ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
-            "named pipe, "
-            "window, null, http:ADDRESS:PORT, v4l2:/dev/videoN, contact-sheet:x.png, or y4m:, y4m-mono:, gray8:, "
-            "gray16:, grayf32: and a file, pipe or -");
+    throw Error(ErrorKind::usage,
+                "--out " + sink +
+                    ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
+                    "named pipe, "
+                    "window, null, http:ADDRESS:PORT, v4l2:/dev/videoN, contact-sheet:x.png, or "
+                    "y4m:, y4m-mono:, gray8:, "
+                    "gray16:, grayf32: and a file, pipe or -");
 }
 
 void name_sink_files(const RunSettings& settings, NamedFiles& files) {

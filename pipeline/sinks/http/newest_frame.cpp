@@ -13,10 +13,33 @@ void NewestFrame::offer(const Frame& frame) {
     publish(frame);
 }
 
+Frame NewestFrame::Spare::take() {
+    const std::lock_guard lock{mutex};
+    if (frames.empty()) return {};
+    Frame frame = std::move(frames.back());
+    frames.pop_back();
+    return frame;
+}
+
+void NewestFrame::Spare::give_back(Frame frame) {
+    const std::lock_guard lock{mutex};
+    if (frames.size() < kMost) frames.push_back(std::move(frame));
+}
+
+std::shared_ptr<const ShownFrame> NewestFrame::copy_of(const Frame& frame, Clock::time_point now) {
+    Frame copy = spare_->take();
+    copy = frame;  // into the memory that is there, where the size is the same
+    auto shown = std::make_unique<ShownFrame>(std::move(copy), sigma_white_, now - frame.arrived);
+    return {shown.release(), [spare = spare_](ShownFrame* seen) {
+                spare->give_back(seen->take_frame());
+                delete seen;
+            }};
+}
+
 /// Copied without the lock: viewers may look at the clock meanwhile.
 void NewestFrame::publish(const Frame& frame) {
     const Clock::time_point now = Clock::now();
-    auto shown = std::make_shared<const ShownFrame>(frame, sigma_white_, now - frame.arrived);
+    std::shared_ptr<const ShownFrame> shown = copy_of(frame, now);
     ++copied_frames_;
     {
         const std::lock_guard lock{mutex_};

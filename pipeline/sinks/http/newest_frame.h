@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 namespace eventide {
 
@@ -40,7 +41,20 @@ public:
     std::uint64_t copied() const { return copied_frames_; }
 
 private:
+    /// Frames that nobody shows any more: fresh memory would cost the render thread a page fault
+    /// for each 4 KiB.
+    struct Spare {
+        static constexpr std::size_t kMost = 4;
+        Spare() { frames.reserve(kMost); }  // giving back may not fail
+        std::mutex mutex;
+        std::vector<Frame> frames;
+        Frame take();
+        void give_back(Frame frame);
+    };
     void publish(const Frame& frame);
+    std::shared_ptr<const ShownFrame> copy_of(const Frame& frame, Clock::time_point now);
+
+    const std::shared_ptr<Spare> spare_ = std::make_shared<Spare>();
 
     const float sigma_white_;
     mutable std::mutex mutex_;

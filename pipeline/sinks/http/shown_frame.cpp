@@ -65,8 +65,8 @@ std::optional<Show> parse_show(std::string_view word) {
     return Show(found - kWords.begin());
 }
 
-ShownFrame::ShownFrame(const Frame& frame, float sigma_white, std::chrono::nanoseconds latency)
-    : frame_{frame}, sigma_white_{sigma_white}, latency_{latency} {}
+ShownFrame::ShownFrame(Frame frame, float sigma_white, std::chrono::nanoseconds latency)
+    : frame_{std::move(frame)}, sigma_white_{sigma_white}, latency_{latency} {}
 
 const ShownFrame::Bytes& ShownFrame::made(Made& made,
                                           const std::function<void(Bytes&)>& make) const {

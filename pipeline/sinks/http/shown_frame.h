@@ -9,7 +9,8 @@
 #include <functional>
 #include <mutex>
 #include <optional>
-#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -25,11 +26,13 @@ class ShownFrame {
 public:
     using Bytes = std::vector<unsigned char>;
 
-    /// Render thread: copies. `latency` is from the newest events the frame saw until now.
-    ShownFrame(const Frame& frame, float sigma_white, std::chrono::nanoseconds latency);
+    /// `latency` is from the newest events the frame saw until it was copied.
+    ShownFrame(Frame frame, float sigma_white, std::chrono::nanoseconds latency);
 
     const Frame& frame() const { return frame_; }
     std::chrono::nanoseconds latency() const { return latency_; }
+    /// By whoever held it last: the memory, for another frame.
+    Frame take_frame() { return std::move(frame_); }
 
     // Throw Error (failed) where the encoder does; jpeg() of sigma of a frame without is black.
     const Bytes& jpeg(Show show) const;
