@@ -41,6 +41,10 @@ class Run {
 public:
     /// Throws Error.
     Run(Program& program, RunSettings& settings);
+    /// Sinks end first: viewers of the live page ask for counters until then.
+    ~Run() { sinks_.clear(); }
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
 
     /// Returns the exit code. Throws Error.
     int run();

@@ -73,6 +73,8 @@ TEST_F(Page, ShowsFramesThatMove) {
     EXPECT_TRUE(browser.becomes_true(look_at("intensity", "sum") + " !== " + before, kLong))
         << "the picture stands still";
     EXPECT_EQ(browser.value("document.getElementById('state').innerText"), "live");
+    // For people: EVENTIDE_SCREENSHOT=page.png test_page --gtest_filter=*ThatMove
+    if (const char* file = std::getenv("EVENTIDE_SCREENSHOT")) browser.screenshot(file);
 }
 
 TEST_F(Page, LoadsNothingFromElsewhere) {
@@ -153,19 +155,6 @@ TEST_F(Page, SurvivesASourceThatIsStartedAgain) {
                                      kLong));
     EXPECT_TRUE(
         browser.becomes_true("document.getElementById('state').innerText === 'live'", kLong));
-}
-
-/// By hand: EVENTIDE_PAGE=http://127.0.0.1:8080/ EVENTIDE_SCREENSHOT=page.png test_page
-/// --gtest_filter=*Screenshot*.
-TEST_F(Page, ScreenshotOfARunThatGoesOn) {
-    const char* const address = std::getenv("EVENTIDE_PAGE");
-    const char* const file = std::getenv("EVENTIDE_SCREENSHOT");
-    if (address == nullptr || file == nullptr) GTEST_SKIP() << "EVENTIDE_PAGE is not set";
-    Browser browser{1440, 900};
-    browser.open(address);
-    const char* const seconds = std::getenv("EVENTIDE_SECONDS");
-    std::this_thread::sleep_for(std::chrono::seconds{seconds == nullptr ? 5 : std::atoi(seconds)});
-    browser.screenshot(file);
 }
 
 }  // namespace
