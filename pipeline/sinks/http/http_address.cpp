@@ -47,8 +47,7 @@ HttpAddress parse_http_address(std::string_view text) {
     if (host.empty()) return address;
     if (host.starts_with('[') && host.ends_with(']')) {
         host = host.substr(1, host.size() - 2);
-        in6_addr unused{};
-        if (inet_pton(AF_INET6, std::string{host}.c_str(), &unused) != 1) refuse(text);
+        if (!is_ip_address(host) || host.find(':') == host.npos) refuse(text);
     } else if (!std::ranges::all_of(host, is_name_letter)) {
         refuse(text);
     }
@@ -56,13 +55,27 @@ HttpAddress parse_http_address(std::string_view text) {
     return address;
 }
 
+/// inet_pton() stops at a zero, and whatever follows it would be let through.
+bool is_ip_address(std::string_view host) {
+    const auto may_be = [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F') ||
+               c == '.' || c == ':';
+    };
+    const std::string name{host};
+    in_addr four{};
+    in6_addr six{};
+    return std::ranges::all_of(name, may_be) && (inet_pton(AF_INET, name.c_str(), &four) == 1 ||
+                                                 inet_pton(AF_INET6, name.c_str(), &six) == 1);
+}
+
 bool is_loopback(std::string_view host) {
+    if (!is_ip_address(host)) return host == "localhost";
     const std::string name{host};
     in_addr four{};
     in6_addr six{};
     if (inet_pton(AF_INET, name.c_str(), &four) == 1) return ntohl(four.s_addr) >> 24 == 127;
     if (inet_pton(AF_INET6, name.c_str(), &six) == 1) return IN6_IS_ADDR_LOOPBACK(&six);
-    return name == "localhost";
+    return false;
 }
 
 std::string url_of(const HttpAddress& address) {

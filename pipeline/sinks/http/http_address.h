@@ -15,6 +15,9 @@ struct HttpAddress {
 /// port 8080 of it. Throws Error (usage).
 HttpAddress parse_http_address(std::string_view text);
 
+/// An IPv4 or IPv6 address in digits, without brackets.
+bool is_ip_address(std::string_view host);
+
 /// Reached from this machine alone: localhost, 127.0.0.0/8, ::1.
 bool is_loopback(std::string_view host);
 

@@ -1,9 +1,8 @@
 #include "pipeline/sinks/http/request_guard.h"
 
+#include "pipeline/sinks/http/http_address.h"
 #include "src/core/error.h"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <sys/random.h>
 
 #include <algorithm>
@@ -20,20 +19,13 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-bool is_address(const std::string& name) {
-    in_addr four{};
-    in6_addr six{};
-    return inet_pton(AF_INET, name.c_str(), &four) == 1 ||
-           inet_pton(AF_INET6, name.c_str(), &six) == 1;
-}
-
 bool is_port(std::string_view text) {
     return !text.empty() && text.size() <= 5 &&
            std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
 bool is_ours(const std::string& name, const std::vector<std::string>& names) {
-    return !name.empty() && (name == "localhost" || is_address(name) ||
+    return !name.empty() && (name == "localhost" || is_ip_address(name) ||
                              std::ranges::any_of(names, [&](const std::string& known) {
                                  return lower(known) == name;
                              }));
@@ -84,7 +76,7 @@ std::string host_name(std::string_view host) {
         const std::string_view rest = host.substr(end + 1);
         if (!rest.empty() && !(rest.front() == ':' && is_port(rest.substr(1)))) return {};
         std::string name = lower(host.substr(1, end - 1));
-        return name.find(':') != name.npos && is_address(name) ? name : "";
+        return name.find(':') != name.npos && is_ip_address(name) ? name : "";
     }
     const std::size_t colon = host.find(':');
     if (colon != host.npos && !is_port(host.substr(colon + 1))) return {};

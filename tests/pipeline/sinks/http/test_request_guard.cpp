@@ -45,6 +45,8 @@ TEST(RequestGuard, RefusesNamesThatSomebodyElseGaveThisMachine) {
           "", ":8080", "127.0.0.1:80a", "[::1", "[evil.example]", "127.0.0.1:8080:9", "[::1]x",
           "127.0.0.1/", "user@127.0.0.1", "2130706433", "0x7f.1", " 127.0.0.1"})
         EXPECT_EQ(status(get(host)), 421) << host;
+    EXPECT_EQ(status(get(std::string{"127.0.0.1\0.evil.example", 23})), 421);
+    EXPECT_EQ(status(get(std::string{"[::1\0x]", 7})), 421);
     RequestHead two = get("127.0.0.1");
     two.hosts = 2;
     EXPECT_EQ(status(two), 421);
