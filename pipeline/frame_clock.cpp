@@ -105,6 +105,9 @@ void FrameSchedule::open(Window window) {
         if (!from_ || window.end >= *from_) ++end_;
         return;
     }
+    if (!clock_ && last_)
+        clock_.emplace(rate_, std::max(FrameClock{rate_, *last_}.time_of(1),
+                                       window.begin + SensorDuration{1}));
     if (!clock_) clock_.emplace(rate_, std::max(window.begin, from_.value_or(window.begin)));
     end_ = std::max(end_, base_ + clock_->count_until(window.end));
 }
@@ -114,8 +117,19 @@ DueFrame FrameSchedule::next() {
     return {rate_.is_set() ? clock_->time_of(index - base_) : window_end_, index};
 }
 
+void FrameSchedule::change_rate(const FrameRate& rate) {
+    if (clock_ && end_ > base_)
+        last_ = clock_->time_of(end_ - 1 - base_);
+    else if (!rate_.is_set() && end_ > 0)
+        last_ = window_end_;
+    rate_ = rate;
+    clock_.reset();
+    base_ = next_ = end_;
+}
+
 void FrameSchedule::restart() {
     clock_.reset();
+    last_.reset();
     from_.reset();  // a time of the old clock
     base_ = next_ = end_;
 }

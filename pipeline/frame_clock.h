@@ -67,6 +67,10 @@ public:
     /// Leaves out what is due.
     void skip(std::uint64_t frames) { next_ += frames; }
 
+    /// Before open(): from the next frame on they come at this rate, the first of them one step
+    /// after the last; indices go on.
+    void change_rate(const FrameRate& rate);
+
     /// The sensor's clock begins anew; indices go on.
     void restart();
 
@@ -76,6 +80,7 @@ private:
     std::optional<FrameClock> clock_;  // counts from base_
     std::uint64_t base_ = 0, next_ = 0, end_ = 0;
     SensorTime window_end_{};
+    std::optional<SensorTime> last_;  // frame before the rate was changed
 };
 
 }  // namespace eventide

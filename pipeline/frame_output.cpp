@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <ratio>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@ FrameOutput::FrameOutput(RenderStage& renderer, std::vector<Sink*> sinks, const 
       stop_(stop),
       counters_(counters),
       keeper_(keeper),
+      lookahead_(settings.lookahead),
       schedule_(settings.rate, settings.from),
       shedder_(settings.waits_at_most),
       frame_(renderer.make_output()) {
@@ -39,6 +41,7 @@ bool FrameOutput::take(const Encoded& encoded) {
         renderer_.reset();
         schedule_.restart();
     }
+    if (settings_.changes != nullptr) change();
     renderer_.push(latent);
     arrived_ = latent.arrived;
     Waiting& held = held_[(oldest_ + held_count_++) % held_.size()];
@@ -46,8 +49,24 @@ bool FrameOutput::take(const Encoded& encoded) {
     held.events = latent.events;
     held.gap_before = latent.gap_before;
     held.event_preview = encoded.event_preview;
-    if (held_count_ > std::size_t(settings_.lookahead)) present_oldest();
+    while (held_count_ > std::size_t(lookahead_)) present_oldest();
     return wanted_;
+}
+
+/// All frames that were due are done. A size that is impossible leaves the old one: who asked sees
+/// it in the frames.
+void FrameOutput::change() {
+    const LiveChanges::Wanted wanted = settings_.changes->take();
+    if (wanted.rate) schedule_.change_rate(*wanted.rate);
+    if (wanted.lookahead && *wanted.lookahead >= 0 && *wanted.lookahead <= kMaxLookahead &&
+        renderer_.change_lookahead(*wanted.lookahead))
+        lookahead_ = *wanted.lookahead;
+    if (!wanted.size) return;
+    try {
+        renderer_.change_size(wanted.size->width, wanted.size->height, frame_);
+    } catch (const Error&) {
+    } catch (const std::bad_alloc&) {
+    }
 }
 
 bool FrameOutput::finish() {

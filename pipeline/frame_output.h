@@ -5,6 +5,7 @@
 #include "pipeline/frame_clock.h"
 #include "pipeline/frame_dropper.h"
 #include "pipeline/latency_keeper.h"
+#include "pipeline/live_changes.h"
 #include "pipeline/sink.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"
@@ -40,6 +41,7 @@ public:
         std::size_t waits_at_most =
             1;                       ///< event windows behind this one, before frames are skipped
         bool allow_silence = false;  ///< no limit to frames in a row without events
+        LiveChanges* changes = nullptr;  ///< looked at once for each event window; null: none
     };
 
     /// `waiting()` tells how many event windows stand behind the one at hand.
@@ -65,6 +67,7 @@ private:
         bool gap_before = false;
         Array2<float> event_preview;
     };
+    void change();
     void present_oldest();
     void open_shedder();
     void check_silence(const Waiting& held);
@@ -78,6 +81,7 @@ private:
     const StopRequest& stop_;
     Counters& counters_;
     LatencyKeeper& keeper_;
+    int lookahead_;
     FrameSchedule schedule_;
     FrameDropper shedder_;
     std::array<Waiting, kMaxLookahead + 1> held_;  // a ring

@@ -69,6 +69,20 @@ public:
         request_.t = std::max(t, window.begin + SensorDuration{1});
         fused_.render(request_, frame);
     }
+    bool change_lookahead(int lookahead) override {
+        request_.lookahead = lookahead;
+        fused_.change_lookahead(lookahead);
+        return true;
+    }
+    bool change_size(int width, int height, Frame& frame) override {
+        RenderRequest request = request_;
+        request.width = width;
+        request.height = height;
+        frame = renderer_.make_output(request);
+        fused_.prepare(request);
+        request_ = request;
+        return true;
+    }
 
     /// After the run.
     const FusedRenderer& fused() const { return fused_; }

@@ -36,6 +36,18 @@ public:
         request_.t = std::max(t, window.begin + SensorDuration{1});
         renderer_.render(request_, frame);
     }
+    bool change_lookahead(int lookahead) override {
+        request_.lookahead = lookahead;
+        return true;
+    }
+    bool change_size(int width, int height, Frame& frame) override {
+        RenderRequest request = request_;
+        request.width = width;
+        request.height = height;
+        frame = renderer_.make_output(request);
+        request_ = request;
+        return true;
+    }
 
 private:
     Renderer& renderer_;

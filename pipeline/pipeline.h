@@ -42,6 +42,7 @@ struct PipelineSettings {
     bool event_preview = false;     ///< fill Frame::event_preview
     bool events_per_pixel = false;  ///< fill LatentMap::events_per_pixel
     PipelineBuffers buffers;
+    LiveChanges* changes = nullptr;  ///< borrowed; null: nothing is changed while it runs
 };
 
 /// All borrowed for the pipeline's life; filter and observer may be null.

@@ -32,6 +32,12 @@ public:
     /// two before it. As many latent maps were pushed as the lookahead says, and not one more.
     virtual void render(SensorTime t, const Window& window, Frame& frame) noexcept = 0;
     virtual void reset() noexcept = 0;  ///< as constructed
+
+    // Between frames, while it runs; false where the stage cannot.
+    virtual bool change_lookahead(int) { return false; }
+    /// `frame` becomes one of that size, and the frames from now on. Throws Error where such a size
+    /// is impossible, and stays as it was.
+    virtual bool change_size(int, int, Frame&) { return false; }
 };
 
 /// events -> fewer events, before they are sliced (hot pixels, for example). Bin thread.

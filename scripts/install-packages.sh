@@ -10,14 +10,14 @@ build=(
   libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libbz2-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler
   libcli11-dev libtomlplusplus-dev libspdlog-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
-  libusb-1.0-0-dev libhdf5-dev
+  libusb-1.0-0-dev libhdf5-dev libcpp-httplib-dev
   python3-dev python3-numpy pybind11-dev
 )
 tests=(
   libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev
   libtorch-dev libsqlite3-dev ffmpeg python3
   clang clang-format clang-tidy libclang-rt-14-dev git
-  dpkg-dev file
+  dpkg-dev file chromium
 )
 wanted=("${build[@]}")
 [ "${1:-}" = "--tests" ] && wanted+=("${tests[@]}")

@@ -25,6 +25,9 @@ public:
     /// After Renderer::push() of the same window; events per pixel, [y][x] of the sensor.
     void push(const Window& window, const Array2<float>& events) noexcept;
 
+    /// 0, 1 or 2, as of the next window pushed.
+    void change_lookahead(int lookahead) noexcept { lookahead_ = lookahead; }
+
     /// The memory that the correction takes for requests of this size and region.
     void prepare(const RenderRequest& request) { fusion_.prepare(request); }
 

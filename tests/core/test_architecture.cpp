@@ -55,6 +55,8 @@ const std::vector<Rule> kRules{
     {"opencv2/",
      {"pipeline/sinks/", "apps/", "src/simulate/", "src/metrics/", "replay/image_file"}},
     {"libusb", {"drivers/usb/"}},
+    {"httplib.h", {"pipeline/sinks/http/"}},
+    {"pipeline/sinks/http/", {"pipeline/sinks/http/", "apps/cli/"}},
     {"concurrentqueue.h", {"pipeline/link.h", "pipeline/pool.h"}},
     {"torch/", {"apps/train/"}},
     {"oneapi/dnnl", {"src/nn/", "src/kernels/", "src/metrics/"}},

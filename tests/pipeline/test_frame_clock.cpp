@@ -128,5 +128,36 @@ TEST(FrameSchedule, BeginsAnewWithTheCamerasClockAndGoesOnCounting) {
               (std::vector<std::pair<std::int64_t, std::uint64_t>>{{7, 3}, {10'007, 4}}));
 }
 
+TEST(FrameSchedule, ANewRateGoesOnFromTheLastFrame) {
+    FrameSchedule schedule({100, 1});
+    using Frames = std::vector<std::pair<std::int64_t, std::uint64_t>>;
+    EXPECT_EQ(frames_of(schedule, {{from_us(0), from_us(25'000)}}),
+              (Frames{{0, 0}, {10'000, 1}, {20'000, 2}}));
+    schedule.change_rate({200, 1});
+    EXPECT_EQ(frames_of(schedule, {{from_us(25'000), from_us(40'000)}}),
+              (Frames{{25'001, 3}, {30'001, 4}, {35'001, 5}}))
+        << "the next would lie before the window, whose first instant it is instead";
+    schedule.change_rate({50, 1});
+    schedule.change_rate({20, 1});
+    EXPECT_EQ(frames_of(schedule,
+                        {{from_us(40'000), from_us(60'000)}, {from_us(60'000), from_us(140'000)}}),
+              (Frames{{85'001, 6}, {135'001, 7}}));
+}
+
+TEST(FrameSchedule, ARateCanBeginWhereThereWasNone) {
+    FrameSchedule schedule({});
+    using Frames = std::vector<std::pair<std::int64_t, std::uint64_t>>;
+    EXPECT_EQ(frames_of(schedule, {{from_us(0), from_us(10'000)}}), (Frames{{10'000, 0}}));
+    schedule.change_rate({250, 1});
+    EXPECT_EQ(frames_of(schedule, {{from_us(10'000), from_us(20'000)}}),
+              (Frames{{14'000, 1}, {18'000, 2}}));
+}
+
+TEST(FrameSchedule, ARateThatIsChangedBeforeTheFirstFrameIsTheRate) {
+    FrameSchedule schedule({100, 1}, from_us(5000));
+    schedule.change_rate({1000, 1});
+    EXPECT_EQ(frames_of(schedule, {{from_us(0), from_us(6000)}}).size(), 2U);
+}
+
 }  // namespace
 }  // namespace eventide

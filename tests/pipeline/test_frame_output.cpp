@@ -21,8 +21,8 @@ struct Ending {
     explicit Ending(int lookahead, FrameRate rate = {200'000, 1},  // a frame each 5 us
                     bool allow_silence = false)
         : presenter(
-              renderer, {&sink}, {rate, {}, lookahead, false, 1, allow_silence}, [] { return 0; },
-              stop, counters, keeper) {
+              renderer, {&sink}, {rate, {}, lookahead, false, 1, allow_silence, &changes},
+              [] { return 0; }, stop, counters, keeper) {
         sink.before_write = [this](auto) { pushed.push_back(renderer.pushed()); };
     }
     void give(std::int64_t begin_us, bool reset_before = false) {
@@ -51,6 +51,7 @@ struct Ending {
     StopRequest stop;
     Counters counters;
     LatencyKeeper keeper{{}};
+    LiveChanges changes;
     FrameOutput presenter;
 };
 
@@ -193,6 +194,43 @@ TEST(FrameOutput, StopsWhenASinkWantsNoMore) {
 
 TEST(FrameOutput, RefusesAnImpossibleLookahead) {
     for (const int lookahead : {-1, 3}) EXPECT_THROW(Ending{lookahead}, Error);
+}
+
+TEST(FrameOutput, ChangesItsRateWhileItRuns) {
+    Ending e(0);
+    e.give(0);
+    e.changes.set_rate({100'000, 1});  // a frame each 10 us
+    e.give(10);
+    e.give(20);
+    EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 20, 30}));
+    for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
+}
+
+/// A renderer that can see as far as it is told.
+TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
+    Ending e(2);
+    for (int k = 0; k < 4; ++k) e.give(10 * k);
+    EXPECT_EQ(e.times().back(), 20) << "two event windows are waited for";
+    e.changes.set_lookahead(0);
+    e.give(40);
+    EXPECT_EQ(e.times().back(), 50) << "none is waited for";
+    e.changes.set_lookahead(1);
+    e.give(50);
+    EXPECT_EQ(e.times().back(), 50);
+    e.give(60);
+    EXPECT_EQ(e.times().back(), 60);
+    e.presenter.finish();
+    EXPECT_EQ(e.times().size(), 15U);
+    for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
+}
+
+TEST(FrameOutput, KeepsWhatItsRendererCannotChange) {
+    Ending e(2);
+    e.renderer.changeable = false;
+    e.changes.set_lookahead(0);
+    e.changes.set_size(640, 480);
+    for (int k = 0; k < 3; ++k) e.give(10 * k);
+    EXPECT_EQ(e.times().back(), 10);
 }
 
 }  // namespace

@@ -138,7 +138,9 @@ public:
     void render(SensorTime t, const Window& window, Frame& frame) noexcept override;
     void reset() noexcept override;
 
-    bool finished = false;
+    bool change_lookahead(int) override { return changeable; }
+
+    bool finished = false, changeable = true;
     std::size_t pushed() const { return count_; }  ///< since the last reset
 
 private:

@@ -55,6 +55,8 @@ public:
     std::string read_output(std::size_t n);
     /// The reader goes away.
     void close_output();
+    /// What it has written to standard error so far, where that is no terminal.
+    std::string error_so_far() const { return read_text(files_ / "error"); }
     void signal(int number);
     bool running();
     Result wait();

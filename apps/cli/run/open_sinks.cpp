@@ -4,6 +4,8 @@
 #include "apps/cli/settings/sink_name.h"
 #include "pipeline/sinks/contact_sheet.h"
 #include "pipeline/sinks/folder.h"
+#include "pipeline/sinks/http/http_sink.h"
+#include "pipeline/sinks/http/request_guard.h"
 #include "pipeline/sinks/null.h"
 #include "pipeline/sinks/raw_stream.h"
 #include "pipeline/sinks/v4l2_output.h"
@@ -11,6 +13,7 @@
 #include "pipeline/sinks/window.h"
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <utility>
 
@@ -68,6 +71,42 @@ std::unique_ptr<Sink> open_v4l2(const std::string& node, const RunSettings& sett
     return std::make_unique<V4l2OutputSink>(std::move(loopback));
 }
 
+/// Others of this machine need no token, since what they can see they could start themselves.
+std::string token_of(const RunSettings& settings, const HttpAddress& address) {
+    if (settings.http_token == "none") return {};
+    if (settings.http_token != "auto") return settings.http_token;
+    return is_loopback(address.host) ? std::string{} : make_token();
+}
+
+std::string own_name() {
+    char name[256] = {};
+    return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+std::unique_ptr<Sink> open_page(const std::string& address, const RunSettings& settings,
+                                const SinkPlan& plan) {
+    HttpSettings page;
+    page.address = parse_http_address(address);
+    page.token = token_of(settings, page.address);
+    page.names = settings.http_name;
+    if (!is_loopback(page.address.host)) page.names.push_back(own_name());
+    page.title = settings.source;
+    page.uncertainty = settings.uncertainty;
+    page.sigma_white = float(settings.sigma_white);
+    page.controls = plan.controls;
+    page.snapshot = plan.questions.snapshot;
+    page.stats = plan.questions.stats;
+    page.give_up = plan.questions.stopping;
+    const std::string token = page.token;
+    auto sink = open_http(std::move(page));
+    spdlog::info("live page: {}{}", url_of(sink->address()),
+                 token.empty() ? "" : "?token=" + token);
+    if (!is_loopback(sink->address().host) && token.empty())
+        spdlog::warn("--http-token none: whoever reaches {} may look and change the controls",
+                     url_of(sink->address()));
+    return sink;
+}
+
 std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& settings,
                                  const SinkPlan& plan) {
     ContactSheetSettings sheet;
@@ -100,6 +139,8 @@ std::unique_ptr<Sink> open_sink(const std::string& text, const RunSettings& sett
             return open_sheet(sink.path, settings, plan);
         case SinkKind::v4l2:
             return open_v4l2(sink.path, settings);
+        case SinkKind::http:
+            return open_page(sink.path, settings, plan);
         case SinkKind::nothing:
             break;
     }
@@ -114,6 +155,10 @@ bool is_window(const std::string& sink) {
 
 bool is_contact_sheet(const std::string& sink) {
     return sink.starts_with("contact-sheet:");
+}
+
+bool is_http(const std::string& sink) {
+    return sink.starts_with("http:");
 }
 
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {

@@ -3,7 +3,9 @@
 
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/settings/run_settings.h"
+#include "pipeline/counters.h"
 #include "pipeline/sink.h"
+#include "pipeline/sinks/http/control.h"
 
 #include <functional>
 #include <memory>
@@ -18,6 +20,9 @@ struct SinkQuestions {
     std::function<std::string()> run_json;
     std::function<bool()> stopping;
     std::function<void(double)> speed_changed;
+    // Any thread.
+    std::function<Snapshot()> snapshot;
+    std::function<std::string(double event_rate)> stats;
 };
 
 struct SinkPlan {
@@ -28,10 +33,12 @@ struct SinkPlan {
     ReferenceImages* references = nullptr;
     std::string reference_caption;  ///< for people
     SinkQuestions questions;
+    std::vector<HttpControl> controls = {};  ///< of the live page
 };
 
 bool is_window(const std::string& sink);
 bool is_contact_sheet(const std::string& sink);
+bool is_http(const std::string& sink);
 
 /// Opens all of settings.out, with the look controls in front of all but the contact sheet. Throws
 /// Error (usage) for what names no sink or contradicts --uncertainty.

@@ -4,6 +4,7 @@
 #include "apps/cli/commands/disorder.h"
 #include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/printable.h"
+#include "apps/cli/run/live_controls.h"
 #include "apps/cli/run/memory_use.h"
 #include "apps/cli/run/status.h"
 #include "apps/cli/version.h"
@@ -47,6 +48,7 @@ Run::Run(Program& program, RunSettings& settings)
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
+      page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
       filter_{filter_of(settings, network_.config(), sensor_)},
       watch_{sheet_ ? &references_ : nullptr,
@@ -65,6 +67,7 @@ Run::Run(Program& program, RunSettings& settings)
     stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
     try {
         pipeline_.emplace(parts(), line());
+        line_made_ = true;
     } catch (const std::bad_alloc&) {
         const auto& config = network_.config();
         throw out_of_memory(
@@ -92,7 +95,28 @@ SinkPlan Run::sink_plan() {
     plan.questions.run_json = [this] { return run_json(); };
     if (opened_.paced != nullptr)
         plan.questions.speed_changed = [this](double factor) { opened_.paced->set_speed(factor); };
+    plan.questions.snapshot = [this] { return snapshot(); };
+    plan.questions.stats = [this](double event_rate) {
+        RunProgress now = progress();
+        now.event_rate = event_rate;
+        return stats_json(snapshot(), now, false);
+    };
+    if (page_) plan.controls = controls();
     return plan;
+}
+
+std::vector<HttpControl> Run::controls() {
+    LiveControlsPlan plan{settings_, changes_, {sensor_.width, sensor_.height}};
+    plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
+    plan.lookahead = lookahead_;
+    plan.speed = speed_;
+    if (opened_.paced != nullptr)
+        plan.set_speed = [this](double factor) { opened_.paced->set_speed(factor); };
+    plan.live = live();
+    plan.window = settings_.window == "model" || (settings_.window == "auto" && live())
+                      ? network_.config().window
+                      : settings_.window;
+    return live_controls(plan);
 }
 
 PipelineParts Run::parts() {
@@ -102,7 +126,7 @@ PipelineParts Run::parts() {
     return parts;
 }
 
-PipelineSettings Run::line() const {
+PipelineSettings Run::line() {
     PipelineSettings line;
     line.bins = network_.config().bins;
     line.event_windows.slicer = slicer_;
@@ -112,7 +136,8 @@ PipelineSettings Run::line() const {
     line.latency = latency_of(settings_, live());
     line.reset_on_gap = settings_.reset_on_gap;
     line.allow_silence = settings_.allow_silence;
-    line.event_preview = settings_.events || sheet_;
+    line.event_preview = settings_.events || sheet_ || page_;
+    line.changes = page_ ? &changes_ : nullptr;
     line.events_per_pixel = fusion_.has_value();
     line.buffers = {std::size_t(settings_.buffers_packets), std::size_t(settings_.buffers_grids),
                     std::size_t(settings_.buffers_latents)};

@@ -13,6 +13,7 @@
 #include "pipeline/model_stages.h"
 #include "pipeline/pipeline.h"
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -40,6 +41,10 @@ class Run {
 public:
     /// Throws Error.
     Run(Program& program, RunSettings& settings);
+    /// Sinks end first: viewers of the live page ask for counters until then.
+    ~Run() { sinks_.clear(); }
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
 
     /// Returns the exit code. Throws Error.
     int run();
@@ -49,11 +54,13 @@ private:
     bool live() const { return opened_.source->is_live(); }
     SinkPlan sink_plan();
     PipelineParts parts();
-    PipelineSettings line() const;
+    PipelineSettings line();
     void run_pipeline();
     CameraCounters camera_counters() const;
     RunProgress progress() const;
     std::string run_json();
+    std::vector<HttpControl> controls();
+    Snapshot snapshot() const { return line_made_ ? pipeline_->snapshot() : Snapshot{}; }
 
     Program& program_;
     RunSettings& settings_;
@@ -65,7 +72,7 @@ private:
     const SlicerSettings slicer_;
     const FrameRate rate_;
     const int lookahead_;
-    const bool sheet_;
+    const bool sheet_, page_;
     const std::chrono::steady_clock::time_point begun_;
     std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known
     ReferenceImages references_;
@@ -77,6 +84,8 @@ private:
     ModelEncodeStage encode_;
     ModelRenderStage render_;
     std::optional<FusionRenderStage> fusion_;  // none: the camera's images are ignored
+    LiveChanges changes_;
+    std::atomic<bool> line_made_{false};  // until then viewers of the page see no counters
     std::vector<std::unique_ptr<Sink>> sinks_;
     std::optional<Pipeline> pipeline_;
 };

@@ -61,7 +61,10 @@ Span span_of(const RunSettings& settings, bool live) {
 double speed_of(const RunSettings& settings) {
     if (settings.speed == "max") return 0;
     if (settings.speed == "auto")
-        return std::ranges::any_of(settings.out, is_window) ? 1 / settings.slow : 0;
+        return std::ranges::any_of(settings.out, is_window) ||
+                       std::ranges::any_of(settings.out, is_http)
+                   ? 1 / settings.slow
+                   : 0;
     return parse_number(settings.speed, 0.001, 1000);
 }
 

@@ -4,6 +4,7 @@
 #include "src/binning/noise_filter.h"
 #include "src/binning/slicer_settings.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace eventide::app {
@@ -89,6 +90,17 @@ std::string check_latency(const std::string& text) {
     return text;
 }
 
+/// It is written into addresses as it is.
+std::string check_token(const std::string& text) {
+    const auto plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '-' || c == '_' || c == '.' || c == '~';
+    };
+    if (text.empty() || !std::ranges::all_of(text, plain))
+        throw_usage("auto, none, or letters, digits and - . _ ~", text);
+    return text;
+}
+
 std::string same(const std::string& text) {
     return text;
 }
@@ -169,7 +181,7 @@ void RunSettings::add_times(SettingTable& table) {
         check_window, same));
     add(parsed_setting<std::string>("speed", speed, "FACTOR",
                                     "Of a recording: max (as fast as possible), 1 (as it was "
-                                    "recorded), 0.25, ...; auto: with a window as "
+                                    "recorded), 0.25, ...; auto: with a window or page as "
                                     "recorded, or as --slow says, else max.",
                                     check_speed, same));
     add(time_point_setting(
@@ -236,7 +248,8 @@ void RunSettings::add_outputs(SettingTable& table) {
         "x.gif, x.y4m, - "
         "(Y4M on standard output), y4m:, y4m-mono:, gray8:, gray16: or grayf32: and a file, pipe "
         "or "
-        "-, window, v4l2:/dev/videoN (a virtual camera), contact-sheet:x.png, null.");
+        "-, window, http:127.0.0.1:8080 (a page in the browser, MJPEG), v4l2:/dev/videoN (a "
+        "virtual camera), contact-sheet:x.png, null.");
     sinks.short_flag = "-o";
     add(std::move(sinks));
     add(flag_setting("overwrite", overwrite,
@@ -261,7 +274,15 @@ void RunSettings::add_outputs(SettingTable& table) {
                        0.001, 100));
     add(flag_setting("events", events,
                      "Show the events of each frame's event window: left in the window, as "
-                     "events/*.png in the folder. The contact sheet always does."));
+                     "events/*.png in the folder. The contact sheet and the live page always do."));
+    add(parsed_setting<std::string>(
+        "http_token", http_token, "TOKEN",
+        "What viewers of the live page have to know. auto: nothing on this machine alone, "
+        "else one that is made and told; none: nothing.",
+        check_token, same));
+    add(list_setting("http_name", http_name, "NAME",
+                     "A name under which browsers reach the live page (of a proxy, for example); "
+                     "others are refused, except localhost and addresses."));
     add(text_setting("record", record, "FILE",
                      "Also write what the source sends, before anything can be lost: in the format "
                      "of the extension, or untouched bytes as .bin."));

@@ -78,6 +78,8 @@ struct RunSettings {
     Uncertainty uncertainty = Uncertainty::automatic;
     double sigma_white = 0.3;  // kSigmaWhite, in fewer digits
     bool events = false;
+    std::string http_token = "auto";  ///< auto, none, or the token
+    std::vector<std::string> http_name;
     std::string record;
     std::string stats;
     bool strict = false;

@@ -4,6 +4,7 @@
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/terminal.h"
 #include "pipeline/sinks/folder.h"
+#include "pipeline/sinks/http/http_address.h"
 #include "pipeline/sinks/video.h"
 #include "pipeline/sinks/video_kind.h"
 #include "src/core/error.h"
@@ -31,6 +32,10 @@ std::optional<std::string> after_prefix(const std::string& sink, std::string_vie
 std::optional<SinkName> with_prefix(const std::string& sink) {
     if (const auto path = after_prefix(sink, "contact-sheet"))
         return SinkName{SinkKind::sheet, *path};
+    if (const auto address = after_prefix(sink, "http")) {
+        parse_http_address(*address);
+        return SinkName{SinkKind::http, *address};
+    }
     if (const auto node = after_prefix(sink, "v4l2")) return SinkName{SinkKind::v4l2, *node};
     if (const auto path = after_prefix(sink, "folder")) return SinkName{SinkKind::folder, *path};
     for (const StreamFormat format : kStreamFormats)
@@ -72,7 +77,7 @@ SinkName parse_sink(const std::string& sink) {
     if (sink == "window") return {SinkKind::window, {}};
     if (sink == "-") return {SinkKind::stream, sink};
     if (const auto name = with_prefix(sink)) {
-        if (name->path.empty())
+        if (name->path.empty() && name->kind != SinkKind::http)
             throw Error(ErrorKind::usage, "--out " + sink + " needs a path, such as --out " + sink +
                                               (name->kind == SinkKind::v4l2 ? "/dev/video9" : "x"));
         return *name;
@@ -81,13 +86,13 @@ SinkName parse_sink(const std::string& sink) {
     if (sink.ends_with(".y4m")) return {SinkKind::stream, sink};
     if (sink.ends_with('/') || std::filesystem::is_directory(sink)) return {SinkKind::folder, sink};
     if (std::filesystem::is_fifo(sink)) return {SinkKind::stream, sink};
-    throw Error(
-        ErrorKind::usage,
-        "--out " + sink +
-            ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
-            "named pipe, "
-            "window, null, v4l2:/dev/videoN, contact-sheet:x.png, or y4m:, y4m-mono:, gray8:, "
-            "gray16:, grayf32: and a file, pipe or -");
+    throw Error(ErrorKind::usage,
+                "--out " + sink +
+                    ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
+                    "named pipe, "
+                    "window, null, http:ADDRESS:PORT, v4l2:/dev/videoN, contact-sheet:x.png, or "
+                    "y4m:, y4m-mono:, gray8:, "
+                    "gray16:, grayf32: and a file, pipe or -");
 }
 
 void name_sink_files(const RunSettings& settings, NamedFiles& files) {
@@ -111,6 +116,7 @@ void name_sink_files(const RunSettings& settings, NamedFiles& files) {
             case SinkKind::nothing:
             case SinkKind::window:
             case SinkKind::v4l2:
+            case SinkKind::http:
                 break;
         }
     }

@@ -9,11 +9,11 @@
 
 namespace eventide::app {
 
-enum class SinkKind { nothing, window, folder, video, stream, sheet, v4l2 };
+enum class SinkKind { nothing, window, folder, video, stream, sheet, v4l2, http };
 
 struct SinkName {
     SinkKind kind = SinkKind::nothing;
-    std::string path;                         ///< of what has one
+    std::string path;                         ///< of what has one; the address of http
     StreamFormat format = StreamFormat::y4m;  ///< of streams
 };
 

@@ -1,0 +1,131 @@
+#include "apps/cli/run/live_controls.h"
+
+#include "apps/cli/settings/sink_name.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+namespace eventide::app {
+
+namespace {
+
+using Value = std::shared_ptr<std::atomic<double>>;
+
+Value made(double value) {
+    return std::make_shared<std::atomic<double>>(value);
+}
+
+HttpControl control(std::string name, std::string label, std::string unit, const Value& value) {
+    HttpControl made;
+    made.name = std::move(name);
+    made.label = std::move(label);
+    made.unit = std::move(unit);
+    made.get = [value] { return value->load(); };
+    return made;
+}
+
+/// The first sink whose frames must be all alike, as it was named.
+std::optional<std::string> rigid_sink(const RunSettings& settings) {
+    const auto found = std::ranges::find_if(settings.out, [](const std::string& text) {
+        const SinkKind kind = parse_sink(text).kind;
+        return kind != SinkKind::http && kind != SinkKind::window && kind != SinkKind::nothing;
+    });
+    if (found == settings.out.end()) return std::nullopt;
+    return *found;
+}
+
+HttpControl fps_control(const LiveControlsPlan& plan, const std::string& why_not) {
+    const Value value = made(plan.fps);
+    HttpControl fps = control("fps", "Frame rate", "frames/s", value);
+    fps.least = 1;
+    fps.most = 1000;
+    fps.fixed = why_not;
+    // The slider's end, where the run began beyond it.
+    if (plan.fps > fps.most) fps.most = std::ceil(plan.fps);
+    if (!why_not.empty()) return fps;
+    fps.set = [value, &changes = plan.changes, slow = plan.settings.slow](double wanted) {
+        changes.set_rate(slowed({std::llround(wanted), 1}, slow));
+        *value = wanted;
+    };
+    return fps;
+}
+
+HttpControl scale_control(const LiveControlsPlan& plan, std::string why_not) {
+    constexpr double kMax = 4, kMaxSide = 4096, kStep = 0.25;
+    const Size now = plan.settings.size.of(plan.sensor);
+    const Value value = made(double(now.width) / double(plan.sensor.width));
+    HttpControl scale = control("scale", "Scale", "x sensor", value);
+    if (why_not.empty() && plan.settings.size.exact) why_not = "--size gives pixels, not a factor";
+    if (why_not.empty() && plan.settings.region) why_not = "--roi is in pixels of the frame";
+    const double side = std::max(plan.sensor.width, plan.sensor.height);
+    scale.least = scale.step = kStep;
+    scale.most = std::max({std::min(kMax, std::floor(kMaxSide / side / kStep) * kStep), kStep,
+                           std::ceil(*value / kStep) * kStep});
+    scale.fixed = why_not;
+    if (!why_not.empty()) return scale;
+    scale.set = [value, &changes = plan.changes, sensor = plan.sensor](double wanted) {
+        changes.set_size(std::max(1, int(std::lround(sensor.width * wanted))),
+                         std::max(1, int(std::lround(sensor.height * wanted))));
+        *value = wanted;
+    };
+    return scale;
+}
+
+HttpControl lookahead_control(const LiveControlsPlan& plan) {
+    const Value value = made(plan.lookahead);
+    HttpControl lookahead = control("lookahead", "Lookahead", "event windows", value);
+    lookahead.most = 2;
+    lookahead.set = [value, &changes = plan.changes](double wanted) {
+        changes.set_lookahead(int(wanted));
+        *value = wanted;
+    };
+    return lookahead;
+}
+
+HttpControl speed_control(const LiveControlsPlan& plan) {
+    const Value value = made(plan.speed);
+    HttpControl speed = control("speed", "Speed", "x real time", value);
+    speed.least = speed.step = 0.05;
+    speed.most = 8;
+    if (plan.speed > 0) {
+        speed.least = std::min(speed.least, plan.speed);
+        speed.most = std::max(speed.most, plan.speed);
+    }
+    if (plan.live) {
+        speed.fixed = "a camera has one speed";
+        speed.text = "live";
+    } else if (!plan.set_speed || plan.speed <= 0) {
+        speed.fixed = "as fast as possible (--speed max)";
+        speed.text = "max";
+    } else {
+        speed.set = [value, set = plan.set_speed](double wanted) {
+            set(wanted);
+            *value = wanted;
+        };
+    }
+    return speed;
+}
+
+HttpControl window_control(const LiveControlsPlan& plan) {
+    HttpControl window;
+    window.name = "window";
+    window.label = "Event window";
+    window.text = plan.window;
+    window.fixed = "chosen at the start (--window)";
+    return window;
+}
+
+}  // namespace
+
+std::vector<HttpControl> live_controls(const LiveControlsPlan& plan) {
+    std::string why_not;
+    if (const auto sink = rigid_sink(plan.settings))
+        why_not = "--out " + *sink + " has frames that are all alike";
+    return {fps_control(plan, why_not), scale_control(plan, why_not), lookahead_control(plan),
+            speed_control(plan), window_control(plan)};
+}
+
+}  // namespace eventide::app

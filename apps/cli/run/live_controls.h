@@ -1,0 +1,30 @@
+// What viewers of the live page may change, made out of the settings of a run.
+#pragma once
+
+#include "apps/cli/settings/run_settings.h"
+#include "pipeline/live_changes.h"
+#include "pipeline/sinks/http/control.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace eventide::app {
+
+struct LiveControlsPlan {
+    const RunSettings& settings;
+    LiveChanges& changes;                        ///< borrowed by the controls
+    Size sensor;                                 ///< px
+    double fps = 30;                             ///< of the video, at the start
+    int lookahead = 0;                           ///< at the start
+    double speed = 0;                            ///< of a recording at a pace, at the start
+    std::function<void(double)> set_speed = {};  ///< empty: the source has one speed
+    bool live = false;
+    std::string window = {};  ///< as --window writes it
+};
+
+/// fps, scale, lookahead, speed, window, in this order. Those that cannot be changed say why: a
+/// window is cut before there are frames, and files and streams have frames that are all alike.
+std::vector<HttpControl> live_controls(const LiveControlsPlan& plan);
+
+}  // namespace eventide::app

@@ -1,0 +1,54 @@
+// What may be changed while a line runs: asked for by any thread, taken by the render thread.
+#pragma once
+
+#include "pipeline/frame_clock.h"
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace eventide {
+
+class LiveChanges {
+public:
+    struct Wanted {
+        std::optional<FrameRate> rate;  ///< of sensor time
+        std::optional<int> lookahead;   ///< 0 to 2 event windows
+        struct Pixels {
+            int width = 0, height = 0;
+        };
+        std::optional<Pixels> size;  ///< of the frames
+    };
+
+    void set_rate(const FrameRate& rate) {
+        ask([&] { wanted_.rate = rate; });
+    }
+    void set_lookahead(int windows) {
+        ask([&] { wanted_.lookahead = windows; });
+    }
+    void set_size(int width, int height) {
+        ask([&] { wanted_.size = Wanted::Pixels{width, height}; });
+    }
+
+    /// What was asked for since the last time; once for each event window, so it costs a load where
+    /// nothing was.
+    Wanted take() {
+        if (!any_.exchange(false)) return {};
+        const std::lock_guard lock{mutex_};
+        return std::exchange(wanted_, {});
+    }
+
+private:
+    template <typename Body>
+    void ask(Body body) {
+        const std::lock_guard lock{mutex_};
+        body();
+        any_ = true;
+    }
+    std::mutex mutex_;
+    Wanted wanted_;
+    std::atomic<bool> any_{false};
+};
+
+}  // namespace eventide

@@ -1,0 +1,116 @@
+// What viewers of the live page may change, by what else a run does; and how the page is named.
+#include "apps/cli/run/live_controls.h"
+#include "apps/cli/run/open_sinks.h"
+#include "apps/cli/run/run_plan.h"
+#include "apps/cli/settings/sink_name.h"
+#include "src/core/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace eventide::app {
+namespace {
+
+using testing::HasSubstr;
+
+class LiveControls : public testing::Test {
+protected:
+    LiveControls() { settings_.out = {"http:0"}; }
+
+    std::vector<HttpControl> made() {
+        LiveControlsPlan plan{settings_, changes_, {240, 180}};
+        plan.speed = speed_;
+        if (speed_ > 0) plan.set_speed = [this](double factor) { speed_ = factor; };
+        plan.live = live_;
+        plan.window = "50ms";
+        return live_controls(plan);
+    }
+    HttpControl control(const std::string& name) {
+        const auto all = made();
+        return *std::ranges::find(all, name, &HttpControl::name);
+    }
+
+    RunSettings settings_;
+    LiveChanges changes_;
+    double speed_ = 1;
+    bool live_ = false;
+};
+
+TEST_F(LiveControls, TellTheLineWhatIsWanted) {
+    const HttpControl fps = control("fps"), scale = control("scale"),
+                      lookahead = control("lookahead");
+    EXPECT_EQ(fps.get(), 30);
+    fps.set(120);
+    scale.set(1.5);
+    lookahead.set(1);
+    const LiveChanges::Wanted wanted = changes_.take();
+    EXPECT_EQ(wanted.rate, (FrameRate{120, 1}));
+    EXPECT_EQ(wanted.size->width, 360);
+    EXPECT_EQ(wanted.size->height, 270);
+    EXPECT_EQ(wanted.lookahead, 1);
+    EXPECT_EQ(fps.get(), 120);
+    EXPECT_FALSE(changes_.take().rate) << "once";
+}
+
+TEST_F(LiveControls, CountFramesOfTheVideoInSlowMotion) {
+    settings_.slow = 10;
+    control("fps").set(60);
+    EXPECT_EQ(changes_.take().rate, (FrameRate{600, 1}));
+}
+
+TEST_F(LiveControls, LeaveFramesAloneThatMustBeAlike) {
+    for (const char* sink : {"video.mp4", "frames/", "y4m:x", "v4l2:/dev/video9"}) {
+        settings_.out = {"http:0", sink};
+        for (const char* name : {"fps", "scale"}) {
+            EXPECT_FALSE(control(name).set) << sink;
+            EXPECT_THAT(control(name).fixed, HasSubstr(sink));
+        }
+        EXPECT_TRUE(control("lookahead").set) << sink;
+    }
+    settings_.out = {"http:0", "null", "window"};
+    EXPECT_TRUE(control("fps").set && control("scale").set);
+}
+
+TEST_F(LiveControls, SayWhatCannotBeChanged) {
+    EXPECT_FALSE(control("window").set);
+    EXPECT_EQ(control("window").text, "50ms");
+    EXPECT_TRUE(control("speed").set);
+    control("speed").set(0.5);
+    EXPECT_EQ(speed_, 0.5);
+    live_ = true;
+    EXPECT_EQ(control("speed").fixed, "a camera has one speed");
+    live_ = false;
+    speed_ = 0;
+    EXPECT_THAT(control("speed").fixed, HasSubstr("--speed max"));
+    settings_.region = Region{0, 0, 10, 10};
+    EXPECT_FALSE(control("scale").set);
+    settings_.region.reset();
+    settings_.size.exact = Size{640, 480};
+    EXPECT_FALSE(control("scale").set);
+}
+
+TEST(HttpName, IsASink) {
+    EXPECT_EQ(parse_sink("http:127.0.0.1:8080").kind, SinkKind::http);
+    EXPECT_EQ(parse_sink("http:").kind, SinkKind::http);
+    EXPECT_EQ(parse_sink("http:[::1]:0").path, "[::1]:0");
+    try {
+        parse_sink("http://127.0.0.1:8080/");
+        FAIL() << "what browsers write is no address of ours";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_THAT(error.what(), HasSubstr("http:127.0.0.1:8080"));
+    }
+}
+
+TEST(HttpName, PlaysRecordingsAtTheirPace) {
+    RunSettings settings;
+    settings.out = {"http:8080"};
+    EXPECT_EQ(speed_of(settings), 1);
+    settings.speed = "max";
+    EXPECT_EQ(speed_of(settings), 0);
+}
+
+}  // namespace
+}  // namespace eventide::app
