@@ -66,6 +66,7 @@ private:
     };
     void present_oldest();
     void open_shedder();
+    bool is_watched() const;
     void check_silence(const Waiting& held);
     void check_finite();
     void present(const DueFrame& due, Waiting& from);

@@ -85,6 +85,8 @@ SinkPlan Run::sink_plan() {
     plan.constant_rate = rate_.is_set();
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
+    plan.live = live();
+    plan.lookahead = lookahead_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);
     plan.questions.stopping = [this] { return program_.signals.stopping(); };

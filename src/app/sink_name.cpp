@@ -1,6 +1,7 @@
 // SINK as it is written on the command line, taken apart.
 #include "src/app/sink_name.h"
 
+#include "pipeline/ros2/ros2_name.h"
 #include "pipeline/sinks/folder.h"
 #include "pipeline/sinks/video.h"
 #include "pipeline/sinks/video_kind.h"
@@ -32,6 +33,7 @@ std::optional<SinkName> with_prefix(const std::string& sink) {
     if (const auto path = after_prefix(sink, "contact-sheet"))
         return SinkName{SinkKind::sheet, *path};
     if (const auto node = after_prefix(sink, "v4l2")) return SinkName{SinkKind::v4l2, *node};
+    if (const auto name = after_prefix(sink, "ros2")) return SinkName{SinkKind::ros2, *name};
     if (const auto path = after_prefix(sink, "folder")) return SinkName{SinkKind::folder, *path};
     for (const StreamFormat format : kStreamFormats)
         if (const auto path = after_prefix(sink, name_of(format)))
@@ -74,20 +76,22 @@ SinkName parse_sink(const std::string& sink) {
     if (const auto name = with_prefix(sink)) {
         if (name->path.empty())
             throw Error(ErrorKind::usage, "--out " + sink + " needs a path, such as --out " + sink +
-                                              (name->kind == SinkKind::v4l2 ? "/dev/video9" : "x"));
+                                              (name->kind == SinkKind::v4l2   ? "/dev/video9"
+                                               : name->kind == SinkKind::ros2 ? "/camera"
+                                                                              : "x"));
         return *name;
     }
     if (names_video(sink)) return {SinkKind::video, sink};
     if (sink.ends_with(".y4m")) return {SinkKind::stream, sink};
     if (sink.ends_with('/') || std::filesystem::is_directory(sink)) return {SinkKind::folder, sink};
     if (std::filesystem::is_fifo(sink)) return {SinkKind::stream, sink};
-    throw Error(
-        ErrorKind::usage,
-        "--out " + sink +
-            ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
-            "named pipe, "
-            "window, null, v4l2:/dev/videoN, contact-sheet:x.png, or y4m:, y4m-mono:, gray8:, "
-            "gray16:, grayf32: and a file, pipe or -");
+    throw Error(ErrorKind::usage,
+                "--out " + sink +
+                    ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
+                    "named pipe, "
+                    "window, null, v4l2:/dev/videoN, ros2:/NAME, contact-sheet:x.png, or y4m:, "
+                    "y4m-mono:, gray8:, "
+                    "gray16:, grayf32: and a file, pipe or -");
 }
 
 void name_sink_files(const RunSettings& settings, NamedFiles& files) {
@@ -107,6 +111,9 @@ void name_sink_files(const RunSettings& settings, NamedFiles& files) {
             case SinkKind::stream:
             case SinkKind::sheet:
                 files.writes("--out", sink.path, text);
+                break;
+            case SinkKind::ros2:
+                files.reads("--out", parse_ros2_sink_name(sink.path).calibration);
                 break;
             case SinkKind::nothing:
             case SinkKind::window:

@@ -9,7 +9,7 @@
 
 namespace eventide::app {
 
-enum class SinkKind { nothing, window, folder, video, stream, sheet, v4l2 };
+enum class SinkKind { nothing, window, folder, video, stream, sheet, v4l2, ros2 };
 
 struct SinkName {
     SinkKind kind = SinkKind::nothing;
