@@ -20,8 +20,8 @@ dds_duration_t dds_duration(std::chrono::milliseconds duration) {
 /// What Cyclone says goes to standard error otherwise, past all our own output.
 class HeardWords {
 public:
-    HeardWords() { dds_set_log_sink(hear, this); }
-    ~HeardWords() { dds_set_log_sink(nullptr, nullptr); }
+    HeardWords() { dds().dds_set_log_sink(hear, this); }
+    ~HeardWords() { dds().dds_set_log_sink(nullptr, nullptr); }
     HeardWords(const HeardWords&) = delete;
     HeardWords& operator=(const HeardWords&) = delete;
 
@@ -51,7 +51,8 @@ std::string with_words(const std::string& doing, const std::string& words) {
 
 void check_dds(dds_return_t code, const std::string& doing) {
     if (code < 0)
-        throw Error(ErrorKind::failed, "Cyclone DDS cannot " + doing + ": " + dds_strretcode(code));
+        throw Error(ErrorKind::failed,
+                    "Cyclone DDS cannot " + doing + ": " + dds().dds_strretcode(code));
 }
 
 DdsEntity::DdsEntity(dds_entity_t handle, const std::string& doing) : handle_{handle} {
@@ -59,7 +60,7 @@ DdsEntity::DdsEntity(dds_entity_t handle, const std::string& doing) : handle_{ha
 }
 
 DdsEntity::~DdsEntity() {
-    if (handle_ > 0) dds_delete(handle_);
+    if (handle_ > 0) dds().dds_delete(handle_);
 }
 
 DdsEntity::DdsEntity(DdsEntity&& other) noexcept : handle_{std::exchange(other.handle_, 0)} {}
@@ -70,7 +71,7 @@ DdsEntity& DdsEntity::operator=(DdsEntity&& other) noexcept {
 }
 
 DdsQos make_dds_qos() {
-    return {dds_create_qos(), dds_delete_qos};
+    return {dds().dds_create_qos(), dds().dds_delete_qos};
 }
 
 std::shared_ptr<Participant> Participant::join() {
@@ -89,11 +90,13 @@ std::shared_ptr<Participant> Participant::join() {
 Participant::Participant(Ros2Environment environment) : environment_{std::move(environment)} {
     HeardWords heard;
     const std::string number = std::to_string(environment_.domain);
-    const dds_entity_t domain = dds_create_domain(environment_.domain, environment_.config.c_str());
+    const dds_entity_t domain =
+        dds().dds_create_domain(environment_.domain, environment_.config.c_str());
     domain_ =
         DdsEntity{domain, with_words("set up domain " + number + ", with what CYCLONEDDS_URI says",
                                      domain < 0 ? heard.text() : "")};
-    const dds_entity_t participant = dds_create_participant(environment_.domain, nullptr, nullptr);
+    const dds_entity_t participant =
+        dds().dds_create_participant(environment_.domain, nullptr, nullptr);
     participant_ = DdsEntity{
         participant, with_words("join domain " + number, participant < 0 ? heard.text() : "")};
     warnings_ = heard.text();
@@ -107,41 +110,43 @@ Ros2Writer::Ros2Writer(std::shared_ptr<Participant> participant, const MessageTy
                        const std::string& ros_name)
     : participant_{std::move(participant)},
       name_{ros_name},
-      topic_{dds_create_topic(participant_->handle(), &type.descriptor,
-                              dds_topic_name(ros_name).c_str(), nullptr, nullptr),
+      topic_{dds().dds_create_topic(participant_->handle(), &type.descriptor,
+                                    dds_topic_name(ros_name).c_str(), nullptr, nullptr),
              "create the topic " + ros_name} {
     const DdsQos qos = make_dds_qos();
-    dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, dds_duration(kPatience));
-    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kDepth);
-    dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
-    dds_qset_writer_data_lifecycle(qos.get(), false);
+    dds().dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, dds_duration(kPatience));
+    dds().dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kDepth);
+    dds().dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+    dds().dds_qset_writer_data_lifecycle(qos.get(), false);
     const std::string user_data = "typehash=" + std::string{type.hash} + ";";
-    dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
-    writer_ = DdsEntity{dds_create_writer(participant_->handle(), topic_.get(), qos.get(), nullptr),
-                        "create a writer of " + ros_name};
+    dds().dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+    writer_ =
+        DdsEntity{dds().dds_create_writer(participant_->handle(), topic_.get(), qos.get(), nullptr),
+                  "create a writer of " + ros_name};
 }
 
 int Ros2Writer::readers() const {
     dds_publication_matched_status_t status{};
-    check_dds(dds_get_publication_matched_status(writer_.get(), &status),
+    check_dds(dds().dds_get_publication_matched_status(writer_.get(), &status),
               "count the readers of " + name_);
     return int(status.current_count);
 }
 
 bool Ros2Writer::wait_for_readers(int n, const std::function<bool()>& give_up) {
-    const DdsEntity wait{dds_create_waitset(participant_->handle()), "wait for readers"};
-    check_dds(dds_set_status_mask(writer_.get(), DDS_PUBLICATION_MATCHED_STATUS),
+    const DdsEntity wait{dds().dds_create_waitset(participant_->handle()), "wait for readers"};
+    check_dds(dds().dds_set_status_mask(writer_.get(), DDS_PUBLICATION_MATCHED_STATUS),
               "wait for readers");
-    check_dds(dds_waitset_attach(wait.get(), writer_.get(), 0), "wait for readers");
+    check_dds(dds().dds_waitset_attach(wait.get(), writer_.get(), 0), "wait for readers");
     while (readers() < n) {
         if (give_up && give_up()) return false;
-        check_dds(dds_waitset_wait(wait.get(), nullptr, 0, DDS_MSECS(100)), "wait for readers");
+        check_dds(dds().dds_waitset_wait(wait.get(), nullptr, 0, DDS_MSECS(100)),
+                  "wait for readers");
     }
     return true;
 }
 
 bool Ros2Writer::write(const void* message) {
-    const dds_return_t code = dds_write(writer_.get(), message);
+    const dds_return_t code = dds().dds_write(writer_.get(), message);
     if (code == DDS_RETCODE_TIMEOUT) return false;
     check_dds(code, "write to " + name_);
     return true;
@@ -149,7 +154,7 @@ bool Ros2Writer::write(const void* message) {
 
 void Ros2Writer::wait_for_readers_to_take_all(std::chrono::milliseconds at_most) {
     // A reader that has stopped is no error of ours.
-    static_cast<void>(dds_wait_for_acks(writer_.get(), dds_duration(at_most)));
+    static_cast<void>(dds().dds_wait_for_acks(writer_.get(), dds_duration(at_most)));
 }
 
 }  // namespace eventide

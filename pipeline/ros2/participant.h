@@ -1,10 +1,9 @@
 // Our place in a DDS domain, and what is written and read there.
 #pragma once
 
+#include "pipeline/ros2/dds_library.h"
 #include "pipeline/ros2/environment.h"
 #include "pipeline/ros2/message_types.h"
-
-#include <dds/dds.h>
 
 #include <chrono>
 #include <functional>

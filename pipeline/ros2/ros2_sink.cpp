@@ -187,7 +187,8 @@ public:
         if (settings_.name.compressed != ImageCompression::none)
             compressed_.emplace(participant_, topic("/image_raw/compressed"),
                                 settings_.name.encoding, settings_.name.compressed);
-        if (!participant_->warnings().empty()) warn("Cyclone DDS: " + participant_->warnings());
+        if (!participant_->warnings().empty() && settings_.detail)
+            settings_.detail(label() + "Cyclone DDS: " + participant_->warnings());
     }
 
     void write(const Frame& frame) override {

@@ -21,6 +21,7 @@ struct Ros2SinkSettings {
     std::function<bool()> give_up = {};
     /// For people, once each; may be empty. Render thread, or the constructor's.
     std::function<void(const std::string&)> say = {}, warn = {};
+    std::function<void(const std::string&)> detail = {};  ///< what Cyclone DDS says of itself
 };
 
 /// Writes NAMESPACE/image_raw, NAMESPACE/uncertainty, NAMESPACE/camera_info and, where asked for,

@@ -104,6 +104,7 @@ std::unique_ptr<Sink> open_ros2(const std::string& name, const RunSettings& sett
     ros2.give_up = plan.questions.stopping;
     ros2.say = [](const std::string& text) { spdlog::info("{}", text); };
     ros2.warn = [](const std::string& text) { spdlog::warn("{}", text); };
+    ros2.detail = [](const std::string& text) { spdlog::debug("{}", text); };
     return open_ros2_sink(std::move(ros2));
 }
 

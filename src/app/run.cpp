@@ -39,7 +39,7 @@ Run::Run(Program& program, RunSettings& settings)
     : program_{program},
       settings_{settings},
       speed_{speed_of(settings)},
-      opened_{open_source(settings, speed_)},
+      opened_{open_source(settings, speed_, [&program] { return program.signals.stopping(); })},
       sensor_{opened_.source->info()},
       span_{span_of(settings, live())},
       network_{settings, sensor_},
