@@ -97,7 +97,6 @@ ReadStatus Ros2Source::read(RawPacket& into) {
     into.bytes.clear();
     into.gap_before = false;
     if (stopped_) return ReadStatus::end;
-    if (!is_there_) return lost();
     if (!held_.empty()) {
         into.bytes.swap(held_);
         into.gap_before = std::exchange(gap_before_held_, false);
@@ -107,9 +106,14 @@ ReadStatus Ros2Source::read(RawPacket& into) {
         topic_.wait(kReadPatience);
         take_messages(into);
     }
-    if (into.bytes.empty()) {
-        if (topic_.publishers() == 0) return lost();
-        return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+    if (into.bytes.empty() && topic_.publishers() == 0) {
+        take_messages(into);  // what came before it went
+        if (into.bytes.empty()) return lost();
+    }
+    if (into.bytes.empty()) return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+    if (!std::exchange(is_there_, true)) {
+        ++counters_.reconnects;
+        into.gap_before = true;
     }
     into.arrived = Clock::now();
     ++counters_.transfers;
@@ -172,11 +176,9 @@ ReadStatus Ros2Source::lost() {
         throw Error(ErrorKind::device, label() +
                                            ": its publisher went away (use --reconnect to "
                                            "wait until it is back)");
-    is_there_ = topic_.find_publisher(kReadPatience);
-    if (is_there_) {
-        ++counters_.reconnects;
-        gap_before_held_ = true;
-    }
+    is_there_ = false;
+    static_cast<void>(
+        topic_.find_publisher(std::chrono::milliseconds{0}));  // it may be less reliable now
     return stopped_ ? ReadStatus::end : ReadStatus::timeout;
 }
 
