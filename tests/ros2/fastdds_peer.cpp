@@ -39,14 +39,14 @@ public:
         m_typeSize = kMostBytes;
         m_isGetKeyDefined = false;
     }
-    bool serialize(void* data, SerializedPayload_t* payload) override {
+    bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
         const Bytes& bytes = *static_cast<Bytes*>(data);
         std::memcpy(payload->data, bytes.data(), bytes.size());
         payload->length = std::uint32_t(bytes.size());
         payload->encapsulation = CDR_LE;
         return true;
     }
-    bool deserialize(SerializedPayload_t* payload, void* data) override {
+    bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
         static_cast<Bytes*>(data)->assign(payload->data, payload->data + payload->length);
         return true;
     }
@@ -90,6 +90,12 @@ int listen(DomainParticipant& participant, const std::string& topic_name, bool r
     qos.reliability().kind = reliable ? RELIABLE_RELIABILITY_QOS : BEST_EFFORT_RELIABILITY_QOS;
     qos.history().kind = KEEP_ALL_HISTORY_QOS;
     DataReader* reader = subscriber->create_datareader(topic, qos);
+    SubscriptionMatchedStatus status;
+    for (reader->get_subscription_matched_status(status); status.current_count == 0;
+         reader->get_subscription_matched_status(status))
+        usleep(1000);
+    std::printf("%s\n", std::string(33, '-').c_str());
+    std::fflush(stdout);
     Bytes bytes;
     SampleInfo info;
     while (reader->wait_for_unread_message({60, 0})) {

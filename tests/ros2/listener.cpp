@@ -11,10 +11,12 @@ int main(int argc, char** argv) {
     if (argc != 4) return 2;
     const MessageType& type = std::string_view{argv[2]} == "image" ? kImageType : kCameraInfoType;
     test::TopicReader reader{type, argv[1], {.reliable = std::string_view{argv[3]} == "reliable"}};
-    while (true) {
+    std::string line = test::ready_line();
+    if (!reader.wait_for_writers(1)) return 1;
+    while (write(STDOUT_FILENO, line.data(), line.size()) == ssize_t(line.size())) {
         const auto cdr = reader.next_cdr();
         if (!cdr) return 1;
-        const std::string line = test::message_line(*cdr);
-        if (write(STDOUT_FILENO, line.data(), line.size()) != ssize_t(line.size())) return 0;
+        line = test::message_line(*cdr);
     }
+    return 0;
 }

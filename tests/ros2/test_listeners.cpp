@@ -13,12 +13,14 @@
 
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace eventide::test {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;  // two fragments
+constexpr int kWidth = 640,
+              kHeight = 480;  // five fragments, and five images are more than Cyclone waits for
 
 class Listeners : public testing::Test {
 protected:
@@ -32,6 +34,9 @@ protected:
             std::vector<std::string>{EVENTIDE_ROS2_LISTENER, name_ + "/image_raw", "image",
                                      reliable ? "reliable" : "best_effort"},
             ProcessSettings{.output_to_pipe = true});
+    }
+    static void expect_ready(Process& process) {
+        ASSERT_EQ(process.read_output(kLineBytes), ready_line());
     }
     static Frame frame(int n) { return ramp_frame(kWidth, kHeight, n, odd_time(n)); }
     /// What a listener prints of it.
@@ -47,9 +52,6 @@ protected:
         const std::string text = process.read_output(kLineBytes);
         return text.size() == kLineBytes ? std::stoll(text, nullptr, 16) : 0;
     }
-    static void expect_all(Process& process, const std::vector<std::string>& lines) {
-        for (const std::string& line : lines) ASSERT_EQ(process.read_output(kLineBytes), line);
-    }
 
     const std::string name_ =
         own_name("/" + std::string{testing::UnitTest::GetInstance()->current_test_info()->name()});
@@ -58,6 +60,8 @@ protected:
 TEST_F(Listeners, BothKindsGetEveryImageBitForBit) {
     const auto reliable = listener(true), best_effort = listener(false);
     const auto sink = open("?subscribers=2");
+    expect_ready(*reliable);
+    expect_ready(*best_effort);
     for (int n = 0; n < 40; ++n) {
         sink->write(frame(n));
         ASSERT_EQ(reliable->read_output(kLineBytes), line(n)) << n;
@@ -68,6 +72,8 @@ TEST_F(Listeners, BothKindsGetEveryImageBitForBit) {
 TEST_F(Listeners, OneThatStoppedHarmsNobody) {
     const auto healthy = listener(true), stopped = listener(true);
     const auto sink = open("?subscribers=2");
+    expect_ready(*healthy);
+    expect_ready(*stopped);
     sink->write(frame(0));
     ASSERT_EQ(healthy->read_output(kLineBytes), line(0));
     ASSERT_EQ(stopped->read_output(kLineBytes), line(0));
@@ -91,6 +97,8 @@ TEST_F(Listeners, OneThatIsKilledHarmsNobody) {
     const auto healthy = listener(true);
     auto doomed = listener(true);
     const auto sink = open("?subscribers=2");
+    expect_ready(*healthy);
+    expect_ready(*doomed);
     sink->write(frame(0));
     ASSERT_EQ(doomed->read_output(kLineBytes), line(0));
     doomed->signal(SIGKILL);
@@ -101,17 +109,15 @@ TEST_F(Listeners, OneThatIsKilledHarmsNobody) {
 }
 
 TEST_F(Listeners, OneThatComesLateGetsWhatIsNew) {
-    const auto sink = open();
+    const auto sink = open("?lazy=yes");  // so that it says when somebody has come
     constexpr int kBefore = 5;
     for (int n = 0; n < kBefore; ++n) sink->write(frame(n));
     const auto late = listener(true);
-    // Written until it has come.
-    Ros2SinkSettings second;
-    second.name = parse_ros2_sink_name(name_ + "?subscribers=1");
-    const auto waiting = open_ros2_sink(std::move(second));
-    waiting->write(frame(kBefore));
-    const std::int64_t first = next_stamp(*late);
-    EXPECT_GE(first, to_us(odd_time(kBefore))) << "images are not kept for those who come late";
+    expect_ready(*late);
+    while (!sink->is_watched()) std::this_thread::yield();
+    sink->write(frame(kBefore));
+    EXPECT_EQ(late->read_output(kLineBytes), line(kBefore))
+        << "images are not kept for those who come late";
 }
 
 #ifdef EVENTIDE_FASTDDS_PEER
@@ -127,6 +133,8 @@ protected:
 TEST_F(FastDds, GetsEveryImageBitForBit) {
     const auto reliable = peer("reliable"), best_effort = peer("best_effort");
     const auto sink = open("?subscribers=2");
+    expect_ready(*reliable);
+    expect_ready(*best_effort);
     for (int n = 0; n < 40; ++n) {
         sink->write(frame(n));
         ASSERT_EQ(reliable->read_output(kLineBytes), line(n)) << n;

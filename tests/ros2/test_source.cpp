@@ -131,7 +131,7 @@ TEST_F(Ros2SourceTest, AJumpOfTheNumbersIsAGap) {
 TEST_F(Ros2SourceTest, EndsWithItsPublisherOrWaitsForTheNext) {
     for (const bool reconnect : {false, true}) {
         auto publisher = std::make_unique<EventPublisher>(name_);
-        const auto source = open(*publisher, message(0), {.reconnect = reconnect});
+        const auto source = open(*publisher, message(0), {.settings = {}, .reconnect = reconnect});
         const auto parser = source->make_parser();
         publisher->publish(message(1));
         publisher->wait_until_taken();
@@ -187,7 +187,9 @@ TEST_F(Ros2SourceTest, SaysWhatThereIsWhenNothingComes) {
     EventPublisher silent{name_};
     EXPECT_THAT(error_of([&] { open_ros2_source(name_ + "?wait=1s", {}); }),
                 HasSubstr("its publisher sent nothing in 1000 ms"));
-    EXPECT_THAT(error_of([&] { open_ros2_source(name_, {.give_up = [] { return true; }}); }),
+    EXPECT_THAT(error_of([&] {
+                    open_ros2_source(name_, {.settings = {}, .give_up = [] { return true; }});
+                }),
                 HasSubstr("stopped before the first message"));
 }
 

@@ -86,4 +86,9 @@ std::uint64_t digest(const std::vector<std::uint8_t>& bytes);
 std::string message_line(const std::vector<std::uint8_t>& cdr);
 constexpr std::size_t kLineBytes = 16 + 1 + 16 + 1;
 
+/// What it prints first: it has found the topic's writer. A best-effort reader gets nothing before.
+inline std::string ready_line() {
+    return std::string(kLineBytes - 1, '-') + "\n";
+}
+
 }  // namespace eventide::test
