@@ -154,16 +154,14 @@ void EventPacketParser::take_compressed(std::uint16_t word, Batch& into) {
             x_ = content & 0x7FF;
             return;
         case address_y:
-            y_ = content & 0x7FF;
-            on_ = (content & 0x800) != 0;
-            return take_rows(1, into);
+            return take_rows(1, content & 0x7FF, (content & 0x800) != 0, into);
         case vector_base_y:
             y_ = content & 0x7FF;
             on_ = (content & 0x800) != 0;
             return;
         case vector_8:
             if (y_ == kNowhere) return damage_.count(DamageReason::unknown_word);
-            take_rows(content & 0xFF, into);
+            take_rows(content & 0xFF, y_, on_, into);
             y_ = std::min(y_ + 8, kNowhere - 8);
             return;
         default:
@@ -185,11 +183,11 @@ void EventPacketParser::move_low(std::int64_t value) {
     low_ = value;
 }
 
-void EventPacketParser::take_rows(unsigned mask, Batch& into) {
+void EventPacketParser::take_rows(unsigned mask, unsigned y, bool on, Batch& into) {
     if (x_ == kNowhere) return damage_.count(DamageReason::unknown_word);
     const std::int64_t t_us = base_ns_ / 1000 + high_ * 4096 + low_;
     for (; mask != 0; mask &= mask - 1)
-        take_event(t_us, x_, y_ + unsigned(std::countr_zero(mask)), on_, into);
+        take_event(t_us, x_, y + unsigned(std::countr_zero(mask)), on, into);
 }
 
 /// The packet's first sensor time is at its stamp, unless a shift is known that says nearly so.

@@ -75,7 +75,7 @@ private:
     void take_compressed(std::uint16_t word, Batch& into);
     void move_high(std::int64_t value);
     void move_low(std::int64_t value);
-    void take_rows(unsigned mask, Batch& into);
+    void take_rows(unsigned mask, unsigned y, bool on, Batch& into);
     void pass_evt3(Batch& into);
     void shift_to_stamp(std::int64_t t_us);
     bool move_time(std::int64_t t_us, Batch& into);
