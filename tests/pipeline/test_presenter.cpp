@@ -148,8 +148,8 @@ TEST(Presenter, RendersNothingThatNobodyWatches) {
     Counters counters;
     LatencyKeeper keeper{{}};
     Presenter presenter(
-        renderer, {&first, &second}, {.rate = {100'000, 1}}, [] { return 0; }, stop, counters,
-        keeper);
+        renderer, {&first, &second}, {{100'000, 1}, {}, 0, false, 1, false}, [] { return 0; }, stop,
+        counters, keeper);
     for (int k = 0; k < 6; ++k) {
         first.watched = k < 2 || k == 5;
         second.watched = k == 5;
