@@ -192,7 +192,8 @@ public:
     }
 
     void write(const Frame& frame) override {
-        if (!begun_ && !begin(frame)) return;
+        const bool first = !begun_;
+        if (first && !begin(frame)) return;
         const std::int64_t stamp = clock_.stamp_us(frame, system_us(frame.arrived));
         if (clock_.is_set_anew()) tell_offset();
         const auto header = header_of(stamp, settings_.name.frame_id);
@@ -203,6 +204,10 @@ public:
             count(info_.write(frame.intensity.width(), frame.intensity.height(), header));
         if (compressed_ && compressed_->writer.readers() > 0)
             count(compressed_->write(frame.intensity, header));
+        // Subscribers that were waited for may still be on their way to finding us: the first frame
+        // is kept for them until they have it.
+        if (first && settings_.name.subscribers > 0)
+            image_.writer.wait_for_readers_to_take_all(kLastPatience);
     }
 
     bool is_watched() const override {
@@ -214,8 +219,7 @@ public:
     }
 
     void close() override {
-        constexpr std::chrono::seconds kPatience{1};  // for all of them together
-        const auto until = std::chrono::steady_clock::now() + kPatience;
+        const auto until = std::chrono::steady_clock::now() + kLastPatience;  // for all together
         for (Ros2Writer* writer : writers())
             writer->wait_for_readers_to_take_all(
                 std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -228,6 +232,8 @@ public:
     }
 
 private:
+    static constexpr std::chrono::milliseconds kLastPatience{1000};
+
     std::string topic(const char* name) const { return settings_.name.name_space + name; }
 
     std::vector<Ros2Writer*> writers() {
