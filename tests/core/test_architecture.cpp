@@ -52,9 +52,12 @@ struct Rule {
 const std::vector<Rule> kRules{
     {"thread", {"src/app/", "src/train/", "pipeline/", "replay/", "drivers/"}},
     {"opencv2/",
-     {"pipeline/sinks/", "src/app/", "src/simulate/", "src/evaluate/", "src/train/",
+     {"pipeline/sinks/", "pipeline/ros2/", "src/app/", "src/simulate/", "src/evaluate/", "src/train/",
       "replay/image_file"}},
     {"libusb", {"drivers/usb/"}},
+    {"dds/", {"pipeline/ros2/"}},
+    {"yaml.h", {"pipeline/ros2/yaml_file"}},
+    {"pipeline/ros2/", {"pipeline/ros2/", "drivers/ros2/", "src/app/"}},
     {"concurrentqueue.h", {"pipeline/link.h", "pipeline/pool.h"}},
     {"torch/", {"src/train/"}},
     {"oneapi/dnnl", {"src/nn/", "src/kernels/", "src/evaluate/"}},
