@@ -52,8 +52,8 @@ struct Rule {
 const std::vector<Rule> kRules{
     {"thread", {"src/app/", "src/train/", "pipeline/", "replay/", "drivers/"}},
     {"opencv2/",
-     {"pipeline/sinks/", "pipeline/ros2/", "src/app/", "src/simulate/", "src/evaluate/", "src/train/",
-      "replay/image_file"}},
+     {"pipeline/sinks/", "pipeline/ros2/", "src/app/", "src/simulate/", "src/evaluate/",
+      "src/train/", "replay/image_file"}},
     {"libusb", {"drivers/usb/"}},
     {"dds/", {"pipeline/ros2/"}},
     {"yaml.h", {"pipeline/ros2/yaml_file"}},
