@@ -87,7 +87,7 @@ std::vector<std::string> EventTopic::event_topics() const {
             endpoint.topic.starts_with("rt/"))
             topics.push_back(endpoint.topic.substr(2));
     std::ranges::sort(topics);
-    topics.erase(std::ranges::unique(topics).begin(), topics.end());
+    topics.erase(std::unique(topics.begin(), topics.end()), topics.end());
     return topics;
 }
 

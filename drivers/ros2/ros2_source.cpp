@@ -47,7 +47,7 @@ void Ros2Source::wait_for_first(const std::function<bool()>& give_up) {
     bool heard_of_one = false;
     while (true) {
         if (give_up && give_up())
-            throw Error(ErrorKind::device, label() + ": stopped before the first message");
+            throw Error(ErrorKind::failed, label() + ": stopped before the first message");
         if (topic_.find_publisher(kReadPatience)) {
             heard_of_one = true;
             if (const auto message = topic_.take()) return begin(*message);

@@ -20,7 +20,7 @@ public:
     /// Waits for the first message, which tells size and encoding: name.wait, or with
     /// options.reconnect for ever. Throws Error: usage for the environment or options.settings,
     /// device where nothing comes, with the topics that there are, and for an encoding that is none
-    /// of ours.
+    /// of ours; failed where options.give_up ends the wait.
     Ros2Source(Ros2SourceName name, const CameraOptions& options);
 
     const SensorInfo& info() const override { return info_; }

@@ -6,7 +6,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 namespace eventide {
 
@@ -181,8 +180,9 @@ Calibration read_calibration(const std::filesystem::path& path, const std::strin
         return read_ros(file);
     }
     if (!camera.empty()) return read_kalibr(file.at(camera.c_str()));
-    for (const auto& [name, node] : root.entries)
-        if (node.find("intrinsics") != nullptr) return read_kalibr({path, node, name});
+    for (std::size_t i = 0; i < root.keys.size(); ++i)
+        if (root.items[i].find("intrinsics") != nullptr)
+            return read_kalibr({path, root.items[i], root.keys[i]});
     file.refuse("image_width (ROS) or cam0 with intrinsics (Kalibr)", "neither");
 }
 

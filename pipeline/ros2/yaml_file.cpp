@@ -44,9 +44,10 @@ public:
             case YAML_MAPPING_NODE:
                 node.kind = YamlNode::Kind::map;
                 for (auto* pair = from.data.mapping.pairs.start;
-                     pair != from.data.mapping.pairs.top; ++pair)
-                    node.entries.emplace_back(make(at(pair->key), level + 1).text,
-                                              make(at(pair->value), level + 1));
+                     pair != from.data.mapping.pairs.top; ++pair) {
+                    node.keys.push_back(make(at(pair->key), level + 1).text);
+                    node.items.push_back(make(at(pair->value), level + 1));
+                }
                 break;
             default:
                 node.text.assign(reinterpret_cast<const char*>(from.data.scalar.value),
@@ -66,8 +67,8 @@ private:
 }  // namespace
 
 const YamlNode* YamlNode::find(std::string_view key) const {
-    for (const auto& [name, node] : entries)
-        if (name == key) return &node;
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        if (keys[i] == key) return &items[i];
     return nullptr;
 }
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -14,10 +13,10 @@ struct YamlNode {
     enum class Kind { scalar, list, map };
 
     Kind kind = Kind::scalar;
-    std::string text;                                       ///< of a scalar
-    std::vector<YamlNode> items;                            ///< of a list
-    std::vector<std::pair<std::string, YamlNode>> entries;  ///< of a map, in the file's order
-    std::size_t line = 0;                                   ///< from 1
+    std::string text;               ///< of a scalar
+    std::vector<YamlNode> items;    ///< of a list; of a map its values, in the file's order
+    std::vector<std::string> keys;  ///< of a map, one for each item
+    std::size_t line = 0;           ///< from 1
 
     /// Null where there is none.
     const YamlNode* find(std::string_view key) const;

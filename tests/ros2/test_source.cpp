@@ -83,11 +83,11 @@ protected:
                 Polarity::on};
     }
 
-    std::string error_of(const std::function<void()>& call) {
+    std::string error_of(const std::function<void()>& call, ErrorKind kind = ErrorKind::device) {
         try {
             call();
         } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::device);
+            EXPECT_EQ(error.kind(), kind);
             return error.what();
         }
         ADD_FAILURE() << "nothing was thrown";
@@ -187,10 +187,10 @@ TEST_F(Ros2SourceTest, SaysWhatThereIsWhenNothingComes) {
     EventPublisher silent{name_};
     EXPECT_THAT(error_of([&] { open_ros2_source(name_ + "?wait=1s", {}); }),
                 HasSubstr("its publisher sent nothing in 1000 ms"));
-    EXPECT_THAT(error_of([&] {
-                    open_ros2_source(name_, {.settings = {}, .give_up = [] { return true; }});
-                }),
-                HasSubstr("stopped before the first message"));
+    EXPECT_THAT(
+        error_of([&] { open_ros2_source(name_, {.settings = {}, .give_up = [] { return true; }}); },
+                 ErrorKind::failed),
+        HasSubstr("stopped before the first message"));
 }
 
 TEST_F(Ros2SourceTest, SaysWhatItCannotRead) {
