@@ -11,6 +11,10 @@
 #include "drivers/v4l2/v4l2_camera.h"
 #endif
 
+#ifdef EVENTIDE_HAS_ROS2
+#include "drivers/ros2/ros2_source.h"
+#endif
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -62,11 +66,20 @@ constexpr std::nullptr_t list_davis_cameras = nullptr, list_dvxplorer_cameras = 
 constexpr std::nullptr_t open_v4l2 = nullptr, list_v4l2_cameras = nullptr;
 #endif
 
-constexpr std::array<Kind, 4> kKinds{
+#ifdef EVENTIDE_HAS_ROS2
+std::vector<CameraDescription> list_no_topics() {
+    return {};  // who publishes is known only after seconds of listening: ros2 topic list
+}
+#else
+constexpr std::nullptr_t open_ros2_source = nullptr, list_no_topics = nullptr;
+#endif
+
+constexpr std::array<Kind, 5> kKinds{
     {{"davis:", "EVENTIDE_USB", open_davis, list_davis_cameras},
      {"dvxplorer:", "EVENTIDE_USB", open_dvxplorer, list_dvxplorer_cameras},
      {"dvs128:", "EVENTIDE_USB", open_dvs128, list_dvs128_cameras},
-     {"v4l2:", "EVENTIDE_V4L2", open_v4l2, list_v4l2_cameras}}};
+     {"v4l2:", "EVENTIDE_V4L2", open_v4l2, list_v4l2_cameras},
+     {"ros2:", "EVENTIDE_ROS2 (cyclonedds-dev)", open_ros2_source, list_no_topics}}};
 
 const Kind* kind_of(std::string_view source) {
     const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) {
@@ -86,7 +99,7 @@ std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions
     if (kind == nullptr)
         throw Error(ErrorKind::usage,
                     "source '" + std::string{source} +
-                        "' names no camera: expected davis:, dvxplorer:, dvs128: or v4l2:");
+                        "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2: or ros2:");
     if (kind->open == nullptr)
         throw Error(ErrorKind::usage, "source '" + std::string{source} +
                                           "': this eventide was built without " +

@@ -4,6 +4,7 @@
 #include "drivers/camera.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,6 +15,8 @@ namespace eventide {
 struct CameraOptions {
     std::filesystem::path settings;  ///< a file of config/cameras; empty: the driver's defaults
     bool reconnect = false;          ///< wait for an unplugged camera to come back
+    /// Asked while a camera that has to be waited for is opened: true gives up. May be empty.
+    std::function<bool()> give_up = {};
 };
 
 /// Whether a source on the command line names a camera rather than a file: "davis:", "v4l2:", ...
@@ -24,6 +27,7 @@ bool names_camera(std::string_view source);
 /// davis:BUS:ADDRESS   the one at this place (lsusb)
 /// dvxplorer:, dvs128: in the same way
 /// v4l2:/dev/videoN    an event sensor with a V4L2 driver
+/// ros2:/TOPIC         event packets of a ROS 2 driver
 /// Throws Error: usage for a name that makes no sense or a driver that was not built, device for a
 /// camera that cannot be used.
 std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options);

@@ -12,7 +12,7 @@ namespace {
 
 std::unique_ptr<Camera> open(const std::string& name, const CameraSettings& settings) {
     if (names_simulation(name)) return open_simulation(name);
-    return open_camera(name, {settings.file, settings.reconnect});
+    return open_camera(name, {settings.file, settings.reconnect, {}});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -84,7 +85,9 @@ void FrameOutput::present_oldest() {
     if (settings_.live) open_shedder();
     while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
         const DueFrame due = schedule_.next();
-        if (!settings_.live) {
+        if (!is_watched()) {
+            counters_.present.skipped_frames.add();
+        } else if (!settings_.live) {
             present(due, held);
         } else if (shedder_.keeps_next(waiting_())) {
             const HostTime begun = Clock::now();
@@ -96,6 +99,11 @@ void FrameOutput::present_oldest() {
             counters_.present.skipped_frames.add();
         }
     }
+}
+
+bool FrameOutput::is_watched() const {
+    return sinks_.empty() ||
+           std::ranges::any_of(sinks_, [](const Sink* sink) { return sink->is_watched(); });
 }
 
 void FrameOutput::open_shedder() {

@@ -70,6 +70,7 @@ private:
     void change();
     void present_oldest();
     void open_shedder();
+    bool is_watched() const;
     void check_silence(const Waiting& held);
     void check_finite();
     void present(const DueFrame& due, Waiting& from);

@@ -22,6 +22,10 @@ public:
     /// False when nobody wants more frames (a reader of a pipe went away, a window was closed): the
     /// run ends cleanly.
     virtual bool wants_more() const { return true; }
+
+    /// Render thread. False while nobody sees what is written: a frame that no sink has watchers
+    /// for is skipped.
+    virtual bool is_watched() const { return true; }
 };
 
 }  // namespace eventide

@@ -23,7 +23,8 @@ struct CameraSettings {
 class EVENTIDE_API EventCamera {
 public:
     /// "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
-    /// "v4l2:/dev/video0"; "sim:SCENE" is one in software. Throws Error: usage for a name that
+    /// "v4l2:/dev/video0"; "ros2:/TOPIC", event packets of a ROS 2 driver;
+    /// "sim:SCENE" is one in software. Throws Error: usage for a name that
     /// makes no sense, device for a camera that is missing or cannot be used, with what to do.
     explicit EventCamera(const std::string& name, const CameraSettings& settings = {});
     ~EventCamera();

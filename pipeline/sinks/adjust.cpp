@@ -147,4 +147,8 @@ bool LookSink::wants_more() const {
     return std::ranges::all_of(behind_, [](const auto& sink) { return sink->wants_more(); });
 }
 
+bool LookSink::is_watched() const {
+    return std::ranges::any_of(behind_, [](const auto& sink) { return sink->is_watched(); });
+}
+
 }  // namespace eventide

@@ -74,6 +74,7 @@ public:
     void close() override;
     /// False as soon as one of them wants no more.
     bool wants_more() const override;
+    bool is_watched() const override;
 
 private:
     Look look_;

@@ -59,6 +59,10 @@ TEST_F(Installed, FindPackageGivesAProgramTheSameFrames) {
              "-DCMAKE_PREFIX_PATH=" + prefix()});
     succeed({EVENTIDE_CMAKE, "--build", temp_ / "build"});
     expect_frames_of_run({temp_ / "build/reconstruct"});
+    const Result tracked =
+        run({temp_ / "build/tracker", recording()}, {.environment = {{"EVENTIDE_MODELS", ""}}});
+    EXPECT_EQ(tracked.exit_code, 0) << tracked.error;
+    EXPECT_NE(tracked.output.find("the centre moves by"), std::string::npos) << tracked.output;
 }
 
 TEST_F(Installed, PkgConfigGivesAProgramInCTheSameFrames) {

@@ -132,6 +132,40 @@ TEST(FrameOutput, CountsSilenceInARowAndOnlyWhereItIsNotAllowed) {
     }
 }
 
+/// A sink somebody watches from time to time.
+class WatchedSink final : public Sink {
+public:
+    void write(const Frame& frame) override { times_us.push_back(to_us(frame.t)); }
+    bool is_watched() const override { return watched; }
+
+    bool watched = true;
+    std::vector<std::int64_t> times_us;
+};
+
+TEST(FrameOutput, RendersNothingThatNobodyWatches) {
+    ToyRenderer renderer;
+    WatchedSink first, second;
+    StopRequest stop;
+    Counters counters;
+    LatencyKeeper keeper{{}};
+    FrameOutput presenter(
+        renderer, {&first, &second}, {{100'000, 1}, {}, 0, false, 1, false}, [] { return 0; }, stop,
+        counters, keeper);
+    for (int k = 0; k < 6; ++k) {
+        first.watched = k < 2 || k == 5;
+        second.watched = k == 5;
+        Encoded encoded;
+        encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
+        encoded.latent.window = {from_us(10 * k), from_us(10 * k + 10)};
+        encoded.latent.events = 1;
+        presenter.take(encoded);
+    }
+    EXPECT_EQ(first.times_us, (std::vector<std::int64_t>{0, 10, 20, 60}));
+    EXPECT_EQ(second.times_us, first.times_us) << "what one of them watches all get";
+    EXPECT_EQ(counters.snapshot().skipped_frames, 3U);
+    EXPECT_EQ(renderer.pushed(), 6U) << "the network goes on";
+}
+
 TEST(FrameOutput, ClosesAllSinksThoughOneFails) {
     ToyRenderer renderer;
     ToySink bad, good;

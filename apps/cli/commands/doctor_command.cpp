@@ -5,6 +5,7 @@
 #include "apps/cli/run/loaded_model.h"
 #include "apps/cli/version.h"
 #include "drivers/devices.h"
+#include "pipeline/ros2/ros2_sink.h"
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
 
@@ -71,6 +72,16 @@ Finding window() {
     }
 }
 
+Finding ros2() {
+    const Ros2State state = look_at_ros2();
+    const bool good = state.works && state.advice.empty();
+    return {"ROS 2",
+            good                          ? State::good
+            : state.built && !state.works ? State::bad
+                                          : State::absent,
+            state.found, state.advice};
+}
+
 std::vector<Finding> cameras() {
     std::vector<Finding> findings;
     for (const CameraDescription& camera : list_cameras()) {
@@ -101,7 +112,7 @@ SettingTable DoctorCommand::settings() {
 }
 
 int DoctorCommand::run(Program&) {
-    std::vector<Finding> findings{processor(), network(), video(), window()};
+    std::vector<Finding> findings{processor(), network(), video(), window(), ros2()};
     for (Finding& camera : cameras()) findings.push_back(std::move(camera));
     auto list = nlohmann::ordered_json::array();
     bool bad = false;

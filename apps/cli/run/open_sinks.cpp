@@ -2,6 +2,7 @@
 #include "apps/cli/run/open_sinks.h"
 
 #include "apps/cli/settings/sink_name.h"
+#include "pipeline/ros2/ros2_sink.h"
 #include "pipeline/sinks/contact_sheet.h"
 #include "pipeline/sinks/folder.h"
 #include "pipeline/sinks/http/http_sink.h"
@@ -11,6 +12,7 @@
 #include "pipeline/sinks/v4l2_output.h"
 #include "pipeline/sinks/video.h"
 #include "pipeline/sinks/window.h"
+#include "src/core/error.h"
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -107,6 +109,44 @@ std::unique_ptr<Sink> open_page(const std::string& address, const RunSettings& s
     return sink;
 }
 
+/// Crop and flip are made before the sink sees the frame; the contact sheet alone sees it without.
+ImageGeometry geometry_of(const RunSettings& settings, const SinkPlan& plan) {
+    ImageGeometry geometry;
+    const Size whole = settings.size.of(plan.sensor);
+    geometry.width = whole.width;
+    geometry.height = whole.height;
+    if (settings.region) {
+        geometry.left = settings.region->x;
+        geometry.top = settings.region->y;
+    }
+    geometry.left += settings.look.crop_px;
+    geometry.top += settings.look.crop_px;
+    geometry.flip = settings.look.flip;
+    return geometry;
+}
+
+std::unique_ptr<Sink> open_ros2(const std::string& name, const RunSettings& settings,
+                                const SinkPlan& plan) {
+    const Uncertainty how = settings.uncertainty;
+    if (how != Uncertainty::automatic && how != Uncertainty::none && how != Uncertainty::separate)
+        throw Error(ErrorKind::usage, "--out ros2:" + name +
+                                          ": expected --uncertainty auto, none "
+                                          "or separate, found " +
+                                          std::string{name_of(how)} +
+                                          "; sigma is a topic of its own");
+    Ros2SinkSettings ros2;
+    ros2.name = parse_ros2_sink_name(name);
+    ros2.with_sigma = how != Uncertainty::none;
+    ros2.geometry = geometry_of(settings, plan);
+    ros2.live = plan.live;
+    ros2.lookahead = plan.lookahead;
+    ros2.give_up = plan.questions.stopping;
+    ros2.say = [](const std::string& text) { spdlog::info("{}", text); };
+    ros2.warn = [](const std::string& text) { spdlog::warn("{}", text); };
+    ros2.detail = [](const std::string& text) { spdlog::debug("{}", text); };
+    return open_ros2_sink(std::move(ros2));
+}
+
 std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& settings,
                                  const SinkPlan& plan) {
     ContactSheetSettings sheet;
@@ -141,6 +181,8 @@ std::unique_ptr<Sink> open_sink(const std::string& text, const RunSettings& sett
             return open_v4l2(sink.path, settings);
         case SinkKind::http:
             return open_page(sink.path, settings, plan);
+        case SinkKind::ros2:
+            return open_ros2(sink.path, settings, plan);
         case SinkKind::nothing:
             break;
     }

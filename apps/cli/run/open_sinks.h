@@ -30,6 +30,8 @@ struct SinkPlan {
     bool constant_rate = true;  ///< and no frame for each event window
     double speed = 1;           ///< of the recording, for the window
     Size sensor;                ///< px
+    bool live = false;          ///< the source is a camera
+    int lookahead = 0;          ///< event windows
     ReferenceImages* references = nullptr;
     std::string reference_caption;  ///< for people
     SinkQuestions questions;

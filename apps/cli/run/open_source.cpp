@@ -25,7 +25,7 @@ void refuse_unknown_prefix(const std::string& source) {
     throw Error(ErrorKind::usage,
                 source +
                     ": unknown source; expected a file or folder, davis:, dvxplorer:, dvs128:, "
-                    "v4l2:/dev/videoN, sim:SCENE, or - for standard input");
+                    "v4l2:/dev/videoN, ros2:/TOPIC, sim:SCENE, or - for standard input");
 }
 
 OpenedSource open_file(const RunSettings& settings, double speed) {
@@ -59,7 +59,8 @@ void check_size(const Source& source, const std::string& name) {
 
 }  // namespace
 
-OpenedSource open_source(const RunSettings& settings, double speed) {
+OpenedSource open_source(const RunSettings& settings, double speed,
+                         const std::function<bool()>& give_up) {
     OpenedSource opened;
     if (!settings.camera.empty() && !names_camera(settings.source))
         throw Error(ErrorKind::usage, "--camera " + settings.camera +
@@ -68,7 +69,8 @@ OpenedSource open_source(const RunSettings& settings, double speed) {
     if (names_simulation(settings.source))
         opened.source = open_simulation(settings.source);
     else if (names_camera(settings.source))
-        opened.source = open_camera(settings.source, {settings.camera, settings.reconnect});
+        opened.source =
+            open_camera(settings.source, {settings.camera, settings.reconnect, give_up});
     else
         opened = open_file(settings, speed);
     check_size(*opened.source, settings.source);

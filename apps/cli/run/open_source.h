@@ -5,6 +5,7 @@
 #include "replay/real_time_playback.h"
 #include "replay/recording.h"
 
+#include <functional>
 #include <memory>
 
 namespace eventide::app {
@@ -16,7 +17,9 @@ struct OpenedSource {
     RealTimePlayback* paced = nullptr;  ///< the same, where it keeps a pace
 };
 
-/// `speed`: 0 is as fast as it goes. Throws Error.
-OpenedSource open_source(const RunSettings& settings, double speed);
+/// `speed`: 0 is as fast as it goes. `give_up` is asked while something is waited for: true ends
+/// that with an Error. Throws Error.
+OpenedSource open_source(const RunSettings& settings, double speed,
+                         const std::function<bool()>& give_up = {});
 
 }  // namespace eventide::app

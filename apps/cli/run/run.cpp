@@ -40,7 +40,7 @@ Run::Run(Program& program, RunSettings& settings)
     : program_{program},
       settings_{settings},
       speed_{speed_of(settings)},
-      opened_{open_source(settings, speed_)},
+      opened_{open_source(settings, speed_, [&program] { return program.signals.stopping(); })},
       sensor_{opened_.source->info()},
       span_{span_of(settings, live())},
       network_{settings, sensor_},
@@ -88,6 +88,8 @@ SinkPlan Run::sink_plan() {
     plan.constant_rate = rate_.is_set();
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
+    plan.live = live();
+    plan.lookahead = lookahead_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);
     plan.questions.stopping = [this] { return program_.signals.stopping(); };

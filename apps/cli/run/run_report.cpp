@@ -76,7 +76,7 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress) {
 }
 
 std::string why_no_frames(const Snapshot& end) {
-    if (end.frames > 0) return {};
+    if (end.frames > 0 || end.skipped_frames > 0) return {};
     const SlicerCounters& cut = end.slicing;
     if (end.events == 0)
         return "no frame: no event was read; eventide info says from when to when there are any";

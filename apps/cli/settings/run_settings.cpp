@@ -248,8 +248,8 @@ void RunSettings::add_outputs(SettingTable& table) {
         "x.gif, x.y4m, - "
         "(Y4M on standard output), y4m:, y4m-mono:, gray8:, gray16: or grayf32: and a file, pipe "
         "or "
-        "-, window, http:127.0.0.1:8080 (a page in the browser, MJPEG), v4l2:/dev/videoN (a "
-        "virtual camera), contact-sheet:x.png, null.");
+        "-, window, http:127.0.0.1:8080 (a page in the browser, MJPEG), ros2:/NAME (ROS 2 topics), "
+        "v4l2:/dev/videoN (a virtual camera), contact-sheet:x.png, null.");
     sinks.short_flag = "-o";
     add(std::move(sinks));
     add(flag_setting("overwrite", overwrite,

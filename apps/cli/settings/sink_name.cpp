@@ -3,6 +3,7 @@
 
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/terminal.h"
+#include "pipeline/ros2/ros2_name.h"
 #include "pipeline/sinks/folder.h"
 #include "pipeline/sinks/http/http_address.h"
 #include "pipeline/sinks/video.h"
@@ -37,6 +38,7 @@ std::optional<SinkName> with_prefix(const std::string& sink) {
         return SinkName{SinkKind::http, *address};
     }
     if (const auto node = after_prefix(sink, "v4l2")) return SinkName{SinkKind::v4l2, *node};
+    if (const auto name = after_prefix(sink, "ros2")) return SinkName{SinkKind::ros2, *name};
     if (const auto path = after_prefix(sink, "folder")) return SinkName{SinkKind::folder, *path};
     for (const StreamFormat format : kStreamFormats)
         if (const auto path = after_prefix(sink, name_of(format)))
@@ -79,7 +81,9 @@ SinkName parse_sink(const std::string& sink) {
     if (const auto name = with_prefix(sink)) {
         if (name->path.empty() && name->kind != SinkKind::http)
             throw Error(ErrorKind::usage, "--out " + sink + " needs a path, such as --out " + sink +
-                                              (name->kind == SinkKind::v4l2 ? "/dev/video9" : "x"));
+                                              (name->kind == SinkKind::v4l2   ? "/dev/video9"
+                                               : name->kind == SinkKind::ros2 ? "/camera"
+                                                                              : "x"));
         return *name;
     }
     if (names_video(sink)) return {SinkKind::video, sink};
@@ -90,8 +94,8 @@ SinkName parse_sink(const std::string& sink) {
                 "--out " + sink +
                     ": expected a folder (ending in /), x.mp4, x.mkv, x.avi, x.gif, x.y4m, -, a "
                     "named pipe, "
-                    "window, null, http:ADDRESS:PORT, v4l2:/dev/videoN, contact-sheet:x.png, or "
-                    "y4m:, y4m-mono:, gray8:, "
+                    "window, null, http:ADDRESS:PORT, ros2:/NAME, v4l2:/dev/videoN, "
+                    "contact-sheet:x.png, or y4m:, y4m-mono:, gray8:, "
                     "gray16:, grayf32: and a file, pipe or -");
 }
 
@@ -112,6 +116,9 @@ void name_sink_files(const RunSettings& settings, NamedFiles& files) {
             case SinkKind::stream:
             case SinkKind::sheet:
                 files.writes("--out", sink.path, text);
+                break;
+            case SinkKind::ros2:
+                files.reads("--out", parse_ros2_sink_name(sink.path).calibration);
                 break;
             case SinkKind::nothing:
             case SinkKind::window:

@@ -9,7 +9,7 @@
 
 namespace eventide::app {
 
-enum class SinkKind { nothing, window, folder, video, stream, sheet, v4l2, http };
+enum class SinkKind { nothing, window, folder, video, stream, sheet, v4l2, http, ros2 };
 
 struct SinkName {
     SinkKind kind = SinkKind::nothing;

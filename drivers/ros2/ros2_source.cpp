@@ -1,0 +1,198 @@
+// Event packets of a ROS 2 driver as a source.
+#include "drivers/ros2/ros2_source.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace eventide {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kReadPatience = 20ms;
+constexpr int kLargestSide = 4096;               // px
+constexpr std::size_t kEnoughBytes = 256 << 10;  // of messages at once
+
+void append(const EventMessage& message, std::vector<std::byte>& bytes) {
+    append_event_packet({message.time_base, message.stamp_ns}, message.payload, bytes);
+}
+
+std::string list_text(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+Ros2Source::Ros2Source(Ros2SourceName name, const CameraOptions& options)
+    : name_{std::move(name)},
+      reconnect_{options.reconnect},
+      topic_{Participant::join(), name_.topic} {
+    if (!options.settings.empty())
+        throw Error(ErrorKind::usage, label() +
+                                          ": expected no --camera, as the driver that "
+                                          "publishes has the settings; found " +
+                                          options.settings.string());
+    wait_for_first(options.give_up);
+}
+
+void Ros2Source::wait_for_first(const std::function<bool()>& give_up) {
+    const auto until = Clock::now() + name_.wait;
+    bool heard_of_one = false;
+    while (true) {
+        if (give_up && give_up())
+            throw Error(ErrorKind::failed, label() + ": stopped before the first message");
+        if (topic_.find_publisher(kReadPatience)) {
+            heard_of_one = true;
+            if (const auto message = topic_.take()) return begin(*message);
+            topic_.wait(kReadPatience);
+        }
+        if (Clock::now() < until || reconnect_) continue;
+        if (heard_of_one)
+            throw Error(ErrorKind::device, label() + ": its publisher sent nothing in " +
+                                               std::to_string(name_.wait.count() / 1000) +
+                                               " ms; ?wait=60s waits longer");
+        throw Error(ErrorKind::device,
+                    label() + ": expected a publisher, found none in " +
+                        std::to_string(name_.wait.count() / 1000) +
+                        " ms; topics of event packets there: " + list_text(topic_.event_topics()) +
+                        " (see ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY; ?wait=60s waits longer)");
+    }
+}
+
+void Ros2Source::begin(const EventMessage& message) {
+    encoding_name_ = message.encoding;
+    const auto encoding = event_packet_encoding(message.encoding);
+    if (!encoding)
+        throw Error(ErrorKind::device, label() +
+                                           ": expected encoding evt3, libcaer, libcaer_cmp or "
+                                           "mono, found '" +
+                                           encoding_name_ + "'");
+    if (message.big_endian)
+        throw Error(ErrorKind::device,
+                    label() + ": expected little-endian packets, found big-endian ones");
+    if (message.width < 1 || message.width > kLargestSide || message.height < 1 ||
+        message.height > kLargestSide)
+        throw Error(ErrorKind::device, label() + ": expected a sensor of 1 to " +
+                                           std::to_string(kLargestSide) + " px each way, found " +
+                                           std::to_string(message.width) + "x" +
+                                           std::to_string(message.height));
+    encoding_ = *encoding;
+    info_.name = "ROS 2 " + name_.topic;
+    info_.format = encoding_name_;
+    info_.width = message.width;
+    info_.height = message.height;
+    publisher_ = message.publisher;
+    next_seq_ = message.seq + 1;
+    append(message, held_);
+}
+
+ReadStatus Ros2Source::read(RawPacket& into) {
+    into.bytes.clear();
+    into.gap_before = false;
+    if (stopped_) return ReadStatus::end;
+    if (!held_.empty()) {
+        into.bytes.swap(held_);
+        into.gap_before = std::exchange(gap_before_held_, false);
+    }
+    take_messages(into);
+    if (into.bytes.empty()) {
+        topic_.wait(kReadPatience);
+        take_messages(into);
+    }
+    if (into.bytes.empty() && topic_.publishers() == 0) {
+        take_messages(into);  // what came before it went
+        if (into.bytes.empty()) return lost();
+    }
+    if (into.bytes.empty()) return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+    if (!std::exchange(is_there_, true)) {
+        ++counters_.reconnects;
+        into.gap_before = true;
+    }
+    into.arrived = Clock::now();
+    ++counters_.transfers;
+    counters_.bytes += into.bytes.size();
+    return ReadStatus::data;
+}
+
+/// What is there, up to the next gap.
+void Ros2Source::take_messages(RawPacket& into) {
+    while (held_.empty() && into.bytes.size() < kEnoughBytes) {
+        const auto message = topic_.take();
+        if (!message) return;
+        const bool ours = is_of_this_publisher(*message);
+        if (!ours) continue;
+        check_same(*message);
+        const bool gap = is_gap_before(*message);
+        if (gap && !into.bytes.empty()) {
+            append(*message, held_);
+            gap_before_held_ = true;
+            return;
+        }
+        into.gap_before |= gap;
+        append(*message, into.bytes);
+    }
+}
+
+/// One that is new takes over; what the one before still sends is left out.
+bool Ros2Source::is_of_this_publisher(const EventMessage& message) {
+    constexpr std::size_t kMax = 64;
+    if (message.publisher == publisher_) return true;
+    if (std::ranges::find(publishers_before_, message.publisher) != publishers_before_.end())
+        return false;
+    publishers_before_.push_back(publisher_);
+    if (publishers_before_.size() > kMax) publishers_before_.pop_front();
+    publisher_ = message.publisher;
+    next_seq_ = message.seq + 1;
+    gap_before_held_ = true;
+    return true;
+}
+
+bool Ros2Source::is_gap_before(const EventMessage& message) {
+    const bool jump = message.seq != next_seq_ && message.seq + 1 != next_seq_;
+    next_seq_ = message.seq + 1;
+    return std::exchange(gap_before_held_, false) || jump;
+}
+
+void Ros2Source::check_same(const EventMessage& message) const {
+    if (message.width == info_.width && message.height == info_.height &&
+        message.encoding == encoding_name_ && !message.big_endian)
+        return;
+    throw Error(ErrorKind::device,
+                label() + ": expected " + std::to_string(info_.width) + "x" +
+                    std::to_string(info_.height) + " " + encoding_name_ + " as before, found " +
+                    std::to_string(message.width) + "x" + std::to_string(message.height) + " " +
+                    std::string{message.encoding} + (message.big_endian ? ", big-endian" : ""));
+}
+
+ReadStatus Ros2Source::lost() {
+    if (!reconnect_)
+        throw Error(ErrorKind::device, label() +
+                                           ": its publisher went away (use --reconnect to "
+                                           "wait until it is back)");
+    is_there_ = false;
+    static_cast<void>(
+        topic_.find_publisher(std::chrono::milliseconds{0}));  // it may be less reliable now
+    return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+}
+
+void Ros2Source::stop() noexcept {
+    stopped_ = true;
+    topic_.wake();
+}
+
+std::unique_ptr<Parser> Ros2Source::make_parser() const {
+    return std::make_unique<EventPacketParser>(encoding_, info_.width, info_.height);
+}
+
+std::unique_ptr<Camera> open_ros2_source(std::string_view which, const CameraOptions& options) {
+    return std::make_unique<Ros2Source>(parse_ros2_source_name(which), options);
+}
+
+}  // namespace eventide

@@ -1,0 +1,60 @@
+// Event packets of a ROS 2 driver as a source, without ROS 2.
+#pragma once
+
+#include "drivers/camera.h"
+#include "drivers/devices.h"
+#include "drivers/ros2/event_topic.h"
+#include "drivers/ros2/ros2_source_name.h"
+#include "src/codec/event_packet.h"
+
+#include <atomic>
+#include <deque>
+#include <string_view>
+
+namespace eventide {
+
+/// The bytes are what EventPacketParser reads. A jump of the messages' numbers is a gap. One
+/// publisher is read at a time: of several the one that was heard of last.
+class Ros2Source final : public Camera {
+public:
+    /// Waits for the first message, which tells size and encoding: name.wait, or with
+    /// options.reconnect for ever. Throws Error: usage for the environment or options.settings,
+    /// device where nothing comes, with the topics that there are, and for an encoding that is none
+    /// of ours; failed where options.give_up ends the wait.
+    Ros2Source(Ros2SourceName name, const CameraOptions& options);
+
+    const SensorInfo& info() const override { return info_; }
+    ReadStatus read(RawPacket& into) override;
+    void stop() noexcept override;
+    std::unique_ptr<Parser> make_parser() const override;
+    CameraCounters counters() const override { return counters_; }
+
+private:
+    void wait_for_first(const std::function<bool()>& give_up);
+    void begin(const EventMessage& message);
+    void take_messages(RawPacket& into);
+    bool is_of_this_publisher(const EventMessage& message);
+    bool is_gap_before(const EventMessage& message);
+    void check_same(const EventMessage& message) const;
+    ReadStatus lost();
+    std::string label() const { return "ros2:" + name_.topic; }
+
+    Ros2SourceName name_;
+    bool reconnect_;
+    EventTopic topic_;
+    SensorInfo info_;
+    std::string encoding_name_;
+    EventPacketEncoding encoding_ = EventPacketEncoding::evt3;
+    CameraCounters counters_;
+    std::vector<std::byte> held_;  ///< the first message, or one behind a gap
+    bool gap_before_held_ = false;
+    std::uint64_t publisher_ = 0, next_seq_ = 0;
+    std::deque<std::uint64_t> publishers_before_;
+    bool is_there_ = true;  ///< the publisher
+    std::atomic<bool> stopped_{false};
+};
+
+/// `which` is what follows "ros2:".
+std::unique_ptr<Camera> open_ros2_source(std::string_view which, const CameraOptions& options);
+
+}  // namespace eventide
