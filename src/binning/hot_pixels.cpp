@@ -11,14 +11,14 @@ HotPixels::HotPixels(int width, int height, double hz, SensorDuration interval)
       height_{height},
       hot_count_(std::uint32_t(hz * std::chrono::duration<double>(interval).count())),
       interval_{interval},
-      counts_(std::size_t(width) * std::size_t(height)),
-      hot_(counts_.size()) {}
+      pixels_(std::size_t(width) * std::size_t(height)) {}
 
 std::size_t HotPixels::count() const {
-    return std::size_t(std::ranges::count(hot_, std::uint8_t{1}));
+    return std::size_t(
+        std::ranges::count_if(pixels_, [](const Pixel& pixel) { return pixel.hot; }));
 }
 
-void HotPixels::advance(SensorTime t) noexcept {
+void HotPixels::renew(SensorTime t) noexcept {
     // After a reset of the clock an old end would never come.
     if (!interval_end_ || t + interval_ < *interval_end_) interval_end_ = t + interval_;
     if (t < *interval_end_) return;
@@ -33,13 +33,13 @@ void HotPixels::advance(SensorTime t) noexcept {
 void HotPixels::end_interval() noexcept {
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x) {
-            const std::size_t i = std::size_t(y) * std::size_t(width_) + std::size_t(x);
-            if (hot_[i] != 0)
-                hot_[i] = counts_[i] >= hot_count_ / 2;
-            else if (counts_[i] >= hot_count_)
-                hot_[i] = counts_[i] >= kTimesNeighbours * second_busiest_around(y, x);
+            Pixel& pixel = pixels_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
+            if (pixel.hot)
+                pixel.hot = pixel.events >= hot_count_ / 2;
+            else if (pixel.events >= hot_count_)
+                pixel.hot = pixel.events >= kTimesNeighbours * second_busiest_around(y, x);
         }
-    std::ranges::fill(counts_, 0U);
+    for (Pixel& pixel : pixels_) pixel.events = 0;
     *interval_end_ += interval_;
 }
 
@@ -48,7 +48,8 @@ std::uint32_t HotPixels::second_busiest_around(int y, int x) const noexcept {
     for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height_ - 1); ++v)
         for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width_ - 1); ++u) {
             if (v == y && u == x) continue;
-            const std::uint32_t n = counts_[std::size_t(v) * std::size_t(width_) + std::size_t(u)];
+            const std::uint32_t n =
+                pixels_[std::size_t(v) * std::size_t(width_) + std::size_t(u)].events;
             second = std::max(second, std::min(first, n));
             first = std::max(first, n);
         }

@@ -25,24 +25,30 @@ public:
     /// Counts an event, which lies on the sensor; true where its pixel was found hot before it.
     bool is_hot(const Event& event) noexcept {
         advance(event.t);
-        const std::size_t i = std::size_t(event.y) * std::size_t(width_) + event.x;
-        ++counts_[i];
-        return hot_[i] != 0;
+        Pixel& pixel = pixels_[std::size_t(event.y) * std::size_t(width_) + event.x];
+        ++pixel.events;
+        return pixel.hot;
     }
 
     /// How many pixels are hot now.
     std::size_t count() const;
 
 private:
-    void advance(SensorTime t) noexcept;
+    struct Pixel {
+        std::uint32_t events : 31 = 0;  // of this interval
+        bool hot : 1 = false;
+    };
+    void advance(SensorTime t) noexcept {
+        if (!interval_end_ || t >= *interval_end_ || t + interval_ < *interval_end_) renew(t);
+    }
+    void renew(SensorTime t) noexcept;
     void end_interval() noexcept;
     std::uint32_t second_busiest_around(int y, int x) const noexcept;
 
     int width_, height_;
     std::uint32_t hot_count_;
     SensorDuration interval_;
-    std::vector<std::uint32_t> counts_;  // [y][x], of this interval
-    std::vector<std::uint8_t> hot_;      // [y][x]
+    std::vector<Pixel> pixels_;  // [y][x]
     std::optional<SensorTime> interval_end_;
 };
 

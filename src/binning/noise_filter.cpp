@@ -13,6 +13,7 @@ namespace {
 
 constexpr SensorTime kNever = SensorTime::min();
 constexpr SensorDuration kInterval{250'000};
+constexpr double kPerInterval = 1 / double(kInterval.count());
 // Of tiles by number of events: the one that tells the noise. Less, and dead corners tell it.
 constexpr double kQuantile = .1, kBelow = 1.28;
 // What is known of the noise follows what is seen by this share, upwards slowly: while everything
@@ -86,7 +87,7 @@ bool NoiseFilter::measure(const Event& event, bool hot, bool supported) noexcept
     Tile& tile = tiles_[std::size_t(row) * std::size_t(tile_columns_) + std::size_t(column)];
     if (!hot) ++tile.events;
     if (supported) ++tile.supported;
-    const double of_two = 1 + double((event.t - *interval_).count()) / double(kInterval.count());
+    const double of_two = 1 + double((event.t - *interval_).count()) * kPerInterval;
     const bool adapts = settings_.shortest != settings_.longest;
     return adapts && measured_ && is_quiet(tile, of_two);
 }
@@ -100,7 +101,8 @@ void NoiseFilter::begin_stream(SensorTime t) noexcept {
 // In the interval before and what there is of this one, together so many intervals.
 bool NoiseFilter::is_quiet(const Tile& tile, double intervals) const noexcept {
     const double noise = intervals * tile.noise;
-    return tile.events + tile.before <= noise + kQuietDeviations * std::sqrt(noise) + 1;
+    const double more = double(tile.events) + tile.before - noise - 1;
+    return more <= 0 || more * more <= kQuietDeviations * kQuietDeviations * noise;
 }
 
 bool NoiseFilter::is_alone(const Tile& tile) noexcept {
@@ -153,13 +155,18 @@ NoiseFilter::Support NoiseFilter::support_of(const SensorTime* own, SensorTime t
     const std::uint64_t now = us(t), within = std::uint64_t(within_.count());
     const std::uint64_t shortly = std::uint64_t(quiet_within_.count());
     Support found;
-    const SensorTime *above = own - stride_, *below = own + stride_;
-    for (const SensorTime* at :
-         {above - 1, above, above + 1, own - 1, own + 1, below - 1, below, below + 1}) {
+    const auto look_at = [&](const SensorTime* at) {
         const std::uint64_t age = now - us(*at);
         found.within += age <= within ? 1 : 0;
         found.shortly += age <= shortly ? 1 : 0;
+    };
+    for (const SensorTime* row : {own - stride_, own + stride_}) {
+        look_at(row - 1);
+        look_at(row);
+        look_at(row + 1);
     }
+    look_at(own - 1);
+    look_at(own + 1);
     return found;
 }
 
