@@ -8,6 +8,7 @@
 
 #include "src/kernels/bf16_kernels.h"
 
+#include <sys/mman.h>
 #include <oneapi/dnnl/dnnl.hpp>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <cassert>
 #include <cstdint>
 #include <cstring>
+#include <new>
 #include <utility>
 
 // Debian's oneDNN divides its work among OpenMP's threads, as many as OpenMP has been told on the
@@ -122,7 +124,18 @@ struct OnednnConv::Primitives {
     const void* gather(const ConvCall& call, void* dense) const noexcept;
 };
 
+/// oneDNN does not look whether there was memory for the code it makes, and dies writing it: that
+/// there is some is found out before.
+void expect_room() {
+    constexpr std::size_t kRoom = std::size_t{16} << 20;
+    void* const room =
+        ::mmap(nullptr, kRoom, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) throw std::bad_alloc{};
+    ::munmap(room, kRoom);
+}
+
 void OnednnConv::Primitives::add(Extent extent, bool relu, const memory& plain_weights) {
+    expect_room();
     const auto [rows, columns] = reach(extent);
     const auto type = bf16 ? memory::data_type::bf16 : memory::data_type::f32;
     Sized& made = sized.emplace_back();

@@ -158,6 +158,21 @@ TEST_F(ExitCodes, OneIsTooLittleMemoryAndItIsSaidBeforeTheFirstFrame) {
     EXPECT_FALSE(std::filesystem::exists(temp_ / "a"));
 }
 
+/// The shipped network at a real sensor's size: libraries that make code and threads are in it.
+/// With less than they need to be loaded, one of them aborts before main().
+TEST_F(ExitCodes, WithWhateverMemoryARunNeitherHangsNorCrashes) {
+    if (kSanitized) GTEST_SKIP() << "sanitizers take all the address space there is";
+    write_text(temp_ / "real.raw", "% evt 3.0\n% geometry 346x260\n% end\n");
+    for (int mebibytes = 450; mebibytes <= 700; mebibytes += 25) {
+        const Result result =
+            with_memory(mebibytes,
+                        {"run", "real.raw", "--model",
+                         EVENTIDE_SOURCE_DIR "/config/models/default.safetensors", "--out", "null"},
+                        temp_.path().string());
+        EXPECT_NE(result.exit_code, 128 + SIGSEGV) << mebibytes << " MiB: " << result.error;
+    }
+}
+
 TEST_F(ExitCodes, TwoIsAlsoAFullFolderWithoutOverwrite) {
     std::filesystem::create_directory(temp_ / "a");
     write_text(temp_ / "a/mine.txt", "x");
