@@ -3,6 +3,7 @@
 #include "tests/system/program_test.h"
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 
 namespace eventide::test {
