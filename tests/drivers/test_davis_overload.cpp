@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
 
-TEST(DavisOverload, WhatTheLineCannotTakeIsCountedAndTheStreamCarriesAGap) {
+TEST(DavisOverload, WhatThePipelineCannotTakeIsCountedAndTheStreamCarriesAGap) {
     testing_support::DavisModelSettings small;
     small.sensor.dvs_columns = small.sensor.aps_columns = kHeight;
     small.sensor.dvs_rows = small.sensor.aps_rows = kWidth;
@@ -45,7 +45,9 @@ TEST(DavisOverload, WhatTheLineCannotTakeIsCountedAndTheStreamCarriesAGap) {
     EXPECT_GE(end.gaps, 1U);
     EXPECT_TRUE(std::any_of(sink.seen.begin(), sink.seen.end(),
                             [](const ToySink::Seen& frame) { return frame.gap; }));
-    EXPECT_EQ(end.damaged.total(), 0U) << "nothing behind the gap is garbled";
+    // On a busy machine the loss may be long enough for the clock to be set right after it.
+    EXPECT_EQ(end.damaged.total(), end.damaged[DamageReason::time_corrected])
+        << "nothing behind the gap is garbled";
 }
 
 }  // namespace
