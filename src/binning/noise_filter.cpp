@@ -27,6 +27,8 @@ constexpr double kExpected = .4;
 // noise, from the sensor's to so many times that, is learned while it is quiet; slowly, while its
 // events stand alone.
 constexpr double kQuietDeviations = 6, kMaxTimes = 4, kLearn = .1, kLearnSlowly = .02;
+// Of the time within which neighbours support.
+constexpr double kQuietTime = 2. / 3;
 // Noise stands alone: of a tile's events, no more have kQuietSupport.
 constexpr double kAloneShare = .02;
 constexpr SensorDuration kHotInterval{2'000'000};
@@ -38,6 +40,7 @@ NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& setti
       hot_pixels_(width, height, kHotHz, kHotInterval),
       stride_(std::size_t(width) + 2),
       newest_(stride_ * (std::size_t(height) + 2), kNever),
+      polarity_(newest_.size(), Polarity::off),
       tile_rows_(std::max(1, height / kTile)),
       tile_columns_(std::max(1, width / kTile)),
       tile_pixels_(double(std::min(width, kTile)) * std::min(height, kTile)),
@@ -58,11 +61,14 @@ void NoiseFilter::process(std::vector<Event>& events) noexcept {
         const bool begins = !last_ || event.t < *last_;
         last_ = event.t;
         const bool hot = hot_pixels_.is_hot(event);
-        SensorTime* const own = &newest_[(std::size_t(event.y) + 1) * stride_ + event.x + 1];
-        const Support support = support_of(own, event.t);
-        const bool surely = support.shortly >= kQuietSupport;
+        const std::size_t own = (std::size_t(event.y) + 1) * stride_ + event.x + 1;
+        const Support support = support_of(own, event);
+        const bool surely = support.alike >= kQuietSupport;
         const bool quiet = measure(event, hot, surely);
-        if (!hot) *own = event.t;
+        if (!hot) {
+            newest_[own] = event.t;
+            polarity_[own] = event.polarity;
+        }
         *kept = event;
         kept += begins || (!hot && (quiet ? surely : support.within >= kSupport)) ? 1 : 0;
     }
@@ -146,21 +152,21 @@ void NoiseFilter::set_noise(double hz) noexcept {
                           settings_.longest);
     };
     within_ = clamped(us);
-    quiet_within_ = clamped(us / 10);
+    quiet_within_ = clamped(us * kQuietTime);
 }
 
-NoiseFilter::Support NoiseFilter::support_of(const SensorTime* own, SensorTime t) const noexcept {
+NoiseFilter::Support NoiseFilter::support_of(std::size_t own, const Event& event) const noexcept {
     // As unsigned numbers, so that one comparison refuses both what is old and what is not yet.
     const auto us = [](SensorTime time) { return std::uint64_t(to_us(time)); };
-    const std::uint64_t now = us(t), within = std::uint64_t(within_.count());
-    const std::uint64_t shortly = std::uint64_t(quiet_within_.count());
+    const std::uint64_t now = us(event.t), within = std::uint64_t(within_.count());
+    const std::uint64_t quiet_within = std::uint64_t(quiet_within_.count());
     Support found;
-    const auto look_at = [&](const SensorTime* at) {
-        const std::uint64_t age = now - us(*at);
+    const auto look_at = [&](std::size_t at) {
+        const std::uint64_t age = now - us(newest_[at]);
         found.within += age <= within ? 1 : 0;
-        found.shortly += age <= shortly ? 1 : 0;
+        found.alike += int(age <= quiet_within) & int(polarity_[at] == event.polarity);
     };
-    for (const SensorTime* row : {own - stride_, own + stride_}) {
+    for (const std::size_t row : {own - stride_, own + stride_}) {
         look_at(row - 1);
         look_at(row);
         look_at(row + 1);

@@ -32,15 +32,15 @@ struct NoiseFilterSettings {
 /// noise it is long, and slow motion and fine texture, whose events come one by one too, stay.
 /// Noise is what fires in those parts of the sensor (tiles of kTile x kTile px) in which least
 /// does. Where a tile fires little more than noise does, nothing moves there or begins to: an event
-/// then needs kQuietSupport neighbours within a tenth of the time, so that an hour of noise does
-/// not wear off what is known of a still scene.
+/// then needs kQuietSupport neighbours of its own polarity, which noise has at random, within two
+/// thirds of the time, so that an hour of noise does not wear off what is known of a still scene.
 ///
 /// Deterministic: what is left out depends on the events, not on how they are split. The first
 /// event of a stream stays, and the first after its clock was reset, so that they tell whoever
 /// comes next; events from after the present support nothing. One thread at a time.
 class NoiseFilter {
 public:
-    static constexpr int kSupport = 2, kQuietSupport = 3;
+    static constexpr int kSupport = 2, kQuietSupport = 4;
     static constexpr double kHotHz = 5;
     static constexpr SensorDuration kMaxTime{10'000'000};
 
@@ -66,7 +66,8 @@ private:
         double noise = 0;                      // events per interval
     };
     struct Support {
-        int within = 0, shortly = 0;  // neighbours: in within_, in quiet_within_
+        int within = 0;  // neighbours: in within_
+        int alike = 0;   // of the event's polarity, in quiet_within_
     };
     bool measure(const Event& event, bool hot, bool supported) noexcept;
     void begin_stream(SensorTime t) noexcept;
@@ -74,12 +75,13 @@ private:
     static bool is_alone(const Tile& tile) noexcept;
     void end_interval() noexcept;
     void set_noise(double hz) noexcept;
-    Support support_of(const SensorTime* own, SensorTime t) const noexcept;
+    Support support_of(std::size_t own, const Event& event) const noexcept;
 
     NoiseFilterSettings settings_;
     HotPixels hot_pixels_;
     std::size_t stride_;              // a rim of one pixel around the sensor never fires
     std::vector<SensorTime> newest_;  // [y + 1][x + 1]; of each pixel
+    std::vector<Polarity> polarity_;  // [y + 1][x + 1]; of the newest
     int tile_rows_, tile_columns_;
     double tile_pixels_;
     std::vector<Tile> tiles_;             // [row][column]
