@@ -15,7 +15,7 @@
 
 namespace eventide {
 
-/// LogSink which keys there are and where they go, then read(). All refusals are Error (usage).
+/// Say which keys there are and where they go, then read(). All refusals are Error (usage).
 class SettingsFile {
 public:
     explicit SettingsFile(std::filesystem::path file);

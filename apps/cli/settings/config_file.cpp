@@ -2,6 +2,7 @@
 #include "apps/cli/settings/config.h"
 #include "src/core/error.h"
 #include "src/io/input_file.h"
+#include "src/io/toml_text.h"
 
 #include <toml++/toml.h>
 
@@ -56,6 +57,7 @@ ConfigValue value_of(const std::string& path, const toml::key& key, const toml::
 ConfigFile read_config_file(const std::string& path) {
     std::ifstream stream = open_to_read(path, ErrorKind::usage);
     const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+    check_table_names(path, text);
     ConfigFile file;
     try {
         const toml::table root = toml::parse(text, path);

@@ -1,6 +1,7 @@
 // Flags win over the environment, that over the file, that over the defaults; mistakes are named.
 #include "apps/cli/settings/config.h"
 #include "src/core/error.h"
+#include "src/io/toml_text.h"
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>
@@ -101,6 +102,13 @@ TEST(Config, MistakesAreNamedWithTheirLine) {
     EXPECT_NE(complaint("[example]\nname = 2026-01-01\n").find("c.toml:2"), std::string::npos);
     EXPECT_NE(complaint("[example\nname = 1\n").find("c.toml:1: not TOML"), std::string::npos);
     EXPECT_NE(complaint("[example.deeper]\nname = 1\n").find("c.toml:"), std::string::npos);
+}
+
+TEST(Config, NamesOfTablesThatAreNoneAreRefusedBeforeTomlTakesThemForGranted) {
+    for (const char* text : {"[?un]\nfps = 20\n", "a = 1\n  [[ \x7f]]\n", "[=]", "[\xc3\xa9]"})
+        EXPECT_THROW(check_table_names("c.toml", text), Error) << text;
+    for (const char* text : {"[run]\n", " [ \"a b\" ]\n", "[[x]]", "[", "[]", "out = [\n[\n'a' ]]"})
+        EXPECT_NO_THROW(check_table_names("c.toml", text)) << text;
 }
 
 TEST(Config, AFileThatIsNotThereIsAnErrorAndAnEmptyOneIsNot) {
