@@ -1,11 +1,8 @@
 #include "drivers/settings_file.h"
 
-#include "src/io/input_file.h"
 #include "src/io/toml_text.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 namespace eventide {
 namespace {
@@ -19,9 +16,7 @@ Error refusal(const std::filesystem::path& file, const toml::source_region& wher
 toml::table parse(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(file))
         throw Error(ErrorKind::usage, "camera settings '" + file.string() + "': no such file");
-    std::ifstream stream = open_to_read(file, ErrorKind::usage);
-    const std::string text{std::istreambuf_iterator<char>{stream}, {}};
-    check_table_names(file.string(), text);
+    const std::string text = read_toml_text(file);
     try {
         return toml::parse(text, file.string());
     } catch (const toml::parse_error& error) {

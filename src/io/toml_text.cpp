@@ -2,8 +2,11 @@
 #include "src/io/toml_text.h"
 
 #include "src/core/error.h"
+#include "src/io/input_file.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 namespace eventide {
 namespace {
@@ -34,6 +37,13 @@ void check_table_names(const std::string& path, std::string_view text) {
                                               ": expected the name of a table after '[', found '" +
                                               line.front() + "'");
     }
+}
+
+std::string read_toml_text(const std::filesystem::path& path) {
+    std::ifstream stream = open_to_read(path, ErrorKind::usage);
+    std::string text{std::istreambuf_iterator<char>{stream}, {}};
+    check_table_names(path.string(), text);
+    return text;
 }
 
 }  // namespace eventide

@@ -1,6 +1,7 @@
 // What toml++ has to be spared.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -9,5 +10,8 @@ namespace eventide {
 /// toml++ 3 takes for granted that the name of a table begins as a key does, and does not look
 /// where assertions are off. Throws Error (usage) naming `path` and the line where one does not.
 void check_table_names(const std::string& path, std::string_view text);
+
+/// A whole file that toml++ may parse. Throws Error: as open_to_read() and check_table_names().
+std::string read_toml_text(const std::filesystem::path& path);
 
 }  // namespace eventide

@@ -1,13 +1,9 @@
 // TOML through toml++; our own walk, because unknown keys are errors with a line number here.
 #include "apps/cli/settings/config.h"
 #include "src/core/error.h"
-#include "src/io/input_file.h"
 #include "src/io/toml_text.h"
 
 #include <toml++/toml.h>
-
-#include <fstream>
-#include <iterator>
 
 namespace eventide::app {
 
@@ -55,9 +51,7 @@ ConfigValue value_of(const std::string& path, const toml::key& key, const toml::
 }  // namespace
 
 ConfigFile read_config_file(const std::string& path) {
-    std::ifstream stream = open_to_read(path, ErrorKind::usage);
-    const std::string text{std::istreambuf_iterator<char>{stream}, {}};
-    check_table_names(path, text);
+    const std::string text = read_toml_text(path);
     ConfigFile file;
     try {
         const toml::table root = toml::parse(text, path);
