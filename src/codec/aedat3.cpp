@@ -283,7 +283,7 @@ void Aedat3Parser::resync() {
     offset_us_ = 0;
     was_reset_ = false;
     newest_us_.reset();
-    line_.resync();
+    line_.resync(damage_);
 }
 
 std::optional<SensorTime> Aedat3Parser::clock() const {

@@ -235,7 +235,7 @@ void Aedat4Parser::resync() {
     state_ = State::searching;
     failed_in_a_row_ = 0;
     position_.reset();
-    line_.resync();
+    line_.resync(damage_);
     newest_us_.reset();
 }
 

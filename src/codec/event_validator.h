@@ -37,11 +37,11 @@ public:
         }
         const Event event{from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
         if (!newest_) {
-            begin_with(event, into);
+            begin_with(event);
         } else if (!held_.empty() || is_leap(t_us)) {
             add_after_leap(event, into, damage);
         } else if (t_us < *newest_) {
-            step_back(event, into, damage);
+            step_back(event, damage);
         } else {
             take_first(into);
             newest_ = t_us;
@@ -59,9 +59,11 @@ public:
         take_held(into);
     }
 
-    /// Takes up anywhere in time.
-    void resync() {
+    /// Takes up anywhere in time. What is still held is lost: nothing that could follow it will.
+    void resync(Damage& damage) {
+        damage.count(DamageReason::truncated, held_.size() + (first_ ? 1 : 0));
         held_.clear();
+        first_.reset();
         newest_.reset();
     }
 
@@ -87,16 +89,15 @@ private:
         return t_us > *newest_ && between(*newest_, t_us) > std::uint64_t(kLongestStep);
     }
 
-    void step_back(const Event& event, Batch& into, Damage& damage) {
+    void step_back(const Event& event, Damage& damage) {
         if (!first_ || between(to_us(event.t), *newest_) <= std::uint64_t(kLongestStep))
             return damage.count(DamageReason::time_backwards);
         damage.count(DamageReason::bad_record);  // the first one lied
         first_.reset();
-        begin_with(event, into);
+        begin_with(event);
     }
 
-    void begin_with(const Event& event, Batch& into) {
-        take_first(into);  // of before a resync(): nothing contradicted it
+    void begin_with(const Event& event) {
         first_ = event;
         newest_ = to_us(event.t);
     }

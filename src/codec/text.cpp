@@ -100,7 +100,8 @@ void TextParser::take_up(Batch& into) {
     if (!resyncing_) return;
     resyncing_ = false;
     reorder_.flush(taker(into));
-    line_.resync();
+    line_.finish(into, damage_);
+    line_.resync(damage_);
 }
 
 /// The line [begin, end), without its newline; false when it is damaged. Nothing is counted then.
@@ -167,8 +168,8 @@ const char* TextParser::complete_carried_line(const char* p, const char* end, Ba
 }
 
 void TextParser::parse(std::span<const std::byte> bytes, Batch& into) {
-    if (bytes.empty()) return;
     take_up(into);
+    if (bytes.empty()) return;
     const char* p = reinterpret_cast<const char*>(bytes.data());
     const char* end = p + bytes.size();
     if (!carried_.empty() || skipping_to_line_) p = complete_carried_line(p, end, into);

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     fuzz_parser(bytes, 3, 2,
                 [] { return std::make_unique<Aedat2Parser>(Aedat2Sensor::davis, 3, 2); });
-    fuzz_parser(bytes, 8, 8,
-                [] { return std::make_unique<Aedat2Parser>(Aedat2Sensor::dvs128, 8, 8); });
+    fuzz_parser(bytes, 128, 128,
+                [] { return std::make_unique<Aedat2Parser>(Aedat2Sensor::dvs128, 128, 128); });
     return 0;
 }

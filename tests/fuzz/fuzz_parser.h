@@ -40,6 +40,13 @@ inline bool same_bits(const std::vector<ImuSample>& a, const std::vector<ImuSamp
            (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(ImuSample)) == 0);
 }
 
+/// What was whole before the jump comes out with the next call.
+inline void jump(Parser& parser, Batch& batch) {
+    parser.resync();
+    parser.parse({}, batch);
+    batch.clear();
+}
+
 inline void require_order(const std::vector<Event>& events) {
     for (std::size_t i = 1; i < events.size(); ++i) require(events[i].t >= events[i - 1].t);
 }
@@ -61,16 +68,12 @@ void fuzz_parser(std::span<const std::byte> bytes, int width, int height, MakePa
     // After a jump the parser goes on, wherever that is and whatever the host's clock says; what
     // comes is in order until the next jump.
     for (std::size_t i = 0; i + 1 < bytes.size() && i < 8; ++i) {
-        if (i % 3 == 0) {
-            second->resync();
-            split.clear();
-        }
+        if (i % 3 == 0) jump(*second, split);
         second->arrives(HostTime{std::chrono::milliseconds{int(bytes[i]) * int(bytes[i + 1])}});
         second->parse(bytes.subspan(i, 1 + bytes.size() / 8), split);
         require_order(split.events);
     }
-    second->resync();
-    split.clear();
+    jump(*second, split);
     parse_for_fuzzer(*second, bytes.subspan(bytes.size() / 3), 7, split);
     require_order(split.events);
 }

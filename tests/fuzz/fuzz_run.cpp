@@ -10,10 +10,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static app::Signals signals;
     static MemoryFile recording;
     recording.hold(data, size);
-    const int code = app::run_program(
-        signals, {"run", recording.path(), "--model", EVENTIDE_FUZZ_MODEL, "--out",
-                  "gray8:/dev/null", "--overwrite", "--size", "8x6", "--fps", "50", "--duration",
-                  "300ms", "--threads", "1", "--quiet", "--log-level", "off"});
+    const int code =
+        app::run_program(signals, {"run",   recording.path(),  "--model",     EVENTIDE_FUZZ_MODEL,
+                                   "--out", "gray8:/dev/null", "--overwrite", "--size",
+                                   "8x6",   "--fps",           "50",          "--precision",
+                                   "f32",   "--duration",      "100ms",       "--threads",
+                                   "1",     "--quiet",         "--log-level", "off"});
     if (code != 0 && code != 1 && code != 2 && code != 3) std::abort();
     return 0;
 }

@@ -1,0 +1,37 @@
+// The rules every event passes, where a stream is taken up again.
+#include "src/codec/event_validator.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+/// Of one event before a loss and two after it, at these times in us.
+std::vector<std::int64_t> times_around_loss(std::int64_t before, std::int64_t after,
+                                            Damage& damage) {
+    EventValidator validator(10, 10);
+    Batch batch;
+    validator.add(before, 1, 1, true, batch, damage);
+    validator.resync(damage);
+    validator.add(after, 2, 2, true, batch, damage);
+    validator.add(after, 3, 2, true, batch, damage);
+    validator.finish(batch, damage);
+    std::vector<std::int64_t> times;
+    for (const Event& event : batch.events) times.push_back(to_us(event.t));
+    return times;
+}
+
+// Taken up anywhere in time, the events that come out are in order all the same: the one that was
+// held until another agreed with it is of before the loss, and goes with it.
+TEST(EventValidator, AnEventHeldWhereALossBeginsIsLostAndCounted) {
+    Damage expected;
+    expected.count(DamageReason::truncated);
+    for (const std::int64_t after : {100, 500, 900'000}) {
+        Damage damage;
+        EXPECT_EQ(times_around_loss(500, after, damage), (std::vector<std::int64_t>{after, after}));
+        EXPECT_EQ(damage, expected) << after;
+    }
+}
+
+}  // namespace
+}  // namespace eventide
