@@ -1,6 +1,8 @@
 // Floats to bytes, and the four ways of showing sigma in one image.
 #include "pipeline/sinks/draw_frame.h"
 
+#include <opencv2/imgproc.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -119,6 +121,17 @@ void draw_events(const Frame& frame, cv::Mat& image) {
         for (std::size_t x = 0; x < sums.size(); ++x)
             row[x] = sums[x] > 0 ? on : sums[x] < 0 ? off : none;
     }
+}
+
+void draw_events_beside(const Frame& frame, cv::Mat& image) {
+    cv::Mat events, scaled, coloured = image;
+    draw_events(frame, events);
+    if (events.empty()) return;
+    cv::resize(events, scaled, {frame.intensity.width(), frame.intensity.height()}, 0, 0,
+               cv::INTER_NEAREST);
+    if (image.channels() == 1) cv::cvtColor(image, coloured, cv::COLOR_GRAY2BGR);
+    if (image.channels() == 4) cv::cvtColor(image, coloured, cv::COLOR_BGRA2BGR);
+    cv::hconcat(scaled, coloured, image);
 }
 
 void draw_sigma(const Frame& frame, float sigma_white, cv::Mat& image) {

@@ -42,6 +42,11 @@ void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& image
 /// Leaves `image` empty where the frame has none.
 void draw_events(const Frame& frame, cv::Mat& image);
 
+/// Puts the frame's events left of `image`, what draw() made of the frame: as colours and at the
+/// intensity's size, so that single events stay visible. `image` becomes CV_8UC3. Where the frame
+/// has no Frame::event_preview nothing changes.
+void draw_events_beside(const Frame& frame, cv::Mat& image);
+
 /// Draws sigma alone: CV_8UC1.
 void draw_sigma(const Frame& frame, float sigma_white, cv::Mat& image);
 

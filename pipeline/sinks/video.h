@@ -21,8 +21,10 @@ struct VideoSettings {
     float sigma_white = kSigmaWhite;
     std::string preset = "veryfast";  ///< x264's
     int crf = 18;                     ///< 0 lossless to 51 worst; 18 looks lossless
-    double fps = 30;  ///< nominal, > 0: for the last frame's length and players' displays
-    double slow = 1;  ///< the video is so many times as long as what it shows
+    double fps = 30;      ///< nominal, > 0: for the last frame's length and players' displays
+    double slow = 1;      ///< the video is so many times as long as what it shows
+    bool events = false;  ///< left of the intensity, where frames have Frame::event_preview; in GIF
+                          ///< grey: ON light, OFF dark
 };
 
 /// Where sigma goes when it has a video of its own: x.mp4 -> x.sigma.mp4.

@@ -4,7 +4,6 @@
 #include "src/core/error.h"
 
 #include <opencv2/highgui.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include <dlfcn.h>
 
@@ -106,14 +105,7 @@ void WindowSink::write(const Frame& frame) {
 
 void WindowSink::show(const Frame& frame) {
     draw(frame, controls_.uncertainty, settings_.sigma_white, image_);
-    draw_events(frame, events_);
-    if (!events_.empty()) {
-        cv::Mat scaled, coloured = image_;
-        cv::resize(events_, scaled, {frame.intensity.width(), frame.intensity.height()}, 0, 0,
-                   cv::INTER_NEAREST);
-        if (image_.channels() == 1) cv::cvtColor(image_, coloured, cv::COLOR_GRAY2BGR);
-        cv::hconcat(scaled, coloured, image_);
-    }
+    draw_events_beside(frame, image_);
     if (!open_) {
         cv::namedWindow(settings_.title, cv::WINDOW_NORMAL | cv::WINDOW_KEEPRATIO);
         cv::resizeWindow(settings_.title, std::max(640, image_.cols),

@@ -57,7 +57,7 @@ private:
 
     WindowSettings settings_;
     WindowControls controls_;
-    cv::Mat image_, events_;
+    cv::Mat image_;
     bool open_ = false;
 };
 

@@ -34,9 +34,9 @@ std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& set
                                  const SinkPlan& plan) {
     if (path.ends_with(".mkv"))
         spdlog::warn("{}: Matroska rounds times to 1 ms; MP4 keeps microseconds", path);
-    return std::make_unique<VideoSink>(
-        VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
-                      settings.video_preset, settings.video_crf, plan.fps, settings.slow});
+    return std::make_unique<VideoSink>(VideoSettings{
+        path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
+        settings.video_preset, settings.video_crf, plan.fps, settings.slow, settings.events});
 }
 
 std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,

@@ -273,8 +273,9 @@ void RunSettings::add_outputs(SettingTable& table) {
                        "The sigma (of intensity 0 to 1) that is shown as white, full red or clear.",
                        0.001, 100));
     add(flag_setting("events", events,
-                     "Show the events of each frame's event window: left in the window, as "
-                     "events/*.png in the folder. The contact sheet and the live page always do."));
+                     "Show the events of each frame's event window: left in the window and in "
+                     "videos, as events/*.png in the folder. The contact sheet and the live page "
+                     "always do."));
     add(parsed_setting<std::string>(
         "http_token", http_token, "TOKEN",
         "What viewers of the live page have to know. auto: nothing on this machine alone, "

@@ -82,6 +82,32 @@ TEST(VideoSink, GifKeepsEveryGreyAndHundredthsOfASecond) {
                   std::lround(frame.intensity.values()[i] * 255));
 }
 
+TEST(VideoSink, EventsStandLeftOfTheFrameWhereTheyAreAskedFor) {
+    const TempFolder temp;
+    Frame frame = test::ramp_frame(32, 16, 3, from_us(0));
+    frame.event_preview = Array2<float>{8, 16};  // half the frame's size
+    frame.event_preview(0, 0) = 1;
+    frame.event_preview(7, 15) = -1;
+    for (const bool events : {false, true}) {
+        VideoSink sink{{.path = temp / "a.gif", .overwrite = true, .events = events}};
+        sink.write(frame);
+        sink.close();
+        const std::string size = events ? "64,16\n" : "32,16\n";
+        EXPECT_EQ(probe(temp / "a.gif", {"-show_entries", "stream=width,height"}), size);
+    }
+    const test::Result pixels =
+        test::run({"ffmpeg", "-v", "error", "-i", temp / "a.gif", "-frames:v", "1", "-f",
+                   "rawvideo", "-pix_fmt", "gray", "-"});
+    ASSERT_EQ(pixels.output.size(), 64U * 16U) << pixels.error;
+    const auto grey = [&](int x, int y) {
+        return int(std::uint8_t(pixels.output[std::size_t(64 * y + x)]));
+    };
+    EXPECT_EQ(grey(1, 1), 220);
+    EXPECT_EQ(grey(30, 14), 40);
+    EXPECT_EQ(grey(15, 8), 255);
+    EXPECT_EQ(grey(32 + 7, 9), std::lround(frame.intensity(9, 7) * 255));
+}
+
 TEST(VideoSink, MotionJpegHasOneRate) {
     const TempFolder temp;
     VideoSink sink{{.path = temp / "a.avi", .uncertainty = Uncertainty::overlay, .fps = 25}};
