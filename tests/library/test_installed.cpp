@@ -87,12 +87,12 @@ TEST_F(Installed, PythonGivesTheSameFrames) {
 #endif
 }
 
-/// The block of the README in this language.
-std::string snippet(const std::string& language) {
-    const std::string page = read_text(EVENTIDE_SOURCE_DIR "/README.md"),
+/// The first block of a document in this language.
+std::string snippet(const std::string& document, const std::string& language) {
+    const std::string page = read_text(EVENTIDE_SOURCE_DIR "/" + document),
                       fence = "```" + language + "\n";
     const std::size_t begin = page.find(fence);
-    if (begin == std::string::npos) return "the README has no block of " + language;
+    if (begin == std::string::npos) return document + " has no block of " + language;
     return page.substr(begin + fence.size(),
                        page.find("```\n", begin + fence.size()) - begin - fence.size());
 }
@@ -106,16 +106,16 @@ std::vector<std::string> times_in(const std::string& output) {
     return times;
 }
 
-TEST_F(Installed, SnippetsOfTheReadmeRunAndAgree) {
+TEST_F(Installed, SnippetsOfTheDocumentsRunAndAgree) {
     fs::copy_file(recording(), temp_ / "recording.aedat4");
     const ProcessSettings where{
         .environment = {{"PKG_CONFIG_PATH", library_folder() + "/pkgconfig"},
                         {"LD_LIBRARY_PATH", library_folder()},
                         {"PYTHONPATH", prefix() + "/" EVENTIDE_PYTHON_DIR}},
         .folder = temp_.path().string()};
-    write_text(temp_ / "snippet.cpp", snippet("cpp"));
-    write_text(temp_ / "snippet.c", snippet("c"));
-    write_text(temp_ / "snippet.py", snippet("python"));
+    write_text(temp_ / "snippet.cpp", snippet("README.md", "cpp"));
+    write_text(temp_ / "snippet.c", snippet("docs/library.md", "c"));
+    write_text(temp_ / "snippet.py", snippet("README.md", "python"));
     succeed({"sh", "-c",
              "c++ -std=c++20 -Wall -Wextra -Werror snippet.cpp -o in_cpp $(pkg-config --cflags "
              "--libs eventide)"},
