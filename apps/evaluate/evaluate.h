@@ -49,8 +49,8 @@ struct RecordingSettings {
 };
 EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how);
 
-/// The project's simulated test set: affine motion as the thesis' test set (reconstruction.md
-/// section 5), fixed seeds.
+/// The project's simulated test set: affine motion as the thesis' test set (docs/training.md,
+/// "The thesis' scenes"), fixed seeds.
 struct SimulatedSettings {
     std::filesystem::path images;  ///< folder of photographs; empty: procedural textures
     int last_images = 0;           ///< only the last so many by name; 0: all
@@ -74,7 +74,7 @@ EvaluateReport evaluate_folders(const std::filesystem::path& frames,
                                 const std::filesystem::path& references,
                                 const std::filesystem::path& lpips);
 
-/// The EVREAL protocol (reconstruction.md section 8) on one sequence or a folder of them, in the
+/// The EVREAL protocol (Ercan et al. 2023) on one sequence or a folder of them, in the
 /// layouts of evreal_sequence.h: cuts by the sequence's name, state reset per sequence, inference
 /// from 10 s before the cut.
 EvaluateReport evaluate_evreal(const std::filesystem::path& dataset, const EvaluateSettings& how);

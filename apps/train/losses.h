@@ -1,4 +1,4 @@
-// What training makes small (reconstruction.md section 5).
+// What training makes small (docs/training.md, "Loss").
 #pragma once
 
 #include "apps/train/perceptual.h"

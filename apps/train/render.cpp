@@ -31,7 +31,7 @@ std::array<fused::WeightedAxis, 2> neighbours(const std::vector<double>& points,
 }
 
 /// The learned function with its first layer taken apart: a convolution of codes plus a linear
-/// function of the offset (reconstruction.md section 4, "the exact way out").
+/// function of the offset (docs/model.md, "Renderer").
 class Mlp {
 public:
     Mlp(const ModelConfig& config, const Parameters& parameters) {

@@ -1,4 +1,4 @@
-// The registers of iniVation's DAVIS and DVXplorer logic (drivers-and-formats.md A.4; figures from
+// The registers of iniVation's DAVIS and DVXplorer logic (docs/protocols.md A.4; figures from
 // libcaer 3.3.15, include/libcaer/devices/davis.h).
 #pragma once
 

@@ -14,7 +14,7 @@ namespace {
 
 using namespace davis;
 
-// drivers-and-formats.md A.7, from libcaer's src/davis.c.
+// docs/protocols.md A.7, from libcaer's src/davis.c.
 const std::vector<Bias> kBiases346{{"ApsOverflowLevel", 0, 0x019B},
                                    {"ApsCas", 1, 0x0195},
                                    {"AdcRefHigh", 2, 0x01E0},

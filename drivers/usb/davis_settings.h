@@ -53,7 +53,7 @@ DavisSettings load_davis_settings(const std::filesystem::path& file);
 struct Bias {
     const char* name;
     std::uint16_t address;
-    std::uint16_t value;  ///< 16-bit word (drivers-and-formats.md A.7)
+    std::uint16_t value;  ///< 16-bit word (docs/protocols.md A.7)
 };
 /// libcaer's defaults.
 const std::vector<Bias>& default_biases(DavisChip chip);

@@ -10,7 +10,7 @@
 namespace eventide {
 namespace {
 
-// drivers-and-formats.md A.12, from libcaer's src/dvs128.h.
+// docs/protocols.md A.12, from libcaer's src/dvs128.h.
 constexpr std::uint8_t kStart = 0xB3, kStop = 0xB4, kSetBiases = 0xB8, kResetTime = 0xBB,
                        kSetMaster = 0xBE;
 constexpr int kFirmware = 14;

@@ -1,5 +1,5 @@
 // The registers of the DVXplorer beyond those it shares with the DAVIS: the Samsung chip's, 8 bits
-// each, in module 5 (drivers-and-formats.md A.12; figures from libcaer 3.3.15, src/dvxplorer.h).
+// each, in module 5 (docs/protocols.md A.12; figures from libcaer 3.3.15, src/dvxplorer.h).
 // Numbers of more bits take several, the highest first.
 #pragma once
 

@@ -138,7 +138,7 @@ void add_activity(Writes& writes, const DvxplorerSettings& settings) {
 Writes chip_writes() {
     constexpr int kClockMhz = 50;
     Writes writes;
-    // Biases (drivers-and-formats.md A.12, as libcaer and dv-processing write them).
+    // Biases (docs/protocols.md A.12, as libcaer and dv-processing write them).
     add(writes, kBiasTrim, 0x24);
     add(writes, kBiasPinsDbgp, 0x07);
     add(writes, kBiasPinsDbgn, 0xFF);

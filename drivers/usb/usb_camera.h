@@ -19,7 +19,7 @@
 
 namespace eventide {
 
-/// What the camera needs between the steps of a start (drivers-and-formats.md A.8): the device's
+/// What the camera needs between the steps of a start (docs/protocols.md A.8): the device's
 /// waits, not ours. A camera in software needs none.
 struct UsbWaits {
     std::chrono::milliseconds idle{10}, biases_settle{200}, flow_settles{50};

@@ -1,5 +1,5 @@
 // A V4L2 capture node: format, controls, and buffers in mapped memory. Facts:
-// drivers-and-formats.md part C.
+// docs/protocols.md part C.
 #pragma once
 
 #include "pipeline/video_node.h"

@@ -1,4 +1,4 @@
-// event window -> voxel grid (reconstruction.md section 2).
+// event window -> voxel grid (docs/model.md, "Input").
 #pragma once
 
 #include "src/core/frame_data.h"

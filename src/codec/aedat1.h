@@ -1,4 +1,4 @@
-// AEDAT 1.0: 16-bit addresses of a DVS128 and 32-bit times, big-endian (drivers-and-formats.md
+// AEDAT 1.0: 16-bit addresses of a DVS128 and 32-bit times, big-endian (docs/protocols.md
 // D.1).
 #pragma once
 

@@ -1,4 +1,4 @@
-// AEDAT 2.0: 32-bit addresses and times, big-endian, of a DVS128 or a DAVIS (drivers-and-formats.md
+// AEDAT 2.0: 32-bit addresses and times, big-endian, of a DVS128 or a DAVIS (docs/protocols.md
 // D.1).
 #pragma once
 

@@ -8,7 +8,7 @@ namespace eventide {
 
 namespace {
 
-// As for the words of the camera itself (drivers-and-formats.md A.10): a pixel that was bright
+// As for the words of the camera itself (docs/protocols.md A.10): a pixel that was bright
 // already while it was reset, or that reached the end of the scale, would come out dark.
 constexpr int kMaxSample = 1023, kLeastReset = 384;
 constexpr int kTo16Bits = 64;

@@ -5,7 +5,7 @@ namespace eventide {
 
 namespace {
 
-// drivers-and-formats.md D.1: full scales of 4 g and 500 deg/s.
+// docs/protocols.md D.1: full scales of 4 g and 500 deg/s.
 constexpr float kLsbPerG = 8192;
 constexpr float kLsbPerDps = 65.5F;
 constexpr unsigned kAll = 0x7F, kTemperature = 1U << 3;

@@ -1,5 +1,5 @@
 // AEDAT 3.1 (and 3.0): packets of polarity events, frames, IMU samples and special events,
-// little-endian (drivers-and-formats.md D.2).
+// little-endian (docs/protocols.md D.2).
 #pragma once
 
 #include "src/codec/aedat3_packet.h"

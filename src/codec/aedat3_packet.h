@@ -1,4 +1,4 @@
-// The 28 bytes before each block of records of AEDAT 3 (drivers-and-formats.md D.2).
+// The 28 bytes before each block of records of AEDAT 3 (docs/protocols.md D.2).
 #pragma once
 
 #include <cstddef>

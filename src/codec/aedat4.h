@@ -1,5 +1,5 @@
 // AEDAT4: packets of events, frames, IMU samples and triggers, each packed on its own
-// (drivers-and-formats.md D.3).
+// (docs/protocols.md D.3).
 #pragma once
 
 #include "src/codec/aedat4_compression.h"

@@ -1,4 +1,4 @@
-// The schemas of the vendor: events.fbs, frame.fbs, imu.fbs, trigger.fbs (drivers-and-formats.md
+// The schemas of the vendor: events.fbs, frame.fbs, imu.fbs, trigger.fbs (docs/protocols.md
 // D.3); fields are numbered in their order.
 #include "src/codec/aedat4_records.h"
 

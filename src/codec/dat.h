@@ -1,4 +1,4 @@
-// Prophesee's DAT: 8 bytes for each event or trigger (drivers-and-formats.md D.4).
+// Prophesee's DAT: 8 bytes for each event or trigger (docs/protocols.md D.4).
 #pragma once
 
 #include "src/codec/evt_words.h"

@@ -1,4 +1,4 @@
-// DAVIS USB words <-> events, APS frames, IMU samples, triggers (drivers-and-formats.md A.9 to
+// DAVIS USB words <-> events, APS frames, IMU samples, triggers (docs/protocols.md A.9 to
 // A.11).
 #pragma once
 

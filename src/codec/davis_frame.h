@@ -1,4 +1,4 @@
-// Puts APS frames together from the ADC samples of a DAVIS (drivers-and-formats.md A.10).
+// Puts APS frames together from the ADC samples of a DAVIS (docs/protocols.md A.10).
 #pragma once
 
 #include "src/codec/davis_sensor.h"

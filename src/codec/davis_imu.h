@@ -1,4 +1,4 @@
-// Puts IMU samples together from the bytes in a DAVIS stream (drivers-and-formats.md A.11).
+// Puts IMU samples together from the bytes in a DAVIS stream (docs/protocols.md A.11).
 #pragma once
 
 #include "src/codec/davis_sensor.h"

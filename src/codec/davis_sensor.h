@@ -5,7 +5,7 @@
 
 namespace eventide {
 
-/// Chip ids as SYSINFO register 1 gives them (drivers-and-formats.md A.1).
+/// Chip ids as SYSINFO register 1 gives them (docs/protocols.md A.1).
 enum class DavisChip : std::uint8_t {
     davis240a = 0,
     davis240b = 1,

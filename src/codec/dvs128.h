@@ -1,4 +1,4 @@
-// DVS128 USB words -> events and sync triggers (drivers-and-formats.md A.12).
+// DVS128 USB words -> events and sync triggers (docs/protocols.md A.12).
 #pragma once
 
 #include "src/codec/inivation_clock.h"

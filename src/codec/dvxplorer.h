@@ -1,4 +1,4 @@
-// DVXplorer USB words -> events, IMU samples, triggers (drivers-and-formats.md A.12): the FX3 "red"
+// DVXplorer USB words -> events, IMU samples, triggers (docs/protocols.md A.12): the FX3 "red"
 // board. The CX3 board of the Mini has words of its own (dvxplorer_mini.h).
 #pragma once
 

@@ -1,5 +1,5 @@
 // DVXplorer Mini and Micro (CX3 board): USB words and messages -> events, IMU samples
-// (drivers-and-formats.md A.12; the messages: libcaer src/dvxplorer.c, debugTranslator).
+// (docs/protocols.md A.12; the messages: libcaer src/dvxplorer.c, debugTranslator).
 #pragma once
 
 #include "src/codec/davis_imu.h"

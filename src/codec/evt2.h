@@ -1,5 +1,5 @@
 // EVT2 and EVT2.1: each word with time, place and polarity; 2.1 carries 32 columns at once
-// (drivers-and-formats.md D.4).
+// (docs/protocols.md D.4).
 #pragma once
 
 #include "src/codec/evt_words.h"

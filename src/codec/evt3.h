@@ -1,5 +1,5 @@
 // EVT3: 16-bit words; row, column, vectors of columns and time in words of their own
-// (drivers-and-formats.md D.4).
+// (docs/protocols.md D.4).
 #pragma once
 
 #include "src/codec/evt_words.h"

@@ -1,4 +1,4 @@
-// Keys of RAW headers through the years (drivers-and-formats.md D.4).
+// Keys of RAW headers through the years (docs/protocols.md D.4).
 #include "src/codec/evt_header.h"
 
 #include "src/core/error.h"

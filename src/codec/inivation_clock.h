@@ -1,4 +1,4 @@
-// Time as iniVation's words tell it: some low bits, wraps, and resets (drivers-and-formats.md A.9,
+// Time as iniVation's words tell it: some low bits, wraps, and resets (docs/protocols.md A.9,
 // A.12).
 #pragma once
 

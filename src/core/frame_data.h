@@ -24,7 +24,7 @@ struct EventWindow {
     bool reset_before = false;
 };
 
-/// One event window as numbers (reconstruction.md section 2).
+/// One event window as numbers (docs/model.md, "Input").
 struct VoxelGrid {
     Window window;
     /// [y][x][channel], channels 4 b + {0 polarity, 1 mean, 2 std, 3 count} for bin b < B, then 4 B

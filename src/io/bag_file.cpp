@@ -1,4 +1,4 @@
-// Messages as dvs_msgs and sensor_msgs define them (drivers-and-formats.md D).
+// Messages as dvs_msgs and sensor_msgs define them (docs/protocols.md D).
 #include "src/io/bag_file.h"
 
 #include "src/core/sensor_limits.h"

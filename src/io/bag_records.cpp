@@ -1,5 +1,5 @@
 // Records are: u32 length and fields, u32 length and data; all little-endian
-// (drivers-and-formats.md D, wiki.ros.org/Bags/Format/2.0).
+// (docs/protocols.md D, wiki.ros.org/Bags/Format/2.0).
 #include "src/io/bag_records.h"
 
 #include "src/core/error.h"

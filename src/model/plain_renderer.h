@@ -50,7 +50,7 @@ public:
     }
 
     /// The same function: the linear part of layer 1 that reads codes is a convolution of the
-    /// latent maps, made once (reconstruction.md section 4).
+    /// latent maps, made once (docs/model.md, "Renderer").
     RenderedFrame<T> render(const Codes<T>& codes, double fraction, const FrameGeometry& geometry,
                             SigmaRule rule) const {
         const AxisSamples t = time_samples(codes, fraction);

@@ -10,8 +10,8 @@ namespace eventide {
 /// How the background moves.
 enum class BackgroundMotion {
     wander,  ///< endless: legs of random heading at a drawn speed, with spin and zoom
-    thesis   ///< reconstruction.md section 5: control points at equal times over `duration_s`, then
-             ///< back and forth
+    thesis   ///< control points at equal times over `duration_s`, then back and forth
+             ///< (docs/training.md, "The thesis' scenes")
 };
 
 /// What the truth shows.

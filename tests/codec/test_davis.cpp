@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing_support::davis240;
 
-// The vocabulary of drivers-and-formats.md A.9.
+// The vocabulary of docs/protocols.md A.9.
 constexpr std::uint16_t time(int low15) {
     return std::uint16_t(0x8000 | low15);
 }

@@ -16,7 +16,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::FloatEq;
 
-// The vocabulary of drivers-and-formats.md A.12.
+// The vocabulary of docs/protocols.md A.12.
 constexpr std::uint16_t time(int low15) {
     return std::uint16_t(0x8000 | low15);
 }

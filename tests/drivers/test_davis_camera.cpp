@@ -170,7 +170,7 @@ TEST_P(DavisBoards, AreConfiguredWithLibcaersDefaults) {
     const DavisSensor& sensor = camera.sensor();
     const auto value = [&](Register at) { return camera_side.model->read(at); };
     camera_side.bed.look([&] {
-        // drivers-and-formats.md A.6 and A.7: one of each module, and where the chips differ.
+        // docs/protocols.md A.6 and A.7: one of each module, and where the chips differ.
         const bool fx2 = sensor.is_davis240();
         EXPECT_EQ(value({chip, std::uint16_t(fx2 ? 0 : 10)}), 0x427FU) << "DiffBn";
         EXPECT_EQ(value({chip, std::uint16_t(fx2 ? 2 : 12)}), fx2 ? 0x400FU : 0x401FU) << "OffBn";

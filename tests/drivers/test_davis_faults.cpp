@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing_support::DavisModelSettings;
 
-// drivers-and-formats.md A.9.
+// docs/protocols.md A.9.
 constexpr std::uint16_t kTime = 0x8000, kRow = 0x1000, kOffColumn = 0x2000, kImuByte = 0x5000;
 constexpr std::uint16_t kImuStart = 5, kColumnEnd = 13;
 

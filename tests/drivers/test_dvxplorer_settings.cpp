@@ -107,7 +107,7 @@ TEST(DvxplorerSettings, ContrastsHitThePresetsOfLibcaer) {
 }
 
 TEST(DvxplorerSettings, TheChipOfTheRedBoardIsSetUpAsKnownDriversDo) {
-    // drivers-and-formats.md A.12; contrast and mode come later.
+    // docs/protocols.md A.12; contrast and mode come later.
     const std::vector<Write> expected{
         {chip(0x000D), 0x24}, {chip(0x000F), 0x07}, {chip(0x0010), 0xFF}, {chip(0x0013), 0x03},
         {chip(0x0014), 0x7F}, {chip(0x0015), 0x00}, {chip(0x3011), 0xA0}, {chip(0x3019), 0x00},

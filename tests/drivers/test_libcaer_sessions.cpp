@@ -1,4 +1,4 @@
-// Each camera in software streams for a driver that does what libcaer does (drivers-and-formats.md
+// Each camera in software streams for a driver that does what libcaer does (docs/protocols.md
 // A.5 to A.8, A.12), which never resets timestamps: a camera counts from power-up.
 #include "drivers/usb/davis_registers.h"
 #include "drivers/usb/davis_settings.h"

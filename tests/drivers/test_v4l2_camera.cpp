@@ -36,7 +36,7 @@ std::vector<std::byte> bytes_of(std::initializer_list<unsigned> words) {
     }
     return bytes;
 }
-// EVT3 (drivers-and-formats.md D.4).
+// EVT3 (docs/protocols.md D.4).
 constexpr unsigned time_high(unsigned t) {
     return 0x8000 | t;
 }
@@ -117,7 +117,7 @@ TEST_P(V4l2Planes, EventsGoOnAcrossBuffers) {
 
 INSTANTIATE_TEST_SUITE_P(SingleAndMultiPlanar, V4l2Planes, testing::Bool());
 
-/// EVT2.1 (drivers-and-formats.md D.4): words of 64 bits, in one of two orders of their halves.
+/// EVT2.1 (docs/protocols.md D.4): words of 64 bits, in one of two orders of their halves.
 std::vector<std::byte> evt21_bytes(std::initializer_list<std::uint64_t> words, bool swapped) {
     std::vector<std::byte> bytes;
     for (const std::uint64_t w : words)

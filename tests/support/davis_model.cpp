@@ -35,7 +35,7 @@ void take_until(const std::vector<Item>& from, std::size_t& next, SensorTime t, 
 
 }  // namespace
 
-// What the registers of a real camera hold after power-up (drivers-and-formats.md A.4 and A.14).
+// What the registers of a real camera hold after power-up (docs/protocols.md A.4 and A.14).
 DavisModel::DavisModel(DavisModelSettings settings) : settings_(std::move(settings)) {
     const DavisSensor& s = settings_.sensor;
     registers_ = {{kLogicVersion, settings_.logic},

@@ -1,5 +1,5 @@
 // data -> the words of a DVXplorer's two boards: the inverse of its parsers
-// (drivers-and-formats.md A.12).
+// (docs/protocols.md A.12).
 #pragma once
 
 #include "src/codec/dvxplorer_sensor.h"

@@ -1,4 +1,4 @@
-// iniVation's requests for registers (drivers-and-formats.md A.3), seen from the camera's side.
+// iniVation's requests for registers (docs/protocols.md A.3), seen from the camera's side.
 #pragma once
 
 #include "drivers/usb/davis_registers.h"
