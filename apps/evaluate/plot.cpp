@@ -126,8 +126,10 @@ std::string drawn(const Series& s, const Axes& axes, const std::string& colour) 
     std::string out;
     if (!above.empty())
         out += "<polygon points='" + above + below + "' fill='" + colour + "' opacity='.15'/>\n";
-    return out + "<polyline points='" + path + "' fill='none' stroke='" + colour +
-           "' stroke-width='1.8'/>\n" + dots;
+    if (s.joined)
+        out += "<polyline points='" + path + "' fill='none' stroke='" + colour +
+               "' stroke-width='1.8'/>\n";
+    return out + dots;
 }
 
 }  // namespace

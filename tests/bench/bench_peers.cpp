@@ -1,6 +1,7 @@
 // Ours beside FireNet and E2VID in libtorch, in one run: an event window and a fresh frame of it on
 // one thread and two, with AVX2 alone and with all the processor has, in milliseconds.
-//   bench_peers [--sizes 240x180]... [--models default]... [--repetitions 30]
+//   bench_peers [--sizes 240x180]... [--models default]... [--repetitions 30] [--table FILE]
+// FILE is what `eventide bench --report --peers FILE` shows beside its own.
 // Instruction sets are a process' own, so each is measured by a child, one after the other.
 #include "apps/bench/stage_table.h"
 #include "pipeline/parallel_tbb.h"
@@ -14,6 +15,7 @@
 #include <unistd.h>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 
 namespace eventide::bench {
 namespace {
@@ -21,6 +23,7 @@ namespace {
 struct Options {
     std::vector<std::string> sizes{"240x180"}, models{"default", "small"};
     int repetitions = kLeastRepetitions;
+    std::string table;
 };
 
 /// The quicker of both orders of memory.
@@ -61,6 +64,17 @@ void print_lines(const std::vector<Line>& lines) {
                     line.engine.c_str(), line.threads, line.cpu_ms, w.median, w.low, w.high,
                     cpu / line.cpu_ms, wall / w.median);
     }
+}
+
+/// Rows for the report; children append to what the parent began.
+void write_lines(const std::vector<Line>& lines, const std::string& file, Instructions most,
+                 int width, int height) {
+    std::ofstream out{file, std::ios::app};
+    for (const Line& line : lines)
+        out << line.name << '\t' << line.engine << '\t'
+            << (most == Instructions::avx2 ? "AVX2" : "all") << '\t' << width << '\t' << height
+            << '\t' << line.threads << '\t' << line.cpu_ms << '\t' << line.wall_ms.median << '\n';
+    if (!out) throw Error(ErrorKind::failed, file + ": cannot be written");
 }
 
 void measure(const Options& options, Instructions most, int width, int height) {
@@ -119,6 +133,7 @@ void measure(const Options& options, Instructions most, int width, int height) {
             }
     }
     print_lines(lines);
+    if (!options.table.empty()) write_lines(lines, options.table, most, width, height);
     std::printf("%s", stages_text(rows).c_str());
 }
 
@@ -133,6 +148,9 @@ void limit_all(Instructions most) {
 
 int run(const Options& options) {
     int failed = 0;
+    if (!options.table.empty())
+        std::ofstream{options.table}
+            << "network\tengine\tinstructions\twidth\theight\tthreads\tcpu_ms\twall_ms\n";
     for (const Instructions most : {Instructions::avx2, Instructions::best}) {
         std::fflush(stdout);
         const pid_t child = fork();
@@ -170,6 +188,8 @@ int main(int argc, char** argv) {
     app.add_option("--models", options.models, "Shipped models, any number of times");
     app.add_option("--repetitions", options.repetitions, "Of each measurement")
         ->check(CLI::Range(eventide::bench::kLeastRepetitions, 1'000'000));
+    app.add_option("--table", options.table,
+                   "Also as a table, columns apart by tabs, written anew");
     CLI11_PARSE(app, argc, argv);
     return eventide::bench::run(options);
 }

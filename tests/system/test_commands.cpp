@@ -166,6 +166,30 @@ TEST_F(Commands, BenchPrintsTheMachineAndARowForEachSize) {
     EXPECT_GT(json["rows"][0]["times_real_time"].get<double>(), 0);
 }
 
+TEST_F(Commands, BenchReportsSpeedAgainstErrorInOnePage) {
+    const std::vector<std::string> command{"bench", "--report",  "report", "--sizes",
+                                           "32x24", "--seconds", "0.2"};
+    const Result result = eventide(command);
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const Json json = Json::parse(read_text(temp_ / "report/report.json"));
+    ASSERT_GE(json["speed"].size(), 4U);  // of one arithmetic at least, and of three other windows
+    bool has_front = false;
+    for (const Json& row : json["speed"]) {
+        EXPECT_GT(row["mse"].get<double>(), 0);
+        EXPECT_GT(row["encode_ms"].get<double>(), 0);
+        has_front |= row["front"].get<bool>();
+    }
+    EXPECT_TRUE(has_front);
+    EXPECT_LT(json["speed"][0]["codes_rms_to_double"].get<double>(), 1e-5);
+    EXPECT_EQ(json["loads"].size(), 7U);
+    EXPECT_GT(json["memory"][0]["resident_mib"].get<double>(), 1);
+    const std::string page = read_text(temp_ / "report/index.html");
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    for (const char* outside : {"src=", "href=", "@import", "url("})
+        EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+    EXPECT_EQ(eventide(command).exit_code, 2);  // nothing is replaced unasked
+}
+
 TEST_F(Commands, BenchMeasuresTheStagesAlone) {
     const Result result = eventide({"bench", "--stages", "--sizes", "32x24", "--precisions", "f32",
                                     "--instructions", "sse4", "--json", "stages.json"});

@@ -2,20 +2,12 @@
 #include "apps/cli/commands/bench_command.h"
 
 #include "apps/bench/stage_table.h"
+#include "apps/cli/bench/report.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
-#include "apps/cli/run/loaded_model.h"
-#include "apps/cli/run/reference_images.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/version.h"
 #include "apps/evaluate/plot.h"
-#include "drivers/simulated/simulated_camera.h"
-#include "pipeline/filters/event_filter.h"
-#include "pipeline/model_stages.h"
-#include "pipeline/pipeline.h"
-#include "replay/real_time_playback.h"
-#include "src/binning/slicer_settings.h"
-#include "src/core/error.h"
 #include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
@@ -30,106 +22,6 @@
 namespace eventide::app {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Event windows of 50 ms, each ending at an image: so there is a truth for each frame.
-constexpr int kImagesPerSecond = 20;
-
-SimRecordingSettings recording_of(const std::string& scene, const Size& size) {
-    SimRecordingSettings settings = parse_simulated_name("sim:" + scene).recording;
-    settings.width = size.width;
-    settings.height = size.height;
-    return settings;
-}
-
-std::shared_ptr<const RecordedPackets> simulate(const std::string& scene, const Size& size,
-                                                double seconds) {
-    SimulatedSourceSettings settings = parse_simulated_name("sim:" + scene);
-    settings.recording = recording_of(scene, size);
-    settings.recording.seconds = seconds;
-    settings.recording.images_per_second = kImagesPerSecond;
-    settings.speed = 0;
-    const auto camera = std::make_shared<SimulatedCamera>(settings);
-    auto data = std::make_shared<RecordedPackets>();
-    data->info = camera->info();
-    data->make_parser = [camera] { return camera->make_parser(); };
-    for (RawPacket packet; camera->read(packet) == ReadStatus::data;) {
-        data->bytes += packet.bytes.size();
-        data->packets.push_back(packet.bytes);
-    }
-    return data;
-}
-
-/// Compares each frame with the image of its time. Render thread.
-class ErrorSink : public Sink {
-public:
-    ErrorSink(const ReferenceImages& references, const Size& sensor)
-        : references_{references}, sensor_{sensor} {}
-
-    void write(const Frame& frame) override {
-        cv::Mat truth;
-        references_.draw(frame, sensor_.width, sensor_.height, truth);
-        if (truth.empty() || frame.intensity.width() != truth.cols ||
-            frame.intensity.height() != truth.rows)
-            return;
-        double sum = 0;
-        for (int y = 0; y < truth.rows; ++y) {
-            const auto* row = truth.ptr<std::uint8_t>(y);
-            const auto shown = frame.intensity.row(y);
-            for (std::size_t x = 0; x < shown.size(); ++x) {
-                const double error = std::clamp(double(shown[x]), 0.0, 1.0) - row[x] / 255.0;
-                sum += error * error;
-            }
-        }
-        sum_ += sum / double(truth.total());
-        ++images_;
-    }
-    double mse() const { return images_ == 0 ? std::nan("") : sum_ / images_; }
-
-private:
-    const ReferenceImages& references_;
-    Size sensor_;
-    double sum_ = 0;
-    int images_ = 0;
-};
-
-struct Outcome {
-    Snapshot counters;
-    double seconds = 0, mse = 0;
-};
-
-Outcome run_pipeline(Recording& recording, Network& network, const RunSettings& settings,
-                     int lookahead, Program& program) {
-    const Size sensor{recording.info().width, recording.info().height};
-    const Size size = settings.size.of(sensor);
-    RenderRequest request;
-    request.width = size.width;
-    request.height = size.height;
-    request.lookahead = lookahead;
-    network.encoder().reset();
-    network.renderer().reset();
-    ModelEncodeStage encode{network.encoder()};
-    ModelRenderStage render{network.renderer(), request};
-    ReferenceImages references;
-    ErrorSink sink{references, sensor};
-    PipelineSettings line;
-    line.bins = network.config().bins;
-    line.event_windows.slicer = parse_window("aps");
-    line.lookahead = lookahead;
-    const auto filter =
-        event_filter({"off", "model"}, network.config(), sensor.width, sensor.height);
-    Pipeline pipeline{{recording, encode, render, {&sink}, filter.get(), &references}, line};
-    const Stopper stopper{program.signals, [&] { pipeline.stop(); }};
-    const auto begun = Clock::now();
-    pipeline.run();
-    return {pipeline.snapshot(), std::chrono::duration<double>(Clock::now() - begun).count(),
-            sink.mse()};
-}
-
-double milliseconds(std::chrono::nanoseconds duration) {
-    return std::chrono::duration<double, std::milli>(duration).count();
-}
 
 void print_table(const std::vector<BenchRow>& rows) {
     std::printf("%-12s %-28s %-10s %11s %9s %9s %7s %16s %8s\n", "model", "engine", "sensor",
@@ -201,7 +93,8 @@ std::string BenchCommand::examples() const {
            "  eventide bench --stages --sizes 240x180 --lookahead 0\n"
            "  eventide bench --sizes 240x180 --models default --models small --precisions f32 "
            "--precisions bf16\n"
-           "  eventide bench --instructions avx2";
+           "  eventide bench --instructions avx2\n"
+           "  eventide bench --report report/ --lookahead 0 --models default --models small";
 }
 
 SettingTable BenchCommand::settings() {
@@ -236,6 +129,14 @@ SettingTable BenchCommand::settings() {
                       1'000'000));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
+    add(text_setting("report", report_, "FOLDER",
+                     "Instead of all this: a page, index.html, of speed against error for models, "
+                     "arithmetic and lengths of event windows, frame rate, activity, latency by "
+                     "rate of events, and memory, with its plots and JSON; minutes, of --sizes, "
+                     "--models and --seconds."));
+    add(text_setting("lpips", lpips_, "FILE", "With --report: LPIPS weights, as in evaluate."));
+    add(text_setting("peers", peers_, "FILE",
+                     "With --report: other networks, as bench_peers --table measured them."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
     return table;
 }
@@ -243,33 +144,38 @@ SettingTable BenchCommand::settings() {
 BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& data,
                                const std::string& model, Precision precision,
                                Program& program) const {
-    RunSettings settings;
+    PipelineBenchSettings settings;
     settings.model = model;
     settings.precision = precision;
     settings.engine = engine_;
     settings.threads = threads_;
-    settings.size.scale = scale_;
-    Network network{settings, data->info};
-    MemoryRecording fast{data};
-    const Outcome free = run_pipeline(fast, network, settings, lookahead_, program);
-    RealTimePlayback paced{std::make_unique<MemoryRecording>(data), 1};
-    const Outcome live = run_pipeline(paced, network, settings, 0, program);
-    return {network.file().stem().string(),
-            network.encoder().description(),
-            {data->info.width, data->info.height},
+    settings.scale = scale_;
+    settings.lookahead = lookahead_;
+    const PipelineBench free = measure_pipeline(data, settings, program.signals);
+    settings.lookahead = 0;
+    settings.speed = 1;
+    const PipelineBench live = measure_pipeline(data, settings, program.signals);
+    return {free.model,
+            free.engine,
+            free.sensor,
             double(free.counters.events) / seconds_,
             milliseconds(free.counters.encode.p50),
             milliseconds(free.counters.render.p50),
             seconds_ / free.seconds,
             milliseconds(live.counters.latency.p50),
             milliseconds(live.counters.latency.p99),
-            free.mse};
+            free.error.frames > 0 ? free.error.raw.mse : std::nan("")};
 }
 
 void BenchCommand::name_bench_files(NamedFiles& files) const {
     files.may_replace(overwrite_);
     for (const std::string& model : models_) files.reads("--models", find_model(model));
     files.writes("--json", json_);
+    files.reads("--lpips", lpips_);
+    files.reads("--peers", peers_);
+    if (!report_.empty())
+        for (const std::filesystem::path& name : report_files())
+            files.writes("--report", std::filesystem::path{report_} / name);
     if (plots_.empty()) return;
     for (const char* name : {"bench.svg", "bench.csv"})
         files.writes("--plots", std::filesystem::path{plots_} / name);
@@ -345,7 +251,7 @@ std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
     Progress progress{program.quiet};
     for (const std::string& size : sizes_) {
         progress.show(0, "simulating " + size);
-        const auto data = simulate(scene_, parse_size(size), seconds_);
+        const auto data = simulated_packets(scene_, parse_size(size), seconds_);
         for (const std::string& model : models_)
             for (const std::string& precision : precisions_) {
                 if (program.signals.stopping()) return rows;
@@ -356,9 +262,26 @@ std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
     return rows;
 }
 
+int BenchCommand::report(Program& program) const {
+    const auto lpips = load_lpips(lpips_);
+    ReportSettings settings;
+    settings.scene = scene_;
+    settings.models = models_;
+    settings.sizes = sizes_;
+    settings.seconds = seconds_;
+    settings.lookahead = lookahead_;
+    settings.repetitions = repetitions_;
+    settings.lpips = lpips.get();
+    settings.peers = read_peers(peers_);
+    write_report(measure_report(settings, program), report_, overwrite_);
+    spdlog::info("{}", (std::filesystem::path{report_} / "index.html").string());
+    return exit_done;
+}
+
 int BenchCommand::run(Program& program) {
     limit_instructions(instructions_);
     name_bench_files(program.files);
+    if (!report_.empty()) return report(program);
     std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
                 version().c_str(), compiler_text().c_str(), scene_.c_str(), lookahead_);
     const bench::Peaks peaks = bench::measure_peaks(instructions_);

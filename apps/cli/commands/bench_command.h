@@ -49,6 +49,7 @@ private:
     std::vector<bench::ActivityRow> measure_activity(Program& program) const;
     /// The same: the pipeline.
     std::vector<BenchRow> measure_pipelines(Program& program) const;
+    int report(Program& program) const;
     void name_bench_files(NamedFiles& files) const;
 
     std::string scene_ = "demo";
@@ -58,7 +59,8 @@ private:
     int threads_ = 0, lookahead_ = 2, repetitions_ = bench::kLeastRepetitions;
     Engine engine_ = Engine::fast;
     Instructions instructions_ = Instructions::best;
-    std::string json_, plots_;
+    std::string json_, plots_, lpips_, report_, peers_;
+
     bool stages_ = false, activity_ = false, overwrite_ = false;
 };
 

@@ -1,0 +1,52 @@
+// What bench_peers measured, for the report.
+#include "apps/cli/bench/report.h"
+#include "src/core/error.h"
+
+#include <charconv>
+#include <fstream>
+#include <sstream>
+
+namespace eventide::app {
+
+namespace {
+
+constexpr std::size_t kColumns = 8;
+
+template <typename T>
+bool read_number(const std::string& text, T& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size() && value > 0;
+}
+
+bool read_row(const std::string& line, PeerRow& row) {
+    std::vector<std::string> cells;
+    std::istringstream stream{line};
+    for (std::string cell; std::getline(stream, cell, '\t');) cells.push_back(cell);
+    if (cells.size() != kColumns) return false;
+    row.network = cells[0];
+    row.engine = cells[1];
+    row.instructions = cells[2];
+    return read_number(cells[3], row.sensor.width) && read_number(cells[4], row.sensor.height) &&
+           read_number(cells[5], row.threads) && read_number(cells[6], row.cpu_ms);
+}
+
+}  // namespace
+
+std::vector<PeerRow> read_peers(const std::filesystem::path& file) {
+    std::vector<PeerRow> rows;
+    if (file.empty()) return rows;
+    std::ifstream in{file};
+    std::string line;
+    if (!in || !std::getline(in, line))
+        throw Error(ErrorKind::input, file.string() + ": cannot be read");
+    for (int number = 2; std::getline(in, line); ++number)
+        if (!read_row(line, rows.emplace_back()))
+            throw Error(
+                ErrorKind::input,
+                file.string() + ":" + std::to_string(number) +
+                    ": expected a row of bench_peers --table (network, engine, instructions, "
+                    "width, height, threads, cpu_ms, wall_ms), found something else");
+    return rows;
+}
+
+}  // namespace eventide::app

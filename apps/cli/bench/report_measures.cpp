@@ -1,0 +1,269 @@
+// What the report measures, one thing after the other on an otherwise idle program.
+#include "apps/bench/stage_table.h"
+#include "apps/bench/stages.h"
+#include "apps/cli/bench/report.h"
+#include "apps/cli/progress.h"
+#include "apps/cli/settings/model_path.h"
+#include "apps/cli/stress/double_network.h"
+#include "apps/cli/version.h"
+#include "src/binning/binner.h"
+#include "src/model/instructions.h"
+
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace eventide::app {
+
+namespace {
+
+constexpr int kWindows = 6;                     ///< of a scene, for the stages alone
+constexpr int kCompared = 3;                    ///< of them, against double precision
+constexpr double kMaxComparedPixels = 100'000;  ///< double precision takes seconds a window beyond
+
+/// Which kernels, and with which numbers.
+struct Arithmetic {
+    Instructions instructions;
+    Precision precision;
+    Kernels kernels;
+};
+
+/// Built-in kernels where instructions are left out: oneDNN's do not ask us.
+std::vector<Arithmetic> arithmetics(const bench::Peaks& peaks) {
+    std::vector<Arithmetic> all{{Instructions::avx2, Precision::f32, Kernels::own}};
+    if (peaks.f32_avx512 > 0)
+        all.push_back({Instructions::best, Precision::f32, Kernels::automatic});
+    if (peaks.bf16 > 0) all.push_back({Instructions::best, Precision::bf16, Kernels::automatic});
+    return all;
+}
+
+/// Latent maps of the first windows, in this arithmetic and in double precision.
+double codes_against_double(const Model& model, const std::vector<bench::SceneWindow>& windows,
+                            const bench::StageSettings& settings) {
+    if (double(settings.width) * settings.height > kMaxComparedPixels) return 0;
+    Encoder encoder{model, settings.width, settings.height, settings.engine};
+    const auto exact = stress::make_double(model, settings.height, settings.width);
+    Binner binner{model.config.bins, settings.height, settings.width};
+    VoxelGrid grid = binner.make_output();
+    LatentMap map = encoder.make_output();
+    stress::Distance distance;
+    for (int i = 0; i < kCompared && i < int(windows.size()); ++i) {
+        binner.process(windows[std::size_t(i)].event_window(), grid);
+        encoder.encode(grid, map);
+        distance.add(map.values.values(), exact->step(stress::in_double(grid.values)).values());
+    }
+    return distance.rms();
+}
+
+/// Instructions as they were, whatever happens.
+class InstructionsHere {
+public:
+    explicit InstructionsHere(Instructions most) { limit_instructions(most); }
+    ~InstructionsHere() { limit_instructions(Instructions::best); }
+};
+
+class Measurement {
+public:
+    Measurement(const ReportSettings& settings, Program& program)
+        : settings_{settings}, program_{program}, progress_{program.quiet} {}
+
+    void speed(Report& report) {
+        for (const std::string& size : settings_.sizes) {
+            const auto windows =
+                bench::scene_windows(recording_of(settings_.scene, parse_size(size)), kWindows);
+            const auto data =
+                simulated_packets(settings_.scene, parse_size(size), settings_.seconds);
+            for (const std::string& model : settings_.models)
+                for (const Arithmetic& arithmetic : arithmetics(report.peaks)) {
+                    if (stopping(model + ", " + size)) return;
+                    report.speed.push_back(speed_row(model, arithmetic, windows, data, report));
+                }
+        }
+        shorter_windows(report);
+        mark_front(report.speed);
+    }
+
+    void rates(Report& report) {
+        const auto data =
+            simulated_packets(settings_.scene, parse_size(settings_.sizes[0]), settings_.seconds);
+        for (const std::string& model : settings_.models)
+            for (const int fps : {20, 50, 100, 200, 500, 1000}) {
+                if (stopping(model + ", " + std::to_string(fps) + " frames/s")) return;
+                PipelineBenchSettings how = pipeline_settings(model);
+                how.rate = {fps, 1};
+                const PipelineBench run = measure_pipeline(data, how, program_.signals);
+                report.rates.push_back({run.model, double(fps), settings_.seconds / run.seconds,
+                                        milliseconds(run.counters.render.p50)});
+            }
+    }
+
+    void activity(Report& report) {
+        const Size size = parse_size(settings_.sizes.back());
+        const auto windows = bench::scene_windows(recording_of(settings_.scene, size), kWindows);
+        if (stopping("activity")) return;
+        const auto file = find_model(settings_.models[0]);
+        bench::StageSettings how = stage_settings(size);
+        how.engine.still_codes = 0.02;
+        how.engine.still_time = 1;
+        report.activity = bench::measure_activity(file.stem().string(), load_model(file), windows,
+                                                  how, {0, .01, .05, .25, 1});
+    }
+
+    void loads(Report& report) {
+        for (const double rate : {.1e6, .5e6, 1e6, 2e6, 5e6, 10e6, 20e6}) {
+            if (stopping("latency at " + std::to_string(int(rate / 1e3)) + " k events/s")) return;
+            const double seconds = std::min(1.0, settings_.seconds);
+            const auto data = random_packets(parse_size(settings_.sizes[0]), rate, seconds);
+            PipelineBenchSettings how = pipeline_settings(settings_.models[0]);
+            how.window = "50ms";
+            how.rate = {100, 1};
+            how.speed = 1;
+            const PipelineBench run = measure_pipeline(data, how, program_.signals);
+            report.loads.push_back({rate, milliseconds(run.counters.latency.p50),
+                                    milliseconds(run.counters.latency.p99), run.seconds / seconds});
+        }
+    }
+
+    void memory(Report& report) {
+        for (const std::string& size : settings_.sizes)
+            for (const std::string& model : settings_.models) {
+                if (stopping("memory of " + model + ", " + size)) return;
+                report.memory.push_back({find_model(model).stem().string(), parse_size(size),
+                                         resident_mib(model, size)});
+            }
+    }
+
+private:
+    bool stopping(const std::string& what) {
+        progress_.show(0, what);
+        return program_.signals.stopping();
+    }
+
+    bench::StageSettings stage_settings(const Size& size) const {
+        bench::StageSettings how;
+        how.width = size.width;
+        how.height = size.height;
+        how.lookahead = settings_.lookahead;
+        how.repetitions = settings_.repetitions;
+        return how;
+    }
+
+    PipelineBenchSettings pipeline_settings(const std::string& model) const {
+        PipelineBenchSettings how;
+        how.model = model;
+        how.lookahead = settings_.lookahead;
+        return how;
+    }
+
+    SpeedRow speed_row(const std::string& name, const Arithmetic& arithmetic,
+                       const std::vector<bench::SceneWindow>& windows,
+                       const std::shared_ptr<const RecordedPackets>& data, const Report& report) {
+        const InstructionsHere here{arithmetic.instructions};
+        const Size sensor{data->info.width, data->info.height};
+        const std::filesystem::path file = find_model(name);
+        const Model model = load_model(file);
+        bench::StageSettings how = stage_settings(sensor);
+        how.engine.precision = arithmetic.precision;
+        how.engine.kernels = arithmetic.kernels;
+        const auto stages =
+            bench::measure_stages(file.stem().string(), model, windows, how, report.peaks);
+        PipelineBenchSettings of_error = pipeline_settings(name);
+        of_error.precision = arithmetic.precision;
+        of_error.kernels = arithmetic.kernels;
+        of_error.lpips = settings_.lpips;
+        SpeedRow row{stages.model,
+                     stages.engine,
+                     "50ms",
+                     sensor,
+                     stages.encode.time.cpu_ms.median,
+                     stages.fresh.time.cpu_ms.median,
+                     codes_against_double(model, windows, how),
+                     measure_pipeline(data, of_error, program_.signals).error};
+        return row;
+    }
+
+    /// The first model again with event windows of other lengths: more of them, nearer to the truth
+    /// where things move.
+    void shorter_windows(Report& report) {
+        if (report.speed.empty()) return;
+        const auto data =
+            simulated_packets(settings_.scene, parse_size(settings_.sizes[0]), settings_.seconds);
+        for (const int length_ms : {12, 25, 100}) {
+            const std::string window = std::to_string(length_ms) + "ms";
+            if (stopping("event windows of " + window)) return;
+            PipelineBenchSettings how = pipeline_settings(settings_.models[0]);
+            how.window = window;
+            how.rate = {kImagesPerSecond, 1};
+            how.lpips = settings_.lpips;
+            const PipelineBench run = measure_pipeline(data, how, program_.signals);
+            SpeedRow row;
+            row.model = run.model;
+            row.engine = run.engine;
+            row.window = window;
+            row.sensor = run.sensor;
+            row.encode_ms = milliseconds(run.counters.encode.p50);
+            row.render_ms = milliseconds(run.counters.render.p50);
+            row.error = run.error;
+            report.speed.push_back(row);
+        }
+    }
+
+    /// Of this program, run by itself on the simulated camera.
+    static double resident_mib(const std::string& model, const std::string& size) {
+        const std::string source = "sim:demo?speed=max&seconds=1&size=" + size;
+        std::array<const char*, 11> arguments{
+            "eventide",    "run", source.c_str(), "--model", model.c_str(), "--out", "null",
+            "--lookahead", "0",   "--quiet",      nullptr};
+        pid_t child = 0;
+        if (posix_spawn(&child, "/proc/self/exe", nullptr, nullptr,
+                        const_cast<char**>(arguments.data()), environ) != 0)
+            return 0;
+        int status = 0;
+        rusage usage{};
+        if (wait4(child, &status, 0, &usage) != child || status != 0) return 0;
+        return double(usage.ru_maxrss) / 1024;
+    }
+
+    const ReportSettings& settings_;
+    Program& program_;
+    Progress progress_;
+};
+
+}  // namespace
+
+void mark_front(std::vector<SpeedRow>& rows) {
+    for (SpeedRow& row : rows) {
+        row.is_on_front = std::ranges::none_of(rows, [&](const SpeedRow& other) {
+            const bool is_no_worse =
+                other.total_ms() <= row.total_ms() && other.error.raw.mse <= row.error.raw.mse;
+            const bool is_better =
+                other.total_ms() < row.total_ms() || other.error.raw.mse < row.error.raw.mse;
+            return other.sensor == row.sensor && is_no_worse && is_better;
+        });
+    }
+}
+
+Report measure_report(const ReportSettings& settings, Program& program) {
+    Report report;
+    report.machine = processor_text();
+    report.program = "eventide " + version() + ", " + compiler_text();
+    report.settings =
+        "scene " + settings.scene + ", lookahead " + std::to_string(settings.lookahead);
+    if (settings.lpips != nullptr) report.lpips_name = settings.lpips->name();
+    report.peers = settings.peers;
+    report.peaks = bench::measure_peaks(Instructions::best);
+    Measurement measurement{settings, program};
+    measurement.memory(report);  // first: the system counts what this process held before, too
+    measurement.speed(report);
+    measurement.rates(report);
+    measurement.activity(report);
+    measurement.loads(report);
+    return report;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,78 @@
+// The report of speed against error, of rows that nobody had to measure.
+#include "apps/cli/bench/report.h"
+#include "src/core/error.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace eventide::app {
+namespace {
+
+SpeedRow row(const std::string& model, const Size& sensor, double ms, double mse) {
+    SpeedRow made;
+    made.model = model;
+    made.sensor = sensor;
+    made.encode_ms = .75 * ms;
+    made.render_ms = .25 * ms;
+    made.error.raw.mse = mse;
+    return made;
+}
+
+TEST(BenchReport, OnTheFrontIsWhatNothingOfItsSizeBeatsInBoth) {
+    const Size small{64, 48}, large{640, 480};
+    std::vector<SpeedRow> rows{row("quick", small, 1, .04), row("good", small, 4, .02),
+                               row("beaten", small, 5, .03), row("alike", small, 4, .02),
+                               row("alone", large, 50, .5)};
+    mark_front(rows);
+    std::vector<bool> front;
+    for (const SpeedRow& each : rows) front.push_back(each.is_on_front);
+    EXPECT_EQ(front, (std::vector<bool>{true, true, false, true, true}));
+}
+
+TEST(BenchReport, WritesTheFilesItSaysAndNamesCannotBreakThePage) {
+    const test::TempFolder temp;
+    Report report;
+    report.machine = "a <b> & \x1b[31m";
+    report.speed = {row("<script>", {64, 48}, 1, .04)};
+    write_report(report, temp.path() / "made", false);
+    std::set<std::filesystem::path> there, said;
+    for (const auto& entry : std::filesystem::directory_iterator(temp.path() / "made"))
+        there.insert(entry.path().filename());
+    for (const auto& file : report_files()) said.insert(file);
+    EXPECT_EQ(there, said);
+    std::ifstream file(temp.path() / "made/index.html");
+    std::stringstream page;
+    page << file.rdbuf();
+    EXPECT_EQ(page.str().find("<script>"), std::string::npos);
+    EXPECT_EQ(page.str().find('\x1b'), std::string::npos);
+    EXPECT_NE(page.str().find("a &lt;b&gt; &amp; "), std::string::npos);
+    EXPECT_THROW(write_report(report, temp.path() / "made", false), std::exception);
+}
+
+TEST(BenchReport, ShowsOtherNetworksAndRefusesWhatIsNoTableOfThem) {
+    const test::TempFolder temp;
+    const std::string head = "network\tengine\t...\n";
+    test::write_text(temp / "peers",
+                     head + "FireNet\tlibtorch, f32\tAVX2\t240\t180\t1\t46.5\t47\n");
+    Report report;
+    report.peers = read_peers(temp / "peers");
+    ASSERT_EQ(report.peers.size(), 1U);
+    EXPECT_EQ(report.peers[0].engine, "libtorch, f32");
+    EXPECT_EQ(report.peers[0].cpu_ms, 46.5);
+    EXPECT_NE(page_of(report).find("<td>FireNet</td>"), std::string::npos);
+    EXPECT_TRUE(read_peers("").empty());
+    for (const char* bad : {"FireNet\tx\tAVX2\t240\t180\t1\n", "a\tb\tc\t0\t1\t1\t1\t1\n",
+                            "a\tb\tc\t1\t1\t1\tx\t1\n"}) {
+        test::write_text(temp / "bad", head + bad);
+        EXPECT_THROW(read_peers(temp / "bad"), Error) << bad;
+    }
+    EXPECT_THROW(read_peers(temp / "none"), Error);
+}
+
+}  // namespace
+}  // namespace eventide::app
