@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What .ci/run has no time for: clang-tidy over every source file, the tests under the sanitizers, and a minute of fuzzing. An hour or two on two
-# cores; before a release, and after changes to parsers, threads or memory.
-#   scripts/check.sh [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
+# What .ci/run has no time for: clang-tidy over every source file, the tests under the sanitizers, a minute of fuzzing, and the API pages. An hour or
+# two on two cores; before a release, and after changes to parsers, threads or memory.
+#   scripts/check.sh [api] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 fuzz_seconds=2  # of each target: a minute of all together
@@ -13,14 +13,21 @@ tidy() {
   find src pipeline replay drivers -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/dev --quiet
 }
 
+# A warning fails.
+api() {
+  mkdir -p build
+  doxygen docs/Doxyfile
+}
+
 scripts/install-packages.sh --tests
 for check in "${@:-all}"; do
   case $check in
-    all) scripts/check-format.sh; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
+    all) scripts/check-format.sh; api; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
+    api) api ;;
     tidy) tidy ;;
     fuzz) scripts/fuzz.sh $fuzz_seconds ;;
     asan | tsan) scripts/test.sh "$check" ;;
-    *) echo "check: expected tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
+    *) echo "check: expected api, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
   esac
 done
 echo "check: passed"

@@ -19,7 +19,7 @@ tests=(
   libtorch-dev libsqlite3-dev ffmpeg python3
   libfastrtps-dev libfastcdr-dev
   clang clang-format clang-tidy libclang-rt-14-dev git
-  dpkg-dev file chromium
+  dpkg-dev file chromium doxygen
 )
 wanted=("${build[@]}")
 [ "${1:-}" = "--tests" ] && wanted+=("${tests[@]}")
