@@ -59,7 +59,7 @@ struct Snapshot {
     std::uint64_t lost() const { return lost_packets; }
 };
 
-/// The line's own counters, grouped by the thread that counts so that no cache line is shared.
+/// The pipeline's own counters, grouped by the thread that counts so that no cache line is shared.
 struct Counters {
     struct alignas(64) {
         Counter packets, bytes, lost_packets, lost_bytes;

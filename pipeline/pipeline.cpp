@@ -1,4 +1,4 @@
-// The line: four functions, each one thread.
+// The pipeline: four functions, each one thread.
 #include "pipeline/pipeline.h"
 
 #include "pipeline/encoder_gate.h"

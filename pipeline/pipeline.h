@@ -1,4 +1,4 @@
-// The line: bytes -> events -> grids -> latent maps -> frames, on four threads or on one.
+// The pipeline: bytes -> events -> grids -> latent maps -> frames, on four threads or on one.
 #pragma once
 
 #include "pipeline/counters.h"

@@ -29,7 +29,7 @@ struct PolarityWord {
 Aedat3Parser::Aedat3Parser(const Aedat3Header& header, int width, int height)
     : lower_left_(header.lower_left),
       source_(header.source),
-      line_(std::uint64_t(width), std::uint64_t(height)) {}
+      validator_(std::uint64_t(width), std::uint64_t(height)) {}
 
 void Aedat3Parser::move_clock(std::int64_t t_us) {
     newest_us_ = std::max(newest_us_.value_or(t_us), t_us);
@@ -99,7 +99,7 @@ void Aedat3Parser::rebase_after_reset(std::uint32_t stamp) {
     if (!was_reset_ || !newest_us_) return;
     const std::int64_t t = base_us_ + stamp;
     const bool is_events = Aedat3Type(packet_.type) == Aedat3Type::polarity;
-    const auto last_event = line_.newest_us();
+    const auto last_event = validator_.newest_us();
     const bool stepped_back =
         is_events ? last_event && t < *last_event : t < *newest_us_ - kLatestPacket;
     if (stepped_back) {
@@ -119,9 +119,9 @@ void Aedat3Parser::take_event(const std::byte* record, Batch& into) {
     }
     rebase_after_reset(stamp);
     std::uint64_t y = word.y();
-    if (lower_left_) y = line_.height() - 1 - y;
-    line_.add(base_us_ + stamp, word.x(), y, word.is_on(), into, damage_);
-    if (const auto newest = line_.newest_us()) move_clock(*newest);
+    if (lower_left_) y = validator_.height() - 1 - y;
+    validator_.add(base_us_ + stamp, word.x(), y, word.is_on(), into, damage_);
+    if (const auto newest = validator_.newest_us()) move_clock(*newest);
 }
 
 /// Like take_event() for each, with one look per record as long as nothing is wrong.
@@ -130,10 +130,12 @@ void Aedat3Parser::take_many_events(std::span<const std::byte> records, Batch& i
     constexpr std::size_t kBlock = 512;  // records: bounds what a damaged one makes us do again
     const std::byte* p = records.data();
     const std::byte* const end = p + records.size();
-    const auto width = std::uint32_t(line_.width()), height = std::uint32_t(line_.height());
+    const auto width = std::uint32_t(validator_.width()),
+               height = std::uint32_t(validator_.height());
     while (p < end) {
         const auto first_stamp = load_little<std::uint32_t>(p + 4);
-        const bool quick = !lower_left_ && !was_reset_ && line_.is_plain(base_us_ + first_stamp);
+        const bool quick =
+            !lower_left_ && !was_reset_ && validator_.is_plain(base_us_ + first_stamp);
         if (quick) {
             const std::size_t before = into.events.size();
             const std::size_t n = std::min(kBlock, std::size_t(end - p) / kBytes);
@@ -141,7 +143,7 @@ void Aedat3Parser::take_many_events(std::span<const std::byte> records, Batch& i
             into.events.resize(before + n);
             Event* out = into.events.data() + before;
             // Above kLastStamp nothing is plain, so stamps need no look of their own.
-            std::int64_t newest = *line_.newest_us() - base_us_;
+            std::int64_t newest = *validator_.newest_us() - base_us_;
             for (; p < block_end; p += kBytes) {
                 const PolarityWord word{load_little<std::uint32_t>(p)};
                 const std::int64_t stamp = load_little<std::uint32_t>(p + 4);
@@ -156,7 +158,7 @@ void Aedat3Parser::take_many_events(std::span<const std::byte> records, Batch& i
                 newest = stamp;
             }
             into.events.resize(std::size_t(out - into.events.data()));
-            line_.pass(base_us_ + newest);
+            validator_.pass(base_us_ + newest);
             move_clock(base_us_ + newest);
             if (p == block_end) continue;
         }
@@ -192,7 +194,7 @@ void Aedat3Parser::take_special(const std::byte* record, Batch& into) {
 void Aedat3Parser::take_frame(std::span<const std::byte> record, Batch& into) {
     if ((load_little<std::uint32_t>(record.data()) & 1) == 0) return;
     rebase_after_reset(load_little<std::uint32_t>(&record[12]));
-    auto image = read_frame(record, base_us_, lower_left_, int(line_.height()));
+    auto image = read_frame(record, base_us_, lower_left_, int(validator_.height()));
     if (!image) {
         damage_.count(DamageReason::bad_record);
         return;
@@ -271,8 +273,8 @@ void Aedat3Parser::finish(Batch& into) {
     const bool inside = state_ == State::records || state_ == State::passing_over;
     if (inside || (state_ == State::header && !unit_.empty()))
         damage_.count(DamageReason::truncated);
-    line_.finish(into, damage_);
-    if (const auto newest = line_.newest_us()) move_clock(*newest);
+    validator_.finish(into, damage_);
+    if (const auto newest = validator_.newest_us()) move_clock(*newest);
     unit_.clear();
     state_ = State::header;
 }
@@ -283,7 +285,7 @@ void Aedat3Parser::resync() {
     offset_us_ = 0;
     was_reset_ = false;
     newest_us_.reset();
-    line_.resync(damage_);
+    validator_.resync(damage_);
 }
 
 std::optional<SensorTime> Aedat3Parser::clock() const {

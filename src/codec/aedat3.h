@@ -52,7 +52,7 @@ private:
 
     bool lower_left_;
     std::optional<int> source_;
-    EventValidator line_;
+    EventValidator validator_;
     Damage damage_;
 
     State state_ = State::header;

@@ -36,7 +36,7 @@ std::uint64_t side(int px) {
 
 Aedat4Parser::Aedat4Parser(const Aedat4Header& header, int width, int height)
     : header_(header),
-      line_(side(width), side(height), EventValidator::LeapEnds::with_next_packet),
+      validator_(side(width), side(height), EventValidator::LeapEnds::with_next_packet),
       chosen_(header.chosen),
       all_streams_(header.streams.empty()),
       position_(header.stream.data_offset) {
@@ -178,10 +178,10 @@ void Aedat4Parser::take_root(Aedat4Kind kind, const FlatTable& table, Batch& int
     std::optional<std::int64_t> newest;
     switch (kind) {
         case Aedat4Kind::events:
-            newest = take_aedat4_events(table, line_, into, damage_);
+            newest = take_aedat4_events(table, validator_, into, damage_);
             break;
         case Aedat4Kind::image:
-            newest = take_aedat4_image(table, line_, into, damage_);
+            newest = take_aedat4_image(table, validator_, into, damage_);
             break;
         case Aedat4Kind::imu:
             newest = take_aedat4_imu(table, into, damage_);
@@ -223,9 +223,9 @@ void Aedat4Parser::finish(Batch& into) {
             run(rest, into);
         }
     }
-    line_.finish(into, damage_);
-    if (line_.newest_us() && (!newest_us_ || *line_.newest_us() > *newest_us_))
-        newest_us_ = line_.newest_us();
+    validator_.finish(into, damage_);
+    if (validator_.newest_us() && (!newest_us_ || *validator_.newest_us() > *newest_us_))
+        newest_us_ = validator_.newest_us();
     pending_.clear();
 }
 
@@ -235,7 +235,7 @@ void Aedat4Parser::resync() {
     state_ = State::searching;
     failed_in_a_row_ = 0;
     position_.reset();
-    line_.resync(damage_);
+    validator_.resync(damage_);
     newest_us_.reset();
 }
 

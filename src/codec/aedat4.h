@@ -47,7 +47,7 @@ private:
     void run(std::span<const std::byte>& bytes, Batch& into);
 
     Aedat4Header header_;
-    EventValidator line_;
+    EventValidator validator_;
     Damage damage_;
     Aedat4Unpacker unpacker_;
     std::array<std::optional<std::int32_t>, 4> chosen_;  ///< stream per kind

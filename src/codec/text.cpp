@@ -77,7 +77,7 @@ bool to_microseconds(const QuickNumber& number, int shift, std::int64_t& t_us) {
 }  // namespace
 
 TextParser::TextParser(const TextLayout& layout, int width, int height, SensorDuration reorder)
-    : layout_(layout), reorder_(reorder), line_(std::uint64_t(width), std::uint64_t(height)) {
+    : layout_(layout), reorder_(reorder), validator_(std::uint64_t(width), std::uint64_t(height)) {
     assert(layout.unit != TextTimeUnit::automatic && width > 0 && height > 0);
     const auto column = [&](TextField field) {
         return std::size_t(std::find(layout.columns.begin(), layout.columns.end(), field) -
@@ -91,7 +91,7 @@ TextParser::TextParser(const TextLayout& layout, int width, int height, SensorDu
 }
 
 void TextParser::place(std::int64_t t_us, std::uint64_t x, std::uint64_t y, bool on, Batch& into) {
-    if (!line_.is_inside(x, y)) return damage_.count(DamageReason::out_of_range);
+    if (!validator_.is_inside(x, y)) return damage_.count(DamageReason::out_of_range);
     reorder_.push({from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)}, taker(into));
 }
 
@@ -100,8 +100,8 @@ void TextParser::take_up(Batch& into) {
     if (!resyncing_) return;
     resyncing_ = false;
     reorder_.flush(taker(into));
-    line_.finish(into, damage_);
-    line_.resync(damage_);
+    validator_.finish(into, damage_);
+    validator_.resync(damage_);
 }
 
 /// The line [begin, end), without its newline; false when it is damaged. Nothing is counted then.
@@ -192,7 +192,7 @@ void TextParser::finish(Batch& into) {
     if (!carried_.empty() && !parse_line(carried_.data(), carried_.data() + carried_.size(), into))
         damage_.count(DamageReason::truncated);
     reorder_.flush(taker(into));
-    line_.finish(into, damage_);
+    validator_.finish(into, damage_);
     carried_.clear();
     skipping_to_line_ = false;
 }
@@ -204,7 +204,8 @@ void TextParser::resync() {
 
 std::optional<SensorTime> TextParser::clock() const {
     if (resyncing_) return std::nullopt;
-    const auto newest = std::max(line_.newest_us(), reorder_.newest_us());  // none is less than any
+    const auto newest =
+        std::max(validator_.newest_us(), reorder_.newest_us());  // none is less than any
     return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 

@@ -32,11 +32,11 @@ private:
     const char* parse_quickly(const char* p, const char* end, Batch& into);
     const char* complete_carried_line(const char* p, const char* end, Batch& into);
     void place(std::int64_t t_us, std::uint64_t x, std::uint64_t y, bool on, Batch& into);
-    /// What hands events on to line_.
+    /// What hands events on to validator_.
     auto taker(Batch& into) {
         return [this, &into](const Event& event) {
-            line_.add(to_us(event.t), event.x, event.y, event.polarity == Polarity::on, into,
-                      damage_);
+            validator_.add(to_us(event.t), event.x, event.y, event.polarity == Polarity::on, into,
+                           damage_);
         };
     }
     void take_up(Batch& into);
@@ -44,7 +44,7 @@ private:
 
     TextLayout layout_;
     Reorder reorder_;
-    EventValidator line_;
+    EventValidator validator_;
     bool resyncing_ = false;  ///< what was held before the jump is still to be handed on
     std::size_t time_column_ = 0, x_column_ = 0, y_column_ = 0, polarity_column_ = 0;
     std::string carried_;            ///< the beginning of a line whose end has not come

@@ -66,14 +66,14 @@ Run::Run(Program& program, RunSettings& settings)
     sinks_ = open_sinks(settings_, sink_plan());
     stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
     try {
-        pipeline_.emplace(parts(), line());
-        line_made_ = true;
+        pipeline_.emplace(parts(), pipeline_settings());
+        pipeline_made_ = true;
     } catch (const std::bad_alloc&) {
         const auto& config = network_.config();
-        throw out_of_memory(
-            "the network with its buffers (--buffers-grids, --buffers-latents)",
-            network_bytes(config, sensor_) + buffer_bytes(config, sensor_, line().buffers),
-            sensor_);
+        throw out_of_memory("the network with its buffers (--buffers-grids, --buffers-latents)",
+                            network_bytes(config, sensor_) +
+                                buffer_bytes(config, sensor_, pipeline_settings().buffers),
+                            sensor_);
     }
 }
 
@@ -128,22 +128,23 @@ PipelineParts Run::parts() {
     return parts;
 }
 
-PipelineSettings Run::line() {
-    PipelineSettings line;
-    line.bins = network_.config().bins;
-    line.event_windows.slicer = slicer_;
-    line.rate = rate_;
-    line.frames_from = span_.frames_from;
-    line.lookahead = lookahead_;
-    line.latency = latency_of(settings_, live());
-    line.reset_on_gap = settings_.reset_on_gap;
-    line.allow_silence = settings_.allow_silence;
-    line.event_preview = settings_.events || sheet_ || page_;
-    line.changes = page_ ? &changes_ : nullptr;
-    line.events_per_pixel = fusion_.has_value();
-    line.buffers = {std::size_t(settings_.buffers_packets), std::size_t(settings_.buffers_grids),
-                    std::size_t(settings_.buffers_latents)};
-    return line;
+PipelineSettings Run::pipeline_settings() {
+    PipelineSettings settings;
+    settings.bins = network_.config().bins;
+    settings.event_windows.slicer = slicer_;
+    settings.rate = rate_;
+    settings.frames_from = span_.frames_from;
+    settings.lookahead = lookahead_;
+    settings.latency = latency_of(settings_, live());
+    settings.reset_on_gap = settings_.reset_on_gap;
+    settings.allow_silence = settings_.allow_silence;
+    settings.event_preview = settings_.events || sheet_ || page_;
+    settings.changes = page_ ? &changes_ : nullptr;
+    settings.events_per_pixel = fusion_.has_value();
+    settings.buffers = {std::size_t(settings_.buffers_packets),
+                        std::size_t(settings_.buffers_grids),
+                        std::size_t(settings_.buffers_latents)};
+    return settings;
 }
 
 RunProgress Run::progress() const {

@@ -54,13 +54,13 @@ private:
     bool live() const { return opened_.source->is_live(); }
     SinkPlan sink_plan();
     PipelineParts parts();
-    PipelineSettings line();
+    PipelineSettings pipeline_settings();
     void run_pipeline();
     CameraCounters camera_counters() const;
     RunProgress progress() const;
     std::string run_json();
     std::vector<HttpControl> controls();
-    Snapshot snapshot() const { return line_made_ ? pipeline_->snapshot() : Snapshot{}; }
+    Snapshot snapshot() const { return pipeline_made_ ? pipeline_->snapshot() : Snapshot{}; }
 
     Program& program_;
     RunSettings& settings_;
@@ -85,7 +85,7 @@ private:
     ModelRenderStage render_;
     std::optional<FusionRenderStage> fusion_;  // none: the camera's images are ignored
     LiveChanges changes_;
-    std::atomic<bool> line_made_{false};  // until then viewers of the page see no counters
+    std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
     std::vector<std::unique_ptr<Sink>> sinks_;
     std::optional<Pipeline> pipeline_;
 };

@@ -20,22 +20,22 @@ bool keeps_scenes(const Model& model) {
 /// The first event of the next hours ends the silence; more frames in a row without events would be
 /// refused without --allow-silence.
 Result silence(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
-    line.fps = "1/10";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
+    how.fps = "1/10";
     constexpr SensorDuration kMoving{20 * kSecond};
     const SensorTime end{bench.budget.length(9 * kHour, kHour / 6)};
-    std::vector<Event> events = moving_edge(line.width, line.height, {}, SensorTime{kMoving});
+    std::vector<Event> events = moving_edge(how.width, how.height, {}, SensorTime{kMoving});
     events.push_back({end, 3, 3, Polarity::on});
     Array2<float> before;
     FrameChange after;
-    line.on_frame = [&](const Frame& frame) {
+    how.on_frame = [&](const Frame& frame) {
         if (frame.t <= SensorTime{kMoving})
             before = frame.intensity;
         else if (frame.t < end)
             after = change_between(before, frame.intensity);
     };
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(events)), line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(events)), how);
     Result result =
         judged(outcome, short_number(double(to_us(end)) / 3.6e9) + " h between two events, " +
                             counted(outcome.counters.frames, "frames") +
@@ -45,11 +45,11 @@ Result silence(const Bench& bench) {
 }
 
 Result one_event(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
-    line.fps = "frame";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
+    how.fps = "frame";
     const PipelineOutcome outcome =
-        run_pipeline(bench.model, all_of({{SensorTime{kSecond}, 7, 5, Polarity::on}}), line);
+        run_pipeline(bench.model, all_of({{SensorTime{kSecond}, 7, 5, Polarity::on}}), how);
     Result result = judged(outcome, counted(outcome.counters.frames, "frame of one event"));
     result.expect(outcome.counters.event_windows == 1, "one event window");
     return result;
@@ -57,15 +57,15 @@ Result one_event(const Bench& bench) {
 
 /// 10 ms in which every pixel has an event in every microsecond, after a second of motion.
 Result every_pixel(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.width = 24;
-    line.height = 16;
-    line.sampling = bench.sampling();
+    PipelineRunSettings how = bench.run_settings();
+    how.width = 24;
+    how.height = 16;
+    how.sampling = bench.sampling();
     const std::int64_t burst_us = bench.budget.length(10'000, 500);
     auto quiet = std::make_shared<std::vector<Event>>(
-        moving_edge(line.width, line.height, {}, SensorTime{kSecond}));
+        moving_edge(how.width, how.height, {}, SensorTime{kSecond}));
     std::int64_t at = 0;
-    const auto make = [=, width = line.width, height = line.height](auto& into) mutable {
+    const auto make = [=, width = how.width, height = how.height](auto& into) mutable {
         if (at == 0) into = *quiet;
         for (int n = 0; n < 100 && at < burst_us; ++n, ++at)
             for (int p = 0; p < width * height; ++p)
@@ -73,7 +73,7 @@ Result every_pixel(const Bench& bench) {
                                 std::uint16_t(p % width), std::uint16_t(p / width),
                                 (p + at) % 3 == 0 ? Polarity::off : Polarity::on});
     };
-    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, how);
     Result result = judged(outcome, counted(outcome.counters.events, "events, ") +
                                         std::to_string(burst_us) + " us of all pixels");
     result.expect(outcome.counters.slicing.too_many == 0, "no event left out");
@@ -82,12 +82,12 @@ Result every_pixel(const Bench& bench) {
 
 /// 1 % of the pixels fire a million times a second together, before a scene that moves.
 Result hot_pixels(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.width = 40;
-    line.height = 30;
-    line.sampling = Sampling{10, 3, 20, 2};
+    PipelineRunSettings how = bench.run_settings();
+    how.width = 40;
+    how.height = 30;
+    how.sampling = Sampling{10, 3, 20, 2};
     const auto duration = bench.budget.length(SensorDuration{2 * kSecond}, kSecond / 5);
-    const auto scene = moving_edge(line.width, line.height, {}, SensorTime{duration});
+    const auto scene = moving_edge(how.width, how.height, {}, SensorTime{duration});
     std::size_t next = 0;
     std::int64_t at = 0;
     const auto make = [=](auto& into) mutable {
@@ -99,21 +99,21 @@ Result hot_pixels(const Bench& bench) {
                             at / 12 % 2 == 0 ? Polarity::on : Polarity::off});
         }
     };
-    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, how);
     return judged(outcome, counted(outcome.counters.events, "events in ") +
                                short_number(double(duration.count()) * 1e-6) + " s");
 }
 
 /// The frame may not fade.
 Result still_scene(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.width = 64;
-    line.height = 48;
-    line.sampling = Sampling{3, 3, 4999, 1};
-    line.fps = "1";
+    PipelineRunSettings how = bench.run_settings();
+    how.width = 64;
+    how.height = 48;
+    how.sampling = Sampling{3, 3, 4999, 1};
+    how.fps = "1";
     constexpr SensorDuration kMoving{6 * kSecond};
     const SensorTime end{kMoving + bench.budget.length(SensorDuration{kHour}, 10 * kSecond)};
-    StillScene scene{line.width, line.height, kMoving};
+    StillScene scene{how.width, how.height, kMoving};
     const auto is_late = bench.budget.clock(.35);
     const auto make = [&](std::vector<Event>& into) {
         while (into.empty() && scene.now() < end && !is_late()) scene.advance(into);
@@ -121,7 +121,7 @@ Result still_scene(const Bench& bench) {
     Array2<float> moving;
     FrameChange now, worst;
     SensorTime first_gone{};
-    line.on_frame = [&](const Frame& frame) {
+    how.on_frame = [&](const Frame& frame) {
         if (frame.t < SensorTime{kMoving}) return;
         if (moving.empty()) {  // less than a second after the last motion
             moving = frame.intensity;
@@ -131,7 +131,7 @@ Result still_scene(const Bench& bench) {
         if (!is_kept(now) && first_gone == SensorTime{}) first_gone = frame.t;
         if (now.correlation < worst.correlation) worst = now;
     };
-    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, how);
     const double seconds = double((scene.now() - SensorTime{kMoving}).count()) * 1e-6;
     Result result =
         judged(outcome, short_number(seconds) + " s of noise, " +

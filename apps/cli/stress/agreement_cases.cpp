@@ -16,12 +16,12 @@ constexpr SensorDuration kSecond{1'000'000};
 constexpr double kBf16Bound = .02;
 
 PipelineOutcome measured(const Bench& bench, const EngineOptions& engine) {
-    PipelineRunSettings line = bench.line();
-    line.engine = engine;
-    line.sampling = bench.sampling();
+    PipelineRunSettings how = bench.run_settings();
+    how.engine = engine;
+    how.sampling = bench.sampling();
     const auto length = bench.budget.length(SensorDuration{5 * kSecond}, kSecond);
     return run_pipeline(bench.model,
-                        all_of(moving_edge(line.width, line.height, {}, SensorTime{length})), line);
+                        all_of(moving_edge(how.width, how.height, {}, SensorTime{length})), how);
 }
 
 EngineOptions with(const Bench& bench, Precision precision, Kernels kernels) {
@@ -114,14 +114,14 @@ Result thread_counts(const Bench& bench) {
     const auto length = bench.budget.length(SensorDuration{kSecond}, kSecond / 5);
     for (const int count : {1, 2, 16})
         for (const bool threaded : {false, true}) {
-            PipelineRunSettings line = bench.line();
-            line.width = 97;  // many tiles of odd sizes
-            line.height = 71;
-            line.engine.parallel_for = threads(count);
-            line.threaded = threaded;
-            line.lookahead = 1;
-            const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
-            const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+            PipelineRunSettings how = bench.run_settings();
+            how.width = 97;  // many tiles of odd sizes
+            how.height = 71;
+            how.engine.parallel_for = threads(count);
+            how.threaded = threaded;
+            how.lookahead = 1;
+            const auto events = moving_edge(how.width, how.height, {}, SensorTime{length});
+            const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
             if (!alone) alone = outcome.bits;
             same &= outcome.bits == *alone && outcome.error.empty();
             result.happened = counted(outcome.counters.frames, "frames");

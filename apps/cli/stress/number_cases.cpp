@@ -15,12 +15,12 @@ constexpr SensorDuration kSecond{1'000'000};
 
 /// Minutes of motion with pauses of ten seconds.
 Result million_steps(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.width = 24;
-    line.height = 16;
-    line.sampling = Sampling{20, 5, bench.budget.length(9973U, 101U), 1};  // primes: any phase
-    line.fps = "1/5";
-    line.window = "50ms";
+    PipelineRunSettings how = bench.run_settings();
+    how.width = 24;
+    how.height = 16;
+    how.sampling = Sampling{20, 5, bench.budget.length(9973U, 101U), 1};  // primes: any phase
+    how.fps = "1/5";
+    how.window = "50ms";
     const std::int64_t steps = bench.budget.length(1'000'000, 600);
     const auto is_late = bench.budget.clock(.35);
     std::int64_t second = 0;
@@ -30,15 +30,15 @@ Result million_steps(const Bench& bench) {
             const SensorTime now{second * kSecond};
             if (second % 60 < 50)
                 into =
-                    moving_edge(line.width, line.height, now, now + kSecond, std::uint64_t(second));
+                    moving_edge(how.width, how.height, now, now + kSecond, std::uint64_t(second));
             ++second;
         }
     };
-    line.on_frame = [&](const Frame& frame) {
+    how.on_frame = [&](const Frame& frame) {
         for (const float v : frame.intensity.values())
             largest = std::max(largest, std::abs(double(v)));
     };
-    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, how);
     return judged(outcome, counted(outcome.counters.encoded, "steps (") +
                                short_number(double(second) / 3600) + " h of stream time, " +
                                counted(outcome.counters.events, "events); states within ") +
@@ -49,20 +49,20 @@ Result million_steps(const Bench& bench) {
 /// All states, then all weights of the encoder, so small that their numbers have no leading bit.
 Result denormals(const Bench& bench) {
     constexpr float kTiny = 3e-41F;
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
-    const auto events = moving_edge(line.width, line.height, {}, SensorTime{kSecond});
-    Encoder encoder{bench.model, line.width, line.height, line.engine};
-    line.state = encoder.state();
-    for (auto& [name, tensor] : line.state->tensors) std::ranges::fill(tensor.values, kTiny);
-    const PipelineOutcome of_state = run_pipeline(bench.model, all_of(events), line);
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
+    const auto events = moving_edge(how.width, how.height, {}, SensorTime{kSecond});
+    Encoder encoder{bench.model, how.width, how.height, how.engine};
+    how.state = encoder.state();
+    for (auto& [name, tensor] : how.state->tensors) std::ranges::fill(tensor.values, kTiny);
+    const PipelineOutcome of_state = run_pipeline(bench.model, all_of(events), how);
     Result first = judged(of_state, "states and weights of 3e-41");
-    line.state.reset();
+    how.state.reset();
     Model model = bench.model;
     for (auto& [name, tensor] : model.weights)
         if (name.starts_with("encoder."))
             for (float& weight : tensor.values) weight = std::copysign(kTiny, weight);
-    const Result second = judged(run_pipeline(model, all_of(events), line), "weights of 3e-41");
+    const Result second = judged(run_pipeline(model, all_of(events), how), "weights of 3e-41");
     return first.passed && (!second.passed || *second.error > *first.error) ? second : first;
 }
 
@@ -84,10 +84,10 @@ Result scaled_weights(const Bench& bench) {
             result.happened += "refused";
             continue;
         }
-        PipelineRunSettings line = bench.line();
-        line.sampling = Sampling{0, 1, 2, 1};
-        const auto events = moving_edge(line.width, line.height, {}, SensorTime{2 * kSecond});
-        const PipelineOutcome outcome = run_pipeline(model, all_of(events), line);
+        PipelineRunSettings how = bench.run_settings();
+        how.sampling = Sampling{0, 1, 2, 1};
+        const auto events = moving_edge(how.width, how.height, {}, SensorTime{2 * kSecond});
+        const PipelineOutcome outcome = run_pipeline(model, all_of(events), how);
         const Result one = judged(outcome, "", kScaledBound);
         result.happened += short_number(one.error.value_or(0)) + one.happened;
         result.passed &= one.passed;
@@ -160,19 +160,19 @@ Result none_in_grid(const Bench& bench) {
     const int step = bench.budget.length(1, std::max(1, channels / 3));
     for (int channel = 0; channel < channels; channel += step)
         for (const float none : kNone) {
-            PipelineRunSettings line = bench.line();
-            line.width = 24;
-            line.height = 16;
-            line.fps = "frame";
+            PipelineRunSettings how = bench.run_settings();
+            how.width = 24;
+            how.height = 16;
+            how.fps = "frame";
             int window = 0;
-            line.on_grid = [&](VoxelGrid& grid) {
+            how.on_grid = [&](VoxelGrid& grid) {
                 if (window++ != 2) return;
                 for (int p = 0; p < 24 * 16; ++p)
                     if (grid.touched(p / 24, p % 24) != 0)
                         grid.values(p / 24, p % 24, channel) = none;
             };
             const auto events = moving_edge(24, 16, {}, SensorTime{kSecond / 4});
-            const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+            const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
             ++tried;
             ended += outcome.error.find("finite") != std::string::npos ? 1 : 0;
             harmless += outcome.error.empty() && is_finite(outcome.state) ? 1 : 0;

@@ -61,14 +61,14 @@ private:
 };
 
 PipelineSettings pipeline_settings(const Model& model, const PipelineRunSettings& settings) {
-    PipelineSettings line;
-    line.bins = model.config.bins;
-    line.event_windows.slicer = parse_window(settings.window);
-    if (settings.fps != "frame") line.rate = parse_frame_rate(settings.fps);
-    line.lookahead = settings.lookahead;
-    line.buffers = {4, 2, 3};
-    line.allow_silence = true;
-    return line;
+    PipelineSettings how;
+    how.bins = model.config.bins;
+    how.event_windows.slicer = parse_window(settings.window);
+    if (settings.fps != "frame") how.rate = parse_frame_rate(settings.fps);
+    how.lookahead = settings.lookahead;
+    how.buffers = {4, 2, 3};
+    how.allow_silence = true;
+    return how;
 }
 
 }  // namespace

@@ -134,11 +134,11 @@ Result sinks(const Bench& bench) {
 Result pipelines(const Bench& bench) {
     const auto events = moving_edge(24, 16, {}, SensorTime{SensorDuration{100'000}});
     return repeated(bench, [&] {
-        PipelineRunSettings line = bench.line();
-        line.width = 24;
-        line.height = 16;
-        line.threaded = true;
-        run_pipeline(bench.model, all_of(events), line);
+        PipelineRunSettings how = bench.run_settings();
+        how.width = 24;
+        how.height = 16;
+        how.threaded = true;
+        run_pipeline(bench.model, all_of(events), how);
     });
 }
 

@@ -12,13 +12,13 @@ namespace {
 constexpr SensorDuration kSecond{1'000'000};
 
 Result small_sensor(const Bench& bench, int width, int height) {
-    PipelineRunSettings line = bench.line();
-    line.width = width;
-    line.height = height;
-    line.sampling = Sampling{20, 3, 50, 3};
+    PipelineRunSettings how = bench.run_settings();
+    how.width = width;
+    how.height = height;
+    how.sampling = Sampling{20, 3, 50, 3};
     const auto length = bench.budget.length(SensorDuration{2 * kSecond}, kSecond / 2);
     const auto events = moving_edge(width, height, {}, SensorTime{length});
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
     return judged(outcome, counted(outcome.counters.frames, "frames"));
 }
 
@@ -59,14 +59,14 @@ Result large_sensor(const Bench& bench, int width, int height) {
         result.ran = false;
         return result;
     }
-    PipelineRunSettings line = bench.line();
-    line.width = width;
-    line.height = height;
-    line.fps = "frame";
+    PipelineRunSettings how = bench.run_settings();
+    how.width = width;
+    how.height = height;
+    how.fps = "frame";
     // Whole steps of the deepest level apart.
     const int x1 = (width / 4) / 64 * 64, x2 = (width * 3 / 4 - kPatch) / 64 * 64;
     const int y = (height / 2) / 64 * 64;
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(twice(x1, x2, y)), line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(twice(x1, x2, y)), how);
     result = judged(outcome, counted(outcome.counters.event_windows, "windows; ") +
                                  "the same events in two places give the same frame");
     if (outcome.last.intensity.empty()) return result;
@@ -79,13 +79,13 @@ Result large_sensor(const Bench& bench, int width, int height) {
 
 Result output(const Bench& bench,
               const std::function<FrameSize(const PipelineRunSettings&)>& size) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = Sampling{20, 3, 50, 1};
-    line.size = size(line);
-    line.fps = "20";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = Sampling{20, 3, 50, 1};
+    how.size = size(how);
+    how.fps = "20";
     const auto length = bench.budget.length(SensorDuration{kSecond}, kSecond / 5);
-    const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+    const auto events = moving_edge(how.width, how.height, {}, SensorTime{length});
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
     return judged(outcome, counted(outcome.counters.frames, "frames of ") +
                                std::to_string(outcome.last.intensity.width()) + "x" +
                                std::to_string(outcome.last.intensity.height()));
@@ -95,8 +95,8 @@ Result one_pixel(const Bench& bench) {
     return output(bench, [](const PipelineRunSettings&) { return FrameSize{1, 1, {}}; });
 }
 Result eight_times(const Bench& bench) {
-    return output(bench, [](const PipelineRunSettings& line) {
-        return FrameSize{8 * line.width, 8 * line.height, {}};
+    return output(bench, [](const PipelineRunSettings& how) {
+        return FrameSize{8 * how.width, 8 * how.height, {}};
     });
 }
 Result widest(const Bench& bench) {
@@ -106,8 +106,8 @@ Result widest(const Bench& bench) {
 }
 /// Every second column and row lies on a pixel exactly, the others half way.
 Result on_pixels(const Bench& bench) {
-    return output(bench, [](const PipelineRunSettings& line) {
-        return FrameSize{2 * line.width - 1, 2 * line.height - 1, {}};
+    return output(bench, [](const PipelineRunSettings& how) {
+        return FrameSize{2 * how.width - 1, 2 * how.height - 1, {}};
     });
 }
 
@@ -117,14 +117,14 @@ Result on_edges(const Bench& bench) {
     std::uint64_t frames = 0;
     for (const int lookahead : {0, 1, 2})
         for (const char* fps : {"20", "frame"}) {
-            PipelineRunSettings line = bench.line();
-            line.sampling = bench.sampling();
-            line.sampling->frames_every = 2;
-            line.lookahead = lookahead;
-            line.fps = fps;
+            PipelineRunSettings how = bench.run_settings();
+            how.sampling = bench.sampling();
+            how.sampling->frames_every = 2;
+            how.lookahead = lookahead;
+            how.fps = fps;
             const auto length = bench.budget.length(SensorDuration{kSecond}, kSecond / 4);
-            const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
-            const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+            const auto events = moving_edge(how.width, how.height, {}, SensorTime{length});
+            const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
             const Result result = judged(outcome, "");
             frames += outcome.counters.frames;
             if (!worst || !result.passed || *result.error > *worst->error) worst = result;
@@ -136,18 +136,18 @@ Result on_edges(const Bench& bench) {
 
 /// One frame every 1000 s.
 Result slowest(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
-    line.sampling->frames_every = 1;
-    line.fps = "0.001";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
+    how.sampling->frames_every = 1;
+    how.fps = "0.001";
     const SensorDuration each = bench.budget.length(kSecond, kSecond / 5);
-    auto events = moving_edge(line.width, line.height, {}, SensorTime{each});
+    auto events = moving_edge(how.width, how.height, {}, SensorTime{each});
     for (int k = 1; k <= 4; ++k) {
-        const auto more = moving_edge(line.width, line.height, SensorTime{k * 1000 * kSecond},
+        const auto more = moving_edge(how.width, how.height, SensorTime{k * 1000 * kSecond},
                                       SensorTime{k * 1000 * kSecond + kSecond / 5});
         events.insert(events.end(), more.begin(), more.end());
     }
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(events)), line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(events)), how);
     Result result = judged(outcome, counted(outcome.counters.frames, "frames of ") +
                                         counted(outcome.counters.event_windows, "windows"));
     result.expect(outcome.counters.frames == 5, "five frames");
@@ -155,13 +155,13 @@ Result slowest(const Bench& bench) {
 }
 
 Result fastest(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
-    line.sampling->frames_every = 101;
-    line.fps = "100000";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
+    how.sampling->frames_every = 101;
+    how.fps = "100000";
     const auto length = bench.budget.length(SensorDuration{150'000}, SensorDuration{10'000});
-    const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+    const auto events = moving_edge(how.width, how.height, {}, SensorTime{length});
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
     Result result = judged(outcome, counted(outcome.counters.frames, "frames of ") +
                                         counted(outcome.counters.event_windows, "windows"));
     const std::int64_t span = (events.back().t - events.front().t).count() + 1;

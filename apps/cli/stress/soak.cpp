@@ -147,10 +147,10 @@ std::vector<SoakSample> soak(const Model& model, const EngineOptions& engine,
     WatchedStates states{encoder, model.config};
     ModelRenderStage render{renderer, {}};
     Sampler sampler{settings, states};
-    PipelineSettings line;
-    line.bins = model.config.bins;
-    line.rate = {10, 1};
-    Pipeline pipeline{{source, states, render, {&sampler}}, line};
+    PipelineSettings how;
+    how.bins = model.config.bins;
+    how.rate = {10, 1};
+    Pipeline pipeline{{source, states, render, {&sampler}}, how};
     sampler.follow(pipeline);
     pipeline.run();
     return sampler.take();

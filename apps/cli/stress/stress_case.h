@@ -56,7 +56,7 @@ struct Bench {
     Instructions instructions = Instructions::best;  ///< the most that may be used
     Budget budget;
 
-    PipelineRunSettings line() const {
+    PipelineRunSettings run_settings() const {
         PipelineRunSettings settings;
         settings.engine = engine;
         settings.stopping = budget.stopping();

@@ -17,12 +17,12 @@ std::vector<Event> moved(std::vector<Event> events, SensorDuration by) {
 
 /// The same frames as from time 0, bit for bit, and near double precision.
 Result from_time(const Bench& bench, SensorTime begin) {
-    PipelineRunSettings line = bench.line();
-    const auto events = moving_edge(line.width, line.height, {}, SensorTime{2 * kSecond});
-    const PipelineOutcome at_zero = run_pipeline(bench.model, all_of(events), line);
-    line.sampling = bench.sampling();
+    PipelineRunSettings how = bench.run_settings();
+    const auto events = moving_edge(how.width, how.height, {}, SensorTime{2 * kSecond});
+    const PipelineOutcome at_zero = run_pipeline(bench.model, all_of(events), how);
+    how.sampling = bench.sampling();
     const PipelineOutcome there =
-        run_pipeline(bench.model, all_of(moved(events, begin.time_since_epoch())), line);
+        run_pipeline(bench.model, all_of(moved(events, begin.time_since_epoch())), how);
     const bool same = there.bits == at_zero.bits;
     Result result =
         judged(there, counted(there.counters.frames, "frames; ") +
@@ -44,18 +44,18 @@ Result wraps(const Bench& bench) {
     bool all_same = true;
     std::uint64_t damaged = 0;
     for (const Wire& wire : wires()) {
-        PipelineRunSettings line = bench.line();
-        line.width = wire.width;
-        line.height = wire.height;
-        line.fps = "2";
-        line.window = "500ms";
+        PipelineRunSettings how = bench.run_settings();
+        how.width = wire.width;
+        how.height = wire.height;
+        how.fps = "2";
+        how.window = "500ms";
         const auto length = bench.budget.length(SensorDuration{3 * kSecond}, 2 * kSecond);
         // A part of the sensor: what is asked about is time.
         const auto events =
             moved(moving_edge(24, 16, {}, SensorTime{length}), SensorDuration{wire.begin_us});
         EncodedStream source{wire.width, wire.height, wire.bytes(events), wire.make_parser};
-        const PipelineOutcome through = run_pipeline(bench.model, source, line);
-        const PipelineOutcome direct = run_pipeline(bench.model, all_of(events), line);
+        const PipelineOutcome through = run_pipeline(bench.model, source, how);
+        const PipelineOutcome direct = run_pipeline(bench.model, all_of(events), how);
         const bool same = through.bits == direct.bits && through.error.empty() &&
                           through.counters.events == events.size();
         all_same &= same;
@@ -73,10 +73,10 @@ Result wraps(const Bench& bench) {
 
 /// A camera's clock that begins anew so much earlier: a new stream, as bit for bit as the first.
 Result clock_back(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
     std::vector<Event> events =
-        moved(moving_edge(line.width, line.height, {}, SensorTime{kSecond}), 7200 * kSecond);
+        moved(moving_edge(how.width, how.height, {}, SensorTime{kSecond}), 7200 * kSecond);
     std::string happened;
     std::optional<Result> worst;
     for (const SensorDuration back : {SensorDuration{1}, 3600 * kSecond}) {
@@ -85,7 +85,7 @@ Result clock_back(const Bench& bench) {
         for (const Event& event : events)
             both.push_back(
                 {again + (event.t - events.front().t), event.x, event.y, event.polarity});
-        const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(both)), line);
+        const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(both)), how);
         Result result =
             judged(outcome, counted(outcome.counters.slicing.time_resets, "new stream, ") +
                                 counted(outcome.counters.frames, "frames"));
@@ -102,10 +102,10 @@ Result clock_back(const Bench& bench) {
 /// Rows of text, the times of which go back: what comes a little late is put in order, what comes
 /// an hour late is left out and counted.
 Result text_back(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
     const auto events =
-        moved(moving_edge(line.width, line.height, {}, SensorTime{kSecond}), 7200 * kSecond);
+        moved(moving_edge(how.width, how.height, {}, SensorTime{kSecond}), 7200 * kSecond);
     std::string rows;
     std::size_t late = 0;
     for (std::size_t i = 0; i < events.size(); ++i) {
@@ -119,12 +119,12 @@ Result text_back(const Bench& bench) {
     }
     const auto bytes = std::as_bytes(std::span{rows});
     EncodedStream source{
-        line.width, line.height, {bytes.begin(), bytes.end()}, [&]() -> std::unique_ptr<Parser> {
+        how.width, how.height, {bytes.begin(), bytes.end()}, [&]() -> std::unique_ptr<Parser> {
             TextLayout layout;
             layout.unit = TextTimeUnit::microseconds;
-            return std::make_unique<TextParser>(layout, line.width, line.height);
+            return std::make_unique<TextParser>(layout, how.width, how.height);
         }};
-    const PipelineOutcome outcome = run_pipeline(bench.model, source, line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, source, how);
     const std::uint64_t dropped = outcome.counters.damaged[DamageReason::time_backwards];
     Result result = judged(outcome, "every tenth row 1 us early: in order; " +
                                         counted(dropped, "rows an hour early: left out, counted"));

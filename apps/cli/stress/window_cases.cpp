@@ -12,18 +12,18 @@ std::string windows_of(const PipelineOutcome& outcome) {
 }
 
 Result microseconds(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = Sampling{50, 3, 200, 5};
-    line.window = "1us";
-    line.fps = "frame";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = Sampling{50, 3, 200, 5};
+    how.window = "1us";
+    how.fps = "frame";
     const auto length = bench.budget.length(SensorDuration{5000}, SensorDuration{200});
     std::vector<Event> events;
     for (int us = 1; us <= length.count(); ++us)
         for (int n = 0; n < 3; ++n)
-            events.push_back({from_us(us), std::uint16_t(us / 40 % line.width),
-                              std::uint16_t((us + 7 * n) % line.height),
+            events.push_back({from_us(us), std::uint16_t(us / 40 % how.width),
+                              std::uint16_t((us + 7 * n) % how.height),
                               us % 3 == 0 ? Polarity::off : Polarity::on});
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(events)), line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(std::move(events)), how);
     Result result = judged(outcome, windows_of(outcome));
     result.expect(outcome.counters.event_windows == std::uint64_t(length.count()),
                   "one window each microsecond");
@@ -31,49 +31,49 @@ Result microseconds(const Bench& bench) {
 }
 
 Result an_hour(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
-    line.window = "3600s";
-    line.fps = "1/600";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
+    how.window = "3600s";
+    how.fps = "1/600";
     const SensorDuration length = 4 * 3600 * kSecond;
     const std::int64_t step = bench.budget.length(10'000, 1'000'000);
     std::int64_t at = 0;
-    const auto make = [=, width = line.width, height = line.height](auto& into) mutable {
+    const auto make = [=, width = how.width, height = how.height](auto& into) mutable {
         for (int n = 0; n < 10'000 && at < length.count(); ++n, at += step)
             into.push_back({from_us(at + 1), std::uint16_t(at / step % width),
                             std::uint16_t(at / step / width % height),
                             at / step % 5 < 2 ? Polarity::off : Polarity::on});
     };
-    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, how);
     return judged(outcome, windows_of(outcome));
 }
 
 Result one_event_each(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = Sampling{50, 3, 100, 5};
-    line.window = "1ev";
-    line.fps = "frame";
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = Sampling{50, 3, 100, 5};
+    how.window = "1ev";
+    how.fps = "frame";
     const auto length = bench.budget.length(SensorDuration{2 * kSecond}, kSecond / 5);
-    const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
-    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), line);
+    const auto events = moving_edge(how.width, how.height, {}, SensorTime{length});
+    const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
     return judged(outcome, windows_of(outcome));
 }
 
 /// In the quick form so many fewer.
 Result ten_million_events(const Bench& bench) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
     const std::int64_t each = bench.budget.length(10'000'000, 100'000);
-    line.window = std::to_string(each) + "ev,60s";
-    line.fps = "frame";
+    how.window = std::to_string(each) + "ev,60s";
+    how.fps = "frame";
     std::int64_t at = 0;
-    const auto make = [=, width = line.width, height = line.height](auto& into) mutable {
+    const auto make = [=, width = how.width, height = how.height](auto& into) mutable {
         for (int n = 0; n < 50'000 && at < 2 * each; ++n, ++at)
             into.push_back({from_us(at + 1), std::uint16_t((at / 7 + at / 1000) % width),
                             std::uint16_t(at * 5 / 3 % height),
                             at % 7 < 3 ? Polarity::off : Polarity::on});
     };
-    const PipelineOutcome outcome = run_pipeline(bench.model, make, line);
+    const PipelineOutcome outcome = run_pipeline(bench.model, make, how);
     Result result = judged(outcome, windows_of(outcome));
     result.expect(outcome.counters.event_windows == 2, "two windows");
     return result;
@@ -82,14 +82,14 @@ Result ten_million_events(const Bench& bench) {
 /// The shape of the shipped model with other bins; its weights belong to its own, so these are
 /// untrained.
 Result with_bins(const Bench& bench, int bins) {
-    PipelineRunSettings line = bench.line();
-    line.sampling = bench.sampling();
+    PipelineRunSettings how = bench.run_settings();
+    how.sampling = bench.sampling();
     ModelConfig config = bench.model.config;
     config.bins = bins;
     const Model model = random_model(config, 1);
     const auto length = bench.budget.length(SensorDuration{2 * kSecond}, kSecond / 2);
-    const auto events = moving_edge(line.width, line.height, {}, SensorTime{length});
-    const PipelineOutcome outcome = run_pipeline(model, all_of(events), line);
+    const auto events = moving_edge(how.width, how.height, {}, SensorTime{length});
+    const PipelineOutcome outcome = run_pipeline(model, all_of(events), how);
     return judged(outcome, "untrained network of its shape: " + windows_of(outcome));
 }
 
