@@ -31,9 +31,7 @@ std::string wrapped(const std::string& text) {
 }
 
 std::string help_of(const Setting& setting) {
-    const std::vector<std::string> value = setting.show();
-    const bool tell = setting.kind != ValueKind::flag && !value.empty() && !value.back().empty();
-    return wrapped(setting.help + (tell ? " [" + value.back() + "]" : ""));
+    return wrapped(help_with_default(setting));
 }
 
 std::string group_of(const Setting& setting) {

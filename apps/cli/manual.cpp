@@ -33,9 +33,7 @@ void add_setting(const Setting& setting, std::string& page) {
     page += ".TP\n" +
             bold((setting.short_flag.empty() ? "" : setting.short_flag + ", ") + flag_of(setting));
     if (!setting.value_name.empty()) page += " \\fI" + literal(setting.value_name) + "\\fR";
-    const auto value = setting.show();
-    const bool tell = setting.kind != ValueKind::flag && !value.empty() && !value.back().empty();
-    page += "\n" + literal(setting.help + (tell ? " [" + value.back() + "]" : "")) + "\n";
+    page += "\n" + literal(help_with_default(setting)) + "\n";
 }
 
 void add_command(Command& command, std::string& page) {

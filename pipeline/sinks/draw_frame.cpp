@@ -40,33 +40,29 @@ std::uint8_t scaled(int a, int b) {
     return std::uint8_t((a * b + 127) / 255);
 }
 
-void draw_overlay(const Frame& frame, float white, cv::Mat& image) {
-    const int width = frame.intensity.width();
-    std::vector<std::uint8_t> grey(std::size_t(width), 0), doubt(std::size_t(width), 0);
+/// Calls put(pixel, grey, doubt) for every pixel of `image`, with intensity and sigma as 0..255.
+template <typename Put>
+void draw_pixels(const Frame& frame, float sigma_white, cv::Mat& image, const Put& put) {
+    const auto width = std::size_t(frame.intensity.width());
+    std::vector<std::uint8_t> grey(width, 0), doubt(width, 0);
     for (int y = 0; y < frame.intensity.height(); ++y) {
         to_grey8(frame.intensity.row(y), 1.0f, grey);
-        sigma_row(frame, y, white, doubt);
-        const auto row = row_of(image, y);
-        for (std::size_t x = 0; x < grey.size(); ++x) {
-            const std::uint8_t kept = scaled(grey[x], 255 - doubt[x]);
-            row[3 * x] = row[3 * x + 1] = kept;
-            row[3 * x + 2] = std::uint8_t(kept + doubt[x]);
-        }
+        sigma_row(frame, y, sigma_white, doubt);
+        std::uint8_t* pixel = row_of(image, y).data();
+        for (std::size_t x = 0; x < width; ++x, pixel += image.elemSize())
+            put(pixel, grey[x], doubt[x]);
     }
 }
 
-void draw_alpha(const Frame& frame, float white, cv::Mat& image) {
-    const int width = frame.intensity.width();
-    std::vector<std::uint8_t> grey(std::size_t(width), 0), doubt(std::size_t(width), 0);
-    for (int y = 0; y < frame.intensity.height(); ++y) {
-        to_grey8(frame.intensity.row(y), 1.0f, grey);
-        sigma_row(frame, y, white, doubt);
-        const auto row = row_of(image, y);
-        for (std::size_t x = 0; x < grey.size(); ++x) {
-            row[4 * x] = row[4 * x + 1] = row[4 * x + 2] = grey[x];
-            row[4 * x + 3] = std::uint8_t(255 - doubt[x]);
-        }
-    }
+void draw_overlay(std::uint8_t* bgr, std::uint8_t grey, std::uint8_t doubt) {
+    const std::uint8_t kept = scaled(grey, 255 - doubt);
+    bgr[0] = bgr[1] = kept;
+    bgr[2] = std::uint8_t(kept + doubt);
+}
+
+void draw_alpha(std::uint8_t* bgra, std::uint8_t grey, std::uint8_t doubt) {
+    bgra[0] = bgra[1] = bgra[2] = grey;
+    bgra[3] = std::uint8_t(255 - doubt);
 }
 
 }  // namespace
@@ -90,10 +86,10 @@ void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& image
     switch (how) {
         case Uncertainty::overlay:
             image.create(height, width, CV_8UC3);
-            return draw_overlay(frame, sigma_white, image);
+            return draw_pixels(frame, sigma_white, image, draw_overlay);
         case Uncertainty::alpha:
             image.create(height, width, CV_8UC4);
-            return draw_alpha(frame, sigma_white, image);
+            return draw_pixels(frame, sigma_white, image, draw_alpha);
         case Uncertainty::side:
             image.create(height, 2 * width, CV_8UC1);
             for (int y = 0; y < height; ++y) {

@@ -135,8 +135,8 @@ void NoiseFilter::end_interval() noexcept {
     for (Tile& tile : tiles_) {
         if (!measured_)
             tile.noise = noise;
-        else if (is_quiet(tile, 2) || is_alone(tile))
-            tile.noise += (is_quiet(tile, 2) ? kLearn : kLearnSlowly) * (tile.events - tile.noise);
+        else if (const bool quiet = is_quiet(tile, 2); quiet || is_alone(tile))
+            tile.noise += (quiet ? kLearn : kLearnSlowly) * (tile.events - tile.noise);
         tile.noise = std::clamp(tile.noise, noise, kMaxTimes * noise);
         tile.before = std::exchange(tile.events, 0U);
         tile.supported = 0;

@@ -6,6 +6,13 @@
 
 namespace eventide::app {
 
+std::string help_with_default(const Setting& setting) {
+    std::string value;
+    if (setting.kind != ValueKind::flag)
+        for (const std::string& text : setting.show()) value += (value.empty() ? "" : " ") + text;
+    return setting.help + (value.empty() ? "" : " [" + value + "]");
+}
+
 std::string flag_of(const Setting& setting) {
     std::string flag = "--" + setting.key;
     std::ranges::replace(flag, '_', '-');

@@ -49,6 +49,9 @@ struct SettingTable {
 };
 
 std::string flag_of(const Setting& setting);
+/// What it does, and behind it in brackets its value, of lists all: for help before anything is
+/// set.
+std::string help_with_default(const Setting& setting);
 /// "EVENTIDE_RUN_FPS"; without a section "EVENTIDE_QUIET".
 std::string environment_of(const SettingTable& table, const Setting& setting);
 

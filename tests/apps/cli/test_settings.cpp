@@ -50,6 +50,13 @@ TEST(Settings, EveryTimeIsWrittenWithItsUnit) {
         EXPECT_TRUE(times.contains(known)) << known;
 }
 
+TEST(Settings, HelpTellsEveryValueOfAList) {
+    std::vector<std::string> sizes{"240x180", "640x480"}, none;
+    EXPECT_EQ(help_with_default(list_setting("sizes", sizes, "WxH", "Sizes.")),
+              "Sizes. [240x180 640x480]");
+    EXPECT_EQ(help_with_default(list_setting("sizes", none, "WxH", "Sizes.")), "Sizes.");
+}
+
 TEST(Settings, HaveOneNameEachAndAMeaning) {
     for (const auto& command : all_commands()) {
         std::set<std::string> keys;
