@@ -2,6 +2,7 @@
 #include "apps/cli/terminal.h"
 
 #include "apps/cli/printable.h"
+#include "apps/cli/service_manager.h"
 #include "src/core/error.h"
 
 #include <spdlog/pattern_formatter.h>
@@ -36,6 +37,23 @@ public:
     }
 };
 
+/// What journald takes for a line's priority.
+class Priority final : public spdlog::custom_flag_formatter {
+public:
+    void format(const spdlog::details::log_msg& message, const std::tm&,
+                spdlog::memory_buf_t& into) override {
+        const bool serious = message.level >= spdlog::level::err;
+        const std::string_view priority = serious                                ? "<3>"
+                                          : message.level == spdlog::level::warn ? "<4>"
+                                          : message.level == spdlog::level::info ? "<6>"
+                                                                                 : "<7>";
+        into.append(priority.data(), priority.data() + priority.size());
+    }
+    std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
+        return std::make_unique<Priority>();
+    }
+};
+
 }  // namespace
 
 void start_talk(const TalkSettings& settings) {
@@ -43,7 +61,9 @@ void start_talk(const TalkSettings& settings) {
         colour_allowed() ? spdlog::color_mode::always : spdlog::color_mode::never);
     auto logger = std::make_shared<spdlog::logger>("eventide", std::move(sink));
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
-    formatter->add_flag<PrintableMessage>('*').set_pattern("%n: %^%l%$: %*");
+    // The journal knows the program's name and keeps the priority apart.
+    formatter->add_flag<PrintableMessage>('*').add_flag<Priority>('&').set_pattern(
+        writes_to_journal() ? "%&%*" : "%n: %^%l%$: %*");
     logger->set_formatter(std::move(formatter));
     auto level = spdlog::level::from_str(settings.log_level);
     if (settings.quiet) level = std::max(level, spdlog::level::warn);

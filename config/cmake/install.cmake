@@ -12,6 +12,8 @@ install(FILES ${PROJECT_BINARY_DIR}/manual/page DESTINATION ${CMAKE_INSTALL_MAND
 install(FILES ${PROJECT_BINARY_DIR}/manual/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME eventide COMPONENT program)
 install(FILES config/udev/65-eventide.rules DESTINATION lib/udev/rules.d COMPONENT program)
+configure_file(config/systemd/eventide@.service.in ${PROJECT_BINARY_DIR}/eventide@.service @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/eventide@.service DESTINATION lib/systemd/system COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT library)
 
 install(TARGETS eventide_shared EXPORT eventideTargets

@@ -1,4 +1,5 @@
 // eventide run, as a user runs it: what is in the files afterwards.
+#include "tests/support/manager_socket.h"
 #include "tests/system/program_test.h"
 
 #include <nlohmann/json.hpp>
@@ -224,6 +225,22 @@ TEST_F(Run, TakesASimulationInPlaceOfACamera) {
                                     "50", "--latency", "none", "--out", "a/"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_GE(column(temp_ / "a/timestamps.csv", 0).size(), 9U);
+}
+
+TEST_F(Run, TellsAServiceManagerOfItsBeginningItsLifeAndItsEnd) {
+    ManagerSocket socket{temp_ / "notify"};
+    const Result result =
+        run({EVENTIDE_PROGRAM, "run", "sim:demo?size=32x24&seconds=1.2", "--out", "null"},
+            {.environment = {{"NOTIFY_SOCKET", temp_ / "notify"}, {"WATCHDOG_USEC", "30000000"}},
+             .folder = temp_.path().string()});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    std::vector<std::string> messages;
+    for (std::string next = socket.next(); next != "nothing"; next = socket.next())
+        messages.push_back(next);
+    ASSERT_GE(messages.size(), 3U);
+    EXPECT_EQ(messages.front(), "READY=1");
+    EXPECT_EQ(messages.back(), "STOPPING=1");
+    EXPECT_GE(std::ranges::count(messages, "WATCHDOG=1"), 1);
 }
 
 }  // namespace

@@ -160,7 +160,7 @@ RunProgress Run::progress() const {
 int Run::run() {
     const Stopper stopper{program_.signals, [this] { pipeline_->stop(); }};
     Status status{[this] { return pipeline_->snapshot(); }, progress(), std::move(stats_),
-                  program_.quiet};
+                  program_.quiet, live()};
     run_pipeline();
     if (!settings_.state_out.empty())
         write_safetensors(settings_.state_out, network_.encoder().state(), settings_.overwrite);

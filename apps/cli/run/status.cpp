@@ -15,12 +15,14 @@ constexpr int kTicksPerStats = 4;  // one line of JSON a second
 }  // namespace
 
 Status::Status(std::function<Snapshot()> snapshot, RunProgress fixed,
-               std::unique_ptr<OutputFile> stats, bool quiet)
+               std::unique_ptr<OutputFile> stats, bool quiet, bool live)
     : snapshot_{std::move(snapshot)},
       fixed_{fixed},
       stats_{std::move(stats)},
+      live_{live},
       line_{quiet},
       begun_{Clock::now()} {
+    manager_.ready();
     thread_ = std::jthread{[this] { tick(); }};
 }
 
@@ -39,8 +41,21 @@ void Status::tick() {
         const Snapshot now = snapshot_();
         const RunProgress state = progress(now);
         line_.show(status_line(now, state, line_.columns()));
-        if (n % kTicksPerStats == 0) write_stats(now, false);
+        const bool second_is_over = n % kTicksPerStats == 0;
+        if (second_is_over) write_stats(now, false);
+        tell_manager(now, state, second_is_over);
     }
+}
+
+/// The watchdog hears of work that was done since it heard last: a camera gives event windows in
+/// silence, too. A recording may stand still for as long as its reader likes.
+void Status::tell_manager(const Snapshot& now, const RunProgress& state, bool also_status) {
+    if (!manager_.is_there()) return;
+    const std::uint64_t work = now.packets + now.event_windows + now.frames;
+    if (manager_.watchdog() && (work != last_work_ || !live_)) manager_.alive();
+    last_work_ = work;
+    constexpr std::size_t kColumns = 120;
+    if (also_status) manager_.status(status_line(now, state, kColumns));
 }
 
 RunProgress Status::progress(const Snapshot& now) {
@@ -80,6 +95,7 @@ RunProgress Status::finish() {
     }
     ended_.notify_all();
     if (thread_.joinable()) thread_.join();
+    manager_.stopping();
     line_.clear();
     const Snapshot now = snapshot_();
     write_stats(now, true);

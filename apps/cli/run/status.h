@@ -1,8 +1,10 @@
-// While a run goes on: the moving line on a terminal, and the JSON lines of --stats.
+// While a run goes on: the moving line on a terminal, the JSON lines of --stats, and what a service
+// manager wants to know.
 #pragma once
 
 #include "apps/cli/run/run_report.h"
 #include "apps/cli/run/status_line.h"
+#include "apps/cli/service_manager.h"
 #include "apps/cli/terminal.h"
 #include "src/io/output_file.h"
 
@@ -19,9 +21,9 @@ namespace eventide::app {
 class Status {
 public:
     /// `snapshot` may be called from any thread. `stats` may be null; it shows under its name with
-    /// its first line and grows from then on.
+    /// its first line and grows from then on. `live`: of a camera, which works in silence, too.
     Status(std::function<Snapshot()> snapshot, RunProgress fixed, std::unique_ptr<OutputFile> stats,
-           bool quiet);
+           bool quiet, bool live);
     ~Status();
     Status(const Status&) = delete;
     Status& operator=(const Status&) = delete;
@@ -34,12 +36,16 @@ private:
     void tick();
     RunProgress progress(const Snapshot& now);
     void write_stats(const Snapshot& now, bool final);
+    void tell_manager(const Snapshot& now, const RunProgress& state, bool also_status);
 
     std::function<Snapshot()> snapshot_;
     RunProgress fixed_;
     std::unique_ptr<OutputFile> stats_;  // null: not asked for, or it failed
     std::exception_ptr stats_failure_;
+    const bool live_;
     ProgressLine line_;
+    ServiceManager manager_;
+    std::uint64_t last_work_ = 0;  // packets, event windows and frames when the manager was told
     std::chrono::steady_clock::time_point begun_;
     std::uint64_t last_events_ = 0;
     std::chrono::duration<double> last_elapsed_{0};

@@ -1,0 +1,80 @@
+// What a service manager hears, by the protocol of sd_notify(3).
+#include "apps/cli/service_manager.h"
+#include "tests/support/manager_socket.h"
+#include "tests/system/process.h"
+
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace eventide::app {
+namespace {
+
+class ServiceManagerTest : public testing::Test {
+protected:
+    ~ServiceManagerTest() override {
+        for (const char* name : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) unsetenv(name);
+    }
+    test::TempFolder temp_;
+};
+
+TEST_F(ServiceManagerTest, HearsEachMessageAndNothingThatATerminalWouldObey) {
+    test::ManagerSocket socket{temp_ / "notify"};
+    setenv("NOTIFY_SOCKET", (temp_ / "notify").c_str(), 1);
+    setenv("WATCHDOG_USEC", "30000000", 1);
+    setenv("WATCHDOG_PID", std::to_string(getpid()).c_str(), 1);
+    ServiceManager manager;
+    ASSERT_TRUE(manager.is_there());
+    EXPECT_EQ(manager.watchdog(), std::chrono::seconds{30});
+    manager.ready();
+    manager.alive();
+    manager.status("30 frames/s\nREADY=0 \x1b[2J");
+    manager.stopping();
+    EXPECT_EQ(socket.next(), "READY=1");
+    EXPECT_EQ(socket.next(), "WATCHDOG=1");
+    const std::string status = socket.next();
+    EXPECT_TRUE(status.starts_with("STATUS=30 frames/s")) << status;
+    EXPECT_EQ(status.find_first_of("\n\x1b"), std::string::npos) << status;
+    EXPECT_EQ(socket.next(), "STOPPING=1");
+    EXPECT_EQ(socket.next(), "nothing");
+}
+
+TEST_F(ServiceManagerTest, WhereNobodyAskedNothingIsSaid) {
+    EXPECT_FALSE(ServiceManager{}.is_there());
+    for (const std::string& bad : {std::string{"relative"}, std::string(200, '/')}) {
+        setenv("NOTIFY_SOCKET", bad.c_str(), 1);
+        EXPECT_FALSE(ServiceManager{}.is_there()) << bad;
+    }
+    setenv("NOTIFY_SOCKET", (temp_ / "nobody").c_str(), 1);
+    ServiceManager nobody_listens;
+    nobody_listens.ready();  // neither waits nor throws
+}
+
+TEST_F(ServiceManagerTest, TheWatchdogOfAnotherProcessIsNotOurs) {
+    test::ManagerSocket socket{temp_ / "notify"};
+    setenv("NOTIFY_SOCKET", (temp_ / "notify").c_str(), 1);
+    setenv("WATCHDOG_USEC", "30000000", 1);
+    setenv("WATCHDOG_PID", "1", 1);
+    EXPECT_FALSE(ServiceManager{}.watchdog());
+    setenv("WATCHDOG_PID", std::to_string(getpid()).c_str(), 1);
+    setenv("WATCHDOG_USEC", "often", 1);
+    EXPECT_FALSE(ServiceManager{}.watchdog());
+}
+
+TEST_F(ServiceManagerTest, TheJournalsStreamIsKnownByDeviceAndInode) {
+    const int file = open((temp_ / "stream").c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
+    struct stat status {};
+    ASSERT_EQ(fstat(file, &status), 0);
+    const std::string device = std::to_string(status.st_dev), inode = std::to_string(status.st_ino);
+    EXPECT_TRUE(is_journal(file, device + ":" + inode));
+    for (const std::string& other : {device + ":1", "1:" + inode, device, inode, std::string{":"}})
+        EXPECT_FALSE(is_journal(file, other)) << other;
+    close(file);
+}
+
+}  // namespace
+}  // namespace eventide::app
