@@ -15,17 +15,18 @@ namespace eventide::HWY_NAMESPACE {
 void compress(const float* in, float* out, std::size_t n) {
     map(Compress{}, n, out, in, in, in, in);
 }
-void spread(const float* from, float* to, std::ptrdiff_t to_step, int channels, int pixels) {
-    channels <= kNarrowLanes ? spread_pixels(Narrow(), from, to, to_step, channels, pixels)
-                             : spread_pixels(D(), from, to, to_step, channels, pixels);
+void sigmoid_row(float* g, std::size_t n) {
+    map(Sigmoid{}, n, g, g, g, g, g);
 }
-void reset_state(const float* r, std::ptrdiff_t r_step, float* h, std::ptrdiff_t h_step,
-                 int channels, int pixels) {
-    channels <= kNarrowLanes ? reset_pixels(Narrow(), r, r_step, h, h_step, channels, pixels)
-                             : reset_pixels(D(), r, r_step, h, h_step, channels, pixels);
+void reset_state(const float* r, std::ptrdiff_t r_step, const float* h, float* out, int channels,
+                 int pixels) {
+    channels <= kNarrowLanes ? reset_pixels(Narrow(), r, r_step, h, out, channels, pixels)
+                             : reset_pixels(D(), r, r_step, h, out, channels, pixels);
 }
-void update_state(const float* h, const float* u, std::ptrdiff_t u_step, const float* candidate,
+void update_state(const float* h, const float* u, std::ptrdiff_t u_step, float* candidate,
                   float* out, int channels, int pixels) {
+    map(Tanh{}, std::size_t(channels) * std::size_t(pixels), candidate, candidate, candidate,
+        candidate, candidate);
     channels <= kNarrowLanes
         ? update_pixels(Narrow(), h, u, u_step, candidate, out, channels, pixels)
         : update_pixels(D(), h, u, u_step, candidate, out, channels, pixels);
@@ -47,8 +48,16 @@ void norm_elu(const float* a, const float* scale, const float* shift, const floa
 void elu(const float* in, float* out, std::size_t n) {
     map(Elu{}, n, out, in, in, in, in);
 }
-void average(const float* a, const float* b, const float* c, const float* d, float* out, int n) {
-    map(Average{}, std::size_t(n), out, a, b, c, d);
+void double_row(const DoubleRow& r) {
+    const auto *above = static_cast<const float*>(r.above),
+               *under = static_cast<const float*>(r.under);
+    auto* out = static_cast<float*>(r.out);
+    const auto n = std::ptrdiff_t(r.channels);
+    for (int x = r.x0; x < r.x1; ++x, out += n) {
+        const std::ptrdiff_t left = x / 2 * n, right = std::min((x + 1) / 2, r.last) * n;
+        map(Average{}, std::size_t(n), out, above + left, above + right, under + left,
+            under + right);
+    }
 }
 
 bool are_near(const float* a, const float* b, float bound, std::size_t n) {
@@ -103,15 +112,15 @@ void two_outputs(const float* in, const float* weight, const float* bias, int pi
 const VectorKernels* table() {
     static const VectorKernels kernels{hwy::TargetName(HWY_TARGET),
                                        int(hn::Lanes(D())),
-                                       dot_rows,
+                                       dot_area,
                                        compress,
-                                       spread,
+                                       sigmoid_row,
                                        reset_state,
                                        update_state,
                                        add_relu,
                                        norm_elu,
                                        elu,
-                                       average,
+                                       double_row,
                                        are_near,
                                        offset_rows,
                                        two_outputs};
@@ -126,10 +135,10 @@ namespace eventide {
 namespace {
 
 HWY_EXPORT(table);
-bool g_limited = false;
+bool g_limited = false, g_without_amx = false;
 
 void leave_out(std::int64_t targets) {
-    g_limited = targets != 0;
+    g_limited = g_without_amx = targets != 0;
     hwy::DisableTargets(targets);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
@@ -143,6 +152,10 @@ const VectorKernels& vector_kernels() {
 void limit_kernels_to_avx2() {
     leave_out(HWY_AVX3 | HWY_AVX3_DL);
 }
+void limit_kernels_to_avx512() {
+    leave_out(0);
+    g_without_amx = true;
+}
 void limit_kernels_to_sse4() {
     leave_out(HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL);
 }
@@ -153,6 +166,9 @@ void lift_kernel_limits() {
 
 bool kernels_limited() {
     return g_limited;
+}
+bool amx_left_out() {
+    return g_without_amx;
 }
 
 int dot_lanes(int outputs) {

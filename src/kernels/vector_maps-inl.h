@@ -95,22 +95,14 @@ HWY_INLINE hn::Vec<Tag> load_upto(Tag d, const float* from, int n) {
 }
 
 template <class Tag>
-HWY_INLINE void spread_pixels(Tag d, const float* from, float* to, std::ptrdiff_t to_step,
-                              int channels, int pixels) {
-    for (int p = 0; p < pixels; ++p, from += channels, to += to_step)
+HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, const float* h,
+                             float* out, int channels, int pixels) {
+    for (int p = 0; p < pixels; ++p, r += r_step, h += channels, out += channels)
         over_channels(d, channels, [&](int c, int n) HWY_ATTR {
-            store_some(d, load_upto(d, from + c, n), to + c, n);
+            store_some(d, hn::Mul(load_upto(d, r + c, n), load_upto(d, h + c, n)), out + c, n);
         });
 }
-template <class Tag>
-HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, float* h,
-                             std::ptrdiff_t h_step, int channels, int pixels) {
-    for (int p = 0; p < pixels; ++p, r += r_step, h += h_step)
-        over_channels(d, channels, [&](int c, int n) HWY_ATTR {
-            store_some(d, hn::Mul(sigmoid(load_upto(d, r + c, n)), load_upto(d, h + c, n)), h + c,
-                       n);
-        });
-}
+/// `candidate` is tanh(c) already.
 template <class Tag>
 HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdiff_t u_step,
                               const float* candidate, float* out, int channels, int pixels) {
@@ -118,10 +110,16 @@ HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdif
          ++p, u += u_step, h += channels, candidate += channels, out += channels)
         over_channels(d, channels, [&](int c, int n) HWY_ATTR {
             const auto old = load_upto(d, h + c, n);
-            const auto change = hn::Sub(tanh(load_upto(d, candidate + c, n)), old);
-            store_some(d, hn::MulAdd(sigmoid(load_upto(d, u + c, n)), change, old), out + c, n);
+            const auto change = hn::Sub(load_upto(d, candidate + c, n), old);
+            store_some(d, hn::MulAdd(load_upto(d, u + c, n), change, old), out + c, n);
         });
 }
+struct Sigmoid {
+    HWY_INLINE V operator()(V v, V, V, V) const { return sigmoid(v); }
+};
+struct Tanh {
+    HWY_INLINE V operator()(V v, V, V, V) const { return tanh(v); }
+};
 struct AddRelu {
     HWY_INLINE V operator()(V a, V b, V, V) const { return hn::Max(hn::Add(a, b), hn::Zero(D())); }
 };

@@ -34,14 +34,23 @@ std::string FastEncoder::description() const {
     return std::string{"fast, "} + name_of(arithmetic_);
 }
 
+void FastEncoder::copy_tile(std::size_t i, LatentMap& latent) const noexcept {
+    const Tile& tile = latent_tiles_[i];
+    const std::size_t row = std::size_t(tile.width()) * std::size_t(latent_.channels());
+    for (int y = tile.y0; y < tile.y1; ++y)
+        std::memcpy(latent.values.pixel(y, tile.x0).data(), latent_.at(y, tile.x0),
+                    row * sizeof(float));
+}
+
+void FastEncoder::give_changed(std::size_t i, LatentMap& latent) noexcept {
+    history_.changed[i] = history_.step;
+    copy_tile(i, latent);
+}
+
 void FastEncoder::publish(LatentMap& latent) noexcept {
     const StaleTiles outdated{latent.history, history_};
-    runner_.over(latent_tiles_, [&](std::size_t i, const Tile& tile, float*) {
-        if (!outdated(i)) return;
-        const std::size_t row = std::size_t(tile.width()) * std::size_t(latent_.channels());
-        for (int y = tile.y0; y < tile.y1; ++y)
-            std::memcpy(latent.values.pixel(y, tile.x0).data(), latent_.at(y, tile.x0),
-                        row * sizeof(float));
+    runner_.over(latent_tiles_, [&](std::size_t i, const Tile&, float*) {
+        if (history_.changed[i] != history_.step && outdated(i)) copy_tile(i, latent);
     });
     latent.history = history_;
 }
@@ -49,7 +58,7 @@ void FastEncoder::publish(LatentMap& latent) noexcept {
 Tensors FastEncoder::state() const {
     Tensors state;
     for (std::size_t l = 0; l < states_.size(); ++l) {
-        const PaddedMap& h = states_[l];
+        const StateMap& h = states_[l];
         Tensor& tensor = state["h." + std::to_string(l)];
         tensor.shape = {h.height(), h.width(), h.channels()};
         tensor.values.resize(element_count(tensor.shape));

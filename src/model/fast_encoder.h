@@ -6,6 +6,7 @@
 #include "src/nn/arithmetic.h"
 #include "src/nn/conv_gru.h"
 #include "src/nn/padded_map.h"
+#include "src/nn/state_map.h"
 #include "src/nn/tile_runner.h"
 
 #include <vector>
@@ -18,20 +19,24 @@ public:
     Tensors state() const override;
     void restore(const Tensors& state) override;
 
+private:
+    void copy_tile(std::size_t i, LatentMap& latent) const noexcept;
+
 protected:
     FastEncoder(const EngineOptions& options, const Arithmetic& arithmetic);
 
     /// To be called once, with the size of the latent map, the scratch numbers a lane needs, and
     /// the most tiles any map has.
     void make_room(int height, int width, int channels, std::size_t scratch, std::size_t tiles);
-    /// Tile i of latent_ has new values in this step.
-    void mark_changed(std::size_t i) noexcept { history_.changed[i] = history_.step; }
-    /// Brings `latent` to what latent_ is.
+    /// Tile i of latent_ has new values in this step, which `latent` is given at once, while they
+    /// are in cache. On any thread.
+    void give_changed(std::size_t i, LatentMap& latent) noexcept;
+    /// Brings what is left of `latent` to what latent_ is.
     void publish(LatentMap& latent) noexcept;
 
     EngineOptions options_;
     Arithmetic arithmetic_;
-    std::vector<PaddedMap> states_;  // h_l
+    std::vector<StateMap> states_;  // h_l
     PaddedMap latent_;
     std::vector<Tile> latent_tiles_;
     LatentHistory history_;  // of latent_; `step` is the one at work

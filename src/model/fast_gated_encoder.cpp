@@ -30,7 +30,8 @@ FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
     std::size_t scratch = decoder_.scratch_size(), tiles = 0;
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const Extent size = levels_[l].size();
-        states_.emplace_back(size.height, size.width, config_.widths[l]);
+        states_.emplace_back(size.height, size.width, config_.widths[l],
+                             Numbers{arithmetic.products}, config_.recurrent[l] != 0);
         scratch = std::max(scratch, levels_[l].scratch_size());
         tiles = std::max(tiles, levels_[l].tiles().size());
     }
@@ -44,7 +45,7 @@ void FastGatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
     if (mark_events(grid) || stale_ || !options_.skip_quiet) {
         for (GatedLevel& level : levels_) advance(level, grid.values);
         decoder_.run(levels_, states_, stale_, runner_, latent_,
-                     [this](std::size_t tile) { mark_changed(tile); });
+                     [&](std::size_t tile) { give_changed(tile, latent); });
         stale_ = false;
     }
     publish(latent);
@@ -81,7 +82,7 @@ void FastGatedEncoder::advance(GatedLevel& level, const Array3<float>& grid) noe
 }
 
 void FastGatedEncoder::reset() noexcept {
-    for (PaddedMap& h : states_) h.clear();
+    for (StateMap& h : states_) h.clear();
     stale_ = true;
 }
 

@@ -256,10 +256,9 @@ const float* FastRenderer::run_layers(const float* activations, int pixels,
     float* out = room;
     for (const PackedWeights& layer : layers_) {
         const void* numbers = in;
-        if (const Bf16Kernels* bf16 = layer.bf16()) {
-            auto* pixels_to_bf16 = reinterpret_cast<std::uint32_t*>(room + 2 * block);
-            bf16->pixels_to_bf16(in, std::size_t(pixels), layer.channels(), pixels_to_bf16);
-            numbers = pixels_to_bf16;
+        if (layer.numbers().bf16() != nullptr) {
+            layer.numbers().narrow(in, std::size_t(pixels), layer.channels(), room + 2 * block);
+            numbers = room + 2 * block;
         }
         layer.run(numbers, 0, layer.step(), pixels, out, layer.outputs());
         in = out;
