@@ -12,7 +12,14 @@ namespace {
 
 /// Small enough that a tile's maps stay in a core's own cache, large enough that borders computed
 /// twice cost little. Deeper levels have more channels and smaller maps.
-constexpr int kSides[] = {32, 24, 16, 12};
+constexpr int kSides[] = {48, 24, 16, 12};
+
+/// Grids are larger than a core's cache, and pieces of rows too short for its own foresight.
+constexpr int kRowsAhead = 2;
+void fetch(const float* numbers, std::size_t n) {
+    constexpr std::size_t kLine = 64 / sizeof(float);
+    for (std::size_t i = 0; i < n; i += kLine) __builtin_prefetch(numbers + i);
+}
 
 /// What a GRU's step reads of its input reaches 2 further than its tile.
 constexpr int kGruReach = 2;
@@ -120,6 +127,8 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
     float* rest = scratch + wide.height() * row;
     const auto pixels = std::size_t(inside.width());
     for (int y = inside.y0; y < inside.y1; ++y) {
+        if (y + kRowsAhead < inside.y1)
+            fetch(grid.pixel(y + kRowsAhead, inside.x0).data(), pixels * std::size_t(channels));
         float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
         float* compressed = numbers.bf16() != nullptr ? rest : to;
         vector_kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
