@@ -11,39 +11,23 @@
 
 #if defined(__x86_64__) && defined(__linux__)
 
+#include "src/kernels/amx_tiles.h"
+
 #include <cpuid.h>
-#include <immintrin.h>
 #include <sys/syscall.h>
 #include <unistd.h>
+#include "src/kernels/amx_render.h"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
-#define EVENTIDE_AMX \
-    __attribute__((target("amx-tile,amx-bf16,avx512f,avx512bw,avx512vl,avx512dq,avx512bf16")))
-#define EVENTIDE_AMX_INLINE EVENTIDE_AMX __attribute__((always_inline)) inline
-
 namespace eventide {
 namespace {
 
-constexpr int kTileRows = 16, kTileOutputs = 16;
+using namespace amx;
+
 constexpr int kSumTiles = 4;
-
-/// What the tile registers hold, as the processor wants to be told.
-struct alignas(64) TileShapes {
-    std::uint8_t palette = 1, start = 0, reserved[14] = {};
-    std::uint16_t row_bytes[16] = {};
-    std::uint8_t rows[16] = {};
-
-    /// C in 0 to 3, A in 4 and 5, B in 6 and 7.
-    TileShapes(int pixels, int pairs) {
-        for (int i = 0; i < 8; ++i) {
-            row_bytes[i] = std::uint16_t(i == 4 || i == 5 ? 4 * pairs : 4 * kTileOutputs);
-            rows[i] = std::uint8_t(i < 6 ? pixels : pairs);
-        }
-    }
-};
 
 /// Pairs of a stretch that go into one product: the same for all of a layer.
 int pairs_of(const DotArea& r) {
@@ -64,25 +48,6 @@ struct Work {
     int pixels, pairs;  // of a run, of a product
 };
 
-// Tile registers are named in the instruction, so they cannot be counted through.
-template <int kTile>
-EVENTIDE_AMX_INLINE void load_tile(const void* from, std::ptrdiff_t step) {
-    if constexpr (kTile == 0) _tile_loadd(0, from, step);
-    if constexpr (kTile == 1) _tile_loadd(1, from, step);
-    if constexpr (kTile == 2) _tile_loadd(2, from, step);
-    if constexpr (kTile == 3) _tile_loadd(3, from, step);
-    if constexpr (kTile == 4) _tile_loadd(4, from, step);
-    if constexpr (kTile == 5) _tile_loadd(5, from, step);
-    if constexpr (kTile == 6) _tile_loadd(6, from, step);
-    if constexpr (kTile == 7) _tile_loadd(7, from, step);
-}
-template <int kTile>
-EVENTIDE_AMX_INLINE void store_tile(void* to, std::ptrdiff_t step) {
-    if constexpr (kTile == 0) _tile_stored(0, to, step);
-    if constexpr (kTile == 1) _tile_stored(1, to, step);
-    if constexpr (kTile == 2) _tile_stored(2, to, step);
-    if constexpr (kTile == 3) _tile_stored(3, to, step);
-}
 /// C += A B
 template <int kSum, int kNumbers, int kWeights>
 EVENTIDE_AMX_INLINE void add_products() {
@@ -241,8 +206,13 @@ bool amx_there() {
 const Bf16Kernels* amx_kernels() {
     if (kernels_limited() || amx_left_out() || !amx_there()) return nullptr;
     const Bf16Kernels& vectors = avx512_bf16::bf16_kernels();
-    static const Bf16Kernels kKernels{"AMX", dot_area, vectors.pixels_to_bf16, vectors.row_to_bf16,
-                                      vectors.double_row};
+    static const Bf16Kernels kKernels{"AMX",
+                                      dot_area,
+                                      vectors.pixels_to_bf16,
+                                      vectors.row_to_bf16,
+                                      vectors.double_row,
+                                      vectors.offset_rows,
+                                      amx::hidden_rows};
     return &kKernels;
 }
 

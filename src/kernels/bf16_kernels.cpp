@@ -133,6 +133,7 @@ EVENTIDE_BF16 void dot_block(const DotArea& r, const std::uint32_t* weight, int 
         const std::ptrdiff_t step = stretch.step;
         const auto* from =
             static_cast<const std::uint32_t*>(stretch.in) + y * stretch.pitch + x * step;
+        // Four at a time: stretches are short, and the end of each loop costs a wrong guess.
         int k = 0;
         for (; k + 4 <= stretch.length; k += 4, weight += 4 * kWidth) {
             add_pair<Vector, P, kTwo>(sums, from + k, step, weight);
@@ -209,6 +210,28 @@ EVENTIDE_BF16 void double_row(const DoubleRow& r) {
     }
 }
 
+EVENTIDE_BF16 void offset_rows(const OffsetRows& r) {
+    const std::ptrdiff_t width = r.width, step = (width + 1) / 2 * 2;
+    constexpr std::ptrdiff_t kLine = 64 / sizeof(std::uint16_t);
+    for (int p = 0; p < r.pixels; ++p) {
+        const std::uint16_t* sums = static_cast<const std::uint16_t*>(r.sums) + r.column[p] * step;
+        auto* out = static_cast<std::uint16_t*>(r.out) + p * step;
+        if (r.ahead != 0)
+            for (std::ptrdiff_t c = 0; c < step; c += kLine)
+                __builtin_prefetch(sums + 2 * r.ahead + c, 0, 2);
+        const __m512 dx = _mm512_set1_ps(r.dx[p]);
+        for (std::ptrdiff_t c = 0; c < width; c += 16) {
+            const __mmask16 mask = first_lanes(int(width - c)), stored = first_lanes(int(step - c));
+            const __m512 offset = _mm512_fmadd_ps(dx, _mm512_maskz_loadu_ps(mask, r.slope + c),
+                                                  _mm512_maskz_loadu_ps(mask, r.base + c));
+            const __m512 sum = _mm512_add_ps(widened(sums + c, mask), offset);
+            _mm256_mask_storeu_epi16(
+                out + c, stored,
+                (__m256i)_mm512_cvtneps_pbh(_mm512_max_ps(sum, _mm512_setzero_ps())));
+        }
+    }
+}
+
 }  // namespace
 #endif
 
@@ -229,8 +252,8 @@ bool there() {
 
 const Bf16Kernels& bf16_kernels() {
 #if defined(__x86_64__)
-    static const Bf16Kernels kKernels{"AVX512_BF16", dot_area, pixels_to_bf16, row_to_bf16,
-                                      double_row};
+    static const Bf16Kernels kKernels{"AVX512_BF16", dot_area,    pixels_to_bf16, row_to_bf16,
+                                      double_row,    offset_rows, nullptr};
     return kKernels;
 #else
     return plain::bf16_kernels();

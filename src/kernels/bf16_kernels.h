@@ -23,6 +23,10 @@ struct Bf16Kernels {
     void (*row_to_bf16)(const float* in, std::size_t n, std::uint16_t* out);
     /// As VectorKernels::double_row, of bf16 numbers; `channels` counts them, and is even.
     void (*double_row)(const DoubleRow&);
+    /// As VectorKernels::offset_rows, of bf16 numbers.
+    void (*offset_rows)(const OffsetRows&);
+    /// Null where it would gain nothing; false, and nothing done, for layers it is not made for.
+    bool (*hidden_rows)(const HiddenRows&);
 };
 
 constexpr int kBf16Lanes = 16;  ///< outputs per vector, at most

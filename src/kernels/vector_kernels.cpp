@@ -6,6 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/kernels/vector_kernels.cpp"
 #include <hwy/foreach_target.h>
+#include "src/kernels/render_kernels-inl.h"
 #include "src/kernels/vector_dots-inl.h"
 #include "src/kernels/vector_maps-inl.h"
 
@@ -73,42 +74,6 @@ bool are_near(const float* a, const float* b, float bound, std::size_t n) {
                        hn::Le(hn::AbsDiff(load_some(a + i, n - i), load_some(b + i, n - i)), most));
 }
 
-struct Offset {
-    V dx;
-    HWY_INLINE V operator()(V sum, V base, V slope, V) const {
-        return hn::Max(hn::Add(sum, hn::MulAdd(dx, slope, base)), hn::Zero(D()));
-    }
-};
-void offset_rows(const OffsetRows& r) {
-    const std::ptrdiff_t width = r.width;
-    for (int p = 0; p < r.pixels; ++p)
-        map(Offset{hn::Set(D(), r.dx[p])}, std::size_t(width), r.out + p * width,
-            r.sums + r.column[p] * width, r.base, r.slope, r.base);
-}
-
-void two_outputs(const float* in, const float* weight, const float* bias, int pixels, int width,
-                 float* out) {
-    const D d;
-    const std::size_t lanes = hn::Lanes(d), n = std::size_t(width);
-    for (int p = 0; p < pixels; ++p) {
-        const float* row = in + std::size_t(p) * n;
-        V first = hn::Zero(d), second = hn::Zero(d);
-        std::size_t k = 0;
-        for (; k + lanes <= n; k += lanes) {
-            const V value = hn::LoadU(d, row + k);
-            first = hn::MulAdd(value, hn::LoadU(d, weight + k), first);
-            second = hn::MulAdd(value, hn::LoadU(d, weight + n + k), second);
-        }
-        if (k < n) {
-            const V value = load_some(row + k, n - k);
-            first = hn::MulAdd(value, load_some(weight + k, n - k), first);
-            second = hn::MulAdd(value, load_some(weight + n + k, n - k), second);
-        }
-        out[2 * p] = bias[0] + hn::GetLane(hn::SumOfLanes(d, first));
-        out[2 * p + 1] = bias[1] + hn::GetLane(hn::SumOfLanes(d, second));
-    }
-}
-
 const VectorKernels* table() {
     static const VectorKernels kernels{hwy::TargetName(HWY_TARGET),
                                        int(hn::Lanes(D())),
@@ -123,7 +88,9 @@ const VectorKernels* table() {
                                        double_row,
                                        are_near,
                                        offset_rows,
-                                       two_outputs};
+                                       two_outputs,
+                                       weigh_rows,
+                                       scaled_exp};
     return &kernels;
 }
 

@@ -3,23 +3,12 @@
 #pragma once
 
 #include "src/kernels/dot_area.h"
+#include "src/kernels/render_kernels.h"
 
 #include <cstddef>
 #include <string>
 
 namespace eventide {
-
-/// The first layer of the renderer's network, where its convolution is known:
-/// out[p][n] = max(0, sums[p pitch + n] + base[n] + dx[p] slope[n])
-struct OffsetRows {
-    const float* sums = nullptr;
-    const int* column = nullptr;  ///< [pixels] which pixel of `sums`
-    const float* dx = nullptr;    ///< [pixels]
-    const float* base = nullptr;
-    const float* slope = nullptr;
-    int pixels = 0, width = 0;  ///< width: n
-    float* out = nullptr;       ///< [pixels][width]
-};
 
 /// Pixels x0 <= x < x1 of a row of up2 (docs/model.md), between two rows of samples: each the mean
 /// of the samples around it, two above and two under.
@@ -56,9 +45,10 @@ struct VectorKernels {
     /// Whether |a - b| <= bound for each of n numbers; not where one is NaN.
     bool (*are_near)(const float* a, const float* b, float bound, std::size_t n);
     void (*offset_rows)(const OffsetRows&);
-    /// out[p][0..1] = bias + weight[0..1] . in[p], weight [2][width]
-    void (*two_outputs)(const float* in, const float* weight, const float* bias, int pixels,
-                        int width, float* out);
+    void (*two_outputs)(const TwoOutputs&);
+    void (*weigh_rows)(const WeighRows&);
+    /// out = scale exp(in), |in| up to 40
+    void (*scaled_exp)(const float* in, float scale, float* out, std::size_t n);
 };
 
 /// The best the processor has.

@@ -1,5 +1,6 @@
 // What both fast encoders have: states that are saved and loaded, scratch memory for each lane, and
-// latent maps handed out by renewing what changed.
+// an account of when which tile of the codes changed, so that a map that was filled before is only
+// renewed. Codes are written where they are handed out; no copy is kept.
 #pragma once
 
 #include "src/model/cores.h"
@@ -19,27 +20,22 @@ public:
     Tensors state() const override;
     void restore(const Tensors& state) override;
 
-private:
-    void copy_tile(std::size_t i, LatentMap& latent) const noexcept;
-
 protected:
     FastEncoder(const EngineOptions& options, const Arithmetic& arithmetic);
 
     /// To be called once, with the size of the latent map, the scratch numbers a lane needs, and
     /// the most tiles any map has.
-    void make_room(int height, int width, int channels, std::size_t scratch, std::size_t tiles);
-    /// Tile i of latent_ has new values in this step, which `latent` is given at once, while they
-    /// are in cache. On any thread.
-    void give_changed(std::size_t i, LatentMap& latent) noexcept;
-    /// Brings what is left of `latent` to what latent_ is.
-    void publish(LatentMap& latent) noexcept;
+    void make_room(int height, int width, std::size_t scratch, std::size_t tiles);
+    /// Tile i of the map of codes has new values in this step.
+    void mark_changed(std::size_t i) noexcept { history_.changed[i] = history_.step; }
+    /// Whether tile i of `latent` is not what it would be made of now.
+    bool is_outdated(std::size_t i, const LatentMap& latent) const noexcept;
 
     EngineOptions options_;
     Arithmetic arithmetic_;
     std::vector<StateMap> states_;  // h_l
-    PaddedMap latent_;
     std::vector<Tile> latent_tiles_;
-    LatentHistory history_;  // of latent_; `step` is the one at work
+    LatentHistory history_;  // of the codes; `step` is the one at work
     TileRunner runner_;
     bool stale_ = true;  // what follows from the states is not that of the states
 };

@@ -61,7 +61,7 @@ FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
     const std::size_t down =
         std::size_t(kWide) * kWide * std::size_t(channels_) + down_.scratch_size(kWide, kWide);
     make_room(
-        height, width, model.config.latent,
+        height, width,
         std::max({joined + convolving, full_gru_.scratch_size(), half_gru_.scratch_size() + down}),
         std::max(tiles_.size(), half_tiles_.size()));
 }
@@ -81,12 +81,15 @@ void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept 
     convolve(head_[1], y0_);
     normalise(4, &y0_, y1_);
     runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
-        head_[2].run({y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), latent_.at(tile.y0, tile.x0),
-                      latent_.pitch(), latent_.channels(), tile.height(), tile.width()},
-                     scratch);
-        give_changed(i, latent);
+        Array3<float>& codes = latent.values;
+        head_[2].run(
+            {y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), codes.pixel(tile.y0, tile.x0).data(),
+             std::ptrdiff_t(codes.width()) * codes.channels(), codes.channels(), tile.height(),
+             tile.width()},
+            scratch);
+        mark_changed(i);
     });
-    publish(latent);
+    latent.history = history_;
 }
 
 ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,

@@ -45,7 +45,7 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
     for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_)};
     zeros_ = {1, kLatentSide, numbers_.units(depth_)};
     for (LatentHistory& history : histories_) history.changed.reserve(tiles_.size());
-    for (Sums& sums : kept_) sums.values = {height, width, outputs_};
+    for (Sums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
     scratch_.assign(kLanes, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
@@ -206,7 +206,8 @@ void FirstLayerCache::compute_tile(Sums& to, const Tile& tile, float* scratch) n
             call.in[c] = {zeros_.at(0, -1), 0};
     }
     call.out = to.values.pixel(tile.y0, tile.x0).data();
-    call.out_pitch = std::ptrdiff_t(width_) * outputs_;
+    call.out_pitch = std::ptrdiff_t(width_) * to.values.channels();
+    call.narrow = true;
     call.height = tile.height();
     call.width = tile.width();
     (to.whole ? whole_ : past_).run(call, scratch);

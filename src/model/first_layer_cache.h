@@ -20,9 +20,10 @@ class FirstLayerCache {
 public:
     /// Layer 1 without its offset part, at every sample of event window k.
     struct Sums {
-        std::int64_t k = 0;    ///< 0: nothing yet
-        bool whole = false;    ///< over z_{k-1..k+1}; else over z_{k-1}, z_k
-        Array3<float> values;  ///< [y][x][H_1] in latent pixels
+        std::int64_t k = 0;  ///< 0: nothing yet
+        bool whole = false;  ///< over z_{k-1..k+1}; else over z_{k-1}, z_k
+        /// [y][x][H_1] in latent pixels, of the numbers that layers read
+        Array3<float> values;
     };
 
     /// Latent maps are of `height` x `width`.

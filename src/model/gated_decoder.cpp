@@ -15,8 +15,7 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
     : top_(std::size_t(model.config.latent_stride - 1)),
       widths_(model.config.widths),
       numbers_(arithmetic.products),
-      latent_size_(levels[top_].size()),
-      latent_tiles_(latent_tiles(latent_size_.height, latent_size_.width)) {
+      latent_size_(levels[top_].size()) {
     const auto conv = [&](const std::string& name, bool relu, const std::vector<Tile>& tiles,
                           Extent size, const std::vector<int>& sources = {}) {
         return PackedConv{plain::conv_weights<float>(model.weights, name), 1,      relu, arithmetic,
@@ -48,8 +47,29 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
         need(std::size_t(deepest.side() * widths_.back()), block.first, deepest.side());
         need(0, block.second, deepest.side());
     }
-    out_ = conv("encoder.out", false, latent_tiles_, latent_size_);
+    out_ = conv("encoder.out", false, latent_tiles(latent_size_.height, latent_size_.width),
+                latent_size_);
     need(0, out_, kLatentSide);
+}
+
+void GatedDecoder::run(const std::vector<GatedLevel>& levels, const std::vector<StateMap>& states,
+                       bool everywhere, TileRunner& runner) noexcept {
+    run_blocks(levels.back(), states.back().read(), everywhere, runner);
+    for (std::size_t l = levels.size() - 1; l-- > top_;)
+        join(levels[l], states[l].read(), decoded(l + 1, states), l, runner);
+    spread(levels_[top_]);
+}
+
+void GatedDecoder::write_codes(const std::vector<StateMap>& states, const Tile& tile,
+                               Array3<float>& codes, float* scratch) const noexcept {
+    const PaddedMap& from = decoded(top_, states);
+    out_.run({{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
+              codes.pixel(tile.y0, tile.x0).data(),
+              std::ptrdiff_t(codes.width()) * codes.channels(),
+              false,
+              tile.height(),
+              tile.width()},
+             scratch);
 }
 
 void GatedDecoder::convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to,

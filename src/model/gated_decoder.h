@@ -20,22 +20,15 @@ public:
     /// Numbers run() needs for each lane.
     std::size_t scratch_size() const { return scratch_; }
 
-    /// Brings `latent` up to the states, where a level's mask says that one has changed, or
-    /// `everywhere`; changed(i) is called for each of the latent tiles written, on any thread.
-    template <typename Changed>
+    /// Brings everything before the codes up to the states, where a level's mask says that one has
+    /// changed, or `everywhere`.
     void run(const std::vector<GatedLevel>& levels, const std::vector<StateMap>& states,
-             bool everywhere, TileRunner& runner, PaddedMap& latent,
-             const Changed& changed) noexcept {
-        run_blocks(levels.back(), states.back().read(), everywhere, runner);
-        for (std::size_t l = levels.size() - 1; l-- > top_;)
-            join(levels[l], states[l].read(), decoded(l + 1, states), l, runner);
-        Level& top = levels_[top_];
-        spread(top);
-        runner.over(latent_tiles_, top.touched, [&](std::size_t i, const Tile& tile, float* room) {
-            convolve(out_, decoded(top_, states), latent, false, tile, room);
-            changed(i);
-        });
-    }
+             bool everywhere, TileRunner& runner) noexcept;
+    /// Whether codes of a tile may have changed in the last run().
+    bool changes(const Tile& tile) const { return tile.any(levels_[top_].touched); }
+    /// A tile of the map of codes.
+    void write_codes(const std::vector<StateMap>& states, const Tile& tile, Array3<float>& codes,
+                     float* scratch) const noexcept;
 
 private:
     struct Level {
@@ -70,7 +63,6 @@ private:
     std::vector<Block> blocks_;
     PackedConv out_;
     Extent latent_size_;
-    std::vector<Tile> latent_tiles_;
     std::size_t scratch_ = 0;
 };
 

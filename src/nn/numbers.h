@@ -51,6 +51,10 @@ public:
         row.channels = 2 * units(row.channels);
         bf16_->double_row(row);
     }
+    /// See OffsetRows.
+    void offset_rows(const OffsetRows& rows) const noexcept {
+        bf16_ != nullptr ? bf16_->offset_rows(rows) : vector_kernels().offset_rows(rows);
+    }
 
 private:
     const Bf16Kernels* bf16_ = nullptr;

@@ -73,6 +73,15 @@ void PackedWeights::run(DotArea area) const noexcept {
     }
 }
 
+bool PackedWeights::run(HiddenRows rows) const noexcept {
+    const Bf16Kernels* bf16 = numbers_.bf16();
+    if (bf16 == nullptr || bf16->hidden_rows == nullptr || !relu_) return false;
+    rows.weight = narrow_.data();
+    rows.bias = bias_.data();
+    rows.outputs = outputs_;
+    return bf16->hidden_rows(rows);
+}
+
 void PackedWeights::run(const void* in, std::ptrdiff_t pitch, std::ptrdiff_t step, int count,
                         float* out, std::ptrdiff_t out_step) const noexcept {
     constexpr std::size_t kMost = 16;

@@ -37,6 +37,9 @@ public:
     bool empty() const { return shapes_.empty(); }
     /// Units a pixel of input takes as the kernel reads it.
     int step() const { return numbers_.units(channels()); }
+    /// Offsets, this as the only hidden layer, and the last; false, and nothing done, where no
+    /// kernel does them at once.
+    bool run(HiddenRows rows) const noexcept;
     /// Fills in what the weights know of an area.
     void run(DotArea area) const noexcept;
     /// A row of outputs. `in` points at numbers of the kernel's own kind; pitch and step count

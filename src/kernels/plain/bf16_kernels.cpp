@@ -82,11 +82,23 @@ void double_row(const DoubleRow& r) {
     }
 }
 
+void offset_rows(const OffsetRows& r) {
+    const std::ptrdiff_t width = r.width, step = (width + 1) / 2 * 2;
+    for (int p = 0; p < r.pixels; ++p) {
+        const std::uint16_t* sums = static_cast<const std::uint16_t*>(r.sums) + r.column[p] * step;
+        auto* out = static_cast<std::uint16_t*>(r.out) + p * step;
+        for (std::ptrdiff_t c = 0; c < width; ++c)
+            out[c] =
+                to_bf16(std::max(from_bf16(sums[c]) + (r.base[c] + r.dx[p] * r.slope[c]), 0.0F));
+        if (step > width) out[width] = 0;
+    }
+}
+
 }  // namespace
 
 const Bf16Kernels& bf16_kernels() {
-    static const Bf16Kernels kKernels{"emulated", dot_area, pixels_to_bf16, row_to_bf16,
-                                      double_row};
+    static const Bf16Kernels kKernels{"emulated", dot_area,    pixels_to_bf16, row_to_bf16,
+                                      double_row, offset_rows, nullptr};
     return kKernels;
 }
 
