@@ -16,7 +16,7 @@
 #include <cpuid.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-#include "src/kernels/amx_render.h"
+#include "src/kernels/bf16_render.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,6 +3,7 @@
 // where it is there.
 #include "src/kernels/bf16_kernels.h"
 
+#include "src/kernels/bf16_render.h"
 #include "src/kernels/dot_blocks.h"
 #include "src/kernels/narrow_pixels.h"
 
@@ -191,21 +192,30 @@ EVENTIDE_BF16_INLINE __m512 widened(const std::uint16_t* from, __mmask16 mask) {
         _mm512_slli_epi32(_mm512_cvtepu16_epi32(_mm256_maskz_loadu_epi16(mask, from)), 16));
 }
 
+/// Sample by sample, for the two pixels it is left of: the one on it, and the one before the next.
 EVENTIDE_BF16 void double_row(const DoubleRow& r) {
     const auto *above = static_cast<const std::uint16_t*>(r.above),
                *under = static_cast<const std::uint16_t*>(r.under);
-    auto* out = static_cast<std::uint16_t*>(r.out);
     const auto n = std::ptrdiff_t(r.channels);
+    auto* const out = static_cast<std::uint16_t*>(r.out) - r.x0 * n;
     const __m512 quarter = _mm512_set1_ps(0.25F);
-    for (int x = r.x0; x < r.x1; ++x, out += n) {
-        const std::ptrdiff_t left = x / 2 * n, right = std::min((x + 1) / 2, r.last) * n;
-        for (std::ptrdiff_t c = 0; c < n; c += 16) {
-            const __mmask16 mask = first_lanes(int(n - c));
-            const __m512 sum = _mm512_add_ps(
-                _mm512_add_ps(widened(above + left + c, mask), widened(above + right + c, mask)),
-                _mm512_add_ps(widened(under + left + c, mask), widened(under + right + c, mask)));
-            _mm256_mask_storeu_epi16(out + c, mask,
-                                     (__m256i)_mm512_cvtneps_pbh(_mm512_mul_ps(sum, quarter)));
+    for (std::ptrdiff_t c = 0; c < n; c += 16) {
+        const __mmask16 mask = first_lanes(int(n - c));
+        const auto column = [&](int sample) EVENTIDE_BF16 {
+            return _mm512_add_ps(widened(above + sample * n + c, mask),
+                                 widened(under + sample * n + c, mask));
+        };
+        const auto put = [&](int x, __m512 left, __m512 right) EVENTIDE_BF16 {
+            _mm256_mask_storeu_epi16(
+                out + x * n + c, mask,
+                (__m256i)_mm512_cvtneps_pbh(_mm512_mul_ps(_mm512_add_ps(left, right), quarter)));
+        };
+        __m512 left = column(r.x0 / 2);
+        for (int sample = r.x0 / 2; 2 * sample < r.x1; ++sample) {
+            const __m512 right = column(std::min(sample + 1, r.last));
+            if (2 * sample >= r.x0) put(2 * sample, left, left);
+            if (2 * sample + 1 < r.x1) put(2 * sample + 1, left, right);
+            left = right;
         }
     }
 }
@@ -253,7 +263,7 @@ bool there() {
 const Bf16Kernels& bf16_kernels() {
 #if defined(__x86_64__)
     static const Bf16Kernels kKernels{"AVX512_BF16", dot_area,    pixels_to_bf16, row_to_bf16,
-                                      double_row,    offset_rows, nullptr};
+                                      double_row,    offset_rows, hidden_rows};
     return kKernels;
 #else
     return plain::bf16_kernels();

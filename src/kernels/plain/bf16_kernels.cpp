@@ -76,8 +76,8 @@ void double_row(const DoubleRow& r) {
     for (int x = r.x0; x < r.x1; ++x, out += n) {
         const std::ptrdiff_t left = x / 2 * n, right = std::min((x + 1) / 2, r.last) * n;
         for (std::ptrdiff_t c = 0; c < n; ++c)
-            out[c] = to_bf16(((from_bf16(above[left + c]) + from_bf16(above[right + c])) +
-                              (from_bf16(under[left + c]) + from_bf16(under[right + c]))) *
+            out[c] = to_bf16(((from_bf16(above[left + c]) + from_bf16(under[left + c])) +
+                              (from_bf16(above[right + c]) + from_bf16(under[right + c]))) *
                              0.25F);
     }
 }

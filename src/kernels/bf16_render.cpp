@@ -1,16 +1,17 @@
-// See amx_render.h. Pixels go through in pairs of runs of 16, and leave the core's own cache at the
-// end alone:
+// See bf16_render.h. Pixels go through in pairs of runs of 16, and leave the core's own cache at
+// the end alone:
 //
 //     sums of layer 1, bf16   + base + dx slope, relu   -> A: 16 pixels x up to 32 numbers, twice
-//     A x B (hidden weights: stay in two registers)     -> C: 16 pixels x 2 x 16 sums, twice
+//     A x B (hidden weights)                            -> C: 16 pixels x 2 x 16 sums, twice
 //     relu(C) . the last layer's two rows               -> 16 mu, 16 log sigma, twice
-#include "src/kernels/amx_render.h"
+#include "src/kernels/bf16_render.h"
 
-#if defined(__x86_64__) && defined(__linux__)
+#if defined(__x86_64__)
 
 #include "src/kernels/amx_tiles.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace eventide::amx {
 namespace {
@@ -19,7 +20,13 @@ constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMostNumbers = 32;
 
 struct Room {
     alignas(64) std::uint16_t numbers[kBoth][kMostNumbers] = {};
-    alignas(64) float sums[4][kRun][kTileOutputs];  // tiles: pixels, outputs 0-15, 16-31
+    alignas(64) float sums[4][kRun][kTileOutputs];  // of 16 pixels: outputs 0-15, 16-31
+
+    int pairs(int pixel, int k) const {
+        int pair;
+        std::memcpy(&pair, &numbers[pixel][2 * k], sizeof(pair));
+        return pair;
+    }
 };
 
 EVENTIDE_AMX_INLINE __mmask16 first_lanes(int n) {
@@ -106,7 +113,7 @@ EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int ru
                           _mm512_add_ps(sums.second, _mm512_set1_ps(r.last_bias[1])));
 }
 
-EVENTIDE_AMX_INLINE void multiply(const HiddenRows& r, Room& room) {
+EVENTIDE_AMX_INLINE void multiply_tiles(const HiddenRows& r, Room& room) {
     constexpr std::ptrdiff_t kRow = sizeof(room.numbers[0]), kSums = sizeof(room.sums[0][0]);
     load_tile<0>(r.bias, 0);
     load_tile<1>(r.bias + kTileOutputs, 0);
@@ -124,37 +131,76 @@ EVENTIDE_AMX_INLINE void multiply(const HiddenRows& r, Room& room) {
     store_tile<3>(room.sums[3], kSums);
 }
 
-EVENTIDE_AMX void run_rows(const HiddenRows& r) {
-    const OffsetRows& offset = r.offset;
-    const TileShapes shapes{kRun, offset.width / 2};
+/// The same by vectors: eight pixels x 2 x 16 sums at a time.
+EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
+    constexpr int kPixels = 8;
+    const auto* weight = static_cast<const std::uint32_t*>(r.weight);
+    for (int first = 0; first < kBoth; first += kPixels) {
+        __m512 low[kPixels], high[kPixels];
+        for (int p = 0; p < kPixels; ++p) {
+            low[p] = _mm512_loadu_ps(r.bias);
+            high[p] = _mm512_loadu_ps(r.bias + kTileOutputs);
+        }
+        for (int k = 0; k < r.offset.width / 2; ++k) {
+            const auto* at = weight + std::ptrdiff_t(k) * 2 * kTileOutputs;
+            const auto weight_low = (__m512bh)_mm512_loadu_si512(at),
+                       weight_high = (__m512bh)_mm512_loadu_si512(at + kTileOutputs);
+#pragma GCC unroll 8
+            for (int p = 0; p < kPixels; ++p) {
+                const auto pair = (__m512bh)_mm512_set1_epi32(room.pairs(first + p, k));
+                low[p] = _mm512_dpbf16_ps(low[p], pair, weight_low);
+                high[p] = _mm512_dpbf16_ps(high[p], pair, weight_high);
+            }
+        }
+        const int run = first / kRun;
+        for (int p = 0; p < kPixels; ++p) {
+            _mm512_store_ps(room.sums[2 * run][first % kRun + p], low[p]);
+            _mm512_store_ps(room.sums[2 * run + 1][first % kRun + p], high[p]);
+        }
+    }
+}
+
+EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
+    const TileShapes shapes{kRun, r.offset.width / 2};
     _tile_loadconfig(&shapes);
     constexpr std::ptrdiff_t kWeightStep = 2 * kTileOutputs * sizeof(std::uint32_t);
     load_tile<6>(r.weight, kWeightStep);
     load_tile<7>(static_cast<const std::uint32_t*>(r.weight) + kTileOutputs, kWeightStep);
+}
+
+template <bool kTiles>
+EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
+    const OffsetRows& offset = r.offset;
+    if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMostNumbers ||
+        r.outputs <= kTileOutputs || r.outputs > 2 * kTileOutputs)
+        return false;
+    if (kTiles) start_tiles(r);
     const Half low{offset, 0}, high{offset, 16};
     const LastLayer last{r};
     Room room;
     for (int first = 0; first < offset.pixels; first += kBoth) {
         const int count = std::min(kBoth, offset.pixels - first);
         offset_pixels(offset, low, high, first, count, room);
-        multiply(r, room);
+        kTiles ? multiply_tiles(r, room) : multiply_vectors(r, room);
         two_outputs(r, last, 0, first, count, room);
         if (count > kRun) two_outputs(r, last, 1, first + kRun, count - kRun, room);
     }
-    _tile_release();
-}
-
-}  // namespace
-
-bool hidden_rows(const HiddenRows& r) {
-    const int width = r.offset.width;
-    if (width % 2 != 0 || width < 2 || width > kMostNumbers || r.outputs <= kTileOutputs ||
-        r.outputs > 2 * kTileOutputs)
-        return false;
-    run_rows(r);
+    if (kTiles) _tile_release();
     return true;
 }
 
+}  // namespace
 }  // namespace eventide::amx
+
+namespace eventide {
+
+bool avx512_bf16::hidden_rows(const HiddenRows& rows) {
+    return amx::run_rows<false>(rows);
+}
+bool amx::hidden_rows(const HiddenRows& rows) {
+    return amx::run_rows<true>(rows);
+}
+
+}  // namespace eventide
 
 #endif
