@@ -1,9 +1,11 @@
-// See bf16_kernels.h. Highway has no bf16 product for these processors yet, hence intrinsics; they
-// are compiled for their instruction set function by function and called only where it is there.
+// See bf16_kernels.h, by AVX512_BF16. Highway has no bf16 product for these processors yet, hence
+// intrinsics; they are compiled for their instruction set function by function and called only
+// where it is there.
 #include "src/kernels/bf16_kernels.h"
 
+#include "src/kernels/bf16_render.h"
 #include "src/kernels/dot_blocks.h"
-#include "src/kernels/vector_kernels.h"
+#include "src/kernels/narrow_pixels.h"
 
 #include <algorithm>
 #include <array>
@@ -18,25 +20,6 @@
 #endif
 
 namespace eventide {
-
-namespace {
-
-template <typename NarrowRow>
-void narrow_pixels(NarrowRow row_to_bf16, const float* in, std::size_t pixels, int channels,
-                   std::uint32_t* out) {
-    auto* numbers = reinterpret_cast<std::uint16_t*>(out);
-    const auto count = std::size_t(channels);
-    if (channels % 2 == 0) {
-        row_to_bf16(in, pixels * count, numbers);
-        return;
-    }
-    for (std::size_t p = 0; p < pixels; ++p) {
-        row_to_bf16(in + p * count, count, numbers + p * (count + 1));
-        numbers[p * (count + 1) + count] = 0;
-    }
-}
-
-}  // namespace
 
 #if defined(__x86_64__)
 namespace {
@@ -64,6 +47,10 @@ struct Wide {
     EVENTIDE_BF16_INLINE static void store(float* to, int n, Sum v, Sum floor) {
         _mm512_mask_storeu_ps(to, first_lanes(n), _mm512_max_ps(v, floor));
     }
+    EVENTIDE_BF16_INLINE static void store(std::uint16_t* to, int n, Sum v, Sum floor) {
+        _mm256_mask_storeu_epi16(to, first_lanes(n),
+                                 (__m256i)_mm512_cvtneps_pbh(_mm512_max_ps(v, floor)));
+    }
 };
 struct Narrow {
     static constexpr int kLanes = 8;
@@ -82,6 +69,10 @@ struct Narrow {
     }
     EVENTIDE_BF16_INLINE static void store(float* to, int n, Sum v, Sum floor) {
         _mm256_mask_storeu_ps(to, __mmask8(first_lanes(std::min(n, 8))), _mm256_max_ps(v, floor));
+    }
+    EVENTIDE_BF16_INLINE static void store(std::uint16_t* to, int n, Sum v, Sum floor) {
+        _mm_mask_storeu_epi16(to, __mmask8(first_lanes(std::min(n, 8))),
+                              (__m128i)_mm256_cvtneps_pbh(_mm256_max_ps(v, floor)));
     }
 };
 
@@ -105,9 +96,11 @@ struct Sums {
         a = Vector::add(a, pair, weight_a);
         if (kTwo) b = Vector::add(b, pair, weight_b);
     }
-    EVENTIDE_BF16_INLINE void store(float* out, std::ptrdiff_t step, int outputs, Sum floor) const {
+    template <typename Number>
+    EVENTIDE_BF16_INLINE void store(Number* out, std::ptrdiff_t step, int outputs,
+                                    Sum floor) const {
         before.store(out, step, outputs, floor);
-        float* to = out + (P - 1) * step;
+        Number* to = out + (P - 1) * step;
         Vector::store(to, outputs, a, floor);
         if (kTwo) Vector::store(to + Vector::kLanes, outputs - Vector::kLanes, b, floor);
     }
@@ -118,46 +111,67 @@ struct Sums<Vector, 0, kTwo> {
     using Pairs = typename Vector::Pairs;
     EVENTIDE_BF16_INLINE void start(Sum, Sum) {}
     EVENTIDE_BF16_INLINE void add(const std::uint32_t*, std::ptrdiff_t, Pairs, Pairs) {}
-    EVENTIDE_BF16_INLINE void store(float*, std::ptrdiff_t, int, Sum) const {}
+    template <typename Number>
+    EVENTIDE_BF16_INLINE void store(Number*, std::ptrdiff_t, int, Sum) const {}
 };
 
 template <class Vector, int P, bool kTwo>
-EVENTIDE_BF16 void dot_block(const Bf16DotRows& r, const std::uint32_t* in,
-                             const std::uint32_t* weight, int first, float* out) {
+EVENTIDE_BF16_INLINE void add_pair(Sums<Vector, P, kTwo>& sums, const std::uint32_t* from,
+                                   std::ptrdiff_t step, const std::uint32_t* weight) {
+    constexpr int kSecond = kTwo ? Vector::kLanes : 0;
+    sums.add(from, step, Vector::load(weight), Vector::load(weight + kSecond));
+}
+
+template <class Vector, int P, bool kTwo>
+EVENTIDE_BF16 void dot_block(const DotArea& r, const std::uint32_t* weight, int y, int x,
+                             int first) {
     constexpr int kWidth = kTwo ? 2 * Vector::kLanes : Vector::kLanes;
     const float* bias = r.bias + first;
     Sums<Vector, P, kTwo> sums;
     sums.start(Vector::load(bias), Vector::load(bias + kWidth - Vector::kLanes));
-    for (int s = 0; s < r.stretches; ++s) {
-        const std::uint32_t* from = in + s * r.pitch;
-        for (int k = 0; k < r.length; ++k) {
-            sums.add(from + k, r.step, Vector::load(weight),
-                     Vector::load(weight + kWidth - Vector::kLanes));
-            weight += kWidth;
+    for (int s = 0; s < r.count; ++s) {
+        const Stretch& stretch = r.stretches[s];
+        const std::ptrdiff_t step = stretch.step;
+        const auto* from =
+            static_cast<const std::uint32_t*>(stretch.in) + y * stretch.pitch + x * step;
+        // Four at a time: stretches are short, and the end of each loop costs a wrong guess.
+        int k = 0;
+        for (; k + 4 <= stretch.length; k += 4, weight += 4 * kWidth) {
+            add_pair<Vector, P, kTwo>(sums, from + k, step, weight);
+            add_pair<Vector, P, kTwo>(sums, from + k + 1, step, weight + kWidth);
+            add_pair<Vector, P, kTwo>(sums, from + k + 2, step, weight + 2 * kWidth);
+            add_pair<Vector, P, kTwo>(sums, from + k + 3, step, weight + 3 * kWidth);
         }
+        for (; k < stretch.length; ++k, weight += kWidth)
+            add_pair<Vector, P, kTwo>(sums, from + k, step, weight);
     }
     const auto floor = Vector::all(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
-    sums.store(out, r.out_step, r.outputs - first, floor);
+    const std::ptrdiff_t to = y * r.out_pitch + x * r.out_step;
+    if (r.narrow)
+        sums.store(static_cast<std::uint16_t*>(r.out) + 2 * to + first, 2 * r.out_step,
+                   (r.outputs + 1) / 2 * 2 - first, floor);
+    else
+        sums.store(static_cast<float*>(r.out) + to + first, r.out_step, r.outputs - first, floor);
 }
 
 constexpr int kMaxPixels = 18, kMaxPixelsOfTwo = 14;
-using Block = void (*)(const Bf16DotRows&, const std::uint32_t*, const std::uint32_t*, int, float*);
+using Block = void (*)(const DotArea&, const std::uint32_t*, int, int, int);
 template <class Vector, bool kTwo, int... P>
 constexpr std::array<Block, sizeof...(P)> blocks(std::integer_sequence<int, P...>) {
     return {&dot_block<Vector, P + 1, kTwo>...};
 }
 
 template <class Vector>
-void dot_rows_by(const Bf16DotRows& r) {
+void dot_area_by(const DotArea& r) {
     static constexpr auto kOne =
         blocks<Vector, false>(std::make_integer_sequence<int, kMaxPixels>{});
     static constexpr auto kTwo =
         blocks<Vector, true>(std::make_integer_sequence<int, kMaxPixelsOfTwo>{});
-    dot_in_blocks(r, Vector::kLanes, kOne, kTwo);
+    dot_in_blocks<std::uint32_t>(r, Vector::kLanes, kOne, kTwo);
 }
 
-void dot_rows(const Bf16DotRows& r) {
-    bf16_lanes(r.outputs) == Narrow::kLanes ? dot_rows_by<Narrow>(r) : dot_rows_by<Wide>(r);
+void dot_area(const DotArea& r) {
+    bf16_lanes(r.outputs) == Narrow::kLanes ? dot_area_by<Narrow>(r) : dot_area_by<Wide>(r);
 }
 
 EVENTIDE_BF16 void row_to_bf16(const float* in, std::size_t n, std::uint16_t* out) {
@@ -172,74 +186,95 @@ void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint
     narrow_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
+/// 16 bf16 numbers as float32.
+EVENTIDE_BF16_INLINE __m512 widened(const std::uint16_t* from, __mmask16 mask) {
+    return _mm512_castsi512_ps(
+        _mm512_slli_epi32(_mm512_cvtepu16_epi32(_mm256_maskz_loadu_epi16(mask, from)), 16));
+}
+
+/// Sample by sample, for the two pixels it is left of: the one on it, and the one before the next.
+EVENTIDE_BF16 void double_row(const DoubleRow& r) {
+    const auto *above = static_cast<const std::uint16_t*>(r.above),
+               *under = static_cast<const std::uint16_t*>(r.under);
+    const auto n = std::ptrdiff_t(r.channels);
+    auto* const out = static_cast<std::uint16_t*>(r.out) - r.x0 * n;
+    const __m512 quarter = _mm512_set1_ps(0.25F);
+    for (std::ptrdiff_t c = 0; c < n; c += 16) {
+        const __mmask16 mask = first_lanes(int(n - c));
+        const auto column = [&](int sample) EVENTIDE_BF16 {
+            return _mm512_add_ps(widened(above + sample * n + c, mask),
+                                 widened(under + sample * n + c, mask));
+        };
+        const auto put = [&](int x, __m512 left, __m512 right) EVENTIDE_BF16 {
+            _mm256_mask_storeu_epi16(
+                out + x * n + c, mask,
+                (__m256i)_mm512_cvtneps_pbh(_mm512_mul_ps(_mm512_add_ps(left, right), quarter)));
+        };
+        __m512 left = column(r.x0 / 2);
+        for (int sample = r.x0 / 2; 2 * sample < r.x1; ++sample) {
+            const __m512 right = column(std::min(sample + 1, r.last));
+            if (2 * sample >= r.x0) put(2 * sample, left, left);
+            if (2 * sample + 1 < r.x1) put(2 * sample + 1, left, right);
+            left = right;
+        }
+    }
+}
+
+EVENTIDE_BF16 void offset_rows(const OffsetRows& r) {
+    const std::ptrdiff_t width = r.width, step = (width + 1) / 2 * 2;
+    constexpr std::ptrdiff_t kLine = 64 / sizeof(std::uint16_t);
+    for (int p = 0; p < r.pixels; ++p) {
+        const std::uint16_t* sums = static_cast<const std::uint16_t*>(r.sums) + r.column[p] * step;
+        auto* out = static_cast<std::uint16_t*>(r.out) + p * step;
+        if (r.ahead != 0)
+            for (std::ptrdiff_t c = 0; c < step; c += kLine)
+                __builtin_prefetch(sums + 2 * r.ahead + c, 0, 2);
+        const __m512 dx = _mm512_set1_ps(r.dx[p]);
+        for (std::ptrdiff_t c = 0; c < width; c += 16) {
+            const __mmask16 mask = first_lanes(int(width - c)), stored = first_lanes(int(step - c));
+            const __m512 offset = _mm512_fmadd_ps(dx, _mm512_maskz_loadu_ps(mask, r.slope + c),
+                                                  _mm512_maskz_loadu_ps(mask, r.base + c));
+            const __m512 sum = _mm512_add_ps(widened(sums + c, mask), offset);
+            _mm256_mask_storeu_epi16(
+                out + c, stored,
+                (__m256i)_mm512_cvtneps_pbh(_mm512_max_ps(sum, _mm512_setzero_ps())));
+        }
+    }
+}
+
 }  // namespace
 #endif
 
-const Bf16Kernels* bf16_kernels() {
+namespace avx512_bf16 {
+
+bool there() {
 #if defined(__x86_64__)
-    static const Bf16Kernels kKernels{dot_rows, pixels_to_bf16, row_to_bf16};
     // Compilers' names for processor features are younger than the instruction; avx512bf16 is known
     // to gcc 12 and clang 14.
     static const bool kThere =
         __builtin_cpu_supports("avx512bf16") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
         __builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512dq") != 0;
-    if (kThere && !kernels_limited()) return &kKernels;
+    return kThere;
+#else
+    return false;
 #endif
-    return nullptr;
 }
-
-namespace plain {
-namespace {
-
-/// The two numbers of a pair, low half first.
-float first_of(std::uint32_t pair) {
-    return std::bit_cast<float>(pair << 16);
-}
-float second_of(std::uint32_t pair) {
-    return std::bit_cast<float>(pair & 0xffff'0000U);
-}
-
-/// A product of two bf16 numbers is exact in float32, so only the sums round, as in the processor.
-void dot_rows(const Bf16DotRows& r) {
-    const std::uint32_t* weight = r.weight;
-    const int lanes = bf16_lanes(r.outputs);
-    for (int first = 0; first < r.outputs;) {
-        const int width = r.outputs - first > lanes ? 2 * lanes : lanes;
-        const std::ptrdiff_t packed = std::ptrdiff_t(r.stretches) * r.length * width;
-        for (int p = 0; p < r.pixels; ++p) {
-            std::array<float, 2 * kBf16Lanes> sums{};
-            std::copy_n(r.bias + first, width, sums.begin());
-            const std::uint32_t* w = weight;
-            for (int s = 0; s < r.stretches; ++s)
-                for (int k = 0; k < r.length; ++k, w += width) {
-                    const std::uint32_t pair = r.in[s * r.pitch + p * r.step + k];
-                    const float a = first_of(pair), b = second_of(pair);
-                    for (std::size_t o = 0; o < std::size_t(width); ++o)
-                        sums[o] = (sums[o] + b * second_of(w[o])) + a * first_of(w[o]);
-                }
-            for (int o = 0; o < std::min(width, r.outputs - first); ++o) {
-                const float sum = sums[std::size_t(o)];
-                r.out[p * r.out_step + first + o] = r.relu ? std::max(sum, 0.0F) : sum;
-            }
-        }
-        weight += packed;
-        first += width;
-    }
-}
-
-void row_to_bf16(const float* in, std::size_t n, std::uint16_t* out) {
-    std::transform(in, in + n, out, to_bf16);
-}
-void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
-    narrow_pixels(row_to_bf16, in, pixels, channels, out);
-}
-
-}  // namespace
 
 const Bf16Kernels& bf16_kernels() {
-    static const Bf16Kernels kKernels{dot_rows, pixels_to_bf16, row_to_bf16};
+#if defined(__x86_64__)
+    static const Bf16Kernels kKernels{"AVX512_BF16", dot_area,    pixels_to_bf16, row_to_bf16,
+                                      double_row,    offset_rows, hidden_rows};
     return kKernels;
+#else
+    return plain::bf16_kernels();
+#endif
 }
 
-}  // namespace plain
+}  // namespace avx512_bf16
+
+const Bf16Kernels* bf16_kernels() {
+    if (const Bf16Kernels* amx = amx_kernels()) return amx;
+    return avx512_bf16::there() && !kernels_limited() ? &avx512_bf16::bf16_kernels() : nullptr;
+}
+
 }  // namespace eventide

@@ -1,6 +1,9 @@
-// Sums of products of bf16 numbers with float32 sums. The processor's instruction (AVX512_BF16)
-// takes two numbers at once, so channels go in pairs.
+// Sums of products of bf16 numbers with float32 sums. The processor's instructions (AVX512_BF16,
+// AMX) take two numbers at once, so channels go in pairs.
 #pragma once
+
+#include "src/kernels/dot_area.h"
+#include "src/kernels/vector_kernels.h"
 
 #include <bit>
 #include <cstddef>
@@ -8,29 +11,22 @@
 
 namespace eventide {
 
-/// As DotRows (vector_kernels.h), but `in` holds pairs of bf16 numbers and `length`, `pitch` and
-/// `step` count pairs. Weights: blocks of two vectors of bf16_lanes(outputs), then one;
-/// [s][pair][output][2].
-struct Bf16DotRows {
-    const std::uint32_t* in = nullptr;
-    std::ptrdiff_t pitch = 0, step = 0;
-    int stretches = 0, length = 0;
-    int pixels = 0;
-    int outputs = 0;
-    const std::uint32_t* weight = nullptr;
-    const float* bias = nullptr;  ///< [outputs rounded up to 16]
-    bool relu = false;
-    float* out = nullptr;
-    std::ptrdiff_t out_step = 0;
-};
-
 struct Bf16Kernels {
-    void (*dot_rows)(const Bf16DotRows&);
+    const char* name;  ///< of the instruction set
+    /// Units are pairs of bf16 numbers. Weights: blocks of two vectors of bf16_lanes(outputs), then
+    /// one; [s][pair][output][2].
+    void (*dot_area)(const DotArea&);
     /// `pixels` times `channels` numbers, one after the other, rounded to nearest even; an odd
     /// number of channels gets a zero beside the last.
     void (*pixels_to_bf16)(const float* in, std::size_t pixels, int channels, std::uint32_t* out);
     /// `n` numbers one after the other.
     void (*row_to_bf16)(const float* in, std::size_t n, std::uint16_t* out);
+    /// As VectorKernels::double_row, of bf16 numbers; `channels` counts them, and is even.
+    void (*double_row)(const DoubleRow&);
+    /// As VectorKernels::offset_rows, of bf16 numbers.
+    void (*offset_rows)(const OffsetRows&);
+    /// Null where it would gain nothing; false, and nothing done, for layers it is not made for.
+    bool (*hidden_rows)(const HiddenRows&);
 };
 
 constexpr int kBf16Lanes = 16;  ///< outputs per vector, at most
@@ -39,14 +35,28 @@ constexpr int bf16_lanes(int outputs) {
     return outputs <= kBf16Lanes / 2 ? kBf16Lanes / 2 : kBf16Lanes;
 }
 
-/// Null where the processor has no such instruction, or limit_kernels_to_avx2() was called.
+/// By AMX where the processor has it, else by AVX512_BF16. Null where it has neither, or what it
+/// has is left out (limit_kernels_to_avx2(), limit_kernels_to_avx512()).
 const Bf16Kernels* bf16_kernels();
+/// By AMX; null where it is not there, the system does not allow it, or it is left out.
+const Bf16Kernels* amx_kernels();
 
 /// One number, rounded to nearest even; finite in, finite out except where it overflows.
 inline std::uint16_t to_bf16(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     return std::uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
 }
+inline float from_bf16(std::uint16_t value) {
+    return std::bit_cast<float>(std::uint32_t{value} << 16);
+}
+
+namespace avx512_bf16 {
+
+/// Whether the processor has the instructions; the kernels may be called only then.
+bool there();
+const Bf16Kernels& bf16_kernels();
+
+}  // namespace avx512_bf16
 
 namespace plain {
 

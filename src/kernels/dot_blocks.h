@@ -1,5 +1,7 @@
-// How rows of sums of products are cut into register blocks: the same for every kind of number.
+// How sums of products are cut into register blocks: the same for every kind of number.
 #pragma once
+
+#include "src/kernels/dot_area.h"
 
 #include <array>
 #include <cstddef>
@@ -7,23 +9,31 @@
 namespace eventide {
 
 /// `one` and `two` hold a function for each number of pixels from 1 on, which sums one or two
-/// vectors of outputs: block(rows, in, weight, first output, out). As few blocks as possible, of
-/// about the same size; weights lie as pack_weights puts them.
-template <typename Rows, typename Block, std::size_t kMaxOfOne, std::size_t kMaxOfTwo>
-void dot_in_blocks(const Rows& r, int lanes, const std::array<Block, kMaxOfOne>& one,
+/// vectors of outputs: block(area, weight, y, x, first output). As few blocks as possible, of about
+/// the same size; weights lie in the order of packed_size().
+///
+///     outputs ->   0 .. 2 L-1   2 L .. 3 L-1        L: lanes of a vector
+///     pixels       [ block of two ] [ of one ]      a block's sums stay in registers
+///       |          [              ] [        ]      over all stretches
+template <typename Number, typename Block, std::size_t kMaxOfOne, std::size_t kMaxOfTwo>
+void dot_in_blocks(const DotArea& r, int lanes, const std::array<Block, kMaxOfOne>& one,
                    const std::array<Block, kMaxOfTwo>& two) {
-    auto weight = r.weight;
+    std::ptrdiff_t length = 0;
+    for (int s = 0; s < r.count; ++s) length += r.stretches[s].length;
+    const auto* weight = static_cast<const Number*>(r.weight);
     for (int first = 0; first < r.outputs;) {
         const bool is_two = r.outputs - first > lanes;
+        const Block* blocks = is_two ? two.data() : one.data();
+        const int most = int(is_two ? kMaxOfTwo : kMaxOfOne), parts = (r.width + most - 1) / most;
+        const int size = parts > 0 ? r.width / parts : 0, larger = r.width - size * parts;
+        for (int y = 0; y < r.height; ++y)
+            for (int part = 0, x = 0; part < parts; ++part) {
+                const int pixels = size + int(part < larger);
+                blocks[pixels - 1](r, weight, y, x, first);
+                x += pixels;
+            }
         const int width = is_two ? 2 * lanes : lanes;
-        const int most = int(is_two ? kMaxOfTwo : kMaxOfOne), parts = (r.pixels + most - 1) / most;
-        for (int part = 0; part < parts; ++part) {
-            const int begin = r.pixels * part / parts, end = r.pixels * (part + 1) / parts;
-            const auto n = std::size_t(end - begin - 1);
-            const Block block = is_two ? two[n] : one[n];
-            block(r, r.in + begin * r.step, weight, first, r.out + begin * r.out_step + first);
-        }
-        weight += std::ptrdiff_t(r.stretches) * r.length * width;
+        weight += length * width;
         first += width;
     }
 }

@@ -18,6 +18,10 @@ inline bool any_in_row(const Mask& mask, int y) {
     return std::memchr(mask.row(y).data(), 1, mask.row(y).size()) != nullptr;
 }
 
+inline bool all_in_row(const Mask& mask, int y) {
+    return std::memchr(mask.row(y).data(), 0, mask.row(y).size()) == nullptr;
+}
+
 /// to[i] |= from[i] of n numbers, eight at a time; from the last to the first where `backwards`, so
 /// that either may lie behind or before the other.
 inline void join_bytes(const std::uint8_t* from, std::uint8_t* to, int n, bool backwards) {
@@ -79,6 +83,10 @@ inline void halve(const Mask& in, Mask& out) {
         std::ranges::fill(out.row(y), std::uint8_t{0});
         for (int sy = std::max(0, 2 * y - 1); sy <= std::min(2 * y + 1, in.height() - 1); ++sy) {
             if (!any_in_row(in, sy)) continue;
+            if (all_in_row(in, sy)) {
+                std::ranges::fill(out.row(y), std::uint8_t{1});
+                break;
+            }
             const auto from = in.row(sy);
             for (int x = 0; x < out.width(); ++x) {
                 const int first = std::max(0, 2 * x - 1),
@@ -94,6 +102,7 @@ inline void halve(const Mask& in, Mask& out) {
 inline void join_doubled(const Mask& mask, const Mask& below, Mask& out) {
     for (int y = 0; y < mask.height(); ++y) {
         std::ranges::copy(mask.row(y), out.row(y).begin());
+        if (all_in_row(mask, y)) continue;
         for (const int from : {y / 2, std::min((y + 1) / 2, below.height() - 1)}) {
             if (!any_in_row(below, from)) continue;
             for (int x = 0; x < mask.width(); ++x)

@@ -59,23 +59,29 @@ struct Sums<Tag, 0, kTwo> {
 
 /// P pixels x one block of outputs.
 template <class Tag, int P, bool kTwo>
-HWY_NOINLINE void dot_block(const DotRows& r, const float* in, const float* weight, int first,
-                            float* out) {
+HWY_NOINLINE void dot_block(const DotArea& r, const float* weight, int y, int x, int first) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
     const float* bias = r.bias + first;
     Sums<Tag, P, kTwo> sums;
     sums.start(hn::LoadU(d, bias), hn::LoadU(d, bias + (kTwo ? lanes : 0)));
-    for (int s = 0; s < r.stretches; ++s) {
-        const float* from = in + s * r.pitch;
-        for (int k = 0; k < r.length; ++k) {
-            sums.add(from + k, r.step, hn::LoadU(d, weight),
-                     hn::LoadU(d, weight + (kTwo ? lanes : 0)));
-            weight += kTwo ? 2 * lanes : lanes;
-        }
+    for (int s = 0; s < r.count; ++s) {
+        const Stretch& stretch = r.stretches[s];
+        const std::ptrdiff_t step = stretch.step;
+        const float* from = static_cast<const float*>(stretch.in) + y * stretch.pitch + x * step;
+        const std::size_t second = kTwo ? lanes : 0, width = lanes + second;
+        // Four at a time: stretches are short, and the end of each loop costs a wrong guess.
+        int k = 0;
+        for (; k + 4 <= stretch.length; k += 4, weight += 4 * width)
+            for (std::size_t i = 0; i < 4; ++i)
+                sums.add(from + k + i, step, hn::LoadU(d, weight + i * width),
+                         hn::LoadU(d, weight + i * width + second));
+        for (; k < stretch.length; ++k, weight += width)
+            sums.add(from + k, step, hn::LoadU(d, weight), hn::LoadU(d, weight + second));
     }
     const auto floor = hn::Set(d, r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
-    sums.store(out, r.out_step, r.outputs - first, floor);
+    sums.store(static_cast<float*>(r.out) + y * r.out_pitch + x * r.out_step + first, r.out_step,
+               r.outputs - first, floor);
 }
 
 /// 16 registers hold 6 x 2 sums beside two weights and a value, or 12 beside one; 32 hold 14 x 2
@@ -84,22 +90,22 @@ constexpr bool kManyRegisters =
     HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_NEON;
 constexpr int kMaxPixels = kManyRegisters ? 18 : 12, kMaxPixelsOfTwo = kManyRegisters ? 14 : 6;
 
-using Block = void (*)(const DotRows&, const float*, const float*, int, float*);
+using Block = void (*)(const DotArea&, const float*, int, int, int);
 template <class Tag, bool kTwo, int... P>
 constexpr std::array<Block, sizeof...(P)> blocks(std::integer_sequence<int, P...>) {
     return {&dot_block<Tag, P + 1, kTwo>...};
 }
 
 template <class Tag>
-void dot_rows_by(const DotRows& r) {
+void dot_area_by(const DotArea& r) {
     static constexpr auto kOne = blocks<Tag, false>(std::make_integer_sequence<int, kMaxPixels>{});
     static constexpr auto kTwo =
         blocks<Tag, true>(std::make_integer_sequence<int, kMaxPixelsOfTwo>{});
-    dot_in_blocks(r, int(hn::Lanes(Tag())), kOne, kTwo);
+    dot_in_blocks<float>(r, int(hn::Lanes(Tag())), kOne, kTwo);
 }
 
-void dot_rows(const DotRows& r) {
-    r.lanes == int(hn::Lanes(D())) ? dot_rows_by<D>(r) : dot_rows_by<Narrow>(r);
+void dot_area(const DotArea& r) {
+    r.lanes == int(hn::Lanes(D())) ? dot_area_by<D>(r) : dot_area_by<Narrow>(r);
 }
 
 }  // namespace eventide::HWY_NAMESPACE

@@ -6,6 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/kernels/vector_kernels.cpp"
 #include <hwy/foreach_target.h>
+#include "src/kernels/render_kernels-inl.h"
 #include "src/kernels/vector_dots-inl.h"
 #include "src/kernels/vector_maps-inl.h"
 
@@ -15,17 +16,18 @@ namespace eventide::HWY_NAMESPACE {
 void compress(const float* in, float* out, std::size_t n) {
     map(Compress{}, n, out, in, in, in, in);
 }
-void spread(const float* from, float* to, std::ptrdiff_t to_step, int channels, int pixels) {
-    channels <= kNarrowLanes ? spread_pixels(Narrow(), from, to, to_step, channels, pixels)
-                             : spread_pixels(D(), from, to, to_step, channels, pixels);
+void sigmoid_row(float* g, std::size_t n) {
+    map(Sigmoid{}, n, g, g, g, g, g);
 }
-void reset_state(const float* r, std::ptrdiff_t r_step, float* h, std::ptrdiff_t h_step,
-                 int channels, int pixels) {
-    channels <= kNarrowLanes ? reset_pixels(Narrow(), r, r_step, h, h_step, channels, pixels)
-                             : reset_pixels(D(), r, r_step, h, h_step, channels, pixels);
+void reset_state(const float* r, std::ptrdiff_t r_step, const float* h, float* out, int channels,
+                 int pixels) {
+    channels <= kNarrowLanes ? reset_pixels(Narrow(), r, r_step, h, out, channels, pixels)
+                             : reset_pixels(D(), r, r_step, h, out, channels, pixels);
 }
-void update_state(const float* h, const float* u, std::ptrdiff_t u_step, const float* candidate,
+void update_state(const float* h, const float* u, std::ptrdiff_t u_step, float* candidate,
                   float* out, int channels, int pixels) {
+    map(Tanh{}, std::size_t(channels) * std::size_t(pixels), candidate, candidate, candidate,
+        candidate, candidate);
     channels <= kNarrowLanes
         ? update_pixels(Narrow(), h, u, u_step, candidate, out, channels, pixels)
         : update_pixels(D(), h, u, u_step, candidate, out, channels, pixels);
@@ -47,8 +49,16 @@ void norm_elu(const float* a, const float* scale, const float* shift, const floa
 void elu(const float* in, float* out, std::size_t n) {
     map(Elu{}, n, out, in, in, in, in);
 }
-void average(const float* a, const float* b, const float* c, const float* d, float* out, int n) {
-    map(Average{}, std::size_t(n), out, a, b, c, d);
+void double_row(const DoubleRow& r) {
+    const auto *above = static_cast<const float*>(r.above),
+               *under = static_cast<const float*>(r.under);
+    auto* out = static_cast<float*>(r.out);
+    const auto n = std::ptrdiff_t(r.channels);
+    for (int x = r.x0; x < r.x1; ++x, out += n) {
+        const std::ptrdiff_t left = x / 2 * n, right = std::min((x + 1) / 2, r.last) * n;
+        map(Average{}, std::size_t(n), out, above + left, above + right, under + left,
+            under + right);
+    }
 }
 
 bool are_near(const float* a, const float* b, float bound, std::size_t n) {
@@ -64,57 +74,23 @@ bool are_near(const float* a, const float* b, float bound, std::size_t n) {
                        hn::Le(hn::AbsDiff(load_some(a + i, n - i), load_some(b + i, n - i)), most));
 }
 
-struct Offset {
-    V dx;
-    HWY_INLINE V operator()(V sum, V base, V slope, V) const {
-        return hn::Max(hn::Add(sum, hn::MulAdd(dx, slope, base)), hn::Zero(D()));
-    }
-};
-void offset_rows(const OffsetRows& r) {
-    const std::ptrdiff_t width = r.width;
-    for (int p = 0; p < r.pixels; ++p)
-        map(Offset{hn::Set(D(), r.dx[p])}, std::size_t(width), r.out + p * width,
-            r.sums + r.column[p] * width, r.base, r.slope, r.base);
-}
-
-void two_outputs(const float* in, const float* weight, const float* bias, int pixels, int width,
-                 float* out) {
-    const D d;
-    const std::size_t lanes = hn::Lanes(d), n = std::size_t(width);
-    for (int p = 0; p < pixels; ++p) {
-        const float* row = in + std::size_t(p) * n;
-        V first = hn::Zero(d), second = hn::Zero(d);
-        std::size_t k = 0;
-        for (; k + lanes <= n; k += lanes) {
-            const V value = hn::LoadU(d, row + k);
-            first = hn::MulAdd(value, hn::LoadU(d, weight + k), first);
-            second = hn::MulAdd(value, hn::LoadU(d, weight + n + k), second);
-        }
-        if (k < n) {
-            const V value = load_some(row + k, n - k);
-            first = hn::MulAdd(value, load_some(weight + k, n - k), first);
-            second = hn::MulAdd(value, load_some(weight + n + k, n - k), second);
-        }
-        out[2 * p] = bias[0] + hn::GetLane(hn::SumOfLanes(d, first));
-        out[2 * p + 1] = bias[1] + hn::GetLane(hn::SumOfLanes(d, second));
-    }
-}
-
 const VectorKernels* table() {
     static const VectorKernels kernels{hwy::TargetName(HWY_TARGET),
                                        int(hn::Lanes(D())),
-                                       dot_rows,
+                                       dot_area,
                                        compress,
-                                       spread,
+                                       sigmoid_row,
                                        reset_state,
                                        update_state,
                                        add_relu,
                                        norm_elu,
                                        elu,
-                                       average,
+                                       double_row,
                                        are_near,
                                        offset_rows,
-                                       two_outputs};
+                                       two_outputs,
+                                       weigh_rows,
+                                       scaled_exp};
     return &kernels;
 }
 
@@ -126,10 +102,10 @@ namespace eventide {
 namespace {
 
 HWY_EXPORT(table);
-bool g_limited = false;
+bool g_limited = false, g_without_amx = false;
 
 void leave_out(std::int64_t targets) {
-    g_limited = targets != 0;
+    g_limited = g_without_amx = targets != 0;
     hwy::DisableTargets(targets);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
@@ -143,6 +119,10 @@ const VectorKernels& vector_kernels() {
 void limit_kernels_to_avx2() {
     leave_out(HWY_AVX3 | HWY_AVX3_DL);
 }
+void limit_kernels_to_avx512() {
+    leave_out(0);
+    g_without_amx = true;
+}
 void limit_kernels_to_sse4() {
     leave_out(HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL);
 }
@@ -153,6 +133,9 @@ void lift_kernel_limits() {
 
 bool kernels_limited() {
     return g_limited;
+}
+bool amx_left_out() {
+    return g_without_amx;
 }
 
 int dot_lanes(int outputs) {

@@ -2,56 +2,38 @@
 // chosen at run time. All take plain pointers; nothing is allocated.
 #pragma once
 
+#include "src/kernels/dot_area.h"
+#include "src/kernels/render_kernels.h"
+
 #include <cstddef>
 #include <string>
 
 namespace eventide {
 
-/// Many sums of products with the same weights, over overlapping stretches of memory:
-///   out[p out_step + o] = act(bias[o] + sum over s, k of in[s pitch + p step + k] weight[s][k][o])
-/// A 3x3 convolution's row of pixels is this with three stretches of 3 C numbers (C of them per
-/// pixel, channels last); a linear layer is this with one. Every output is summed in the order of
-/// s, k with fused multiply-adds, so the result depends on no blocking, and AVX2 and AVX-512 agree.
-struct DotRows {
-    const float* in = nullptr;
-    std::ptrdiff_t pitch = 0;  ///< from one stretch to the next, in numbers
-    std::ptrdiff_t step = 0;   ///< from one pixel to the next
-    int stretches = 0, length = 0;
-    int pixels = 0;
-    int outputs = 0;
-    int lanes = 0;                  ///< dot_lanes(outputs)
-    const float* weight = nullptr;  ///< as pack_weights lays them out for so many lanes
-    const float* bias = nullptr;    ///< [outputs rounded up to lanes]
-    bool relu = false;
-    float* out = nullptr;
-    std::ptrdiff_t out_step = 0;
-};
-
-/// The first layer of the renderer's network, where its convolution is known:
-/// out[p][n] = max(0, sums[p pitch + n] + base[n] + dx[p] slope[n])
-struct OffsetRows {
-    const float* sums = nullptr;
-    const int* column = nullptr;  ///< [pixels] which pixel of `sums`
-    const float* dx = nullptr;    ///< [pixels]
-    const float* base = nullptr;
-    const float* slope = nullptr;
-    int pixels = 0, width = 0;  ///< width: n
-    float* out = nullptr;       ///< [pixels][width]
+/// Pixels x0 <= x < x1 of a row of up2 (docs/model.md), between two rows of samples: each the mean
+/// of the samples around it, two above and two under.
+struct DoubleRow {
+    const void *above = nullptr, *under = nullptr;  ///< sample 0 of the rows
+    int last = 0;                                   ///< sample of a row
+    int x0 = 0, x1 = 0, channels = 0;
+    void* out = nullptr;  ///< of pixel x0; pixels one after the other
 };
 
 struct VectorKernels {
     const char* name;  ///< of the instruction set
     int lanes;         ///< float32 numbers per vector
-    void (*dot_rows)(const DotRows&);
+    /// With fused multiply-adds, so that AVX2 and AVX-512 agree.
+    void (*dot_area)(const DotArea&);
     /// out = sign(v) log1p(|v|)
     void (*compress)(const float* in, float* out, std::size_t n);
-    /// Pixels of C channels that lie one after the other, to places `to_step` numbers apart.
-    void (*spread)(const float* from, float* to, std::ptrdiff_t to_step, int channels, int pixels);
-    /// h <- sigmoid(r) h, for pixels of C channels, so many numbers from one to the next.
-    void (*reset_state)(const float* r, std::ptrdiff_t r_step, float* h, std::ptrdiff_t h_step,
+    /// g <- sigmoid(g)
+    void (*sigmoid)(float* g, std::size_t n);
+    /// out = r h, for pixels of C channels; r so many numbers from one to the next.
+    void (*reset_state)(const float* r, std::ptrdiff_t r_step, const float* h, float* out,
                         int channels, int pixels);
-    /// out = h + sigmoid(u) (tanh(c) - h), for pixels of C channels, all but u one after the other.
-    void (*update_state)(const float* h, const float* u, std::ptrdiff_t u_step, const float* c,
+    /// out = h + u (tanh(c) - h), for pixels of C channels, all but u one after the other; c is
+    /// overwritten.
+    void (*update_state)(const float* h, const float* u, std::ptrdiff_t u_step, float* c,
                          float* out, int channels, int pixels);
     /// out = relu(a + b)
     void (*add_relu)(const float* a, const float* b, float* out, std::size_t n);
@@ -59,15 +41,14 @@ struct VectorKernels {
     void (*norm_elu)(const float* a, const float* scale, const float* shift, const float* skip,
                      float* out, std::size_t pixels, int channels);
     void (*elu)(const float* in, float* out, std::size_t n);
-    /// out = (a + b + c + d) / 4
-    void (*average)(const float* a, const float* b, const float* c, const float* d, float* out,
-                    int n);
+    void (*double_row)(const DoubleRow&);
     /// Whether |a - b| <= bound for each of n numbers; not where one is NaN.
     bool (*are_near)(const float* a, const float* b, float bound, std::size_t n);
     void (*offset_rows)(const OffsetRows&);
-    /// out[p][0..1] = bias + weight[0..1] . in[p], weight [2][width]
-    void (*two_outputs)(const float* in, const float* weight, const float* bias, int pixels,
-                        int width, float* out);
+    void (*two_outputs)(const TwoOutputs&);
+    void (*weigh_rows)(const WeighRows&);
+    /// out = scale exp(in), |in| up to 40
+    void (*scaled_exp)(const float* in, float scale, float* out, std::size_t n);
 };
 
 /// The best the processor has.
@@ -77,9 +58,12 @@ const VectorKernels& vector_kernels();
 /// comparisons. Not while any encoder or renderer exists. oneDNN has its own variable,
 /// ONEDNN_MAX_CPU_ISA.
 void limit_kernels_to_avx2();
+/// Leaves out AMX alone.
+void limit_kernels_to_avx512();
 void limit_kernels_to_sse4();
 void lift_kernel_limits();  ///< all that the processor has, again
-bool kernels_limited();
+bool kernels_limited();     ///< to AVX2 or SSE4
+bool amx_left_out();        ///< by any limit
 
 /// Vectors of this many outputs do for layers of so few.
 constexpr int kNarrowLanes = 8;
@@ -87,20 +71,8 @@ constexpr int kNarrowLanes = 8;
 /// How many outputs a vector holds for a layer of so many.
 int dot_lanes(int outputs);
 
-/// How many numbers pack_weights writes.
+/// How many numbers weights take, as dot_area reads them: [s][k][o] in blocks of two vectors of
+/// outputs, then one of one vector; short vectors are filled with zeros.
 std::size_t packed_size(int stretches, int length, int outputs, int lanes);
-/// weight[s][k][o] = at(s, k, o) in the order dot_rows reads: blocks of two vectors of outputs,
-/// then one of one vector; short vectors are filled with zeros.
-template <typename At, typename Number>
-void pack_weights(int stretches, int length, int outputs, int lanes, At at, Number* packed) {
-    for (int first = 0; first < outputs;) {
-        const int block = outputs - first > lanes ? 2 * lanes : lanes;
-        for (int s = 0; s < stretches; ++s)
-            for (int k = 0; k < length; ++k)
-                for (int o = first; o < first + block; ++o)
-                    *packed++ = o < outputs ? at(s, k, o) : Number{0};
-        first += block;
-    }
-}
 
 }  // namespace eventide

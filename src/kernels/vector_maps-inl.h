@@ -72,12 +72,37 @@ HWY_INLINE V elu_of(V v) {
     return hn::IfThenElse(hn::Gt(v, zero), v, below);
 }
 
+/// log(1 + x), x >= 0, within 3e-7 of 1 or of itself. 1 + x = 2^e (1 + f), f about 0; what its
+/// rounding lost is added to f, and log(1 + f) = f - f^2 / 2 + f^3 P(f), P through Chebyshev's
+/// nodes.
+HWY_INLINE V log1p_of(V x) {
+    const D d;
+    const hn::RebindToSigned<D> i;
+    constexpr float kP[] = {-0.07902743770578903F, 0.12622319847563748F,  -0.12998183763523533F,
+                            0.1421449592417135F,   -0.16641281463144272F, 0.20001045094153552F,
+                            -0.25000306422568747F, 0.33333330728190674F};
+    constexpr float kLn2High = 0.693359375F, kLn2Low = -2.12194440e-4F;
+    const V one = hn::Set(d, 1.0F), y = hn::Add(one, x), lost = hn::Sub(x, hn::Sub(y, one));
+    const auto bits = hn::BitCast(i, y);
+    const auto e = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(i, 0x3f3504f3)));  // of sqrt(1/2)
+    const auto exponent = hn::ShiftLeft<23>(e);
+    const V m = hn::BitCast(d, hn::Sub(bits, exponent)),
+            scale = hn::BitCast(d, hn::Sub(hn::Set(i, 127 << 23), exponent));
+    const V f = hn::MulAdd(lost, scale, hn::Sub(m, one));
+    V p = hn::Set(d, kP[0]);
+    for (std::size_t k = 1; k < 8; ++k) p = hn::MulAdd(p, f, hn::Set(d, kP[k]));
+    const V e_float = hn::ConvertTo(d, e), square = hn::Mul(f, f);
+    const V tail = hn::MulAdd(square, hn::MulAdd(f, p, hn::Set(d, -0.5F)),
+                              hn::Mul(e_float, hn::Set(d, kLn2Low)));
+    return hn::MulAdd(e_float, hn::Set(d, kLn2High), hn::Add(f, tail));
+}
+
 struct Compress {
     HWY_INLINE V operator()(V v, V, V, V) const {
         const D d;
         const V size = hn::Abs(v);
         if (hn::AllTrue(d, hn::Eq(size, hn::Zero(d)))) return v;  // most of a grid
-        return hn::CopySign(hn::Log1p(d, size), v);
+        return hn::CopySign(log1p_of(size), v);
     }
 };
 /// body(first channel, number of channels) over the channels of one pixel: whole vectors, then what
@@ -95,22 +120,14 @@ HWY_INLINE hn::Vec<Tag> load_upto(Tag d, const float* from, int n) {
 }
 
 template <class Tag>
-HWY_INLINE void spread_pixels(Tag d, const float* from, float* to, std::ptrdiff_t to_step,
-                              int channels, int pixels) {
-    for (int p = 0; p < pixels; ++p, from += channels, to += to_step)
+HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, const float* h,
+                             float* out, int channels, int pixels) {
+    for (int p = 0; p < pixels; ++p, r += r_step, h += channels, out += channels)
         over_channels(d, channels, [&](int c, int n) HWY_ATTR {
-            store_some(d, load_upto(d, from + c, n), to + c, n);
+            store_some(d, hn::Mul(load_upto(d, r + c, n), load_upto(d, h + c, n)), out + c, n);
         });
 }
-template <class Tag>
-HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, float* h,
-                             std::ptrdiff_t h_step, int channels, int pixels) {
-    for (int p = 0; p < pixels; ++p, r += r_step, h += h_step)
-        over_channels(d, channels, [&](int c, int n) HWY_ATTR {
-            store_some(d, hn::Mul(sigmoid(load_upto(d, r + c, n)), load_upto(d, h + c, n)), h + c,
-                       n);
-        });
-}
+/// `candidate` is tanh(c) already.
 template <class Tag>
 HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdiff_t u_step,
                               const float* candidate, float* out, int channels, int pixels) {
@@ -118,10 +135,16 @@ HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdif
          ++p, u += u_step, h += channels, candidate += channels, out += channels)
         over_channels(d, channels, [&](int c, int n) HWY_ATTR {
             const auto old = load_upto(d, h + c, n);
-            const auto change = hn::Sub(tanh(load_upto(d, candidate + c, n)), old);
-            store_some(d, hn::MulAdd(sigmoid(load_upto(d, u + c, n)), change, old), out + c, n);
+            const auto change = hn::Sub(load_upto(d, candidate + c, n), old);
+            store_some(d, hn::MulAdd(load_upto(d, u + c, n), change, old), out + c, n);
         });
 }
+struct Sigmoid {
+    HWY_INLINE V operator()(V v, V, V, V) const { return sigmoid(v); }
+};
+struct Tanh {
+    HWY_INLINE V operator()(V v, V, V, V) const { return tanh(v); }
+};
 struct AddRelu {
     HWY_INLINE V operator()(V a, V b, V, V) const { return hn::Max(hn::Add(a, b), hn::Zero(D())); }
 };

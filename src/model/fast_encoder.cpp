@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 
 namespace eventide {
 namespace {
@@ -22,9 +21,7 @@ FastEncoder::FastEncoder(const EngineOptions& options, const Arithmetic& arithme
     history_.source = new_source();
 }
 
-void FastEncoder::make_room(int height, int width, int channels, std::size_t scratch,
-                            std::size_t tiles) {
-    latent_ = {height, width, channels};
+void FastEncoder::make_room(int height, int width, std::size_t scratch, std::size_t tiles) {
     latent_tiles_ = latent_tiles(height, width);
     history_.changed.resize(latent_tiles_.size());
     runner_.make_room(scratch, std::max(tiles, latent_tiles_.size()));
@@ -34,22 +31,14 @@ std::string FastEncoder::description() const {
     return std::string{"fast, "} + name_of(arithmetic_);
 }
 
-void FastEncoder::publish(LatentMap& latent) noexcept {
-    const StaleTiles outdated{latent.history, history_};
-    runner_.over(latent_tiles_, [&](std::size_t i, const Tile& tile, float*) {
-        if (!outdated(i)) return;
-        const std::size_t row = std::size_t(tile.width()) * std::size_t(latent_.channels());
-        for (int y = tile.y0; y < tile.y1; ++y)
-            std::memcpy(latent.values.pixel(y, tile.x0).data(), latent_.at(y, tile.x0),
-                        row * sizeof(float));
-    });
-    latent.history = history_;
+bool FastEncoder::is_outdated(std::size_t i, const LatentMap& latent) const noexcept {
+    return StaleTiles{latent.history, history_}(i);
 }
 
 Tensors FastEncoder::state() const {
     Tensors state;
     for (std::size_t l = 0; l < states_.size(); ++l) {
-        const PaddedMap& h = states_[l];
+        const StateMap& h = states_[l];
         Tensor& tensor = state["h." + std::to_string(l)];
         tensor.shape = {h.height(), h.width(), h.channels()};
         tensor.values.resize(element_count(tensor.shape));

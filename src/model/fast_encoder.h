@@ -1,11 +1,13 @@
 // What both fast encoders have: states that are saved and loaded, scratch memory for each lane, and
-// latent maps handed out by renewing what changed.
+// an account of when which tile of the codes changed, so that a map that was filled before is only
+// renewed. Codes are written where they are handed out; no copy is kept.
 #pragma once
 
 #include "src/model/cores.h"
 #include "src/nn/arithmetic.h"
 #include "src/nn/conv_gru.h"
 #include "src/nn/padded_map.h"
+#include "src/nn/state_map.h"
 #include "src/nn/tile_runner.h"
 
 #include <vector>
@@ -23,18 +25,17 @@ protected:
 
     /// To be called once, with the size of the latent map, the scratch numbers a lane needs, and
     /// the most tiles any map has.
-    void make_room(int height, int width, int channels, std::size_t scratch, std::size_t tiles);
-    /// Tile i of latent_ has new values in this step.
+    void make_room(int height, int width, std::size_t scratch, std::size_t tiles);
+    /// Tile i of the map of codes has new values in this step.
     void mark_changed(std::size_t i) noexcept { history_.changed[i] = history_.step; }
-    /// Brings `latent` to what latent_ is.
-    void publish(LatentMap& latent) noexcept;
+    /// Whether tile i of `latent` is not what it would be made of now.
+    bool is_outdated(std::size_t i, const LatentMap& latent) const noexcept;
 
     EngineOptions options_;
     Arithmetic arithmetic_;
-    std::vector<PaddedMap> states_;  // h_l
-    PaddedMap latent_;
+    std::vector<StateMap> states_;  // h_l
     std::vector<Tile> latent_tiles_;
-    LatentHistory history_;  // of latent_; `step` is the one at work
+    LatentHistory history_;  // of the codes; `step` is the one at work
     TileRunner runner_;
     bool stale_ = true;  // what follows from the states is not that of the states
 };

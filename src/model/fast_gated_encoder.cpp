@@ -30,12 +30,13 @@ FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
     std::size_t scratch = decoder_.scratch_size(), tiles = 0;
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const Extent size = levels_[l].size();
-        states_.emplace_back(size.height, size.width, config_.widths[l]);
+        states_.emplace_back(size.height, size.width, config_.widths[l],
+                             Numbers{arithmetic.products}, config_.recurrent[l] != 0);
         scratch = std::max(scratch, levels_[l].scratch_size());
         tiles = std::max(tiles, levels_[l].tiles().size());
     }
     const auto [rows, columns] = decoder_.latent_size();
-    make_room(rows, columns, config_.latent, scratch, tiles);
+    make_room(rows, columns, scratch, tiles);
 }
 
 void FastGatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
@@ -43,11 +44,15 @@ void FastGatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
     // Where nothing happens, no state changes, and nothing that follows from them does.
     if (mark_events(grid) || stale_ || !options_.skip_quiet) {
         for (GatedLevel& level : levels_) advance(level, grid.values);
-        decoder_.run(levels_, states_, stale_, runner_, latent_,
-                     [this](std::size_t tile) { mark_changed(tile); });
+        decoder_.run(levels_, states_, stale_, runner_);
+        for (std::size_t i = 0; i < latent_tiles_.size(); ++i)
+            if (decoder_.changes(latent_tiles_[i]) || !options_.skip_quiet) mark_changed(i);
         stale_ = false;
     }
-    publish(latent);
+    runner_.over(latent_tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+        if (is_outdated(i, latent)) decoder_.write_codes(states_, tile, latent.values, scratch);
+    });
+    latent.history = history_;
 }
 
 bool FastGatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
@@ -81,7 +86,7 @@ void FastGatedEncoder::advance(GatedLevel& level, const Array3<float>& grid) noe
 }
 
 void FastGatedEncoder::reset() noexcept {
-    for (PaddedMap& h : states_) h.clear();
+    for (StateMap& h : states_) h.clear();
     stale_ = true;
 }
 

@@ -33,6 +33,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
     : config_(model.config),
       options_(options),
       arithmetic_(arithmetic),
+      numbers_(arithmetic.products),
       first_(config_.mlp[0]),
       widest_(*std::ranges::max_element(config_.mlp)),
       hoisted_(model, latent_samples(sensor_height, config_.latent_stride),
@@ -54,8 +55,8 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
             last_bias_ = bias;
         }
     }
-    scratch_.assign(kLanes, FloatBuffer(std::size_t(first_) +
-                                        std::size_t(kBlock) * (4 * std::size_t(widest_) + 2)));
+    scratch_.assign(
+        kLanes, FloatBuffer(std::size_t(first_) + std::size_t(kBlock) * 3 * std::size_t(widest_)));
     row_sums_.resize(kLanes);
 }
 
@@ -80,7 +81,8 @@ void FastRenderer::lay_out(const FrameGeometry& geometry) {
     kept_.make_room(geometry, layout_.tiles());
     spans_.reserve(std::size_t(geometry.part_height) *
                    std::size_t(layout_.columns.count() / 2 + 1));
-    for (FloatBuffer& sums : row_sums_) sums.resize(3 * std::size_t(geometry.part_width));
+    // What members have given together, and what one gives.
+    for (FloatBuffer& sums : row_sums_) sums.resize(6 * std::size_t(geometry.part_width));
     laid_out_ = geometry;
 }
 
@@ -201,71 +203,108 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
         if (weight == 0) continue;
         for (std::size_t o = 0; o < std::size_t(first_); ++o)
             base[o] = slope_[0][o] * float(job.t.offset[a]) + slope_[2][o] * float(y.offset[b]);
-        const float* sums = job.hoisted[a]->values.pixel(y.index + int(b), 0).data();
+        const int sample = y.index + int(b);
+        const Array3<float>& sums = job.hoisted[a]->values;
+        const std::ptrdiff_t ahead =
+            sample + 1 < sums.height() ? std::ptrdiff_t(sums.width()) * sums.channels() : 0;
         for (std::size_t side = 0; side < 2; ++side)
-            evaluate({sums, base, float(weight), side}, span, blended, width, scratch + first_);
+            evaluate({sums.pixel(sample, 0).data(), ahead, base, float(weight), side}, span,
+                     blended, width, scratch + first_);
     }
     const std::size_t row = std::size_t(span.row) * count;
     std::copy(blended + begin, blended + end, target.intensity + row + begin);
     if (target.sigma == nullptr) return;
+    float* sigma = target.sigma + row;
+    if (job.rule == SigmaRule::log_blend) {
+        vector_kernels().scaled_exp(blended + count + begin, config_.sigma_scale, sigma + begin,
+                                    end - begin);
+        return;
+    }
     for (std::size_t i = begin; i < end; ++i) {
-        const float mu = blended[i];
-        const float plain = job.rule == SigmaRule::log_blend
-                                ? std::exp(blended[count + i])
-                                : std::sqrt(std::max(blended[2 * count + i] - mu * mu, 0.0F));
-        target.sigma[row + i] = config_.sigma_scale * plain;
+        const float mu = blended[i], square = blended[2 * count + i];
+        sigma[i] = config_.sigma_scale * std::sqrt(std::max(square - mu * mu, 0.0F));
     }
 }
 
 void FastRenderer::evaluate(const Member& member, const Span& span, float* blended, int width,
                             float* scratch) const noexcept {
     const FrameColumns& columns = layout_.pixels;
-    const std::vector<int>& pixel = columns.pixel[member.side];
-    const std::vector<float>& share = columns.weight[member.side];
-    const auto count = std::size_t(width);
+    const std::size_t begin = columns.tile[member.side][std::size_t(span.first)],
+                      pixels = columns.tile[member.side][std::size_t(span.last)] - begin;
+    if (pixels == 0) return;
+    float* mu = blended + 3 * width;
+    const Outputs out{mu, mu + width, needs_squares_ ? mu + 2 * width : nullptr};
+    const OffsetRows offset{member.sums,
+                            member.ahead,
+                            columns.column[member.side].data() + begin,
+                            columns.offset[member.side].data() + begin,
+                            member.base,
+                            slope_[1].data(),
+                            int(pixels),
+                            first_,
+                            nullptr};
+    if (layers_.size() != 1 || !layers_[0].run({offset, nullptr, nullptr, 0, last_weight_.data(),
+                                                last_bias_.data(), out.mu, out.log_sigma}))
+        run_blocks(offset, out, scratch);
+    add(member, begin, int(pixels), out, blended, width);
+}
+
+void FastRenderer::run_blocks(const OffsetRows& all, const Outputs& out,
+                              float* scratch) const noexcept {
     float* activations = scratch;
-    float* outputs = activations + kBlock * widest_;
-    float* room = outputs + 2 * kBlock;
-    const std::size_t end = columns.tile[member.side][std::size_t(span.last)];
-    for (std::size_t begin = columns.tile[member.side][std::size_t(span.first)]; begin < end;
-         begin += kBlock) {
-        const int pixels = int(std::min<std::size_t>(kBlock, end - begin));
-        vector_kernels().offset_rows({member.sums, columns.column[member.side].data() + begin,
-                                      columns.offset[member.side].data() + begin, member.base,
-                                      slope_[1].data(), pixels, first_, activations});
-        const float* last = run_layers(activations, pixels, room);
-        vector_kernels().two_outputs(last, last_weight_.data(), last_bias_.data(), pixels,
-                                     config_.mlp.back(), outputs);
-        for (std::size_t j = 0; j < std::size_t(pixels); ++j) {
-            const auto i = std::size_t(pixel[begin + j]);
-            const float weight = member.weight * share[begin + j], mu = outputs[2 * j];
-            const float log_sigma =
-                std::clamp(outputs[2 * j + 1], config_.log_sigma_min, config_.log_sigma_max);
-            blended[i] += weight * mu;
-            blended[count + i] += weight * log_sigma;
-            if (needs_squares_)
-                blended[2 * count + i] += weight * (std::exp(2 * log_sigma) + mu * mu);
-        }
+    float* room = activations + kBlock * widest_;
+    for (int begin = 0; begin < all.pixels; begin += kBlock) {
+        OffsetRows block = all;
+        block.pixels = std::min(kBlock, all.pixels - begin);
+        block.column += begin;
+        block.dx += begin;
+        block.out = activations;
+        numbers_.offset_rows(block);
+        const float* last = run_layers(activations, block.pixels, room);
+        vector_kernels().two_outputs({last, last_weight_.data(), last_bias_.data(), block.pixels,
+                                      config_.mlp.back(), out.mu + begin, out.log_sigma + begin});
     }
 }
 
+void FastRenderer::add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
+                       float* blended, int width) const noexcept {
+    const FrameColumns& columns = layout_.pixels;
+    vector_kernels().weigh_rows({outputs.mu, outputs.log_sigma, outputs.square,
+                                 columns.weight[member.side].data() + begin, member.weight,
+                                 config_.log_sigma_min, config_.log_sigma_max, pixels});
+    const int* pixel = columns.pixel[member.side].data() + begin;
+    const float* const parts[] = {outputs.mu, outputs.log_sigma, outputs.square};
+    for (const float* part : parts) {
+        if (part != nullptr)
+            for (int j = 0; j < pixels; ++j) blended[pixel[j]] += part[j];
+        blended += width;
+    }
+}
+
+/// All but the last layer's result as layers read it, the last's in float32.
 const float* FastRenderer::run_layers(const float* activations, int pixels,
                                       float* room) const noexcept {
     const std::ptrdiff_t block = std::ptrdiff_t(kBlock) * widest_;
     const float* in = activations;
     float* out = room;
     for (const PackedWeights& layer : layers_) {
-        const void* numbers = in;
-        if (const Bf16Kernels* bf16 = layer.bf16()) {
-            auto* pixels_to_bf16 = reinterpret_cast<std::uint32_t*>(room + 2 * block);
-            bf16->pixels_to_bf16(in, std::size_t(pixels), layer.channels(), pixels_to_bf16);
-            numbers = pixels_to_bf16;
-        }
-        layer.run(numbers, 0, layer.step(), pixels, out, layer.outputs());
+        const bool is_last = &layer == &layers_.back();
+        const Stretch stretch{in, layer.step(), 0, layer.step()};
+        DotArea area;
+        area.stretches = &stretch;
+        area.count = 1;
+        area.height = 1;
+        area.width = pixels;
+        area.narrow = !is_last;
+        area.out = out;
+        area.out_step = is_last ? layer.outputs() : numbers_.units(layer.outputs());
+        layer.run(area);
         in = out;
         out = out == room ? room + block : room;
     }
-    return in;
+    if (!layers_.empty() || numbers_.bf16() == nullptr) return in;
+    numbers_.widen(activations, std::size_t(pixels), first_, room);
+    return room;
 }
 
 }  // namespace eventide

@@ -44,10 +44,11 @@ private:
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
     struct Member {
-        const float* sums;  // the sample row
-        const float* base;  // [H_1], the time and row part of layer 1's offset term
-        float weight;       // of time and row
-        std::size_t side;   // left or right
+        const float* sums;     // the sample row, as layers read it
+        std::ptrdiff_t ahead;  // units to the sums of the next row; 0: none
+        const float* base;     // [H_1], the time and row part of layer 1's offset term
+        float weight;          // of time and row
+        std::size_t side;      // left or right
     };
 
     AxisSamples time_samples(const CodeChoice& codes) const noexcept;
@@ -65,13 +66,21 @@ private:
     /// Adds a member's part to the three sums of every pixel of the span.
     void evaluate(const Member& member, const Span& span, float* blended, int width,
                   float* scratch) const noexcept;
+    /// What a member gives each pixel of a span, not yet added to what others do.
+    struct Outputs {
+        float *mu, *log_sigma, *square;  // square: null where not needed
+    };
+    void run_blocks(const OffsetRows& all, const Outputs& out, float* scratch) const noexcept;
+    void add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
+             float* blended, int width) const noexcept;
     /// The hidden layers behind the first; `room` holds 2 kBlock widest_ numbers. Returns where the
-    /// result is.
+    /// result is, float32.
     const float* run_layers(const float* activations, int pixels, float* room) const noexcept;
 
     ModelConfig config_;
     EngineOptions options_;
     Arithmetic arithmetic_;
+    Numbers numbers_;
     int first_ = 0, widest_ = 0;  // outputs of layer 1, of the widest layer
     FirstLayerCache hoisted_;
     std::vector<PackedWeights> layers_;           // hidden layers behind the first

@@ -24,23 +24,29 @@ FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
       half_tiles_(tiles_of((height + 1) / 2, (width + 1) / 2, kHalfSide)) {
     const Tensors& w = model.weights;
     const Extent full{height, width}, half{(height + 1) / 2, (width + 1) / 2};
-    const auto conv = [&](const std::string& name) {
-        return PackedConv{plain::conv_weights<float>(w, "encoder." + name), 1, false, arithmetic_,
-                          extents_of(tiles_, 0, height, width)};
+    const auto conv = [&](const std::string& name, const std::vector<int>& sources = {}) {
+        return PackedConv{plain::conv_weights<float>(w, "encoder." + name),
+                          1,
+                          false,
+                          arithmetic_,
+                          extents_of(tiles_, 0, height, width),
+                          sources};
     };
     in_ = conv("in");
     down_ = {plain::conv_weights<float>(w, "encoder.down"), 2, false, arithmetic_,
              extents_of(half_tiles_, 2, half.height, half.width)};
     for (int i = 0; i < 2; ++i) res_[i] = conv("res." + std::to_string(i));
-    for (int i = 0; i < 3; ++i) head_[i] = conv("head." + std::to_string(i));
+    for (int i = 0; i < 3; ++i)
+        head_[i] = conv("head." + std::to_string(i),
+                        i == 0 ? std::vector<int>(3, channels_) : std::vector<int>{});
     for (int i = 0; i < 5; ++i)
         norms_.push_back(plain::norm_weights<float>(w, "encoder.norm" + std::to_string(i)));
     full_gru_ = {plain::gru_weights<float>(w, "encoder.gru.0"), full, tiles_, kSide, arithmetic_};
     half_gru_ = {plain::gru_weights<float>(w, "encoder.gru.1"), half, half_tiles_, kHalfSide,
                  arithmetic_};
-    states_.emplace_back(height, width, channels_);
-    states_.emplace_back(half.height, half.width, channels_);
-    x0_ = inner_ = x2_ = y0_ = y1_ = states_[0];
+    states_.emplace_back(height, width, channels_, in_.numbers(), true);
+    states_.emplace_back(half.height, half.width, channels_, in_.numbers(), true);
+    x0_ = inner_ = x2_ = y0_ = y1_ = {height, width, channels_};
     raw_ = {height, width, channels_};
     sums_.resize(tiles_.size() * 2 * std::size_t(channels_));
     scale_.resize(std::size_t(channels_));
@@ -51,10 +57,12 @@ FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
         convolving = std::max(convolving, made->scratch_size(kSide, kSide));
     const auto inputs = std::size_t(std::max(3 * channels_, model.config.input_channels()));
     const std::size_t joined = std::size_t(kSide + 2) * (kSide + 2) * inputs;
+    constexpr int kWide = kHalfSide + 4;
+    const std::size_t down =
+        std::size_t(kWide) * kWide * std::size_t(channels_) + down_.scratch_size(kWide, kWide);
     make_room(
-        height, width, model.config.latent,
-        std::max({joined + convolving, full_gru_.scratch_size(),
-                  half_gru_.scratch_size() + down_.scratch_size(kHalfSide + 4, kHalfSide + 4)}),
+        height, width,
+        std::max({joined + convolving, full_gru_.scratch_size(), half_gru_.scratch_size() + down}),
         std::max(tiles_.size(), half_tiles_.size()));
 }
 
@@ -63,22 +71,25 @@ void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept 
     feed_in(grid.values);
     normalise(0, nullptr, x0_);
     step_full();
-    convolve(res_[0], states_[0]);
+    convolve(res_[0], states_[0].exact());
     normalise(1, nullptr, inner_);
     convolve(res_[1], inner_);
-    normalise(2, &states_[0], x2_);
+    normalise(2, &states_[0].exact(), x2_);
     step_half();
     join_head();
     normalise(3, nullptr, y0_);
     convolve(head_[1], y0_);
     normalise(4, &y0_, y1_);
     runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
-        head_[2].run({y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), latent_.at(tile.y0, tile.x0),
-                      latent_.pitch(), latent_.channels(), tile.height(), tile.width()},
-                     scratch);
+        Array3<float>& codes = latent.values;
+        head_[2].run(
+            {y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), codes.pixel(tile.y0, tile.x0).data(),
+             std::ptrdiff_t(codes.width()) * codes.channels(), codes.channels(), tile.height(),
+             tile.width()},
+            scratch);
         mark_changed(i);
     });
-    publish(latent);
+    latent.history = history_;
 }
 
 ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,
@@ -164,15 +175,12 @@ void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, Padde
 
 /// h0 <- gru.0(x0, h0)
 void FastThesisEncoder::step_full() noexcept {
-    const auto bytes = std::size_t(channels_) * sizeof(float);
     runner_.over(tiles_, [&](std::size_t i, const Tile&, float* scratch) {
         full_gru_.step(states_[0], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
             for (int y = region.y0; y < region.y1; ++y)
-                for (int x = region.x0; x < region.x1; ++x)
-                    std::memcpy(
-                        target.out + (y - region.y0) * target.pitch + (x - region.x0) * target.step,
-                        x0_.at(y, x), bytes);
+                states_[0].numbers().narrow(x0_.at(y, region.x0), std::size_t(region.width()),
+                                            channels_, target.out + (y - region.y0) * target.pitch);
         });
     });
     runner_.over(tiles_,
@@ -182,17 +190,17 @@ void FastThesisEncoder::step_full() noexcept {
 /// h1 <- gru.1(elu(down x2), h1)
 void FastThesisEncoder::step_half() noexcept {
     runner_.over(half_tiles_, [&](std::size_t i, const Tile&, float* scratch) {
-        float* narrow = scratch + half_gru_.scratch_size();
+        float* wide = scratch + half_gru_.scratch_size();
         half_gru_.step(states_[1], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
-            down_.run({x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), target.out,
-                       target.pitch, target.step, region.height(), region.width()},
-                      narrow);
+            const std::ptrdiff_t row = std::ptrdiff_t(region.width()) * channels_;
+            down_.run({x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), wide, row,
+                       channels_, region.height(), region.width()},
+                      wide + region.height() * row);
+            vector_kernels().elu(wide, wide, std::size_t(region.height() * row));
             for (int y = 0; y < region.height(); ++y)
-                for (int x = 0; x < region.width(); ++x) {
-                    float* pixel = target.out + y * target.pitch + x * target.step;
-                    vector_kernels().elu(pixel, pixel, std::size_t(channels_));
-                }
+                states_[1].numbers().narrow(wide + y * row, std::size_t(region.width()), channels_,
+                                            target.out + y * target.pitch);
         });
     });
     runner_.over(half_tiles_,
@@ -201,28 +209,41 @@ void FastThesisEncoder::step_half() noexcept {
 
 /// raw_ = head.0 of [up2(h1); x2; x0]
 void FastThesisEncoder::join_head() noexcept {
-    const PaddedMap& below = states_[1];
-    const std::ptrdiff_t c = channels_, step = 3 * c;
-    const auto bytes = std::size_t(c) * sizeof(float);
+    const PaddedMap& below = states_[1].read();
+    const Numbers& numbers = states_[1].numbers();
+    const std::ptrdiff_t units = numbers.units(channels_);
     runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+        const std::ptrdiff_t row = (tile.width() + 2) * units, area = (tile.height() + 2) * row;
+        std::memset(scratch, 0, std::size_t(area) * sizeof(float));
         const Tile near = tile.grown(1, raw_.height(), raw_.width());
-        const std::ptrdiff_t row = (tile.width() + 2) * step;
-        std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
-        for (int y = near.y0; y < near.y1; ++y) {
-            float* to = scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * step;
-            double_row(below, y, near.x0, near.x1, to, step);
-            for (int x = near.x0; x < near.x1; ++x, to += step) {
-                std::memcpy(to + c, x2_.at(y, x), bytes);
-                std::memcpy(to + 2 * c, x0_.at(y, x), bytes);
-            }
+        for (int y = near.y0; y < near.y1; ++y)
+            double_row(below, numbers, channels_, y, near.x0, near.x1,
+                       scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * units);
+        ConvArea call;
+        call.in[0] = {scratch, row};
+        float* rest = scratch + area;
+        for (std::size_t n = 1; n < 3; ++n) {
+            const PaddedMap& from = n == 1 ? x2_ : x0_;
+            call.in[n] = {from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()};
+            if (numbers.bf16() == nullptr) continue;
+            for (int y = 0; y < tile.height() + 2; ++y)
+                numbers.narrow(from.at(tile.y0 - 1 + y, tile.x0 - 1), std::size_t(tile.width() + 2),
+                               channels_, rest + y * row);
+            call.in[n] = {rest, row};
+            rest += area;
         }
-        head_[0].run(into_raw(tile, scratch, row), scratch + (tile.height() + 2) * row);
+        const ConvCall raw = into_raw(tile, nullptr, 0);
+        call.out = raw.out;
+        call.out_pitch = raw.out_pitch;
+        call.height = raw.height;
+        call.width = raw.width;
+        head_[0].run(call, rest);
         keep_sums(i);
     });
 }
 
 void FastThesisEncoder::reset() noexcept {
-    for (PaddedMap& state : states_) state.clear();
+    for (StateMap& state : states_) state.clear();
 }
 
 }  // namespace eventide

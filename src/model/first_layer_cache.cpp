@@ -36,19 +36,21 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
       outputs_(model.config.mlp[0]),
       reach_(model.config.unfold / 2),
       tiles_(latent_tiles(height, width)),
-      tile_columns_(int(std::ranges::count(tiles_, 0, &Tile::y0))) {
+      tile_columns_(int(std::ranges::count(tiles_, 0, &Tile::y0))),
+      numbers_(arithmetic.products) {
     const auto extents = extents_of(tiles_, 0, height, width);
-    past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents};
-    whole_ = {hoisted_weights(model, 3), 1, false, arithmetic, extents};
-    for (PaddedMap& map : codes_) map = {height, width, depth_};
+    past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents, std::vector<int>(2, depth_)};
+    whole_ = {hoisted_weights(model, 3),  1, false, arithmetic, extents,
+              std::vector<int>(3, depth_)};
+    for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_)};
+    zeros_ = {1, kLatentSide, numbers_.units(depth_)};
     for (LatentHistory& history : histories_) history.changed.reserve(tiles_.size());
-    for (Sums& sums : kept_) sums.values = {height, width, outputs_};
+    for (Sums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
-    constexpr auto kArea = std::size_t(kLatentSide + 2) * std::size_t(kLatentSide + 2);
-    scratch_.assign(kLanes, FloatBuffer(kArea * 3 * std::size_t(depth_) +
-                                        std::max(past_.scratch_size(kLatentSide, kLatentSide),
-                                                 whole_.scratch_size(kLatentSide, kLatentSide))));
+    scratch_.assign(kLanes, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
+                                                  whole_.scratch_size(kLatentSide, kLatentSide),
+                                                  std::size_t(kLatentSide * depth_)})));
 }
 
 void FirstLayerCache::reset() noexcept {
@@ -64,26 +66,39 @@ void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
     newest_ = k;
     const std::size_t slot = LatentWindow::slot(k);
     const StaleTiles outdated{histories_[slot], latent.history};
-    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
-        if (outdated(std::size_t(n))) hold_tile(k, tiles_[std::size_t(n)], latent.values);
+    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int lane, int n) {
+        if (outdated(std::size_t(n)))
+            hold_tile(k, tiles_[std::size_t(n)], latent.values, scratch_[std::size_t(lane)].data());
     });
     histories_[slot] = latent.history;
     note_changes(k, latent.history);
 }
 
-void FirstLayerCache::hold_tile(std::int64_t k, const Tile& tile,
-                                const Array3<float>& latent) noexcept {
+void FirstLayerCache::hold_tile(std::int64_t k, const Tile& tile, const Array3<float>& latent,
+                                float* row) noexcept {
     PaddedMap& mine = codes_[LatentWindow::slot(k)];
     const PaddedMap* before = options_.skip_quiet && k > 1 ? code(k - 1) : nullptr;
-    const std::size_t numbers = std::size_t(tile.width()) * std::size_t(depth_);
-    bool is_held = before != nullptr && options_.still_codes > 0;
-    for (int y = tile.y0; is_held && y < tile.y1; ++y)
-        is_held = vector_kernels().are_near(latent.pixel(y, tile.x0).data(), before->at(y, tile.x0),
-                                            float(options_.still_codes), numbers);
+    const bool is_held =
+        before != nullptr && options_.still_codes > 0 && is_still(*before, tile, latent, row);
+    const auto width = std::size_t(tile.width());
     for (int y = tile.y0; y < tile.y1; ++y)
-        std::memcpy(mine.at(y, tile.x0),
-                    is_held ? before->at(y, tile.x0) : latent.pixel(y, tile.x0).data(),
-                    numbers * sizeof(float));
+        if (is_held)
+            std::memcpy(mine.at(y, tile.x0), before->at(y, tile.x0),
+                        width * std::size_t(mine.channels()) * sizeof(float));
+        else
+            numbers_.narrow(latent.pixel(y, tile.x0).data(), width, depth_, mine.at(y, tile.x0));
+}
+
+bool FirstLayerCache::is_still(const PaddedMap& before, const Tile& tile,
+                               const Array3<float>& latent, float* row) const noexcept {
+    const auto width = std::size_t(tile.width());
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        numbers_.widen(before.at(y, tile.x0), width, depth_, row);
+        if (!vector_kernels().are_near(latent.pixel(y, tile.x0).data(), row,
+                                       float(options_.still_codes), width * std::size_t(depth_)))
+            return false;
+    }
+    return true;
 }
 
 /// Compares z_k with z_{k-1}, where the encoder's own account does not already say they are alike.
@@ -95,7 +110,7 @@ void FirstLayerCache::note_changes(std::int64_t k, const LatentHistory& history)
     const StaleTiles since{histories_[LatentWindow::slot(k - 1)], history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
         const Tile near = tiles_[std::size_t(n)].grown(1, height_, width_);
-        const auto bytes = std::size_t(near.width()) * std::size_t(depth_) * sizeof(float);
+        const auto bytes = std::size_t(near.width()) * std::size_t(mine.channels()) * sizeof(float);
         bool same = comparable;
         const bool may_differ = same && around(n, since);
         for (int y = near.y0; may_differ && same && y < near.y1; ++y)
@@ -180,31 +195,22 @@ const FirstLayerCache::Sums& FirstLayerCache::bring(std::int64_t k, bool whole,
     return to;
 }
 
-/// Joins the codes of a tile and its rim pixel by pixel, and runs the convolution over them.
+/// The convolution over the codes of a tile and its rim, each read where it lies.
 void FirstLayerCache::compute_tile(Sums& to, const Tile& tile, float* scratch) noexcept {
-    const std::ptrdiff_t depth = depth_, codes = to.whole ? 3 : 2;
-    const std::ptrdiff_t step = codes * depth, row = (tile.width() + 2 * reach_) * step;
-    const auto bytes = std::size_t(depth) * sizeof(float);
-    for (std::ptrdiff_t c = 0; c < codes; ++c) {
-        const PaddedMap* z = code(to.k - 1 + c);
-        // The map's own border of zeros is what lies outside.
-        for (int y = tile.y0 - reach_; y < tile.y1 + reach_; ++y) {
-            const float* from = z != nullptr ? z->at(y, tile.x0 - reach_) : nullptr;
-            float* out = scratch + (y - tile.y0 + reach_) * row + c * depth;
-            for (int x = tile.x0 - reach_; x < tile.x1 + reach_; ++x, out += step) {
-                if (from == nullptr) {
-                    std::memset(out, 0, bytes);
-                    continue;
-                }
-                std::memcpy(out, from, bytes);
-                from += depth;
-            }
-        }
+    ConvArea call;
+    for (std::size_t c = 0; c < (to.whole ? 3 : 2); ++c) {
+        // The maps' own borders of zeros are what lies outside.
+        if (const PaddedMap* z = code(to.k - 1 + std::int64_t(c)))
+            call.in[c] = {z->at(tile.y0 - reach_, tile.x0 - reach_), z->pitch()};
+        else
+            call.in[c] = {zeros_.at(0, -1), 0};
     }
-    const PackedConv& conv = to.whole ? whole_ : past_;
-    conv.run({scratch, row, to.values.pixel(tile.y0, tile.x0).data(),
-              std::ptrdiff_t(width_) * outputs_, outputs_, tile.height(), tile.width()},
-             scratch + (tile.height() + 2 * reach_) * row);
+    call.out = to.values.pixel(tile.y0, tile.x0).data();
+    call.out_pitch = std::ptrdiff_t(width_) * to.values.channels();
+    call.narrow = true;
+    call.height = tile.height();
+    call.width = tile.width();
+    (to.whole ? whole_ : past_).run(call, scratch);
 }
 
 }  // namespace eventide

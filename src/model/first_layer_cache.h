@@ -20,9 +20,10 @@ class FirstLayerCache {
 public:
     /// Layer 1 without its offset part, at every sample of event window k.
     struct Sums {
-        std::int64_t k = 0;    ///< 0: nothing yet
-        bool whole = false;    ///< over z_{k-1..k+1}; else over z_{k-1}, z_k
-        Array3<float> values;  ///< [y][x][H_1] in latent pixels
+        std::int64_t k = 0;  ///< 0: nothing yet
+        bool whole = false;  ///< over z_{k-1..k+1}; else over z_{k-1}, z_k
+        /// [y][x][H_1] in latent pixels, of the numbers that layers read
+        Array3<float> values;
     };
 
     /// Latent maps are of `height` x `width`.
@@ -53,9 +54,12 @@ private:
     bool unchanged(const Sums& from, std::int64_t k, bool whole, std::size_t tile) const noexcept;
     /// Writes a tile of z_k; where still_codes allows, z_{k-1} as it is held in its place, so that
     /// what is held never drifts further off.
-    void hold_tile(std::int64_t k, const Tile& tile, const Array3<float>& latent) noexcept;
+    void hold_tile(std::int64_t k, const Tile& tile, const Array3<float>& latent,
+                   float* row) noexcept;
+    bool is_still(const PaddedMap& before, const Tile& tile, const Array3<float>& latent,
+                  float* row) const noexcept;
     void note_changes(std::int64_t k, const LatentHistory& history) noexcept;
-    /// z_k, which must be kept; null before the first, which reads as zeros.
+    /// z_k as layers read it, which must be kept; null before the first, which reads as zeros.
     const PaddedMap* code(std::int64_t k) const noexcept;
 
     EngineOptions options_;
@@ -63,8 +67,10 @@ private:
     int reach_;  ///< px, of the first layer: 1, or 0 where it reads codes in time alone
     std::vector<Tile> tiles_;
     int tile_columns_ = 0;
-    PackedConv past_, whole_;
+    Numbers numbers_;
+    PackedConv past_, whole_;  // over two and three codes, each in its own map
     std::array<PaddedMap, LatentWindow::kLatentsKept> codes_;
+    PaddedMap zeros_;                                                  // a row of them
     std::array<LatentHistory, LatentWindow::kLatentsKept> histories_;  // of the codes
     /// Per event window (k % size), per tile: whether z_k differs from z_{k-1} in the tile's reach.
     static constexpr std::int64_t kChangesKept = 16;

@@ -20,22 +20,15 @@ public:
     /// Numbers run() needs for each lane.
     std::size_t scratch_size() const { return scratch_; }
 
-    /// Brings `latent` up to the states, where a level's mask says that one has changed, or
-    /// `everywhere`; changed(i) is called for each of the latent tiles written, on any thread.
-    template <typename Changed>
-    void run(const std::vector<GatedLevel>& levels, const std::vector<PaddedMap>& states,
-             bool everywhere, TileRunner& runner, PaddedMap& latent,
-             const Changed& changed) noexcept {
-        run_blocks(levels.back(), states.back(), everywhere, runner);
-        for (std::size_t l = levels.size() - 1; l-- > top_;)
-            join(levels[l], states[l], decoded(l + 1, states), l, runner);
-        Level& top = levels_[top_];
-        spread(top);
-        runner.over(latent_tiles_, top.touched, [&](std::size_t i, const Tile& tile, float* room) {
-            convolve(out_, decoded(top_, states), latent, tile, room);
-            changed(i);
-        });
-    }
+    /// Brings everything before the codes up to the states, where a level's mask says that one has
+    /// changed, or `everywhere`.
+    void run(const std::vector<GatedLevel>& levels, const std::vector<StateMap>& states,
+             bool everywhere, TileRunner& runner) noexcept;
+    /// Whether codes of a tile may have changed in the last run().
+    bool changes(const Tile& tile) const { return tile.any(levels_[top_].touched); }
+    /// A tile of the map of codes.
+    void write_codes(const std::vector<StateMap>& states, const Tile& tile, Array3<float>& codes,
+                     float* scratch) const noexcept;
 
 private:
     struct Level {
@@ -45,27 +38,31 @@ private:
     };
     struct Block {
         PackedConv first, second;
-        PaddedMap inner, out;
+        PaddedMap inner, out;  // as layers read them
+        PaddedMap sum;         // d in float32
     };
 
-    static void convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to,
+    static void convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to, bool narrow,
                          const Tile& tile, float* scratch) noexcept;
+    void add(const PaddedMap& before, bool is_float, Block& block, const Tile& tile,
+             float* scratch) const noexcept;
     /// By a convolution's reach.
     static void spread(Level& level) noexcept;
     void run_blocks(const GatedLevel& deepest, const PaddedMap& h, bool everywhere,
                     TileRunner& runner) noexcept;
     void join(const GatedLevel& level, const PaddedMap& h, const PaddedMap& below, std::size_t l,
               TileRunner& runner) noexcept;
-    static void join_tile(const PaddedMap& h, const PaddedMap& below, Level& level,
-                          const Tile& tile, float* scratch) noexcept;
-    const PaddedMap& decoded(std::size_t l, const std::vector<PaddedMap>& states) const;
+    void join_tile(const PaddedMap& h, const PaddedMap& below, std::size_t l, const Tile& tile,
+                   float* scratch) noexcept;
+    const PaddedMap& decoded(std::size_t l, const std::vector<StateMap>& states) const;
 
     std::size_t top_;  // the level that codes come from
+    std::vector<int> widths_;
+    Numbers numbers_;
     std::vector<Level> levels_;
     std::vector<Block> blocks_;
     PackedConv out_;
     Extent latent_size_;
-    std::vector<Tile> latent_tiles_;
     std::size_t scratch_ = 0;
 };
 

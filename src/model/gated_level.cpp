@@ -12,7 +12,14 @@ namespace {
 
 /// Small enough that a tile's maps stay in a core's own cache, large enough that borders computed
 /// twice cost little. Deeper levels have more channels and smaller maps.
-constexpr int kSides[] = {32, 24, 16, 12};
+constexpr int kSides[] = {48, 24, 16, 12};
+
+/// Grids are larger than a core's cache, and pieces of rows too short for its own foresight.
+constexpr int kRowsAhead = 2;
+void fetch(const float* numbers, std::size_t n) {
+    constexpr std::size_t kLine = 64 / sizeof(float);
+    for (std::size_t i = 0; i < n; i += kLine) __builtin_prefetch(numbers + i);
+}
 
 /// What a GRU's step reads of its input reaches 2 further than its tile.
 constexpr int kGruReach = 2;
@@ -43,17 +50,20 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
     else
         for (const Tile& tile : tiles_)
             held_.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
-                               std::size_t(channels_));
+                               std::size_t(units()));
 }
 
+// Scratch of the top level: the compressed grid as layers read it, then a row of it in float32.
 std::size_t GatedLevel::scratch_size() const {
     const int side = side_ + (recurrent_ ? 2 * kGruReach : 0);
+    const auto wide = std::size_t(side + 2);
     const std::size_t grid =
-        number_ == 0 ? std::size_t(side + 2) * std::size_t(side + 2) * std::size_t(inputs_) : 0;
-    return gru_.scratch_size() + grid + in_.scratch_size(side, side);
+        number_ == 0 ? wide * wide * std::size_t(in_.numbers().units(inputs_)) : 0;
+    const std::size_t row = number_ == 0 ? wide * std::size_t(inputs_) : 0;
+    return gru_.scratch_size() + grid + std::max(row, in_.scratch_size(side, side));
 }
 
-void GatedLevel::advance(const Array3<float>& grid, const std::vector<PaddedMap>& states,
+void GatedLevel::advance(const Array3<float>& grid, const std::vector<StateMap>& states,
                          std::size_t i, float* scratch) noexcept {
     if (recurrent_) {
         float* rest = scratch + gru_.scratch_size();
@@ -62,35 +72,44 @@ void GatedLevel::advance(const Array3<float>& grid, const std::vector<PaddedMap>
         return;
     }
     const Tile& tile = tiles_[i];
-    feed(grid, states, {tile, held_[i].data(), std::ptrdiff_t(tile.width()) * channels_, channels_},
-         scratch);
+    feed(grid, states, {tile, held_[i].data(), std::ptrdiff_t(tile.width()) * units()}, scratch);
 }
 
-void GatedLevel::commit(std::vector<PaddedMap>& states, std::size_t i) noexcept {
-    PaddedMap& h = states[number_];
+void GatedLevel::commit(std::vector<StateMap>& states, std::size_t i) noexcept {
     if (recurrent_) {
-        gru_.commit(h, i);
+        gru_.commit(states[number_], i);
         return;
     }
+    PaddedMap& h = states[number_].read();
     const Tile& tile = tiles_[i];
-    const auto c = std::size_t(channels_);
+    const auto u = std::size_t(units()), row = std::size_t(tile.width()) * u;
     const float* next = held_[i].data();
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x, next += c)
-            if (mask_(y, x) != 0) std::memcpy(h.at(y, x), next, c * sizeof(float));
+    for (int y = tile.y0; y < tile.y1; ++y, next += row) {
+        if (std::memchr(&mask_(y, tile.x0), 0, std::size_t(tile.width())) == nullptr) {
+            std::memcpy(h.at(y, tile.x0), next, row * sizeof(float));
+            continue;
+        }
+        for (int x = tile.x0; x < tile.x1; ++x)
+            if (mask_(y, x) != 0)
+                std::memcpy(h.at(y, x), next + std::size_t(x - tile.x0) * u, u * sizeof(float));
+    }
 }
 
 /// a_l in a region.
-void GatedLevel::feed(const Array3<float>& grid, const std::vector<PaddedMap>& states,
+void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& states,
                       const Target& target, float* scratch) const noexcept {
     if (number_ == 0) {
         feed_grid(grid, target, scratch);
         return;
     }
-    const PaddedMap& above = states[number_ - 1];
+    const PaddedMap& above = states[number_ - 1].read();
     const Tile& region = target.region;
-    in_.run({above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch(), target.out,
-             target.pitch, target.step, region.height(), region.width()},
+    in_.run({{{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
+             target.out,
+             target.pitch,
+             true,
+             region.height(),
+             region.width()},
             scratch);
 }
 
@@ -100,15 +119,24 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
     const Tile& region = target.region;
     const Tile wide{region.y0 - 1, region.x0 - 1, region.y1 + 1, region.x1 + 1};
     const Tile inside = region.grown(1, grid.height(), grid.width());
-    const std::ptrdiff_t channels = grid.channels(), row = wide.width() * channels;
+    const Numbers& numbers = in_.numbers();
+    const int channels = grid.channels();
+    const std::ptrdiff_t units = numbers.units(channels), row = wide.width() * units;
     if (inside.height() < wide.height() || inside.width() < wide.width())
         std::memset(scratch, 0, std::size_t(wide.height() * row) * sizeof(float));
-    for (int y = inside.y0; y < inside.y1; ++y)
-        vector_kernels().compress(grid.pixel(y, inside.x0).data(),
-                                  scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * channels,
-                                  std::size_t(inside.width()) * std::size_t(channels));
-    in_.run({scratch, row, target.out, target.pitch, target.step, region.height(), region.width()},
-            scratch + wide.height() * row);
+    float* rest = scratch + wide.height() * row;
+    const auto pixels = std::size_t(inside.width());
+    for (int y = inside.y0; y < inside.y1; ++y) {
+        if (y + kRowsAhead < inside.y1)
+            fetch(grid.pixel(y + kRowsAhead, inside.x0).data(), pixels * std::size_t(channels));
+        float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
+        float* compressed = numbers.bf16() != nullptr ? rest : to;
+        vector_kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
+                                  pixels * std::size_t(channels));
+        if (compressed != to) numbers.narrow(compressed, pixels, channels, to);
+    }
+    in_.run({{{{scratch, row}}}, target.out, target.pitch, true, region.height(), region.width()},
+            rest);
 }
 
 }  // namespace eventide

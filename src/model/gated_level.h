@@ -4,7 +4,7 @@
 #include "src/model/model_file.h"
 #include "src/nn/conv_gru.h"
 #include "src/nn/packed_layers.h"
-#include "src/nn/padded_map.h"
+#include "src/nn/state_map.h"
 
 #include <string>
 #include <vector>
@@ -30,13 +30,14 @@ public:
     /// Numbers advance() needs.
     std::size_t scratch_size() const;
     /// The next state of tile i, aside. `states`: those of all levels; the top one reads `grid`.
-    void advance(const Array3<float>& grid, const std::vector<PaddedMap>& states, std::size_t i,
+    void advance(const Array3<float>& grid, const std::vector<StateMap>& states, std::size_t i,
                  float* scratch) noexcept;
-    void commit(std::vector<PaddedMap>& states, std::size_t i) noexcept;
+    void commit(std::vector<StateMap>& states, std::size_t i) noexcept;
 
 private:
     using Target = ConvGru::Target;
-    void feed(const Array3<float>& grid, const std::vector<PaddedMap>& states, const Target& target,
+    int units() const { return in_.numbers().units(channels_); }
+    void feed(const Array3<float>& grid, const std::vector<StateMap>& states, const Target& target,
               float* scratch) const noexcept;
     void feed_grid(const Array3<float>& grid, const Target& target, float* scratch) const noexcept;
 

@@ -1,6 +1,7 @@
 // What pays: a table for float32, one short measurement for bf16.
 #include "src/nn/arithmetic.h"
 
+#include "src/kernels/bf16_kernels.h"
 #include "src/kernels/vector_kernels.h"
 #include "src/nn/packed_layers.h"
 
@@ -63,7 +64,10 @@ Arithmetic measure(bool onednn_allowed) {
 
 const char* name_of(const Arithmetic& arithmetic) {
     if (arithmetic.products == Products::bf16_emulated) return "bf16 (emulated)";
-    if (!arithmetic.onednn) return arithmetic.bf16() ? "bf16 (AVX512_BF16)" : vector_kernels().name;
+    if (!arithmetic.onednn) {
+        if (!arithmetic.bf16()) return vector_kernels().name;
+        return amx_kernels() != nullptr ? "bf16 (AMX)" : "bf16 (AVX512_BF16)";
+    }
     if (!arithmetic.bf16()) return "oneDNN";
     return onednn_has_amx() ? "bf16 (oneDNN, AMX)" : "bf16 (oneDNN)";
 }

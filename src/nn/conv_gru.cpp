@@ -1,4 +1,12 @@
-// The fast ConvGRU: [a; h] of a tile and its surroundings stays in cache from gates to new state.
+// The fast ConvGRU: all between a tile's input and its new state stays in cache.
+//
+//     scratch      pixels         numbers                   read by
+//     input a      (side + 4)^2   C as layers read them     gates, candidate
+//     kept r.h     (side + 2)^2   C as layers read them     candidate
+//     gates        (side + 2)^2   2 C float32: u, r         kept, new state
+//     candidate    side^2         C float32                 new state
+//
+// h is read by the gates where it lies, in the state's map.
 #include "src/nn/conv_gru.h"
 
 #include "src/kernels/vector_kernels.h"
@@ -7,74 +15,100 @@
 #include <cstring>
 
 namespace eventide {
+namespace {
+
+std::size_t square(int n) {
+    return std::size_t(n) * std::size_t(n);
+}
+
+}  // namespace
 
 ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
                  const std::vector<Tile>& tiles, int side, const Arithmetic& arithmetic)
     : channels_(weights.candidate.out),
       side_(side),
       tiles_(tiles),
-      gates_(weights.gates, 1, false, arithmetic, extents_of(tiles, 1, map.height, map.width)),
+      gates_(weights.gates, 1, false, arithmetic, extents_of(tiles, 1, map.height, map.width),
+             {channels_, channels_}),
       candidate_(weights.candidate, 1, false, arithmetic,
-                 extents_of(tiles, 0, map.height, map.width)) {
+                 extents_of(tiles, 0, map.height, map.width), {channels_, channels_}) {
     for (const Tile& tile : tiles_)
         next_.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
                            std::size_t(channels_));
 }
 
-// Scratch: [a; h] of side + 4, then gates of side + 2, then the candidate, then the convolutions'.
 std::size_t ConvGru::scratch_size() const {
-    const auto square = [](int n) { return std::size_t(n) * std::size_t(n); };
-    const auto c = std::size_t(channels_);
-    return square(side_ + 4) * 2 * c + square(side_ + 2) * 2 * c + square(side_) * c +
-           std::max(gates_.scratch_size(side_ + 2, side_ + 2),
-                    candidate_.scratch_size(side_, side_));
+    const auto c = std::size_t(channels_), u = std::size_t(units());
+    return square(side_ + 4) * u + square(side_ + 2) * (u + 2 * c) + square(side_) * c +
+           std::max({gates_.scratch_size(side_ + 2, side_ + 2),
+                     candidate_.scratch_size(side_, side_), std::size_t(side_ + 2) * c});
 }
 
-float* ConvGru::begin(std::size_t i, float* scratch, const Tile& near) const noexcept {
+/// What lies outside the map reads as zero.
+void ConvGru::begin(std::size_t i, float* scratch, const Tile& near) const noexcept {
     const Tile& tile = tiles_[i];
-    const bool inside = near.height() == tile.height() + 4 && near.width() == tile.width() + 4;
-    // What lies outside the map reads as zero.
-    if (!inside)
-        std::memset(scratch, 0,
-                    std::size_t(side_ + 4) * std::size_t(joined_pitch()) * sizeof(float));
-    return scratch;
+    if (near.height() == tile.height() + 4 && near.width() == tile.width() + 4) return;
+    const auto u = std::size_t(units());
+    std::memset(scratch, 0, (square(side_ + 4) + square(side_ + 2)) * u * sizeof(float));
 }
 
-void ConvGru::finish(const PaddedMap& state, std::size_t i, const Mask* mask, const Tile& near,
-                     float* joined) noexcept {
-    const VectorKernels& kernels = vector_kernels();
+void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
+                     float* input) noexcept {
     const Tile& tile = tiles_[i];
-    const std::ptrdiff_t c = channels_;
-    float* gates = joined + (side_ + 4) * joined_pitch();
-    const std::ptrdiff_t gates_pitch = (side_ + 2) * 2 * c;
-    float* candidate = gates + (side_ + 2) * gates_pitch;
-    const std::ptrdiff_t candidate_pitch = side_ * c;
-    float* scratch = candidate + side_ * candidate_pitch;
-
-    for (int y = near.y0; y < near.y1; ++y)
-        kernels.spread(state.at(y, near.x0), joined_at(joined, i, y, near.x0) + c, 2 * c, channels_,
-                       near.width());
+    float* kept = input + (side_ + 4) * input_pitch();
+    float* gates = kept + (side_ + 2) * kept_pitch();
+    float* candidate = gates + (side_ + 2) * gates_pitch();
+    float* scratch = candidate + std::ptrdiff_t(side_) * side_ * channels_;
 
     const Tile close = tile.grown(1, state.height(), state.width());
-    const auto gate_at = [&](int y, int x) {
-        return gates + (y - tile.y0 + 1) * gates_pitch + (x - tile.x0 + 1) * 2 * c;
-    };
-    gates_.run({joined_at(joined, i, close.y0 - 1, close.x0 - 1), joined_pitch(),
-                gate_at(close.y0, close.x0), gates_pitch, 2 * c, close.height(), close.width()},
+    const PaddedMap& h = state.read();
+    gates_.run({{{{input_at(input, i, close.y0 - 1, close.x0 - 1), input_pitch()},
+                  {h.at(close.y0 - 1, close.x0 - 1), h.pitch()}}},
+                gates_at(gates, i, close.y0, close.x0),
+                gates_pitch(),
+                false,
+                close.height(),
+                close.width()},
                scratch);
-    for (int y = close.y0; y < close.y1; ++y)
-        kernels.reset_state(gate_at(y, close.x0) + c, 2 * c, joined_at(joined, i, y, close.x0) + c,
-                            2 * c, channels_, close.width());
-
-    candidate_.run({joined_at(joined, i, tile.y0 - 1, tile.x0 - 1), joined_pitch(), candidate,
-                    candidate_pitch, c, tile.height(), tile.width()},
+    keep(state, i, close, gates, kept, scratch);
+    candidate_.run({{{{input_at(input, i, tile.y0 - 1, tile.x0 - 1), input_pitch()},
+                      {kept_at(kept, i, tile.y0 - 1, tile.x0 - 1), kept_pitch()}}},
+                    candidate,
+                    std::ptrdiff_t(tile.width()) * channels_,
+                    false,
+                    tile.height(),
+                    tile.width()},
                    scratch);
+    update(state, i, mask, gates, candidate);
+}
+
+/// Opens the gates, and what they keep of the state.
+void ConvGru::keep(const StateMap& state, std::size_t i, const Tile& close, float* gates,
+                   float* kept, float* row) const noexcept {
+    const VectorKernels& kernels = vector_kernels();
+    const auto width = std::size_t(close.width());
+    for (int y = close.y0; y < close.y1; ++y) {
+        float* open = gates_at(gates, i, y, close.x0);
+        kernels.sigmoid(open, width * 2 * std::size_t(channels_));
+        const float* h = state.exact().at(y, close.x0);
+        float* to = kept_at(kept, i, y, close.x0);
+        const bool is_float = state.numbers().bf16() == nullptr;
+        kernels.reset_state(open + channels_, 2 * std::ptrdiff_t(channels_), h, is_float ? to : row,
+                            channels_, close.width());
+        if (!is_float) state.numbers().narrow(row, width, channels_, to);
+    }
+}
+
+void ConvGru::update(const StateMap& state, std::size_t i, const Mask* mask, float* gates,
+                     float* candidate) noexcept {
+    const Tile& tile = tiles_[i];
+    const std::ptrdiff_t row = std::ptrdiff_t(tile.width()) * channels_;
     float* next = next_[i].data();
-    for (int y = tile.y0; y < tile.y1; ++y, next += tile.width() * c) {
-        const float* row = candidate + (y - tile.y0) * candidate_pitch;
-        kernels.update_state(state.at(y, tile.x0), gate_at(y, tile.x0), 2 * c, row, next, channels_,
-                             tile.width());
-        if (mask != nullptr) keep_unmasked(state, *mask, y, tile, next);
+    for (int y = tile.y0; y < tile.y1; ++y, next += row, candidate += row) {
+        vector_kernels().update_state(state.exact().at(y, tile.x0), gates_at(gates, i, y, tile.x0),
+                                      2 * std::ptrdiff_t(channels_), candidate, next, channels_,
+                                      tile.width());
+        if (mask != nullptr) keep_unmasked(state.exact(), *mask, y, tile, next);
     }
 }
 
@@ -82,16 +116,20 @@ void ConvGru::finish(const PaddedMap& state, std::size_t i, const Mask* mask, co
 void ConvGru::keep_unmasked(const PaddedMap& state, const Mask& mask, int y, const Tile& tile,
                             float* next) const noexcept {
     const auto c = std::size_t(channels_);
+    const std::uint8_t* row = &mask(y, tile.x0);
+    if (std::memchr(row, 0, std::size_t(tile.width())) == nullptr) return;
     for (int x = tile.x0; x < tile.x1; ++x, next += c)
         if (mask(y, x) == 0) std::memcpy(next, state.at(y, x), c * sizeof(float));
 }
 
-void ConvGru::commit(PaddedMap& state, std::size_t i) noexcept {
+void ConvGru::commit(StateMap& state, std::size_t i) noexcept {
     const Tile& tile = tiles_[i];
-    const auto row = std::size_t(tile.width()) * std::size_t(channels_);
+    const auto width = std::size_t(tile.width()), row = width * std::size_t(channels_);
     const float* next = next_[i].data();
-    for (int y = tile.y0; y < tile.y1; ++y, next += row)
-        std::memcpy(state.at(y, tile.x0), next, row * sizeof(float));
+    for (int y = tile.y0; y < tile.y1; ++y, next += row) {
+        if (state.has_both()) std::memcpy(state.exact().at(y, tile.x0), next, row * sizeof(float));
+        state.numbers().narrow(next, width, channels_, state.read().at(y, tile.x0));
+    }
 }
 
 }  // namespace eventide

@@ -3,7 +3,7 @@
 
 #include "src/kernels/plain/activations.h"
 #include "src/nn/packed_layers.h"
-#include "src/nn/padded_map.h"
+#include "src/nn/state_map.h"
 #include "src/nn/tiling.h"
 
 #include <vector>
@@ -16,12 +16,12 @@ using FloatBuffer = std::vector<float, CacheLineAllocator<float>>;
 /// tiles writes aside, commit() of all tiles brings it into the map.
 class ConvGru {
 public:
-    /// Where step() wants a's pixels: [y][x] with `pitch` numbers between rows and `step` between
-    /// pixels; the region's first pixel is at `out`.
+    /// Where step() wants a's pixels, in the numbers that layers read: the region's first pixel is
+    /// at `out`, with `pitch` units between rows.
     struct Target {
         Tile region;
         float* out;
-        std::ptrdiff_t pitch, step;
+        std::ptrdiff_t pitch;
     };
 
     ConvGru() = default;
@@ -34,26 +34,40 @@ public:
     /// fill(Target) writes a (C numbers per pixel) into the target's region, which is the tile
     /// grown by 2 within the map.
     template <typename Fill>
-    void step(const PaddedMap& state, std::size_t i, const Mask* mask, float* scratch,
+    void step(const StateMap& state, std::size_t i, const Mask* mask, float* scratch,
               const Fill& fill) noexcept {
         const Tile near = tiles_[i].grown(2, state.height(), state.width());
-        float* joined = begin(i, scratch, near);
-        fill(Target{near, joined_at(joined, i, near.y0, near.x0), joined_pitch(),
-                    2 * std::ptrdiff_t(channels_)});
-        finish(state, i, mask, near, joined);
+        begin(i, scratch, near);
+        fill(Target{near, input_at(scratch, i, near.y0, near.x0), input_pitch()});
+        finish(state, i, mask, scratch);
     }
-    void commit(PaddedMap& state, std::size_t i) noexcept;
+    void commit(StateMap& state, std::size_t i) noexcept;
 
 private:
-    std::ptrdiff_t joined_pitch() const { return std::ptrdiff_t(side_ + 4) * 2 * channels_; }
-    /// [a; h] around tile i starts 2 pixels up and left of it.
-    float* joined_at(float* joined, std::size_t i, int y, int x) const {
-        return joined + (y - tiles_[i].y0 + 2) * joined_pitch() +
-               std::ptrdiff_t(x - tiles_[i].x0 + 2) * 2 * channels_;
+    int units() const { return gates_.numbers().units(channels_); }
+    std::ptrdiff_t input_pitch() const { return std::ptrdiff_t(side_ + 4) * units(); }
+    std::ptrdiff_t kept_pitch() const { return std::ptrdiff_t(side_ + 2) * units(); }
+    std::ptrdiff_t gates_pitch() const { return std::ptrdiff_t(side_ + 2) * 2 * channels_; }
+    /// a around tile i starts 2 pixels up and left of it; the gates, and what they keep of the
+    /// state, 1 pixel.
+    float* input_at(float* input, std::size_t i, int y, int x) const {
+        return input + (y - tiles_[i].y0 + 2) * input_pitch() +
+               std::ptrdiff_t(x - tiles_[i].x0 + 2) * units();
     }
-    float* begin(std::size_t i, float* scratch, const Tile& near) const noexcept;
-    void finish(const PaddedMap& state, std::size_t i, const Mask* mask, const Tile& near,
-                float* joined) noexcept;
+    float* kept_at(float* kept, std::size_t i, int y, int x) const {
+        return kept + (y - tiles_[i].y0 + 1) * kept_pitch() +
+               std::ptrdiff_t(x - tiles_[i].x0 + 1) * units();
+    }
+    float* gates_at(float* gates, std::size_t i, int y, int x) const {
+        return gates + (y - tiles_[i].y0 + 1) * gates_pitch() +
+               std::ptrdiff_t(x - tiles_[i].x0 + 1) * 2 * channels_;
+    }
+    void begin(std::size_t i, float* scratch, const Tile& near) const noexcept;
+    void finish(const StateMap& state, std::size_t i, const Mask* mask, float* scratch) noexcept;
+    void keep(const StateMap& state, std::size_t i, const Tile& close, float* gates, float* kept,
+              float* row) const noexcept;
+    void update(const StateMap& state, std::size_t i, const Mask* mask, float* gates,
+                float* candidate) noexcept;
     void keep_unmasked(const PaddedMap& state, const Mask& mask, int y, const Tile& tile,
                        float* next) const noexcept;
 

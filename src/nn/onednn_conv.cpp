@@ -239,7 +239,8 @@ void OnednnConv::run(const ConvCall& call, float* scratch) const noexcept {
     const Primitives& p = *primitives_;
     const Primitives::Sized& sized = p.of({call.height, call.width});
     Pieces pieces{scratch};
-    void* in = const_cast<void*>(p.gather(call, pieces.take(sized.in.get_size())));
+    void* in = const_cast<void*>(call.gathered);
+    if (in == nullptr) in = const_cast<void*>(p.gather(call, pieces.take(sized.in.get_size())));
     const std::ptrdiff_t row = std::ptrdiff_t(call.width) * p.outputs;
     const bool dense = call.out_step == p.outputs && call.out_pitch == row;
     auto* out = static_cast<float*>(pieces.take(sized.out.get_size()));

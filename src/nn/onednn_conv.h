@@ -18,6 +18,9 @@ struct ConvCall {
     float* out = nullptr;
     std::ptrdiff_t out_pitch = 0, out_step = 0;  ///< numbers between rows, pixels
     int height = 0, width = 0;                   ///< outputs
+    /// The whole input, where it lies dense in the numbers that are multiplied; `in` is not read
+    /// then.
+    const void* gathered = nullptr;
 };
 
 /// Whether this program was built with oneDNN; and whether oneDNN multiplies bf16 numbers on this

@@ -1,86 +1,172 @@
 // The fast layers: packing, and whose kernels they call.
 #include "src/nn/packed_layers.h"
 
-#include "src/kernels/bf16_kernels.h"
-#include "src/kernels/vector_kernels.h"
-
+#include <algorithm>
+#include <cstring>
+#include <numeric>
 #include <utility>
 
 namespace eventide {
 
-PackedWeights::PackedWeights(int stretches, int pixels, int channels, int outputs,
-                             const std::vector<float>& values, const std::vector<float>& bias,
-                             bool relu, Products products)
-    : stretches_(stretches),
-      channels_(channels),
-      outputs_(outputs),
-      relu_(relu),
-      bf16_(products == Products::f32    ? nullptr
-            : products == Products::bf16 ? bf16_kernels()
-                                         : &plain::bf16_kernels()) {
-    length_ = pixels * step();
-    const auto value = [&](int s, int pixel, int c, int o) {
-        return values[std::size_t(((s * pixels + pixel) * channels + c) * outputs + o)];
-    };
-    if (bf16_ != nullptr) {
-        const auto pair = [&](int s, int k, int o) {
-            const int pixel = k / step(), c = k % step() * 2;
-            const std::uint32_t low = to_bf16(value(s, pixel, c, o));
-            const std::uint32_t high =
-                c + 1 < channels ? to_bf16(value(s, pixel, c + 1, o)) : std::uint16_t{0};
+template <typename Number, typename Value>
+void PackedWeights::pack(int lanes, const Value& value, Number* packed) const {
+    for (int first = 0; first < outputs_;) {
+        const int block = outputs_ - first > lanes ? 2 * lanes : lanes;
+        for (std::size_t s = 0; s < shapes_.size(); ++s)
+            for (int pixel = 0; pixel < shapes_[s].pixels; ++pixel)
+                for (int unit = 0; unit < numbers_.units(shapes_[s].channels); ++unit)
+                    for (int o = first; o < first + block; ++o)
+                        *packed++ = o < outputs_ ? value(int(s), pixel, unit, o) : Number{0};
+        first += block;
+    }
+}
+
+PackedWeights::PackedWeights(std::vector<Shape> stretches, int outputs, const At& weight,
+                             const std::vector<float>& bias, bool relu, Products products)
+    : shapes_(std::move(stretches)), outputs_(outputs), relu_(relu), numbers_(products) {
+    int length = 0;
+    for (const Shape& shape : shapes_) length += shape.pixels * numbers_.units(shape.channels);
+    if (numbers_.bf16() != nullptr) {
+        const auto pair = [&](int s, int pixel, int unit, int o) {
+            const int c = 2 * unit;
+            const std::uint32_t low = to_bf16(weight(s, pixel, c, o));
+            const std::uint32_t high = c + 1 < shapes_[std::size_t(s)].channels
+                                           ? to_bf16(weight(s, pixel, c + 1, o))
+                                           : std::uint16_t{0};
             return low | high << 16;
         };
         lanes_ = bf16_lanes(outputs);
-        narrow_.resize(packed_size(stretches, length_, outputs, lanes_));
-        pack_weights(stretches, length_, outputs, lanes_, pair, narrow_.data());
+        narrow_.resize(packed_size(1, length, outputs, lanes_));
+        pack(lanes_, pair, narrow_.data());
     } else {
-        const auto single = [&](int s, int k, int o) {
-            return value(s, k / channels, k % channels, o);
-        };
         lanes_ = dot_lanes(outputs);
-        weight_.resize(packed_size(stretches, length_, outputs, lanes_));
-        pack_weights(stretches, length_, outputs, lanes_, single, weight_.data());
+        weight_.resize(packed_size(1, length, outputs, lanes_));
+        pack(lanes_, weight, weight_.data());
     }
     const int lanes = std::max(kBf16Lanes, vector_kernels().lanes);
     bias_.resize(std::size_t((outputs + lanes - 1) / lanes * lanes));
     std::ranges::copy(bias, bias_.begin());
 }
 
+PackedWeights::PackedWeights(int stretches, int pixels, int channels, int outputs,
+                             const std::vector<float>& values, const std::vector<float>& bias,
+                             bool relu, Products products)
+    : PackedWeights(
+          std::vector<Shape>(std::size_t(stretches), Shape{pixels, channels}), outputs,
+          [&](int s, int pixel, int c, int o) {
+              return values[std::size_t(((s * pixels + pixel) * channels + c) * outputs + o)];
+          },
+          bias, relu, products) {}
+
+void PackedWeights::run(DotArea area) const noexcept {
+    area.outputs = outputs_;
+    area.lanes = lanes_;
+    area.bias = bias_.data();
+    area.relu = relu_;
+    if (const Bf16Kernels* bf16 = numbers_.bf16()) {
+        area.weight = narrow_.data();
+        bf16->dot_area(area);
+    } else {
+        area.weight = weight_.data();
+        area.narrow = false;
+        vector_kernels().dot_area(area);
+    }
+}
+
+bool PackedWeights::run(HiddenRows rows) const noexcept {
+    const Bf16Kernels* bf16 = numbers_.bf16();
+    if (bf16 == nullptr || bf16->hidden_rows == nullptr || !relu_) return false;
+    rows.weight = narrow_.data();
+    rows.bias = bias_.data();
+    rows.outputs = outputs_;
+    return bf16->hidden_rows(rows);
+}
+
 void PackedWeights::run(const void* in, std::ptrdiff_t pitch, std::ptrdiff_t step, int count,
                         float* out, std::ptrdiff_t out_step) const noexcept {
-    if (bf16_ != nullptr)
-        bf16_->dot_rows({static_cast<const std::uint32_t*>(in), pitch, step, stretches_, length_,
-                         count, outputs_, narrow_.data(), bias_.data(), relu_, out, out_step});
-    else
-        vector_kernels().dot_rows({static_cast<const float*>(in), pitch, step, stretches_, length_,
-                                   count, outputs_, lanes_, weight_.data(), bias_.data(), relu_,
-                                   out, out_step});
+    constexpr std::size_t kMost = 16;
+    std::array<Stretch, kMost> stretches;
+    assert(shapes_.size() <= kMost);
+    for (std::size_t s = 0; s < shapes_.size(); ++s)
+        stretches[s] = {static_cast<const float*>(in) + std::ptrdiff_t(s) * pitch, step, 0,
+                        shapes_[s].pixels * this->step()};
+    DotArea area;
+    area.stretches = stretches.data();
+    area.count = int(shapes_.size());
+    area.height = 1;
+    area.width = count;
+    area.out = out;
+    area.out_step = out_step;
+    run(area);
 }
 
 PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
-                       const Arithmetic& arithmetic, std::vector<Extent> extents)
-    : stride_(stride), side_(weights.side) {
+                       const Arithmetic& arithmetic, std::vector<Extent> extents,
+                       std::vector<int> sources)
+    : stride_(stride),
+      side_(weights.side),
+      inputs_(weights.in),
+      outputs_(weights.out),
+      sources_(std::move(sources)) {
+    if (sources_.empty()) sources_ = {weights.in};
+    assert(std::accumulate(sources_.begin(), sources_.end(), 0) == weights.in);
+    assert(sources_.size() <= ConvArea::kMostSources);
+    single_ = packed(weights, 1, relu, arithmetic.products);
     if (arithmetic.onednn && side_ == 3) {
         onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, arithmetic.bf16(),
                                                      std::move(extents));
         return;
     }
-    std::vector<float> values;  // [y][x][in][out]
-    values.reserve(weights.weight.size());
-    const int taps = side_ * side_;
-    for (int tap = 0; tap < taps; ++tap)
-        for (int i = 0; i < weights.in; ++i)
-            for (int o = 0; o < weights.out; ++o)
-                values.push_back(weights.weight[std::size_t((o * weights.in + i) * taps + tap)]);
-    weights_ = {side_,  side_,        weights.in, weights.out,
-                values, weights.bias, relu,       arithmetic.products};
+    const int lanes = arithmetic.bf16() ? kBf16Lanes : vector_kernels().lanes;
+    const bool is_whole = !arithmetic.bf16() || outputs_ % 2 == 0;
+    if (side_ > 1 && 2 * outputs_ <= lanes && is_whole)
+        pair_ = packed(weights, 2, relu, arithmetic.products);
+}
+
+/// Weights for so many pixels of output beside each other, which read the same stretches:
+///
+///     pixels read    0   1   2   3        side 3, stride 1
+///     output 0       w0  w1  w2  0
+///     output 1       0   w0  w1  w2
+PackedWeights PackedConv::packed(const plain::ConvWeights<float>& weights, int pixels, bool relu,
+                                 Products products) const {
+    std::vector<PackedWeights::Shape> stretches;
+    std::vector<int> first_channel;  // of each stretch
+    int channel = 0;
+    for (const int channels : sources_) {
+        for (int row = 0; row < side_; ++row) {
+            stretches.push_back({side_ + (pixels - 1) * stride_, channels});
+            first_channel.push_back(channel);
+        }
+        channel += channels;
+    }
+    const auto weight = [&](int s, int at, int c, int o) {
+        const int x = at - o / outputs_ * stride_, y = s % side_;
+        if (x < 0 || x >= side_) return 0.0F;
+        const int in = first_channel[std::size_t(s)] + c;
+        const int tap = (o % outputs_ * inputs_ + in) * side_ * side_ + y * side_ + x;
+        return weights.weight[std::size_t(tap)];
+    };
+    std::vector<float> bias;
+    for (int p = 0; p < pixels; ++p)
+        bias.insert(bias.end(), weights.bias.begin(), weights.bias.end());
+    return {stretches, pixels * outputs_, weight, bias, relu, products};
 }
 
 std::size_t PackedConv::scratch_size(int height, int width) const {
-    if (onednn_ != nullptr) return onednn_->scratch_size();
-    if (weights_.bf16() == nullptr) return 0;
-    return std::size_t((height - 1) * stride_ + side_) *
-           std::size_t((width - 1) * stride_ + side_) * std::size_t(weights_.step());
+    const std::size_t area = std::size_t(reach(height)) * std::size_t(reach(width));
+    if (onednn_ != nullptr)
+        return onednn_->scratch_size() + area * std::size_t(inputs_) +
+               std::size_t(height) * std::size_t(width) * std::size_t(outputs_);
+    if (numbers().bf16() == nullptr) return 0;
+    return area * std::size_t(numbers().units(inputs_));
+}
+
+void PackedConv::run(const ConvArea& area, float* scratch) const noexcept {
+    if (onednn_ != nullptr)
+        run_onednn(area, scratch);
+    else
+        run_own(area, area.narrow ? numbers().units(outputs_) : outputs_);
 }
 
 void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
@@ -88,25 +174,90 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
         onednn_->run(call, scratch);
         return;
     }
-    const void* in = call.in;
-    std::ptrdiff_t pitch = call.in_pitch;
-    if (const Bf16Kernels* bf16 = weights_.bf16()) {
-        const int rows = (call.height - 1) * stride_ + side_,
-                  columns = (call.width - 1) * stride_ + side_;
-        pitch = std::ptrdiff_t(columns) * weights_.step();
-        // The scratch holds pairs of bf16 numbers in the room of one float each.
-        auto* pixels_to_bf16 = reinterpret_cast<std::uint32_t*>(scratch);
+    ConvArea area{
+        {{{call.in, call.in_pitch}}}, call.out, call.out_pitch, false, call.height, call.width};
+    if (numbers().bf16() != nullptr) {
+        const int rows = reach(call.height), columns = reach(call.width);
+        const std::ptrdiff_t pitch = std::ptrdiff_t(columns) * numbers().units(inputs_);
+        // Units of two numbers take the room of one float.
         for (int y = 0; y < rows; ++y)
-            bf16->pixels_to_bf16(call.in + y * call.in_pitch, std::size_t(columns),
-                                 weights_.channels(), pixels_to_bf16 + y * pitch);
-        in = pixels_to_bf16;
+            numbers().narrow(call.in + y * call.in_pitch, std::size_t(columns), inputs_,
+                             scratch + y * pitch);
+        area.in[0] = {scratch, pitch};
     }
-    for (int y = 0; y < call.height; ++y) {
-        // Both kinds of number are 4 bytes.
-        const void* row = static_cast<const float*>(in) + y * stride_ * pitch;
-        weights_.run(row, pitch, std::ptrdiff_t(stride_) * weights_.step(), call.width,
-                     call.out + y * call.out_pitch, call.out_step);
+    run_own(area, call.out_step);
+}
+
+void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step) const noexcept {
+    const bool is_dense = out_step == (area.narrow ? numbers().units(outputs_) : outputs_);
+    if (pair_.empty() || !is_dense || area.width < 2) {
+        run_part(area, out_step, 0, area.width, 1);
+        return;
     }
+    run_part(area, out_step, 0, area.width / 2, 2);
+    // Of an odd number the last two, again: one of them is written twice, with the same bits.
+    if (area.width % 2 != 0) run_part(area, out_step, area.width - 2, 1, 2);
+}
+
+/// `count` times one or two outputs of each row, from `first` on.
+void PackedConv::run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
+                          int at_once) const noexcept {
+    std::array<Stretch, std::size_t{3} * ConvArea::kMostSources> stretches;
+    int n = 0;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        const auto [in, pitch] = area.in[i];
+        const std::ptrdiff_t step = std::ptrdiff_t(stride_) * numbers().units(sources_[i]);
+        const int length = (side_ + (at_once - 1) * stride_) * numbers().units(sources_[i]);
+        for (int row = 0; row < side_; ++row)
+            stretches[std::size_t(n++)] = {
+                static_cast<const float*>(in) + row * pitch + first * step, at_once * step,
+                stride_ * pitch, length};
+    }
+    DotArea dots;
+    dots.stretches = stretches.data();
+    dots.count = n;
+    dots.height = area.height;
+    dots.width = count;
+    dots.narrow = area.narrow;
+    dots.out = static_cast<float*>(area.out) + first * out_step;
+    dots.out_step = at_once * out_step;
+    dots.out_pitch = area.out_pitch;
+    (at_once == 2 ? pair_ : single_).run(dots);
+}
+
+/// Scratch: the sources joined pixel by pixel, then outputs that are still to be narrowed, then
+/// oneDNN's.
+void PackedConv::run_onednn(const ConvArea& area, float* scratch) const noexcept {
+    gather(area, scratch);
+    float* wide = scratch + std::ptrdiff_t(reach(area.height)) * reach(area.width) * inputs_;
+    float* rest = wide + std::ptrdiff_t(area.height) * area.width * outputs_;
+    ConvCall call;
+    call.gathered = scratch;
+    call.out = area.narrow ? wide : static_cast<float*>(area.out);
+    call.out_step = outputs_;
+    call.out_pitch = area.narrow ? std::ptrdiff_t(area.width) * outputs_ : area.out_pitch;
+    call.height = area.height;
+    call.width = area.width;
+    onednn_->run(call, rest);
+    if (!area.narrow) return;
+    for (int y = 0; y < area.height; ++y)
+        numbers().narrow(wide + y * call.out_pitch, std::size_t(area.width), outputs_,
+                         static_cast<float*>(area.out) + y * area.out_pitch);
+}
+
+void PackedConv::gather(const ConvArea& area, void* dense) const noexcept {
+    const std::size_t size = numbers().bf16() != nullptr ? sizeof(std::uint16_t) : sizeof(float);
+    auto* to = static_cast<std::byte*>(dense);
+    for (int y = 0; y < reach(area.height); ++y)
+        for (int x = 0; x < reach(area.width); ++x)
+            for (std::size_t i = 0; i < sources_.size(); ++i) {
+                const auto bytes = std::size_t(sources_[i]) * size;
+                std::memcpy(to,
+                            static_cast<const float*>(area.in[i].in) + y * area.in[i].pitch +
+                                std::ptrdiff_t(x) * numbers().units(sources_[i]),
+                            bytes);
+                to += bytes;
+            }
 }
 
 }  // namespace eventide

@@ -1,0 +1,231 @@
+// See bf16_kernels.h, by AMX: products of whole tiles, 16 pixels x 16 outputs x up to 32 channels.
+//
+//     tile register            rows             a row (64 bytes at most)
+//     A: numbers               16 pixels        pairs of bf16 numbers, as they lie in memory
+//     B: weights               pairs            16 outputs x 2, in the order of packed_size()
+//     C: sums                  16 pixels        16 outputs in float32
+//
+// A convolution's stretch is read where it lies: the rows of A are `step` apart and overlap. Four C
+// stay in registers over all stretches: four runs of pixels x one vector of outputs, or two x two.
+#include "src/kernels/bf16_kernels.h"
+
+#if defined(__x86_64__) && defined(__linux__)
+
+#include "src/kernels/amx_tiles.h"
+
+#include <cpuid.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#include "src/kernels/bf16_render.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace eventide {
+namespace {
+
+using namespace amx;
+
+constexpr int kSumTiles = 4;
+
+/// Pairs of a stretch that go into one product: the same for all of a layer.
+int pairs_of(const DotArea& r) {
+    int common = 0;
+    for (int s = 0; s < r.count; ++s) common = std::gcd(common, r.stretches[s].length);
+    int pairs = std::min(common, 16);
+    while (pairs > 0 && common % pairs != 0) --pairs;
+    return pairs;
+}
+
+/// A run of so many pixels of a row begins here.
+struct Run {
+    int y, x;
+};
+
+struct Work {
+    const DotArea& area;
+    int pixels, pairs;  // of a run, of a product
+};
+
+/// C += A B
+template <int kSum, int kNumbers, int kWeights>
+EVENTIDE_AMX_INLINE void add_products() {
+    if constexpr (kSum == 0 && kNumbers == 4) _tile_dpbf16ps(0, 4, 6);
+    if constexpr (kSum == 1 && kNumbers == 4) _tile_dpbf16ps(1, 4, 7);
+    if constexpr (kSum == 1 && kNumbers == 5) _tile_dpbf16ps(1, 5, 6);
+    if constexpr (kSum == 2 && kNumbers == 4) _tile_dpbf16ps(2, 4, 6);
+    if constexpr (kSum == 2 && kNumbers == 5) _tile_dpbf16ps(2, 5, 6);
+    if constexpr (kSum == 3 && kNumbers == 5 && kWeights == 6) _tile_dpbf16ps(3, 5, 6);
+    if constexpr (kSum == 3 && kNumbers == 5 && kWeights == 7) _tile_dpbf16ps(3, 5, 7);
+}
+
+/// Stores a tile of sums where its pixels belong.
+template <int kTile>
+EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
+    const DotArea& r = work.area;
+    const std::ptrdiff_t at = run.y * r.out_pitch + run.x * r.out_step;
+    if (!r.narrow && !r.relu && r.outputs - first >= kTileOutputs) {
+        store_tile<kTile>(static_cast<float*>(r.out) + at + first,
+                          r.out_step * std::ptrdiff_t{sizeof(float)});
+        return;
+    }
+    alignas(64) float sums[kTileRows * kTileOutputs];
+    store_tile<kTile>(sums, kTileOutputs * sizeof(float));
+    const __m512 floor = _mm512_set1_ps(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
+    const int stored = r.narrow ? (r.outputs + 1) / 2 * 2 : r.outputs;
+    const auto mask =
+        __mmask16(stored - first >= kTileOutputs ? 0xffffU : (1U << unsigned(stored - first)) - 1U);
+    if (r.narrow) {
+        auto* to = static_cast<std::uint16_t*>(r.out) + 2 * at + first;
+        for (int p = 0; p < work.pixels; ++p, to += 2 * r.out_step)
+            _mm256_mask_storeu_epi16(to, mask,
+                                     (__m256i)_mm512_cvtneps_pbh(_mm512_max_ps(
+                                         _mm512_load_ps(sums + p * kTileOutputs), floor)));
+    } else {
+        float* to = static_cast<float*>(r.out) + at + first;
+        for (int p = 0; p < work.pixels; ++p, to += r.out_step)
+            _mm512_mask_storeu_ps(to, mask,
+                                  _mm512_max_ps(_mm512_load_ps(sums + p * kTileOutputs), floor));
+    }
+}
+
+/// kRuns runs of pixels x one or two vectors of outputs from `first` on.
+template <int kRuns, bool kTwo>
+EVENTIDE_AMX void dot_runs(const Work& work, const Run* runs, const std::uint32_t* weight,
+                           int first) {
+    constexpr int kWidth = (kTwo ? 2 : 1) * kTileOutputs;
+    constexpr std::ptrdiff_t kWeightStep = kWidth * sizeof(std::uint32_t);
+    const DotArea& r = work.area;
+    // A step of 0 loads the same row, the bias, into all.
+    load_tile<0>(r.bias + first, 0);
+    if constexpr (kTwo) load_tile<1>(r.bias + first + kTileOutputs, 0);
+    if constexpr (kTwo && kRuns > 1) load_tile<2>(r.bias + first, 0);
+    if constexpr (kTwo && kRuns > 1) load_tile<3>(r.bias + first + kTileOutputs, 0);
+    if constexpr (!kTwo && kRuns > 1) load_tile<1>(r.bias + first, 0);
+    if constexpr (!kTwo && kRuns > 2) load_tile<2>(r.bias + first, 0);
+    if constexpr (!kTwo && kRuns > 3) load_tile<3>(r.bias + first, 0);
+    for (int s = 0; s < r.count; ++s) {
+        const Stretch& stretch = r.stretches[s];
+        const std::ptrdiff_t step = stretch.step * std::ptrdiff_t{sizeof(std::uint32_t)};
+        const std::uint32_t* in[kRuns];
+        for (int i = 0; i < kRuns; ++i)
+            in[i] = static_cast<const std::uint32_t*>(stretch.in) + runs[i].y * stretch.pitch +
+                    runs[i].x * stretch.step;
+        for (int k = 0; k < stretch.length; k += work.pairs, weight += work.pairs * kWidth) {
+            load_tile<6>(weight, kWeightStep);
+            load_tile<4>(in[0] + k, step);
+            add_products<0, 4, 6>();
+            if constexpr (kTwo) {
+                load_tile<7>(weight + kTileOutputs, kWeightStep);
+                add_products<1, 4, 7>();
+                if constexpr (kRuns > 1) {
+                    load_tile<5>(in[1] + k, step);
+                    add_products<2, 5, 6>();
+                    add_products<3, 5, 7>();
+                }
+            } else {
+                if constexpr (kRuns > 1) load_tile<5>(in[1] + k, step), add_products<1, 5, 6>();
+                if constexpr (kRuns > 2) load_tile<4>(in[2] + k, step), add_products<2, 4, 6>();
+                if constexpr (kRuns > 3) load_tile<5>(in[3] + k, step), add_products<3, 5, 6>();
+            }
+        }
+    }
+    put<0>(work, runs[0], first);
+    if constexpr (kTwo) put<1>(work, runs[0], first + kTileOutputs);
+    if constexpr (kTwo && kRuns > 1) put<2>(work, runs[1], first);
+    if constexpr (kTwo && kRuns > 1) put<3>(work, runs[1], first + kTileOutputs);
+    if constexpr (!kTwo && kRuns > 1) put<1>(work, runs[1], first);
+    if constexpr (!kTwo && kRuns > 2) put<2>(work, runs[2], first);
+    if constexpr (!kTwo && kRuns > 3) put<3>(work, runs[3], first);
+}
+
+/// All pixels x one or two vectors of outputs. The rows' last runs overlap those before, so that
+/// all have the same length.
+template <bool kTwo>
+EVENTIDE_AMX void dot_outputs(const Work& work, const std::uint32_t* weight, int first) {
+    constexpr int kMost = kTwo ? kSumTiles / 2 : kSumTiles;
+    const DotArea& r = work.area;
+    Run runs[kMost];
+    int n = 0;
+    for (int y = 0; y < r.height; ++y)
+        for (int x = 0; x < r.width; x += work.pixels) {
+            runs[n++] = {y, std::min(x, r.width - work.pixels)};
+            if (n < kMost) continue;
+            dot_runs<kMost, kTwo>(work, runs, weight, first);
+            n = 0;
+        }
+    if (n == 1) dot_runs<1, kTwo>(work, runs, weight, first);
+    if constexpr (!kTwo) {
+        if (n == 2) dot_runs<2, kTwo>(work, runs, weight, first);
+        if (n == 3) dot_runs<3, kTwo>(work, runs, weight, first);
+    }
+}
+
+EVENTIDE_AMX void dot_area(const DotArea& r) {
+    // Products of fewer pairs, and of half vectors of outputs, are not worth a tile.
+    constexpr int kLeastPairs = 6;
+    const int pairs = pairs_of(r);
+    if (pairs < kLeastPairs || bf16_lanes(r.outputs) != kTileOutputs || r.height * r.width == 0) {
+        avx512_bf16::bf16_kernels().dot_area(r);
+        return;
+    }
+    const int parts = (r.width + kTileRows - 1) / kTileRows;
+    const Work work{r, (r.width + parts - 1) / parts, pairs};
+    const TileShapes shapes{work.pixels, pairs};
+    _tile_loadconfig(&shapes);
+    std::ptrdiff_t length = 0;
+    for (int s = 0; s < r.count; ++s) length += r.stretches[s].length;
+    const auto* weight = static_cast<const std::uint32_t*>(r.weight);
+    for (int first = 0; first < r.outputs;) {
+        const bool is_two = r.outputs - first > kTileOutputs;
+        is_two ? dot_outputs<true>(work, weight, first) : dot_outputs<false>(work, weight, first);
+        const int width = (is_two ? 2 : 1) * kTileOutputs;
+        weight += length * width;
+        first += width;
+    }
+    _tile_release();
+}
+
+bool processor_has_amx() {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    constexpr unsigned kBf16 = 1U << 22, kTile = 1U << 24;
+    return __get_cpuid_count(7, 0, &a, &b, &c, &d) != 0 && (d & kBf16) != 0 && (d & kTile) != 0;
+}
+
+/// Whether the processor has AMX, and Linux lets this process use its registers (asked once).
+bool amx_there() {
+    constexpr long kRequestPermission = 0x1023, kTileData = 18;  // ARCH_REQ_XCOMP_PERM, XTILEDATA
+    static const bool kThere = avx512_bf16::there() && processor_has_amx() &&
+                               ::syscall(SYS_arch_prctl, kRequestPermission, kTileData) == 0;
+    return kThere;
+}
+
+}  // namespace
+
+const Bf16Kernels* amx_kernels() {
+    if (kernels_limited() || amx_left_out() || !amx_there()) return nullptr;
+    const Bf16Kernels& vectors = avx512_bf16::bf16_kernels();
+    static const Bf16Kernels kKernels{"AMX",
+                                      dot_area,
+                                      vectors.pixels_to_bf16,
+                                      vectors.row_to_bf16,
+                                      vectors.double_row,
+                                      vectors.offset_rows,
+                                      amx::hidden_rows};
+    return &kKernels;
+}
+
+}  // namespace eventide
+
+#else
+
+namespace eventide {
+
+const Bf16Kernels* amx_kernels() {
+    return nullptr;
+}
+
+}  // namespace eventide
+
+#endif

@@ -1,0 +1,206 @@
+// See bf16_render.h. Pixels go through in pairs of runs of 16, and leave the core's own cache at
+// the end alone:
+//
+//     sums of layer 1, bf16   + base + dx slope, relu   -> A: 16 pixels x up to 32 numbers, twice
+//     A x B (hidden weights)                            -> C: 16 pixels x 2 x 16 sums, twice
+//     relu(C) . the last layer's two rows               -> 16 mu, 16 log sigma, twice
+#include "src/kernels/bf16_render.h"
+
+#if defined(__x86_64__)
+
+#include "src/kernels/amx_tiles.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide::amx {
+namespace {
+
+constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMostNumbers = 32;
+
+struct Room {
+    alignas(64) std::uint16_t numbers[kBoth][kMostNumbers] = {};
+    alignas(64) float sums[4][kRun][kTileOutputs];  // of 16 pixels: outputs 0-15, 16-31
+
+    int pairs(int pixel, int k) const {
+        int pair;
+        std::memcpy(&pair, &numbers[pixel][2 * k], sizeof(pair));
+        return pair;
+    }
+};
+
+EVENTIDE_AMX_INLINE __mmask16 first_lanes(int n) {
+    return __mmask16(n >= 16 ? 0xffffU : (1U << unsigned(std::max(n, 0))) - 1U);
+}
+EVENTIDE_AMX_INLINE __m512 widened(__m256i numbers) {
+    return _mm512_castsi512_ps(_mm512_slli_epi32(_mm512_cvtepu16_epi32(numbers), 16));
+}
+
+/// Half of the first layer's outputs of a pixel.
+struct Half {
+    __m512 base, slope;
+    __mmask16 mask;
+    EVENTIDE_AMX_INLINE Half(const OffsetRows& r, int from) : mask(first_lanes(r.width - from)) {
+        base = _mm512_maskz_loadu_ps(mask, r.base + from);
+        slope = _mm512_maskz_loadu_ps(mask, r.slope + from);
+    }
+    EVENTIDE_AMX_INLINE __m512 of(const std::uint16_t* sums, __m512 dx) const {
+        const __m512 sum = widened(_mm256_maskz_loadu_epi16(mask, sums));
+        return _mm512_max_ps(_mm512_add_ps(sum, _mm512_fmadd_ps(dx, slope, base)),
+                             _mm512_setzero_ps());
+    }
+};
+
+EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Half& low, const Half& high,
+                                       int first, int count, Room& room) {
+    for (int p = 0; p < count; ++p) {
+        const auto* sums = static_cast<const std::uint16_t*>(r.sums) +
+                           std::ptrdiff_t(r.column[first + p]) * r.width;
+        if (r.ahead != 0) __builtin_prefetch(sums + 2 * r.ahead, 0, 2);
+        const __m512 dx = _mm512_set1_ps(r.dx[first + p]);
+        _mm512_store_si512(room.numbers[p],
+                           (__m512i)_mm512_cvtne2ps_pbh(high.of(sums + 16, dx), low.of(sums, dx)));
+    }
+}
+
+/// The two rows of the last layer.
+struct LastLayer {
+    __m512 first_low, first_high, second_low, second_high;
+    EVENTIDE_AMX_INLINE explicit LastLayer(const HiddenRows& r) {
+        const __mmask16 high = first_lanes(r.outputs - kTileOutputs);
+        const float* second = r.last_weight + r.outputs;
+        first_low = _mm512_loadu_ps(r.last_weight);
+        first_high = _mm512_maskz_loadu_ps(high, r.last_weight + kTileOutputs);
+        second_low = _mm512_loadu_ps(second);
+        second_high = _mm512_maskz_loadu_ps(high, second + kTileOutputs);
+    }
+};
+struct PairOfSums {
+    __m512 first, second;
+};
+/// Neighbouring lanes of a, then of b, added to each other.
+EVENTIDE_AMX_INLINE __m512 add_neighbours(__m512 a, __m512 b) {
+    const __m512i even =
+                      _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
+                  odd =
+                      _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+    return _mm512_add_ps(_mm512_permutex2var_ps(a, even, b), _mm512_permutex2var_ps(a, odd, b));
+}
+/// Of kCount pixels from p on, each in its share of the lanes; see two_outputs in
+/// render_kernels-inl.h.
+template <int kCount>
+EVENTIDE_AMX_INLINE PairOfSums sums_of(const LastLayer& last, const float (*low)[kTileOutputs],
+                                       const float (*high)[kTileOutputs], int p) {
+    if constexpr (kCount == 1) {
+        const __m512 a = _mm512_max_ps(_mm512_load_ps(low[p]), _mm512_setzero_ps()),
+                     b = _mm512_max_ps(_mm512_load_ps(high[p]), _mm512_setzero_ps());
+        return {_mm512_fmadd_ps(a, last.first_low, _mm512_mul_ps(b, last.first_high)),
+                _mm512_fmadd_ps(a, last.second_low, _mm512_mul_ps(b, last.second_high))};
+    } else {
+        const PairOfSums a = sums_of<kCount / 2>(last, low, high, p),
+                         b = sums_of<kCount / 2>(last, low, high, p + kCount / 2);
+        return {add_neighbours(a.first, b.first), add_neighbours(a.second, b.second)};
+    }
+}
+
+EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int run, int first,
+                              int count, const Room& room) {
+    const PairOfSums sums = sums_of<kRun>(last, room.sums[2 * run], room.sums[2 * run + 1], 0);
+    const __mmask16 mask = first_lanes(count);
+    _mm512_mask_storeu_ps(r.mu + first, mask,
+                          _mm512_add_ps(sums.first, _mm512_set1_ps(r.last_bias[0])));
+    _mm512_mask_storeu_ps(r.log_sigma + first, mask,
+                          _mm512_add_ps(sums.second, _mm512_set1_ps(r.last_bias[1])));
+}
+
+EVENTIDE_AMX_INLINE void multiply_tiles(const HiddenRows& r, Room& room) {
+    constexpr std::ptrdiff_t kRow = sizeof(room.numbers[0]), kSums = sizeof(room.sums[0][0]);
+    load_tile<0>(r.bias, 0);
+    load_tile<1>(r.bias + kTileOutputs, 0);
+    load_tile<2>(r.bias, 0);
+    load_tile<3>(r.bias + kTileOutputs, 0);
+    load_tile<4>(room.numbers[0], kRow);
+    _tile_dpbf16ps(0, 4, 6);
+    _tile_dpbf16ps(1, 4, 7);
+    load_tile<5>(room.numbers[kRun], kRow);
+    _tile_dpbf16ps(2, 5, 6);
+    _tile_dpbf16ps(3, 5, 7);
+    store_tile<0>(room.sums[0], kSums);
+    store_tile<1>(room.sums[1], kSums);
+    store_tile<2>(room.sums[2], kSums);
+    store_tile<3>(room.sums[3], kSums);
+}
+
+/// The same by vectors: eight pixels x 2 x 16 sums at a time.
+EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
+    constexpr int kPixels = 8;
+    const auto* weight = static_cast<const std::uint32_t*>(r.weight);
+    for (int first = 0; first < kBoth; first += kPixels) {
+        __m512 low[kPixels], high[kPixels];
+        for (int p = 0; p < kPixels; ++p) {
+            low[p] = _mm512_loadu_ps(r.bias);
+            high[p] = _mm512_loadu_ps(r.bias + kTileOutputs);
+        }
+        for (int k = 0; k < r.offset.width / 2; ++k) {
+            const auto* at = weight + std::ptrdiff_t(k) * 2 * kTileOutputs;
+            const auto weight_low = (__m512bh)_mm512_loadu_si512(at),
+                       weight_high = (__m512bh)_mm512_loadu_si512(at + kTileOutputs);
+#pragma GCC unroll 8
+            for (int p = 0; p < kPixels; ++p) {
+                const auto pair = (__m512bh)_mm512_set1_epi32(room.pairs(first + p, k));
+                low[p] = _mm512_dpbf16_ps(low[p], pair, weight_low);
+                high[p] = _mm512_dpbf16_ps(high[p], pair, weight_high);
+            }
+        }
+        const int run = first / kRun;
+        for (int p = 0; p < kPixels; ++p) {
+            _mm512_store_ps(room.sums[2 * run][first % kRun + p], low[p]);
+            _mm512_store_ps(room.sums[2 * run + 1][first % kRun + p], high[p]);
+        }
+    }
+}
+
+EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
+    const TileShapes shapes{kRun, r.offset.width / 2};
+    _tile_loadconfig(&shapes);
+    constexpr std::ptrdiff_t kWeightStep = 2 * kTileOutputs * sizeof(std::uint32_t);
+    load_tile<6>(r.weight, kWeightStep);
+    load_tile<7>(static_cast<const std::uint32_t*>(r.weight) + kTileOutputs, kWeightStep);
+}
+
+template <bool kTiles>
+EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
+    const OffsetRows& offset = r.offset;
+    if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMostNumbers ||
+        r.outputs <= kTileOutputs || r.outputs > 2 * kTileOutputs)
+        return false;
+    if (kTiles) start_tiles(r);
+    const Half low{offset, 0}, high{offset, 16};
+    const LastLayer last{r};
+    Room room;
+    for (int first = 0; first < offset.pixels; first += kBoth) {
+        const int count = std::min(kBoth, offset.pixels - first);
+        offset_pixels(offset, low, high, first, count, room);
+        kTiles ? multiply_tiles(r, room) : multiply_vectors(r, room);
+        two_outputs(r, last, 0, first, count, room);
+        if (count > kRun) two_outputs(r, last, 1, first + kRun, count - kRun, room);
+    }
+    if (kTiles) _tile_release();
+    return true;
+}
+
+}  // namespace
+}  // namespace eventide::amx
+
+namespace eventide {
+
+bool avx512_bf16::hidden_rows(const HiddenRows& rows) {
+    return amx::run_rows<false>(rows);
+}
+bool amx::hidden_rows(const HiddenRows& rows) {
+    return amx::run_rows<true>(rows);
+}
+
+}  // namespace eventide
+
+#endif

@@ -1,0 +1,17 @@
+// The renderer's layers behind the first, of bf16 numbers.
+#pragma once
+
+#include "src/kernels/render_kernels.h"
+
+namespace eventide {
+
+namespace avx512_bf16 {
+/// See HiddenRows. False, and nothing done, for layers it is not made for.
+bool hidden_rows(const HiddenRows& rows);
+}  // namespace avx512_bf16
+
+namespace amx {
+bool hidden_rows(const HiddenRows& rows);
+}  // namespace amx
+
+}  // namespace eventide

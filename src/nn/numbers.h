@@ -1,0 +1,63 @@
+// What numbers layers read: float32, or bf16 in pairs.
+#pragma once
+
+#include "src/kernels/bf16_kernels.h"
+#include "src/kernels/vector_kernels.h"
+#include "src/nn/arithmetic.h"
+
+#include <cstring>
+
+namespace eventide {
+
+/// Maps and rows that layers read count units of 4 bytes: a float32 number, or two bf16 numbers of
+/// the same pixel, with a zero beside the last of an odd number.
+class Numbers {
+public:
+    Numbers() = default;
+    explicit Numbers(Products products)
+        : bf16_(products == Products::f32 ? nullptr
+                : products == Products::bf16 && eventide::bf16_kernels() != nullptr
+                    ? eventide::bf16_kernels()
+                    : &plain::bf16_kernels()) {}
+
+    /// Null where they are float32.
+    const Bf16Kernels* bf16() const { return bf16_; }
+    int units(int channels) const { return bf16_ != nullptr ? (channels + 1) / 2 : channels; }
+
+    /// Pixels of so many channels, one after the other, from float32 and back.
+    void narrow(const float* in, std::size_t pixels, int channels, void* out) const noexcept {
+        if (bf16_ != nullptr)
+            bf16_->pixels_to_bf16(in, pixels, channels, static_cast<std::uint32_t*>(out));
+        else
+            std::memcpy(out, in, pixels * std::size_t(channels) * sizeof(float));
+    }
+    void widen(const void* in, std::size_t pixels, int channels, float* out) const noexcept {
+        const auto count = std::size_t(channels), step = 2 * std::size_t(units(channels));
+        if (bf16_ == nullptr) {
+            std::memcpy(out, in, pixels * count * sizeof(float));
+            return;
+        }
+        const auto* numbers = static_cast<const std::uint16_t*>(in);
+        for (std::size_t p = 0; p < pixels; ++p)
+            for (std::size_t c = 0; c < count; ++c)
+                out[p * count + c] = from_bf16(numbers[p * step + c]);
+    }
+    /// See DoubleRow.
+    void double_row(DoubleRow row) const noexcept {
+        if (bf16_ == nullptr) {
+            vector_kernels().double_row(row);
+            return;
+        }
+        row.channels = 2 * units(row.channels);
+        bf16_->double_row(row);
+    }
+    /// See OffsetRows.
+    void offset_rows(const OffsetRows& rows) const noexcept {
+        bf16_ != nullptr ? bf16_->offset_rows(rows) : vector_kernels().offset_rows(rows);
+    }
+
+private:
+    const Bf16Kernels* bf16_ = nullptr;
+};
+
+}  // namespace eventide
