@@ -13,10 +13,10 @@ namespace {
 const Format& format_of(const std::string& path, const WriterOptions& options) {
     const Format* format =
         options.format.empty() ? format_for_writing(path) : find_format(options.format);
-    if (format != nullptr && format->make_writer != nullptr) return *format;
+    if (format != nullptr && format->is_written()) return *format;
     std::string names;
     for (const Format& one : all_formats())
-        if (one.make_writer != nullptr)
+        if (one.is_written())
             names += (names.empty() ? "" : ", ") + std::string{one.name};
     throw Error(ErrorKind::usage,
                 path + ": expected a format that can be written (" + names + "), found " +
@@ -44,8 +44,7 @@ public:
     Impl(const std::string& path, const SensorInfo& sensor, const WriterOptions& options)
         : path_(path),
           format_(format_of(path, options)),
-          file_(path, options.overwrite, open_writer(format_.name),
-                header_of(format_, sensor, path)) {}
+          file_(path, options.overwrite, format_, header_of(format_, sensor, path)) {}
 
     void write(std::span<const Event> events) {
         held_.clear();

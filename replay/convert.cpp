@@ -42,7 +42,7 @@ void add(DataCounts& sum, const DataCounts& more) {
 class FileTarget final : public ConvertTarget {
 public:
     FileTarget(const std::string& path, bool overwrite, const Format& format, StreamHeader header)
-        : format_{format}, file_{path, overwrite, open_writer(format.name), header} {}
+        : format_{format}, file_{path, overwrite, format, header} {}
     const FormatHolds& holds() const override { return format_.holds; }
     void write(const Batch& batch) override { file_.write(batch); }
     void finish() override { file_.finish(); }

@@ -1,6 +1,10 @@
 // The table of formats. To add one: a parser in src/codec, and a row here.
 #include "replay/formats.h"
 
+#include "replay/hdf5/hdf5_recording.h"
+#include "replay/hdf5/hdf5_writer.h"
+#include "replay/numpy/numpy_recording.h"
+#include "replay/ros/bag_recording.h"
 #include "src/codec/aedat1.h"
 #include "src/codec/aedat2.h"
 #include "src/codec/aedat3.h"
@@ -9,6 +13,7 @@
 #include "src/codec/aedat4_table.h"
 #include "src/codec/aedat4_writer.h"
 #include "src/codec/dat.h"
+#include "src/codec/event_stream.h"
 #include "src/codec/evt2.h"
 #include "src/codec/evt3.h"
 #include "src/codec/evt_header.h"
@@ -133,6 +138,14 @@ OpenedStream open_dat(Bytes first_bytes, const OpenOptions&) {
     return {header.stream, make_parser, by_skimming<DatParser>()};
 }
 
+OpenedStream open_event_stream(Bytes first_bytes, const OpenOptions&) {
+    const EventStreamHeader header = read_event_stream_header(first_bytes);
+    const auto make_parser = [kind = header.kind](const StreamHeader& stream) {
+        return std::make_unique<EventStreamParser>(kind, stream.width, stream.height);
+    };
+    return {header.stream, make_parser, by_skimming<EventStreamParser>()};
+}
+
 OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
     const TextHeader header = read_text_header(first_bytes, options.text);
     const auto make_parser = [layout = header.layout,
@@ -142,7 +155,11 @@ OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
     return {header.stream, make_parser, {1}, header.remarks};
 }
 
+constexpr char kHdf5Magic[] = "\x89HDF\r\n\x1A\n", kBagMagic[] = "#ROSBAG V2.0",
+               kNpyMagic[] = "\x93NUMPY", kNpzMagic[] = "PK\x03\x04";
+
 constexpr FormatHolds kOnlyEvents{};
+constexpr FormatHolds kEventsAndImages{true, true};
 constexpr FormatHolds kEventsAndTriggers{true, false, false, true};
 constexpr FormatHolds kEverything{true, true, true, true};
 constexpr FormatHolds kAedat4Holds{true, true, true, true,
@@ -163,6 +180,15 @@ const std::array kFormats{
            nullptr},
     Format{"evt21", "Prophesee RAW EVT2.1", ".raw", kEventsAndTriggers, is_evt<kEvt21>, open_evt21,
            nullptr},
+    Format{"hdf5", "HDF5", ".h5", kEventsAndImages, has_magic<kHdf5Magic>, nullptr, nullptr,
+           open_hdf5, make_hdf5_writer},
+    Format{"es", "Event Stream", ".es", kOnlyEvents, is_event_stream, open_event_stream, nullptr},
+    Format{"npy", "NumPy array", ".npy", kOnlyEvents, has_magic<kNpyMagic>, nullptr, nullptr,
+           open_npy},
+    Format{"npz", "NumPy arrays", ".npz", kOnlyEvents, has_magic<kNpzMagic>, nullptr, nullptr,
+           open_npz},
+    Format{"rosbag", "ROS 1 bag", ".bag", kEverything, has_magic<kBagMagic>, nullptr, nullptr,
+           open_bag},
     Format{"dat", "Prophesee DAT", ".dat", kEventsAndTriggers, is_dat, open_dat, nullptr},
     Format{"aedat1", "AEDAT 1.0", ".dat", kOnlyEvents, looks_like_aedat1, open_aedat1, nullptr},
     Format{"text", "lines of \"t x y p\"", ".txt", kOnlyEvents, looks_like_text, open_text,
@@ -209,7 +235,7 @@ const Format* detect_format(Bytes first_bytes) {
 
 const Format* format_for_writing(const std::string& path) {
     const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& format) {
-        return format.make_writer && path.ends_with(format.extension);
+        return format.is_written() && path.ends_with(format.extension);
     });
     return found == kFormats.end() ? nullptr : &*found;
 }

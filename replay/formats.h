@@ -1,10 +1,13 @@
 // The formats of recordings, in one table, and how to open one for reading or writing.
 #pragma once
 
+#include "replay/data_reader.h"
 #include "replay/file_recording.h"
+#include "replay/file_writer.h"
 #include "replay/open_options.h"
 #include "replay/recording.h"
 #include "src/codec/stream.h"
+#include "src/io/output_file.h"
 
 #include <cstdint>
 #include <memory>
@@ -39,7 +42,15 @@ struct Format {
     /// Reads the header from the first bytes of a file (all of it, or kHeadBytes). Throws Error
     /// (input) when it is not what it says.
     OpenedStream (*open)(std::span<const std::byte> first_bytes, const OpenOptions& options);
-    std::unique_ptr<StreamWriter> (*make_writer)();  ///< null: read only
+    std::unique_ptr<StreamWriter> (*make_writer)();  ///< null: no stream of bytes is written
+    /// Set instead of `open` for what is no stream of bytes: reads a file by its path.
+    std::unique_ptr<DataReader> (*open_path)(const std::string& path,
+                                             const OpenOptions& options) = nullptr;
+    /// Set instead of make_writer for what is no stream of bytes.
+    std::unique_ptr<FileWriter> (*make_file_writer)(OutputFile& file,
+                                                    const StreamHeader& header) = nullptr;
+
+    bool is_written() const { return make_writer != nullptr || make_file_writer != nullptr; }
 };
 
 /// No header is longer than this (AEDAT 2.0 files carry the recorder's preferences, 200 kB).
@@ -62,7 +73,7 @@ const Format* format_for_writing(const std::string& path);
 /// the path, what was expected and what was found.
 std::unique_ptr<Recording> open_recording(const std::string& path, const OpenOptions& options = {});
 
-/// Throws Error (usage) for a format that is unknown or read only.
+/// Throws Error (usage) for a format that is unknown, read only, or no stream of bytes.
 std::unique_ptr<StreamWriter> open_writer(std::string_view format);
 
 }  // namespace eventide

@@ -1,5 +1,6 @@
 // From a path to a Recording: reads the first bytes, asks the table, completes the geometry.
 #include "replay/aedat4_streams.h"
+#include "replay/data_recording.h"
 #include "replay/ecd_folder.h"
 #include "replay/formats.h"
 #include "replay/scan_geometry.h"
@@ -63,6 +64,9 @@ const Format& choose_format(const ByteFile& file, std::span<const std::byte> hea
 
 OpenedStream open_stream(const ByteFile& file, const Format& format,
                          std::span<const std::byte> head, const OpenOptions& options) {
+    if (format.open == nullptr)
+        throw Error(ErrorKind::input, file.path() + ": expected a stream of bytes, found " +
+                                          std::string(format.title));
     try {
         return format.open(head, options);
     } catch (const Error& error) {
@@ -70,13 +74,17 @@ OpenedStream open_stream(const ByteFile& file, const Format& format,
     }
 }
 
-void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOptions& options) {
-    StreamHeader& header = stream.header;
+void check_size(const OpenOptions& options) {
     if ((options.width > 0) != (options.height > 0) || options.width < 0 || options.width > 65536 ||
         options.height > 65536)
         throw Error(ErrorKind::usage, "geometry: expected WIDTHxHEIGHT, each 1 to 65536, found " +
                                           std::to_string(options.width) + "x" +
                                           std::to_string(options.height));
+}
+
+void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOptions& options) {
+    StreamHeader& header = stream.header;
+    check_size(options);
     if (options.width > 0) {
         header.width = options.width;
         header.height = options.height;
@@ -91,10 +99,20 @@ void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOpt
     scan_geometry(file, stream);
 }
 
-std::unique_ptr<FileRecording> open_file(const std::string& path, const OpenOptions& options) {
-    ByteFile file(path);
-    std::vector<std::byte> head = read_head(file);
-    OpenedStream stream = open_stream(file, choose_format(file, head, options), head, options);
+std::unique_ptr<Recording> open_by_path(const ByteFile& file, const Format& format,
+                                        const OpenOptions& options) {
+    if (!file.is_seekable())
+        throw Error(ErrorKind::input, file.path() +
+                                          ": expected a file that can be read in any "
+                                          "order, as " +
+                                          std::string(format.title) + " needs, found a pipe");
+    check_size(options);
+    return std::make_unique<DataRecording>(format.open_path(file.path(), options), file.size());
+}
+
+std::unique_ptr<FileRecording> open_as_stream(ByteFile file, std::vector<std::byte> head,
+                                              const Format& format, const OpenOptions& options) {
+    OpenedStream stream = open_stream(file, format, head, options);
     if (file.is_seekable() && stream.header.format == "aedat4")
         stream.remarks = compare_aedat4_streams(file, read_aedat4_header(head));
     complete_geometry(file, stream, options);
@@ -102,6 +120,22 @@ std::unique_ptr<FileRecording> open_file(const std::string& path, const OpenOpti
     head.erase(head.begin(), head.begin() + std::ptrdiff_t(header_bytes));
     if (file.is_seekable()) head.clear();
     return std::make_unique<FileRecording>(std::move(file), std::move(stream), std::move(head));
+}
+
+std::unique_ptr<Recording> open_file(const std::string& path, const OpenOptions& options) {
+    ByteFile file(path);
+    std::vector<std::byte> head = read_head(file);
+    const Format& format = choose_format(file, head, options);
+    if (format.open_path != nullptr) return open_by_path(file, format, options);
+    return open_as_stream(std::move(file), std::move(head), format, options);
+}
+
+std::unique_ptr<FileRecording> open_events_of(const std::string& folder,
+                                              const OpenOptions& options) {
+    ByteFile file((std::filesystem::path(folder) / "events.txt").string());
+    std::vector<std::byte> head = read_head(file);
+    const Format& format = choose_format(file, head, options);
+    return open_as_stream(std::move(file), std::move(head), format, options);
 }
 
 }  // namespace
@@ -114,9 +148,7 @@ std::unique_ptr<Recording> open_recording(const std::string& path, const OpenOpt
             completed.width = images.width;
             completed.height = images.height;
         }
-        auto events =
-            open_file((std::filesystem::path(*folder) / "events.txt").string(), completed);
-        return std::make_unique<EcdRecording>(std::move(events), images);
+        return std::make_unique<EcdRecording>(open_events_of(*folder, completed), images);
     }
     return open_file(path, options);
 }

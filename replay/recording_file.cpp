@@ -13,6 +13,19 @@ RecordingFile::RecordingFile(const std::string& path, bool overwrite,
     file_.emplace(path, OutputOptions{.overwrite = overwrite, .appears = appears});
 }
 
+RecordingFile::RecordingFile(const std::string& path, bool overwrite, const Format& format,
+                             const StreamHeader& header, Appears appears) {
+    const OutputOptions options{.overwrite = overwrite, .appears = appears};
+    if (format.make_file_writer == nullptr) {
+        writer_ = open_writer(format.name);
+        writer_->begin(header, pending_);
+        file_.emplace(path, options);
+        return;
+    }
+    file_.emplace(path, options);
+    file_writer_ = format.make_file_writer(*file_, header);
+}
+
 void RecordingFile::flush() {
     file_->write(pending_);
     bytes_written_ += pending_.size();
@@ -20,11 +33,17 @@ void RecordingFile::flush() {
 }
 
 void RecordingFile::write(const Batch& batch) {
+    if (file_writer_) return file_writer_->write(batch);
     writer_->write(batch, pending_);
     flush();
 }
 
 void RecordingFile::finish() {
+    if (file_writer_) {
+        file_writer_->finish();
+        bytes_written_ = file_->size();
+        return file_->close();
+    }
     writer_->finish(pending_);
     flush();
     // Elsewhere the index stays unnamed, as after a crash.

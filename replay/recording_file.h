@@ -1,6 +1,7 @@
 // A file being written: the bytes of a StreamWriter, and its patches at the end.
 #pragma once
 
+#include "replay/formats.h"
 #include "src/codec/stream.h"
 #include "src/io/output_file.h"
 
@@ -20,6 +21,10 @@ public:
     RecordingFile(const std::string& path, bool overwrite, std::unique_ptr<StreamWriter> writer,
                   const StreamHeader& header, Appears appears = Appears::whole);
 
+    /// In a format of the table, also one that is no stream of bytes (then `path` is no pipe).
+    RecordingFile(const std::string& path, bool overwrite, const Format& format,
+                  const StreamHeader& header, Appears appears = Appears::whole);
+
     /// Throws Error (failed) when the disk is full, Error (usage) for what the format cannot hold.
     void write(const Batch& batch);
 
@@ -34,8 +39,9 @@ public:
 private:
     void flush();
 
-    std::unique_ptr<StreamWriter> writer_;
+    std::unique_ptr<StreamWriter> writer_;  // either this ...
     std::optional<OutputFile> file_;
+    std::unique_ptr<FileWriter> file_writer_;  // ... or this
     std::vector<std::byte> pending_;
     std::uint64_t bytes_written_ = 0;
 };

@@ -22,10 +22,16 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION})"
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION}: headers for C++ and C")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME eventide)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION})")  # for its models
-if(EVENTIDE_ROS2_ENABLED)  # loaded when a ROS 2 topic is named, so that dpkg-shlibdeps does not see it
-  set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libddsc0debian)
-  set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS libddsc0debian)
+# Loaded when a ROS 2 topic is named or an HDF5 file is opened, so that dpkg-shlibdeps does not see them.
+if(EVENTIDE_ROS2_ENABLED)
+  list(APPEND loaded libddsc0debian)
 endif()
+if(EVENTIDE_HDF5_ENABLED)
+  list(APPEND loaded libhdf5-103-1)
+endif()
+list(JOIN loaded ", " loaded)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS ${loaded})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS ${loaded})
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}: the program")
 if(EVENTIDE_PYTHON_ENABLED)
   list(APPEND CPACK_COMPONENTS_ALL python)

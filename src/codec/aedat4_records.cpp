@@ -35,7 +35,7 @@ WireEvent load_event(const std::byte* record) {
 }
 
 /// All records at once when none of them needs more than a look.
-bool take_plain(std::span<const std::byte> records, EventValidator& line, Batch& into) {
+bool take_plain(std::span<const std::byte> records, EventValidator& validator, Batch& into) {
     constexpr std::size_t kAtOnce = 512;
     std::array<Event, kAtOnce> taken;
     const std::size_t n = records.size() / kAedat4EventBytes;
@@ -43,8 +43,8 @@ bool take_plain(std::span<const std::byte> records, EventValidator& line, Batch&
     const std::int64_t first = load_event(records.data()).t_us;
     const std::int64_t last = load_event(records.data() + records.size() - kAedat4EventBytes).t_us;
     if (!is_aedat4_time(first) || !is_aedat4_time(last)) return false;
-    if (!line.is_plain(first) || last - first > EventValidator::kLongestStep) return false;
-    const std::uint64_t width = line.width(), height = line.height();
+    if (!validator.is_plain(first) || last - first > EventValidator::kLongestStep) return false;
+    const std::uint64_t width = validator.width(), height = validator.height();
     bool plain = true;
     std::int64_t before = first;
     for (std::size_t i = 0; i < n; ++i) {
@@ -55,16 +55,16 @@ bool take_plain(std::span<const std::byte> records, EventValidator& line, Batch&
     }
     if (!plain) return false;
     into.events.insert(into.events.end(), taken.begin(), taken.begin() + std::ptrdiff_t(n));
-    line.pass(last);
+    validator.pass(last);
     return true;
 }
 
-void take_one_by_one(std::span<const std::byte> records, EventValidator& line, Batch& into,
+void take_one_by_one(std::span<const std::byte> records, EventValidator& validator, Batch& into,
                      Damage& damage) {
     for (; !records.empty(); records = records.subspan(kAedat4EventBytes)) {
         const WireEvent event = load_event(records.data());
         if (is_aedat4_time(event.t_us))
-            line.add(event.t_us, event.x, event.y, event.on, into, damage);
+            validator.add(event.t_us, event.x, event.y, event.on, into, damage);
         else
             damage.count(DamageReason::bad_record);
     }
@@ -117,7 +117,7 @@ void keep_newest(std::optional<std::int64_t>& newest, std::int64_t t_us) {
 
 }  // namespace
 
-std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& line,
+std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& validator,
                                                Batch& into, Damage& damage) {
     const auto elements = packet.vector(0, kAedat4EventBytes);
     if (!elements) {
@@ -127,11 +127,11 @@ std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventVal
     constexpr std::size_t kChunkBytes = 512 * kAedat4EventBytes;
     for (auto records = elements->bytes; !records.empty();) {
         const auto chunk = records.first(std::min(kChunkBytes, records.size()));
-        if (!take_plain(chunk, line, into)) take_one_by_one(chunk, line, into, damage);
+        if (!take_plain(chunk, validator, into)) take_one_by_one(chunk, validator, into, damage);
         records = records.subspan(chunk.size());
     }
-    line.end_packet();
-    return line.newest_us();
+    validator.end_packet();
+    return validator.newest_us();
 }
 
 std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const EventValidator& sensor,

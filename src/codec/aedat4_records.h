@@ -21,7 +21,7 @@ constexpr bool is_aedat4_time(std::int64_t t_us) {
 
 /// Each appends what a packet of its kind holds and counts what makes no sense. The result is the
 /// newest time told; empty when there was none.
-std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& line,
+std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& validator,
                                                Batch& into, Damage& damage);
 std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const EventValidator& sensor,
                                               Batch& into, Damage& damage);

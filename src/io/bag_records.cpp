@@ -6,6 +6,7 @@
 #include "src/io/bag_unpack.h"
 
 #include <algorithm>
+#include <array>
 
 namespace eventide {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 // Of a record or an unpacked chunk. rosbag closes a chunk at 768 KiB, or after one longer message.
 constexpr std::uint32_t kLongest = 1U << 28;
+constexpr std::uint32_t kLongestHeader = 1U << 16;  // of what is passed over
 
 }  // namespace
 
@@ -31,7 +33,42 @@ BagRecords::BagRecords(const std::filesystem::path& path)
     std::string magic(kMagic.size(), '\0');
     if (!file_.read(magic.data(), std::streamsize(magic.size())) || magic != kMagic)
         refuse("expected a ROS bag that begins with '#ROSBAG V2.0', found something else");
-    left_ = std::filesystem::file_size(path) - kMagic.size();
+    size_ = std::filesystem::file_size(path);
+    left_ = size_ - kMagic.size();
+}
+
+void BagRecords::go_to(std::uint64_t position) {
+    file_.clear();
+    file_.seekg(std::streamoff(position));
+    left_ = size_ - position;
+}
+
+int BagRecords::skip() {
+    if (left_ == 0) return -1;
+    const auto length = [&] {
+        std::array<char, 4> bytes;
+        if (left_ < bytes.size() || !file_.read(bytes.data(), bytes.size()))
+            refuse("expected the length of a record, found the end", DamageReason::truncated);
+        left_ -= bytes.size();
+        const auto n = load_little<std::uint32_t>(reinterpret_cast<const std::byte*>(bytes.data()));
+        if (n > left_) refuse_short(n);
+        left_ -= n;
+        return n;
+    };
+    std::vector<std::byte> header(std::min(length(), kLongestHeader));
+    file_.read(reinterpret_cast<char*>(header.data()), std::streamsize(header.size()));
+    go_to(position());
+    length();
+    go_to(position());
+    const auto fields = bag_fields(header);
+    const auto op = fields.find("op");
+    return op != fields.end() && op->second.size() == 1 ? op->second[0] : 0;
+}
+
+void BagRecords::refuse_short(std::uint64_t wanted) const {
+    refuse("expected " + std::to_string(wanted) + " more bytes of a record, found " +
+               std::to_string(left_) + ": the file is cut short",
+           DamageReason::truncated);
 }
 
 bool BagRecords::read(const std::function<void(const BagRecord&)>& use) {
@@ -54,9 +91,7 @@ std::optional<std::vector<std::byte>> BagRecords::next_bytes() {
     std::vector<std::byte> bytes;
     for (int part = 0; part < 2; ++part) {
         const auto grow = [&](std::size_t n) {
-            if (n > left_)
-                refuse("expected " + std::to_string(n) + " more bytes of a record, found " +
-                       std::to_string(left_) + ": the file is cut short");
+            if (n > left_) refuse_short(n);
             const std::size_t at = bytes.size();
             bytes.resize(at + n);
             file_.read(reinterpret_cast<char*>(bytes.data() + at), std::streamsize(n));
@@ -67,7 +102,8 @@ std::optional<std::vector<std::byte>> BagRecords::next_bytes() {
         const auto length = load_little<std::uint32_t>(grow(4));
         if (length > kLongest)
             refuse("expected records of at most 256 MiB, found one of " + std::to_string(length) +
-                   " bytes");
+                       " bytes",
+                   DamageReason::bad_length);
         grow(length);
     }
     return bytes;
@@ -101,12 +137,13 @@ std::vector<std::byte> BagRecords::unpack(const BagRecord& chunk) const {
     auto bytes = size <= kLongest ? unpack_bag_chunk(name, chunk.data, size) : std::nullopt;
     if (!bytes)
         refuse("expected a chunk that unpacks (none, bz2 or lz4) to " + std::to_string(size) +
-               " bytes, found one that does not ('" + name + "')");
+                   " bytes, found one that does not ('" + name + "')",
+               DamageReason::bad_compression);
     return *std::move(bytes);
 }
 
-void BagRecords::refuse(const std::string& what) const {
-    throw Error(ErrorKind::input, path_.string() + ": " + what);
+void BagRecords::refuse(const std::string& what, DamageReason reason) const {
+    throw BagError(reason, path_.string() + ": " + what);
 }
 
 }  // namespace eventide

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "src/codec/byte_order.h"
+#include "src/core/damage.h"
+#include "src/core/error.h"
 #include "src/core/sensor_time.h"
 
 #include <cstddef>
@@ -53,6 +55,17 @@ private:
     bool good_ = true;
 };
 
+/// What is wrong with a bag, for who counts it and reads on behind it.
+class BagError : public Error {
+public:
+    BagError(DamageReason reason, const std::string& message)
+        : Error(ErrorKind::input, message), reason_(reason) {}
+    DamageReason reason() const noexcept { return reason_; }
+
+private:
+    DamageReason reason_;
+};
+
 /// A header of named fields, and data.
 struct BagRecord {
     enum Op : int { message = 2, chunk = 5, connection = 7 };
@@ -66,7 +79,9 @@ struct BagRecord {
 std::map<std::string, std::string_view, std::less<>> bag_fields(std::span<const std::byte> bytes);
 
 /// Reads from the beginning to the end, a record at a time; the index is not needed. Errors are
-/// Error(input) and name the file, what was expected and what was found.
+/// BagError and name the file, what was expected and what was found. After one for a chunk that
+/// does not unpack (bad_compression) or a record in it (bad_record), read() goes on with what
+/// follows.
 class BagRecords {
 public:
     explicit BagRecords(const std::filesystem::path& path);
@@ -74,18 +89,28 @@ public:
     /// Gives the next record, or each of those in it when it is a chunk; false at the end.
     bool read(const std::function<void(const BagRecord&)>& use);
 
+    /// Where the next record begins, for go_to(). Bytes.
+    std::uint64_t position() const { return size_ - left_; }
+    void go_to(std::uint64_t position);
+    std::uint64_t size() const { return size_; }
+    /// The op of the next record, which it passes over unread; -1 at the end.
+    int skip();
+
     /// Of a record's field of 4 bytes.
     std::uint32_t number(const BagRecord& record, std::string_view field) const;
-    [[noreturn]] void refuse(const std::string& what) const;
+    [[noreturn]] void refuse(const std::string& what,
+                             DamageReason reason = DamageReason::bad_record) const;
 
 private:
     std::optional<std::vector<std::byte>> next_bytes();  ///< of one record; none at the end
     BagRecord parse(std::span<const std::byte>& bytes) const;
     std::vector<std::byte> unpack(const BagRecord& chunk) const;
+    [[noreturn]] void refuse_short(std::uint64_t wanted) const;
 
     std::filesystem::path path_;
     std::ifstream file_;
-    std::uint64_t left_ = 0;  ///< bytes of the file
+    std::uint64_t size_ = 0;  ///< bytes of the file
+    std::uint64_t left_ = 0;  ///< of them, not yet read
 };
 
 }  // namespace eventide

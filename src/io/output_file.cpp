@@ -172,6 +172,17 @@ void OutputFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
     }
 }
 
+std::uint64_t OutputFile::size() const {
+    struct stat facts {};
+    if (::fstat(file_, &facts) != 0) fail("examined", errno);
+    return std::uint64_t(facts.st_size);
+}
+
+std::string OutputFile::path_to_reopen() {
+    begin();
+    return "/proc/self/fd/" + std::to_string(file_);
+}
+
 void OutputFile::publish() {
     if (part_.empty()) return;
     rename_part();

@@ -50,6 +50,12 @@ public:
     /// Over bytes that were written; only where is_seekable().
     void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
+    std::uint64_t size() const;  ///< bytes; only where is_seekable()
+
+    /// A path under which a library that opens its files itself writes to this one, from now on
+    /// alone; only where is_seekable().
+    std::string path_to_reopen();
+
     /// Shows the file under its name; it may be written on.
     void publish();
     /// publish(), and the end. A growing file that never got a byte is not left behind.

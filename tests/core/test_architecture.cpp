@@ -55,6 +55,7 @@ const std::vector<Rule> kRules{
     {"opencv2/",
      {"pipeline/sinks/", "pipeline/ros2/", "apps/", "src/simulate/", "src/metrics/",
       "replay/image_file"}},
+    {"hdf5.h", {"src/io/hdf5_library.h"}},
     {"libusb", {"drivers/usb/"}},
     {"httplib.h", {"pipeline/sinks/http/"}},
     {"pipeline/sinks/http/", {"pipeline/sinks/http/", "apps/cli/"}},

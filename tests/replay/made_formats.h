@@ -58,11 +58,27 @@ inline std::string evt2(const std::vector<Event>& events, bool vectors) {
     return content;
 }
 
+/// Five bytes each, after as many as it takes to let the time pass.
+inline std::string event_stream(const std::vector<Event>& events) {
+    std::string content("Event Stream\x02\0\0\x01", 16);
+    content += little_endian(128, 2) + little_endian(128, 2);
+    std::int64_t now = 0;
+    for (const Event& e : events) {
+        std::int64_t step = to_us(e.t) - now;
+        now = to_us(e.t);
+        for (; step >= 0x7F; step -= 0x7F) content += '\xFF';
+        content += char(step << 1 | std::int64_t(e.polarity));
+        content += little_endian(e.x, 2) + little_endian(std::uint64_t(127 - e.y), 2);
+    }
+    return content;
+}
+
 inline std::string write_as(const TestFolder& folder, const std::string& format,
                             const std::vector<Event>& events) {
     const std::string name = "a." + format;
     if (format == "aedat1") return folder.write(name, dvs128(events, 1));
     if (format == "aedat2") return folder.write(name, dvs128(events, 2));
+    if (format == "es") return folder.write(name, event_stream(events));
     if (format == "dat") return folder.write(name, dat(events));
     if (format == "evt2") return folder.write(name, evt2(events, false));
     if (format == "evt21") return folder.write(name, evt2(events, true));

@@ -22,7 +22,7 @@ TEST(Convert, EventsSurviveEveryWritableFormatAndTheWayBack) {
     const auto events = some_events(20'000, 5'000'000);
     const std::string text = write_recording(folder.path("a.txt"), "text", events);
     for (const Format& format : all_formats()) {
-        if (!format.make_writer) continue;
+        if (!format.is_written()) continue;
         SCOPED_TRACE(format.name);
         const std::string there = folder.path("b" + std::string(format.extension));
         const std::string back = folder.path("c.txt");

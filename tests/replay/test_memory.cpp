@@ -44,7 +44,7 @@ class MemoryOfReading : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Formats, MemoryOfReading,
                          testing::Values("text", "aedat1", "aedat2", "aedat3", "aedat4", "evt2",
-                                         "evt21", "evt3", "dat"),
+                                         "evt21", "evt3", "dat", "es"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST_P(MemoryOfReading, DoesNotGrowWithTheRecording) {

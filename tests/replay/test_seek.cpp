@@ -41,7 +41,7 @@ class Seek : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Formats, Seek,
                          testing::Values("text", "aedat1", "aedat2", "aedat3", "aedat4", "evt2",
-                                         "evt21", "evt3", "dat"),
+                                         "evt21", "evt3", "dat", "es"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST_P(Seek, ThenReadIsReadThenSkip) {

@@ -19,7 +19,7 @@ namespace {
 std::string names_of_writable() {
     std::string names;
     for (const Format& format : all_formats())
-        if (format.make_writer != nullptr)
+        if (format.is_written())
             names += (names.empty() ? "" : ", ") + std::string{format.name};
     return names;
 }

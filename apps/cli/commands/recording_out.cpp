@@ -19,7 +19,7 @@ RecordingOut::RecordingOut(const std::string& path, bool overwrite, const Format
         return;
     }
     header.format = format->name;
-    file_ = std::make_unique<RecordingFile>(path, overwrite, open_writer(format->name), header);
+    file_ = std::make_unique<RecordingFile>(path, overwrite, *format, header);
 }
 
 const FormatHolds& RecordingOut::holds() const {

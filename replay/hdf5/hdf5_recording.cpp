@@ -1,0 +1,168 @@
+// Which layout a file has, and what it says of the sensor.
+#include "replay/hdf5/hdf5_recording.h"
+
+#include "replay/hdf5/hdf5_tables.h"
+#include "replay/table_reader.h"
+#include "src/core/error.h"
+#include "src/core/sensor_limits.h"
+
+#include <charconv>
+#include <utility>
+
+namespace eventide {
+
+namespace {
+
+/// Keeps the file open for the tables that read it.
+class Hdf5Reader final : public DataReader {
+public:
+    Hdf5Reader(std::unique_ptr<Hdf5File> file, std::unique_ptr<TableReader> table)
+        : file_(std::move(file)), table_(std::move(table)) {}
+    const StreamHeader& header() const override { return table_->header(); }
+    bool read(Batch& into, Damage& damage) override { return table_->read(into, damage); }
+    void seek(SensorTime t) override { table_->seek(t); }
+    double progress() const override { return table_->progress(); }
+    std::vector<std::string> remarks() const override { return table_->remarks(); }
+
+private:
+    std::unique_ptr<Hdf5File> file_;
+    std::unique_ptr<TableReader> table_;
+};
+
+struct Layout {
+    StreamHeader header;
+    std::unique_ptr<EventTable> events;
+    std::unique_ptr<ImageTable> images;
+};
+
+bool is_side(double side) {
+    return side >= 1 && side <= kLargestSensorSide && side == double(int(side));
+}
+
+void set_size(StreamHeader& header, double width, double height) {
+    if (header.width > 0 || !is_side(width) || !is_side(height)) return;
+    header.width = int(width);
+    header.height = int(height);
+}
+
+/// sensor_resolution, height first (event_utils), or geometry, "640x480" (Prophesee).
+void read_size(const Hdf5File& file, StreamHeader& header) {
+    if (const auto size = file.number_attributes("/", "sensor_resolution"); size.size() >= 2)
+        set_size(header, size[1], size[0]);
+    const std::string text = file.text_attribute("/", "geometry");
+    if (const std::size_t x = text.find('x'); x != text.npos) {
+        int width = 0, height = 0;
+        std::from_chars(text.data(), text.data() + x, width);
+        std::from_chars(text.data() + x + 1, text.data() + text.size(), height);
+        set_size(header, width, height);
+    }
+}
+
+void read_size(const Hdf5Data& resolution, StreamHeader& header) {
+    if (resolution.shape().size() != 1 || resolution.rows() < 2) return;
+    const auto width = resolution.number<double>(0), height = resolution.number<double>(1);
+    if (width && height) set_size(header, *width, *height);
+}
+
+std::int64_t offset_of(const Hdf5File& file) {
+    if (!file.has("t_offset")) return 0;
+    const Hdf5Data data = file.data("t_offset");
+    const auto offset = data.row_length() == 1 ? data.number<std::int64_t>(0) : std::nullopt;
+    if (offset) return *offset;
+    data.refuse("microseconds", "no number");
+}
+
+Layout open_mvsec(const Hdf5File& file) {
+    Layout layout;
+    layout.header.sensor_name = "DAVIS346";
+    layout.events = open_hdf5_matrix(file, "davis/left/events");
+    if (file.has("davis/left/image_raw")) {
+        layout.images = open_hdf5_stack(file, "davis/left/image_raw", "davis/left/image_raw_ts");
+        const Hdf5Size size = size_of_images(file.data("davis/left/image_raw"), 1);
+        set_size(layout.header, size.width, size.height);
+    }
+    set_size(layout.header, 346, 260);
+    return layout;
+}
+
+Layout open_m3ed(const Hdf5File& file) {
+    Layout layout;
+    const std::string camera = "prophesee/left/";
+    layout.events = open_hdf5_columns(
+        file, {camera + "x", camera + "y", camera + "t", camera + "p", "", camera + "ms_map_idx"});
+    if (const std::string name = camera + "calib/resolution"; file.has(name))
+        read_size(file.data(name), layout.header);
+    return layout;
+}
+
+Layout open_dsec(const Hdf5File& file) {
+    Layout layout;
+    const std::string index = file.has("ms_to_idx") ? "ms_to_idx" : "events/ms_to_idx";
+    layout.events = open_hdf5_columns(
+        file, {"events/x", "events/y", "events/t", "events/p", "", index, offset_of(file)});
+    layout.images = open_hdf5_images(file, "images");
+    return layout;
+}
+
+Layout open_event_utils(const Hdf5File& file) {
+    Layout layout;
+    layout.events =
+        open_hdf5_columns(file, {"events/xs", "events/ys", "events/ts", "events/ps", "", "", 0});
+    layout.images = open_hdf5_images(file, "images");
+    return layout;
+}
+
+Layout open_prophesee(const Hdf5File& file) {
+    Layout layout;
+    layout.events = open_hdf5_columns(file, {"x", "y", "t", "p", "CD/events", "", 0});
+    return layout;
+}
+
+Layout open_e2calib(const Hdf5File& file) {
+    Layout layout;
+    layout.events = open_hdf5_columns(file, {"x", "y", "t", "p", "", "", 0});
+    return layout;
+}
+
+struct KnownLayout {
+    const char* told_by;
+    Layout (*open)(const Hdf5File&);
+};
+
+/// In the order in which they are tried.
+constexpr KnownLayout kLayouts[]{
+    {"davis/left/events", open_mvsec}, {"prophesee/left/t", open_m3ed},
+    {"CD/events", open_prophesee},     {"events/xs", open_event_utils},
+    {"events/x", open_dsec},           {"x", open_e2calib},
+};
+
+Layout open_layout(const Hdf5File& file) {
+    for (const KnownLayout& layout : kLayouts)
+        if (file.has(layout.told_by)) return layout.open(file);
+    std::string expected, found;
+    for (const KnownLayout& layout : kLayouts)
+        expected += (expected.empty() ? "" : ", ") + std::string(layout.told_by);
+    for (const std::string& name : file.names_in("/")) found += (found.empty() ? "" : ", ") + name;
+    throw Error(ErrorKind::input, file.path() + ": expected events in a layout that is known (" +
+                                      expected + "), found " + (found.empty() ? "none" : found));
+}
+
+}  // namespace
+
+std::unique_ptr<DataReader> open_hdf5(const std::string& path, const OpenOptions& options) {
+    auto file = std::make_unique<Hdf5File>(path);
+    Layout layout = open_layout(*file);
+    layout.header.format = "hdf5";
+    if (layout.header.sensor_name.empty())
+        layout.header.sensor_name = file->text_attribute("/", "sensor_name");
+    layout.header.serial = file->text_attribute("/", "serial_number");
+    read_size(*file, layout.header);
+    if (const auto image = layout.images ? layout.images->read(0) : std::nullopt)
+        set_size(layout.header, image->pixels.width() / image->channels, image->pixels.height());
+    auto table =
+        std::make_unique<TableReader>(path, std::move(layout.header), std::move(layout.events),
+                                      std::move(layout.images), options);
+    return std::make_unique<Hdf5Reader>(std::move(file), std::move(table));
+}
+
+}  // namespace eventide

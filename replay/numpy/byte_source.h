@@ -1,0 +1,67 @@
+// Bytes of an array in a file, as they are or deflated.
+#pragma once
+
+#include "replay/byte_file.h"
+
+#include <zlib.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace eventide {
+
+class ByteSource {
+public:
+    virtual ~ByteSource() = default;
+    virtual std::uint64_t size() const = 0;
+    /// False where they cannot be read, or there are not so many.
+    virtual bool read_at(std::uint64_t offset, std::span<std::byte> into) = 0;
+    /// Going back means to begin anew.
+    virtual bool is_sequential() const = 0;
+};
+
+/// `file` is borrowed.
+class StoredBytes final : public ByteSource {
+public:
+    StoredBytes(const ByteFile& file, std::uint64_t begin, std::uint64_t size)
+        : file_(file), begin_(begin), size_(size) {}
+    std::uint64_t size() const override { return size_; }
+    bool read_at(std::uint64_t offset, std::span<std::byte> into) override;
+    bool is_sequential() const override { return false; }
+
+private:
+    const ByteFile& file_;
+    std::uint64_t begin_, size_;
+};
+
+/// Inflates from the beginning up to what is asked for, in memory of bounded size.
+class DeflatedBytes final : public ByteSource {
+public:
+    /// `size`: unpacked, as the archive says.
+    DeflatedBytes(const ByteFile& file, std::uint64_t begin, std::uint64_t packed_size,
+                  std::uint64_t size);
+    ~DeflatedBytes() override;
+    DeflatedBytes(const DeflatedBytes&) = delete;
+    DeflatedBytes& operator=(const DeflatedBytes&) = delete;
+    std::uint64_t size() const override { return size_; }
+    bool read_at(std::uint64_t offset, std::span<std::byte> into) override;
+    bool is_sequential() const override { return true; }
+
+private:
+    void begin_anew();
+    bool inflate_into(std::span<std::byte> into);
+
+    const ByteFile& file_;
+    std::uint64_t begin_, packed_size_, size_;
+    std::uint64_t taken_ = 0;     // of the packed bytes
+    std::uint64_t position_ = 0;  // in the unpacked ones
+    std::optional<std::uint64_t> broken_at_;
+    z_stream stream_{};
+    std::vector<std::byte> packed_, passed_over_;
+};
+
+}  // namespace eventide

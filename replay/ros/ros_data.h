@@ -1,0 +1,73 @@
+// Messages of ROS 1 and 2 with events and images, as data.
+#pragma once
+
+#include "src/codec/event_packet.h"
+#include "src/core/damage.h"
+#include "src/core/event.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eventide {
+
+/// How messages are bytes: ROS 1's own way, or CDR with its four bytes in front.
+enum class RosWire { ros1, cdr };
+
+enum class RosKind {
+    other,
+    events,   ///< dvs_msgs/EventArray, prophesee_event_msgs/EventArray
+    packets,  ///< event_camera_msgs/EventPacket
+    images    ///< sensor_msgs/Image
+};
+
+/// Of a type's name, with or without ROS 2's "/msg".
+RosKind ros_kind(std::string_view type);
+
+/// The messages of one topic with events and one with images, in order.
+class RosData {
+public:
+    explicit RosData(RosWire wire) : wire_(wire) {}
+
+    /// Appends what the message holds. False, and nothing appended, where it is cut short or says
+    /// what cannot be (then damage is counted). Times are ROS's: those of packets are shifted as
+    /// EventPacketParser does.
+    bool take(RosKind kind, std::span<const std::byte> message, Batch& into, Damage& damage);
+
+    /// px, as the messages with events say; 0 before the first.
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// Of the first image; 0 before it. One of another size is not the event camera's.
+    int image_width() const { return image_width_; }
+    int image_height() const { return image_height_; }
+
+    /// What comes next is the beginning once more.
+    void restart();
+
+    /// Of the first event in a message of kind events. Empty where there is none.
+    std::optional<SensorTime> first_time(std::span<const std::byte> message) const;
+
+private:
+    template <typename Reader>
+    bool take_with(Reader reader, RosKind kind, Batch& into, Damage& damage);
+    template <typename Reader>
+    bool take_events(Reader& reader, Batch& into, Damage& damage);
+    template <typename Reader>
+    bool take_packet(Reader& reader, Batch& into, Damage& damage);
+    template <typename Reader>
+    bool take_image(Reader& reader, Batch& into);
+    bool take_size(std::uint32_t width, std::uint32_t height);
+
+    RosWire wire_;
+    int width_ = 0, height_ = 0, image_width_ = 0, image_height_ = 0;
+    std::optional<EventPacketParser> packets_;
+    std::string encoding_;
+    Damage packet_damage_;  ///< of packets_, what was counted already
+    std::vector<std::byte> packet_;
+};
+
+}  // namespace eventide

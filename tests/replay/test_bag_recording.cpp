@@ -1,0 +1,170 @@
+// ROS 1 bags as recordings: events, packets and images of the usual messages.
+#include "replay/formats.h"
+#include "replay/summary.h"
+#include "src/core/error.h"
+#include "tests/io/bag_writer.h"
+#include "tests/replay/recording_files.h"
+
+#include <gmock/gmock.h>
+
+namespace eventide {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr std::uint32_t kEvents = 3, kImages = 5, kOther = 6;
+
+ReferenceImage some_image(SensorTime t, int width, int height) {
+    ReferenceImage made;
+    made.t = made.exposure_begin = made.exposure_end = t;
+    made.pixels = Array2<std::uint16_t>(height, width);
+    for (std::size_t i = 0; i < made.pixels.values().size(); ++i)
+        made.pixels.values()[i] = std::uint16_t(i * 3 % 256 * 257);
+    return made;
+}
+
+/// Messages of 100 events and an image before each thousand, in chunks of 1000 events.
+std::string bag_of(const std::vector<Event>& events, const std::string& packing,
+                   const std::string& type = "dvs_msgs/EventArray", int image_width = 128) {
+    BagBytes content, part = connection(kOther, "sensor_msgs/Imu") + connection(kEvents, type) +
+                             connection(kImages, "sensor_msgs/Image") + message(kOther, "imu");
+    for (std::size_t i = 0; i < events.size(); i += 100) {
+        if (i % 1000 == 0)
+            part += message(kImages, image(some_image(events[i].t, image_width, 128)));
+        part += message(kEvents, event_array(128, 128, std::span(events).subspan(i, 100)));
+        if (i % 1000 == 900) content += chunk(packing, std::exchange(part, {}));
+    }
+    return bag(content + (part.empty() ? "" : chunk(packing, part)));
+}
+
+class BagRecordings : public testing::TestWithParam<const char*> {
+protected:
+    const TestFolder folder_;
+    const std::vector<Event> events_ = some_events(20'000, 1'500'000'000'000'000);
+};
+
+INSTANTIATE_TEST_SUITE_P(Packings, BagRecordings, testing::Values("none", "bz2", "lz4"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(BagRecordings, GiveTheEventsAndImagesThatWereWritten) {
+    for (const char* type : {"dvs_msgs/EventArray", "prophesee_event_msgs/EventArray"}) {
+        const auto recording =
+            open_recording(folder_.write("a.bag", bag_of(events_, GetParam(), type)));
+        EXPECT_EQ(recording->info().format, "rosbag");
+        EXPECT_EQ(recording->info().width, 128);
+        EXPECT_EQ(recording->info().height, 128);
+        EXPECT_TRUE(recording->remarks().empty());
+        const Batch batch = read_everything(*recording);
+        EXPECT_TRUE(batch.events == events_);
+        ASSERT_EQ(batch.images.size(), 20U);
+        EXPECT_TRUE(batch.images[7] == some_image(events_[7'000].t, 128, 128));
+    }
+}
+
+TEST_P(BagRecordings, SeekThenReadIsReadThenSkip) {
+    const auto recording = open_recording(folder_.write("a.bag", bag_of(events_, GetParam())));
+    for (const std::size_t i : {std::size_t{15'500}, std::size_t{0}, std::size_t{8'001}}) {
+        recording->seek(events_[i].t);
+        if (i > 10'000) {
+            EXPECT_GT(recording->position_bytes(), recording->size_bytes() / 2);
+        }
+        Batch batch = read_everything(*recording);
+        const auto early = [&](const auto& item) { return item.t < events_[i].t; };
+        std::erase_if(batch.events, early);
+        std::erase_if(batch.images, early);
+        std::vector<Event> expected = events_;
+        std::erase_if(expected, early);
+        EXPECT_TRUE(batch.events == expected) << i;
+        EXPECT_EQ(batch.images.size(), 20 - (i + 999) / 1'000);
+    }
+}
+
+TEST_P(BagRecordings, CutShortGiveWhatIsThere) {
+    const std::string whole = bag_of(events_, GetParam());
+    const Summary sum =
+        summarize(*open_recording(folder_.write("a.bag", whole.substr(0, whole.size() / 2))));
+    EXPECT_EQ(sum.damaged[DamageReason::truncated], 1U);
+    EXPECT_GT(sum.events, events_.size() / 3);
+    EXPECT_LT(sum.events, events_.size() * 2 / 3);
+}
+
+TEST(BagRecording, ADamagedChunkCostsOnlyItself) {
+    const TestFolder folder;
+    const auto events = some_events(20'000);
+    std::string bytes = bag_of(events, "bz2");
+    bytes[bytes.size() / 2] ^= char(0x5A);
+    const Summary sum = summarize(*open_recording(folder.write("a.bag", bytes)));
+    EXPECT_EQ(sum.damaged[DamageReason::bad_compression], 1U);
+    EXPECT_EQ(sum.damaged.total(), 1U);
+    EXPECT_EQ(sum.events, events.size() - 1'000);
+}
+
+TEST(BagRecording, ImagesOfAnotherCameraAreLeftOutAndNamed) {
+    const TestFolder folder;
+    const auto events = some_events(5'000);
+    const auto recording =
+        open_recording(folder.write("a.bag", bag_of(events, "none", "dvs_msgs/EventArray", 200)));
+    ASSERT_EQ(recording->remarks().size(), 1U);
+    EXPECT_THAT(recording->remarks()[0], AllOf(HasSubstr("200x128"), HasSubstr("left out")));
+    const Batch batch = read_everything(*recording);
+    EXPECT_TRUE(batch.events == events);
+    EXPECT_TRUE(batch.images.empty());
+}
+
+TEST(BagRecording, WithoutEventsIsRefusedWithWhatItHas) {
+    const TestFolder folder;
+    const std::string path = folder.write(
+        "a.bag", bag(chunk("none", connection(kOther, "sensor_msgs/Imu") + message(kOther, "x"))));
+    try {
+        open_recording(path);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_THAT(error.what(), AllOf(HasSubstr("a.bag"), HasSubstr("found sensor_msgs/Imu")));
+    }
+}
+
+BagBytes packet_message(const std::string& encoding, SensorTime stamp,
+                        const std::vector<Event>& events) {
+    BagBytes payload;
+    for (const Event& event : events)
+        payload += little(std::uint64_t(to_us(event.t) - to_us(stamp)) * 1'000 |
+                          std::uint64_t(event.x) << 32 | std::uint64_t(event.y) << 48 |
+                          std::uint64_t(event.polarity) << 63);
+    return message_header(stamp) + little(std::uint32_t{128}) + little(std::uint32_t{128}) +
+           little(std::uint64_t{0}) + little(std::uint64_t(to_us(stamp)) * 1'000) +
+           block(encoding) + BagBytes(1, '\0') + block(payload);
+}
+
+TEST(BagRecording, EventPacketsHaveTheTimesOfRos) {
+    const TestFolder folder;
+    const auto events = some_events(5'000, 1'500'000'000);
+    BagBytes part = connection(kEvents, "event_camera_msgs/EventPacket");
+    for (std::size_t i = 0; i < events.size(); i += 100)
+        part += message(kEvents, packet_message("mono", events[i].t,
+                                                {events.begin() + std::ptrdiff_t(i),
+                                                 events.begin() + std::ptrdiff_t(i + 100)}));
+    const auto recording = open_recording(folder.write("a.bag", bag(chunk("lz4", part))));
+    EXPECT_TRUE(read_everything(*recording).events == events);
+    recording->seek(events[3'000].t);
+    std::vector<Event> late = read_everything(*recording).events, expected = events;
+    const auto early = [&](const Event& event) { return event.t < events[3'000].t; };
+    std::erase_if(late, early);
+    std::erase_if(expected, early);
+    EXPECT_TRUE(late == expected);
+}
+
+TEST(BagRecording, ARealOneGivesItsNumbers) {
+    const auto path =
+        std::filesystem::path(EVENTIDE_SOURCE_DIR) / "../shared/data/formats/ros1_events.bag";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared/data/formats";
+    const Summary sum = summarize(*open_recording(path.string()));
+    EXPECT_EQ(sum.events - sum.on, 218291U);
+    EXPECT_EQ(sum.on, 125183U);
+    EXPECT_EQ(sum.damaged.total(), 0U);
+}
+
+}  // namespace
+}  // namespace eventide
