@@ -1,6 +1,6 @@
 // Ours beside FireNet and E2VID in libtorch, in one run: an event window and a fresh frame of it on
 // one thread and two, with AVX2 alone and with all the processor has, in milliseconds.
-//   bench_peers [--sizes 240x180]... [--models default]... [--repetitions 30]
+//   bench_peers [--sizes 240x180]... [--models default]... [--peers FireNet]... [--repetitions 30]
 // Instruction sets are a process' own, so each is measured by a child, one after the other.
 #include "apps/bench/stage_table.h"
 #include "pipeline/parallel_tbb.h"
@@ -12,6 +12,7 @@
 
 #include <sys/wait.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -19,7 +20,10 @@ namespace eventide::bench {
 namespace {
 
 struct Options {
-    std::vector<std::string> sizes{"240x180"}, models{"default", "small"};
+    std::vector<std::string> sizes{"240x180"}, models{"default", "small"},
+        peers{"FireNet", "E2VID"};
+
+    bool asks_for(const char* peer) const { return std::ranges::find(peers, peer) != peers.end(); }
     int repetitions = kLeastRepetitions;
 };
 
@@ -93,8 +97,8 @@ void measure(const Options& options, Instructions most, int width, int height) {
         };
         for (const auto type : {torch::kFloat, torch::kBFloat16}) {
             if (type == torch::kBFloat16 && !has_bf16) continue;
-            peer("FireNet", firenet, type, width, height);
-            peer("E2VID", e2vid, type, even_width, even_height);
+            if (options.asks_for("FireNet")) peer("FireNet", firenet, type, width, height);
+            if (options.asks_for("E2VID")) peer("E2VID", e2vid, type, even_width, even_height);
         }
         for (const std::string& name : options.models)
             for (const Precision precision : {Precision::f32, Precision::bf16}) {
@@ -168,6 +172,8 @@ int main(int argc, char** argv) {
     CLI::App app{"Ours beside FireNet and E2VID in libtorch, milliseconds per event window"};
     app.add_option("--sizes", options.sizes, "WIDTHxHEIGHT, any number of times");
     app.add_option("--models", options.models, "Shipped models, any number of times");
+    app.add_option("--peers", options.peers, "Beside which networks, any number of times")
+        ->check(CLI::IsMember({"FireNet", "E2VID"}));
     app.add_option("--repetitions", options.repetitions, "Of each measurement")
         ->check(CLI::Range(eventide::bench::kLeastRepetitions, 1'000'000));
     CLI11_PARSE(app, argc, argv);
