@@ -1,5 +1,5 @@
-// The implicit decoder in blocks of pixels: layer 1 is kept per latent map (first_layer_cache.h), the
-// layers behind it run while their numbers are in cache, and tiles whose inputs are those of a
+// The implicit decoder in blocks of pixels: layer 1 is kept per latent map (first_layer_cache.h),
+// the layers behind it run while their numbers are in cache, and tiles whose inputs are those of a
 // frame rendered before are copied from it (kept_frames.h).
 #pragma once
 
