@@ -2,8 +2,10 @@
 #include "apps/bench/peaks.h"
 
 #include "apps/bench/timing.h"
+#include "src/nn/arithmetic.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <vector>
 
@@ -85,6 +87,29 @@ __attribute__((target("avx512f,avx512vnni"))) float products_int8(int n) {
     return float(total);
 }
 
+/// Whole tiles: 16 rows of 64 bytes each.
+struct alignas(64) WholeTiles {
+    std::uint8_t palette = 1, start = 0, reserved[14] = {};
+    std::uint16_t row_bytes[16] = {64, 64, 64, 64, 64, 64, 64};
+    std::uint8_t rows[16] = {16, 16, 16, 16, 16, 16, 16};
+};
+
+/// Four tiles of sums, two of numbers, one of weights.
+__attribute__((target("amx-tile,amx-bf16"))) float products_amx(int n) {
+    const WholeTiles shapes;
+    _tile_loadconfig(&shapes);  // fills them with zeros
+    for (int k = 0; k < n; ++k) {
+        _tile_dpbf16ps(0, 4, 6);
+        _tile_dpbf16ps(1, 5, 6);
+        _tile_dpbf16ps(2, 4, 6);
+        _tile_dpbf16ps(3, 5, 6);
+    }
+    alignas(64) float sums[16][16];
+    _tile_stored(0, sums, sizeof(sums[0]));
+    _tile_release();
+    return sums[0][0];
+}
+
 /// `products` per round, in 1e9 operations a second: of the best repetition, as what a neighbour on
 /// the same core takes away is no limit of this one.
 double rate_of(float (*loop)(int), double products) {
@@ -118,15 +143,17 @@ Peaks measure_peaks(Instructions most) {
     Peaks peaks;
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("sse4.1") != 0) peaks.f32_sse4 = rate_of(products_sse4, 12 * 4);
-    if (most != Instructions::sse4 && __builtin_cpu_supports("avx2") != 0 &&
+    if (most <= Instructions::avx2 && __builtin_cpu_supports("avx2") != 0 &&
         __builtin_cpu_supports("fma") != 0)
         peaks.f32_avx2 = rate_of(products_avx2, 12 * 8);
-    if (most == Instructions::best) {
+    if (most <= Instructions::avx512) {
         if (__builtin_cpu_supports("avx512f") != 0)
             peaks.f32_avx512 = rate_of(products_avx512, 16 * 16);
         if (__builtin_cpu_supports("avx512bf16") != 0) peaks.bf16 = rate_of(products_bf16, 16 * 32);
         if (__builtin_cpu_supports("avx512vnni") != 0) peaks.int8 = rate_of(products_int8, 16 * 64);
     }
+    if (most == Instructions::best && amx_available())
+        peaks.bf16_amx = rate_of(products_amx, 4 * 16 * 16 * 32);
 #else
     (void)most;
 #endif

@@ -10,6 +10,7 @@ namespace eventide::bench {
 struct Peaks {
     double f32_sse4 = 0, f32_avx2 = 0, f32_avx512 = 0;  ///< GFLOP/s
     double bf16 = 0;                                    ///< GFLOP/s, AVX512_BF16
+    double bf16_amx = 0;                                ///< GFLOP/s, AMX
     double int8 = 0;                                    ///< Gop/s, AVX512_VNNI
     double copy_gb_s = 0;                               ///< read and written together, from memory
 

@@ -42,6 +42,7 @@ std::string peaks_text(const Peaks& peaks) {
     add(peaks.f32_avx2, "AVX2");
     add(peaks.f32_avx512, "AVX-512");
     if (peaks.bf16 > 0) line += text(", bf16 %.0f", peaks.bf16);
+    if (peaks.bf16_amx > 0) line += text(" %.0f (AMX)", peaks.bf16_amx);
     if (peaks.int8 > 0) line += text(", int8 %.0f", peaks.int8);
     return line + text("; copy %.1f GB/s\n", peaks.copy_gb_s);
 }
@@ -76,6 +77,7 @@ nlohmann::ordered_json stages_json(const std::vector<StageRow>& rows, const Peak
         one["bin_mev_s"] = row.bin_mev_s.median;
         one["peak_f32_gflops"] = peaks.f32();
         one["peak_bf16_gflops"] = peaks.bf16;
+        one["peak_bf16_amx_gflops"] = peaks.bf16_amx;
         one["peak_int8_gops"] = peaks.int8;
         one["copy_gb_s"] = peaks.copy_gb_s;
         json.push_back(std::move(one));

@@ -100,7 +100,8 @@ StageRow measure_stages(const std::string& name, const Model& model,
     row.width = s.width;
     row.height = s.height;
     row.bf16 = row.engine.find("bf16") != std::string::npos;
-    row.peak_gflops = row.bf16 ? peaks.bf16 : peaks.f32();
+    const bool by_amx = row.engine.find("AMX") != std::string::npos;
+    row.peak_gflops = by_amx ? peaks.bf16_amx : row.bf16 ? peaks.bf16 : peaks.f32();
     row.bin_mev_s = time_binning(model.config.bins, windows, s);
     std::vector<LatentMap> latents(4);
     row.encode.time = time_encoding(encoder, windows, s, latents);

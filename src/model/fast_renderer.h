@@ -1,5 +1,5 @@
-// The implicit decoder in blocks of pixels: layer 1 is kept per latent map (hoisted_layer.h), the
-// layers behind it run while their numbers are in cache, and tiles whose inputs are those of a
+// The implicit decoder in blocks of pixels: layer 1 is kept per latent map (first_layer_cache.h),
+// the layers behind it run while their numbers are in cache, and tiles whose inputs are those of a
 // frame rendered before are copied from it (kept_frames.h).
 #pragma once
 
@@ -26,6 +26,9 @@ public:
     std::uint64_t pixels_rendered() const override { return pixels_rendered_; }
 
 private:
+    /// Pixels that go through the layers together: two maps of 56 x 64 numbers fill half a
+    /// first-level cache; a multiple of the kernels' 14 and near one of their 6.
+    static constexpr int kBlock = 56;
     /// A stretch of a row to be rendered: that of the tiles first <= c < last.
     struct Span {
         int row, first, last;

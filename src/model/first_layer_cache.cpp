@@ -1,4 +1,4 @@
-// See hoisted_layer.h; docs/model.md has the formulas.
+// See first_layer_cache.h; docs/model.md has the formulas.
 #include "src/model/first_layer_cache.h"
 
 #include "src/kernels/vector_kernels.h"

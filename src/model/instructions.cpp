@@ -6,6 +6,7 @@ namespace eventide {
 
 void limit_instructions(Instructions most) {
     if (most == Instructions::best) lift_kernel_limits();
+    if (most == Instructions::avx512) limit_kernels_to_avx512();
     if (most == Instructions::avx2) limit_kernels_to_avx2();
     if (most == Instructions::sse4) limit_kernels_to_sse4();
 }

@@ -3,11 +3,12 @@
 
 namespace eventide {
 
-enum class Instructions { best, avx2, sse4 };
+/// avx512: with AVX512_BF16, without AMX.
+enum class Instructions { best, avx512, avx2, sse4 };
 
-/// Leaves out what is past `most` from now on (until it is called again), bfloat16 too, in our own
-/// kernels (oneDNN has its own variable, ONEDNN_MAX_CPU_ISA). For comparisons; not while any
-/// encoder or renderer exists.
+/// Leaves out what is past `most` from now on (until it is called again), bfloat16 too where that
+/// is below AVX-512, in our own kernels (oneDNN has its own variable, ONEDNN_MAX_CPU_ISA). For
+/// comparisons; not while any encoder or renderer exists.
 void limit_instructions(Instructions most);
 
 }  // namespace eventide

@@ -51,7 +51,7 @@ Arithmetic measure(bool onednn_allowed) {
     Arithmetic best = kFloat;
     double least = seconds_of(kFloat);
     for (const Arithmetic& candidate : {kBf16, kBf16ByOnednn}) {
-        if (candidate.onednn && !(onednn_allowed && onednn_has_amx())) continue;
+        if (candidate.onednn && !(onednn_allowed && onednn_has_amx() && !amx_left_out())) continue;
         const double seconds = seconds_of(candidate);
         if (seconds * kWorthwhile > least) continue;
         best = candidate;
@@ -66,7 +66,7 @@ const char* name_of(const Arithmetic& arithmetic) {
     if (arithmetic.products == Products::bf16_emulated) return "bf16 (emulated)";
     if (!arithmetic.onednn) {
         if (!arithmetic.bf16()) return vector_kernels().name;
-        return amx_kernels() != nullptr ? "bf16 (AMX)" : "bf16 (AVX512_BF16)";
+        return amx_available() ? "bf16 (AMX)" : "bf16 (AVX512_BF16)";
     }
     if (!arithmetic.bf16()) return "oneDNN";
     return onednn_has_amx() ? "bf16 (oneDNN, AMX)" : "bf16 (oneDNN)";
@@ -74,6 +74,10 @@ const char* name_of(const Arithmetic& arithmetic) {
 
 bool bf16_available() {
     return bf16_kernels() != nullptr;
+}
+
+bool amx_available() {
+    return amx_kernels() != nullptr;
 }
 
 Arithmetic best_arithmetic(bool bf16_allowed, bool onednn_allowed) {

@@ -18,11 +18,13 @@ struct Arithmetic {
     friend bool operator==(const Arithmetic&, const Arithmetic&) = default;
 };
 
-/// "AVX2", "bf16 (AVX512_BF16)", "bf16 (oneDNN, AMX)", ...
+/// "AVX2", "bf16 (AVX512_BF16)", "bf16 (AMX)", "bf16 (oneDNN, AMX)", ...
 const char* name_of(const Arithmetic& arithmetic);
 
 /// Whether this processor has bf16 products, and our kernels use them.
 bool bf16_available();
+/// Whether they are AMX'.
+bool amx_available();
 /// What pays best here. In float32 our own kernels, by figures taken once and for all
 /// (docs/model.md, "Arithmetic"); bf16 only where the processor has it and it is clearly quicker,
 /// measured once per process, so that everything made in it agrees.

@@ -1,6 +1,7 @@
 // Ours beside FireNet and E2VID in libtorch, in one run: an event window and a fresh frame of it on
 // one thread and two, with AVX2 alone and with all the processor has, in milliseconds.
-//   bench_peers [--sizes 240x180]... [--models default]... [--repetitions 30] [--table FILE]
+//   bench_peers [--sizes 240x180]... [--models default]... [--peers FireNet]... [--repetitions 30]
+//               [--table FILE]
 // FILE is what `eventide bench --report --peers FILE` shows beside its own.
 // Instruction sets are a process' own, so each is measured by a child, one after the other.
 #include "apps/bench/stage_table.h"
@@ -13,6 +14,7 @@
 
 #include <sys/wait.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -21,9 +23,12 @@ namespace eventide::bench {
 namespace {
 
 struct Options {
-    std::vector<std::string> sizes{"240x180"}, models{"default", "small"};
+    std::vector<std::string> sizes{"240x180"}, models{"default", "small"},
+        peers{"FireNet", "E2VID"};
     int repetitions = kLeastRepetitions;
     std::string table;
+
+    bool asks_for(const char* peer) const { return std::ranges::find(peers, peer) != peers.end(); }
 };
 
 /// The quicker of both orders of memory.
@@ -107,8 +112,8 @@ void measure(const Options& options, Instructions most, int width, int height) {
         };
         for (const auto type : {torch::kFloat, torch::kBFloat16}) {
             if (type == torch::kBFloat16 && !has_bf16) continue;
-            peer("FireNet", firenet, type, width, height);
-            peer("E2VID", e2vid, type, even_width, even_height);
+            if (options.asks_for("FireNet")) peer("FireNet", firenet, type, width, height);
+            if (options.asks_for("E2VID")) peer("E2VID", e2vid, type, even_width, even_height);
         }
         for (const std::string& name : options.models)
             for (const Precision precision : {Precision::f32, Precision::bf16}) {
@@ -186,6 +191,8 @@ int main(int argc, char** argv) {
     CLI::App app{"Ours beside FireNet and E2VID in libtorch, milliseconds per event window"};
     app.add_option("--sizes", options.sizes, "WIDTHxHEIGHT, any number of times");
     app.add_option("--models", options.models, "Shipped models, any number of times");
+    app.add_option("--peers", options.peers, "Beside which networks, any number of times")
+        ->check(CLI::IsMember({"FireNet", "E2VID"}));
     app.add_option("--repetitions", options.repetitions, "Of each measurement")
         ->check(CLI::Range(eventide::bench::kLeastRepetitions, 1'000'000));
     app.add_option("--table", options.table,

@@ -107,8 +107,8 @@ SettingTable BenchCommand::settings() {
     add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
     add(choice_setting("instructions", instructions_,
                        "What the kernels may use: best (all the processor has), or no more than "
-                       "an older one.",
-                       {"best", "avx2", "sse4"}));
+                       "an older one; avx512: all but AMX.",
+                       {"best", "avx512", "avx2", "sse4"}));
     add(number_setting("seconds", seconds_, "S", "Duration of each recording, seconds.", 0.2,
                        3600));
     add(number_setting("scale", scale_, "S", "Size of the frames, times the sensor's.", 0.1, 16));

@@ -1,0 +1,133 @@
+// The kernels of bf16 numbers against the plain ones.
+#include "src/kernels/bf16_kernels.h"
+#include "src/kernels/vector_kernels.h"
+#include "tests/nn/fills.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using test::Fill;
+
+TEST(Bf16, RoundingIsToTheNearestEven) {
+    const auto back = [](std::uint16_t v) { return std::bit_cast<float>(std::uint32_t(v) << 16); };
+    EXPECT_EQ(back(to_bf16(1.0F)), 1.0F);
+    EXPECT_EQ(back(to_bf16(1.0F + 0x1p-8F)), 1.0F) << "a tie goes to the even one";
+    EXPECT_EQ(back(to_bf16(1.0F + 0x1.8p-7F)), 1.0F + 0x1p-6F);
+    EXPECT_EQ(back(to_bf16(-3.14159F)), -3.140625F);
+}
+
+void expect_narrowed(const Bf16Kernels& kernels) {
+    test::Numbers numbers{2};
+    for (const int channels : {1, 2, 5, 16, 21, 64}) {
+        const auto n = std::size_t(channels), pairs = (n + 1) / 2;
+        const auto in = numbers.many(3 * n, Fill::mixed);
+        std::vector<std::uint32_t> out(3 * pairs + 1, 77);
+        kernels.pixels_to_bf16(in.data(), 3, channels, out.data());
+        EXPECT_EQ(out.back(), 77U);
+        for (std::size_t p = 0; p < 3; ++p)
+            for (std::size_t c = 0; c < n; ++c) {
+                const std::uint32_t pair = out[p * pairs + c / 2];
+                EXPECT_EQ(std::uint16_t(c % 2 == 0 ? pair : pair >> 16), to_bf16(in[p * n + c]));
+            }
+        std::vector<std::uint16_t> row(3 * n + 1, 77);
+        kernels.row_to_bf16(in.data(), 3 * n, row.data());
+        EXPECT_EQ(row.back(), 77);
+        for (std::size_t i = 0; i < 3 * n; ++i) EXPECT_EQ(row[i], to_bf16(in[i]));
+    }
+}
+TEST(Bf16, RowsAreNarrowedNumberByNumber) {
+    expect_narrowed(plain::bf16_kernels());
+    if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+    expect_narrowed(*bf16_kernels());
+}
+
+/// An area of two stretches of `length` pairs, as a convolution's rows lie: pixels overlap.
+struct Bf16Work {
+    static constexpr int kHeight = 3, kPairs = 200;
+    int width, length, outputs;
+    std::vector<std::uint32_t> in, weight;
+    std::vector<float> bias;
+    std::array<Stretch, 2> stretches;
+
+    Bf16Work(int w, int l, int o) : width(w), length(l), outputs(o) {
+        test::Numbers numbers{5};
+        const std::size_t packed = packed_size(2, length, outputs, bf16_lanes(outputs));
+        in.resize(std::size_t(kHeight + 1) * kPairs);
+        weight.resize(packed);
+        for (auto* words : {&in, &weight})
+            for (std::uint32_t& word : *words)
+                word = to_bf16(numbers.next(Fill::ordinary)) |
+                       std::uint32_t{to_bf16(numbers.next(Fill::ordinary))} << 16;
+        bias.assign(packed / std::size_t(2 * length), 0.25F);
+        for (std::size_t s = 0; s < 2; ++s)
+            stretches[s] = {in.data() + s * kPairs, 3, kPairs, length};
+    }
+    /// The outputs, as float32 or as bf16, of each row one behind the other; how many were written
+    /// outside of them is to be none.
+    std::vector<float> run(const Bf16Kernels& kernels, bool narrow, bool relu) {
+        const int units = narrow ? (outputs + 1) / 2 : outputs;
+        test::Guarded out{std::size_t(kHeight * width * units)};
+        DotArea area;
+        area.stretches = stretches.data();
+        area.count = 2;
+        area.height = kHeight;
+        area.width = width;
+        area.outputs = outputs;
+        area.weight = weight.data();
+        area.bias = bias.data();
+        area.relu = relu;
+        area.narrow = narrow;
+        area.out = out.data();
+        area.out_step = units;
+        area.out_pitch = width * units;
+        kernels.dot_area(area);
+        EXPECT_TRUE(out.intact()) << outputs;
+        const auto pixels = std::size_t(kHeight * width);
+        std::vector<float> wide(pixels * std::size_t(outputs));
+        const auto* numbers = reinterpret_cast<const std::uint16_t*>(out.data());
+        for (std::size_t p = 0; p < pixels; ++p)
+            for (std::size_t o = 0; o < std::size_t(outputs); ++o)
+                wide[p * std::size_t(outputs) + o] =
+                    narrow ? from_bf16(numbers[p * 2 * std::size_t(units) + o])
+                           : out.data()[p * std::size_t(units) + o];
+        return wide;
+    }
+};
+
+/// Widths that are no multiple of a tile's, products of 5 (too few for a tile) to 40 pairs.
+void expect_products(const Bf16Kernels& kernels) {
+    for (const int outputs : {1, 8, 9, 16, 17, 32, 40, 64})
+        for (const int width : {1, 15, 16, 17, 35})
+            for (const int length : {5, 12, 16, 33, 40}) {
+                Bf16Work work{width, length, outputs};
+                for (const bool narrow : {false, true})
+                    for (const bool relu : {false, true}) {
+                        const auto fast = work.run(kernels, narrow, relu);
+                        const auto plain = work.run(plain::bf16_kernels(), narrow, relu);
+                        // The processor may sum a pair's two products before it adds them: one
+                        // rounding elsewhere; and one that ends in another bf16 number.
+                        const double share = narrow ? 1.0 / 128 : 1e-6;
+                        for (std::size_t i = 0; i < fast.size(); ++i)
+                            ASSERT_NEAR(fast[i], plain[i], 1e-5 + share * std::abs(plain[i]))
+                                << outputs << " outputs, width " << width << ", pairs " << length;
+                    }
+            }
+}
+TEST(Bf16, TheProcessorsProductsAreThePlainOnes) {
+    if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+    expect_products(avx512_bf16::bf16_kernels());
+}
+TEST(Bf16, ProductsOfTilesAreThePlainOnes) {
+    if (amx_kernels() == nullptr) GTEST_SKIP() << "this processor has no AMX";
+    expect_products(*amx_kernels());
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,164 @@
+// What the renderer does around its hidden layers, against double.
+#include "src/kernels/bf16_kernels.h"
+#include "src/kernels/vector_kernels.h"
+#include "tests/nn/fills.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using test::Fill;
+
+TEST(RenderKernels, TwoOutputsAreTwoSumsOfProducts) {
+    test::Numbers numbers{3};
+    for (const int width : {1, 7, 16, 30, 64, 128})
+        for (const int pixels : {1, 5, 16, 21, 56}) {
+            const auto n = std::size_t(width), count = std::size_t(pixels);
+            const auto in = numbers.many(count * n, Fill::ordinary),
+                       weight = numbers.many(2 * n, Fill::ordinary);
+            const float bias[] = {0.5F, -2};
+            test::Guarded first{count}, second{count};
+            vector_kernels().two_outputs(
+                {in.data(), weight.data(), bias, pixels, width, first.data(), second.data()});
+            EXPECT_TRUE(first.intact() && second.intact());
+            for (std::size_t p = 0; p < count; ++p)
+                for (std::size_t o = 0; o < 2; ++o) {
+                    double sum = bias[o];
+                    for (std::size_t i = 0; i < n; ++i)
+                        sum += double(in[p * n + i]) * weight[o * n + i];
+                    EXPECT_NEAR((o == 0 ? first : second).data()[p], sum, 1e-5);
+                }
+        }
+}
+
+TEST(RenderKernels, OffsetsAreAddedToTheSumsOfTheirColumn) {
+    constexpr int kPixels = 7;
+    const int column[kPixels] = {0, 0, 1, 1, 2, 4, 4};
+    for (const int width : {1, 8, 17, 32, 40}) {
+        test::Numbers numbers{6};
+        const auto n = std::size_t(width), step = (n + 1) / 2 * 2;
+        const auto sums = numbers.many(5 * n, Fill::ordinary),
+                   dx = numbers.many(kPixels, Fill::ordinary),
+                   base = numbers.many(n, Fill::ordinary), slope = numbers.many(n, Fill::ordinary);
+        std::vector<float> exact;
+        for (std::size_t p = 0; p < kPixels; ++p)
+            for (std::size_t c = 0; c < n; ++c)
+                exact.push_back(std::max(
+                    0.0F, sums[std::size_t(column[p]) * n + c] + base[c] + dx[p] * slope[c]));
+        test::Guarded out{kPixels * n};
+        vector_kernels().offset_rows({sums.data(), 0, column, dx.data(), base.data(), slope.data(),
+                                      kPixels, width, out.data()});
+        EXPECT_TRUE(out.intact());
+        for (std::size_t i = 0; i < exact.size(); ++i)
+            ASSERT_NEAR(out.data()[i], exact[i], 1e-6) << width;
+        const auto expect_rows = [&](const Bf16Kernels& kernels) {
+            std::vector<std::uint32_t> narrow(5 * step / 2);
+            kernels.pixels_to_bf16(sums.data(), 5, width, narrow.data());
+            test::Guarded rows{kPixels * step / 2};
+            kernels.offset_rows({narrow.data(), 0, column, dx.data(), base.data(), slope.data(),
+                                 kPixels, width, rows.data()});
+            EXPECT_TRUE(rows.intact());
+            const auto* row = reinterpret_cast<const std::uint16_t*>(rows.data());
+            for (std::size_t p = 0; p < kPixels; ++p)
+                for (std::size_t c = 0; c < step; ++c)
+                    ASSERT_NEAR(from_bf16(row[p * step + c]), c < n ? exact[p * n + c] : 0,
+                                1.0 / 64)
+                        << width;
+        };
+        expect_rows(plain::bf16_kernels());
+        if (bf16_kernels() != nullptr) expect_rows(*bf16_kernels());
+    }
+}
+
+TEST(RenderKernels, ASampleIsWeighedByItsShare) {
+    for (const int pixels : {1, 9, 16, 37}) {
+        test::Numbers numbers{9};
+        const auto n = std::size_t(pixels);
+        const auto mu = numbers.many(n, Fill::ordinary), share = numbers.many(n, Fill::ordinary);
+        auto log_sigma = numbers.many(n, Fill::ordinary);
+        for (float& v : log_sigma) v *= 8;  // past its limits, -6 and 1
+        test::Guarded a{n}, b{n}, c{n}, sigma{n};
+        std::ranges::copy(mu, a.data());
+        std::ranges::copy(log_sigma, b.data());
+        vector_kernels().weigh_rows(
+            {a.data(), b.data(), c.data(), share.data(), 0.7F, -6, 1, pixels});
+        vector_kernels().scaled_exp(log_sigma.data(), 0.9F, sigma.data(), n);
+        EXPECT_TRUE(a.intact() && b.intact() && c.intact() && sigma.intact());
+        for (std::size_t i = 0; i < n; ++i) {
+            const double w = 0.7 * share[i], s = std::clamp(double(log_sigma[i]), -6.0, 1.0);
+            EXPECT_NEAR(a.data()[i], w * mu[i], 1e-6);
+            EXPECT_NEAR(b.data()[i], w * s, 1e-6);
+            EXPECT_NEAR(c.data()[i], w * (std::exp(2 * s) + double(mu[i]) * mu[i]), 1e-5);
+            EXPECT_NEAR(sigma.data()[i], 0.9 * std::exp(double(log_sigma[i])),
+                        1e-6 * std::exp(double(log_sigma[i])));
+        }
+    }
+}
+
+/// Offsets, a hidden layer and two outputs at once, against the same in double.
+void expect_hidden_rows(const Bf16Kernels& kernels) {
+    constexpr int kColumns = 9;
+    for (const int width : {12, 32})
+        for (const int outputs : {20, 32})
+            for (const int pixels : {1, 16, 17, 32, 61}) {
+                test::Numbers numbers{4};
+                const auto n = std::size_t(width), o = std::size_t(outputs),
+                           count = std::size_t(pixels);
+                const auto sums = numbers.many(kColumns * n, Fill::ordinary),
+                           dx = numbers.many(count, Fill::ordinary),
+                           base = numbers.many(n, Fill::ordinary),
+                           slope = numbers.many(n, Fill::ordinary),
+                           last = numbers.many(2 * o, Fill::ordinary);
+                std::vector<float> hidden = numbers.many(n * o, Fill::ordinary), bias(32);
+                for (float& v : bias) v = numbers.next(Fill::ordinary);
+                const float last_bias[] = {0.25F, -1};
+                std::vector<int> column;
+                for (int p = 0; p < pixels; ++p) column.push_back(p * 5 % kColumns);
+                std::vector<std::uint32_t> narrow(kColumns * n / 2), weight(n / 2 * 32);
+                kernels.pixels_to_bf16(sums.data(), kColumns, width, narrow.data());
+                for (std::size_t k = 0; k < n; ++k)
+                    for (std::size_t i = 0; i < o; ++i)
+                        weight[k / 2 * 32 + i] |= std::uint32_t{to_bf16(hidden[k * o + i])}
+                                                  << (k % 2 * 16);
+                test::Guarded mu{count}, log_sigma{count};
+                ASSERT_TRUE(
+                    kernels.hidden_rows({{narrow.data(), 0, column.data(), dx.data(), base.data(),
+                                          slope.data(), pixels, width, nullptr},
+                                         weight.data(),
+                                         bias.data(),
+                                         outputs,
+                                         last.data(),
+                                         last_bias,
+                                         mu.data(),
+                                         log_sigma.data()}));
+                EXPECT_TRUE(mu.intact() && log_sigma.intact());
+                for (std::size_t p = 0; p < count; ++p) {
+                    double two[] = {last_bias[0], last_bias[1]};
+                    for (std::size_t i = 0; i < o; ++i) {
+                        double sum = bias[i];
+                        for (std::size_t k = 0; k < n; ++k)
+                            sum += hidden[k * o + i] *
+                                   std::max(0.0, double(sums[std::size_t(column[p]) * n + k]) +
+                                                     base[k] + double(dx[p]) * slope[k]);
+                        for (std::size_t w = 0; w < 2; ++w)
+                            two[w] += last[w * o + i] * std::max(0.0, sum);
+                    }
+                    // Of terms that add up to some 20.
+                    EXPECT_NEAR(mu.data()[p], two[0], 0.1) << width << " " << outputs;
+                    EXPECT_NEAR(log_sigma.data()[p], two[1], 0.1) << width << " " << outputs;
+                }
+            }
+}
+TEST(RenderKernels, HiddenRowsAreTheLayersOneByOne) {
+    if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+    expect_hidden_rows(avx512_bf16::bf16_kernels());
+    if (amx_kernels() != nullptr) expect_hidden_rows(*amx_kernels());
+}
+
+}  // namespace
+}  // namespace eventide
