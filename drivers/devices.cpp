@@ -103,9 +103,10 @@ bool names_camera(std::string_view source) {
 std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options) {
     const Kind* kind = kind_of(source);
     if (kind == nullptr)
-        throw Error(ErrorKind::usage,
-                    "source '" + std::string{source} +
-                        "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2:, ros2: or udp:");
+        throw Error(
+            ErrorKind::usage,
+            "source '" + std::string{source} +
+                "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2:, ros2: or udp:");
     if (kind->open == nullptr)
         throw Error(ErrorKind::usage, "source '" + std::string{source} +
                                           "': this eventide was built without " +
