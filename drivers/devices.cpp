@@ -1,5 +1,6 @@
 #include "drivers/devices.h"
 
+#include "drivers/udp/udp_source.h"
 #include "src/core/error.h"
 
 #ifdef EVENTIDE_HAS_USB
@@ -66,6 +67,10 @@ constexpr std::nullptr_t list_davis_cameras = nullptr, list_dvxplorer_cameras = 
 constexpr std::nullptr_t open_v4l2 = nullptr, list_v4l2_cameras = nullptr;
 #endif
 
+std::vector<CameraDescription> list_no_senders() {
+    return {};  // who sends is known only when it does
+}
+
 #ifdef EVENTIDE_HAS_ROS2
 std::vector<CameraDescription> list_no_topics() {
     return {};  // who publishes is known only after seconds of listening: ros2 topic list
@@ -74,12 +79,13 @@ std::vector<CameraDescription> list_no_topics() {
 constexpr std::nullptr_t open_ros2_source = nullptr, list_no_topics = nullptr;
 #endif
 
-constexpr std::array<Kind, 5> kKinds{
+constexpr std::array<Kind, 6> kKinds{
     {{"davis:", "EVENTIDE_USB", open_davis, list_davis_cameras},
      {"dvxplorer:", "EVENTIDE_USB", open_dvxplorer, list_dvxplorer_cameras},
      {"dvs128:", "EVENTIDE_USB", open_dvs128, list_dvs128_cameras},
      {"v4l2:", "EVENTIDE_V4L2", open_v4l2, list_v4l2_cameras},
-     {"ros2:", "EVENTIDE_ROS2 (cyclonedds-dev)", open_ros2_source, list_no_topics}}};
+     {"ros2:", "EVENTIDE_ROS2 (cyclonedds-dev)", open_ros2_source, list_no_topics},
+     {"udp:", "", open_udp_source, list_no_senders}}};
 
 const Kind* kind_of(std::string_view source) {
     const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) {
@@ -97,9 +103,10 @@ bool names_camera(std::string_view source) {
 std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options) {
     const Kind* kind = kind_of(source);
     if (kind == nullptr)
-        throw Error(ErrorKind::usage,
-                    "source '" + std::string{source} +
-                        "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2: or ros2:");
+        throw Error(
+            ErrorKind::usage,
+            "source '" + std::string{source} +
+                "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2:, ros2: or udp:");
     if (kind->open == nullptr)
         throw Error(ErrorKind::usage, "source '" + std::string{source} +
                                           "': this eventide was built without " +

@@ -28,6 +28,7 @@ bool names_camera(std::string_view source);
 /// dvxplorer:, dvs128: in the same way
 /// v4l2:/dev/videoN    an event sensor with a V4L2 driver
 /// ros2:/TOPIC         event packets of a ROS 2 driver
+/// udp://HOST:PORT?size=WxH  events that another program sends (UdpSource)
 /// Throws Error: usage for a name that makes no sense or a driver that was not built, device for a
 /// camera that cannot be used.
 std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options);

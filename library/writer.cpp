@@ -16,8 +16,7 @@ const Format& format_of(const std::string& path, const WriterOptions& options) {
     if (format != nullptr && format->is_written()) return *format;
     std::string names;
     for (const Format& one : all_formats())
-        if (one.is_written())
-            names += (names.empty() ? "" : ", ") + std::string{one.name};
+        if (one.is_written()) names += (names.empty() ? "" : ", ") + std::string{one.name};
     throw Error(ErrorKind::usage,
                 path + ": expected a format that can be written (" + names + "), found " +
                     (options.format.empty() ? "an extension of none" : options.format));

@@ -82,6 +82,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     Batch batch;
     const auto pass_on = [&] {
         keep_inside(batch, options);
+        if (options.filter) options.filter(batch);
         add(report.not_held, remove_not_held(batch, target.holds()));
         add(report.written, counts_of(batch));
         if (!batch.empty()) target.write(batch);

@@ -14,6 +14,7 @@ namespace eventide {
 struct ConvertOptions {
     std::optional<SensorTime> from{}, to{};  ///< both included
     bool overwrite = false;
+    std::function<void(Batch&)> filter = {};  ///< of what lies between the limits; may be empty
 };
 
 struct ConvertReport {

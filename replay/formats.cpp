@@ -156,7 +156,8 @@ OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
 }
 
 constexpr char kHdf5Magic[] = "\x89HDF\r\n\x1A\n", kBagMagic[] = "#ROSBAG V2.0",
-               kNpyMagic[] = "\x93NUMPY", kNpzMagic[] = "PK\x03\x04";
+               kNpyMagic[] = "\x93NUMPY", kNpzMagic[] = "PK\x03\x04",
+               kMcapMagic[] = "\x89MCAP0\r\n", kSqliteMagic[] = "SQLite format 3";
 
 constexpr FormatHolds kOnlyEvents{};
 constexpr FormatHolds kEventsAndImages{true, true};
@@ -189,6 +190,10 @@ const std::array kFormats{
            open_npz},
     Format{"rosbag", "ROS 1 bag", ".bag", kEverything, has_magic<kBagMagic>, nullptr, nullptr,
            open_bag},
+    Format{"mcap", "ROS 2 bag (MCAP)", ".mcap", kEverything, has_magic<kMcapMagic>, nullptr,
+           nullptr, open_mcap},
+    Format{"db3", "ROS 2 bag (SQLite)", ".db3", kEverything, has_magic<kSqliteMagic>, nullptr,
+           nullptr, open_db3},
     Format{"dat", "Prophesee DAT", ".dat", kEventsAndTriggers, is_dat, open_dat, nullptr},
     Format{"aedat1", "AEDAT 1.0", ".dat", kOnlyEvents, looks_like_aedat1, open_aedat1, nullptr},
     Format{"text", "lines of \"t x y p\"", ".txt", kOnlyEvents, looks_like_text, open_text,

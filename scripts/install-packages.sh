@@ -10,13 +10,13 @@ build=(
   libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libbz2-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler
   libcli11-dev libtomlplusplus-dev libspdlog-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
-  libusb-1.0-0-dev libhdf5-dev libcpp-httplib-dev
+  libusb-1.0-0-dev libhdf5-dev libsqlite3-dev libcpp-httplib-dev
   cyclonedds-dev cyclonedds-tools libyaml-dev
   python3-dev python3-numpy pybind11-dev
 )
 tests=(
   libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev
-  libtorch-dev libsqlite3-dev ffmpeg python3
+  libtorch-dev ffmpeg python3
   libfastrtps-dev libfastcdr-dev
   clang clang-format clang-tidy libclang-rt-14-dev git
   dpkg-dev file chromium doxygen

@@ -1,7 +1,7 @@
 // Which array is what, and its rows as events.
 #include "replay/numpy/numpy_recording.h"
 
-#include "replay/numpy/numpy_array.h"
+#include "replay/numpy/numpy_table.h"
 #include "replay/numpy/zip_directory.h"
 #include "replay/table_reader.h"
 #include "src/codec/text_layout.h"
@@ -44,108 +44,6 @@ int field_of(const std::string& name) {
     return found == kFields.end() ? -1 : int(found - kFields.begin());
 }
 
-/// Rows of a fixed number of bytes somewhere in a source, the newest block of them at hand.
-struct Rows {
-    std::shared_ptr<ByteSource> source;
-    std::uint64_t begin = 0, stride = 0;
-    std::vector<std::byte> block{};
-
-    bool read(std::uint64_t first, std::size_t count) {
-        block.resize(std::size_t(stride) * count);
-        return source->read_at(begin + first * stride, block);
-    }
-};
-
-struct Column {
-    std::size_t rows = 0;  ///< which of the Rows
-    NumpyField field;
-    std::string name;
-};
-
-/// What is known of a file's events before the unit of time is.
-struct Found {
-    std::vector<Rows> rows;
-    std::vector<Column> columns;  ///< four, in the order of the file
-    std::uint64_t count = 0;
-    bool named = true;
-};
-
-class NumpyTable final : public EventTable {
-public:
-    NumpyTable(Found found, const TextLayout& layout) : rows_(std::move(found.rows)) {
-        count_ = found.count;
-        for (std::size_t i = 0; i < found.columns.size(); ++i)
-            columns_[std::size_t(layout.columns[i])] = std::move(found.columns[i]);
-        constexpr std::array<double, 5> kUs{1, 1e6, 1e3, 1, 1e-3};  // as TextTimeUnit
-        us_ = kUs[std::size_t(layout.unit)];
-    }
-
-    std::uint64_t rows() const override { return count_; }
-
-    bool read(std::uint64_t first, std::size_t count, EventRows& into) override {
-        into.resize(count);
-        for (Rows& rows : rows_)
-            if (!rows.read(first, count)) return false;
-        const auto at = [&](std::size_t field, std::size_t row) {
-            const Column& column = columns_[field];
-            const Rows& rows = rows_[column.rows];
-            return rows.block.data() + row * rows.stride + column.field.offset;
-        };
-        for (std::size_t i = 0; i < count; ++i) {
-            into.t_us[i] = time_of(at(0, i));
-            into.x[i] = place(columns_[1].field, at(1, i));
-            into.y[i] = place(columns_[2].field, at(2, i));
-            into.on[i] = std::uint8_t(numpy_number(columns_[3].field, at(3, i)) > 0);
-        }
-        return true;
-    }
-
-    std::int64_t time_us(std::uint64_t row) override {
-        Rows& rows = rows_[columns_[0].rows];
-        if (!rows.read(row, 1)) return kNoTimeUs;
-        return time_of(rows.block.data() + columns_[0].field.offset);
-    }
-
-    /// Deflated arrays are read once up to the time, instead of to many places.
-    std::optional<std::uint64_t> look_up(std::int64_t t_us) override {
-        Rows& rows = rows_[columns_[0].rows];
-        if (!rows.source->is_sequential()) return {};
-        constexpr std::size_t kAtATime = 8192;
-        for (std::uint64_t first = 0; first < count_; first += kAtATime) {
-            const auto n = std::size_t(std::min<std::uint64_t>(kAtATime, count_ - first));
-            if (!rows.read(first, n)) return first;
-            for (std::size_t i = 0; i < n; ++i)
-                if (time_of(rows.block.data() + i * rows.stride + columns_[0].field.offset) >= t_us)
-                    return first + i;
-        }
-        return count_;
-    }
-
-private:
-    static std::int32_t place(const NumpyField& field, const std::byte* at) {
-        const std::int64_t value = numpy_integer(field, at);
-        return value >= 0 && value < 1'000'000'000 ? std::int32_t(value) : std::int32_t{-1};
-    }
-
-    std::int64_t time_of(const std::byte* at) const {
-        const NumpyField& field = columns_[0].field;
-        if (field.kind == 'f') return us_from_seconds(numpy_number(field, at) * us_ * 1e-6);
-        const std::int64_t t = numpy_integer(field, at);
-        if (us_ >= 1) {
-            constexpr std::int64_t kFarthest = 1'000'000'000'000;  // s
-            const auto factor = std::int64_t(us_);
-            return std::abs(t / (1'000'000 / factor)) <= kFarthest ? us_from_integer(t * factor)
-                                                                   : kNoTimeUs;
-        }
-        return us_from_integer(t >= 0 ? (t / 1000) + (t % 1000 >= 500) : (t - 500) / 1000);
-    }
-
-    std::vector<Rows> rows_;
-    std::array<Column, 4> columns_;
-    std::uint64_t count_ = 0;
-    double us_ = 1;  // per unit of time
-};
-
 /// The file stays open for the arrays in it.
 class NumpyReader final : public DataReader {
 public:
@@ -167,21 +65,21 @@ private:
 };
 
 /// The beginning as a text would have it, for the same rules on columns and units.
-std::string as_text(Found& found, const std::string& path) {
+std::string as_text(NumpyEvents& found, const std::string& path) {
     constexpr std::uint64_t kRowsToShow = 2000;
     std::string text;
     if (found.named) {
-        for (const Column& column : found.columns) text += column.name + " ";
+        for (const NumpyColumn& column : found.columns) text += column.name + " ";
         text += "\n";
     }
     const auto count = std::size_t(std::min(found.count, kRowsToShow));
-    for (Rows& rows : found.rows)
+    for (NumpyRows& rows : found.rows)
         if (!rows.read(0, count))
             throw Error(ErrorKind::input, path + ": expected " + std::to_string(found.count) +
                                               " rows, found none that can be read");
     for (std::size_t i = 0; i < count; ++i) {
-        for (const Column& column : found.columns) {
-            const Rows& rows = found.rows[column.rows];
+        for (const NumpyColumn& column : found.columns) {
+            const NumpyRows& rows = found.rows[column.rows];
             const std::byte* at = rows.block.data() + i * rows.stride + column.field.offset;
             const double value = numpy_number(column.field, at);
             char number[48];
@@ -198,7 +96,7 @@ std::string as_text(Found& found, const std::string& path) {
     return text;
 }
 
-std::unique_ptr<DataReader> make_reader(std::unique_ptr<ByteFile> file, Found found,
+std::unique_ptr<DataReader> make_reader(std::unique_ptr<ByteFile> file, NumpyEvents found,
                                         const char* format, const OpenOptions& options) {
     const std::string path = file->path();
     TextHeader text;
@@ -215,8 +113,7 @@ std::unique_ptr<DataReader> make_reader(std::unique_ptr<ByteFile> file, Found fo
     StreamHeader header;
     header.format = format;
     auto table = std::make_unique<TableReader>(
-        path, header, std::make_unique<NumpyTable>(std::move(found), text.layout), nullptr,
-        options);
+        path, header, make_numpy_table(std::move(found), text.layout), nullptr, options);
     return std::make_unique<NumpyReader>(std::move(file), std::move(table),
                                          std::move(text.remarks));
 }
@@ -230,7 +127,7 @@ void check_number(const NumpyField& field, const std::string& what) {
 
 /// Records with the four fields. False where they have others.
 bool find_records(const std::shared_ptr<ByteSource>& source, const NumpyArray& array,
-                  const std::string& name, Found& found) {
+                  const std::string& name, NumpyEvents& found) {
     if (!array.is_of_records() || array.shape.size() != 1) return false;
     std::array<bool, 4> seen{};
     for (const NumpyField& field : array.fields) {
@@ -247,7 +144,7 @@ bool find_records(const std::shared_ptr<ByteSource>& source, const NumpyArray& a
 
 /// [event][4]; columns first and [4][event] are four arrays, one behind the other.
 bool find_matrix(const std::shared_ptr<ByteSource>& source, const NumpyArray& array,
-                 const std::string& name, Found& found) {
+                 const std::string& name, NumpyEvents& found) {
     if (array.is_of_records() || array.shape.size() != 2) return false;
     const bool across = array.shape[1] != 4 && array.shape[0] == 4;
     if (array.shape[1] != 4 && !across) return false;
@@ -302,7 +199,7 @@ std::vector<NamedArray> arrays_of(const ByteFile& file) {
 }
 
 /// An array for each column.
-bool find_columns(const ByteFile& file, const std::vector<NamedArray>& arrays, Found& found) {
+bool find_columns(const ByteFile& file, const std::vector<NamedArray>& arrays, NumpyEvents& found) {
     std::array<bool, 4> seen{};
     for (const NamedArray& each : arrays) {
         const int which = field_of(each.name);
@@ -328,9 +225,9 @@ std::unique_ptr<DataReader> open_npy(const std::string& path, const OpenOptions&
     auto file = std::make_unique<ByteFile>(path);
     const auto source = std::make_shared<StoredBytes>(*file, 0, file->size());
     const NumpyArray array = read_numpy_header(*source, path);
-    Found found;
+    NumpyEvents found;
     if (find_records(source, array, path, found) ||
-        find_matrix(source, array, path, found = Found{}))
+        find_matrix(source, array, path, found = NumpyEvents{}))
         return make_reader(std::move(file), std::move(found), "npy", options);
     throw Error(ErrorKind::input,
                 path + ": expected records with t, x, y and p, or rows of four numbers, found " +
@@ -341,13 +238,13 @@ std::unique_ptr<DataReader> open_npy(const std::string& path, const OpenOptions&
 std::unique_ptr<DataReader> open_npz(const std::string& path, const OpenOptions& options) {
     auto file = std::make_unique<ByteFile>(path);
     const std::vector<NamedArray> arrays = arrays_of(*file);
-    Found found;
+    NumpyEvents found;
     if (find_columns(*file, arrays, found))
         return make_reader(std::move(file), std::move(found), "npz", options);
     for (const NamedArray& each : arrays) {
         const std::string name = path + ": " + each.name;
-        if (find_records(each.source, each.array, name, found = Found{}) ||
-            find_matrix(each.source, each.array, name, found = Found{}))
+        if (find_records(each.source, each.array, name, found = NumpyEvents{}) ||
+            find_matrix(each.source, each.array, name, found = NumpyEvents{}))
             return make_reader(std::move(file), std::move(found), "npz", options);
     }
     std::string names;

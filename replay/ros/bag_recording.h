@@ -1,4 +1,4 @@
-// ROS 1 bags as recordings.
+// ROS 1 and 2 bags as recordings.
 #pragma once
 
 #include "replay/data_reader.h"
@@ -9,10 +9,14 @@
 
 namespace eventide {
 
-/// Reads the first topic of each kind that the bag has: events (dvs_msgs/EventArray,
-/// prophesee_event_msgs/EventArray, event_camera_msgs/EventPacket) and sensor_msgs/Image, where
-/// those are of the events' size. Throws Error (input) where it is no bag, or one without events,
-/// naming the types of messages that it has.
+/// A ROS 1 bag. What is read of it says RosReader. Throws Error (input) where it is no bag, or one
+/// without events, naming the types of messages that it has.
 std::unique_ptr<DataReader> open_bag(const std::string& path, const OpenOptions& options);
+
+/// A ROS 2 bag in an MCAP file.
+std::unique_ptr<DataReader> open_mcap(const std::string& path, const OpenOptions& options);
+
+/// A ROS 2 bag in an SQLite file. Throws Error (failed) where eventide was built without SQLite.
+std::unique_ptr<DataReader> open_db3(const std::string& path, const OpenOptions& options);
 
 }  // namespace eventide

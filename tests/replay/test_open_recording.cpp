@@ -123,7 +123,8 @@ TEST(OpenRecording, FilesOfOtherKindsAreCalledByTheirName) {
     EXPECT_THAT(refusal(folder.write("a.png", "\x89PNG\r\n")), HasSubstr("an image"));
     // It looks like an AEDAT 1 file: a line with '#', then bytes.
     const std::string bag = "#ROSBAG V2.0\n" + std::string(200, '\1');
-    EXPECT_THAT(refusal(folder.write("a.bag", bag)), AllOf(HasSubstr("dvs_msgs/EventArray"), HasSubstr("and damage")));
+    EXPECT_THAT(refusal(folder.write("a.bag", bag)),
+                AllOf(HasSubstr("dvs_msgs/EventArray"), HasSubstr("and damage")));
     EXPECT_THAT(refusal(folder.write("a.mp4", std::string("\0\0\0\x1C", 4) + "ftypisom")),
                 HasSubstr("a video"));
 }

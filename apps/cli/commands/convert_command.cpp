@@ -6,6 +6,7 @@
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/time_point.h"
+#include "pipeline/filters/filter_chain.h"
 #include "replay/convert.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
@@ -19,8 +20,7 @@ namespace {
 std::string names_of_writable() {
     std::string names;
     for (const Format& format : all_formats())
-        if (format.is_written())
-            names += (names.empty() ? "" : ", ") + std::string{format.name};
+        if (format.is_written()) names += (names.empty() ? "" : ", ") + std::string{format.name};
     return names;
 }
 
@@ -99,6 +99,7 @@ SettingTable ConvertCommand::settings() {
                            "@MICROSECONDS of the sensor; start: all."));
     table.settings.push_back(
         time_point_setting("to", to_, "end", "Last data, written as --from; end: all."));
+    table.settings.push_back(filter_setting(filter_));
     table.settings.push_back(
         flag_setting("overwrite", overwrite_,
                      "Replace files that exist; of a folder, what an earlier run "
@@ -127,7 +128,12 @@ int ConvertCommand::run(Program& program) {
     ConvertOptions how;
     if (from_) how.from = moments.time_of(*from_);
     if (to_) how.to = moments.time_of(*to_);
-    RecordingOut target{to_file_, overwrite_, format, header_of(*recording)};
+    StreamHeader header = header_of(*recording);
+    FilterChain filters{filter_, {header.width, header.height}};
+    header.width = filters.size().width;
+    header.height = filters.size().height;
+    if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
+    RecordingOut target{to_file_, overwrite_, format, header};
     Progress progress{program.quiet};
     const ConvertReport report = convert(*recording, target, how, [&] {
         if (recording->size_bytes() > 0)
@@ -138,6 +144,7 @@ int ConvertCommand::run(Program& program) {
     if (program.signals.stopping())
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(from_file_, recording->info().format, to_file_, report);
+    if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());
     const bool incomplete = report.damaged.total() > 0 || !(report.not_held == DataCounts{});
     return strict_ && incomplete ? exit_data_lost : exit_done;
 }

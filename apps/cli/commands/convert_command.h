@@ -20,6 +20,7 @@ private:
     std::string from_file_, to_file_, to_format_ = "auto";
     InputSettings input_;
     std::optional<TimePoint> from_, to_;
+    std::vector<std::string> filter_;
     bool overwrite_ = false, force_ = false, strict_ = false;
 };
 

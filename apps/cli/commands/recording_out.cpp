@@ -12,14 +12,14 @@ bool names_folder(const std::string& path) {
 }
 
 RecordingOut::RecordingOut(const std::string& path, bool overwrite, const Format* format,
-                           StreamHeader header)
+                           StreamHeader header, Appears appears)
     : format_{format} {
     if (format == nullptr) {
         folder_ = std::make_unique<EcdWriter>(path, overwrite, header.width, header.height);
         return;
     }
     header.format = format->name;
-    file_ = std::make_unique<RecordingFile>(path, overwrite, *format, header);
+    file_ = std::make_unique<RecordingFile>(path, overwrite, *format, header, appears);
 }
 
 const FormatHolds& RecordingOut::holds() const {

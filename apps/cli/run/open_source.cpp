@@ -25,7 +25,8 @@ void refuse_unknown_prefix(const std::string& source) {
     throw Error(ErrorKind::usage,
                 source +
                     ": unknown source; expected a file or folder, davis:, dvxplorer:, dvs128:, "
-                    "v4l2:/dev/videoN, ros2:/TOPIC, sim:SCENE, or - for standard input");
+                    "v4l2:/dev/videoN, ros2:/TOPIC, udp://HOST:PORT, sim:SCENE, or - for standard "
+                    "input");
 }
 
 OpenedSource open_file(const RunSettings& settings, double speed) {

@@ -27,6 +27,30 @@ std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source&
     return std::make_unique<RecordedSource>(source, settings.record, settings.overwrite);
 }
 
+SensorPixels size_of(const Source& source) {
+    return {source.info().width, source.info().height};
+}
+
+SensorInfo info_behind(SensorInfo info, const FilterChain& filters) {
+    info.width = filters.size().width;
+    info.height = filters.size().height;
+    return info;
+}
+
+/// Null: not asked for.
+std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
+                                         const Span& span, EventFilter* filter) {
+    if (settings.events_out.empty()) return nullptr;
+    StreamHeader header;
+    header.width = sensor.width;
+    header.height = sensor.height;
+    header.sensor_name = sensor.name;
+    header.serial = sensor.serial;
+    return std::make_unique<EventsOut>(
+        filter, open_event_target(settings.events_out, settings.overwrite, true, header),
+        span.frames_from, span.end);
+}
+
 /// Null: not asked for.
 std::unique_ptr<OutputFile> stats_of(const RunSettings& settings) {
     if (settings.stats.empty()) return nullptr;
@@ -41,7 +65,8 @@ Run::Run(Program& program, RunSettings& settings)
       settings_{settings},
       speed_{speed_of(settings)},
       opened_{open_source(settings, speed_, [&program] { return program.signals.stopping(); })},
-      sensor_{opened_.source->info()},
+      filters_{settings.filter, size_of(*opened_.source)},
+      sensor_{info_behind(opened_.source->info(), filters_)},
       span_{span_of(settings, live())},
       network_{settings, sensor_},
       slicer_{slicer_of(settings, network_.config(), span_, live())},
@@ -63,6 +88,8 @@ Run::Run(Program& program, RunSettings& settings)
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
     recorded_ = recorder_of(settings, *opened_.source);
+    events_out_ = events_out_of(settings, sensor_, span_, filter_.get());
+    watch_.write_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
     stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
     try {
@@ -77,9 +104,19 @@ Run::Run(Program& program, RunSettings& settings)
     }
 }
 
+/// What is recorded is what came, before any filter.
 Source& Run::source() {
-    if (recorded_) return *recorded_;
-    return *opened_.source;
+    Source& source = recorded_ ? static_cast<Source&>(*recorded_) : *opened_.source;
+    if (filters_.empty()) return source;
+    if (!filtered_) filtered_.emplace(source, filters_);
+    return *filtered_;
+}
+
+Snapshot Run::counters() const {
+    Snapshot now = pipeline_->snapshot();
+    now.events += filters_.left_out();
+    now.filtered_events += filters_.left_out();
+    return now;
 }
 
 SinkPlan Run::sink_plan() {
@@ -123,7 +160,8 @@ std::vector<HttpControl> Run::controls() {
 
 PipelineParts Run::parts() {
     RenderStage& render = fusion_ ? static_cast<RenderStage&>(*fusion_) : render_;
-    PipelineParts parts{source(), encode_, render, {}, filter_.get(), &watch_};
+    EventFilter* last = events_out_ ? events_out_.get() : filter_.get();
+    PipelineParts parts{source(), encode_, render, {}, last, &watch_};
     for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
     return parts;
 }
@@ -159,28 +197,29 @@ RunProgress Run::progress() const {
 
 int Run::run() {
     const Stopper stopper{program_.signals, [this] { pipeline_->stop(); }};
-    Status status{[this] { return pipeline_->snapshot(); }, progress(), std::move(stats_),
-                  program_.quiet, live()};
+    Status status{[this] { return counters(); }, progress(), std::move(stats_), program_.quiet,
+                  live()};
     run_pipeline();
     if (!settings_.state_out.empty())
         write_safetensors(settings_.state_out, network_.encoder().state(), settings_.overwrite);
     const RunProgress end = status.finish();
-    const Snapshot counters = pipeline_->snapshot();
+    const Snapshot end_counters = counters();
     const CameraCounters camera = camera_counters();
-    spdlog::info("{}{}", summary_text(counters, end), camera_text(camera));
-    if (const std::string why =
-            disorder_text(settings_.source, sensor_.format, counters.events, counters.damaged);
+    spdlog::info("{}{}", summary_text(end_counters, end), camera_text(camera));
+    if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
+    if (const std::string why = disorder_text(settings_.source, sensor_.format, end_counters.events,
+                                              end_counters.damaged);
         !why.empty())
         spdlog::warn("{}", why);
-    if (const std::string why = why_no_frames(counters);
+    if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping())
         spdlog::warn("{}", why);
     if (fusion_ && fusion_->fused().used() > 0)
         spdlog::info("frames corrected by {} of the camera's images", fusion_->fused().used());
     else if (settings_.frames == CameraFrames::use)
         spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
-                     counters.images);
-    const bool lost = lost_data(counters) || camera.device_dropped > 0;
+                     end_counters.images);
+    const bool lost = lost_data(end_counters) || camera.device_dropped > 0;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
 
@@ -192,10 +231,15 @@ void Run::run_pipeline() {
         else
             pipeline_->run();
     } catch (...) {
-        if (recorded_) recorded_->finish();
+        finish_files();
         throw;
     }
+    finish_files();
+}
+
+void Run::finish_files() {
     if (recorded_) recorded_->finish();
+    if (events_out_) events_out_->finish();
 }
 
 CameraCounters Run::camera_counters() const {
@@ -225,7 +269,7 @@ std::string Run::run_json() {
             values[setting.key] = texts.back();
     }
     json["settings"] = values;
-    json["counters"] = nlohmann::ordered_json::parse(stats_json(pipeline_->snapshot(), now, true));
+    json["counters"] = nlohmann::ordered_json::parse(stats_json(counters(), now, true));
     return json_text(json);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/cli/command.h"
+#include "apps/cli/run/events_out.h"
 #include "apps/cli/run/loaded_model.h"
 #include "apps/cli/run/open_sinks.h"
 #include "apps/cli/run/open_source.h"
@@ -9,6 +10,7 @@
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/run/run_plan.h"
 #include "apps/cli/run/run_report.h"
+#include "pipeline/filters/filter_chain.h"
 #include "pipeline/fusion_stage.h"
 #include "pipeline/model_stages.h"
 #include "pipeline/pipeline.h"
@@ -26,7 +28,9 @@ class Watch : public DataObserver {
 public:
     Watch(ReferenceImages* references, ImagesOnTheWay* images)
         : references_{references}, images_{images} {}
+    void write_to(EventsOut* out) { out_ = out; }
     void see(const Batch& batch) override {
+        if (out_ != nullptr) out_->see(batch);
         if (references_ != nullptr) references_->see(batch);
         if (images_ != nullptr) images_->put(batch.images);
     }
@@ -34,6 +38,7 @@ public:
 private:
     ReferenceImages* references_;
     ImagesOnTheWay* images_;
+    EventsOut* out_ = nullptr;
 };
 
 /// Inputs are opened before outputs, so that a wrong input leaves nothing behind.
@@ -60,12 +65,16 @@ private:
     RunProgress progress() const;
     std::string run_json();
     std::vector<HttpControl> controls();
-    Snapshot snapshot() const { return pipeline_made_ ? pipeline_->snapshot() : Snapshot{}; }
+    void finish_files();
+    /// What the filters left out counts as read.
+    Snapshot counters() const;
+    Snapshot snapshot() const { return pipeline_made_ ? counters() : Snapshot{}; }
 
     Program& program_;
     RunSettings& settings_;
     const double speed_;
     OpenedSource opened_;
+    FilterChain filters_;
     const SensorInfo sensor_;
     const Span span_;
     Network network_;
@@ -80,6 +89,8 @@ private:
     std::unique_ptr<RecordedSource> recorded_;  // null: nothing is recorded
     std::unique_ptr<OutputFile> stats_;         // null: not asked for, or taken by run()
     std::unique_ptr<EventFilter> filter_;
+    std::optional<FilteredSource> filtered_;  // none: without --filter
+    std::unique_ptr<EventsOut> events_out_;   // null: not asked for
     Watch watch_;
     ModelEncodeStage encode_;
     ModelRenderStage render_;

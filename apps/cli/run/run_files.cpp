@@ -2,12 +2,27 @@
 #include "apps/cli/run/run_files.h"
 
 #include "apps/cli/commands/command_files.h"
+#include "apps/cli/commands/recording_out.h"
+#include "apps/cli/run/events_out.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/sink_name.h"
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_name.h"
 
 namespace eventide::app {
+
+namespace {
+
+void name_events_out(const std::string& to, NamedFiles& files) {
+    const std::string file = file_of_event_target(to);
+    if (file.starts_with("udp://")) return;
+    if (names_folder(file))
+        name_run_folder("--events-out", file, EcdWriter::files(), files);
+    else
+        files.writes("--events-out", file, to);
+}
+
+}  // namespace
 
 void name_run_files(const RunSettings& settings, NamedFiles& files) {
     files.may_replace(settings.overwrite);
@@ -21,6 +36,10 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
 
     name_sink_files(settings, files);
     files.writes("--record", settings.record);
+    name_events_out(settings.events_out, files);
+    for (const std::string& filter : settings.filter)
+        if (filter.starts_with("hot-pixels:") && filter != "hot-pixels:learn")
+            files.reads("--filter", filter.substr(filter.find(':') + 1));
     if (settings.stats != "-") files.writes("--stats", settings.stats);
     files.writes("--state-out", settings.state_out);
 }

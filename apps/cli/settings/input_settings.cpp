@@ -1,6 +1,7 @@
 // What the user may say about an input.
 #include "apps/cli/settings/input_settings.h"
 
+#include "pipeline/filters/data_filter.h"
 #include "replay/formats.h"
 
 #include <spdlog/spdlog.h>
@@ -58,6 +59,12 @@ OpenOptions InputSettings::options() const {
         options.height = size->height;
     }
     return options;
+}
+
+Setting filter_setting(std::vector<std::string>& filters) {
+    return list_setting(
+        "filter", filters, "NAME:ARGS",
+        "Filter the events, any number of times, in this order: " + data_filter_names() + ".");
 }
 
 std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input) {

@@ -21,6 +21,9 @@ struct InputSettings {
     OpenOptions options() const;
 };
 
+/// --filter, for every command that hands events on.
+Setting filter_setting(std::vector<std::string>& filters);
+
 /// open_recording(), and its remarks as warnings.
 std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input);
 

@@ -287,6 +287,10 @@ void RunSettings::add_outputs(SettingTable& table) {
     add(text_setting("record", record, "FILE",
                      "Also write what the source sends, before anything can be lost: in the format "
                      "of the extension, or untouched bytes as .bin."));
+    add(text_setting("events_out", events_out, "TO",
+                     "Also write the events behind all filters: in the format of the extension, "
+                     "as FORMAT:PATH (a pipe, or - for standard output), folder/, or "
+                     "udp://HOST:PORT."));
     add(text_setting("stats", stats, "FILE",
                      "Counters as JSON, a line each second and a last one with \"final\": true."));
     add(flag_setting("strict", strict, "End with exit code 5 when data were lost or damaged."));
@@ -295,6 +299,7 @@ void RunSettings::add_outputs(SettingTable& table) {
 /// How it is to look.
 void RunSettings::add_look(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(filter_setting(filter));
     add(parsed_setting<std::string>(
         "hot_pixels", hot_pixels, "off|learn|FILE",
         "Leave out hot pixels: learn finds them while it runs, a file lists "

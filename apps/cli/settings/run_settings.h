@@ -66,6 +66,7 @@ struct RunSettings {
     std::string state_in, state_out;
     bool reset_on_gap = false;
     CameraFrames frames = CameraFrames::automatic;
+    std::vector<std::string> filter;  ///< make_data_filter(), in this order
     std::string hot_pixels = "off";
     std::string noise_filter = "model";
 
@@ -80,7 +81,7 @@ struct RunSettings {
     bool events = false;
     std::string http_token = "auto";  ///< auto, none, or the token
     std::vector<std::string> http_name;
-    std::string record;
+    std::string record, events_out;
     std::string stats;
     bool strict = false;
 

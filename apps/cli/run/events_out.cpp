@@ -1,0 +1,75 @@
+// Events behind the filters, to a file, a pipe or another machine.
+#include "apps/cli/run/events_out.h"
+
+#include "apps/cli/commands/recording_out.h"
+#include "replay/udp_target.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+
+namespace eventide::app {
+
+namespace {
+
+/// "aedat4" of "aedat4:x"; null where nothing of the kind stands in front.
+const Format* format_in_front(const std::string& to) {
+    const std::size_t colon = to.find(':');
+    const Format* format = colon == to.npos ? nullptr : find_format(to.substr(0, colon));
+    return format != nullptr && format->is_written() ? format : nullptr;
+}
+
+}  // namespace
+
+std::string file_of_event_target(const std::string& to) {
+    return format_in_front(to) != nullptr ? to.substr(to.find(':') + 1) : to;
+}
+
+std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool overwrite,
+                                                 bool growing, const StreamHeader& header) {
+    if (to.starts_with("udp:")) return std::make_unique<UdpTarget>(to, header);
+    const std::string file = file_of_event_target(to);
+    const Format* format = format_in_front(to);
+    if (format == nullptr && file == "-") format = find_format("text");
+    if (format == nullptr && !names_folder(file)) {
+        format = format_for_writing(file);
+        if (format == nullptr)
+            throw Error(ErrorKind::usage,
+                        to + ": expected the extension of a format that can be written (.aedat4, "
+                             ".h5, .raw, .txt, ...), FORMAT:PATH or folder/");
+    }
+    return std::make_unique<RecordingOut>(file, overwrite, format, header,
+                                          growing ? Appears::growing : Appears::whole);
+}
+
+void EventsOut::see(const Batch& batch) {
+    const FormatHolds& holds = target_->holds();
+    const auto keep = [](const auto& some, bool held, auto& to) {
+        if (held) to.insert(to.end(), some.begin(), some.end());
+    };
+    keep(batch.images, holds.images, batch_.images);
+    keep(batch.imu, holds.imu, batch_.imu);
+    keep(batch.triggers, holds.triggers, batch_.triggers);
+}
+
+void EventsOut::process(std::vector<Event>& events) {
+    if (filter_ != nullptr) filter_->process(events);
+    batch_.events = events;
+    const auto outside = [this](const auto& item) {
+        return (from_ && item.t < *from_) || (to_ && item.t > *to_);
+    };
+    std::erase_if(batch_.events, outside);
+    std::erase_if(batch_.images, outside);
+    std::erase_if(batch_.imu, outside);
+    std::erase_if(batch_.triggers, outside);
+    remove_not_held(batch_, target_->holds());
+    if (!batch_.empty()) target_->write(batch_);
+    batch_.clear();
+}
+
+void EventsOut::finish() {
+    std::vector<Event> none;
+    process(none);
+    target_->finish();
+}
+
+}  // namespace eventide::app

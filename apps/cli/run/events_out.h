@@ -1,0 +1,42 @@
+// The events that a run reconstructs from, written down behind all filters.
+#pragma once
+
+#include "pipeline/stages.h"
+#include "replay/convert.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace eventide::app {
+
+/// Where --events-out and convert's TO go: "udp://HOST:PORT", "FORMAT:PATH" (also "FORMAT:-"),
+/// "folder/", a file by its extension, or "-" as text. `growing`: a file shows from its first byte.
+/// Throws Error (usage) for what is none of these and for a file that exists.
+std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool overwrite,
+                                                 bool growing, const StreamHeader& header);
+
+/// The file or folder in it; empty for what is none.
+std::string file_of_event_target(const std::string& to);
+
+/// The last of the filters. Bin thread; it holds up the pipeline for as long as writing takes.
+class EventsOut final : public EventFilter, public DataObserver {
+public:
+    /// `filter` may be null; it is borrowed. Events outside of [from, to] are not written.
+    EventsOut(EventFilter* filter, std::unique_ptr<ConvertTarget> target,
+              std::optional<SensorTime> from, std::optional<SensorTime> to)
+        : filter_(filter), target_(std::move(target)), from_(from), to_(to) {}
+
+    /// Images and the rest, which are written with the events that come next.
+    void see(const Batch& batch) override;
+    void process(std::vector<Event>& events) override;
+    void finish();
+
+private:
+    EventFilter* filter_;
+    std::unique_ptr<ConvertTarget> target_;
+    std::optional<SensorTime> from_, to_;
+    Batch batch_;
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,90 @@
+// Datagrams as packets.
+#include "drivers/udp/udp_source.h"
+
+#include "src/core/error.h"
+#include "src/core/sensor_limits.h"
+
+#include <charconv>
+#include <string>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{20};  // how late stop() may be heard
+
+bool read_side(std::string_view text, int& side) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
+    return error == std::errc{} && end == text.data() + text.size() && side > 0 &&
+           side <= kLargestSensorSide;
+}
+
+void read_size(const UdpName& name, const std::string& text, SensorInfo& info) {
+    const std::size_t x = text.find('x');
+    if (x == text.npos || !read_side(std::string_view(text).substr(0, x), info.width) ||
+        !read_side(std::string_view(text).substr(x + 1), info.height))
+        throw Error(
+            ErrorKind::usage,
+            name.text() + ": size: expected WIDTHxHEIGHT such as 640x480, found '" + text + "'");
+}
+
+}  // namespace
+
+UdpSource::UdpSource(const UdpName& name) : socket_(UdpSocket::listening(name)) {
+    info_.name = name.text();
+    for (const auto& [key, value] : name.values) {
+        const auto named = udp_records_named(value);
+        if (key == "size")
+            read_size(name, value, info_);
+        else if (key != "format")
+            throw Error(ErrorKind::usage,
+                        name.text() + ": expected size=WxH and format=, found '" + key + "'");
+        else if (named)
+            records_ = *named;
+        else
+            throw Error(ErrorKind::usage,
+                        name.text() + ": format: expected t64, t32 or spif, found '" + value + "'");
+    }
+    if (info_.width == 0)
+        throw Error(ErrorKind::usage,
+                    name.text() +
+                        ": expected the sensor's size, which datagrams do not tell, "
+                        "such as " +
+                        name.text() + "?size=640x480");
+    info_.format = "udp";
+}
+
+ReadStatus UdpSource::read(RawPacket& into) {
+    into.gap_before = false;
+    into.bytes.resize(kLargestDatagram);
+    const auto n = socket_.receive(into.bytes, kLongestWait);
+    into.arrived = std::chrono::steady_clock::now();
+    if (stopped_) {
+        into.bytes.clear();
+        return ReadStatus::end;
+    }
+    const std::span<const std::byte> datagram(into.bytes.data(), n.value_or(0));
+    const std::size_t whole = whole_udp_records(records_, datagram);
+    if (whole != datagram.size()) ++counters_.odd_transfers;
+    into.bytes.resize(whole);
+    if (!n || whole == 0) return ReadStatus::timeout;
+    const std::uint64_t lost = socket_.take_lost();
+    counters_.device_dropped += lost;
+    into.gap_before = lost > 0;
+    into.sequence = ++counters_.transfers;
+    counters_.bytes += whole;
+    return ReadStatus::data;
+}
+
+std::unique_ptr<Parser> UdpSource::make_parser() const {
+    return std::make_unique<UdpRecordsParser>(records_, info_.width, info_.height);
+}
+
+std::unique_ptr<Camera> open_udp_source(std::string_view which, const CameraOptions& options) {
+    if (!options.settings.empty())
+        throw Error(ErrorKind::usage,
+                    "--camera: expected a camera with settings, found udp:" + std::string(which));
+    return std::make_unique<UdpSource>(UdpName::parse(std::string(which)));
+}
+
+}  // namespace eventide

@@ -1,0 +1,93 @@
+// Filters one behind the other.
+#include "pipeline/filters/filter_chain.h"
+
+#include <utility>
+
+namespace eventide {
+
+namespace {
+
+/// Filters what another parser gives.
+class FilteringParser final : public Parser {
+public:
+    FilteringParser(std::unique_ptr<Parser> parser, FilterChain& chain)
+        : parser_(std::move(parser)), chain_(chain) {}
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override {
+        parser_->parse(bytes, batch_);
+        pass_on(into);
+    }
+    void finish(Batch& into) override {
+        parser_->finish(batch_);
+        pass_on(into);
+    }
+    void resync() override { parser_->resync(); }
+    void arrives(HostTime t) override { parser_->arrives(t); }
+    std::optional<SensorTime> clock() const override { return parser_->clock(); }
+    const Damage& damaged() const override { return parser_->damaged(); }
+
+private:
+    template <typename T>
+    static void append(std::vector<T>& more, std::vector<T>& to) {
+        to.insert(to.end(), std::make_move_iterator(more.begin()),
+                  std::make_move_iterator(more.end()));
+    }
+    void pass_on(Batch& into) {
+        chain_.process(batch_);
+        append(batch_.events, into.events);
+        append(batch_.images, into.images);
+        append(batch_.imu, into.imu);
+        append(batch_.triggers, into.triggers);
+        batch_.clear();
+    }
+
+    std::unique_ptr<Parser> parser_;
+    FilterChain& chain_;
+    Batch batch_;
+};
+
+}  // namespace
+
+FilterChain::FilterChain(const std::vector<std::string>& texts, const SensorPixels& size)
+    : size_(size) {
+    for (const std::string& text : texts) {
+        Link& link = links_.emplace_back();
+        link.text = text;
+        link.filter = make_data_filter(text, size_);
+        size_ = link.filter->size();
+    }
+}
+
+void FilterChain::process(Batch& batch) {
+    for (Link& link : links_) {
+        const std::size_t before = batch.events.size();
+        link.filter->process(batch);
+        link.left_out.add(before - batch.events.size());
+    }
+}
+
+std::uint64_t FilterChain::left_out() const {
+    std::uint64_t sum = 0;
+    for (const Link& link : links_) sum += link.left_out.value();
+    return sum;
+}
+
+std::string FilterChain::report() const {
+    std::string text;
+    for (const Link& link : links_)
+        text +=
+            (text.empty() ? "" : ", ") + link.text + " " + std::to_string(link.left_out.value());
+    return text;
+}
+
+FilteredSource::FilteredSource(Source& source, FilterChain& chain)
+    : source_(source), chain_(chain), info_(source.info()) {
+    info_.width = chain.size().width;
+    info_.height = chain.size().height;
+}
+
+std::unique_ptr<Parser> FilteredSource::make_parser() const {
+    return std::make_unique<FilteringParser>(source_.make_parser(), chain_);
+}
+
+}  // namespace eventide

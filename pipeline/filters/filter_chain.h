@@ -1,0 +1,56 @@
+// Filters one behind the other, as a user named them, between a source and whoever parses it.
+#pragma once
+
+#include "pipeline/counters.h"
+#include "pipeline/filters/data_filter.h"
+#include "pipeline/source.h"
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+class FilterChain {
+public:
+    /// In this order, each as make_data_filter() takes it. Throws Error (usage) as that does.
+    FilterChain(const std::vector<std::string>& texts, const SensorPixels& size);
+
+    bool empty() const { return links_.empty(); }
+    SensorPixels size() const { return size_; }  ///< behind the last
+    void process(Batch& batch);
+
+    /// Events that the filters left out, together. Thread: any.
+    std::uint64_t left_out() const;
+    /// "region:10,20,100x50 1234, flip:x 0": how many events each left out. Thread: any.
+    std::string report() const;
+
+private:
+    struct Link {
+        std::string text;
+        std::unique_ptr<DataFilter> filter;
+        Counter left_out;
+    };
+    SensorPixels size_;
+    std::deque<Link> links_;  // counters stay where they are
+};
+
+/// A source as it looks behind filters. Its parsers share the chain: one is used at a time.
+class FilteredSource final : public Source {
+public:
+    /// Both are borrowed.
+    FilteredSource(Source& source, FilterChain& chain);
+    const SensorInfo& info() const override { return info_; }
+    bool is_live() const noexcept override { return source_.is_live(); }
+    ReadStatus read(RawPacket& into) override { return source_.read(into); }
+    void stop() noexcept override { source_.stop(); }
+    std::unique_ptr<Parser> make_parser() const override;
+
+private:
+    Source& source_;
+    FilterChain& chain_;
+    SensorInfo info_;
+};
+
+}  // namespace eventide

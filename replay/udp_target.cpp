@@ -1,0 +1,48 @@
+// Events as datagrams.
+#include "replay/udp_target.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::string_view kScheme = "udp:";
+
+}  // namespace
+
+UdpTarget::UdpTarget(const std::string& to, const StreamHeader& header)
+    : name_(UdpName::parse(to.substr(kScheme.size()))), socket_(UdpSocket::sending(name_)) {
+    for (const auto& [key, value] : name_.values) {
+        const auto named = key == "format" ? udp_records_named(value) : std::nullopt;
+        if (!named)
+            throw Error(ErrorKind::usage, to + ": expected format=t64, t32 or spif, found '" + key +
+                                              "=" + value + "'");
+        records_ = *named;
+    }
+    constexpr int kLargest = 32768;  // 15 bits
+    if (records_ != UdpRecords::t64 && std::max(header.width, header.height) > kLargest)
+        throw Error(ErrorKind::usage, to + ": expected a sensor of at most 32768 px each way");
+}
+
+const FormatHolds& UdpTarget::holds() const {
+    static const FormatHolds only_events{};
+    return only_events;
+}
+
+void UdpTarget::write(const Batch& batch) {
+    const std::span<const Event> events = batch.events;
+    for (std::size_t i = 0; i < events.size(); i += kEventsAtATime) {
+        datagram_.clear();
+        append_udp_records(records_, events.subspan(i, std::min(kEventsAtATime, events.size() - i)),
+                           datagram_);
+        if (socket_.send(datagram_))
+            bytes_ += datagram_.size();
+        else
+            ++lost_;
+    }
+}
+
+}  // namespace eventide

@@ -1,0 +1,68 @@
+// Records of UDP datagrams: any split, wraps, senders that begin anew.
+#include "src/codec/udp_records.h"
+#include "tests/codec/parser_checks.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+TEST(UdpRecords, BearSplitsAndCuts) {
+    for (const UdpRecords kind : {UdpRecords::t64, UdpRecords::t32, UdpRecords::spif}) {
+        Bytes bytes;
+        append_udp_records(kind, random_events(1, 100, 640, 480, 0, 100), bytes);
+        EXPECT_EQ(whole_udp_records(kind, bytes), bytes.size());
+        EXPECT_LT(whole_udp_records(kind, std::span(bytes).first(bytes.size() - 1)),
+                  bytes.size() - 1);
+        const MakeParser make = [&] { return std::make_unique<UdpRecordsParser>(kind, 640, 480); };
+        EXPECT_EQ(parse_whole(make, bytes).data.events.size(), 100U);
+        expect_same_for_any_split(make, bytes);
+        expect_beginnings_for_any_cut(make, bytes);
+    }
+}
+
+TEST(UdpRecords, TimesOf32BitsGoOnWhereTheyWrap) {
+    std::vector<Event> events;
+    for (int i = 0; i < 10; ++i)
+        events.push_back({from_us((std::int64_t{1} << 32) - 500 + 100 * i), 1, 2, Polarity::on});
+    Bytes bytes;
+    append_udp_records(UdpRecords::t32, events, bytes);
+    const Parsed parsed = parse_whole(
+        [] { return std::make_unique<UdpRecordsParser>(UdpRecords::t32, 8, 8); }, bytes);
+    EXPECT_TRUE(parsed.data.events == events);
+}
+
+TEST(UdpRecords, ASenderThatBeginsAnewIsFollowed) {
+    const auto late = random_events(1, 50, 8, 8, 900'000'000, 100);
+    const auto early = random_events(2, 50, 8, 8, 1'000'000, 100);
+    Bytes bytes;
+    append_udp_records(UdpRecords::t64, late, bytes);
+    append_udp_records(UdpRecords::t64, early, bytes);
+    const Parsed parsed = parse_whole(
+        [] { return std::make_unique<UdpRecordsParser>(UdpRecords::t64, 8, 8); }, bytes);
+    EXPECT_EQ(parsed.data.events.size(), 50U + 50U - UdpRecordsParser::kEventsOfAnother + 1);
+    EXPECT_EQ(parsed.damage[DamageReason::time_backwards],
+              std::uint64_t(UdpRecordsParser::kEventsOfAnother - 1));
+    ASSERT_EQ(parsed.data.triggers.size(), 1U);
+    EXPECT_EQ(parsed.data.triggers[0].kind, Trigger::Kind::timestamp_reset);
+}
+
+TEST(UdpRecords, SpifWithoutTimesHasThatOfTheArrival) {
+    UdpRecordsParser parser(UdpRecords::spif, 640, 480);
+    Bytes word;
+    for (const std::uint32_t value : {0x80000000U | 5U << 16 | 0x8000U | 7U}) {
+        for (int i = 0; i < 4; ++i) word.push_back(std::byte(value >> 8 * i & 0xFF));
+    }
+    Batch batch;
+    const HostTime begin{std::chrono::seconds(9)};
+    for (const int ms : {0, 10, 25}) {
+        parser.arrives(begin + std::chrono::milliseconds(ms));
+        parser.parse(word, batch);
+    }
+    parser.finish(batch);
+    ASSERT_EQ(batch.events.size(), 3U);
+    EXPECT_EQ(batch.events[2], (Event{from_us(25'000), 5, 7, Polarity::on}));
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,135 @@
+// UDP over this machine's loopback: what is sent is what is read.
+#include "drivers/udp/udp_source.h"
+#include "replay/udp_target.h"
+#include "src/core/error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<Event> random_events(unsigned seed, std::size_t n, std::int64_t first_us = 0) {
+    std::mt19937 random(seed);
+    std::vector<Event> events;
+    for (std::int64_t t = first_us; events.size() < n; t += std::int64_t(random() % 100))
+        events.push_back({from_us(t), std::uint16_t(random() % 640), std::uint16_t(random() % 480),
+                          Polarity(random() % 2)});
+    return events;
+}
+
+std::string name_of(const UdpSource& source, const std::string& format) {
+    return "udp://127.0.0.1:" + std::to_string(source.port()) + "?format=" + format;
+}
+
+UdpSource source_of(const std::string& format) {
+    return UdpSource(UdpName::parse("//127.0.0.1:0?size=640x480&format=" + format));
+}
+
+/// Reads until as many events came; a limit stands for a datagram that never does.
+Batch receive(UdpSource& source, std::size_t events) {
+    const auto parser = source.make_parser();
+    Batch batch;
+    RawPacket packet;
+    for (int waits = 0; batch.events.size() < events && waits < 500;) {
+        if (source.read(packet) == ReadStatus::timeout) {
+            ++waits;
+            continue;
+        }
+        parser->arrives(packet.arrived);
+        parser->parse(packet.bytes, batch);
+        if (batch.events.size() + 1 == events) parser->finish(batch);  // one waits for the next
+    }
+    return batch;
+}
+
+class Udp : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Formats, Udp, testing::Values("t64", "t32", "spif", "t32_x16_y15_on1"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(Udp, EventsAreReadAsTheyWereSent) {
+    UdpSource source = source_of(GetParam());
+    StreamHeader header;
+    header.width = 640;
+    header.height = 480;
+    UdpTarget target(name_of(source, GetParam()), header);
+    Batch sent;
+    sent.events = random_events(3, 2'000, 5'000'000);
+    target.write(sent);
+    target.finish();
+    EXPECT_TRUE(receive(source, sent.events.size()).events == sent.events);
+    EXPECT_EQ(source.counters().transfers, 20U);
+    EXPECT_EQ(source.counters().bytes, target.bytes_written());
+    EXPECT_EQ(target.lost(), 0U);
+}
+
+TEST(Udp, ADatagramThatEndsWithinARecordIsCountedAndItsWholeOnesRead) {
+    UdpSource source = source_of("t64");
+    UdpSocket socket =
+        UdpSocket::sending(UdpName::parse("//127.0.0.1:" + std::to_string(source.port())));
+    const auto events = random_events(1, 3);
+    std::vector<std::byte> bytes;
+    append_udp_records(UdpRecords::t64, events, bytes);
+    bytes.resize(bytes.size() - 5);
+    ASSERT_TRUE(socket.send(bytes));
+    EXPECT_TRUE(receive(source, 2).events ==
+                std::vector<Event>(events.begin(), events.begin() + 2));
+    EXPECT_EQ(source.counters().odd_transfers, 1U);
+}
+
+TEST(Udp, DatagramsThatTheSystemHadNoRoomForAreAGap) {
+    UdpSource source = source_of("t64");
+    UdpSocket socket =
+        UdpSocket::sending(UdpName::parse("//127.0.0.1:" + std::to_string(source.port())));
+    const std::vector<std::byte> large(60'008, std::byte{1});  // whole records, damaged or not
+    for (int i = 0; i < 400; ++i) socket.send(std::span(large).first(13 * 4'600));
+    RawPacket packet;
+    std::uint64_t read = 0;
+    while (source.read(packet) == ReadStatus::data) ++read;
+    // What came before the loss was told without it; the next one tells.
+    ASSERT_LT(read, 400U);
+    socket.send(std::span(large).first(13));
+    ASSERT_EQ(source.read(packet), ReadStatus::data);
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_EQ(source.counters().device_dropped, 400 - read);
+}
+
+TEST(Udp, NamesThatMakeNoSenseAreRefused) {
+    const auto refusal = [](const std::string& name, ErrorKind kind) -> std::string {
+        try {
+            UdpSource{UdpName::parse(name)};
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), kind) << error.what();
+            return error.what();
+        }
+        return "nothing was refused";
+    };
+    EXPECT_THAT(refusal("127.0.0.1:0", ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
+    EXPECT_THAT(refusal("//127.0.0.1", ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
+    EXPECT_THAT(refusal("//127.0.0.1:0", ErrorKind::usage), HasSubstr("?size=640x480"));
+    EXPECT_THAT(refusal("//127.0.0.1:0?size=4", ErrorKind::usage), HasSubstr("found '4'"));
+    EXPECT_THAT(refusal("//127.0.0.1:0?size=4x4&format=t16", ErrorKind::usage),
+                HasSubstr("t64, t32 or spif"));
+    UdpSource source = source_of("t64");
+    EXPECT_THAT(
+        refusal("//127.0.0.1:" + std::to_string(source.port()) + "?size=4x4", ErrorKind::device),
+        HasSubstr("in use"));
+    EXPECT_THROW(UdpTarget("udp://127.0.0.1:9?format=t16", {}), Error);
+}
+
+TEST(Udp, StopEndsAWaitingRead) {
+    UdpSource source = source_of("t64");
+    source.stop();
+    RawPacket packet;
+    EXPECT_EQ(source.read(packet), ReadStatus::end);
+}
+
+}  // namespace
+}  // namespace eventide
