@@ -8,7 +8,7 @@ enum class Instructions { best, avx512, avx2, sse4 };
 
 /// Leaves out what is past `most` from now on (until it is called again), bfloat16 too where that
 /// is below AVX-512, in our own kernels (oneDNN has its own variable, ONEDNN_MAX_CPU_ISA). For
-/// comparisons; not while any encoder or renderer exists.
+/// comparisons; not while any encoder, renderer or Lpips exists: their weights are laid out for it.
 void limit_instructions(Instructions most);
 
 }  // namespace eventide

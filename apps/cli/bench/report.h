@@ -27,7 +27,7 @@ struct ReportSettings {
     double seconds = 2;  ///< of each simulated recording
     int lookahead = 0;
     int repetitions = bench::kLeastRepetitions;  ///< of stages
-    const Lpips* lpips = nullptr;
+    std::filesystem::path lpips;                 ///< weights; empty: frames are not judged by it
     std::vector<PeerRow> peers;
 };
 

@@ -175,7 +175,9 @@ private:
         PipelineBenchSettings of_error = pipeline_settings(name);
         of_error.precision = arithmetic.precision;
         of_error.kernels = arithmetic.kernels;
-        of_error.lpips = settings_.lpips;
+        // Made here: its weights are laid out for the instructions of now.
+        const auto lpips = load_lpips(settings_.lpips);
+        of_error.lpips = lpips.get();
         SpeedRow row{stages.model,
                      stages.engine,
                      "50ms",
@@ -191,6 +193,7 @@ private:
     /// where things move.
     void shorter_windows(Report& report) {
         if (report.speed.empty()) return;
+        const auto lpips = load_lpips(settings_.lpips);
         const auto data =
             simulated_packets(settings_.scene, parse_size(settings_.sizes[0]), settings_.seconds);
         for (const int length_ms : {12, 25, 100}) {
@@ -199,7 +202,7 @@ private:
             PipelineBenchSettings how = pipeline_settings(settings_.models[0]);
             how.window = window;
             how.rate = {kImagesPerSecond, 1};
-            how.lpips = settings_.lpips;
+            how.lpips = lpips.get();
             const PipelineBench run = measure_pipeline(data, how, program_.signals);
             SpeedRow row;
             row.model = run.model;
@@ -254,11 +257,11 @@ Report measure_report(const ReportSettings& settings, Program& program) {
     report.program = "eventide " + version() + ", " + compiler_text();
     report.settings =
         "scene " + settings.scene + ", lookahead " + std::to_string(settings.lookahead);
-    if (settings.lpips != nullptr) report.lpips_name = settings.lpips->name();
     report.peers = settings.peers;
-    report.peaks = bench::measure_peaks(Instructions::best);
     Measurement measurement{settings, program};
     measurement.memory(report);  // first: the system counts what this process held before, too
+    report.peaks = bench::measure_peaks(Instructions::best);
+    if (const auto lpips = load_lpips(settings.lpips)) report.lpips_name = lpips->name();
     measurement.speed(report);
     measurement.rates(report);
     measurement.activity(report);

@@ -263,7 +263,6 @@ std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
 }
 
 int BenchCommand::report(Program& program) const {
-    const auto lpips = load_lpips(lpips_);
     ReportSettings settings;
     settings.scene = scene_;
     settings.models = models_;
@@ -271,7 +270,7 @@ int BenchCommand::report(Program& program) const {
     settings.seconds = seconds_;
     settings.lookahead = lookahead_;
     settings.repetitions = repetitions_;
-    settings.lpips = lpips.get();
+    settings.lpips = lpips_;
     settings.peers = read_peers(peers_);
     write_report(measure_report(settings, program), report_, overwrite_);
     spdlog::info("{}", (std::filesystem::path{report_} / "index.html").string());
