@@ -240,15 +240,16 @@ private:
 }  // namespace
 
 void mark_front(std::vector<SpeedRow>& rows) {
-    for (SpeedRow& row : rows) {
+    constexpr double kAlike = .005;  // errors this near to each other do not decide
+    const auto beats = [](const SpeedRow& a, const SpeedRow& b) {
+        const double mse = a.error.raw.mse / b.error.raw.mse;
+        return (a.total_ms() < b.total_ms() && mse <= 1 + kAlike) ||
+               (a.total_ms() <= b.total_ms() && mse < 1 - kAlike);
+    };
+    for (SpeedRow& row : rows)
         row.is_on_front = std::ranges::none_of(rows, [&](const SpeedRow& other) {
-            const bool is_no_worse =
-                other.total_ms() <= row.total_ms() && other.error.raw.mse <= row.error.raw.mse;
-            const bool is_better =
-                other.total_ms() < row.total_ms() || other.error.raw.mse < row.error.raw.mse;
-            return other.sensor == row.sensor && is_no_worse && is_better;
+            return other.sensor == row.sensor && beats(other, row);
         });
-    }
 }
 
 Report measure_report(const ReportSettings& settings, Program& program) {

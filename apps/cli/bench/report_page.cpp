@@ -34,6 +34,11 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
+std::string without_line_end(std::string text) {
+    while (text.ends_with('\n')) text.pop_back();
+    return text;
+}
+
 std::string row_of(const Cells& cells, const char* tag) {
     std::string out = "<tr>";
     for (const std::string& cell : cells)
@@ -252,8 +257,9 @@ std::string page_of(const Report& report) {
            "th:nth-child(2),td:nth-child(2){text-align:left}</style></head><body>\n<h1>Speed "
            "against error</h1>\n<p>" +
            escaped(report.machine) + "<br>" + escaped(report.program) + "<br>" +
-           escaped(report.settings) + "<br>" + escaped(bench::peaks_text(report.peaks)) + "</p>\n" +
-           body + "</body></html>\n";
+           escaped(report.settings) + "<br>" +
+           escaped(without_line_end(bench::peaks_text(report.peaks))) + "</p>\n" + body +
+           "</body></html>\n";
 }
 
 std::string json_of(const Report& report) {
