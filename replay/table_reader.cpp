@@ -3,6 +3,7 @@
 
 #include "replay/scan_geometry.h"
 #include "src/core/error.h"
+#include "src/core/partition_row.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,22 +14,6 @@ namespace eventide {
 namespace {
 
 constexpr std::int64_t kFarthestUs = 1'000'000'000'000'000'000;  // sums of two fit 64 bits
-
-/// The first of `rows` rows for which `before(row)` is false.
-template <typename Before>
-std::uint64_t first_row(std::uint64_t rows, Before before) {
-    std::uint64_t first = 0;
-    while (rows > 0) {
-        const std::uint64_t half = rows / 2;
-        if (before(first + half)) {
-            first += half + 1;
-            rows -= half + 1;
-        } else {
-            rows = half;
-        }
-    }
-    return first;
-}
 
 }  // namespace
 
@@ -139,10 +124,10 @@ void TableReader::seek(SensorTime t) {
         next_row_ = *indexed;
     } else {
         if (indexed) ++bad_tables_;
-        next_row_ = first_row(events_->rows(),
-                              [&](std::uint64_t row) { return events_->time_us(row) < t_us; });
+        next_row_ = partition_row(events_->rows(),
+                                  [&](std::uint64_t row) { return events_->time_us(row) < t_us; });
     }
-    next_image_ = !images_ ? 0 : first_row(images_->rows(), [&](std::uint64_t row) {
+    next_image_ = !images_ ? 0 : partition_row(images_->rows(), [&](std::uint64_t row) {
         return images_->time_us(row) < t_us;
     });
 }

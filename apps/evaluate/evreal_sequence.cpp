@@ -2,9 +2,9 @@
 #include "apps/evaluate/evreal_sequence.h"
 
 #include "apps/evaluate/mvsec_file.h"
-#include "apps/evaluate/rows.h"
 #include "apps/evaluate/seconds.h"
 #include "src/core/error.h"
+#include "src/core/partition_row.h"
 #include "src/io/bag_file.h"
 #include "src/io/npy.h"
 

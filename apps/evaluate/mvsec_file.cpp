@@ -1,9 +1,9 @@
 // MVSEC through the HDF5 library, a part of each data set at a time.
 #include "apps/evaluate/mvsec_file.h"
 
-#include "apps/evaluate/rows.h"
 #include "apps/evaluate/seconds.h"
 #include "src/core/error.h"
+#include "src/core/partition_row.h"
 #include "src/io/hdf5_file.h"
 
 #include <algorithm>
