@@ -4,12 +4,15 @@
 #include "src/model/model_file.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
 namespace eventide::test {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 ModelConfig small_config() {
     ModelConfig config;
@@ -67,6 +70,26 @@ Process ProgramTest::start(const std::vector<std::string>& arguments,
     if (settings.folder.empty()) settings.folder = temp_.path().string();
     settings.environment.try_emplace("EVENTIDE_MODELS", shared().folder.path().string());
     return Process{all, std::move(settings)};
+}
+
+void ProgramTest::expect(int code, const std::vector<std::string>& arguments,
+                         const std::string& words, ProcessSettings settings) const {
+    const Result result = eventide(arguments, std::move(settings));
+    std::string line = "eventide";
+    for (const std::string& argument : arguments) line += " " + argument;
+    EXPECT_EQ(result.exit_code, code) << line << "\n" << result.error;
+    EXPECT_NE(result.error.find(words), std::string::npos) << line << "\n" << result.error;
+    EXPECT_EQ(result.output, "") << line;
+}
+
+Result ProgramTest::in_shell(const std::string& script) const {
+    std::error_code there_already;
+    fs::create_symlink(recording(), temp_ / "recording", there_already);
+    fs::create_symlink(model(), temp_ / "model.safetensors", there_already);
+    const std::string programs = fs::path{EVENTIDE_PROGRAM}.parent_path().string();
+    return run({"bash", "-o", "pipefail", "-c", "PATH=" + programs + ":$PATH; " + script},
+               {.environment = {{"EVENTIDE_MODELS", fs::path{model()}.parent_path()}},
+                .folder = temp_.path().string()});
 }
 
 std::string ProgramTest::model() {

@@ -21,6 +21,12 @@ protected:
     Result eventide(const std::vector<std::string>& arguments, ProcessSettings settings = {}) const;
     /// The same, not waited for.
     Process start(const std::vector<std::string>& arguments, ProcessSettings settings = {}) const;
+    /// Fails with this code, says something with these words, and writes nothing else.
+    void expect(int code, const std::vector<std::string>& arguments, const std::string& words,
+                ProcessSettings settings = {}) const;
+    /// A line of bash in temp_, with eventide in its path; "recording" and "model.safetensors" are
+    /// the shared ones.
+    Result in_shell(const std::string& script) const;
     /// Where the shared files are.
     static std::string model();
     static std::string recording();

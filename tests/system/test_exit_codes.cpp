@@ -2,45 +2,12 @@
 // not.
 #include "tests/system/program_test.h"
 
-#include <algorithm>
-#include <csignal>
 #include <filesystem>
 
 namespace eventide::test {
 namespace {
 
-namespace fs = std::filesystem;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-
-class ExitCodes : public ProgramTest {
-protected:
-    /// "recording" and "model.safetensors" are the shared ones.
-    Result in_shell(const std::string& script) const {
-        std::error_code there_already;
-        fs::create_symlink(recording(), temp_ / "recording", there_already);
-        fs::create_symlink(model(), temp_ / "model.safetensors", there_already);
-        return run(
-            {"bash", "-o", "pipefail", "-c",
-             "PATH=" + fs::path{EVENTIDE_PROGRAM}.parent_path().string() + ":$PATH; " + script},
-            {.environment = {{"EVENTIDE_MODELS", fs::path{model()}.parent_path()}},
-             .folder = temp_.path().string()});
-    }
-
-    /// Fails with this code, says something with these words, and writes nothing else.
-    void expect(int code, const std::vector<std::string>& arguments, const std::string& words,
-                ProcessSettings settings = {}) const {
-        const Result result = eventide(arguments, std::move(settings));
-        std::string line = "eventide";
-        for (const std::string& argument : arguments) line += " " + argument;
-        EXPECT_EQ(result.exit_code, code) << line << "\n" << result.error;
-        EXPECT_NE(result.error.find(words), std::string::npos) << line << "\n" << result.error;
-        EXPECT_EQ(result.output, "") << line;
-    }
-};
+class ExitCodes : public ProgramTest {};
 
 TEST_F(ExitCodes, HelpAndVersionAreData) {
     for (const char* flag : {"--help", "--version"}) {
@@ -94,6 +61,8 @@ TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {
     expect(2, {"run", "no_images.txt", "--window", "aps", "--out", "a/"}, "reference images");
     expect(2, {"run", "no_images.txt", "--camera", "a.toml", "--out", "a/"}, "a camera as SOURCE");
     EXPECT_FALSE(std::filesystem::exists(temp_ / "a")) << "nothing is left behind";
+    const std::string past = eventide({"run", recording(), "--from", "9s", "--out", "a/"}).error;
+    EXPECT_NE(past.find("until the last event, 0.39"), std::string::npos) << past;
     const Result aps = eventide({"run", recording(), "--window", "aps", "--out", "null"});
     EXPECT_EQ(aps.exit_code, 0) << aps.error;
 }
@@ -136,44 +105,6 @@ TEST_F(ExitCodes, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
     EXPECT_EQ(eventide({"info", "mixed.txt", "--reorder", "1s", "--strict"}).exit_code, 0);
 }
 
-/// With so much address space.
-Result with_memory(int mebibytes, const std::vector<std::string>& arguments,
-                   const std::string& folder) {
-    std::vector<std::string> all{"bash", "-c", "ulimit -v $0 && exec \"$@\"",
-                                 std::to_string(mebibytes * 1024), EVENTIDE_PROGRAM};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    ProcessSettings settings;
-    settings.folder = folder;
-    return run(all, std::move(settings));
-}
-
-TEST_F(ExitCodes, OneIsTooLittleMemoryAndItIsSaidBeforeTheFirstFrame) {
-    if (kSanitized) GTEST_SKIP() << "sanitizers take all the address space there is";
-    write_text(temp_ / "large.raw", "% evt 3.0\n% geometry 4096x4096\n% end\n");
-    const std::string folder = temp_.path().string();
-    const Result large =
-        with_memory(3000, {"run", "large.raw", "--model", model(), "--out", "a/"}, folder);
-    EXPECT_EQ(large.exit_code, 1) << large.error;
-    EXPECT_NE(large.error.find("for a sensor of 4096x4096 wants at least"), std::string::npos)
-        << large.error;
-    EXPECT_FALSE(std::filesystem::exists(temp_ / "a"));
-}
-
-/// The shipped network at a real sensor's size: libraries that make code and threads are in it.
-/// With less than they need to be loaded, one of them aborts before main().
-TEST_F(ExitCodes, WithWhateverMemoryARunNeitherHangsNorCrashes) {
-    if (kSanitized) GTEST_SKIP() << "sanitizers take all the address space there is";
-    write_text(temp_ / "real.raw", "% evt 3.0\n% geometry 346x260\n% end\n");
-    for (int mebibytes = 450; mebibytes <= 700; mebibytes += 25) {
-        const Result result =
-            with_memory(mebibytes,
-                        {"run", "real.raw", "--model",
-                         EVENTIDE_SOURCE_DIR "/config/models/default.safetensors", "--out", "null"},
-                        temp_.path().string());
-        EXPECT_NE(result.exit_code, 128 + SIGSEGV) << mebibytes << " MiB: " << result.error;
-    }
-}
-
 TEST_F(ExitCodes, TwoIsAlsoAFullFolderWithoutOverwrite) {
     std::filesystem::create_directory(temp_ / "a");
     write_text(temp_ / "a/mine.txt", "x");
@@ -203,65 +134,6 @@ TEST_F(ExitCodes, ThreeIsAnInputThatIsNotWhatItSays) {
 
 TEST_F(ExitCodes, FourIsACameraThatIsNotThere) {
     expect(4, {"run", "davis:nobody", "--out", "null"}, "nobody");
-}
-
-TEST_F(ExitCodes, OneIsFailureWhileRunning) {
-    expect(1, {"run", recording(), "--out", "gray8:/dev/full"}, "/dev/full");
-    expect(1, {"run", recording(), "--out", "/proc/nowhere/"}, "/proc/nowhere");
-    expect(1, {"run", recording(), "--out", "null", "--stats", "/dev/full"}, "/dev/full");
-    std::filesystem::create_symlink("/dev/full", temp_ / "full.bin");
-    expect(1, {"run", recording(), "--out", "null", "--record", "full.bin"}, "full.bin");
-}
-
-TEST_F(ExitCodes, OneIsStandardOutputThatCannotBeWritten) {
-    for (const char* command :
-         {"info recording", "info model.safetensors", "devices --json", "doctor",
-          "run --print-config", "simulate --list", "evaluate recording --json -",
-          "bench --seconds 0.2 --sizes 16x16", "stress --quick --cases one-event --models default",
-          "--help", "run --help", "--version", "--default-config"}) {
-        const Result full = in_shell(std::string{"eventide "} + command + " > /dev/full");
-        EXPECT_EQ(full.exit_code, 1) << command << "\n" << full.error;
-        EXPECT_NE(full.error.find("standard output: cannot be written"), std::string::npos)
-            << command << "\n"
-            << full.error;
-        EXPECT_EQ(in_shell(std::string{"eventide "} + command + " | true").exit_code, 0)
-            << command << ": a reader that goes away is no error";
-    }
-}
-
-TEST_F(ExitCodes, OneIsAFileThatMayNotGrow) {
-    for (const char* command :
-         {"run recording --out a.mp4", "run recording --out a/", "run recording --out gray8:a.raw",
-          "run recording --out null --record a.aedat4", "convert recording c.aedat4",
-          "simulate --seconds 0.3 --out b/"}) {
-        const Result result = in_shell(std::string{"ulimit -f 1; eventide "} + command);
-        EXPECT_EQ(result.exit_code, 1) << command << "\n" << result.error;
-        EXPECT_NE(result.error.find("cannot be written"), std::string::npos) << result.error;
-    }
-}
-
-TEST_F(ExitCodes, OneIsAProcessWithoutFileDescriptors) {
-    const auto said = [&](int descriptors, const std::string& command) {
-        const Result result = in_shell("ulimit -n " + std::to_string(descriptors) +
-                                       "; exec eventide " + command + " --overwrite");
-        const bool told = result.error.find("ulimit -n") != std::string::npos;
-        EXPECT_TRUE(result.exit_code == 0 || (result.exit_code == 1 && told))
-            << descriptors << ", " << command << ": " << result.exit_code << "\n"
-            << result.error;
-        return told;
-    };
-    int refused = 0;
-    for (int n = 5; n < 16; ++n) {
-        refused += said(n, "run recording --out a/ --out b.mp4 --stats s --state-out t");
-        refused += said(n, "convert recording c.aedat4");
-    }
-    EXPECT_GT(refused, 4);
-}
-
-TEST_F(ExitCodes, AClosedStandardStreamGetsNoFile) {
-    EXPECT_EQ(in_shell("eventide run recording --out gray8:a 2>&- >&-").exit_code, 0);
-    EXPECT_EQ(read_text(temp_ / "a").size() % (64 * 48), 0U);
-    EXPECT_EQ(in_shell("eventide info recording >&-").exit_code, 1);
 }
 
 TEST_F(ExitCodes, FiveIsDamageUnderStrictOnly) {
@@ -322,68 +194,6 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
 
 TEST_F(ExitCodes, AStampWantsARawStream) {
     expect(2, {"run", recording(), "--out", "a.y4m", "--stamp"}, "--stamp: expected a raw stream");
-}
-
-TEST_F(ExitCodes, FramesAreNotWrittenToATerminalUnlessItIsForced) {
-    const ProcessSettings terminal{.output_to_terminal = true};
-    for (const char* sink : {"-", "gray8:-"}) {
-        const std::vector<std::string> run{"run", recording(), "--duration", "1ms", "--out", sink};
-        expect(2, run, "--force", terminal);
-        std::vector<std::string> forced = run;
-        forced.push_back("--force");
-        const Result result = eventide(forced, terminal);
-        EXPECT_EQ(result.exit_code, 0) << result.error;
-        EXPECT_NE(result.output, "");
-    }
-    expect(2, {"convert", recording(), "-", "--to-format", "evt3"}, "--force", terminal);
-    const Result text =
-        eventide({"convert", recording(), "-", "--to-format", "text", "--to", "1ms"}, terminal);
-    EXPECT_EQ(text.exit_code, 0) << "people can read it";
-}
-
-/// What stood on the terminal at some time: the line is drawn again after each return.
-std::vector<std::string> drawn_lines(const std::string& text) {
-    std::vector<std::string> lines;
-    std::size_t begin = 0;
-    for (std::size_t end = 0; (end = text.find_first_of("\r\n", begin)) != text.npos;
-         begin = end + 1)
-        lines.push_back(text.substr(begin, std::min(end, text.find("\033[K", begin)) - begin));
-    return lines;
-}
-
-TEST_F(ExitCodes, TheMovingLineFitsTheTerminalAndIsNotForThoseWhoWantQuiet) {
-    const std::vector<std::string> run{"run", "sim:demo?size=64x48", "--duration", "700ms", "--out",
-                                       "null"};
-    for (const int columns : {40, 80, 200}) {
-        const std::string text =
-            eventide(run, {.error_to_terminal = true, .terminal_columns = columns}).error;
-        bool found = false;
-        for (const std::string& line : drawn_lines(text)) {
-            const bool moving = line.find(" %  ") != line.npos;
-            found = found || moving;
-            EXPECT_TRUE(!moving || int(line.size()) < columns) << line;
-        }
-        EXPECT_TRUE(found) << text;
-    }
-    EXPECT_EQ(eventide(run).error.find('\r'), std::string::npos);
-    std::vector<std::string> quiet = run;
-    quiet.push_back("--quiet");
-    EXPECT_EQ(eventide(quiet, {.error_to_terminal = true}).error, "");
-}
-
-TEST_F(ExitCodes, ColourIsForTerminalsAndNoColorIsRespected) {
-    const auto throw_usage = [&](ProcessSettings settings) {
-        return eventide({"run", "nothing.raw", "--out", "null"}, std::move(settings)).error;
-    };
-    const std::string escape = "\033[";
-    EXPECT_EQ(throw_usage({}).find(escape), std::string::npos);
-    EXPECT_NE(
-        throw_usage({.environment = {{"TERM", "xterm"}}, .error_to_terminal = true}).find(escape),
-        std::string::npos);
-    EXPECT_EQ(throw_usage({.environment = {{"TERM", "xterm"}, {"NO_COLOR", "1"}},
-                           .error_to_terminal = true})
-                  .find(escape),
-              std::string::npos);
 }
 
 }  // namespace

@@ -44,13 +44,14 @@ SensorTime first_event(const RunSettings& settings) {
 
 void check_from(const RunSettings& settings, SensorTime from) {
     SensorTime last = SensorTime::min();
-    const bool found = read_until(settings, from, [&](const Batch& batch) {
+    const auto reaches_it = [&](const Batch& batch) {
         if (!batch.events.empty()) last = batch.events.back().t;
         return last >= from;
-    });
-    if (found) return;
+    };
+    if (read_until(settings, from, reaches_it)) return;
+    // A recording with an index may have gone past every event: from the start for the last.
+    if (last == SensorTime::min() && read_until(settings, {}, reaches_it)) return;
     const SensorTime first = first_event(settings);
-    last = std::max(last, first);
     throw Error(ErrorKind::usage, "--from " + show_time_point(*settings.from) +
                                       ": expected a time until the last event, " +
                                       seconds(last - first) + " or @" +
