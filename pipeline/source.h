@@ -4,7 +4,7 @@
 #include "src/codec/parser.h"
 #include "src/core/packet.h"
 
-#include <eventide/sensor_info.h>
+#include <eventide/event.h>
 
 #include <memory>
 #include <optional>

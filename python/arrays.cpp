@@ -90,6 +90,26 @@ py::array_t<float> array_of(const Array2<float>& plane, py::handle owner) {
     return py::array_t<float>({plane.height(), plane.width()}, plane.values().data(), owner);
 }
 
+py::array_t<float> array_of(Array2<float> plane) {
+    auto owned = std::make_unique<Array2<float>>(std::move(plane));
+    const py::capsule owner(owned.get(), [](void* it) { delete static_cast<Array2<float>*>(it); });
+    return array_of(*owned.release(), owner);
+}
+
+Array2<float> plane_of(const py::array& array, const char* what) {
+    if (array.ndim() != 2)
+        throw Error(ErrorKind::usage, std::string{what} + ": expected an array [y, x], found " +
+                                          std::to_string(array.ndim()) + " dimensions");
+    const auto values =
+        py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(array);
+    if (!values)
+        throw Error(ErrorKind::usage, std::string{what} + ": expected numbers, found " +
+                                          std::string(py::str(array.dtype())));
+    Array2<float> plane(int(values.shape(0)), int(values.shape(1)));
+    std::copy_n(values.data(), plane.values().size(), plane.values().begin());
+    return plane;
+}
+
 py::array array_of(const ReferenceImage& image) {
     const int height = image.pixels.height(), channels = std::max(image.channels, 1);
     const int width = image.pixels.width() / channels;

@@ -21,6 +21,12 @@ pybind11::array array_of(std::vector<Event> events);
 /// [y][x], as long as `owner` lives; nothing is copied.
 pybind11::array_t<float> array_of(const Array2<float>& plane, pybind11::handle owner);
 
+/// An array that owns these pixels, [y][x]; nothing is copied.
+pybind11::array_t<float> array_of(Array2<float> plane);
+
+/// A copy of a plane of numbers of any kind. Throws Error (usage) naming `what` for other shapes.
+Array2<float> plane_of(const pybind11::array& array, const char* what);
+
 /// [y][x] or [y][x][channel].
 pybind11::array array_of(const ReferenceImage& image);
 

@@ -8,4 +8,6 @@ PYBIND11_MODULE(_eventide, module) {
     eventide::python::add_errors(module);
     eventide::python::add_reconstructor(module);
     eventide::python::add_sources(module);
+    eventide::python::add_simulation(module);
+    eventide::python::add_measures(module);
 }

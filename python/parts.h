@@ -45,5 +45,7 @@ void add_errors(pybind11::module_& module);
 void add_frame(pybind11::module_& module);
 void add_reconstructor(pybind11::module_& module);
 void add_sources(pybind11::module_& module);
+void add_simulation(pybind11::module_& module);
+void add_measures(pybind11::module_& module);
 
 }  // namespace eventide::python

@@ -1,21 +1,13 @@
 // Simulates a little ahead, writes bytes, and waits for their time.
 #include "drivers/simulated/simulated_camera.h"
 
-#include "src/simulate/texture_pack.h"
 #include "src/simulate/textures_folder.h"
 
 #include <cmath>
-#include <filesystem>
 
 namespace eventide {
 
 namespace {
-
-std::shared_ptr<const TextureLibrary> open_textures(const std::string& path) {
-    if (path.empty()) return procedural_textures(SimulatedCamera::kProceduralTextures);
-    if (std::filesystem::is_directory(path)) return textures_from_folder(path);
-    return textures_from_pack(path);
-}
 
 SimRecordingSettings in_chunks(SimRecordingSettings settings, SensorDuration chunk) {
     settings.chunk = chunk;
@@ -31,7 +23,8 @@ SimulatedCamera::SimulatedCamera(const SimulatedSourceSettings& settings)
             .width = settings.recording.width,
             .height = settings.recording.height},
       speed_(settings.speed),
-      recording_(in_chunks(settings.recording, kChunk), open_textures(settings.textures)) {}
+      recording_(in_chunks(settings.recording, kChunk),
+                 open_textures(settings.textures, kProceduralTextures)) {}
 
 HostTime SimulatedCamera::due(SensorTime t) {
     const HostTime now = std::chrono::steady_clock::now();

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <eventide/event.h>
-#include <eventide/export.h>
-#include <eventide/sensor_info.h>
+#include <eventide/version.h>
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // The one exception of the library: something cannot start, or a device went away.
 #pragma once
 
-#include <eventide/export.h>
+#include <eventide/version.h>
 
 #include <stdexcept>
 #include <string>

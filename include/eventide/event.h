@@ -1,4 +1,5 @@
-// What a sensor says: events, and beside them reference images, inertial samples and triggers.
+// What a sensor says: events, and beside them reference images, inertial samples and triggers; and
+// which sensor it is.
 #pragma once
 
 #include <eventide/array.h>
@@ -6,9 +7,18 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace eventide {
+
+/// What a recording or a camera says about its sensor.
+struct SensorInfo {
+    std::string name;           ///< "DAVIS346", or what the recording says; may be empty
+    std::string serial;         ///< may be empty
+    std::string format;         ///< "aedat4", "evt3", "davis", "text", ...
+    int width = 0, height = 0;  ///< px; 0 where a recording does not say
+};
 
 enum class Polarity : std::uint8_t { off, on };
 

@@ -7,7 +7,7 @@
 #ifndef EVENTIDE_EVENTIDE_H
 #define EVENTIDE_EVENTIDE_H
 
-#include <eventide/export.h>
+#include <eventide/version.h>
 
 #include <stddef.h>
 #include <stdint.h>

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <eventide/camera.h>
+#include <eventide/measures.h>
 #include <eventide/reader.h>
 #include <eventide/reconstructor.h>
+#include <eventide/simulation.h>
 #include <eventide/version.h>
 #include <eventide/writer.h>
 

@@ -3,8 +3,8 @@
 
 #include <eventide/arithmetic.h>
 #include <eventide/event.h>
-#include <eventide/export.h>
 #include <eventide/frame.h>
+#include <eventide/version.h>
 
 #include <cstdint>
 #include <filesystem>

@@ -9,6 +9,8 @@
         for frame in reconstructor.frames():
             print(frame.t, frame.intensity.mean(), frame.sigma.mean())
 
+simulate() gives events with the truth they came from, evaluate() says how far a frame is from it.
+
 Times are whole microseconds of the sensor's clock, sizes (width, height) in pixels. Events are
 structured arrays with the fields t, x, y and p, on, pol or polarity, in any order and of any width
 of whole numbers. Everything that works long lets other threads run.
@@ -22,9 +24,11 @@ from ._eventide import (
     InputError,
     Reader,
     Reconstructor,
+    Simulation,
     UsageError,
     Writer,
     __version__,
+    evaluate,
 )
 
 __all__ = [
@@ -35,10 +39,13 @@ __all__ = [
     "InputError",
     "Reader",
     "Reconstructor",
+    "Simulation",
     "UsageError",
     "Writer",
+    "evaluate",
     "open",
     "open_camera",
+    "simulate",
     "__version__",
 ]
 
@@ -57,3 +64,15 @@ def open_camera(name, settings=""):
     settings is a file. Raises DeviceError, or UsageError for a name that makes no sense.
     """
     return Camera(name, str(settings))
+
+
+def simulate(scene="demo", size=(240, 180), seconds=4, **options):
+    """Simulate an event camera; iterate it for (events, [(t, truth), ...]) of 10 ms each.
+
+    scene is one of Simulation.scenes(), size (width, height) of the sensor in pixels, seconds the
+    length, 0 without end. Options: seed (0: the scene's own), truths_per_second (25), truth_scale
+    (1), textures (a folder of images). Raises UsageError, InputError.
+    """
+    if "textures" in options:
+        options["textures"] = str(options["textures"])
+    return Simulation(scene, size, seconds, **options)

@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Dict, Iterator, List, Optional, Tuple, Union
+from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -115,6 +115,31 @@ class Camera:
     def read_into(self, reconstructor: Reconstructor) -> bool: ...
     def stop(self) -> None: ...
 
+class Simulation:
+    def __init__(
+        self,
+        scene: str = "demo",
+        size: Tuple[int, int] = (240, 180),
+        seconds: float = 4,
+        *,
+        seed: int = 0,
+        truths_per_second: float = 25,
+        truth_scale: float = 1,
+        textures: str = "",
+    ) -> None: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def clock(self) -> int: ...
+    def __iter__(self) -> Simulation: ...
+    def __next__(
+        self,
+    ) -> Tuple[npt.NDArray[np.void], List[Tuple[int, npt.NDArray[np.float32]]]]: ...
+    @staticmethod
+    def scenes() -> List[str]: ...
+
 class Writer:
     def __init__(
         self, path: str, width: int, height: int, format: str = "", overwrite: bool = False
@@ -128,3 +153,9 @@ def open(
     path: Union[str, PathLike[str]], format: str = "", width: int = 0, height: int = 0
 ) -> Reader: ...
 def open_camera(name: str, settings: Union[str, PathLike[str]] = "") -> Camera: ...
+def simulate(
+    scene: str = "demo", size: Tuple[int, int] = (240, 180), seconds: float = 4, **options: Any
+) -> Simulation: ...
+def evaluate(
+    intensity: npt.NDArray[Any], truth: npt.NDArray[Any], sigma: Optional[npt.NDArray[Any]] = None
+) -> Dict[str, Optional[float]]: ...

@@ -54,4 +54,10 @@ std::shared_ptr<TextureLibrary> textures_from_folder(const fs::path& folder, int
     return library;
 }
 
+std::shared_ptr<const TextureLibrary> open_textures(const fs::path& path, std::size_t procedural) {
+    if (path.empty()) return procedural_textures(procedural);
+    if (fs::is_directory(path)) return textures_from_folder(path);
+    return textures_from_pack(path);
+}
+
 }  // namespace eventide

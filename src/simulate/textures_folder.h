@@ -20,4 +20,9 @@ GreyImage read_grey_image(const std::filesystem::path& file);
 std::shared_ptr<TextureLibrary> textures_from_folder(const std::filesystem::path& folder,
                                                      int longest = 1024);
 
+/// What a user names: a folder of images, a pack (texture_pack.h), or nothing, which gives
+/// `procedural` made-up ones. Throws Error (input).
+std::shared_ptr<const TextureLibrary> open_textures(const std::filesystem::path& path,
+                                                    std::size_t procedural);
+
 }  // namespace eventide

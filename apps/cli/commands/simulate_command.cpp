@@ -8,12 +8,10 @@
 #include "replay/formats.h"
 #include "src/core/error.h"
 #include "src/simulate/presets.h"
-#include "src/simulate/texture_pack.h"
 #include "src/simulate/textures_folder.h"
 
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
 #include <iostream>
 #include <limits>
 
@@ -48,12 +46,8 @@ Batch held_of(const Batch& batch, const FormatHolds& holds) {
     return held;
 }
 
-/// As many procedural ones as give a scene of 30 objects little repetition.
-std::shared_ptr<const TextureLibrary> open_textures(const std::string& path) {
-    if (path.empty()) return procedural_textures(48);
-    if (std::filesystem::is_directory(path)) return textures_from_folder(path);
-    return textures_from_pack(path);
-}
+/// As many as give a scene of 30 objects little repetition.
+constexpr std::size_t kProceduralTextures = 48;
 
 void print_scenes() {
     for (const SimulationPreset& preset : simulation_presets())
@@ -147,7 +141,7 @@ int SimulateCommand::run(Program& program) {
         throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
     name_output_files(program.files);
     const SimRecordingSettings what = plan();
-    const auto textures = open_textures(textures_);
+    const auto textures = open_textures(textures_, kProceduralTextures);
     RecordingOut out{out_, overwrite_, format_of(out_), header_of(what)};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);

@@ -1,0 +1,65 @@
+// Event cameras in software before made scenes: events with the truth they came from.
+#pragma once
+
+#include <eventide/event.h>
+#include <eventide/version.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+/// What is simulated. A scene and a sensor are drawn from the preset's ranges.
+struct SimulationOptions {
+    std::string scene = "demo";     ///< a name in EventSimulation::scenes()
+    std::uint64_t seed = 0;         ///< another seed, another scene; 0: the preset's own
+    int width = 240, height = 180;  ///< px, of the sensor
+    double seconds = 4;             ///< length, above 0; 0: without end
+    double images_per_second = 0;   ///< images of the camera in Batch::images; 0: none
+    double truths_per_second = 25;  ///< 0: none
+    double truth_scale = 1;  ///< truth has (width - 1) scale + 1 columns: corners stay corners
+    /// Folder of images that things look like, or a pack of them (eventide-pack-pictures); empty:
+    /// made-up ones.
+    std::filesystem::path textures;
+};
+
+/// What an ideal camera would show at one instant: [y][x], 0 black to 1 white.
+struct TrueImage {
+    SensorTime t{};
+    Array2<float> intensity;
+};
+
+/// The same options give the same data, bit for bit. Thread: one at a time; several simulations may
+/// run beside each other.
+class EVENTIDE_API EventSimulation {
+public:
+    /// Throws Error: usage for an unknown scene and for numbers out of range, input for textures
+    /// that cannot be read.
+    explicit EventSimulation(const SimulationOptions& options = {});
+    ~EventSimulation();
+    EventSimulation(EventSimulation&&) noexcept;
+    EventSimulation& operator=(EventSimulation&&) noexcept;
+
+    const SensorInfo& info() const noexcept;
+    int width() const noexcept;   ///< px
+    int height() const noexcept;  ///< px
+
+    /// The next 10 ms at most, in place of what `batch` and `truths` held: events in order of time,
+    /// and the truths of the instants until the last of them. False at the end.
+    bool read(Batch& batch, std::vector<TrueImage>& truths);
+
+    /// Everything before this time has been read; zero before the first read().
+    SensorTime clock() const noexcept;
+
+    /// Names of the presets.
+    static std::vector<std::string> scenes();
+
+private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,60 @@
+// Scenes and measures of the library: what the program simulates, and what it would say of a frame.
+#include "tests/library/library_test.h"
+
+#include <vector>
+
+namespace eventide::test {
+namespace {
+
+using Simulation = LibraryTest;
+
+TEST_F(Simulation, EventsAndTruthsAreThoseOfTheProgram) {
+    EventSimulation simulation{{.width = 64,
+                                .height = 48,
+                                .seconds = .4,
+                                .images_per_second = 25,
+                                .truths_per_second = 50}};
+    std::vector<Event> events;
+    std::vector<ReferenceImage> images;
+    std::vector<TrueImage> all;
+    Batch batch;
+    for (std::vector<TrueImage> truths; simulation.read(batch, truths);) {
+        events.insert(events.end(), batch.events.begin(), batch.events.end());
+        images.insert(images.end(), batch.images.begin(), batch.images.end());
+        for (TrueImage& truth : truths) all.push_back(std::move(truth));
+    }
+    EXPECT_EQ(events, events_of(recording()));
+    EXPECT_EQ(images.size(), 11U);
+    ASSERT_EQ(all.size(), 21U);
+    EXPECT_EQ(to_us(all[1].t), 20'000);
+    EXPECT_EQ(to_us(simulation.clock()), 400'000);
+    // The camera's image is its truth, in 16 bits.
+    EXPECT_NEAR(all.front().intensity(7, 9), images.front().pixels(7, 9) / 65535.F, 1e-4);
+}
+
+TEST_F(Simulation, WhatMakesNoSenseIsRefusedByName) {
+    EXPECT_NE(error_of([] { EventSimulation{{.scene = "nowhere"}}; }).find("nowhere"),
+              std::string::npos);
+    EXPECT_NE(error_of([] { EventSimulation{{.height = 0}}; }).find("height"), std::string::npos);
+    error_of([] { EventSimulation{{.textures = "/nowhere"}}; }, ErrorKind::input);
+}
+
+TEST(Measures, SayWhatIsWrongWithAFrame) {
+    Array2<float> truth(20, 30), shown(20, 30), sigma(20, 30);
+    for (std::size_t i = 0; i < truth.values().size(); ++i) {
+        truth.values()[i] = float(i % 7) / 7;
+        shown.values()[i] = truth.values()[i] * .5F + .2F;
+        sigma.values()[i] = i % 2 == 0 ? 1.F : 1e-6F;
+    }
+    const FrameMeasures alone = measure(shown, {}, truth);
+    EXPECT_GT(alone.mse, .01);
+    EXPECT_NEAR(alone.affine_mse, 0, 1e-9);
+    EXPECT_NEAR(alone.affine_ssim, 1, 1e-4);
+    EXPECT_LT(alone.ssim, alone.affine_ssim);
+    EXPECT_FALSE(alone.picp80.has_value());
+    EXPECT_NEAR(measure(shown, sigma, truth).picp80.value_or(0), .5, .01);
+    error_of([&] { measure(shown, sigma, Array2<float>(20, 31)); });
+}
+
+}  // namespace
+}  // namespace eventide::test

@@ -1,0 +1,74 @@
+"""Scenes with their truth, and how far frames are from it, in Python."""
+
+import subprocess
+import unittest
+
+import eventide
+import numpy as np
+from recorded import PROGRAM, RecordedTest
+
+
+class Simulations(RecordedTest):
+    def test_events_are_those_of_the_program(self):
+        arrays, truths = [], []
+        for events, images in eventide.simulate("demo", size=(64, 48), seconds=0.3):
+            arrays.append(events)
+            truths += images
+        np.testing.assert_array_equal(np.concatenate(arrays), self.events())
+        self.assertEqual([t for t, _ in truths], list(range(0, 300_001, 40_000)))
+        self.assertTrue(all(i.shape == (48, 64) and 0 <= i.min() and i.max() <= 1 for _, i in truths))
+
+    def test_truth_is_finer_than_the_sensor_where_asked(self):
+        simulation = eventide.simulate(size=(32, 24), seconds=0.02, truth_scale=2, truths_per_second=100)
+        shapes = {image.shape for _, images in simulation for _, image in images}
+        self.assertEqual(shapes, {(47, 63)})
+        self.assertEqual(simulation.clock, 20_000)
+
+    def test_what_makes_no_sense_is_refused_by_name(self):
+        self.assertIn("demo", eventide.Simulation.scenes())
+        with self.assertRaisesRegex(eventide.UsageError, "nowhere"):
+            eventide.simulate("nowhere")
+        with self.assertRaisesRegex(eventide.UsageError, "width"):
+            eventide.simulate(size=(1, 24))
+        with self.assertRaises(eventide.InputError):
+            eventide.simulate(textures=self.folder / "missing")
+
+
+class Evaluation(RecordedTest):
+    def test_a_frame_is_judged_as_the_program_judges_it(self):
+        rng = np.random.default_rng(1)
+        truth = rng.random((40, 50), np.float32)
+        same = eventide.evaluate(truth, truth)
+        self.assertEqual((same["mse"], same["picp80"]), (0, None))
+        self.assertAlmostEqual(same["ssim"], 1)
+        darker = eventide.evaluate(truth * 0.5 + 0.1, truth)
+        self.assertAlmostEqual(darker["mse"], float(np.mean((0.5 * truth - 0.1) ** 2)), 6)
+        self.assertAlmostEqual(darker["affine_mse"], 0, 6)
+        noise = rng.normal(0, 0.05, truth.shape).astype(np.float32)
+        shown = np.clip(truth * 0.5 + 0.25 + noise, 0, 1)
+        right = eventide.evaluate(shown, truth * 0.5 + 0.25, np.full(truth.shape, 0.05, np.float32))
+        self.assertAlmostEqual(right["picp80"], 0.8, delta=0.03)
+        self.assertAlmostEqual(right["log_likelihood"], -0.5 * np.log(2 * np.pi * 0.05**2) - 0.5, delta=0.05)
+
+    def test_planes_of_other_shapes_are_refused(self):
+        plane = np.zeros((20, 20))
+        for wrong in (np.zeros((20, 21)), np.zeros((5, 5)), np.zeros(20), np.zeros((20, 20, 3))):
+            with self.assertRaises(eventide.UsageError):
+                eventide.evaluate(plane, wrong)
+
+    def test_a_simulation_feeds_a_reconstructor(self):
+        reconstructor = eventide.Reconstructor("small", 64, 48)
+        scores, waiting = [], []
+        for events, truths in eventide.simulate(size=(64, 48), seconds=0.3):
+            reconstructor.push(events)
+            waiting += truths
+            for t, truth in [w for w in waiting if reconstructor.ready(w[0])]:
+                intensity, sigma = reconstructor.render(t)
+                scores.append(eventide.evaluate(intensity, truth, sigma))
+            waiting = [w for w in waiting if w[0] > (reconstructor.newest() or 0)]
+        self.assertGreater(len(scores), 4)
+        self.assertLess(scores[-1]["mse"], 0.2)
+
+
+if __name__ == "__main__":
+    unittest.main()
