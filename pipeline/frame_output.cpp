@@ -27,6 +27,7 @@ FrameOutput::FrameOutput(RenderStage& renderer, std::vector<Sink*> sinks, const 
       counters_(counters),
       keeper_(keeper),
       lookahead_(settings.lookahead),
+      halvings_(settings.halvings),
       schedule_(settings.rate, settings.from),
       shedder_(settings.waits_at_most),
       frame_(renderer.make_output()) {
@@ -59,6 +60,7 @@ bool FrameOutput::take(const Encoded& encoded) {
 void FrameOutput::change() {
     const LiveChanges::Wanted wanted = settings_.changes->take();
     if (wanted.rate) schedule_.change_rate(*wanted.rate);
+    if (wanted.halvings) halvings_ = *wanted.halvings;
     if (wanted.lookahead && *wanted.lookahead >= 0 && *wanted.lookahead <= kMaxLookahead &&
         renderer_.change_lookahead(*wanted.lookahead))
         lookahead_ = *wanted.lookahead;
@@ -88,7 +90,10 @@ void FrameOutput::present_oldest() {
         if (!is_watched()) {
             counters_.present.skipped_frames.add();
         } else if (!settings_.live) {
-            present(due, held);
+            if (is_wanted(due))
+                present(due, held);
+            else
+                counters_.present.skipped_frames.add();
         } else if (shedder_.keeps_next(waiting_())) {
             const HostTime begun = Clock::now();
             present(due, held);
@@ -106,9 +111,14 @@ bool FrameOutput::is_watched() const {
            std::ranges::any_of(sinks_, [](const Sink* sink) { return sink->is_watched(); });
 }
 
+/// Of a live line the dropper decides.
+bool FrameOutput::is_wanted(const DueFrame& due) const {
+    return (due.index & ((std::uint64_t{1} << halvings_) - 1)) == 0;
+}
+
 void FrameOutput::open_shedder() {
     const HostTime now = Clock::now();
-    shedder_.open({schedule_.next_index(), schedule_.due(), keeper_.halvings(),
+    shedder_.open({schedule_.next_index(), schedule_.due(), std::max(keeper_.halvings(), halvings_),
                    keeper_.frames_in_time(now - arrived_)},
                   now);
 }

@@ -42,6 +42,7 @@ public:
             1;                       ///< event windows behind this one, before frames are skipped
         bool allow_silence = false;  ///< no limit to frames in a row without events
         LiveChanges* changes = nullptr;  ///< looked at once for each event window; null: none
+        unsigned halvings = 0;  ///< every 2^n-th frame of the clock is rendered, to begin with
     };
 
     /// `waiting()` tells how many event windows stand behind the one at hand.
@@ -71,6 +72,7 @@ private:
     void present_oldest();
     void open_shedder();
     bool is_watched() const;
+    bool is_wanted(const DueFrame& due) const;
     void check_silence(const Waiting& held);
     void check_finite();
     void present(const DueFrame& due, Waiting& from);
@@ -83,6 +85,7 @@ private:
     Counters& counters_;
     LatencyKeeper& keeper_;
     int lookahead_;
+    unsigned halvings_;
     FrameSchedule schedule_;
     FrameDropper shedder_;
     std::array<Waiting, kMaxLookahead + 1> held_;  // a ring

@@ -15,6 +15,8 @@ public:
     struct Wanted {
         std::optional<FrameRate> rate;  ///< of sensor time
         std::optional<int> lookahead;   ///< 0 to 2 event windows
+        /// Of the clock's frames every 2^n-th is rendered.
+        std::optional<unsigned> halvings;
         struct Pixels {
             int width = 0, height = 0;
         };
@@ -26,6 +28,9 @@ public:
     }
     void set_lookahead(int windows) {
         ask([&] { wanted_.lookahead = windows; });
+    }
+    void set_halvings(unsigned halvings) {
+        ask([&] { wanted_.halvings = halvings; });
     }
     void set_size(int width, int height) {
         ask([&] { wanted_.size = Wanted::Pixels{width, height}; });

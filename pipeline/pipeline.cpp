@@ -30,6 +30,7 @@ FrameOutput::Settings presenter_settings(const PipelineParts& parts,
     s.live = parts.source.is_live();
     s.allow_silence = settings.allow_silence;
     s.changes = settings.changes;
+    s.halvings = settings.halvings;
     // One buffer is being rendered and one being filled; were all the others waiting, the encoder
     // would wait, too, and in the end the camera lose events.
     s.waits_at_most = settings.buffers.latents > 2 ? settings.buffers.latents - 2 : 1;

@@ -43,6 +43,7 @@ struct PipelineSettings {
     bool events_per_pixel = false;  ///< fill LatentMap::events_per_pixel
     PipelineBuffers buffers;
     LiveChanges* changes = nullptr;  ///< borrowed; null: nothing is changed while it runs
+    unsigned halvings = 0;           ///< every 2^n-th frame is rendered, until that is changed
 };
 
 /// All borrowed for the pipeline's life; filter and observer may be null.

@@ -174,6 +174,20 @@ std::string encoder_identity(const Model& model) {
     return digest.hex();
 }
 
+std::string model_identity(const Model& model) {
+    Digest digest;
+    for (const auto& [key, value] : format_metadata(model.config)) {
+        if (key == "card") continue;
+        digest.add(key.c_str(), key.size() + 1);
+        digest.add(value.c_str(), value.size() + 1);
+    }
+    for (const auto& [name, tensor] : model.weights) {
+        digest.add(name.c_str(), name.size() + 1);
+        digest.add(tensor.values.data(), tensor.values.size() * sizeof(float));
+    }
+    return digest.hex();
+}
+
 Model random_model(const ModelConfig& config, std::uint64_t seed) {
     Model model{config, {}};
     check_config(config, "random model");

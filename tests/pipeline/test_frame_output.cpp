@@ -241,6 +241,20 @@ TEST(FrameOutput, ChangesItsRateWhileItRuns) {
 }
 
 /// A renderer that can see as far as it is told.
+TEST(FrameOutput, RendersEverySecondFrameWhereThatIsAskedFor) {
+    Ending e(0);
+    e.give(0);
+    e.changes.set_halvings(1);
+    e.give(10);
+    e.changes.set_halvings(2);
+    e.give(20);
+    e.changes.set_halvings(0);
+    e.give(30);
+    EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 20, 35, 40}));
+    for (const auto& seen : e.sink.seen) EXPECT_EQ(std::int64_t(seen.index) * 5, seen.t_us);
+    EXPECT_EQ(e.counters.present.skipped_frames.value(), 3U);
+}
+
 TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
     Ending e(2);
     for (int k = 0; k < 4; ++k) e.give(10 * k);

@@ -55,7 +55,7 @@ void ProgramTest::SetUpTestSuite() {
     for (const char* name : {"EVENTIDE_CONFIG", "EVENTIDE_MODELS", "NO_COLOR", "DISPLAY",
                              "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"})
         unsetenv(name);
-    shared();
+    setenv("XDG_CACHE_HOME", (shared().folder / "cache").c_str(), 1);
 }
 
 Result ProgramTest::eventide(const std::vector<std::string>& arguments,

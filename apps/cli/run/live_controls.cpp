@@ -27,16 +27,6 @@ HttpControl control(std::string name, std::string label, std::string unit, const
     return made;
 }
 
-/// The first sink whose frames must be all alike, as it was named.
-std::optional<std::string> rigid_sink(const RunSettings& settings) {
-    const auto found = std::ranges::find_if(settings.out, [](const std::string& text) {
-        const SinkKind kind = parse_sink(text).kind;
-        return kind != SinkKind::http && kind != SinkKind::window && kind != SinkKind::nothing;
-    });
-    if (found == settings.out.end()) return std::nullopt;
-    return *found;
-}
-
 HttpControl fps_control(const LiveControlsPlan& plan, const std::string& why_not) {
     const Value value = made(plan.fps);
     HttpControl fps = control("fps", "Frame rate", "frames/s", value);
@@ -119,6 +109,15 @@ HttpControl window_control(const LiveControlsPlan& plan) {
 }
 
 }  // namespace
+
+std::optional<std::string> rigid_sink(const RunSettings& settings) {
+    const auto found = std::ranges::find_if(settings.out, [](const std::string& text) {
+        const SinkKind kind = parse_sink(text).kind;
+        return kind != SinkKind::http && kind != SinkKind::window && kind != SinkKind::nothing;
+    });
+    if (found == settings.out.end()) return std::nullopt;
+    return *found;
+}
 
 std::vector<HttpControl> live_controls(const LiveControlsPlan& plan) {
     std::string why_not;

@@ -6,6 +6,7 @@
 #include "pipeline/sinks/http/control.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct LiveControlsPlan {
     bool live = false;
     std::string window = {};  ///< as --window writes it
 };
+
+/// The first sink whose frames must be all alike, as it was named.
+std::optional<std::string> rigid_sink(const RunSettings& settings);
 
 /// fps, scale, lookahead, speed, window, in this order. Those that cannot be changed say why: a
 /// window is cut before there are frames, and files and streams have frames that are all alike.

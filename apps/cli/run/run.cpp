@@ -68,10 +68,11 @@ Run::Run(Program& program, RunSettings& settings)
       filters_{settings.filter, size_of(*opened_.source)},
       sensor_{info_behind(opened_.source->info(), filters_)},
       span_{span_of(settings, live())},
+      quality_{settings, quality_place(), [&program] { return program.signals.stopping(); }},
       network_{settings, sensor_},
-      slicer_{slicer_of(settings, network_.config(), span_, live())},
+      slicer_{slicer_of(settings, network_.config(), span_, as_live())},
       rate_{rate_of(settings, slicer_)},
-      lookahead_{lookahead_of(settings, network_.config(), live())},
+      lookahead_{lookahead_of(settings, network_.config(), as_live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
@@ -81,6 +82,7 @@ Run::Run(Program& program, RunSettings& settings)
       encode_{network_.encoder()},
       render_{network_.renderer(), request_of(settings, sensor_, lookahead_)} {
     check_recording(settings, span_, slicer_);
+    quality_.tell_rate(rate_.is_set() ? nominal_fps(rate_, slicer_, settings.slow) : 0);
     if (settings.frames != CameraFrames::ignore)
         fusion_.emplace(network_.renderer(), request_of(settings, sensor_, lookahead_),
                         sensor_.width, sensor_.height, images_);
@@ -102,6 +104,19 @@ Run::Run(Program& program, RunSettings& settings)
                                 buffer_bytes(config, sensor_, pipeline_settings().buffers),
                             sensor_);
     }
+}
+
+/// Sensor time over that of the clock: of a camera, and of a recording that is paced; else 0.
+double Run::pace() const {
+    if (live()) return 1;
+    return opened_.paced != nullptr ? opened_.paced->speed() : 0;
+}
+
+RunQuality::Place Run::quality_place() const {
+    if (settings_.realtime && pace() <= 0)
+        throw Error(ErrorKind::usage, "--realtime: expected a camera or a recording, found " +
+                                          settings_.source + ", which comes as fast as possible");
+    return {sensor_, span_, as_live(), pace(), chooses_quality(settings_, live(), pace())};
 }
 
 /// What is recorded is what came, before any filter.
@@ -152,10 +167,23 @@ std::vector<HttpControl> Run::controls() {
     if (opened_.paced != nullptr)
         plan.set_speed = [this](double factor) { opened_.paced->set_speed(factor); };
     plan.live = live();
-    plan.window = settings_.window == "model" || (settings_.window == "auto" && live())
+    plan.window = settings_.window == "model" || (settings_.window == "auto" && as_live())
                       ? network_.config().window
                       : settings_.window;
-    return live_controls(plan);
+    auto controls = live_controls(plan);
+    for (HttpControl& control : controls) {
+        if (!control.set || (control.name != "fps" && control.name != "scale")) continue;
+        control.set = [this, set = std::move(control.set)](double wanted) {
+            quality_.take_over(changes_);
+            set(wanted);
+        };
+        if (control.name == "scale")
+            control.get = [this, get = std::move(control.get)] {
+                const QualityState now = quality_.state();
+                return now.chosen && !now.taken_over ? now.level.scale : get();
+            };
+    }
+    return controls;
 }
 
 PipelineParts Run::parts() {
@@ -177,7 +205,8 @@ PipelineSettings Run::pipeline_settings() {
     settings.reset_on_gap = settings_.reset_on_gap;
     settings.allow_silence = settings_.allow_silence;
     settings.event_preview = settings_.events || sheet_ || page_;
-    settings.changes = page_ ? &changes_ : nullptr;
+    settings.changes = page_ || quality_.changes_while_running() ? &changes_ : nullptr;
+    settings.halvings = quality_.halvings();
     settings.events_per_pixel = fusion_.has_value();
     settings.buffers = {std::size_t(settings_.buffers_packets),
                         std::size_t(settings_.buffers_grids),
@@ -192,13 +221,22 @@ RunProgress Run::progress() const {
     progress.total_bytes = bytes_to_read_;
     progress.end = span_.end;
     progress.duration = span_.duration;
+    progress.quality = quality_.state();
     return progress;
 }
 
 int Run::run() {
     const Stopper stopper{program_.signals, [this] { pipeline_->stop(); }};
-    Status status{[this] { return counters(); }, progress(), std::move(stats_), program_.quiet,
-                  live()};
+    const auto quality = [this](const Snapshot& now, std::chrono::duration<double> elapsed) {
+        quality_.look(now, elapsed, pace(), changes_);
+        return quality_.state();
+    };
+    Status status{[this] { return counters(); },
+                  progress(),
+                  std::move(stats_),
+                  program_.quiet,
+                  live(),
+                  quality};
     run_pipeline();
     if (!settings_.state_out.empty())
         write_safetensors(settings_.state_out, network_.encoder().state(), settings_.overwrite);
@@ -260,6 +298,7 @@ std::string Run::run_json() {
                      {"encoder", encoder_identity(network_.model())},
                      {"engine", network_.encoder().description()},
                      {"card", network_.config().card}};
+    json["quality"] = quality_json(quality_.state(), true);
     nlohmann::ordered_json values;
     for (const Setting& setting : settings_.table().settings) {
         const auto texts = setting.show();

@@ -6,6 +6,7 @@
 #include "apps/cli/run/loaded_model.h"
 #include "apps/cli/run/open_sinks.h"
 #include "apps/cli/run/open_source.h"
+#include "apps/cli/run/quality/run_quality.h"
 #include "apps/cli/run/recorded_source.h"
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/run/run_plan.h"
@@ -57,6 +58,10 @@ public:
 private:
     Source& source();
     bool live() const { return opened_.source->is_live(); }
+    /// A camera, or a recording as if a camera gave it.
+    bool as_live() const { return live() || settings_.realtime; }
+    double pace() const;
+    RunQuality::Place quality_place() const;
     SinkPlan sink_plan();
     PipelineParts parts();
     PipelineSettings pipeline_settings();
@@ -77,6 +82,7 @@ private:
     FilterChain filters_;
     const SensorInfo sensor_;
     const Span span_;
+    RunQuality quality_;  // puts into the settings what it chooses
     Network network_;
     const SlicerSettings slicer_;
     const FrameRate rate_;

@@ -4,6 +4,7 @@
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/run/events_out.h"
+#include "apps/cli/run/quality/run_quality.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/sink_name.h"
 #include "drivers/devices.h"
@@ -31,7 +32,9 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
     files.reads("--camera", settings.camera);
     if (settings.hot_pixels != "off" && settings.hot_pixels != "learn")
         files.reads("--hot-pixels", settings.hot_pixels);
-    files.reads("--model", found_model(settings.model));
+    // Any of them may be chosen, where nothing else was said.
+    for (const std::string& model : models_to_choose_from(settings))
+        files.reads("--model", found_model(model));
     files.reads("--state-in", settings.state_in);
 
     name_sink_files(settings, files);

@@ -59,9 +59,12 @@ Span span_of(const RunSettings& settings, bool live) {
 }
 
 double speed_of(const RunSettings& settings) {
+    if (settings.speed == "max" && settings.realtime)
+        throw Error(ErrorKind::usage,
+                    "--realtime: expected a pace, found --speed max; leave one of them out");
     if (settings.speed == "max") return 0;
     if (settings.speed == "auto")
-        return std::ranges::any_of(settings.out, is_window) ||
+        return settings.realtime || std::ranges::any_of(settings.out, is_window) ||
                        std::ranges::any_of(settings.out, is_http)
                    ? 1 / settings.slow
                    : 0;

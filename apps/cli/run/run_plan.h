@@ -24,7 +24,7 @@ struct Span {
 /// cannot be had: --from of a live source or, relative, of standard input.
 Span span_of(const RunSettings& settings, bool live);
 
-/// Of a recording: 0 is as fast as it goes.
+/// Of a recording: 0 is as fast as it goes. Throws Error (usage) for --realtime without a pace.
 double speed_of(const RunSettings& settings);
 
 /// The bound of a live source's latency; empty where there is none. Throws Error (usage) for a

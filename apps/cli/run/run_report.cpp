@@ -139,6 +139,7 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
                        {"encode", json_of(now.encode)},
                        {"render", json_of(now.render)},
                        {"write", json_of(now.write)}};
+    if (progress.quality) json["quality"] = quality_json(*progress.quality, false);
     return json.dump();
 }
 

@@ -1,6 +1,7 @@
 // The counters of a run as people and programs read them.
 #pragma once
 
+#include "apps/cli/run/quality/quality_report.h"
 #include "drivers/camera.h"
 #include "pipeline/counters.h"
 
@@ -19,6 +20,7 @@ struct RunProgress {
     std::optional<SensorDuration> duration{};  ///< ... or its length
     bool in_step = false;   ///< with the world: a camera, or a recording at a pace; latency counts
     double event_rate = 0;  ///< per second of host time, lately; final JSON says the mean
+    std::optional<QualityState> quality{};
 };
 
 /// Three or four lines at the end.

@@ -15,9 +15,10 @@ constexpr int kTicksPerStats = 4;  // one line of JSON a second
 }  // namespace
 
 Status::Status(std::function<Snapshot()> snapshot, RunProgress fixed,
-               std::unique_ptr<OutputFile> stats, bool quiet, bool live)
+               std::unique_ptr<OutputFile> stats, bool quiet, bool live, Quality quality)
     : snapshot_{std::move(snapshot)},
-      fixed_{fixed},
+      quality_{std::move(quality)},
+      fixed_{std::move(fixed)},
       stats_{std::move(stats)},
       live_{live},
       line_{quiet},
@@ -39,6 +40,7 @@ void Status::tick() {
         std::unique_lock lock{mutex_};
         if (ended_.wait_for(lock, kTick, [this] { return end_; })) return;
         const Snapshot now = snapshot_();
+        if (quality_) fixed_.quality = quality_(now, Clock::now() - begun_);
         const RunProgress state = progress(now);
         line_.show(status_line(now, state, line_.columns()));
         const bool second_is_over = n % kTicksPerStats == 0;

@@ -22,8 +22,11 @@ class Status {
 public:
     /// `snapshot` may be called from any thread. `stats` may be null; it shows under its name with
     /// its first line and grows from then on. `live`: of a camera, which works in silence, too.
+    /// `quality` is asked on the thread of the line, 4 times a second, and may change it.
+    using Quality =
+        std::function<QualityState(const Snapshot&, std::chrono::duration<double> elapsed)>;
     Status(std::function<Snapshot()> snapshot, RunProgress fixed, std::unique_ptr<OutputFile> stats,
-           bool quiet, bool live);
+           bool quiet, bool live, Quality quality = {});
     ~Status();
     Status(const Status&) = delete;
     Status& operator=(const Status&) = delete;
@@ -39,6 +42,7 @@ private:
     void tell_manager(const Snapshot& now, const RunProgress& state, bool also_status);
 
     std::function<Snapshot()> snapshot_;
+    const Quality quality_;
     RunProgress fixed_;
     std::unique_ptr<OutputFile> stats_;  // null: not asked for, or it failed
     std::exception_ptr stats_failure_;

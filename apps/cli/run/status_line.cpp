@@ -12,10 +12,10 @@ namespace eventide::app {
 
 namespace {
 
-enum Part : std::size_t { share, speed, left, rate, window, frames, latency, losses };
+enum Part : std::size_t { share, speed, left, rate, window, frames, quality, latency, losses };
 // What people watch a run for goes last.
-constexpr std::size_t kGivesWay[]{window,  share,  frames, losses,  rate, share, speed,
-                                  latency, losses, left,   latency, left, speed};
+constexpr std::size_t kGivesWay[]{quality, window,  share,  frames, quality, losses, rate, share,
+                                  speed,   latency, losses, left,   latency, left,   speed};
 
 template <typename... Args>
 std::string text_of(const char* format, Args... args) {
@@ -72,6 +72,13 @@ LinePart latency_part(const Snapshot& now, const RunProgress& progress) {
     return {text_of("latency %.1f/%.1f ms", p50, p99), text_of("%.0f/%.0f ms", p50, p99), ""};
 }
 
+LinePart quality_part(const RunProgress& progress) {
+    if (!progress.quality || !progress.quality->chosen) return {};
+    const QualityState& state = *progress.quality;
+    const std::string level = level_text(state.level, state.frames_per_second);
+    return {state.model + " " + state.precision + " " + level, level, ""};
+}
+
 }  // namespace
 
 double share_done(const Snapshot& now, const RunProgress& progress) {
@@ -97,6 +104,7 @@ std::string status_line(const Snapshot& now, const RunProgress& progress, std::s
     parts[rate] = {short_count(progress.event_rate) + " events/s", ""};
     parts[window] = {text_of("window %.1f ms", double(now.window.width().count()) / 1000), ""};
     parts[frames] = {"frames " + std::to_string(now.frames), ""};
+    parts[quality] = quality_part(progress);
     parts[latency] = latency_part(now, progress);
     parts[losses] = losses_part(now);
     return fitted_line(parts, kGivesWay, columns);

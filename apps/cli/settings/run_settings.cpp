@@ -68,6 +68,15 @@ Setting open_setting(std::string key, std::optional<T>& value, std::string value
         [word, show](const std::optional<T>& v) { return v ? show(*v) : word; });
 }
 
+/// As before, and notes that somebody gave the value.
+Setting noted(Setting setting, bool& given) {
+    setting.set = [set = std::move(setting.set), &given](const std::vector<std::string>& texts) {
+        set(texts);
+        given = true;
+    };
+    return setting;
+}
+
 std::string check_window(const std::string& text) {
     if (text != "model") parse_window(text);
     return text;
@@ -137,6 +146,8 @@ SettingTable RunSettings::table() {
     table.group_rest("Output");
     add_look(table);
     table.group_rest("Post-processing");
+    add_quality(table);
+    table.group_rest("Quality");
     add_network(table);
     table.group_rest("Network");
     input.add_to(table);
@@ -159,9 +170,10 @@ void RunSettings::add_times(SettingTable& table) {
                        "Slow motion: the video takes N times as long as what it shows, with --fps "
                        "frames in each of its seconds.",
                        0.001, 100'000));
-    add(parsed_setting<SizeChoice>("size", size, "2x|640x480",
-                                   "Size of the frames: a factor of the sensor's, or pixels.",
-                                   parse_size_choice, show_size_choice));
+    add(noted(parsed_setting<SizeChoice>("size", size, "2x|640x480",
+                                         "Size of the frames: a factor of the sensor's, or pixels.",
+                                         parse_size_choice, show_size_choice),
+              size_given));
     add(open_setting<Region>("roi", region, "X,Y,WxH",
                              "Render only this part of the frame, in its pixels; all: everything.",
                              "all", parse_region, show_region));
@@ -204,12 +216,32 @@ void RunSettings::add_times(SettingTable& table) {
         [](const SensorDuration& d) { return show_duration(d); }));
 }
 
+/// What holds the pace.
+void RunSettings::add_quality(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(choice_setting("quality", quality,
+                       "auto: of live sources and with --realtime, model, precision, size and rate "
+                       "of frames that are not given are chosen so that they hold the pace, and "
+                       "size and rate changed with the load; each is said. fixed: nothing is "
+                       "changed.",
+                       {"auto", "fixed"}));
+    add(flag_setting("realtime", realtime,
+                     "A recording as if a camera gave it: at its own pace, or --speed, with a live "
+                     "source's --window and --lookahead, and of the quality that holds the pace."));
+    add(parsed_setting<Budget>(
+        "budget", budget, "TIME|SHARE%",
+        "Processor time the network may take: 8ms for each frame that --fps asks for, or 50% of a "
+        "core; the quality is chosen by it. none: as much as holds the pace.",
+        parse_budget, show_budget));
+}
+
 /// With which network, and what it remembers.
 void RunSettings::add_network(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(text_setting(
-        "model", model, "NAME|FILE",
-        "A name from the models folder (default, small, thesis) or a safetensors file."));
+    add(noted(text_setting(
+                  "model", model, "NAME|FILE",
+                  "A name from the models folder (default, small, thesis) or a safetensors file."),
+              model_given));
     add(choice_setting("sigma_rule", sigma_rule,
                        "How the members of the local ensemble give one sigma; model: as the model "
                        "says.",

@@ -1,6 +1,7 @@
 // Everything `eventide run` can be told.
 #pragma once
 
+#include "apps/cli/settings/budget.h"
 #include "apps/cli/settings/input_settings.h"
 #include "apps/cli/settings/setting.h"
 #include "apps/cli/settings/time_point.h"
@@ -32,6 +33,9 @@ struct SizeChoice {
     Size of(const Size& sensor) const;
 };
 
+/// automatic chooses what is left open where there is a pace to hold.
+enum class QualityMode { automatic, fixed };
+
 enum class SigmaChoice { model, log_blend, mixture };
 
 /// What becomes of the camera's own images: automatic uses them where some come.
@@ -50,8 +54,12 @@ struct RunSettings {
     std::string speed = "auto";    ///< auto, max, or a factor
     std::string latency = "auto";  ///< auto, none, or a time
     double slow = 1;               ///< seconds of video for one of sensor time
+    bool realtime = false;         ///< a recording as if a camera gave it
 
     // how
+    QualityMode quality = QualityMode::automatic;
+    Budget budget;
+    bool model_given = false, size_given = false;  ///< by a flag, the environment or a file
     std::string model = "default";
     std::string window = "auto";
     FpsChoice fps;
@@ -104,6 +112,7 @@ struct RunSettings {
 
 private:
     void add_times(SettingTable& table);
+    void add_quality(SettingTable& table);
     void add_network(SettingTable& table);
     void add_outputs(SettingTable& table);
     void add_look(SettingTable& table);

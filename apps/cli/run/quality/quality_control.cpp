@@ -1,0 +1,113 @@
+// Lowers and raises quality while a run goes on.
+#include "apps/cli/run/quality/quality_control.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace eventide::app {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr Seconds kLook{0.5};                       // shorter spans jump
+constexpr Seconds kPatience{5}, kMostPatience{80};  // of calm, before a step up
+constexpr Seconds kTakenBack{15}, kForgotten{60};
+constexpr unsigned kStrainedLooks = 3;
+constexpr double kHolds = 0.9, kComfortable = 0.75, kEasy = 0.6;
+
+}  // namespace
+
+QualityControl::QualityControl(PrecisionCost profile, std::vector<QualityLevel> levels,
+                               std::size_t at, const QualityDemand& demand)
+    : profile_{std::move(profile)},
+      levels_{std::move(levels)},
+      asked_{demand.frames},
+      at_{at},
+      demand_{demand},
+      encode_factor_{1 / std::max(demand.threads, 1.0)},
+      frame_factor_{encode_factor_},
+      patience_{kPatience} {}
+
+NetworkLoad QualityControl::load_at(std::size_t level) const {
+    const NetworkLoad load = load_of(profile_, levels_[level], demand_);
+    return {load.encode * encode_factor_, load.frames * frame_factor_};
+}
+
+bool QualityControl::holds(std::size_t level, double margin) const {
+    const NetworkLoad load = load_at(level);
+    if (std::max(load.encode, load.frames) > margin) return false;
+    return !demand_.share ||
+           load.total() * std::max(demand_.threads, 1.0) <= margin * *demand_.share;
+}
+
+/// Half of a measure is what was known: single windows may be slow for reasons of their own.
+void QualityControl::learn(const QualityMeasure& now) {
+    const double seconds = (now.at - before_.at).count();
+    const auto windows = double(now.windows - before_.windows),
+               merged = double(now.merged - before_.merged),
+               frames = double(now.frames - before_.frames);
+    const auto mix = [](double& known, double found) { known += 0.5 * (found - known); };
+    merging_ = merged > 0;
+    if (windows > 0 && seconds > 0) {
+        mix(demand_.windows, (windows + merged) / seconds);
+        mix(encode_factor_,
+            (now.encode - before_.encode).count() / windows / (1e-3 * profile_.encode_ms));
+    }
+    demand_.frames = asked_ * now.pace;
+    const double rate = demand_.frames / double(1U << level().halvings);
+    if (frames == 0 || rate <= 0) return;
+    const double expected = load_of(profile_, level(), demand_).frames / rate;
+    if (expected > 0)
+        mix(frame_factor_, (now.present - before_.present).count() / frames / expected);
+}
+
+bool QualityControl::look(const QualityMeasure& now) {
+    const Seconds passed = now.at - before_.at;
+    if (passed < kLook) return false;
+    const bool idle = now.windows == before_.windows;
+    learn(now);
+    measured_ = load_at(at_);
+    before_ = now;
+    if (idle) return false;  // a camera that is silent, or a page that was paused
+    const bool strained = merging_ || !holds(at_, kHolds);
+    strained_ = strained ? strained_ + 1 : 0;
+    if (strained) calm_since_ = now.at;
+    if (strained_ >= kStrainedLooks) return lower(now.at);
+    return raise(now.at);
+}
+
+bool QualityControl::lower(Seconds now) {
+    std::size_t to = at_ + 1;
+    // Windows that cost too much gain from fewer frames only what both want of the same cores.
+    const bool is_encoding = load_at(at_).encode > kHolds;
+    while (!is_encoding && to + 1 < levels_.size() && !holds(to, kComfortable)) ++to;
+    if (to >= levels_.size()) return false;
+    if (now - raised_ < kTakenBack) patience_ = std::min(2 * patience_, kMostPatience);
+    return move(to, now);
+}
+
+bool QualityControl::raise(Seconds now) {
+    forget(now);
+    std::size_t to = 0;
+    while (to < at_ && !holds(to, kEasy)) ++to;
+    if (to == at_) calm_since_ = now;
+    if (now - calm_since_ < patience_) return false;
+    raised_ = now;
+    return move(to, now);
+}
+
+void QualityControl::forget(Seconds now) {
+    if (now - settled_ < kForgotten) return;
+    patience_ = std::max(patience_ / 2, kPatience);
+    settled_ = now;
+}
+
+bool QualityControl::move(std::size_t to, Seconds now) {
+    at_ = to;
+    settled_ = calm_since_ = now;
+    strained_ = 0;
+    return true;
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,70 @@
+// Lowers and raises quality while a run goes on, by what its work was measured to take.
+#pragma once
+
+#include "apps/cli/run/quality/quality_choice.h"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace eventide::app {
+
+/// What a run has done so far, at one moment.
+struct QualityMeasure {
+    std::chrono::duration<double> at{0};  ///< since it began
+    std::uint64_t windows = 0;            ///< encoded
+    std::uint64_t merged = 0;             ///< event windows that became one with another
+    std::uint64_t frames = 0;             ///< rendered and written
+    std::chrono::duration<double> encode{0}, present{0};  ///< work on them, by the clock
+    double pace = 1;  ///< sensor time over that of the clock, as it should be
+};
+
+/// Among levels of one network, best first. It has no clock: measures come with their times, so
+/// that tests make them. One thread.
+///
+/// Work is compared with the profile: by how much windows and frames cost more or less than
+/// measured there, every level will. A level holds where encoding and frames each leave their
+/// thread a margin, and all work together the budget. Down, to the best level that leaves a
+/// quarter (where encoding takes too long, by one), after a second and a half in which the present one did not hold or event windows had to
+/// be merged; up, to the best level that leaves 40 %, after 5 s in which there was one. A step up
+/// that was taken back within 15 s doubles this time, up to 80 s; a minute without a change halves
+/// it: where the load lies between two levels, it stays at the lower one.
+class QualityControl {
+public:
+    /// `at`: the level it begins with.
+    QualityControl(PrecisionCost profile, std::vector<QualityLevel> levels, std::size_t at,
+                   const QualityDemand& demand);
+
+    /// Often, 2 times a second or more. True where the level was changed.
+    bool look(const QualityMeasure& now);
+
+    const QualityLevel& level() const { return levels_[at_]; }
+    bool is_best() const { return at_ == 0; }
+    /// What the level at the last look took, of a thread each.
+    NetworkLoad measured() const { return measured_; }
+
+private:
+    using Seconds = std::chrono::duration<double>;
+    void learn(const QualityMeasure& now);
+    NetworkLoad load_at(std::size_t level) const;
+    bool holds(std::size_t level, double margin) const;
+    bool move(std::size_t to, Seconds now);
+    bool lower(Seconds now);
+    bool raise(Seconds now);
+    void forget(Seconds now);
+
+    const PrecisionCost profile_;
+    const std::vector<QualityLevel> levels_;
+    const double asked_;  // frames a second at pace 1
+    std::size_t at_;
+    QualityDemand demand_;
+    double encode_factor_, frame_factor_;  // work by the clock over the profile's processor time
+    NetworkLoad measured_;
+    bool merging_ = false;
+    QualityMeasure before_;
+    unsigned strained_ = 0;  // looks in a row
+    Seconds calm_since_{0}, raised_{-1e9}, settled_{0}, patience_;
+};
+
+}  // namespace eventide::app

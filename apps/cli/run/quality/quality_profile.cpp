@@ -1,0 +1,102 @@
+// A profile as JSON.
+#include "apps/cli/run/quality/quality_profile.h"
+
+#include "apps/cli/printable.h"
+#include "src/core/error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eventide::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "eventide-quality-profile";
+constexpr int kVersion = 1;
+
+Json json_of(const ProfileKey& key) {
+    return {{"processor", key.processor}, {"instructions", key.instructions},
+            {"kernels", key.kernels},     {"eventide", key.version},
+            {"model", key.model},         {"identity", key.identity},
+            {"width", key.width},         {"height", key.height}};
+}
+
+[[noreturn]] void complain(const std::string& expected, const std::string& found) {
+    throw Error(ErrorKind::input, "expected " + expected + ", found " + found);
+}
+
+const Json& member(const Json& json, const char* name) {
+    if (!json.is_object() || !json.contains(name))
+        complain("\"" + std::string{name} + "\"", "none");
+    return json.at(name);
+}
+
+/// More than nothing, less than an hour.
+double milliseconds(const Json& json, const char* name) {
+    const Json& value = member(json, name);
+    constexpr double kMost = 3.6e6;
+    if (!value.is_number() || !(value.get<double>() > 0) || value.get<double>() > kMost)
+        complain(std::string{name} + " above 0 ms", value.dump());
+    return value.get<double>();
+}
+
+PrecisionCost precision_cost(const Json& json) {
+    const Json &name = member(json, "precision"), &engine = member(json, "engine");
+    if (name != "f32" && name != "bf16") complain("f32 or bf16", name.dump());
+    if (!engine.is_string()) complain("the engine's name", engine.dump());
+    return {name == "f32" ? Precision::f32 : Precision::bf16,
+            engine.get<std::string>(),
+            milliseconds(json, "encode_ms"),
+            milliseconds(json, "first_ms"),
+            milliseconds(json, "full_ms"),
+            milliseconds(json, "half_ms"),
+            milliseconds(json, "third_ms")};
+}
+
+void check_key(const Json& found, const ProfileKey& key) {
+    const Json expected = json_of(key);
+    for (const auto& [name, value] : expected.items())
+        if (member(found, name.c_str()) != value)
+            complain(name + " " + value.dump(), found.at(name).dump());
+}
+
+}  // namespace
+
+const PrecisionCost* QualityProfile::of(Precision precision) const {
+    const auto found = std::ranges::find(costs, precision, &PrecisionCost::precision);
+    return found == costs.end() ? nullptr : &*found;
+}
+
+std::string profile_text(const QualityProfile& profile) {
+    Json json{{"format", kFormat}, {"version", kVersion}, {"key", json_of(profile.key)}};
+    json["costs"] = Json::array();
+    for (const PrecisionCost& cost : profile.costs)
+        json["costs"].push_back({{"precision", cost.precision == Precision::f32 ? "f32" : "bf16"},
+                                 {"engine", cost.engine},
+                                 {"encode_ms", cost.encode_ms},
+                                 {"first_ms", cost.first_ms},
+                                 {"full_ms", cost.full_ms},
+                                 {"half_ms", cost.half_ms},
+                                 {"third_ms", cost.third_ms}});
+    return json_text(json) + "\n";
+}
+
+QualityProfile parse_profile(const std::string& text, const ProfileKey& key) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded()) complain("JSON", "something else");
+    if (member(json, "format") != kFormat) complain(kFormat, json.at("format").dump());
+    if (member(json, "version") != kVersion)
+        complain("version " + std::to_string(kVersion), json.at("version").dump());
+    check_key(member(json, "key"), key);
+    const Json& costs = member(json, "costs");
+    if (!costs.is_array() || costs.empty()) complain("a list of costs", costs.dump());
+    QualityProfile profile{key, {}};
+    for (const Json& cost : costs) profile.costs.push_back(precision_cost(cost));
+    return profile;
+}
+
+}  // namespace eventide::app

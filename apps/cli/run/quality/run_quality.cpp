@@ -1,0 +1,236 @@
+// The quality of one run.
+#include "apps/cli/run/quality/run_quality.h"
+
+#include "apps/cli/printable.h"
+#include "apps/cli/run/live_controls.h"
+#include "apps/cli/run/quality/measure_profile.h"
+#include "apps/cli/run/quality/profile_cache.h"
+#include "apps/cli/settings/model_path.h"
+#include "src/core/error.h"
+#include "src/model/model_file.h"
+#include "src/model/model_folders.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace eventide::app {
+
+namespace {
+
+constexpr std::size_t kChangesKept = 100;
+
+std::string name_of(Precision precision) {
+    constexpr const char* kNames[]{"auto", "f32", "bf16", "bf16_emulated"};
+    return kNames[std::size_t(precision)];
+}
+
+/// Of the video; 0: one for each event window.
+double video_rate(const RunSettings& settings) {
+    if (settings.fps.automatic) return settings.window == "aps" ? 0 : 30;
+    const FrameRate& rate = settings.fps.rate;
+    return rate.is_set() ? double(rate.frames) / double(rate.seconds) : 0;
+}
+
+/// What is asked for, as one factor of the sensor's size.
+QualityLevel asked_level(const RunSettings& settings, const SensorInfo& sensor) {
+    if (!settings.size.exact) return {settings.size.scale, 0};
+    const double area = double(settings.size.exact->width) * settings.size.exact->height /
+                        (double(sensor.width) * sensor.height);
+    return {std::sqrt(area), 0};
+}
+
+bool rate_is_open(const RunSettings& settings) {
+    return settings.fps.automatic && settings.window != "aps";
+}
+
+/// --roi and --crop count pixels of the frame.
+bool scale_is_open(const RunSettings& settings) {
+    return !settings.size_given && !settings.region && settings.look.crop_px == 0;
+}
+
+double usable_threads(const RunSettings& settings) {
+    const double usable = std::max(1U, std::thread::hardware_concurrency());
+    return settings.threads == 0 ? usable : std::min(usable, double(settings.threads));
+}
+
+std::vector<PrecisionCost> costs_to_choose_from(const QualityProfile& profile,
+                                                const RunSettings& settings) {
+    const PrecisionCost* asked = profile.of(settings.precision);
+    return asked == nullptr ? profile.costs : std::vector<PrecisionCost>{*asked};
+}
+
+CachedProfile profile_of(const std::string& name, const Model& model, const RunSettings& settings,
+                         const SensorInfo& sensor, const std::function<bool()>& give_up) {
+    const ProfileKey key = profile_key(name, model, sensor.width, sensor.height, settings.kernels);
+    CachedProfile found = cached_profile(cache_folder(), key, [&] {
+        spdlog::info("measuring what this processor does with {} at {}x{}, once", printable(name),
+                     sensor.width, sensor.height);
+        return measure_profile(key, model, {settings.kernels, MeasureSettings{}.time, give_up});
+    });
+    spdlog::debug("profile of {}: {}", printable(name), printable(found.file.string()));
+    return found;
+}
+
+}  // namespace
+
+std::vector<std::string> models_to_choose_from(const RunSettings& settings) {
+    // A state belongs to one model.
+    if (settings.model_given || !settings.state_in.empty()) return {settings.model};
+    return {"default", "small"};
+}
+
+bool chooses_quality(const RunSettings& settings, bool live, double pace) {
+    if (settings.quality == QualityMode::fixed) {
+        if (settings.budget.is_set())
+            spdlog::info("--budget {}: nothing is chosen by it with --quality fixed",
+                         show_budget(settings.budget));
+        return false;
+    }
+    if (settings.budget.is_set() && pace <= 0)
+        throw Error(ErrorKind::usage, "--budget " + show_budget(settings.budget) +
+                                          ": expected a pace to hold, found " + settings.source +
+                                          " as fast as possible; --realtime gives it one");
+    if (settings.engine == Engine::plain) return false;
+    return live || settings.realtime || settings.budget.is_set();
+}
+
+/// What came out, with what it came from.
+struct RunQuality::Chosen {
+    std::string model;
+    QualityChoice choice;
+    std::vector<PrecisionCost> costs;  // of the model
+    QualityDemand demand;
+    QualityLevel asked;
+    CachedProfile profile;
+};
+
+RunQuality::RunQuality(RunSettings& settings, const Place& place,
+                       const std::function<bool()>& give_up)
+    : sensor_{place.sensor.width, place.sensor.height} {
+    state_.model = settings.model;
+    state_.precision = name_of(settings.precision);
+    state_.level = asked_level(settings, place.sensor);
+    state_.chosen = place.chooses;
+    state_.budget = show_budget(settings.budget);
+    if (!place.chooses) return;
+    const Chosen chosen = choose(settings, place, give_up);
+    settings.model = state_.model = chosen.model;
+    settings.precision = chosen.choice.precision;
+    state_.precision = name_of(settings.precision);
+    state_.level = chosen.choice.level;
+    if (scale_is_open(settings)) settings.size.scale = state_.level.scale;
+    if (chosen.demand.share && settings.threads == 0) settings.threads = int(chosen.demand.threads);
+    state_.holds = chosen.choice.holds;
+    state_.load = chosen.choice.load;
+    state_.affordable = affordable_load(chosen.demand);
+    state_.threads = chosen.demand.threads;
+    state_.profile = chosen.profile.file.string();
+    state_.measured = chosen.profile.measured;
+    state_.frames_per_second = video_rate(settings);
+    begin_control(settings, chosen);
+    say();
+}
+
+QualityDemand RunQuality::demand_of(const RunSettings& settings, const Place& place,
+                                    const ModelConfig& config) const {
+    constexpr double kWindowsByContent = 20;  // until it is known how much moves
+    const SlicerSettings slicer = slicer_of(settings, config, place.span, place.as_live);
+    QualityDemand demand;
+    demand.windows =
+        place.pace * (slicer.rule == WindowRule::duration ? 1e6 / double(slicer.width.count())
+                                                          : kWindowsByContent);
+    const FrameRate rate = rate_of(settings, slicer);
+    demand.frames =
+        rate.is_set() ? place.pace * double(rate.frames) / double(rate.seconds) : demand.windows;
+    demand.threads = usable_threads(settings);
+    demand.share = settings.budget.cores(demand.frames);
+    if (demand.share && settings.threads == 0)
+        demand.threads = std::clamp(std::ceil(*demand.share), 1.0, demand.threads);
+    return demand;
+}
+
+/// The next model is looked at only where none of the levels of the one before holds.
+RunQuality::Chosen RunQuality::choose(RunSettings& settings, const Place& place,
+                                      const std::function<bool()>& give_up) {
+    const QualityLevel asked = asked_level(settings, place.sensor);
+    const auto levels = quality_levels(asked, rate_is_open(settings), scale_is_open(settings));
+    std::optional<Chosen> least;
+    for (const std::string& name : models_to_choose_from(settings)) {
+        if (least && found_model(name).empty()) continue;  // the first must be there
+        const Model model = load_model(find_model(name));
+        CachedProfile profile = profile_of(name, model, settings, place.sensor, give_up);
+        const auto costs = costs_to_choose_from(profile.profile, settings);
+        const QualityDemand demand = demand_of(settings, place, model.config);
+        const auto best = best_that_holds(costs, levels, demand);
+        const QualityChoice choice = best ? *best : least_load(costs, levels, demand);
+        if (best || !least || choice.load.total() < least->choice.load.total())
+            least = {name, choice, costs, demand, asked, std::move(profile)};
+        if (best) break;
+    }
+    return std::move(*least);
+}
+
+/// Streams and files keep the size they began with; of their frames some can be left out.
+void RunQuality::begin_control(const RunSettings& settings, const Chosen& chosen) {
+    const bool scale = scale_is_open(settings) && !rigid_sink(settings),
+               rate = rate_is_open(settings);
+    if (!scale && !rate) return;
+    QualityLevel best = chosen.asked;
+    if (!scale) best.scale = state_.level.scale;
+    const auto levels = quality_levels(best, rate, scale);
+    const auto at = std::ranges::find(levels, state_.level);
+    const auto cost =
+        std::ranges::find(chosen.costs, chosen.choice.precision, &PrecisionCost::precision);
+    control_.emplace(*cost, levels, std::size_t(at - levels.begin()), chosen.demand);
+}
+
+void RunQuality::say() const {
+    if (state_.holds)
+        spdlog::info("quality: {}", choice_text(state_));
+    else
+        spdlog::warn(
+            "quality: the pace cannot be held with what is left open; {}. Frames will be left out",
+            choice_text(state_));
+}
+
+void RunQuality::look(const Snapshot& now, std::chrono::duration<double> elapsed, double pace,
+                      LiveChanges& changes) {
+    const std::lock_guard lock{mutex_};
+    if (!control_ || state_.taken_over) return;
+    const QualityLevel before = control_->level();
+    const bool changed =
+        control_->look({elapsed, now.encoded, now.merged_windows, now.frames, now.encode.total,
+                        now.render.total + now.write.total, pace});
+    const NetworkLoad load = control_->measured();
+    state_.load = load;
+    if (!changed) return;
+    state_.level = control_->level();
+    const QualityChange change{elapsed, before, state_.level, load};
+    ++state_.changes;
+    state_.newest.push_back(change);
+    if (state_.newest.size() > kChangesKept) state_.newest.erase(state_.newest.begin());
+    if (before.scale != state_.level.scale)
+        changes.set_size(std::max(1, int(std::lround(sensor_.width * state_.level.scale))),
+                         std::max(1, int(std::lround(sensor_.height * state_.level.scale))));
+    changes.set_halvings(state_.level.halvings);
+    spdlog::info("{}", change_text(change, state_.frames_per_second));
+}
+
+void RunQuality::take_over(LiveChanges& changes) {
+    const std::lock_guard lock{mutex_};
+    if (!control_ || state_.taken_over) return;
+    state_.taken_over = true;
+    state_.level.halvings = 0;
+    changes.set_halvings(0);
+    spdlog::info("quality: a viewer has set rate or scale; it is not changed any more");
+}
+
+QualityState RunQuality::state() const {
+    const std::lock_guard lock{mutex_};
+    return state_;
+}
+
+}  // namespace eventide::app

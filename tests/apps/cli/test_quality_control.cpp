@@ -1,0 +1,130 @@
+// Quality follows the load, in made time, and does not flap.
+#include "apps/cli/run/quality/quality_control.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide::app {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+/// 20 event windows and 40 frames a second; on one thread, by the profile, 0.2 for encoding and
+/// 0.2 for frames.
+const PrecisionCost kCost{Precision::f32, "fast", 10, 2, 4, 4, 1};
+
+/// A machine on which frames and encoding take so many times what the profile says.
+class Machine {
+public:
+    explicit Machine(std::vector<QualityLevel> levels = quality_levels({1, 0}, true, true),
+                     QualityDemand demand = {20, 40, 1, {}})
+        : demand_{demand}, control_{kCost, std::move(levels), 0, demand} {}
+
+    /// Returns how often the level was changed.
+    int run(double seconds, double frames, double encoding = 1, bool merges = false) {
+        int changes = 0;
+        for (int i = 0; i < int(seconds * 4); ++i) {
+            const NetworkLoad load = load_of(kCost, control_.level(), demand_);
+            now_.at += Seconds{0.25};
+            now_.windows += 5;
+            now_.merged += merges ? 1 : 0;
+            now_.frames += std::uint64_t(10 >> control_.level().halvings);
+            now_.encode += Seconds{load.encode * encoding / 4};
+            now_.present += Seconds{load.frames * frames / 4};
+            changes += control_.look(now_) ? 1 : 0;
+        }
+        return changes;
+    }
+    void wait(double seconds) {
+        for (int i = 0; i < int(seconds * 4); ++i) {
+            now_.at += Seconds{0.25};
+            EXPECT_FALSE(control_.look(now_)) << "nothing was measured";
+        }
+    }
+    const QualityLevel& level() const { return control_.level(); }
+
+private:
+    QualityDemand demand_;
+    QualityControl control_;
+    QualityMeasure now_;
+};
+
+TEST(QualityControl, LeavesAloneWhatHolds) {
+    Machine machine;
+    EXPECT_EQ(machine.run(60, 1), 0);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
+}
+
+TEST(QualityControl, ASlowMomentChangesNothing) {
+    Machine machine;
+    machine.run(10, 1);
+    EXPECT_EQ(machine.run(0.75, 6), 0);
+    EXPECT_EQ(machine.run(20, 1), 0);
+}
+
+TEST(QualityControl, GoesDownWithinSecondsOfLoadAndUpAgainAfterwards) {
+    Machine machine;
+    machine.run(5, 1);
+    EXPECT_GE(machine.run(4, 4.6), 1) << "0.92 of their thread";
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 1}));
+    EXPECT_EQ(machine.run(20, 1), 1);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
+}
+
+TEST(QualityControl, GoesToTheLeastWhereNothingHoldsAndStays) {
+    Machine machine;
+    machine.run(20, 30);
+    EXPECT_EQ(machine.level(), (QualityLevel{1.0 / 3, 2}));
+    EXPECT_EQ(machine.run(60, 30), 0);
+}
+
+TEST(QualityControl, DoesNotFlapWhereTheLoadLiesBetweenTwoLevels) {
+    // The lower level always looks easy from below, and never holds from above.
+    Machine machine;
+    int changes = 0;
+    for (int i = 0; i < 600; ++i)
+        changes +=
+            machine.run(1, machine.level().halvings == 0 && machine.level().scale == 1 ? 5 : 2.5);
+    EXPECT_LE(changes, 30) << "in ten minutes";
+    EXPECT_GE(changes, 3) << "and it does try";
+}
+
+TEST(QualityControl, StaysBelowABudgetThatThreadsShare) {
+    // By the profile 0.4 of a core, by two threads in half of the time.
+    Machine machine{quality_levels({1, 0}, true, true), {20, 40, 2, 0.5}};
+    machine.run(10, 0.5, 0.5);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
+    machine.run(10, 0.6, 0.6);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 2}));
+}
+
+TEST(QualityControl, FreesCoresStepByStepForEncodingThatTakesTooLong) {
+    Machine machine;
+    machine.run(3, 1, 6);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 1}));
+    machine.run(60, 1, 6);
+    EXPECT_EQ(machine.level(), (QualityLevel{1.0 / 3, 2}));
+}
+
+TEST(QualityControl, WindowsThatHadToBeMergedCallForLess) {
+    Machine machine;
+    machine.run(5, 1);
+    EXPECT_GE(machine.run(2, 1, 1, true), 1);
+    EXPECT_NE(machine.level(), (QualityLevel{1, 0}));
+}
+
+TEST(QualityControl, NothingFollowsFromSilence) {
+    Machine machine;
+    machine.run(5, 1);
+    machine.wait(120);
+    EXPECT_EQ(machine.run(5, 1), 0);
+}
+
+TEST(QualityControl, ChangesOnlyWhatIsLeftOpen) {
+    Machine machine{quality_levels({1, 0}, false, true)};
+    machine.run(30, 4.6);
+    EXPECT_EQ(machine.level().halvings, 0U);
+    EXPECT_LT(machine.level().scale, 1);
+}
+
+}  // namespace
+}  // namespace eventide::app
