@@ -31,6 +31,7 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
     files.reads("--camera", settings.camera);
     if (settings.hot_pixels != "off" && settings.hot_pixels != "learn")
         files.reads("--hot-pixels", settings.hot_pixels);
+    files.reads("--undistort", settings.undistort);
     files.reads("--model", found_model(settings.model));
     files.reads("--state-in", settings.state_in);
 

@@ -1,7 +1,7 @@
 // What a calibrated camera is.
-#include "pipeline/ros2/calibration.h"
+#include "pipeline/calibration/calibration.h"
 
-#include "pipeline/ros2/yaml_file.h"
+#include "pipeline/calibration/yaml_file.h"
 #include "src/core/error.h"
 
 #include <charconv>

@@ -1,5 +1,5 @@
 // Calibration files of ROS and Kalibr as CameraInfo, for frames of any size, part and side.
-#include "pipeline/ros2/calibration.h"
+#include "pipeline/calibration/calibration.h"
 #include "src/core/error.h"
 #include "tests/system/process.h"
 
