@@ -86,7 +86,10 @@ TEST_F(Ros2Program, CameraInfoOfUndistortedFramesSaysSo) {
     EXPECT_STREQ(told->distortion_model, "plumb_bob");
     EXPECT_THAT(std::vector<double>(told->d._buffer, told->d._buffer + told->d._length),
                 testing::ElementsAre(0, 0, 0, 0, 0));
-    EXPECT_THAT(told->k, testing::ElementsAre(90, 0, 59.5, 0, 92, 43.5, 0, 0, 1));
+    const double x = 127. / 63, y = 95. / 47;  // corners on corners
+    using testing::DoubleEq;
+    EXPECT_THAT(told->k, testing::ElementsAre(DoubleEq(45 * x), 0, DoubleEq(31.5 * x - 4), 0,
+                                              DoubleEq(46 * y), DoubleEq(23.5 * y - 4), 0, 0, 1));
     EXPECT_EQ(process.wait().exit_code, 0);
     const Result both = eventide({"run", recording(), "--undistort", "cam.yaml", "--out",
                                   "ros2:" + name_ + "?calibration=cam.yaml"});
