@@ -16,6 +16,10 @@ Error refusal(const std::filesystem::path& file, const toml::source_region& wher
 toml::table parse(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(file))
         throw Error(ErrorKind::usage, "camera settings '" + file.string() + "': no such file");
+    if (file.extension() == ".bias")
+        throw Error(ErrorKind::usage, "camera settings '" + file.string() +
+                                          "': expected TOML as in config/cameras, found a .bias "
+                                          "file of Prophesee's, which is for v4l2: cameras");
     const std::string text = read_toml_text(file);
     try {
         return toml::parse(text, file.string());

@@ -79,7 +79,7 @@ void V4l2Camera::open() {
         if (fd.get() < 0)
             throw Error(ErrorKind::device, "the camera " + holder.string() + " cannot be opened: " +
                                                std::system_category().message(errno));
-        set_v4l2_controls(fd.get(), holder.string(), settings_.controls);
+        set_v4l2_controls(fd.get(), holder.string(), settings_.controls, settings_.control_places);
     }
     device_ = std::make_unique<V4l2Device>(node_, settings_.buffers);
     const auto encoding = settings_.encoding ? settings_.encoding : encoding_of(device_->fourcc());

@@ -35,10 +35,12 @@ struct V4l2Settings {
         subdevice;  ///< "/dev/v4l-subdev0": has the controls and the sensor's size
     std::map<std::string, std::int64_t>
         controls;  ///< by the driver's names: bias_fo, erc_enable, ...
+    std::map<std::string, std::string> control_places;  ///< where each was said: "x.bias:3"
     int buffers = 32;
 };
 
-/// config/cameras/*.toml. Unknown keys are refused with file and line (Error, usage).
+/// config/cameras/*.toml, or a .bias file of Prophesee's, whose names are the driver's. Unknown
+/// keys are refused with file and line (Error, usage).
 V4l2Settings load_v4l2_settings(const std::filesystem::path& file);
 
 /// The bytes before the end-of-data word that the Raspberry Pi's driver puts after the last good

@@ -160,32 +160,65 @@ V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds time
     return Status::data;
 }
 
+namespace {
+
+struct KnownControl {
+    std::uint32_t id = 0;
+    std::string called;  // "control 'bias_fo' of /dev/video0", behind where it was said
+    std::int64_t value = 0;
+};
+
+/// Whether it is to be written. Throws Error (usage) where it cannot have the value.
+bool may_set(int fd, const v4l2_query_ext_ctrl& query, const KnownControl& wanted) {
+    v4l2_control now{query.id, 0};
+    if ((query.flags & (V4L2_CTRL_FLAG_READ_ONLY | V4L2_CTRL_FLAG_DISABLED)) != 0) {
+        if (v4l2_ioctl(fd, VIDIOC_G_CTRL, &now) == 0 && now.value == wanted.value) return false;
+        throw Error(ErrorKind::usage, wanted.called + " cannot be written: expected its value, " +
+                                          std::to_string(now.value) + ", found " +
+                                          std::to_string(wanted.value));
+    }
+    if (wanted.value < query.minimum || wanted.value > query.maximum)
+        throw Error(ErrorKind::usage,
+                    wanted.called + ": expected " + std::to_string(query.minimum) + " to " +
+                        std::to_string(query.maximum) + ", found " + std::to_string(wanted.value));
+    return true;
+}
+
+void set_control(int fd, const KnownControl& wanted) {
+    v4l2_control control{wanted.id, std::int32_t(wanted.value)};
+    if (const int error = v4l2_ioctl(fd, VIDIOC_S_CTRL, &control); error != 0)
+        throw Error(ErrorKind::device,
+                    wanted.called + ": " + std::system_category().message(error));
+    if (v4l2_ioctl(fd, VIDIOC_G_CTRL, &control) == 0 && control.value != wanted.value)
+        throw Error(ErrorKind::device, wanted.called + ": set to " + std::to_string(wanted.value) +
+                                           ", reads back as " + std::to_string(control.value));
+}
+
+}  // namespace
+
 void set_v4l2_controls(int fd, const std::string& device,
-                       const std::map<std::string, std::int64_t>& wanted) {
+                       const std::map<std::string, std::int64_t>& wanted,
+                       const std::map<std::string, std::string>& places) {
+    const auto place_of = [&](const std::string& name) {
+        const auto found = places.find(name);
+        return (found == places.end() ? "camera settings" : found->second) + ": ";
+    };
     auto missing = wanted;
+    std::vector<KnownControl> known;
     v4l2_query_ext_ctrl query{};
     constexpr std::uint32_t kNext = V4L2_CTRL_FLAG_NEXT_CTRL;
     for (query.id = kNext; v4l2_ioctl(fd, VIDIOC_QUERY_EXT_CTRL, &query) == 0; query.id |= kNext) {
         const auto own = missing.extract(query.name);
         if (own.empty()) continue;
-        const std::string name = "camera settings: control '" + own.key() + "' of " + device;
-        if ((query.flags & (V4L2_CTRL_FLAG_READ_ONLY | V4L2_CTRL_FLAG_DISABLED)) != 0)
-            throw Error(ErrorKind::usage, name + " cannot be written");
-        if (own.mapped() < query.minimum || own.mapped() > query.maximum)
-            throw Error(ErrorKind::usage, name + ": expected " + std::to_string(query.minimum) +
-                                              " to " + std::to_string(query.maximum) + ", found " +
-                                              std::to_string(own.mapped()));
-        v4l2_control control{query.id, std::int32_t(own.mapped())};
-        if (const int error = v4l2_ioctl(fd, VIDIOC_S_CTRL, &control); error != 0)
-            throw Error(ErrorKind::device, name + ": " + std::system_category().message(error));
-        if (v4l2_ioctl(fd, VIDIOC_G_CTRL, &control) == 0 &&
-            control.value != std::int32_t(own.mapped()))
-            throw Error(ErrorKind::device, name + ": set to " + std::to_string(own.mapped()) +
-                                               ", reads back as " + std::to_string(control.value));
+        KnownControl control{query.id,
+                             place_of(own.key()) + "control '" + own.key() + "' of " + device,
+                             own.mapped()};
+        if (may_set(fd, query, control)) known.push_back(std::move(control));
     }
     if (!missing.empty())
-        throw Error(ErrorKind::usage, "camera settings: " + device + " has no control '" +
-                                          missing.begin()->first + "'");
+        throw Error(ErrorKind::usage, place_of(missing.begin()->first) + device +
+                                          " has no control '" + missing.begin()->first + "'");
+    for (const KnownControl& control : known) set_control(fd, control);
 }
 
 std::optional<std::pair<int, int>> subdevice_size(const std::filesystem::path& subdevice) {

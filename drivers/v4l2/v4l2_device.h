@@ -62,10 +62,13 @@ private:
     std::optional<std::uint32_t> held_;  ///< the buffer whose bytes are lent out
 };
 
-/// Sets controls by the name the driver gives them ("bias_fo", "erc_enable"), and reads each back.
-/// Throws Error (usage) naming the control that is unknown, read-only or out of range.
+/// Sets controls by the name the driver gives them ("bias_fo", "erc_enable"), and reads each back;
+/// one that cannot be written has to have the value already. `places` tells where each was said,
+/// for messages. Throws Error (usage) naming the control that is unknown, read-only or out of
+/// range, before any is set.
 void set_v4l2_controls(int fd, const std::string& device,
-                       const std::map<std::string, std::int64_t>& wanted);
+                       const std::map<std::string, std::int64_t>& wanted,
+                       const std::map<std::string, std::string>& places = {});
 
 /// Size of the sensor from its subdevice (CROP_BOUNDS); empty where it does not say.
 std::optional<std::pair<int, int>> subdevice_size(const std::filesystem::path& subdevice);

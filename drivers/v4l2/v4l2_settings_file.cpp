@@ -1,13 +1,35 @@
 // config/cameras/*.toml -> V4l2Settings.
 #include "drivers/settings_file.h"
+#include "drivers/v4l2/bias_file.h"
 #include "drivers/v4l2/v4l2_camera.h"
 
 #include <string>
 
 namespace eventide {
 
+namespace {
+
+void add_biases(const std::filesystem::path& file, V4l2Settings& settings) {
+    for (const Bias& bias : read_bias_file(file)) {
+        const std::string place = file.string() + ":" + std::to_string(bias.line);
+        if (const auto other = settings.control_places.find(bias.name);
+            other != settings.control_places.end())
+            throw Error(ErrorKind::usage, place + ": '" + bias.name + "' is also in " +
+                                              other->second + "; expected it in one place");
+        settings.controls[bias.name] = bias.value;
+        settings.control_places[bias.name] = place;
+    }
+}
+
+}  // namespace
+
 V4l2Settings load_v4l2_settings(const std::filesystem::path& file) {
     V4l2Settings settings;
+    if (names_bias_file(file)) {
+        add_biases(file, settings);
+        return settings;
+    }
+    std::filesystem::path biases;
     SettingsFile reader{file};
     reader.custom("encoding", [&](const toml::node& node) {
         const std::string name = node.value_or(std::string{});
@@ -39,12 +61,23 @@ V4l2Settings load_v4l2_settings(const std::filesystem::path& file) {
         const toml::table* controls = node.as_table();
         if (controls == nullptr)
             reader.refuse(node, "controls: expected a table of names and whole numbers");
-        for (const auto& [name, value] : *controls)
-            settings.controls[std::string{name.str()}] =
-                reader.checked(value, "controls." + std::string{name.str()}, INT32_MIN, INT32_MAX);
+        for (const auto& [key, value] : *controls) {
+            const std::string name{key.str()};
+            settings.controls[name] =
+                reader.checked(value, "controls." + name, INT32_MIN, INT32_MAX);
+            settings.control_places[name] =
+                file.string() + ":" + std::to_string(value.source().begin.line);
+        }
+    });
+    reader.custom("biases", [&](const toml::node& node) {
+        const auto path = node.value_exact<std::string>();
+        if (!path || !names_bias_file(*path))
+            reader.refuse(node, "biases: expected a file such as \"imx636.bias\"");
+        biases = file.parent_path() / *path;
     });
     reader.number("buffers", settings.buffers, 2, 256);
     reader.read();
+    if (!biases.empty()) add_biases(biases, settings);
     return settings;
 }
 

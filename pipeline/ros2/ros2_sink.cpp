@@ -166,9 +166,10 @@ std::int64_t system_us(HostTime arrived) {
     return duration_cast<microseconds>(then.time_since_epoch()).count();
 }
 
-Calibration calibration_of(const Ros2SinkName& name) {
-    if (name.calibration.empty()) return {};
-    return read_calibration(name.calibration, name.calibration_camera);
+Calibration calibration_of(const Ros2SinkSettings& settings) {
+    if (settings.calibration) return *settings.calibration;
+    if (settings.name.calibration.empty()) return {};
+    return read_calibration(settings.name.calibration, settings.name.calibration_camera);
 }
 
 class Ros2Sink final : public Sink {
@@ -176,7 +177,7 @@ public:
     explicit Ros2Sink(Ros2SinkSettings settings)
         : settings_{std::move(settings)},
           // Before anybody is told that we are there.
-          calibration_{calibration_of(settings_.name)},
+          calibration_{calibration_of(settings_)},
           participant_{Participant::join()},
           image_{participant_, topic("/image_raw"), settings_.name.encoding},
           info_{participant_, topic("/camera_info"), calibration_, settings_.geometry},

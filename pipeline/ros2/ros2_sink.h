@@ -1,18 +1,21 @@
 // Frames as ROS 2 topics, without ROS 2: through Cyclone DDS.
 #pragma once
 
-#include "pipeline/ros2/calibration.h"
+#include "pipeline/calibration/calibration.h"
 #include "pipeline/ros2/ros2_name.h"
 #include "pipeline/sink.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace eventide {
 
 struct Ros2SinkSettings {
     Ros2SinkName name;
+    /// Of the frames as they come, whole; empty: name.calibration.
+    std::optional<Calibration> calibration;
     bool with_sigma = true;  ///< else there is no topic of it
     ImageGeometry geometry;  ///< of the frames, for a calibration
     bool live = false;       ///< the stamps' offset follows the camera's drift

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <exception>
 #include <string>
 #include <utility>
 
@@ -125,30 +124,5 @@ void Look::sharpen() {
 
 LookSink::LookSink(LookSettings settings, std::vector<std::unique_ptr<Sink>> behind)
     : look_{settings}, behind_{std::move(behind)} {}
-
-void LookSink::write(const Frame& frame) {
-    const Frame& shown = look_.apply(frame);
-    for (const auto& sink : behind_) sink->write(shown);
-}
-
-void LookSink::close() {
-    std::exception_ptr first;
-    for (const auto& sink : behind_) {
-        try {
-            sink->close();
-        } catch (...) {
-            if (!first) first = std::current_exception();
-        }
-    }
-    if (first) std::rethrow_exception(first);
-}
-
-bool LookSink::wants_more() const {
-    return std::ranges::all_of(behind_, [](const auto& sink) { return sink->wants_more(); });
-}
-
-bool LookSink::is_watched() const {
-    return std::ranges::any_of(behind_, [](const auto& sink) { return sink->is_watched(); });
-}
 
 }  // namespace eventide

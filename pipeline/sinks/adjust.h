@@ -1,7 +1,7 @@
 // What users may change about an image before it is shown: range, sharpness, side, border.
 #pragma once
 
-#include "pipeline/sink.h"
+#include "pipeline/sinks/fan_out.h"
 
 #include <memory>
 #include <string_view>
@@ -70,15 +70,14 @@ class LookSink : public Sink {
 public:
     LookSink(LookSettings settings, std::vector<std::unique_ptr<Sink>> behind);
 
-    void write(const Frame& frame) override;
-    void close() override;
-    /// False as soon as one of them wants no more.
-    bool wants_more() const override;
-    bool is_watched() const override;
+    void write(const Frame& frame) override { behind_.write(look_.apply(frame)); }
+    void close() override { behind_.close(); }
+    bool wants_more() const override { return behind_.wants_more(); }
+    bool is_watched() const override { return behind_.is_watched(); }
 
 private:
     Look look_;
-    std::vector<std::unique_ptr<Sink>> behind_;
+    FanOut behind_;
 };
 
 }  // namespace eventide

@@ -1,5 +1,5 @@
 // Any bytes as a calibration of a camera: refused with words, or numbers that are finite.
-#include "pipeline/ros2/calibration.h"
+#include "pipeline/calibration/calibration.h"
 #include "src/core/error.h"
 #include "tests/fuzz/fuzz_file.h"
 

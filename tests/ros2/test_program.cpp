@@ -69,6 +69,34 @@ TEST_F(Ros2Program, PublishesTheFramesThatItWrites) {
     EXPECT_THAT(result.error, HasSubstr("ros2:" + name_ + ": stamps are the sensor's time"));
 }
 
+TEST_F(Ros2Program, CameraInfoOfUndistortedFramesSaysSo) {
+    write_text(temp_ / "cam.yaml",
+               "cam0:\n  camera_model: pinhole\n  distortion_model: radtan\n"
+               "  distortion_coeffs: [-0.3, 0.1, 0, 0]\n  intrinsics: [45, 46, 31.5, 23.5]\n"
+               "  resolution: [64, 48]\n");
+    TopicReader info{kCameraInfoType, name_ + "/camera_info"};
+    Process process =
+        start({"run", recording(), "--fps", "50", "--undistort", "cam.yaml", "--size", "2x",
+               "--crop", "4", "--out", "ros2:" + name_ + "?subscribers=0", "--speed", "0.5"});
+    ASSERT_TRUE(info.wait_for_writers(1));
+    const auto* told = info.next<sensor_msgs_msg_dds__CameraInfo_>();
+    ASSERT_NE(told, nullptr);
+    EXPECT_EQ(told->width, 120U);
+    EXPECT_EQ(told->height, 88U);
+    EXPECT_STREQ(told->distortion_model, "plumb_bob");
+    EXPECT_THAT(std::vector<double>(told->d._buffer, told->d._buffer + told->d._length),
+                testing::ElementsAre(0, 0, 0, 0, 0));
+    const double x = 127. / 63, y = 95. / 47;  // corners on corners
+    using testing::DoubleEq;
+    EXPECT_THAT(told->k, testing::ElementsAre(DoubleEq(45 * x), 0, DoubleEq(31.5 * x - 4), 0,
+                                              DoubleEq(46 * y), DoubleEq(23.5 * y - 4), 0, 0, 1));
+    EXPECT_EQ(process.wait().exit_code, 0);
+    const Result both = eventide({"run", recording(), "--undistort", "cam.yaml", "--out",
+                                  "ros2:" + name_ + "?calibration=cam.yaml"});
+    EXPECT_EQ(both.exit_code, 2);
+    EXPECT_THAT(both.error, HasSubstr("expected one of them"));
+}
+
 TEST_F(Ros2Program, CannotShowSigmaInsideTheImage) {
     const Result result =
         eventide({"run", recording(), "--out", "ros2:" + name_, "--uncertainty", "side"});

@@ -17,6 +17,8 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace eventide::app {
@@ -136,6 +138,15 @@ std::unique_ptr<Sink> open_ros2(const std::string& name, const RunSettings& sett
                                           "; sigma is a topic of its own");
     Ros2SinkSettings ros2;
     ros2.name = parse_ros2_sink_name(name);
+    if (plan.undistortion) {
+        if (!ros2.name.calibration.empty())
+            throw Error(ErrorKind::usage, "--out ros2:" + name +
+                                              ": calibration=" + ros2.name.calibration +
+                                              " and --undistort " + settings.undistort +
+                                              ": expected one of them; camera_info tells what the "
+                                              "undistorted frames are");
+        ros2.calibration = undistorted_sensor(*plan.undistortion);
+    }
     ros2.with_sigma = how != Uncertainty::none;
     ros2.geometry = geometry_of(settings, plan);
     ros2.live = plan.live;
@@ -189,6 +200,12 @@ std::unique_ptr<Sink> open_sink(const std::string& text, const RunSettings& sett
     return std::make_unique<NullSink>();
 }
 
+std::vector<std::unique_ptr<Sink>> one(std::unique_ptr<Sink> sink) {
+    std::vector<std::unique_ptr<Sink>> sinks;
+    sinks.push_back(std::move(sink));
+    return sinks;
+}
+
 }  // namespace
 
 bool is_window(const std::string& sink) {
@@ -204,14 +221,17 @@ bool is_http(const std::string& sink) {
 }
 
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {
-    std::vector<std::unique_ptr<Sink>> plain, looked;
+    std::vector<std::unique_ptr<Sink>> plain, changed;
     LookSettings look = settings.look;
     look.unsharp = float(settings.unsharp);
-    for (const std::string& sink : settings.out) {
-        auto& where = look.changes_nothing() || is_contact_sheet(sink) ? plain : looked;
-        where.push_back(open_sink(sink, settings, plan));
-    }
-    if (!looked.empty()) plain.push_back(std::make_unique<LookSink>(look, std::move(looked)));
+    for (const std::string& sink : settings.out)
+        (is_contact_sheet(sink) ? plain : changed).push_back(open_sink(sink, settings, plan));
+    if (changed.empty()) return plain;
+    if (!look.changes_nothing())
+        changed = one(std::make_unique<LookSink>(look, std::move(changed)));
+    if (plan.undistortion)
+        changed = one(std::make_unique<UndistortionSink>(*plan.undistortion, std::move(changed)));
+    std::ranges::move(changed, std::back_inserter(plain));
     return plain;
 }
 

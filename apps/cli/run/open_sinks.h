@@ -3,12 +3,14 @@
 
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/settings/run_settings.h"
+#include "pipeline/calibration/undistortion.h"
 #include "pipeline/counters.h"
 #include "pipeline/sink.h"
 #include "pipeline/sinks/http/control.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +28,13 @@ struct SinkQuestions {
 };
 
 struct SinkPlan {
-    double fps = 30;            ///< nominal
-    bool constant_rate = true;  ///< and no frame for each event window
-    double speed = 1;           ///< of the recording, for the window
-    Size sensor;                ///< px
-    bool live = false;          ///< the source is a camera
-    int lookahead = 0;          ///< event windows
+    double fps = 30;                                    ///< nominal
+    bool constant_rate = true;                          ///< and no frame for each event window
+    double speed = 1;                                   ///< of the recording, for the window
+    Size sensor;                                        ///< px
+    bool live = false;                                  ///< the source is a camera
+    int lookahead = 0;                                  ///< event windows
+    std::optional<UndistortionPlan> undistortion = {};  ///< empty: not asked for
     ReferenceImages* references = nullptr;
     std::string reference_caption;  ///< for people
     SinkQuestions questions;
@@ -42,7 +45,8 @@ bool is_window(const std::string& sink);
 bool is_contact_sheet(const std::string& sink);
 bool is_http(const std::string& sink);
 
-/// Opens all of settings.out, with the look controls in front of all but the contact sheet. Throws
+/// Opens all of settings.out, with undistortion and the look controls in front of all but the
+/// contact sheet. Throws
 /// Error (usage) for what names no sink or contradicts --uncertainty.
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan);
 

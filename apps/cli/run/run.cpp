@@ -73,6 +73,7 @@ Run::Run(Program& program, RunSettings& settings)
       slicer_{slicer_of(settings, network_.config(), span_, as_live())},
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), as_live())},
+      undistortion_{undistortion_of(settings, sensor_)},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
@@ -80,12 +81,13 @@ Run::Run(Program& program, RunSettings& settings)
       watch_{sheet_ ? &references_ : nullptr,
              settings.frames == CameraFrames::ignore ? nullptr : &images_},
       encode_{network_.encoder()},
-      render_{network_.renderer(), request_of(settings, sensor_, lookahead_)} {
+      render_{network_.renderer(), request_of(settings, sensor_, lookahead_, undistortion_)} {
     check_recording(settings, span_, slicer_);
     quality_.tell_rate(rate_.is_set() ? nominal_fps(rate_, slicer_, settings.slow) : 0);
     if (settings.frames != CameraFrames::ignore)
-        fusion_.emplace(network_.renderer(), request_of(settings, sensor_, lookahead_),
-                        sensor_.width, sensor_.height, images_);
+        fusion_.emplace(network_.renderer(),
+                        request_of(settings, sensor_, lookahead_, undistortion_), sensor_.width,
+                        sensor_.height, images_);
     if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
@@ -142,6 +144,7 @@ SinkPlan Run::sink_plan() {
     plan.sensor = {sensor_.width, sensor_.height};
     plan.live = live();
     plan.lookahead = lookahead_;
+    plan.undistortion = undistortion_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);
     plan.questions.stopping = [this] { return program_.signals.stopping(); };

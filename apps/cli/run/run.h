@@ -87,6 +87,7 @@ private:
     const SlicerSettings slicer_;
     const FrameRate rate_;
     const int lookahead_;
+    const std::optional<UndistortionPlan> undistortion_;
     const bool sheet_, page_;
     const std::chrono::steady_clock::time_point begun_;
     std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known

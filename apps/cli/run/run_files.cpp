@@ -32,6 +32,7 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
     files.reads("--camera", settings.camera);
     if (settings.hot_pixels != "off" && settings.hot_pixels != "learn")
         files.reads("--hot-pixels", settings.hot_pixels);
+    files.reads("--undistort", settings.undistort);
     // Any of them may be chosen, where nothing else was said.
     for (const std::string& model : models_to_choose_from(settings))
         files.reads("--model", found_model(model));

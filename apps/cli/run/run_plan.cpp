@@ -129,12 +129,39 @@ std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelC
                         sensor.height);
 }
 
-RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead) {
+std::optional<UndistortionPlan> undistortion_of(const RunSettings& settings,
+                                                const SensorInfo& sensor) {
+    if (settings.undistort.empty()) {
+        if (!settings.undistort_camera.empty())
+            throw Error(ErrorKind::usage, "--undistort-camera " + settings.undistort_camera +
+                                              ": expected --undistort FILE, found none");
+        return {};
+    }
+    const std::string option = "--undistort " + settings.undistort;
+    for (const std::string& filter : settings.filter)
+        if (filter.starts_with("flip:") || filter == "transpose")
+            throw Error(ErrorKind::usage, option +
+                                              ": the calibration is of the sensor as it is; "
+                                              "expected no --filter " +
+                                              filter + "; --flip mirrors undistorted frames");
+    const Calibration calibration = read_calibration(settings.undistort, settings.undistort_camera);
+    if (calibration.width != sensor.width || calibration.height != sensor.height)
+        throw Error(ErrorKind::input, option + ": expected the calibration of a sensor of " +
+                                          show_size({sensor.width, sensor.height}) +
+                                          ", found one of " +
+                                          show_size({calibration.width, calibration.height}));
+    const Size whole = settings.size.of({sensor.width, sensor.height});
+    return plan_undistortion(calibration, whole.width, whole.height,
+                             settings.region.value_or(Region{}));
+}
+
+RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead,
+                         const std::optional<UndistortionPlan>& undistortion) {
     const Size size = settings.size.of({sensor.width, sensor.height});
     RenderRequest request;
     request.width = size.width;
     request.height = size.height;
-    if (settings.region) request.region = *settings.region;
+    if (settings.region) request.region = undistortion ? undistortion->source : *settings.region;
     request.lookahead = lookahead;
     if (settings.sigma_rule != SigmaChoice::model)
         request.sigma_rule =

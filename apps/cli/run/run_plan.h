@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/cli/settings/run_settings.h"
+#include "pipeline/calibration/undistortion.h"
 #include "pipeline/source.h"
 #include "pipeline/stages.h"
 #include "src/binning/slicer_settings.h"
@@ -54,6 +55,12 @@ std::string reference_caption(const SensorInfo& sensor);
 std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
                                        const SensorInfo& sensor);
 
-RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead);
+/// Empty: not asked for. Throws Error: input for a calibration that cannot be read or is of another
+/// sensor, usage where it does not fit what else was asked for.
+std::optional<UndistortionPlan> undistortion_of(const RunSettings& settings,
+                                                const SensorInfo& sensor);
+
+RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, int lookahead,
+                         const std::optional<UndistortionPlan>& undistortion);
 
 }  // namespace eventide::app

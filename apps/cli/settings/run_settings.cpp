@@ -343,6 +343,12 @@ void RunSettings::add_look(SettingTable& table) {
         "within TIME. auto: 10 to 500 ms, by the noise that is found, more where nothing moves, "
         "and hot pixels; model: as the model was trained.",
         check_noise_filter, same));
+    add(text_setting(
+        "undistort", undistort, "FILE",
+        "Undistort the frames: YAML of ROS' camera_calibration or Kalibr's camchain, for "
+        "the whole sensor. The contact sheet stays as the camera sees it."));
+    add(text_setting("undistort_camera", undistort_camera, "NAME",
+                     "Of a Kalibr file with several cameras: cam1; without it, the first."));
     add(flag_setting("auto_hdr", look.auto_hdr,
                      "Stretch the range the frame uses to black and white, smoothed in time; "
                      "sigma is scaled with it."));

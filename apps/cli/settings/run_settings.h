@@ -94,6 +94,8 @@ struct RunSettings {
     bool strict = false;
 
     // look
+    std::string undistort;         ///< calibration file; empty: frames stay as the lens makes them
+    std::string undistort_camera;  ///< of a Kalibr file; empty: the first
     LookSettings look;
     double unsharp = 0;
     std::string video_preset = "veryfast";

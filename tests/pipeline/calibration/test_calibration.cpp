@@ -1,5 +1,5 @@
 // Calibration files of ROS and Kalibr as CameraInfo, for frames of any size, part and side.
-#include "pipeline/ros2/calibration.h"
+#include "pipeline/calibration/calibration.h"
 #include "src/core/error.h"
 #include "tests/system/process.h"
 
@@ -137,14 +137,14 @@ TEST_F(CalibrationFile, IsFittedToSizePartAndSide) {
         const bool mirrored_y = flip == Flip::vertical || flip == Flip::both;
         for (const auto& [x, y] : {Pixel{0, 0}, Pixel{0.3, -0.2}, Pixel{-0.4, 0.1}}) {
             const Pixel before = project(sensor, x, y);
-            Pixel expected{(before.x + 0.5) * 2 - 0.5 - 100, (before.y + 0.5) * 2 - 0.5 - 50};
+            Pixel expected{before.x * 1279 / 639 - 100, before.y * 959 / 479 - 50};
             if (mirrored_x) expected.x = 799 - expected.x;
             if (mirrored_y) expected.y = 599 - expected.y;
             const Pixel found = project(image, mirrored_x ? -x : x, mirrored_y ? -y : y);
             EXPECT_NEAR(found.x, expected.x, 1e-9) << name_of(flip);
             EXPECT_NEAR(found.y, expected.y, 1e-9) << name_of(flip);
         }
-        EXPECT_NEAR(image.p[3], mirrored_x ? 98 : -98, 1e-9);
+        EXPECT_NEAR(image.p[3], (mirrored_x ? 49 : -49) * 1279. / 639, 1e-9);
     }
     EXPECT_THAT(fitted(sensor, {}, 640, 480).k, sensor.k) << "as it was";
     const Calibration none = fitted({}, {}, 64, 48);

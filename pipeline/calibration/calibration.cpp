@@ -1,7 +1,7 @@
 // What a calibrated camera is.
-#include "pipeline/ros2/calibration.h"
+#include "pipeline/calibration/calibration.h"
 
-#include "pipeline/ros2/yaml_file.h"
+#include "pipeline/calibration/yaml_file.h"
 #include "src/core/error.h"
 
 #include <charconv>
@@ -157,11 +157,16 @@ struct Axis {
     double focal(double f) const { return f * scale; }
     /// The middle of the first pixel is at 0.
     double centre(double c) const {
-        const double moved = (c + 0.5) * scale - 0.5 - shift;
+        const double moved = c * scale - shift;
         return mirrored ? size - 1 - moved : moved;
     }
     double sign() const { return mirrored ? -1 : 1; }
 };
+
+/// Corners of a frame lie on corners of the sensor (docs/model.md, "Renderer").
+double scale_of(int sensor, int whole) {
+    return sensor > 1 ? double(whole - 1) / (sensor - 1) : 1;
+}
 
 /// Tangential terms: p2 goes with x, p1 with y. Radial ones do not see a mirror.
 void mirror_distortion(Calibration& calibration, const Axis& x, const Axis& y) {
@@ -193,9 +198,9 @@ Calibration fitted(const Calibration& from, const ImageGeometry& geometry, int w
     if (from.distortion_model.empty()) return to;
     const int whole_width = geometry.width > 0 ? geometry.width : width;
     const int whole_height = geometry.height > 0 ? geometry.height : height;
-    const Axis x{double(whole_width) / from.width, double(geometry.left), width,
+    const Axis x{scale_of(from.width, whole_width), double(geometry.left), width,
                  geometry.flip == Flip::horizontal || geometry.flip == Flip::both};
-    const Axis y{double(whole_height) / from.height, double(geometry.top), height,
+    const Axis y{scale_of(from.height, whole_height), double(geometry.top), height,
                  geometry.flip == Flip::vertical || geometry.flip == Flip::both};
     mirror_distortion(to, x, y);
     const std::array<double, 3> sign{x.sign(), y.sign(), 1};

@@ -1,5 +1,5 @@
 // libyaml's documents as a tree.
-#include "pipeline/ros2/yaml_file.h"
+#include "pipeline/calibration/yaml_file.h"
 
 #include "src/core/error.h"
 #include "src/io/input_file.h"
