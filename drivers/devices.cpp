@@ -14,11 +14,11 @@
 
 #ifdef EVENTIDE_HAS_ROS2
 #include "drivers/ros2/ros2_source.h"
+#include "src/core/number_text.h"
 #endif
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 namespace eventide {
 namespace {
@@ -34,8 +34,8 @@ struct Kind {
 
 #ifdef EVENTIDE_HAS_USB
 bool number(std::string_view text, int& into) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), into);
-    return error == std::errc{} && end == text.data() + text.size() && into >= 0;
+    into = number_in<int>(text).value_or(-1);
+    return into >= 0;
 }
 
 /// What follows the scheme: nothing, a serial number, or bus and address.

@@ -2,10 +2,10 @@
 #include "pipeline/frame_clock.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -28,13 +28,9 @@ constexpr std::size_t kMaxDigits = 12;  // of numerator and denominator: product
 }
 
 std::int64_t digits(std::string_view part, std::string_view text) {
-    std::int64_t value = 0;
-    const char* const end = part.data() + part.size();
-    if (part.empty() || part.size() > kMaxDigits || part.front() == '-') refuse(text);
-    if (const auto result = std::from_chars(part.data(), end, value);
-        result.ec != std::errc{} || result.ptr != end)
-        refuse(text);
-    return value;
+    const auto value = number_in<std::int64_t>(part);
+    if (!value || part.size() > kMaxDigits || part.front() == '-') refuse(text);
+    return *value;
 }
 
 FrameRate fraction(std::string_view text) {

@@ -182,12 +182,6 @@ void Pipeline::encode_one(const VoxelGrid& grid, Encoded& encoded) {
     }
     LatentMap& latent = encoded.latent;
     parts_.encoder.encode(grid, latent);
-    latent.window = grid.window;
-    latent.events = grid.events;
-    latent.arrived = grid.arrived;
-    latent.gap_before = grid.gap_before;
-    latent.reset_before = grid.reset_before;
-    latent.images = grid.images;
     if (settings_.events_per_pixel) count_events(grid, latent.events_per_pixel);
     if (settings_.event_preview) sum_polarities(grid, encoded.event_preview);
     counters_.encode.encoded.add();

@@ -1,22 +1,13 @@
 // What the pipeline asks of a model and of whatever stands between parser and slicer.
 #pragma once
 
+#include "src/core/encode_stage.h"
 #include "src/core/event.h"
 #include "src/core/frame_data.h"
 
 #include <vector>
 
 namespace eventide {
-
-/// grid + state -> latent map. One at a time; encode thread.
-class EncodeStage {
-public:
-    virtual ~EncodeStage() = default;
-    virtual LatentMap make_output() const = 0;
-    /// Fills `latent.values`; the pipeline fills the rest.
-    virtual void encode(const VoxelGrid& grid, LatentMap& latent) noexcept = 0;
-    virtual void reset() noexcept = 0;  ///< as constructed
-};
 
 /// latent window + time -> frame. One at a time; render thread.
 class RenderStage {

@@ -2,13 +2,13 @@
 #include "apps/cli/service_manager.h"
 
 #include "apps/cli/printable.h"
+#include "src/core/number_text.h"
 
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
@@ -22,13 +22,6 @@ std::string variable(const char* name) {
     return value == nullptr ? "" : value;
 }
 
-std::optional<std::uint64_t> whole(const std::string& text) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return {};
-    return value;
-}
-
 }  // namespace
 
 ServiceManager::ServiceManager() : address_{variable("NOTIFY_SOCKET")} {
@@ -36,8 +29,8 @@ ServiceManager::ServiceManager() : address_{variable("NOTIFY_SOCKET")} {
     if (address_.size() >= sizeof(sockaddr_un::sun_path)) return;
     if (address_[0] == '@') address_[0] = '\0';
     socket_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    const auto period = whole(variable("WATCHDOG_USEC"));
-    const auto process = whole(variable("WATCHDOG_PID"));
+    const auto period = number_in<std::uint64_t>(variable("WATCHDOG_USEC"));
+    const auto process = number_in<std::uint64_t>(variable("WATCHDOG_PID"));
     const bool is_ours = !process || *process == std::uint64_t(getpid());
     if (period && *period > 0 && is_ours) watchdog_ = std::chrono::microseconds{*period};
 }
@@ -67,7 +60,8 @@ bool writes_to_journal() {
 bool is_journal(int descriptor, const std::string& stream) {
     const std::size_t colon = stream.find(':');
     if (colon == std::string::npos) return false;
-    const auto device = whole(stream.substr(0, colon)), inode = whole(stream.substr(colon + 1));
+    const auto device = number_in<std::uint64_t>(stream.substr(0, colon)),
+               inode = number_in<std::uint64_t>(stream.substr(colon + 1));
     struct stat status {};
     return device && inode && fstat(descriptor, &status) == 0 && status.st_dev == *device &&
            status.st_ino == *inode;

@@ -1,6 +1,7 @@
 #include "apps/train/curve.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -32,7 +33,7 @@ Columns read_csv(const std::filesystem::path& path) {
         const std::vector<std::string> values = cells(line);
         if (values.size() != names.size()) continue;  // a line cut short by a crash
         for (std::size_t i = 0; i < names.size(); ++i)
-            columns[names[i]].push_back(std::strtod(values[i].c_str(), nullptr));
+            columns[names[i]].push_back(number_in<double>(values[i]).value_or(0));
     }
     return columns;
 }

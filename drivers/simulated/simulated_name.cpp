@@ -2,8 +2,8 @@
 #include "drivers/simulated/simulated_name.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
-#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -21,10 +21,9 @@ constexpr std::string_view kPrefix = "sim:";
 
 template <typename Number>
 Number number(std::string_view key, std::string_view text) {
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) refuse(key, "a number", text);
-    return value;
+    const auto value = number_in<Number>(text);
+    if (!value) refuse(key, "a number", text);
+    return *value;
 }
 
 std::pair<std::string_view, std::optional<std::string_view>> split(std::string_view text, char at) {

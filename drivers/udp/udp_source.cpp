@@ -2,9 +2,9 @@
 #include "drivers/udp/udp_source.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 
-#include <charconv>
 #include <string>
 
 namespace eventide {
@@ -13,19 +13,14 @@ namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{20};  // how late stop() may be heard
 
-bool read_side(std::string_view text, int& side) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
-    return error == std::errc{} && end == text.data() + text.size() && side > 0 &&
-           side <= kLargestSensorSide;
-}
-
 void read_size(const UdpName& name, const std::string& text, SensorInfo& info) {
-    const std::size_t x = text.find('x');
-    if (x == text.npos || !read_side(std::string_view(text).substr(0, x), info.width) ||
-        !read_side(std::string_view(text).substr(x + 1), info.height))
+    const auto [width, height] = size_in(text).value_or(std::pair{0, 0});
+    if (width < 1 || height < 1 || width > kLargestSensorSide || height > kLargestSensorSide)
         throw Error(
             ErrorKind::usage,
             name.text() + ": size: expected WIDTHxHEIGHT such as 640x480, found '" + text + "'");
+    info.width = width;
+    info.height = height;
 }
 
 }  // namespace

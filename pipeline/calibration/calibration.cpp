@@ -3,8 +3,8 @@
 
 #include "pipeline/calibration/yaml_file.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
-#include <charconv>
 #include <cmath>
 
 namespace eventide {
@@ -38,13 +38,9 @@ public:
     }
 
     double number() const {
-        double value = 0;
-        const std::string& digits = text();
-        const auto [end, error] =
-            std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-            refuse("a number", "'" + digits + "'");
-        return value;
+        const auto value = number_in<double>(text());
+        if (!value) refuse("a number", "'" + text() + "'");
+        return *value;
     }
 
     int pixels() const {

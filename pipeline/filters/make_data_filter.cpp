@@ -5,10 +5,10 @@
 #include "pipeline/filters/selecting_filters.h"
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 
 namespace eventide {
@@ -34,10 +34,8 @@ std::pair<std::string_view, std::string_view> split(std::string_view text, std::
 }
 
 std::optional<int> whole_number(std::string_view text, int least, int most) {
-    int value = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || rest != text.data() + text.size()) return {};
-    return value >= least && value <= most ? std::optional(value) : std::nullopt;
+    const auto value = number_in<int>(text);
+    return value && *value >= least && *value <= most ? value : std::nullopt;
 }
 
 std::optional<SensorDuration> positive_time(std::string_view text) {
@@ -132,10 +130,9 @@ std::optional<TimeFilter::Moment> moment_of(std::string_view text, const Argumen
         if (!time || time->count() < 0) arguments.refuse(kExpected);
         return TimeFilter::Moment{false, *time};
     }
-    std::int64_t us = 0;
-    const auto [rest, error] = std::from_chars(text.data() + 1, text.data() + text.size(), us);
-    if (error != std::errc{} || rest != text.data() + text.size()) arguments.refuse(kExpected);
-    return TimeFilter::Moment{true, SensorDuration{us}};
+    const auto us = number_in<std::int64_t>(text.substr(1));
+    if (!us) arguments.refuse(kExpected);
+    return TimeFilter::Moment{true, SensorDuration{*us}};
 }
 
 Made make_time(const Arguments& arguments, const SensorPixels& size) {

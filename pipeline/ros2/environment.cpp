@@ -2,10 +2,10 @@
 #include "pipeline/ros2/environment.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <unistd.h>
 
-#include <charconv>
 #include <string_view>
 
 namespace eventide {
@@ -44,12 +44,11 @@ std::string text_of(const Variable& variable, const char* name) {
 }
 
 unsigned domain_of(const std::string& text) {
-    unsigned domain = 0;
-    if (text.empty()) return domain;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
-    if (error != std::errc{} || end != text.data() + text.size() || domain > kLargestDomain)
+    if (text.empty()) return 0;
+    const auto domain = number_in<unsigned>(text);
+    if (!domain || *domain > kLargestDomain)
         refuse("ROS_DOMAIN_ID", "0 to " + std::to_string(kLargestDomain), text);
-    return domain;
+    return *domain;
 }
 
 std::string escaped(std::string_view text) {

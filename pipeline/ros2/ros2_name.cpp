@@ -2,10 +2,10 @@
 #include "pipeline/ros2/ros2_name.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 
 namespace eventide {
@@ -36,10 +36,8 @@ std::size_t choose(const std::string& key, const std::array<std::string_view, kS
 }
 
 int subscribers(const std::string& text) {
-    int value = -1;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || value < 0 ||
-        value > kMaxSubscribers)
+    const int value = number_in<int>(text).value_or(-1);
+    if (value < 0 || value > kMaxSubscribers)
         refuse("subscribers", "0 to " + std::to_string(kMaxSubscribers), text);
     return value;
 }

@@ -2,12 +2,12 @@
 #include "pipeline/sinks/run_folder.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/io/output_file.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <fstream>
 #include <utility>
@@ -100,10 +100,9 @@ std::string NumberedFiles::name(std::uint64_t n) const {
 
 std::optional<std::uint64_t> NumberedFiles::number_in(const std::string& name) const {
     if (!name.starts_with(prefix)) return std::nullopt;
-    std::uint64_t n = 0;
-    const char* begin = name.data() + prefix.size();
-    if (std::from_chars(begin, name.data() + name.size(), n).ec != std::errc{}) return std::nullopt;
-    return this->name(n) == name ? std::optional{n} : std::nullopt;
+    std::string_view rest = std::string_view{name}.substr(prefix.size());
+    const auto n = take_number<std::uint64_t>(rest);
+    return n && this->name(*n) == name ? n : std::nullopt;
 }
 
 RunFolder::RunFolder(fs::path folder, bool overwrite, RunFolderFiles files)

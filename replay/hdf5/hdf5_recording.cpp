@@ -4,9 +4,9 @@
 #include "replay/hdf5/hdf5_tables.h"
 #include "replay/table_reader.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 
-#include <charconv>
 #include <utility>
 
 namespace eventide {
@@ -50,12 +50,7 @@ void read_size(const Hdf5File& file, StreamHeader& header) {
     if (const auto size = file.number_attributes("/", "sensor_resolution"); size.size() >= 2)
         set_size(header, size[1], size[0]);
     const std::string text = file.text_attribute("/", "geometry");
-    if (const std::size_t x = text.find('x'); x != text.npos) {
-        int width = 0, height = 0;
-        std::from_chars(text.data(), text.data() + x, width);
-        std::from_chars(text.data() + x + 1, text.data() + text.size(), height);
-        set_size(header, width, height);
-    }
+    if (const auto size = size_in(text)) set_size(header, size->first, size->second);
 }
 
 void read_size(const Hdf5Data& resolution, StreamHeader& header) {

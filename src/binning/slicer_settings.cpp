@@ -3,8 +3,8 @@
 
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
-#include <charconv>
 #include <cmath>
 #include <iterator>
 
@@ -33,10 +33,9 @@ struct Quantity {
 };
 
 Quantity quantity(std::string_view part, std::string_view text) {
-    double value = 0;
-    const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc{} || !std::isfinite(value)) refuse(text, "no number");
-    return {value, part.substr(std::size_t(rest - part.data()))};
+    const auto value = take_number<double>(part);
+    if (!value) refuse(text, "no number");
+    return {*value, part};
 }
 
 std::optional<SensorDuration> duration(Quantity q, std::string_view text) {

@@ -2,11 +2,11 @@
 #include "src/codec/aedat3.h"
 #include "src/codec/aedat_header.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <string>
 
 namespace eventide {
@@ -38,13 +38,8 @@ void set_size_by_name(StreamHeader& header) {
 
 /// "640x480"
 void set_size(StreamHeader& header, std::string_view geometry) {
-    const char* end = geometry.data() + geometry.size();
-    int width = 0, height = 0;
-    const auto first = std::from_chars(geometry.data(), end, width);
-    if (first.ec != std::errc{} || first.ptr == end || *first.ptr != 'x') return;
-    const auto second = std::from_chars(first.ptr + 1, end, height);
-    if (second.ec != std::errc{} || width < 1 || height < 1 || width > 32768 || height > 32768)
-        return;
+    const auto [width, height] = size_in(geometry).value_or(std::pair{0, 0});
+    if (width < 1 || height < 1 || width > 32768 || height > 32768) return;
     header.width = width;
     header.height = height;
 }
@@ -67,9 +62,8 @@ Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes) {
     header.stream.source_text = find_value(lines, "Start-Time");
     // "Source 1: DAVIS346"
     const std::string_view source = find_value(lines, "Source ");
-    int number = 0;
-    const auto parsed = std::from_chars(source.data(), source.data() + source.size(), number);
-    if (parsed.ec == std::errc{}) header.source = number;
+    std::string_view digits = source;
+    if (const auto number = take_number<int>(digits)) header.source = *number;
     const std::size_t colon = source.find(':');
     if (colon != source.npos) {
         const std::string_view name = source.substr(colon + 1);

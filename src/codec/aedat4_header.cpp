@@ -4,9 +4,9 @@
 #include "src/codec/aedat4_flat.h"
 #include "src/codec/byte_order.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 
 namespace eventide {
@@ -26,9 +26,8 @@ std::string_view attribute(std::string_view tag, std::string_view key) {
 }
 
 int number(std::string_view text) {
-    int value = 0;
-    const auto end = std::from_chars(text.data(), text.data() + text.size(), value).ptr;
-    return end == text.data() + text.size() && value > 0 && value <= 32767 ? value : 0;
+    const int value = number_in<int>(text).value_or(0);
+    return value > 0 && value <= 32767 ? value : 0;
 }
 
 /// Walks through nodes and attributes; depth is bounded by the text itself.
@@ -43,9 +42,8 @@ public:
         const auto depth = path_.end() - out;
         if (depth < 2) return;
         const std::string_view name = out[1];
-        std::int32_t id = 0;
-        const auto end = std::from_chars(name.data(), name.data() + name.size(), id).ptr;
-        if (end != name.data() + name.size() || id < 0) return;
+        const std::int32_t id = number_in<std::int32_t>(name).value_or(-1);
+        if (id < 0) return;
         if (depth == 2 && key == "typeIdentifier") at(id).identifier = value;
         if (depth != 3 || out[2] != "info") return;
         if (key == "sizeX") at(id).width = number(value);

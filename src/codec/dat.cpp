@@ -4,9 +4,9 @@
 #include "src/codec/byte_order.h"
 #include "src/codec/evt_header.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 
 namespace eventide {
@@ -33,8 +33,7 @@ std::uint32_t side(int px, std::uint32_t most) {
 }
 
 int number(std::string_view text) {
-    int value = 0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
+    const int value = take_number<int>(text).value_or(0);
     return value > 0 && value <= 16384 ? value : 0;
 }
 

@@ -2,9 +2,9 @@
 #include "src/codec/evt_header.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
-#include <charconv>
 
 namespace eventide {
 
@@ -17,16 +17,8 @@ bool is_text(std::string_view line) {
                        [](char c) { return c == '\t' || c == '\r' || c < 0 || c >= ' '; });
 }
 
-template <typename T>
-std::optional<T> number(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) return {};
-    return value;
-}
-
 int side(std::string_view text) {
-    const int px = number<int>(text).value_or(0);
+    const int px = number_in<int>(text).value_or(0);
     return px > 0 && px <= 65536 ? px : 0;
 }
 
@@ -62,7 +54,7 @@ void find_size(const PercentLines& lines, StreamHeader& stream) {
     }
     if (stream.width > 0 && stream.height > 0) return;
     // Before 2021 only the system's number, or the name of its plugin, tells the sensor.
-    const int system = number<int>(lines.value("system_ID")).value_or(0);
+    const int system = number_in<int>(lines.value("system_ID")).value_or(0);
     const std::string_view plugin = lines.value("plugin_name");
     const auto named = [&](std::string_view sensor) {
         return plugin.find(sensor) != std::string_view::npos;
@@ -120,7 +112,7 @@ std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes)
     header.halves_swapped = lines.value("endianness") == "legacy" ||
                             option_of(lines.value("format"), "endianness") == "legacy";
     // Nearer to the ends of time than this, sums could overflow.
-    const auto base = number<std::int64_t>(lines.value("time_base_us")).value_or(0);
+    const auto base = number_in<std::int64_t>(lines.value("time_base_us")).value_or(0);
     if (base > -(std::int64_t(1) << 61) && base < (std::int64_t(1) << 61))
         header.time_base_us = base;
     return header;

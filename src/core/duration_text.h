@@ -3,7 +3,8 @@
 
 #include "src/core/sensor_time.h"
 
-#include <charconv>
+#include "src/core/number_text.h"
+
 #include <cmath>
 #include <optional>
 #include <string>
@@ -14,13 +15,10 @@ namespace eventide {
 /// "250us", "20ms" or "1.5s", to the microsecond; nothing for any other text, and beyond 1e12 s:
 /// far past every clock.
 inline std::optional<SensorDuration> read_duration(std::string_view text) noexcept {
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    const std::string_view unit{rest, std::size_t(end - rest)};
-    const double us_per_unit = unit == "us" ? 1 : unit == "ms" ? 1e3 : unit == "s" ? 1e6 : 0;
-    const double us = value * us_per_unit;
-    if (error != std::errc{} || us_per_unit == 0 || !(std::abs(us) <= 1e18)) return std::nullopt;
+    const auto value = take_number<double>(text);
+    const double us_per_unit = text == "us" ? 1 : text == "ms" ? 1e3 : text == "s" ? 1e6 : 0;
+    const double us = value.value_or(0) * us_per_unit;
+    if (!value || us_per_unit == 0 || !(std::abs(us) <= 1e18)) return std::nullopt;
     return SensorDuration{std::llround(us)};
 }
 

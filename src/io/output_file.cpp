@@ -2,6 +2,7 @@
 #include "src/io/output_file.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/io/file_identity.h"
 #include "src/io/system_words.h"
 
@@ -11,7 +12,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <utility>
@@ -32,10 +32,7 @@ std::optional<int> descriptor_named(const fs::path& path) {
     if (path == "/dev/stderr") return STDERR_FILENO;
     if (path.parent_path() != "/dev/fd" && path.parent_path() != "/proc/self/fd") return {};
     const std::string number = path.filename().string();
-    int descriptor = -1;
-    const char* end = number.data() + number.size();
-    const auto [rest, error] = std::from_chars(number.data(), end, descriptor);
-    return error == std::errc{} && rest == end ? std::optional{descriptor} : std::nullopt;
+    return number_in<int>(number);
 }
 
 Error existing_file(const std::string& name) {

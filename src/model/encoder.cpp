@@ -50,11 +50,8 @@ LatentMap Encoder::make_output() const {
     return latent;
 }
 
-void Encoder::encode(const VoxelGrid& grid, LatentMap& latent) noexcept {
+void Encoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
     core_->step(grid, latent);
-    latent.window = grid.window;
-    latent.events = grid.events;
-    latent.arrived = grid.arrived;
 }
 
 void Encoder::reset() noexcept {

@@ -1,7 +1,7 @@
 // The recurrent network: one voxel grid in, one latent map out, with a state that remembers.
 #pragma once
 
-#include "src/core/frame_data.h"
+#include "src/core/encode_stage.h"
 #include "src/model/engine.h"
 #include "src/model/model_file.h"
 
@@ -14,15 +14,12 @@ class EncoderCore;
 
 /// One thread at a time. After construction nothing fails, and with Engine::fast nothing is
 /// allocated.
-class Encoder {
+class Encoder final : public EncodeStage {
 public:
-    using Input = VoxelGrid;
-    using Output = LatentMap;
-
     /// For a sensor of width x height pixels (1 to 65535 each). Throws Error where the model does
     /// not hold together or the precision is not there.
     Encoder(const Model& model, int width, int height, const EngineOptions& options = {});
-    ~Encoder();
+    ~Encoder() override;
     Encoder(Encoder&&) noexcept;
     Encoder& operator=(Encoder&&) noexcept;
 
@@ -33,12 +30,9 @@ public:
     /// Which kernels and numbers run, for reports: "fast, bf16 (AVX512_BF16)".
     std::string description() const;
 
-    LatentMap make_output() const;
-    /// `grid` is [height][width][4 bins + 1]; `latent` is from make_output().
-    void encode(const VoxelGrid& grid, LatentMap& latent) noexcept;
-    void process(const VoxelGrid& grid, LatentMap& latent) noexcept { encode(grid, latent); }
+    LatentMap make_output() const override;
     /// Back to the state after construction.
-    void reset() noexcept;
+    void reset() noexcept override;
 
     /// The hidden state with the identity of the model and the sensor's size, to go on from later
     /// (write_safetensors keeps it as a file).
@@ -48,6 +42,9 @@ public:
     void restore(const TensorFile& state, const std::string& name);
 
 private:
+    /// `grid` is [height][width][4 bins + 1].
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
+
     int width_, height_, bins_, latent_height_, latent_width_, latent_channels_;
     std::string identity_;
     std::unique_ptr<EncoderCore> core_;

@@ -11,4 +11,16 @@ enum class Instructions { best, avx512, avx2, sse4 };
 /// comparisons; not while any encoder, renderer or Lpips exists: their weights are laid out for it.
 void limit_instructions(Instructions most);
 
+/// The same for a scope, and what held before afterwards, whatever happens.
+class LimitedInstructions {
+public:
+    explicit LimitedInstructions(Instructions most);
+    ~LimitedInstructions();
+    LimitedInstructions(const LimitedInstructions&) = delete;
+    LimitedInstructions& operator=(const LimitedInstructions&) = delete;
+
+private:
+    Instructions before_;
+};
+
 }  // namespace eventide

@@ -2,10 +2,10 @@
 #include "src/model/model_metadata.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -20,21 +20,20 @@ namespace {
                                       ", found '" + found + "'");
 }
 
-/// The whole text as a number, or nothing of it.
 template <typename T>
-bool parse_number(const std::string& text, T& value) {
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc{} && stop == end;
+bool read_into(const std::string& text, T& value) {
+    const auto found = number_in<T>(text);
+    value = found.value_or(value);
+    return found.has_value();
 }
 
 bool parse_list(const std::string& text, std::vector<int>& values) {
     values.clear();
     for (std::size_t at = 0; at <= text.size();) {
         const std::size_t comma = std::min(text.find(',', at), text.size());
-        int value = 0;
-        if (!parse_number(text.substr(at, comma - at), value)) return false;
-        values.push_back(value);
+        const auto value = number_in<int>(std::string_view{text}.substr(at, comma - at));
+        if (!value) return false;
+        values.push_back(*value);
         at = comma + 1;
     }
     return true;
@@ -67,7 +66,7 @@ Key whole_number(const char* name, int ModelConfig::*member) {
     return {name, "a whole number",
             [=](const ModelConfig& config) { return std::to_string(config.*member); },
             [=](const std::string& text, ModelConfig& config) {
-                return parse_number(text, config.*member);
+                return read_into(text, config.*member);
             }};
 }
 
@@ -75,7 +74,7 @@ Key number(const char* name, float ModelConfig::*member) {
     return {name, "a finite number",
             [=](const ModelConfig& config) { return number_text(config.*member); },
             [=](const std::string& text, ModelConfig& config) {
-                return parse_number(text, config.*member) && std::isfinite(config.*member);
+                return read_into(text, config.*member);
             }};
 }
 

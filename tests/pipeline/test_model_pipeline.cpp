@@ -1,8 +1,8 @@
 // The real model in the pipeline: threads and splits change no bit, and nothing is allocated.
-#include "pipeline/fusion_stage.h"
-#include "pipeline/model_stages.h"
+#include "pipeline/model_render_stage.h"
 #include "pipeline/parallel_tbb.h"
 #include "pipeline/pipeline.h"
+#include "src/model/encoder.h"
 #include "tests/model/streams.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/toy_stages.h"
@@ -39,9 +39,8 @@ struct ModelRun {
         : source(std::move(packets), false, kHeight, kWidth),
           encoder(model, kWidth, kHeight, options),
           renderer(model, kWidth, kHeight, options),
-          encode(encoder),
           render(renderer, request(settings.lookahead)),
-          pipeline({source, encode, render, {&sink}}, settings) {}
+          pipeline({source, encoder, render, {&sink}}, settings) {}
 
     static RenderRequest request(int lookahead) {
         RenderRequest request;
@@ -52,7 +51,6 @@ struct ModelRun {
     ToySource source;
     Encoder encoder;
     Renderer renderer;
-    ModelEncodeStage encode;
     ModelRenderStage render;
     ToySink sink;
     Pipeline pipeline;
@@ -93,9 +91,8 @@ struct FusedRun : DataObserver {
         : source(std::move(packets), false, kHeight, kWidth),
           encoder(model, kWidth, kHeight),
           renderer(model, kWidth, kHeight),
-          encode(encoder),
           render(renderer, ModelRun::request(settings.lookahead), kWidth, kHeight, images),
-          pipeline({source, encode, render, {&sink}, nullptr, this}, with_counts(settings)) {}
+          pipeline({source, encoder, render, {&sink}, nullptr, this}, with_counts(settings)) {}
 
     static PipelineSettings with_counts(PipelineSettings settings) {
         settings.events_per_pixel = true;
@@ -114,8 +111,7 @@ struct FusedRun : DataObserver {
     Encoder encoder;
     Renderer renderer;
     ImagesOnTheWay images;
-    ModelEncodeStage encode;
-    FusionRenderStage render;
+    ModelRenderStage render;
     ToySink sink;
     Pipeline pipeline;
 };
@@ -132,7 +128,7 @@ TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
         const PipelineSettings settings = settings_for(model, lookahead);
         FusedRun whole({bytes}, model, settings);
         whole.pipeline.run_sequential();
-        EXPECT_EQ(whole.render.fused().used(), 1U);
+        EXPECT_EQ(whole.render.fused()->used(), 1U);
         std::mt19937 rng{2};
         FusedRun split(ToySource::packets_of(bytes, 900, &rng), model, settings);
         split.pipeline.run();

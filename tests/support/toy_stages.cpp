@@ -150,7 +150,7 @@ LatentMap ToyEncoder::make_output() const {
     return latent;
 }
 
-void ToyEncoder::encode(const VoxelGrid& grid, LatentMap& latent) noexcept {
+void ToyEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
     if (before_encode) before_encode();
     for (int y = 0; y < state_.height(); ++y)
         for (int x = 0; x < state_.width(); ++x) {

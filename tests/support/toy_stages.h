@@ -115,13 +115,14 @@ public:
     explicit ToyEncoder(int height = kToyHeight, int width = kToyWidth)
         : state_(height, width, 2) {}
     LatentMap make_output() const override;
-    void encode(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     void reset() noexcept override;
 
     std::function<void()> before_encode;
     int resets = 0;
 
 private:
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
+
     Array3<float> state_;
 };
 

@@ -1,8 +1,8 @@
 // What bench_peers measured, for the report.
 #include "apps/cli/bench/report.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
-#include <charconv>
 #include <fstream>
 #include <sstream>
 
@@ -14,8 +14,8 @@ constexpr std::size_t kColumns = 8;
 
 template <typename T>
 bool read_number(const std::string& text, T& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} && end == text.data() + text.size() && value > 0;
+    value = number_in<T>(text).value_or(T{});
+    return value > 0;
 }
 
 bool read_row(const std::string& line, PeerRow& row) {

@@ -4,7 +4,7 @@
 #include "apps/cli/run/loaded_model.h"
 #include "apps/cli/run/reference_images.h"
 #include "pipeline/filters/event_filter.h"
-#include "pipeline/model_stages.h"
+#include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"
 #include "replay/real_time_playback.h"
 #include "src/binning/slicer_settings.h"
@@ -82,7 +82,6 @@ PipelineBench measure_pipeline(const std::shared_ptr<const RecordedPackets>& dat
     request.width = size.width;
     request.height = size.height;
     request.lookahead = settings.lookahead;
-    ModelEncodeStage encode{network.encoder()};
     ModelRenderStage render{network.renderer(), request};
     ReferenceImages references;
     ErrorSink sink{references, sensor, settings.lpips};
@@ -94,7 +93,8 @@ PipelineBench measure_pipeline(const std::shared_ptr<const RecordedPackets>& dat
     const auto filter =
         event_filter({"off", "model"}, network.config(), sensor.width, sensor.height);
     const std::unique_ptr<Recording> recording = playback(data, settings.speed);
-    Pipeline pipeline{{*recording, encode, render, {&sink}, filter.get(), &references}, how};
+    Pipeline pipeline{{*recording, network.encoder(), render, {&sink}, filter.get(), &references},
+                      how};
     const Stopper stopper{signals, [&] { pipeline.stop(); }};
     const auto begun = Clock::now();
     pipeline.run();

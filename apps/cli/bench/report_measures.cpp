@@ -60,13 +60,6 @@ double codes_against_double(const Model& model, const std::vector<bench::SceneWi
     return distance.rms();
 }
 
-/// Instructions as they were, whatever happens.
-class InstructionsHere {
-public:
-    explicit InstructionsHere(Instructions most) { limit_instructions(most); }
-    ~InstructionsHere() { limit_instructions(Instructions::best); }
-};
-
 class Measurement {
 public:
     Measurement(const ReportSettings& settings, Program& program)
@@ -163,7 +156,7 @@ private:
     SpeedRow speed_row(const std::string& name, const Arithmetic& arithmetic,
                        const std::vector<bench::SceneWindow>& windows,
                        const std::shared_ptr<const RecordedPackets>& data, const Report& report) {
-        const InstructionsHere here{arithmetic.instructions};
+        const LimitedInstructions here{arithmetic.instructions};
         const Size sensor{data->info.width, data->info.height};
         const std::filesystem::path file = find_model(name);
         const Model model = load_model(file);

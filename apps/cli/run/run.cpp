@@ -80,14 +80,9 @@ Run::Run(Program& program, RunSettings& settings)
       filter_{filter_of(settings, network_.config(), sensor_)},
       watch_{sheet_ ? &references_ : nullptr,
              settings.frames == CameraFrames::ignore ? nullptr : &images_},
-      encode_{network_.encoder()},
-      render_{network_.renderer(), request_of(settings, sensor_, lookahead_, undistortion_)} {
+      render_{render_stage()} {
     check_recording(settings, span_, slicer_);
     quality_.tell_rate(rate_.is_set() ? nominal_fps(rate_, slicer_, settings.slow) : 0);
-    if (settings.frames != CameraFrames::ignore)
-        fusion_.emplace(network_.renderer(),
-                        request_of(settings, sensor_, lookahead_, undistortion_), sensor_.width,
-                        sensor_.height, images_);
     if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
@@ -189,10 +184,15 @@ std::vector<HttpControl> Run::controls() {
     return controls;
 }
 
+ModelRenderStage Run::render_stage() {
+    const RenderRequest request = request_of(settings_, sensor_, lookahead_, undistortion_);
+    if (settings_.frames == CameraFrames::ignore) return {network_.renderer(), request};
+    return {network_.renderer(), request, sensor_.width, sensor_.height, images_};
+}
+
 PipelineParts Run::parts() {
-    RenderStage& render = fusion_ ? static_cast<RenderStage&>(*fusion_) : render_;
     EventFilter* last = events_out_ ? events_out_.get() : filter_.get();
-    PipelineParts parts{source(), encode_, render, {}, last, &watch_};
+    PipelineParts parts{source(), network_.encoder(), render_, {}, last, &watch_};
     for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
     return parts;
 }
@@ -210,7 +210,7 @@ PipelineSettings Run::pipeline_settings() {
     settings.event_preview = settings_.events || sheet_ || page_;
     settings.changes = page_ || quality_.changes_while_running() ? &changes_ : nullptr;
     settings.halvings = quality_.halvings();
-    settings.events_per_pixel = fusion_.has_value();
+    settings.events_per_pixel = render_.fused() != nullptr;
     settings.buffers = {std::size_t(settings_.buffers_packets),
                         std::size_t(settings_.buffers_grids),
                         std::size_t(settings_.buffers_latents)};
@@ -255,8 +255,8 @@ int Run::run() {
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping())
         spdlog::warn("{}", why);
-    if (fusion_ && fusion_->fused().used() > 0)
-        spdlog::info("frames corrected by {} of the camera's images", fusion_->fused().used());
+    if (render_.fused() != nullptr && render_.fused()->used() > 0)
+        spdlog::info("frames corrected by {} of the camera's images", render_.fused()->used());
     else if (settings_.frames == CameraFrames::use)
         spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
                      end_counters.images);

@@ -12,8 +12,7 @@
 #include "apps/cli/run/run_plan.h"
 #include "apps/cli/run/run_report.h"
 #include "pipeline/filters/filter_chain.h"
-#include "pipeline/fusion_stage.h"
-#include "pipeline/model_stages.h"
+#include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"
 
 #include <atomic>
@@ -63,6 +62,7 @@ private:
     double pace() const;
     RunQuality::Place quality_place() const;
     SinkPlan sink_plan();
+    ModelRenderStage render_stage();
     PipelineParts parts();
     PipelineSettings pipeline_settings();
     void run_pipeline();
@@ -99,9 +99,7 @@ private:
     std::optional<FilteredSource> filtered_;  // none: without --filter
     std::unique_ptr<EventsOut> events_out_;   // null: not asked for
     Watch watch_;
-    ModelEncodeStage encode_;
     ModelRenderStage render_;
-    std::optional<FusionRenderStage> fusion_;  // none: the camera's images are ignored
     LiveChanges changes_;
     std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
     std::vector<std::unique_ptr<Sink>> sinks_;

@@ -3,19 +3,15 @@
 
 #include "replay/formats.h"
 #include "src/core/error.h"
-
-#include <charconv>
-#include <system_error>
+#include "src/core/number_text.h"
 
 namespace eventide::app {
 
 TimePoint parse_time_point(const std::string& text) {
     if (!text.starts_with('@')) return {false, parse_duration(text)};
-    std::int64_t us = 0;
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data() + 1, end, us);
-    if (error != std::errc{} || rest != end) throw_usage("@ and microseconds", text);
-    return {true, SensorDuration{us}};
+    const auto us = number_in<std::int64_t>(std::string_view{text}.substr(1));
+    if (!us) throw_usage("@ and microseconds", text);
+    return {true, SensorDuration{*us}};
 }
 
 std::string show_time_point(const TimePoint& moment) {

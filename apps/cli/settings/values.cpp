@@ -3,6 +3,7 @@
 
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -14,37 +15,26 @@
 
 namespace eventide::app {
 
-namespace {
-
-/// The whole text as a number, or nothing.
-template <typename T>
-bool read(std::string_view text, T& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} && end == text.data() + text.size();
-}
-
-}  // namespace
-
 void throw_usage(const std::string& expected, const std::string& found) {
     throw Error(ErrorKind::usage, "expected " + expected + ", found '" + found + "'");
 }
 
 int parse_whole(const std::string& text, int least, int most) {
-    int value = 0;
-    if (!read(text, value) || value < least || value > most)
+    const auto value = number_in<int>(text);
+    if (!value || *value < least || *value > most)
         throw_usage("a whole number" +
                         (most == std::numeric_limits<int>::max()
                              ? " from " + std::to_string(least) + " up"
                              : " from " + std::to_string(least) + " to " + std::to_string(most)),
                     text);
-    return value;
+    return *value;
 }
 
 double parse_number(const std::string& text, double least, double most) {
-    double value = 0;
-    if (!read(text, value) || !(value >= least && value <= most))
+    const auto value = number_in<double>(text);
+    if (!value || !(*value >= least && *value <= most))
         throw_usage("a number from " + show_number(least) + " to " + show_number(most), text);
-    return value;
+    return *value;
 }
 
 std::string show_number(double value) {
@@ -64,8 +54,7 @@ std::size_t parse_choice(const std::string& text, const std::vector<std::string>
 
 SensorDuration parse_duration(const std::string& text, bool negative) {
     const auto found = read_duration(text);
-    double number = 0;
-    if (!found && read(text, number))
+    if (!found && number_in<double>(text))
         throw_usage("a time with its unit, " + text + "s, " + text + "ms or " + text + "us", text);
     if (!found || (found->count() < 0 && !negative))
         throw_usage("a time such as 1.5s, 20ms or 250us", text);
@@ -78,13 +67,10 @@ std::string show_duration(SensorDuration duration) {
 
 Size parse_size(const std::string& text) {
     constexpr int kMax = 16384;
-    const std::size_t cross = text.find('x');
-    Size size;
-    if (cross == text.npos || !read(std::string_view{text}.substr(0, cross), size.width) ||
-        !read(std::string_view{text}.substr(cross + 1), size.height) || size.width < 1 ||
-        size.height < 1 || size.width > kMax || size.height > kMax)
+    const auto [width, height] = size_in(text).value_or(std::pair{0, 0});
+    if (width < 1 || height < 1 || width > kMax || height > kMax)
         throw_usage("a size such as 640x480, each from 1 to " + std::to_string(kMax), text);
-    return size;
+    return {width, height};
 }
 
 std::string show_size(const Size& size) {

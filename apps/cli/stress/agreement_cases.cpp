@@ -52,24 +52,13 @@ Result float_kernels(const Bench& bench) {
     return result;
 }
 
-/// Back to what was asked for, whatever happens.
-class InstructionsHere {
-public:
-    explicit InstructionsHere(Instructions asked) : asked_{asked} {}
-    ~InstructionsHere() { limit_instructions(asked_); }
-
-private:
-    Instructions asked_;
-};
-
 Result instruction_sets(const Bench& bench) {
     Result result;
-    const InstructionsHere asked{bench.instructions};
     for (const auto& [name, most] :
          {std::pair{"SSE4", Instructions::sse4}, std::pair{"AVX2", Instructions::avx2},
           std::pair{"best", Instructions::best}}) {
         if (most < bench.instructions) continue;  // the enumerators go down
-        limit_instructions(most);
+        const LimitedInstructions here{most};
         const PipelineOutcome outcome = measured(bench, with(bench, Precision::f32, Kernels::own));
         add(outcome, outcome.engine, result);
     }

@@ -48,14 +48,15 @@ public:
     GridHook(EncodeStage& stage, const std::function<void(VoxelGrid&)>& hook)
         : stage_{stage}, hook_{hook} {}
     LatentMap make_output() const override { return stage_.make_output(); }
-    void encode(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+    void reset() noexcept override { stage_.reset(); }
+
+private:
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
         VoxelGrid changed = grid;
         hook_(changed);
         stage_.encode(changed, latent);
     }
-    void reset() noexcept override { stage_.reset(); }
 
-private:
     EncodeStage& stage_;
     const std::function<void(VoxelGrid&)>& hook_;
 };

@@ -3,7 +3,7 @@
 
 #include "apps/cli/stress/process_size.h"
 #include "pipeline/latency.h"
-#include "pipeline/model_stages.h"
+#include "pipeline/model_render_stage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,16 +72,9 @@ StateSize size_of(const TensorFile& state, const ModelConfig& config) {
 class WatchedStates final : public EncodeStage {
 public:
     WatchedStates(Encoder& encoder, const ModelConfig& config)
-        : stage_{encoder}, encoder_{encoder}, config_{config} {}
-    LatentMap make_output() const override { return stage_.make_output(); }
-    void encode(const VoxelGrid& grid, LatentMap& latent) noexcept override {
-        stage_.encode(grid, latent);
-        if (!asked_.exchange(false)) return;
-        const StateSize size = size_of(encoder_.state(), config_);
-        const std::lock_guard lock{mutex_};
-        size_ = size;
-    }
-    void reset() noexcept override { stage_.reset(); }
+        : encoder_{encoder}, config_{config} {}
+    LatentMap make_output() const override { return encoder_.make_output(); }
+    void reset() noexcept override { encoder_.reset(); }
     /// Of the window at which it was asked last; asks again. Thread: any.
     StateSize ask() {
         asked_ = true;
@@ -90,7 +83,14 @@ public:
     }
 
 private:
-    ModelEncodeStage stage_;
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+        encoder_.encode(grid, latent);
+        if (!asked_.exchange(false)) return;
+        const StateSize size = size_of(encoder_.state(), config_);
+        const std::lock_guard lock{mutex_};
+        size_ = size;
+    }
+
     Encoder& encoder_;
     const ModelConfig& config_;
     std::atomic<bool> asked_{true};

@@ -114,7 +114,7 @@ void Judge::rendered(SensorTime t, const Window& window, const RenderRequest& re
     if (!sigma.empty()) frames_.add(sigma.values(), exact.sigma.values());
 }
 
-void JudgedEncodeStage::encode(const VoxelGrid& grid, LatentMap& latent) noexcept {
+void JudgedEncodeStage::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
     if (judge_ != nullptr) judge_->before_encoding(encoder_);
     encoder_.encode(grid, latent);
     if (judge_ != nullptr) judge_->encoded(grid, latent);

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "apps/cli/stress/double_network.h"
-#include "pipeline/model_stages.h"
+#include "pipeline/model_render_stage.h"
+#include "src/model/encoder.h"
 #include "src/model/plain_renderer.h"
 
 #include <deque>
@@ -59,10 +60,10 @@ public:
     /// `judge` may be null.
     JudgedEncodeStage(Encoder& encoder, Judge* judge) : encoder_(encoder), judge_(judge) {}
     LatentMap make_output() const override { return encoder_.make_output(); }
-    void encode(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     void reset() noexcept override;
 
 private:
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     Encoder& encoder_;
     Judge* judge_;
 };

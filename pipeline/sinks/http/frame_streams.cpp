@@ -1,9 +1,9 @@
 #include "pipeline/sinks/http/frame_streams.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <utility>
 
@@ -68,10 +68,8 @@ Show show_named(const std::string& word) {
 }
 
 double rate_named(const std::string& word) {
-    double rate = 0;
-    const char* const end = word.data() + word.size();
-    const auto result = std::from_chars(word.data(), end, rate);
-    if (result.ec != std::errc{} || result.ptr != end || !(rate >= 0.1 && rate <= 1000))
+    const double rate = number_in<double>(word).value_or(0);
+    if (!(rate >= 0.1 && rate <= 1000))
         throw Error(ErrorKind::usage, "fps: expected a number from 0.1 to 1000");
     return rate;
 }

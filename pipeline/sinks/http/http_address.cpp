@@ -1,12 +1,12 @@
 #include "pipeline/sinks/http/http_address.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
 
 #include <algorithm>
-#include <charconv>
 
 namespace eventide {
 
@@ -19,10 +19,8 @@ namespace {
 }
 
 int parse_port(std::string_view digits, std::string_view text) {
-    int port = -1;
-    const char* const end = digits.data() + digits.size();
-    const auto result = std::from_chars(digits.data(), end, port);
-    if (result.ec != std::errc{} || result.ptr != end || port < 0 || port > 65535) refuse(text);
+    const int port = number_in<int>(digits).value_or(-1);
+    if (port < 0 || port > 65535) refuse(text);
     return port;
 }
 

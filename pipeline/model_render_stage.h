@@ -1,0 +1,73 @@
+// The model as the pipeline's render stage, corrected by the camera's own images where they are
+// given.
+#pragma once
+
+#include "pipeline/images_on_the_way.h"
+#include "pipeline/stages.h"
+#include "src/model/fused_renderer.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace eventide {
+
+class ModelRenderStage final : public RenderStage {
+public:
+    /// Of the request everything but `t` holds for all frames; its lookahead is the pipeline's.
+    ModelRenderStage(Renderer& renderer, const RenderRequest& request)
+        : renderer_(renderer), request_(request) {}
+    /// Frames are corrected by `images`, into which every image of the source is put; needs
+    /// LatentMap::events_per_pixel.
+    ModelRenderStage(Renderer& renderer, const RenderRequest& request, int sensor_width,
+                     int sensor_height, ImagesOnTheWay& images)
+        : renderer_(renderer),
+          request_(request),
+          images_(&images),
+          fused_(std::in_place, renderer, sensor_width, sensor_height, request.lookahead) {
+        fused_->prepare(request_);
+    }
+
+    Frame make_output() const override { return renderer_.make_output(request_); }
+    void push(const LatentMap& latent) noexcept override {
+        renderer_.push(latent);
+        if (!fused_) return;
+        while (auto image = images_->take(latent.images))
+            if (!latent.reset_before) fused_->give(std::move(*image));  // else of the old clock
+        fused_->push(latent.window, latent.events_per_pixel);
+    }
+    void finish() noexcept override { renderer_.finish(); }
+    void reset() noexcept override {
+        renderer_.reset();
+        if (fused_) fused_->reset();
+    }
+    void render(SensorTime t, const Window& window, Frame& frame) noexcept override {
+        // The stream's first frame may stand at the first window's begin, which is outside it.
+        request_.t = std::max(t, window.begin + SensorDuration{1});
+        fused_ ? fused_->render(request_, frame) : renderer_.render(request_, frame);
+    }
+    bool change_lookahead(int lookahead) override {
+        request_.lookahead = lookahead;
+        if (fused_) fused_->change_lookahead(lookahead);
+        return true;
+    }
+    bool change_size(int width, int height, Frame& frame) override {
+        RenderRequest request = request_;
+        request.width = width;
+        request.height = height;
+        frame = renderer_.make_output(request);
+        if (fused_) fused_->prepare(request);
+        request_ = request;
+        return true;
+    }
+
+    /// After the run; null where no images are taken.
+    const FusedRenderer* fused() const { return fused_ ? &*fused_ : nullptr; }
+
+private:
+    Renderer& renderer_;
+    RenderRequest request_;
+    ImagesOnTheWay* images_ = nullptr;
+    std::optional<FusedRenderer> fused_;
+};
+
+}  // namespace eventide
