@@ -36,7 +36,7 @@ FrameOutput::FrameOutput(RenderStage& renderer, std::vector<Sink*> sinks, const 
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(settings.lookahead));
 }
 
-bool FrameOutput::take(const Encoded& encoded) {
+void FrameOutput::accept(const Encoded& encoded) {
     const LatentMap& latent = encoded.latent;
     if (latent.reset_before) {
         finish();
@@ -51,6 +51,9 @@ bool FrameOutput::take(const Encoded& encoded) {
     held.events = latent.events;
     held.gap_before = latent.gap_before;
     held.event_preview = encoded.event_preview;
+}
+
+bool FrameOutput::present() {
     while (held_count_ > std::size_t(lookahead_)) present_oldest();
     return wanted_;
 }

@@ -31,9 +31,9 @@ FrameOutput::Settings presenter_settings(const PipelineParts& parts,
     s.allow_silence = settings.allow_silence;
     s.changes = settings.changes;
     s.halvings = settings.halvings;
-    // One buffer is being rendered and one being filled; were all the others waiting, the encoder
-    // would wait, too, and in the end the camera lose events.
-    s.waits_at_most = settings.buffers.latents > 2 ? settings.buffers.latents - 2 : 1;
+    // One buffer is being filled; were all the others waiting, the encoder would wait, too, and in
+    // the end the camera lose events.
+    s.waits_at_most = settings.buffers.latents > 1 ? settings.buffers.latents - 1 : 1;
     return s;
 }
 
@@ -114,7 +114,14 @@ void Pipeline::encode() {  // grids -> latent maps
 }
 
 void Pipeline::present() {  // latent maps -> frames -> sinks
-    const bool complete = for_each(latents_, [&](const Encoded& encoded) { present_one(encoded); });
+    const bool complete = guarded([&] {
+        while (auto encoded = latents_.pop()) {
+            presenter_.accept(**encoded);
+            encoded.reset();  // home, before its frames are rendered
+            if (!presenter_.present()) stop();
+        }
+    });
+    while (!complete && latents_.pop()) continue;
     if (complete) guarded([&] { presenter_.finish(); });
 }
 

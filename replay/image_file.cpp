@@ -1,10 +1,10 @@
 // An image file as a reference image; the one file of replay/ that uses OpenCV (imgcodecs).
 #include "replay/image_file.h"
 
+#include "src/io/image_codecs.h"
 #include "src/io/input_file.h"
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include <filesystem>
 
@@ -24,7 +24,7 @@ cv::Mat read_image_pixels(const std::string& path) {
         return {};
     }
     try {
-        return cv::imread(path, cv::IMREAD_UNCHANGED);
+        return read_image(path, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception&) {
         return {};
     }

@@ -1,8 +1,7 @@
 // Images on disk against images on disk: any method's output can be judged.
 #include "apps/evaluate/evaluate.h"
 #include "src/core/error.h"
-
-#include <opencv2/imgcodecs.hpp>
+#include "src/io/image_codecs.h"
 
 #include <algorithm>
 #include <set>
@@ -13,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Array2<float> read_intensity(const fs::path& path) {
-    const cv::Mat image = cv::imread(path.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+    const cv::Mat image = read_image(path.string(), cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
     if (image.empty() || (image.depth() != CV_8U && image.depth() != CV_16U))
         throw Error(ErrorKind::input, path.string() + ": expected an image of 8 or 16 bit");
     cv::Mat scaled;

@@ -56,7 +56,20 @@ target_include_directories(eventide_concurrentqueue SYSTEM INTERFACE ${CONCURREN
 # OpenCV 4.6 headers warn under C++20; they are system headers to us.
 add_library(eventide_opencv INTERFACE)
 target_include_directories(eventide_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-target_link_libraries(eventide_opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs)
+target_link_libraries(eventide_opencv INTERFACE opencv_core opencv_imgproc)
+# Those that bring a hundred others are loaded when they are first used, by the name that whoever links them would load them by.
+foreach(part IMGCODECS HIGHGUI)
+  string(TOLOWER opencv_${part} target)
+  get_target_property(configuration ${target} IMPORTED_CONFIGURATIONS)
+  list(GET configuration 0 configuration)
+  get_target_property(EVENTIDE_OPENCV_${part} ${target} IMPORTED_SONAME_${configuration})
+  if(NOT EVENTIDE_OPENCV_${part})
+    message(FATAL_ERROR "OpenCV: expected ${target} as a shared library, found none")
+  endif()
+endforeach()
+# What looks at image files in tests.
+add_library(eventide_opencv_files INTERFACE)
+target_link_libraries(eventide_opencv_files INTERFACE eventide_opencv opencv_imgcodecs)
 
 if(EVENTIDE_TESTS)
   find_package(GTest REQUIRED)

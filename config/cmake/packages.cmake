@@ -21,7 +21,12 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libeventide-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION})")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION}: headers for C++ and C")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME eventide)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION})")  # for its models
+# Loaded when an image file or a window is asked for: "libopencv_imgcodecs.so.406" is of libopencv-imgcodecs406.
+foreach(part IMGCODECS HIGHGUI)
+  string(REGEX REPLACE "^libopencv_(.*)\\.so\\.(.*)$" "libopencv-\\1\\2" opencv_${part} ${EVENTIDE_OPENCV_${part}})
+endforeach()
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS ${opencv_IMGCODECS})
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION}), ${opencv_IMGCODECS}, ${opencv_HIGHGUI}")  # its models
 # Loaded when a ROS 2 topic is named or an HDF5 file is opened, so that dpkg-shlibdeps does not see them.
 if(EVENTIDE_ROS2_ENABLED)
   list(APPEND loaded libddsc0debian)

@@ -6,8 +6,7 @@
 #include "pipeline/ros2/stamp_clock.h"
 #include "pipeline/sinks/draw_frame.h"
 #include "src/core/error.h"
-
-#include <opencv2/imgcodecs.hpp>
+#include "src/io/image_codecs.h"
 
 #include <chrono>
 #include <cstdint>
@@ -102,6 +101,7 @@ public:
         : writer{std::move(participant), kCompressedImageType, ros_name},
           encoding_{encoding},
           extension_{compression == ImageCompression::jpeg ? ".jpg" : ".png"} {
+        load_image_codecs();
         const std::string name{name_of(encoding)};
         format_ = name + (compression == ImageCompression::jpeg ? "; jpeg" : "; png") +
                   " compressed " + name;
@@ -112,7 +112,7 @@ public:
         const cv::Mat picture(image.height(), image.width(),
                               encoding_ == ImageEncoding::mono8 ? CV_8UC1 : CV_16UC1,
                               pixels_.data());
-        if (!cv::imencode(extension_, picture, bytes_))
+        if (!encode_image(extension_, picture, bytes_))
             throw Error(ErrorKind::failed, "ros2: OpenCV cannot write " + extension_);
         sensor_msgs_msg_dds__CompressedImage_ message{};
         message.header = header;

@@ -2,9 +2,9 @@
 #include "pipeline/sinks/contact_sheet.h"
 
 #include "src/core/error.h"
+#include "src/io/image_codecs.h"
 #include "src/io/output_file.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <chrono>
@@ -36,7 +36,7 @@ void caption(cv::Mat& sheet, const std::string& text, int x, int y) {
 
 ContactSheetSink::ContactSheetSink(ContactSheetSettings settings) : settings_{std::move(settings)} {
     refuse_existing(settings_.path, settings_.overwrite);
-    if (!cv::haveImageWriter(settings_.path.string()))
+    if (!can_write_image(settings_.path.string()))
         throw Error(ErrorKind::usage,
                     settings_.path.string() + ": expected the name of an image, such as sheet.png");
 }
@@ -115,7 +115,7 @@ void ContactSheetSink::close() {
     for (std::size_t i = 0; i < count; ++i)
         rows.push_back(kept_[(2 * i + 1) * kept_.size() / (2 * count)]);
     std::vector<unsigned char> bytes;
-    if (!cv::imencode(settings_.path.extension().string(), lay_out(rows), bytes))
+    if (!encode_image(settings_.path.extension().string(), lay_out(rows), bytes))
         throw Error(ErrorKind::failed, settings_.path.string() + ": cannot be encoded");
     write_file(settings_.path, std::as_bytes(std::span{bytes}), settings_.overwrite);
 }

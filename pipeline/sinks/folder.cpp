@@ -2,9 +2,8 @@
 #include "pipeline/sinks/folder.h"
 
 #include "src/core/error.h"
+#include "src/io/image_codecs.h"
 #include "src/io/output_file.h"
-
-#include <opencv2/imgcodecs.hpp>
 
 #include <cinttypes>
 #include <cstdio>
@@ -36,7 +35,7 @@ void write_image(const fs::path& file, const cv::Mat& image, const char* extensi
     bool encoded = false;
     std::string reason;
     try {
-        encoded = cv::imencode(extension, image, bytes, options);
+        encoded = encode_image(extension, image, bytes, options);
     } catch (const cv::Exception& error) {
         reason = std::string{": "} + error.what();
     }
@@ -60,6 +59,7 @@ FolderSink::FolderSink(FolderSettings settings)
       seconds_{settings_.path / "timestamps.txt", {.appears = Appears::growing}},
       table_{settings_.path / "timestamps.csv", {.appears = Appears::growing}} {
     table_.write("frame,index,t_us,window_begin_us,window_end_us,events,lost\n");
+    load_image_codecs();
 }
 
 void FolderSink::write(const Frame& frame) {

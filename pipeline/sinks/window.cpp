@@ -1,9 +1,8 @@
 // Frames in a window on the screen, through OpenCV's HighGUI.
 #include "pipeline/sinks/window.h"
 
+#include "pipeline/sinks/highgui.h"
 #include "src/core/error.h"
-
-#include <opencv2/highgui.hpp>
 
 #include <dlfcn.h>
 
@@ -79,6 +78,7 @@ void WindowControls::press(int key) {
 
 WindowSink::WindowSink(WindowSettings settings) : settings_{std::move(settings)} {
     require_display();
+    highgui();  // loaded
     if (settings_.uncertainty == Uncertainty::alpha ||
         settings_.uncertainty == Uncertainty::separate)
         throw Error(ErrorKind::usage,
@@ -107,25 +107,26 @@ void WindowSink::show(const Frame& frame) {
     draw(frame, controls_.uncertainty, settings_.sigma_white, image_);
     draw_events_beside(frame, image_);
     if (!open_) {
-        cv::namedWindow(settings_.title, cv::WINDOW_NORMAL | cv::WINDOW_KEEPRATIO);
-        cv::resizeWindow(settings_.title, std::max(640, image_.cols),
-                         std::max(640, image_.cols) * image_.rows / image_.cols);
+        highgui().named_window(settings_.title, cv::WINDOW_NORMAL | cv::WINDOW_KEEPRATIO);
+        highgui().resize_window(settings_.title, std::max(640, image_.cols),
+                                std::max(640, image_.cols) * image_.rows / image_.cols);
         open_ = true;
     }
-    cv::imshow(settings_.title, image_);
+    highgui().show(settings_.title, image_);
 }
 
 void WindowSink::react(int wait_ms) {
     const double speed = controls_.speed;
-    controls_.press(cv::waitKey(wait_ms));
+    controls_.press(highgui().wait_key(wait_ms));
     if (speed != controls_.speed && settings_.speed_changed)
         settings_.speed_changed(controls_.speed);
-    if (cv::getWindowProperty(settings_.title, cv::WND_PROP_VISIBLE) == 0) controls_.closed = true;
+    if (highgui().window_property(settings_.title, cv::WND_PROP_VISIBLE) == 0)
+        controls_.closed = true;
 }
 
 void WindowSink::close() {
     if (!std::exchange(open_, false)) return;
-    cv::destroyWindow(settings_.title);
+    highgui().destroy_window(settings_.title);
 }
 
 }  // namespace eventide

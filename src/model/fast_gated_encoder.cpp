@@ -78,11 +78,14 @@ bool FastGatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
 }
 
 void FastGatedEncoder::advance(GatedLevel& level, const Array3<float>& grid) noexcept {
-    runner_.over(level.tiles(), level.mask(), [&](std::size_t i, const Tile&, float* scratch) {
+    const auto advance = [&](std::size_t i, const Tile&, float* scratch) {
         level.advance(grid, states_, i, scratch);
-    });
-    runner_.over(level.tiles(), level.mask(),
-                 [&](std::size_t i, const Tile&, float*) { level.commit(states_, i); });
+    };
+    if (level.is_recurrent())
+        runner_.in_groups(level.tiles(), level.mask(), level.group(), advance,
+                          [&](std::size_t i, const Tile&, float*) { level.commit(states_, i); });
+    else
+        runner_.over(level.tiles(), level.mask(), advance);
 }
 
 void FastGatedEncoder::reset() noexcept {

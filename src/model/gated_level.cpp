@@ -21,6 +21,9 @@ void fetch(const float* numbers, std::size_t n) {
     for (std::size_t i = 0; i < n; i += kLine) __builtin_prefetch(numbers + i);
 }
 
+/// Enough tiles for all threads, few enough that not every tile's next state is held at once.
+constexpr std::size_t kLeastGroup = 32;
+
 /// What a GRU's step reads of its input reaches 2 further than its tile.
 constexpr int kGruReach = 2;
 
@@ -44,27 +47,31 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
                                       number == 0 ? "encoder.in" : encoder_layer("down", number)),
            number == 0 ? 1 : 2, true, arithmetic,
            extents_of(tiles_, recurrent_ ? kGruReach : 0, size.height, size.width)};
-    if (recurrent_)
-        gru_ = {plain::gru_weights<float>(model.weights, encoder_layer("gru", number)), size,
-                tiles_, side_, arithmetic};
-    else
-        for (const Tile& tile : tiles_)
-            held_.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
-                               std::size_t(units()));
+    if (!recurrent_) return;
+    const auto row = std::size_t(std::ranges::count(tiles_, tiles_.front().y0, &Tile::y0));
+    group_ = row * ((kLeastGroup + row - 1) / row);
+    gru_ = {plain::gru_weights<float>(model.weights, encoder_layer("gru", number)),
+            size,
+            tiles_,
+            side_,
+            arithmetic,
+            2 * group_};
 }
 
-// Scratch of the top level: the compressed grid as layers read it, then a row of it in float32.
+// Scratch of a level that is not recurrent: a tile's next state, and what feed() needs. Of the top
+// level: the compressed grid as layers read it, then a row of it in float32.
 std::size_t GatedLevel::scratch_size() const {
     const int side = side_ + (recurrent_ ? 2 * kGruReach : 0);
     const auto wide = std::size_t(side + 2);
     const std::size_t grid =
         number_ == 0 ? wide * wide * std::size_t(in_.numbers().units(inputs_)) : 0;
     const std::size_t row = number_ == 0 ? wide * std::size_t(inputs_) : 0;
-    return gru_.scratch_size() + grid + std::max(row, in_.scratch_size(side, side));
+    const std::size_t next = recurrent_ ? gru_.scratch_size() : next_size();
+    return next + grid + std::max(row, in_.scratch_size(side, side));
 }
 
-void GatedLevel::advance(const Array3<float>& grid, const std::vector<StateMap>& states,
-                         std::size_t i, float* scratch) noexcept {
+void GatedLevel::advance(const Array3<float>& grid, std::vector<StateMap>& states, std::size_t i,
+                         float* scratch) noexcept {
     if (recurrent_) {
         float* rest = scratch + gru_.scratch_size();
         gru_.step(states[number_], i, &mask_, scratch,
@@ -72,18 +79,17 @@ void GatedLevel::advance(const Array3<float>& grid, const std::vector<StateMap>&
         return;
     }
     const Tile& tile = tiles_[i];
-    feed(grid, states, {tile, held_[i].data(), std::ptrdiff_t(tile.width()) * units()}, scratch);
+    feed(grid, states, {tile, scratch, std::ptrdiff_t(tile.width()) * units()},
+         scratch + next_size());
+    write(states[number_].read(), tile, scratch);
 }
 
 void GatedLevel::commit(std::vector<StateMap>& states, std::size_t i) noexcept {
-    if (recurrent_) {
-        gru_.commit(states[number_], i);
-        return;
-    }
-    PaddedMap& h = states[number_].read();
-    const Tile& tile = tiles_[i];
+    gru_.commit(states[number_], i);
+}
+
+void GatedLevel::write(PaddedMap& h, const Tile& tile, const float* next) const noexcept {
     const auto u = std::size_t(units()), row = std::size_t(tile.width()) * u;
-    const float* next = held_[i].data();
     for (int y = tile.y0; y < tile.y1; ++y, next += row) {
         if (std::memchr(&mask_(y, tile.x0), 0, std::size_t(tile.width())) == nullptr) {
             std::memcpy(h.at(y, tile.x0), next, row * sizeof(float));

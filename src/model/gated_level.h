@@ -14,8 +14,8 @@ namespace eventide {
 /// "encoder.PART.I"
 std::string encoder_layer(const char* part, std::size_t i);
 
-/// A step reads neighbouring tiles' old state, so it has two halves: advance() of all tiles writes
-/// aside, commit() of all tiles brings it into the map.
+/// A recurrent level's step reads neighbouring tiles' old state, so it has two halves: advance() of
+/// all tiles writes aside, commit() of all tiles brings it into the map. Others have no commit().
 class GatedLevel {
 public:
     GatedLevel(const Model& model, std::size_t number, Extent size, const Arithmetic& arithmetic);
@@ -29,16 +29,24 @@ public:
 
     /// Numbers advance() needs.
     std::size_t scratch_size() const;
-    /// The next state of tile i, aside. `states`: those of all levels; the top one reads `grid`.
-    void advance(const Array3<float>& grid, const std::vector<StateMap>& states, std::size_t i,
+    bool is_recurrent() const { return recurrent_; }
+    /// Of a recurrent level: consecutive tiles in whole rows. commit() of a group comes after
+    /// advance() of the next one, and before that of the one behind it.
+    std::size_t group() const { return group_; }
+    /// The next state of tile i. `states`: those of all levels; the top one reads `grid`.
+    void advance(const Array3<float>& grid, std::vector<StateMap>& states, std::size_t i,
                  float* scratch) noexcept;
     void commit(std::vector<StateMap>& states, std::size_t i) noexcept;
 
 private:
     using Target = ConvGru::Target;
     int units() const { return in_.numbers().units(channels_); }
+    /// Numbers of a tile's next state.
+    std::size_t next_size() const { return std::size_t(side_ * side_ * units()); }
     void feed(const Array3<float>& grid, const std::vector<StateMap>& states, const Target& target,
               float* scratch) const noexcept;
+    /// Into the map, where the mask says so.
+    void write(PaddedMap& h, const Tile& tile, const float* next) const noexcept;
     void feed_grid(const Array3<float>& grid, const Target& target, float* scratch) const noexcept;
 
     std::size_t number_;
@@ -47,8 +55,8 @@ private:
     std::vector<Tile> tiles_;
     PackedConv in_;  // from the grid, or from the level above
     bool recurrent_;
+    std::size_t group_ = 0;
     ConvGru gru_;
-    std::vector<FloatBuffer> held_;  // next state of a level that is not recurrent, per tile
     Mask mask_;
 };
 

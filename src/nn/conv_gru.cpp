@@ -24,7 +24,8 @@ std::size_t square(int n) {
 }  // namespace
 
 ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
-                 const std::vector<Tile>& tiles, int side, const Arithmetic& arithmetic)
+                 const std::vector<Tile>& tiles, int side, const Arithmetic& arithmetic,
+                 std::size_t held)
     : channels_(weights.candidate.out),
       side_(side),
       tiles_(tiles),
@@ -32,9 +33,11 @@ ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
              {channels_, channels_}),
       candidate_(weights.candidate, 1, false, arithmetic,
                  extents_of(tiles, 0, map.height, map.width), {channels_, channels_}) {
+    std::size_t largest = 0;
     for (const Tile& tile : tiles_)
-        next_.emplace_back(std::size_t(tile.height()) * std::size_t(tile.width()) *
-                           std::size_t(channels_));
+        largest = std::max(largest, std::size_t(tile.height()) * std::size_t(tile.width()));
+    next_.assign(held == 0 ? tiles_.size() : std::min(held, tiles_.size()),
+                 FloatBuffer(largest * std::size_t(channels_)));
 }
 
 std::size_t ConvGru::scratch_size() const {
@@ -103,7 +106,7 @@ void ConvGru::update(const StateMap& state, std::size_t i, const Mask* mask, flo
                      float* candidate) noexcept {
     const Tile& tile = tiles_[i];
     const std::ptrdiff_t row = std::ptrdiff_t(tile.width()) * channels_;
-    float* next = next_[i].data();
+    float* next = next_[i % next_.size()].data();
     for (int y = tile.y0; y < tile.y1; ++y, next += row, candidate += row) {
         vector_kernels().update_state(state.exact().at(y, tile.x0), gates_at(gates, i, y, tile.x0),
                                       2 * std::ptrdiff_t(channels_), candidate, next, channels_,
@@ -125,7 +128,7 @@ void ConvGru::keep_unmasked(const PaddedMap& state, const Mask& mask, int y, con
 void ConvGru::commit(StateMap& state, std::size_t i) noexcept {
     const Tile& tile = tiles_[i];
     const auto width = std::size_t(tile.width()), row = width * std::size_t(channels_);
-    const float* next = next_[i].data();
+    const float* next = next_[i % next_.size()].data();
     for (int y = tile.y0; y < tile.y1; ++y, next += row) {
         if (state.has_both()) std::memcpy(state.exact().at(y, tile.x0), next, row * sizeof(float));
         state.numbers().narrow(next, width, channels_, state.read().at(y, tile.x0));

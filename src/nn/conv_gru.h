@@ -25,9 +25,10 @@ public:
     };
 
     ConvGru() = default;
-    /// For maps of height x width cut into `tiles`, each at most `side` x `side`.
+    /// For maps of height x width cut into `tiles`, each at most `side` x `side`. `held`: at any
+    /// time only so many consecutive tiles are between step() and commit(); 0: all of them.
     ConvGru(const plain::GruWeights<float>& weights, Extent map, const std::vector<Tile>& tiles,
-            int side, const Arithmetic& arithmetic);
+            int side, const Arithmetic& arithmetic, std::size_t held = 0);
 
     /// Scratch numbers step() needs.
     std::size_t scratch_size() const;
@@ -74,7 +75,7 @@ private:
     int channels_ = 0, side_ = 0;
     std::vector<Tile> tiles_;
     PackedConv gates_, candidate_;
-    std::vector<FloatBuffer> next_;  // per tile, [y][x][C]
+    std::vector<FloatBuffer> next_;  // of tile i in i % size, [y][x][C]
 };
 
 }  // namespace eventide

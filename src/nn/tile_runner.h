@@ -3,6 +3,7 @@
 
 #include "src/nn/conv_gru.h"
 #include "src/nn/tiling.h"
+#include "src/nn/untouched_zeros.h"
 
 #include <utility>
 #include <vector>
@@ -18,7 +19,8 @@ public:
     /// `scratch` numbers for each lane, and no more than `tiles` tiles at a time. Nothing allocates
     /// after it.
     void make_room(std::size_t scratch, std::size_t tiles) {
-        scratch_.assign(kLanes, FloatBuffer(scratch));
+        scratch_.clear();
+        for (int lane = 0; lane < kLanes; ++lane) scratch_.emplace_back(scratch);
         active_.reserve(tiles);
     }
 
@@ -34,20 +36,58 @@ public:
     /// The same for the tiles in which `where` has anything.
     template <typename Body>
     void over(const std::vector<Tile>& tiles, const Mask& where, const Body& body) noexcept {
+        choose(tiles, where);
+        run(tiles, {0, active_.size()}, body);
+    }
+
+    /// Of work in two halves: first() of the tiles of one group of `group` consecutive ones, then
+    /// second() of those of the group before. At most two groups are between their halves.
+    template <typename First, typename Second>
+    void in_groups(const std::vector<Tile>& tiles, const Mask& where, std::size_t group,
+                   const First& first, const Second& second) noexcept {
+        choose(tiles, where);
+        Range before;
+        for (std::size_t at = 0; at < active_.size();) {
+            const std::size_t number = group_of(at, group);
+            Range now{at, at + 1};
+            while (now.end < active_.size() && group_of(now.end, group) == number) ++now.end;
+            // None of the group between has work, and this one takes the place of the one before.
+            const bool is_next =
+                before.end > before.begin && number == group_of(before.begin, group) + 1;
+            if (!is_next) run(tiles, std::exchange(before, {}), second);
+            run(tiles, now, first);
+            run(tiles, before, second);
+            before = now;
+            at = now.end;
+        }
+        run(tiles, before, second);
+    }
+
+private:
+    /// Of active_.
+    struct Range {
+        std::size_t begin = 0, end = 0;
+    };
+    void choose(const std::vector<Tile>& tiles, const Mask& where) noexcept {
         active_.clear();
         for (std::size_t i = 0; i < tiles.size(); ++i)
             if (!skip_quiet_ || tiles[i].any(where)) active_.push_back(int(i));
-        for_each_tile(parallel_for_, int(active_.size()), [&](int lane, int n) {
-            const auto i = std::size_t(active_[std::size_t(n)]);
+    }
+    std::size_t group_of(std::size_t at, std::size_t group) const {
+        return std::size_t(active_[at]) / group;
+    }
+    template <typename Body>
+    void run(const std::vector<Tile>& tiles, const Range& range, const Body& body) noexcept {
+        for_each_tile(parallel_for_, int(range.end - range.begin), [&](int lane, int n) {
+            const auto i = std::size_t(active_[range.begin + std::size_t(n)]);
             body(i, tiles[i], scratch_[std::size_t(lane)].data());
         });
     }
 
-private:
     ParallelFor parallel_for_;
     bool skip_quiet_;
-    std::vector<FloatBuffer> scratch_;  // per lane
-    std::vector<int> active_;           // numbers of the tiles at work
+    std::vector<UntouchedZeros> scratch_;  // per lane
+    std::vector<int> active_;              // numbers of the tiles at work
 };
 
 }  // namespace eventide

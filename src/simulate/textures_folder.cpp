@@ -2,9 +2,8 @@
 #include "src/simulate/textures_folder.h"
 
 #include "src/core/error.h"
+#include "src/io/image_codecs.h"
 #include "src/simulate/texture_pack.h"
-
-#include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
 #include <array>
@@ -36,7 +35,7 @@ std::vector<fs::path> image_files(const fs::path& folder) {
 }
 
 GreyImage read_grey_image(const fs::path& file) {
-    const cv::Mat read = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+    const cv::Mat read = read_image(file.string(), cv::IMREAD_GRAYSCALE);
     if (read.empty() || read.rows < 2 || read.cols < 2)
         throw Error(ErrorKind::input, file.string() + ": expected an image of at least 2 x 2 px");
     GreyImage image(read.rows, read.cols);

@@ -54,7 +54,7 @@ const std::vector<Rule> kRules{
     {"thread", {"apps/", "pipeline/", "replay/", "drivers/"}},
     {"opencv2/",
      {"pipeline/sinks/", "pipeline/calibration/", "pipeline/ros2/", "apps/", "src/simulate/",
-      "src/metrics/", "replay/image_file"}},
+      "src/metrics/", "replay/image_file", "src/io/image_codecs"}},
     {"hdf5.h", {"src/io/hdf5_library.h"}},
     {"libusb", {"drivers/usb/"}},
     {"httplib.h", {"pipeline/sinks/http/"}},

@@ -2,6 +2,7 @@
 #include "tests/support/manager_socket.h"
 #include "tests/system/program_test.h"
 
+#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include <sys/stat.h>
@@ -12,6 +13,8 @@
 namespace eventide::test {
 namespace {
 
+using testing::HasSubstr;
+using testing::Not;
 using Json = nlohmann::json;
 
 class Run : public ProgramTest {};
@@ -218,6 +221,21 @@ TEST_F(Run, RendersOneRegionOnly) {
                   .exit_code,
               0);
     EXPECT_EQ(probe(temp_ / "a/frames/frame_0000000000.png", "width,height"), "30,16\n");
+}
+
+/// They bring a hundred others: 46 MB, and the time to load them.
+TEST_F(Run, LoadsOpencvsFilesAndWindowsOnlyWhereTheyAreAskedFor) {
+    const auto loads = [&](const std::string& out) {
+        return eventide({"run", recording(), "--to", "60ms", "--out", out},
+                        {.environment = {{"LD_DEBUG", "files"}}})
+            .error;
+    };
+    const std::string none = loads("null"), folder = loads("a/");
+    EXPECT_THAT(none, HasSubstr("libopencv_core"));
+    EXPECT_THAT(none, Not(HasSubstr("libopencv_imgcodecs")));
+    EXPECT_THAT(none, Not(HasSubstr("libopencv_highgui")));
+    EXPECT_THAT(folder, HasSubstr("libopencv_imgcodecs"));
+    EXPECT_THAT(folder, Not(HasSubstr("libopencv_highgui")));
 }
 
 TEST_F(Run, TakesASimulationInPlaceOfACamera) {

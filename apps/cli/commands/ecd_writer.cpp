@@ -3,8 +3,7 @@
 
 #include "replay/formats.h"
 #include "src/core/error.h"
-
-#include <opencv2/imgcodecs.hpp>
+#include "src/io/image_codecs.h"
 
 #include <cinttypes>
 #include <cstdio>
@@ -43,7 +42,7 @@ void EcdWriter::write(const Batch& batch) {
 void EcdWriter::write(const ReferenceImage& image) {
     std::vector<unsigned char> png;
     const fs::path file = folder_.next(0);
-    if (!cv::imencode(".png", covering_sensor(image), png))
+    if (!encode_image(".png", covering_sensor(image), png))
         throw Error(ErrorKind::failed, file.string() + ": cannot be encoded");
     // Before the image: what is in the folder is in the list, also after a crash.
     const std::int64_t us = std::abs(to_us(image.t));

@@ -211,9 +211,14 @@ PipelineSettings Run::pipeline_settings() {
     settings.changes = page_ || quality_.changes_while_running() ? &changes_ : nullptr;
     settings.halvings = quality_.halvings();
     settings.events_per_pixel = render_.fused() != nullptr;
-    settings.buffers = {std::size_t(settings_.buffers_packets),
-                        std::size_t(settings_.buffers_grids),
-                        std::size_t(settings_.buffers_latents)};
+    // A recording waits: it needs no more than one being filled and one being read, and of the
+    // small packets a few.
+    constexpr int kPacketsOfRecordings = 8;
+    const int usual = live() ? 3 : 2;
+    const int packets = live() ? settings_.buffers_packets
+                               : std::min(settings_.buffers_packets, kPacketsOfRecordings);
+    settings.buffers = {std::size_t(packets), std::size_t(settings_.buffers_grids.value_or(usual)),
+                        std::size_t(settings_.buffers_latents.value_or(usual))};
     return settings;
 }
 

@@ -68,7 +68,15 @@ Setting open_setting(std::string key, std::optional<T>& value, std::string value
         [word, show](const std::optional<T>& v) { return v ? show(*v) : word; });
 }
 
-/// As before, and notes that somebody gave the value.
+/// A number of buffers, or auto.
+Setting buffers_setting(std::string key, std::optional<int>& value, std::string help) {
+    return open_setting<int>(
+        std::move(key), value, "N", std::move(help), "auto",
+        [](const std::string& text) { return parse_whole(text, 1, 1024); },
+        [](const int& n) { return std::to_string(n); });
+}
+
+/// The same setting, which notes that somebody gave the value.
 Setting noted(Setting setting, bool& given) {
     setting.set = [set = std::move(setting.set), &given](const std::vector<std::string>& texts) {
         set(texts);
@@ -375,15 +383,18 @@ void RunSettings::add_machinery(SettingTable& table) {
         check_latency, same));
     add(text_setting("camera", camera, "FILE", "Settings of a camera, as in config/cameras."));
     add(flag_setting("reconnect", reconnect, "Wait for an unplugged camera to come back."));
-    add(whole_setting("buffers_packets", buffers_packets, "N",
-                      "Packets between reading and binning: the burst a live source may send.", 1,
-                      1 << 16));
-    add(whole_setting("buffers_grids", buffers_grids, "N",
-                      "Event windows between binning and the network.", 1, 1024));
-    add(whole_setting("buffers_latents", buffers_latents, "N",
-                      "Event windows between the network and rendering: more bridge longer bursts "
-                      "and allow more latency.",
-                      1, 1024));
+    add(whole_setting(
+        "buffers_packets", buffers_packets, "N",
+        "Packets between reading and binning: the burst a live source may send. Of a recording, "
+        "which waits, at most 8.",
+        1, 1 << 16));
+    add(buffers_setting("buffers_grids", buffers_grids,
+                        "Event windows between binning and the network; auto: 3 of a live source, "
+                        "2 of a recording."));
+    add(buffers_setting(
+        "buffers_latents", buffers_latents,
+        "Event windows between the network and rendering: more bridge longer bursts "
+        "and allow more latency. auto: 3 of a live source, 2 of a recording."));
     add(flag_setting("sequential", sequential,
                      "Everything on one thread: the same frames, for comparison."));
 }

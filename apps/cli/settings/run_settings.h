@@ -103,7 +103,8 @@ struct RunSettings {
     int sheet_rows = 4;
 
     // machinery
-    int buffers_packets = 64, buffers_grids = 3, buffers_latents = 4;
+    int buffers_packets = 64;
+    std::optional<int> buffers_grids, buffers_latents;  ///< empty: 3 of a live source, else 2
     bool sequential = false;
 
     RunSettings() = default;

@@ -3,6 +3,7 @@
 #include "pipeline/sinks/http/http_answers.h"
 #include "pipeline/sinks/http/http_server.h"
 #include "src/core/error.h"
+#include "src/io/image_codecs.h"
 
 #include <atomic>
 #include <utility>
@@ -25,6 +26,7 @@ public:
                    [this](const auto& request, auto& response) {
                        answers_.answer_post(request, response);
                    }}} {
+        load_image_codecs();
         settings_.controls.push_back(pause());
         server_.start();
     }

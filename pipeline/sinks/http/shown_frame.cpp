@@ -1,8 +1,7 @@
 #include "pipeline/sinks/http/shown_frame.h"
 
 #include "src/core/error.h"
-
-#include <opencv2/imgcodecs.hpp>
+#include "src/io/image_codecs.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +16,7 @@ constexpr int kQuickly = 1;  // of zlib's levels
 void encode(const char* extension, const cv::Mat& image, const std::vector<int>& options,
             ShownFrame::Bytes& bytes) {
     try {
-        if (cv::imencode(extension, image, bytes, options)) return;
+        if (encode_image(extension, image, bytes, options)) return;
     } catch (const cv::Exception& error) {
         throw Error(ErrorKind::failed,
                     std::string{"a frame cannot be made a "} + extension + ": " + error.what());
