@@ -73,12 +73,13 @@ Run::Run(Program& program, RunSettings& settings)
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), live())},
       undistortion_{undistortion_of(settings, sensor_)},
+      colour_filter_{colour_filter_of(settings, sensor_, live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
       filter_{filter_of(settings, network_.config(), sensor_)},
       watch_{sheet_ ? &references_ : nullptr,
-             settings.frames == CameraFrames::ignore ? nullptr : &images_},
+             settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
       encode_{network_.encoder()},
       render_{network_.renderer(), request_of(settings, sensor_, lookahead_, undistortion_)} {
     check_recording(settings, span_, slicer_);
@@ -86,6 +87,12 @@ Run::Run(Program& program, RunSettings& settings)
         fusion_.emplace(network_.renderer(),
                         request_of(settings, sensor_, lookahead_, undistortion_), sensor_.width,
                         sensor_.height, images_);
+    if (settings.colour) {
+        colour_.emplace(network_, sensor_, colour_filter_,
+                        request_of(settings, sensor_, lookahead_, undistortion_),
+                        fusion_.has_value(), encode_, plain_render());
+        watch_.colour(&*colour_);
+    }
     if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
@@ -161,10 +168,15 @@ std::vector<HttpControl> Run::controls() {
     return live_controls(plan);
 }
 
+RenderStage& Run::plain_render() {
+    return fusion_ ? static_cast<RenderStage&>(*fusion_) : render_;
+}
+
 PipelineParts Run::parts() {
-    RenderStage& render = fusion_ ? static_cast<RenderStage&>(*fusion_) : render_;
+    RenderStage& render = colour_ ? colour_->render() : plain_render();
+    EncodeStage& encode = colour_ ? colour_->encode() : static_cast<EncodeStage&>(encode_);
     EventFilter* last = events_out_ ? events_out_.get() : filter_.get();
-    PipelineParts parts{source(), encode_, render, {}, last, &watch_};
+    PipelineParts parts{source(), encode, render, {}, last, &watch_};
     for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
     return parts;
 }
