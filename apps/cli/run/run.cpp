@@ -93,7 +93,11 @@ Run::Run(Program& program, RunSettings& settings)
                         fusion_.has_value(), encode_, plain_render());
         watch_.colour(&*colour_);
     }
-    if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
+    if (opened_.recording != nullptr && span_.begin) {
+        if (const auto first = first_event_of(settings, live()); first && !filters_.empty())
+            filters_.count_from(*first);
+        opened_.recording->seek(*span_.begin);
+    }
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
     recorded_ = recorder_of(settings, *opened_.source);
