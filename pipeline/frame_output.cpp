@@ -171,7 +171,9 @@ void FrameOutput::present(const DueFrame& due, Waiting& from) {
 
 /// A state that has a NaN keeps it, so no later frame will be better.
 void FrameOutput::check_finite() {
-    if (is_finite(frame_.intensity) && is_finite(frame_.sigma)) return;
+    if (is_finite(frame_.intensity) && is_finite(frame_.sigma) &&
+        std::ranges::all_of(frame_.colour, [](const auto& plane) { return is_finite(plane); }))
+        return;
     counters_.present.broken_frames.add();
     throw Error(ErrorKind::input, "frame " + std::to_string(frame_.index) + ", at " +
                                       std::to_string(to_us(frame_.t)) +

@@ -62,6 +62,7 @@ StreamHeader header_of(const Recording& recording) {
     header.width = info.width;
     header.height = info.height;
     header.sensor_name = info.name;
+    header.colour_filter = info.colour_filter;
     header.serial = info.serial;
     return header;
 }

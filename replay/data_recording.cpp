@@ -11,7 +11,8 @@ namespace eventide {
 DataRecording::DataRecording(std::unique_ptr<DataReader> reader, std::uint64_t bytes)
     : reader_(std::move(reader)), bytes_(bytes) {
     const StreamHeader& header = reader_->header();
-    info_ = {header.sensor_name, header.serial, header.format, header.width, header.height};
+    info_ = {header.sensor_name, header.serial, header.format,
+             header.width,       header.height, header.colour_filter};
 }
 
 ReadStatus DataRecording::read(RawPacket& into) {

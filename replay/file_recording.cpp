@@ -8,7 +8,8 @@ namespace eventide {
 FileRecording::FileRecording(ByteFile file, OpenedStream stream, std::vector<std::byte> ahead)
     : file_(std::move(file)), stream_(std::move(stream)), ahead_(std::move(ahead)) {
     const StreamHeader& header = stream_.header;
-    info_ = {header.sensor_name, header.serial, header.format, header.width, header.height};
+    info_ = {header.sensor_name, header.serial, header.format,
+             header.width,       header.height, header.colour_filter};
     begin_.position = header.data_offset;
     if (file_.is_seekable()) file_.move_to(header.data_offset);
 }

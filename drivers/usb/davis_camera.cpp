@@ -3,6 +3,7 @@
 #include "drivers/usb/verified_writes.h"
 #include "src/codec/byte_order.h"
 #include "src/codec/davis.h"
+#include "src/core/bayer.h"
 #include "src/core/error.h"
 
 #include <string>
@@ -70,6 +71,7 @@ SensorInfo DavisCamera::set_up(UsbDevice& device) {
     info.format = "davis";
     info.width = sensor_.width();
     info.height = sensor_.height();
+    info.colour_filter = sensor_.colour_filter;
     return info;
 }
 
@@ -100,6 +102,8 @@ void DavisCamera::read_sensor(UsbDevice& device) {
     sensor_.aps_rows = number(kApsRows);
     const int aps = number(kApsOrientation);
     sensor_.aps_swapped = (aps & 4) != 0;
+    sensor_.colour_filter =
+        colour_filter_of_number(device.read_register(kApsColorFilter)).value_or(ColourFilter::none);
     sensor_.aps_flip_x = (aps & 2) != 0;
     sensor_.aps_flip_y = (aps & 1) != 0;
     sensor_.imu_type = number(kImuType);

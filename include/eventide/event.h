@@ -12,12 +12,16 @@
 
 namespace eventide {
 
+/// The colours of a sensor's pixels, 2x2 from the top left corner on, row by row.
+enum class ColourFilter : std::uint8_t { none, rggb, grbg, gbrg, bggr };
+
 /// What a recording or a camera says about its sensor.
 struct SensorInfo {
     std::string name;           ///< "DAVIS346", or what the recording says; may be empty
     std::string serial;         ///< may be empty
     std::string format;         ///< "aedat4", "evt3", "davis", "text", ...
     int width = 0, height = 0;  ///< px; 0 where a recording does not say
+    ColourFilter colour_filter = ColourFilter::none;  ///< of a colour camera that says so
 };
 
 enum class Polarity : std::uint8_t { off, on };
@@ -39,8 +43,9 @@ struct ReferenceImage {
     /// format's own stamp.
     SensorTime t{};
     SensorTime exposure_begin{}, exposure_end{};  ///< equal to t where the format does not say
-    int x0 = 0, y0 = 0;            ///< px, top left corner of the image in the sensor
-    int channels = 1;              ///< 1 grey, 3 BGR, 4 BGRA; interleaved in `pixels`
+    int x0 = 0, y0 = 0;                        ///< px, top left corner of the image in the sensor
+    int channels = 1;                          ///< 1 grey, 3 BGR, 4 BGRA; interleaved in `pixels`
+    ColourFilter filter = ColourFilter::none;  ///< of a mosaic that says so: channels is 1
     Array2<std::uint16_t> pixels;  ///< [y][x * channels], 0 to 65535; 8-bit data are scaled by 257
 
     friend bool operator==(const ReferenceImage&, const ReferenceImage&) = default;

@@ -4,6 +4,7 @@
 #include <eventide/array.h>
 #include <eventide/sensor_time.h>
 
+#include <array>
 #include <cstdint>
 
 namespace eventide {
@@ -18,9 +19,11 @@ struct Frame {
     Array2<float> intensity;   ///< [y][x], 0 black to 1 white; may lie a little outside
     Array2<float> sigma;       ///< [y][x], standard deviation, in units of intensity; empty where
                                ///< not asked for
-    HostTime arrived{};        ///< when the newest events the frame saw came in; now minus this is
-                               ///< the latency
-    bool gap_before = false;   ///< data were lost before or in that event window
+    /// [y][x] each, blue, green, red, in units of intensity; empty where not asked for
+    std::array<Array2<float>, 3> colour;
+    HostTime arrived{};       ///< when the newest events the frame saw came in; now minus this is
+                              ///< the latency
+    bool gap_before = false;  ///< data were lost before or in that event window
     Array2<float> event_preview;  ///< [y][x], sum of polarities of that event window, sensor size;
                                   ///< empty where not asked for
 };

@@ -121,6 +121,11 @@ const Frame& Undistortion::apply(const Frame& frame) {
         shown_.sigma = {};
     else
         map_->apply(frame.sigma, shown_.sigma, cv::INTER_LINEAR, kUnseen);
+    for (std::size_t c = 0; c < frame.colour.size(); ++c)
+        if (frame.colour[c].empty())
+            shown_.colour[c] = {};
+        else
+            map_->apply(frame.colour[c], shown_.colour[c], cv::INTER_CUBIC, 0);
     const Array2<float>& events = frame.event_preview;
     if (events.empty()) {
         shown_.event_preview = {};

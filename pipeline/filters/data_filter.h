@@ -20,6 +20,8 @@ class DataFilter {
 public:
     virtual ~DataFilter() = default;
     virtual void process(Batch& batch) = 0;
+    /// When the recording's first event was, where it is not the first that is processed.
+    virtual void count_from(SensorTime) {}
     /// Of the sensor as it looks behind the filter.
     virtual SensorPixels size() const = 0;
 };

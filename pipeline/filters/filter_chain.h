@@ -20,6 +20,10 @@ public:
     bool empty() const { return links_.empty(); }
     SensorPixels size() const { return size_; }  ///< behind the last
     void process(Batch& batch);
+    /// Tells when the recording's first event was, where that is not the first that is processed.
+    void count_from(SensorTime first) {
+        for (Link& link : links_) link.filter->count_from(first);
+    }
 
     /// Events that the filters left out, together. Thread: any.
     std::uint64_t left_out() const;

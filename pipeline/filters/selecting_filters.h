@@ -54,6 +54,7 @@ public:
     TimeFilter(const SensorPixels& size, std::optional<Moment> from, std::optional<Moment> to)
         : size_(size), from_(from), to_(to) {}
     void process(Batch& batch) override;
+    void count_from(SensorTime first) override { first_ = first; }
     SensorPixels size() const override { return size_; }
 
 private:

@@ -97,6 +97,11 @@ const Frame& Look::apply(const Frame& frame) {
         shown_.sigma = {};
     else
         crop_and_flip(frame.sigma, settings_.crop_px, settings_.flip, shown_.sigma);
+    for (std::size_t c = 0; c < frame.colour.size(); ++c)
+        if (frame.colour[c].empty())
+            shown_.colour[c] = {};
+        else
+            crop_and_flip(frame.colour[c], settings_.crop_px, settings_.flip, shown_.colour[c]);
     if (frame.event_preview.empty())
         shown_.event_preview = {};
     else
@@ -110,16 +115,22 @@ void Look::stretch() {
     const AutoRange::Range range = range_.update(shown_.t, shown_.intensity);
     const float gain = 1 / (range.high - range.low);
     for (float& v : shown_.intensity.values()) v = (v - range.low) * gain;
+    for (Array2<float>& plane : shown_.colour)
+        for (float& v : plane.values()) v = (v - range.low) * gain;
     for (float& v : shown_.sigma.values()) v *= gain;
 }
 
 void Look::sharpen() {
-    cv::Mat image(shown_.intensity.height(), shown_.intensity.width(), CV_32FC1,
-                  shown_.intensity.values().data());
-    cv::Mat blurred;
-    cv::GaussianBlur(image, blurred, {0, 0}, 1.0);
-    cv::addWeighted(image, 1 + double(settings_.unsharp), blurred, -double(settings_.unsharp), 0,
-                    image);
+    const auto sharpen = [&](Array2<float>& plane) {
+        cv::Mat image(plane.height(), plane.width(), CV_32FC1, plane.values().data());
+        cv::Mat blurred;
+        cv::GaussianBlur(image, blurred, {0, 0}, 1.0);
+        cv::addWeighted(image, 1 + double(settings_.unsharp), blurred, -double(settings_.unsharp),
+                        0, image);
+    };
+    sharpen(shown_.intensity);
+    for (Array2<float>& plane : shown_.colour)
+        if (!plane.empty()) sharpen(plane);
 }
 
 LookSink::LookSink(LookSettings settings, std::vector<std::unique_ptr<Sink>> behind)

@@ -40,29 +40,57 @@ std::uint8_t scaled(int a, int b) {
     return std::uint8_t((a * b + 127) / 255);
 }
 
-/// Calls put(pixel, grey, doubt) for every pixel of `image`, with intensity and sigma as 0..255.
+/// Blue, green and red of one row, 0..255: all the intensity where the frame is grey.
+struct ColourRow {
+    explicit ColourRow(std::size_t width) {
+        for (auto& channel : bgr) channel.resize(width);
+    }
+    void read(const Frame& frame, int y) {
+        for (std::size_t c = 0; c < bgr.size(); ++c)
+            to_grey8(frame.colour[c].empty() ? frame.intensity.row(y) : frame.colour[c].row(y),
+                     1.0f, bgr[c]);
+    }
+    std::array<std::vector<std::uint8_t>, 3> bgr;
+};
+
+/// Calls put(pixel, colour, doubt) for every pixel of `image`, with all as 0..255.
 template <typename Put>
 void draw_pixels(const Frame& frame, float sigma_white, cv::Mat& image, const Put& put) {
     const auto width = std::size_t(frame.intensity.width());
-    std::vector<std::uint8_t> grey(width, 0), doubt(width, 0);
+    ColourRow colour{width};
+    std::vector<std::uint8_t> doubt(width, 0);
     for (int y = 0; y < frame.intensity.height(); ++y) {
-        to_grey8(frame.intensity.row(y), 1.0f, grey);
+        colour.read(frame, y);
         sigma_row(frame, y, sigma_white, doubt);
         std::uint8_t* pixel = row_of(image, y).data();
         for (std::size_t x = 0; x < width; ++x, pixel += image.elemSize())
-            put(pixel, grey[x], doubt[x]);
+            put(pixel, {colour.bgr[0][x], colour.bgr[1][x], colour.bgr[2][x]}, doubt[x]);
     }
 }
 
-void draw_overlay(std::uint8_t* bgr, std::uint8_t grey, std::uint8_t doubt) {
-    const std::uint8_t kept = scaled(grey, 255 - doubt);
-    bgr[0] = bgr[1] = kept;
-    bgr[2] = std::uint8_t(kept + doubt);
+using Bgr = std::array<std::uint8_t, 3>;
+
+void draw_overlay(std::uint8_t* bgr, const Bgr& colour, std::uint8_t doubt) {
+    for (std::size_t c = 0; c < 3; ++c) bgr[c] = scaled(colour[c], 255 - doubt);
+    bgr[2] = std::uint8_t(bgr[2] + doubt);
 }
 
-void draw_alpha(std::uint8_t* bgra, std::uint8_t grey, std::uint8_t doubt) {
-    bgra[0] = bgra[1] = bgra[2] = grey;
+void draw_alpha(std::uint8_t* bgra, const Bgr& colour, std::uint8_t doubt) {
+    std::ranges::copy(colour, bgra);
     bgra[3] = std::uint8_t(255 - doubt);
+}
+
+void draw_colour(std::uint8_t* bgr, const Bgr& colour, std::uint8_t) {
+    std::ranges::copy(colour, bgr);
+}
+
+/// Colour left, sigma as grey right of it.
+void draw_colour_beside_sigma(const Frame& frame, float sigma_white, cv::Mat& image) {
+    cv::Mat colour(frame.intensity.height(), frame.intensity.width(), CV_8UC3), sigma, grey;
+    draw_pixels(frame, sigma_white, colour, draw_colour);
+    draw_sigma(frame, sigma_white, grey);
+    cv::cvtColor(grey, sigma, cv::COLOR_GRAY2BGR);
+    cv::hconcat(colour, sigma, image);
 }
 
 }  // namespace
@@ -83,6 +111,7 @@ void to_grey16(std::span<const float> values, float white, std::span<std::uint16
 
 void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& image) {
     const int height = frame.intensity.height(), width = frame.intensity.width();
+    const bool coloured = is_coloured(frame);
     switch (how) {
         case Uncertainty::overlay:
             image.create(height, width, CV_8UC3);
@@ -91,6 +120,7 @@ void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& image
             image.create(height, width, CV_8UC4);
             return draw_pixels(frame, sigma_white, image, draw_alpha);
         case Uncertainty::side:
+            if (coloured) return draw_colour_beside_sigma(frame, sigma_white, image);
             image.create(height, 2 * width, CV_8UC1);
             for (int y = 0; y < height; ++y) {
                 const auto row = row_of(image, y);
@@ -101,7 +131,8 @@ void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& image
         case Uncertainty::automatic:
         case Uncertainty::none:
         case Uncertainty::separate:
-            image.create(height, width, CV_8UC1);
+            image.create(height, width, coloured ? CV_8UC3 : CV_8UC1);
+            if (coloured) return draw_pixels(frame, sigma_white, image, draw_colour);
             for (int y = 0; y < height; ++y)
                 to_grey8(frame.intensity.row(y), 1.0f, row_of(image, y));
     }

@@ -27,6 +27,10 @@ std::string_view name_of(Uncertainty uncertainty);
 /// round(255 min(1, sigma / sigma_white)).
 constexpr float kSigmaWhite = 0.3f;
 
+inline bool is_coloured(const Frame& frame) {
+    return !frame.colour[0].empty();
+}
+
 /// 8-bit value = round(255 v / white), clamped to 0..255; NaN becomes 0.
 void to_grey8(std::span<const float> values, float white, std::span<std::uint8_t> into);
 
@@ -35,7 +39,8 @@ void to_grey16(std::span<const float> values, float white, std::span<std::uint16
 
 /// Draws a frame into `image` (made when its size or type differs): none, separate and automatic
 /// give the intensity (CV_8UC1), side both (CV_8UC1, twice as wide), alpha CV_8UC4 and overlay
-/// CV_8UC3, both in OpenCV's order (BGR). A frame without sigma is drawn as if sigma were 0.
+/// CV_8UC3, both in OpenCV's order (BGR); a frame in colour is CV_8UC3 where a grey one is CV_8UC1.
+/// A frame without sigma is drawn as if sigma were 0.
 void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& image);
 
 /// Draws Frame::event_preview: CV_8UC3, red where ON events outweigh, blue where OFF, white else.

@@ -3,6 +3,7 @@
 
 #include "src/codec/aedat3_packet.h"
 #include "src/codec/byte_order.h"
+#include "src/core/bayer.h"
 
 #include <algorithm>
 #include <array>
@@ -121,6 +122,8 @@ std::optional<ReferenceImage> read_frame(std::span<const std::byte> record, std:
     image.x0 = int(x0);
     image.y0 = lower_left ? std::max(0, height - int(y0 + rows)) : int(y0);
     image.channels = int(channels);
+    if (channels == 1 && !lower_left)
+        image.filter = colour_filter_of_number((word(0) >> 4) & 15).value_or(ColourFilter::none);
     image.pixels = Array2<std::uint16_t>(int(rows), int(width * channels));
     const std::byte* pixels = &record[Aedat3Packet::kFrameHeaderBytes - 1] + 1;
     for (std::size_t y = 0; y < rows; ++y) {
@@ -133,7 +136,7 @@ std::optional<ReferenceImage> read_frame(std::span<const std::byte> record, std:
 
 void write_frame(const ReferenceImage& image, std::int64_t base_us, std::vector<std::byte>& out) {
     const auto stamp = [&](SensorTime t) { append_little(out, std::uint32_t(to_us(t) - base_us)); };
-    append_little(out, 1U | std::uint32_t(image.channels) << 1);
+    append_little(out, 1U | std::uint32_t(image.channels) << 1 | number_of(image.filter) << 4);
     stamp(image.exposure_begin);  // start and end of the frame: not known better
     stamp(image.exposure_end);
     stamp(image.exposure_begin);

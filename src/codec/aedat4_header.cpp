@@ -3,6 +3,7 @@
 
 #include "src/codec/aedat4_flat.h"
 #include "src/codec/byte_order.h"
+#include "src/core/bayer.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
@@ -47,6 +48,7 @@ public:
         if (depth == 2 && key == "typeIdentifier") at(id).identifier = value;
         if (depth != 3 || out[2] != "info") return;
         if (key == "sizeX") at(id).width = number(value);
+        if (key == "colorFilter") at(id).colour_filter = number(value);
         if (key == "sizeY") at(id).height = number(value);
         if (key == "source") at(id).source = value;
     }
@@ -58,7 +60,7 @@ private:
             const auto found = std::find_if(streams_.begin(), streams_.end(),
                                             [&](const Aedat4Stream& s) { return s.id == id; });
             if (found != streams_.end()) return *found;
-            streams_.push_back({id, {}, 0, 0, {}});
+            streams_.push_back({id, {}, 0, 0, {}, 0});
         }
         return streams_.back();
     }
@@ -85,6 +87,9 @@ void choose_streams(Aedat4Header& header) {
     choose(Aedat4Kind::triggers, source);
     const Aedat4Stream* camera = events ? events : images;
     if (!camera) return;
+    if (images != nullptr)
+        header.stream.colour_filter = colour_filter_of_number(std::uint32_t(images->colour_filter))
+                                          .value_or(ColourFilter::none);
     header.stream.width = camera->width;
     header.stream.height = camera->height;
     header.stream.source_text = camera->source;

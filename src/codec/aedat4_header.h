@@ -25,6 +25,7 @@ struct Aedat4Stream {
     std::string identifier;     ///< of its packets: "EVTS", ...
     int width = 0, height = 0;  ///< px; 0 where it does not say
     std::string source;         ///< "DAVIS346_00000104"
+    int colour_filter = 0;      ///< libcaer's number; 0 none
 };
 
 struct Aedat4Header {

@@ -4,6 +4,7 @@
 #include "src/codec/aedat4_flat_writer.h"
 #include "src/codec/aedat4_header.h"
 #include "src/codec/aedat4_records.h"
+#include "src/core/bayer.h"
 #include "src/core/error.h"
 
 #include <algorithm>
@@ -62,6 +63,8 @@ std::string info_node(const StreamHeader& header, Aedat4Compression compression)
         if (stream.has_size) {
             xml += attr("sizeX", "int", std::to_string(header.width));
             xml += attr("sizeY", "int", std::to_string(header.height));
+            if (header.colour_filter != ColourFilter::none)
+                xml += attr("colorFilter", "int", std::to_string(number_of(header.colour_filter)));
         }
         xml += attr("source", "string", source);
         xml += attr("tsOffset", "long", "0");  // times are as they are

@@ -1,6 +1,8 @@
 // What a DAVIS parser must know about the camera: read from its registers when it is opened.
 #pragma once
 
+#include <eventide/event.h>
+
 #include <cstdint>
 
 namespace eventide {
@@ -30,6 +32,7 @@ struct DavisSensor {
     bool dvs_swapped = true;  ///< orientation bit 2
     int aps_columns = 260, aps_rows = 346;
     bool aps_swapped = true, aps_flip_x = false, aps_flip_y = false;  ///< orientation bits 2, 1, 0
+    ColourFilter colour_filter = ColourFilter::none;  ///< APS 3, of the image as it is given
     int imu_type = kImuMpu6050;
     bool imu_flip_x = false, imu_flip_y = false,
          imu_flip_z = false;  ///< IMU orientation bits 2, 1, 0

@@ -3,6 +3,8 @@
 
 #include "src/core/event.h"
 
+#include <eventide/event.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -17,6 +19,7 @@ struct StreamHeader {
     int width = 0, height = 0;  ///< px; 0 where the format does not say
     std::string sensor_name;    ///< "DAVIS346", "DVS128", ...
     std::string serial;
+    ColourFilter colour_filter = ColourFilter::none;  ///< where the format says it
     std::string source_text;        ///< whatever else identifies the recording, for people
     std::uint64_t data_offset = 0;  ///< bytes before the first record
 };

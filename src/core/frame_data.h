@@ -49,6 +49,12 @@ struct LatentHistory {
     std::vector<std::uint64_t> changed;  ///< per tile (latent_tiles), the step of its last change
 };
 
+/// Values of a LatentMap beside another's.
+struct LatentCodes {
+    Array3<float> values;
+    LatentHistory history;
+};
+
 /// What the encoder knows after one event window, one code per sensor pixel.
 struct LatentMap {
     Window window;
@@ -59,6 +65,8 @@ struct LatentMap {
     std::uint64_t images = 0;                       ///< as in VoxelGrid
     Array2<float> events_per_pixel;                 ///< [y][x]; empty where not asked for
     LatentHistory history;
+    /// Of blue, green and red pixels alone, half as wide and high; empty where not asked for.
+    std::vector<LatentCodes> channels;
 };
 
 }  // namespace eventide

@@ -34,14 +34,46 @@ std::vector<fs::path> image_files(const fs::path& folder) {
     return files;
 }
 
-GreyImage read_grey_image(const fs::path& file) {
-    const cv::Mat read = read_image(file.string(), cv::IMREAD_GRAYSCALE);
+namespace {
+
+cv::Mat checked_image(const fs::path& file, int how) {
+    cv::Mat read = read_image(file.string(), how);
     if (read.empty() || read.rows < 2 || read.cols < 2)
         throw Error(ErrorKind::input, file.string() + ": expected an image of at least 2 x 2 px");
+    return read;
+}
+
+GreyImage image_of(const cv::Mat& read) {
     GreyImage image(read.rows, read.cols);
     for (int y = 0; y < read.rows; ++y)
         std::copy_n(read.ptr<std::uint8_t>(y), read.cols, image.row(y).begin());
     return image;
+}
+
+}  // namespace
+
+GreyImage read_grey_image(const fs::path& file) {
+    return image_of(checked_image(file, cv::IMREAD_GRAYSCALE));
+}
+
+GreyImage read_colour_image(const fs::path& file, int channel) {
+    cv::Mat plane;
+    cv::extractChannel(checked_image(file, cv::IMREAD_COLOR), plane, channel);
+    return image_of(plane);
+}
+
+std::array<std::shared_ptr<const TextureLibrary>, 3> colour_textures_from_folder(
+    const fs::path& folder, int longest) {
+    std::array<std::shared_ptr<const TextureLibrary>, 3> libraries;
+    for (int channel = 0; channel < 3; ++channel) {
+        auto library = std::make_shared<TextureLibrary>();
+        for (const fs::path& file : image_files(folder)) {
+            const GreyImage image = read_colour_image(file, channel);
+            library->add(longest > 0 ? shrunk(image, longest) : image);
+        }
+        libraries[std::size_t(channel)] = std::move(library);
+    }
+    return libraries;
 }
 
 std::shared_ptr<TextureLibrary> textures_from_folder(const fs::path& folder, int longest) {

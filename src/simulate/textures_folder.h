@@ -4,7 +4,9 @@
 
 #include "src/simulate/textures.h"
 
+#include <array>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 namespace eventide {
@@ -15,6 +17,13 @@ std::vector<std::filesystem::path> image_files(const std::filesystem::path& fold
 
 /// Grey, as stored (gamma-encoded). Throws Error (input) for a file that is no image.
 GreyImage read_grey_image(const std::filesystem::path& file);
+
+/// The same of one colour: 0 blue, 1 green, 2 red.
+GreyImage read_colour_image(const std::filesystem::path& file, int channel);
+
+/// All images of a folder, of which each library holds one colour: blue, green, red.
+std::array<std::shared_ptr<const TextureLibrary>, 3> colour_textures_from_folder(
+    const std::filesystem::path& folder, int longest = 1024);
 
 /// All images of a folder; longer sides than `longest` px are shrunk, 0 leaves them.
 std::shared_ptr<TextureLibrary> textures_from_folder(const std::filesystem::path& folder,

@@ -156,6 +156,22 @@ TEST(BagRecording, EventPacketsHaveTheTimesOfRos) {
     EXPECT_TRUE(late == expected);
 }
 
+/// Null where it is not at hand or cannot be read by this build, and `why_not` tells.
+std::unique_ptr<Recording> open_known(const char* name, std::string& why_not) {
+    const auto path = std::filesystem::path(EVENTIDE_SOURCE_DIR) / "../shared/data/formats" / name;
+    if (!std::filesystem::exists(path)) {
+        why_not = "no " + std::string{name} + " at hand";
+        return nullptr;
+    }
+    try {
+        return open_recording(path.string());
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::failed) throw;
+        why_not = error.what();  // built without SQLite
+        return nullptr;
+    }
+}
+
 struct Known {
     const char* name;
     const char* format;
@@ -166,16 +182,9 @@ class RealBags : public testing::TestWithParam<Known> {};
 
 TEST_P(RealBags, GiveTheKnownNumbers) {
     const Known& known = GetParam();
-    const auto path =
-        std::filesystem::path(EVENTIDE_SOURCE_DIR) / "../shared/data/formats" / known.name;
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << known.name << " at hand";
-    std::unique_ptr<Recording> recording;
-    try {
-        recording = open_recording(path.string());
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::failed) throw;
-        GTEST_SKIP() << error.what();  // built without SQLite
-    }
+    std::string why_not;
+    const auto recording = open_known(known.name, why_not);
+    if (!recording) GTEST_SKIP() << why_not;
     const Summary sum = summarize(*recording);
     EXPECT_EQ(sum.format, known.format);
     EXPECT_EQ(sum.events - sum.on, known.off);
@@ -200,16 +209,9 @@ class RealDb3 : public testing::TestWithParam<KnownSums> {};
 
 TEST_P(RealDb3, GivesTheKnownSums) {
     const KnownSums& known = GetParam();
-    const auto path =
-        std::filesystem::path(EVENTIDE_SOURCE_DIR) / "../shared/data/formats" / known.name;
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << known.name << " at hand";
-    std::unique_ptr<Recording> recording;
-    try {
-        recording = open_recording(path.string());
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::failed) throw;
-        GTEST_SKIP() << error.what();  // built without SQLite
-    }
+    std::string why_not;
+    const auto recording = open_known(known.name, why_not);
+    if (!recording) GTEST_SKIP() << why_not;
     EXPECT_EQ(recording->info().format, "db3");
     std::uint64_t x = 0, y = 0, on = 0;
     for (const Event& event : read_everything(*recording).events) {

@@ -58,6 +58,7 @@ DavisModel::DavisModel(DavisModelSettings settings) : settings_(std::move(settin
                   {kApsColumns, std::uint32_t(s.aps_columns)},
                   {kApsRows, std::uint32_t(s.aps_rows)},
                   {kApsOrientation, orientation(s.aps_swapped, s.aps_flip_x, s.aps_flip_y)},
+                  {kApsColorFilter, std::uint32_t(s.colour_filter)},
                   {kApsHasGlobalShutter, 1},
                   {kImuType, std::uint32_t(s.imu_type)},
                   {kImuOrientation, orientation(s.imu_flip_x, s.imu_flip_y, s.imu_flip_z)},

@@ -1,6 +1,10 @@
 // info, convert, simulate, evaluate, bench and devices, as a user runs them.
 #include "tests/system/program_test.h"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -87,6 +91,47 @@ TEST_F(Commands, ConvertTakesAPart) {
     EXPECT_GE(part["first_us"].get<long long>(), whole["first_us"].get<long long>() + 100'000);
     EXPECT_LE(part["last_us"].get<long long>(), whole["first_us"].get<long long>() + 200'000);
     EXPECT_GT(part["events"].get<int>(), 0);
+}
+
+TEST_F(Commands, ConvertCountsTimesOfFiltersFromTheFirstEventOfTheRecording) {
+    ASSERT_EQ(eventide({"convert", recording(), "a.aedat4", "--from", "100ms", "--filter",
+                        "time:150ms..200ms"})
+                  .exit_code,
+              0);
+    ASSERT_EQ(eventide({"run", recording(), "--from", "100ms", "--warmup", "0s", "--filter",
+                        "time:150ms..200ms", "--out", "null", "--events-out", "b.aedat4"})
+                  .exit_code,
+              0);
+    const long long first = info(recording())["first_us"].get<long long>();
+    for (const char* file : {"a.aedat4", "b.aedat4"}) {
+        const Json part = info(temp_ / file);
+        EXPECT_GE(part["first_us"].get<long long>(), first + 150'000) << file;
+        EXPECT_LT(part["first_us"].get<long long>(), first + 155'000) << file;
+        EXPECT_LE(part["last_us"].get<long long>(), first + 200'000) << file;
+    }
+}
+
+TEST_F(Commands, ConvertSendsDatagrams) {
+    const int reader = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t length = sizeof here;
+    ASSERT_EQ(bind(reader, reinterpret_cast<sockaddr*>(&here), length), 0);
+    getsockname(reader, reinterpret_cast<sockaddr*>(&here), &length);
+    const std::string to = "udp://127.0.0.1:" + std::to_string(ntohs(here.sin_port));
+    const Result sent = eventide({"convert", recording(), to, "--to", "5ms"});
+    EXPECT_EQ(sent.exit_code, 0) << sent.error;
+    std::size_t bytes = 0;
+    char datagram[2048];
+    for (ssize_t n; (n = recv(reader, datagram, sizeof datagram, MSG_DONTWAIT)) > 0;)
+        bytes += std::size_t(n);
+    close(reader);
+    ASSERT_EQ(eventide({"convert", recording(), "a.aedat4", "--to", "5ms"}).exit_code, 0);
+    EXPECT_EQ(bytes, 13 * info(temp_ / "a.aedat4")["events"].get<std::size_t>());
+    const Result format = eventide({"convert", recording(), to, "--to-format", "text"});
+    EXPECT_EQ(format.exit_code, 2);
+    EXPECT_NE(format.error.find("?format=t64"), std::string::npos) << format.error;
 }
 
 TEST_F(Commands, SimulateIsTheSameForTheSameSeed) {

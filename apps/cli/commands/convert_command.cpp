@@ -5,6 +5,7 @@
 #include "apps/cli/commands/disorder.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
+#include "apps/cli/run/events_out.h"
 #include "apps/cli/settings/time_point.h"
 #include "pipeline/filters/filter_chain.h"
 #include "replay/convert.h"
@@ -84,7 +85,9 @@ std::string ConvertCommand::examples() const {
 
 std::vector<Positional> ConvertCommand::positionals() {
     return {{"FROM", "Recording, or - for standard input", &from_file_},
-            {"TO", "File to write, folder/ with events.txt and images/, or - for standard output",
+            {"TO",
+             "File to write, folder/ with events.txt and images/, udp://HOST:PORT, or - for "
+             "standard output",
              &to_file_}};
 }
 
@@ -114,15 +117,20 @@ SettingTable ConvertCommand::settings() {
 }
 
 int ConvertCommand::run(Program& program) {
-    const Format* format = target_format(to_file_, to_format_);
+    const bool to_udp = to_file_.starts_with("udp:");
+    if (to_udp && to_format_ != "auto")
+        throw Error(ErrorKind::usage, "--to-format " + to_format_ +
+                                          ": expected a file as TO, found " + to_file_ +
+                                          "; datagrams have ?format=t64, t32 or spif");
+    const Format* format = to_udp ? nullptr : target_format(to_file_, to_format_);
     const OpenOptions options = input_.options();
     if (to_file_ == "-" && format->name != "text") refuse_terminal("TO -", force_);
     program.files.may_replace(overwrite_);
     name_recording("FROM", from_file_, program.files);
-    if (format == nullptr)
-        name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
-    else
+    if (format != nullptr)
         program.files.writes("TO", to_file_);
+    else if (!to_udp)
+        name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
     const auto recording = open_input(from_file_, input_);
     const TimePointReader moments{from_file_, options};
     ConvertOptions how;
@@ -132,10 +140,15 @@ int ConvertCommand::run(Program& program) {
     FilterChain filters{filter_, {header.width, header.height}};
     header.width = filters.size().width;
     header.height = filters.size().height;
+    if (!filters.empty() && how.from && from_file_ != "-") filters.count_from(moments.time_of({}));
     if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
-    RecordingOut target{to_file_, overwrite_, format, header};
+    std::unique_ptr<ConvertTarget> target;
+    if (to_udp)
+        target = open_event_target(to_file_, overwrite_, false, header);
+    else
+        target = std::make_unique<RecordingOut>(to_file_, overwrite_, format, header);
     Progress progress{program.quiet};
-    const ConvertReport report = convert(*recording, target, how, [&] {
+    const ConvertReport report = convert(*recording, *target, how, [&] {
         if (recording->size_bytes() > 0)
             progress.show(double(recording->position_bytes()) / double(recording->size_bytes()));
         return !program.signals.stopping();

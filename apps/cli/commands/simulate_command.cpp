@@ -7,6 +7,7 @@
 #include "pipeline/sinks/folder.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/simulate/colour_recording.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/textures_folder.h"
 
@@ -28,6 +29,31 @@ const Format* format_of(const std::string& path) {
                                           ": expected a folder (ending in /) or the extension "
                                           "of a format that can be written, such as .aedat4");
     return format;
+}
+
+ColourFilter filter_named(const std::string& bayer) {
+    return ColourFilter(parse_choice(bayer, {"none", "rggb", "grbg", "gbrg", "bggr"}));
+}
+
+Frame frame_of(const Truth& truth) {
+    Frame frame;
+    frame.t = truth.t;
+    frame.window = {truth.t, truth.t};
+    frame.intensity = truth.image;
+    return frame;
+}
+
+/// Intensity is the luma of Rec. 601.
+Frame frame_of(const ColourRecording::Truths& truths, std::size_t i) {
+    Frame frame = frame_of(truths[0][i]);
+    constexpr std::array<float, 3> kLuma{.114F, .587F, .299F};
+    for (float& v : frame.intensity.values()) v = 0;
+    for (std::size_t c = 0; c < truths.size(); ++c) {
+        frame.colour[c] = truths[c][i].image;
+        for (std::size_t k = 0; k < frame.intensity.values().size(); ++k)
+            frame.intensity.values()[k] += kLuma[c] * frame.colour[c].values()[k];
+    }
+    return frame;
 }
 
 StreamHeader header_of(const SimRecordingSettings& what) {
@@ -102,6 +128,15 @@ SettingTable SimulateCommand::settings() {
     add(text_setting("textures", textures_, "PATH",
                      "Folder of images or pack of textures to draw the scene from; empty: "
                      "procedural textures."));
+    add(parsed_setting<std::string>(
+        "bayer", bayer_, "none|rggb|grbg|gbrg|bggr",
+        "A colour camera: the filter before its pixels, from the top left corner. Images are "
+        "mosaics, the truth is in colour, and --textures is a folder of colour images.",
+        [](const std::string& text) {
+            parse_choice(text, {"none", "rggb", "grbg", "gbrg", "bggr"});
+            return text;
+        },
+        [](const std::string& text) { return text; }));
     add(flag_setting("overwrite", overwrite_,
                      "Replace files that exist; of a folder, what an earlier run wrote."));
     return table;
@@ -120,6 +155,30 @@ SimRecordingSettings SimulateCommand::plan() const {
     plan.truths_per_second = truth_.empty() ? 0 : truths_per_second_;
     plan.truth_scale = truth_scale_;
     return plan;
+}
+
+void SimulateCommand::simulate(
+    const SimRecordingSettings& what, const ColourRecording::Textures& textures,
+    const std::function<bool(const Batch&, std::vector<Frame>&)>& emit) const {
+    const ColourFilter filter = filter_named(bayer_);
+    std::vector<Frame> frames;
+    if (filter == ColourFilter::none) {
+        simulate_recording(what, textures[0],
+                           [&](const Batch& batch, const std::vector<Truth>& truths) {
+                               frames.clear();
+                               for (const Truth& truth : truths) frames.push_back(frame_of(truth));
+                               return emit(batch, frames);
+                           });
+        return;
+    }
+    ColourRecording recording{what, textures, filter};
+    Batch batch;
+    ColourRecording::Truths truths;
+    while (recording.next(batch, truths)) {
+        frames.clear();
+        for (std::size_t i = 0; i < truths[0].size(); ++i) frames.push_back(frame_of(truths, i));
+        if (!emit(batch, frames)) return;
+    }
 }
 
 void SimulateCommand::name_output_files(NamedFiles& files) const {
@@ -141,8 +200,18 @@ int SimulateCommand::run(Program& program) {
         throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
     name_output_files(program.files);
     const SimRecordingSettings what = plan();
-    const auto textures = open_textures(textures_, kProceduralTextures);
-    RecordingOut out{out_, overwrite_, format_of(out_), header_of(what)};
+    if (bayer_ != "none" && !std::filesystem::is_directory(textures_))
+        throw Error(ErrorKind::usage, "--bayer " + bayer_ +
+                                          ": expected --textures and a folder of colour images, "
+                                          "found '" +
+                                          textures_ + "'");
+    const ColourRecording::Textures textures =
+        bayer_ == "none"
+            ? ColourRecording::Textures{open_textures(textures_, kProceduralTextures), {}, {}}
+            : colour_textures_from_folder(textures_);
+    StreamHeader header = header_of(what);
+    header.colour_filter = filter_named(bayer_);
+    RecordingOut out{out_, overwrite_, format_of(out_), header};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);
     std::unique_ptr<FolderSink> truth;
@@ -151,17 +220,13 @@ int SimulateCommand::run(Program& program) {
             .path = truth_, .overwrite = overwrite_, .uncertainty = Uncertainty::none});
     Progress progress{program.quiet};
     std::uint64_t events = 0, images = 0, truths = 0;
-    simulate_recording(what, textures, [&](const Batch& batch, const std::vector<Truth>& seen) {
+    simulate(what, textures, [&](const Batch& batch, std::vector<Frame>& seen) {
         if (const Batch held = held_of(batch, out.holds()); !held.empty()) out.write(held);
         events += batch.events.size();
         images += batch.images.size();
-        for (const Truth& view : seen) {
-            Frame frame;
-            frame.t = view.t;
-            frame.index = truths++;
-            frame.window = {view.t, view.t};
-            frame.intensity = view.image;
-            truth->write(frame);
+        for (Frame& view : seen) {
+            view.index = truths++;
+            truth->write(view);
         }
         if (!batch.events.empty())
             progress.show(double(to_us(batch.events.back().t)) / (1e6 * what.seconds));

@@ -3,7 +3,11 @@
 
 #include "apps/cli/command.h"
 #include "apps/cli/settings/values.h"
-#include "src/simulate/sim_recording.h"
+#include "src/core/frame_data.h"
+#include "src/simulate/colour_recording.h"
+
+#include <functional>
+#include <vector>
 
 namespace eventide::app {
 
@@ -19,10 +23,13 @@ public:
 
 private:
     SimRecordingSettings plan() const;
+    /// Emits as simulate_recording() does; of a grey camera the first textures are used.
+    void simulate(const SimRecordingSettings& what, const ColourRecording::Textures& textures,
+                  const std::function<bool(const Batch&, std::vector<Frame>&)>& emit) const;
     void name_output_files(NamedFiles& files) const;
 
     std::string scene_ = "demo", out_, truth_, textures_;
-    std::string seed_ = "auto";
+    std::string seed_ = "auto", bayer_ = "none";
     Size size_{240, 180};
     double seconds_ = 4, images_per_second_ = 25, truths_per_second_ = 25, truth_scale_ = 1;
     bool overwrite_ = false, list_ = false;

@@ -42,4 +42,12 @@ Network::Network(const RunSettings& settings, const SensorInfo& sensor)
         encoder_.restore(read_safetensors(settings.state_in), settings.state_in);
 }
 
+Encoder Network::make_encoder(const SensorInfo& sensor) const {
+    return made_for<Encoder>(model_, sensor, engine_);
+}
+
+Renderer Network::make_renderer(const SensorInfo& sensor) const {
+    return made_for<Renderer>(model_, sensor, engine_);
+}
+
 }  // namespace eventide::app

@@ -11,6 +11,7 @@
 #include "pipeline/sinks/raw_stream.h"
 #include "pipeline/sinks/v4l2_output.h"
 #include "pipeline/sinks/video.h"
+#include "pipeline/sinks/video_kind.h"
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
 
@@ -174,9 +175,34 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     return std::make_unique<ContactSheetSink>(std::move(sheet));
 }
 
+/// The contact sheet shows intensity all the same.
+bool takes_colour(const SinkName& sink) {
+    switch (sink.kind) {
+        case SinkKind::stream:
+            return sink.format == StreamFormat::y4m;
+        case SinkKind::video:
+            return video_kind_of(sink.path).colour;
+        case SinkKind::v4l2:
+        case SinkKind::ros2:
+            return false;
+        case SinkKind::window:
+        case SinkKind::folder:
+        case SinkKind::sheet:
+        case SinkKind::http:
+        case SinkKind::nothing:
+            break;
+    }
+    return true;
+}
+
 std::unique_ptr<Sink> open_sink(const std::string& text, const RunSettings& settings,
                                 const SinkPlan& plan) {
     const SinkName sink = parse_sink(text);
+    if (settings.colour && !takes_colour(sink))
+        throw Error(ErrorKind::usage,
+                    "--out " + text +
+                        ": has no colour; with --colour expected a folder, a video, "
+                        "y4m:, window, http:, contact-sheet: or null");
     switch (sink.kind) {
         case SinkKind::window:
             return open_window(settings, plan);

@@ -22,6 +22,7 @@ RecordedSource::RecordedSource(Source& source, const std::string& path, bool ove
     header.height = source.info().height;
     header.sensor_name = source.info().name;
     header.serial = source.info().serial;
+    header.colour_filter = source.info().colour_filter;
     file_ = std::make_unique<RecordingFile>(path, overwrite, *format_, header, Appears::growing);
     parser_ = source.make_parser();
 }

@@ -74,16 +74,27 @@ Run::Run(Program& program, RunSettings& settings)
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), as_live())},
       undistortion_{undistortion_of(settings, sensor_)},
+      colour_filter_{colour_filter_of(settings, sensor_, live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
       filter_{filter_of(settings, network_.config(), sensor_)},
       watch_{sheet_ ? &references_ : nullptr,
-             settings.frames == CameraFrames::ignore ? nullptr : &images_},
+             settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
       render_{render_stage()} {
     check_recording(settings, span_, slicer_);
     quality_.tell_rate(rate_.is_set() ? nominal_fps(rate_, slicer_, settings.slow) : 0);
-    if (opened_.recording != nullptr && span_.begin) opened_.recording->seek(*span_.begin);
+    if (settings.colour) {
+        colour_.emplace(network_, sensor_, colour_filter_,
+                        request_of(settings, sensor_, lookahead_, undistortion_),
+                        render_.fused() != nullptr, network_.encoder(), render_);
+        watch_.colour(&*colour_);
+    }
+    if (opened_.recording != nullptr && span_.begin) {
+        if (const auto first = first_event_of(settings, live()); first && !filters_.empty())
+            filters_.count_from(*first);
+        opened_.recording->seek(*span_.begin);
+    }
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
     recorded_ = recorder_of(settings, *opened_.source);
@@ -191,8 +202,10 @@ ModelRenderStage Run::render_stage() {
 }
 
 PipelineParts Run::parts() {
+    RenderStage& render = colour_ ? colour_->render() : static_cast<RenderStage&>(render_);
+    EncodeStage& encode = colour_ ? colour_->encode() : network_.encoder();
     EventFilter* last = events_out_ ? events_out_.get() : filter_.get();
-    PipelineParts parts{source(), network_.encoder(), render_, {}, last, &watch_};
+    PipelineParts parts{source(), encode, render, {}, last, &watch_};
     for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
     return parts;
 }

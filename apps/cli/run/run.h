@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/cli/command.h"
+#include "apps/cli/run/colour.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/loaded_model.h"
 #include "apps/cli/run/open_sinks.h"
@@ -26,16 +27,25 @@ namespace eventide::app {
 /// Hands reference images on, where somebody wants them (not null). Bin thread.
 class Watch : public DataObserver {
 public:
-    Watch(ReferenceImages* references, ImagesOnTheWay* images)
-        : references_{references}, images_{images} {}
+    Watch(ReferenceImages* references, ImagesOnTheWay* images, ColourFilter filter)
+        : filter_{filter}, references_{references}, images_{images} {}
     void write_to(EventsOut* out) { out_ = out; }
+    void colour(ColourNetworks* networks) { networks_ = networks; }
     void see(const Batch& batch) override {
         if (out_ != nullptr) out_->see(batch);
-        if (references_ != nullptr) references_->see(batch);
-        if (images_ != nullptr) images_->put(batch.images);
+        if (batch.images.empty()) return;
+        Batch shown;
+        for (const ReferenceImage& image : batch.images)
+            shown.images.push_back(demosaiced(image, filter_));
+        if (references_ != nullptr) references_->see(shown);
+        if (images_ == nullptr) return;
+        images_->put(shown.images);
+        if (networks_ != nullptr) networks_->see(batch.images);
     }
 
 private:
+    ColourFilter filter_;
+    ColourNetworks* networks_ = nullptr;
     ReferenceImages* references_;
     ImagesOnTheWay* images_;
     EventsOut* out_ = nullptr;
@@ -88,6 +98,7 @@ private:
     const FrameRate rate_;
     const int lookahead_;
     const std::optional<UndistortionPlan> undistortion_;
+    const ColourFilter colour_filter_;
     const bool sheet_, page_;
     const std::chrono::steady_clock::time_point begun_;
     std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known
@@ -100,6 +111,7 @@ private:
     std::unique_ptr<EventsOut> events_out_;   // null: not asked for
     Watch watch_;
     ModelRenderStage render_;
+    std::optional<ColourNetworks> colour_;  // none: frames are grey
     LiveChanges changes_;
     std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
     std::vector<std::unique_ptr<Sink>> sinks_;

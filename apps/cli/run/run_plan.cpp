@@ -28,7 +28,17 @@ SensorTime warm_up_from(const RunSettings& settings, const TimePointReader& mome
     return std::min(std::max(begin, moments.time_of({})), frames_from);
 }
 
+TimePointReader moments_of(const RunSettings& settings) {
+    if (names_simulation(settings.source)) return TimePointReader{SimRecordingSettings{}.begin};
+    return TimePointReader{settings.source, settings.input.options()};
+}
+
 }  // namespace
+
+std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live) {
+    if (live || settings.source == "-") return {};
+    return moments_of(settings).time_of({});
+}
 
 Span span_of(const RunSettings& settings, bool live) {
     Span span;
@@ -39,10 +49,7 @@ Span span_of(const RunSettings& settings, bool live) {
         span.duration = settings.duration;
         return span;
     }
-    const TimePointReader moments =
-        names_simulation(settings.source)
-            ? TimePointReader{SimRecordingSettings{}.begin}
-            : TimePointReader{settings.source, settings.input.options()};
+    const TimePointReader moments = moments_of(settings);
     if (settings.from) {
         span.frames_from = moments.time_of(*settings.from);
         span.begin = warm_up_from(settings, moments, *span.frames_from);

@@ -25,6 +25,9 @@ struct Span {
 /// cannot be had: --from of a live source or, relative, of standard input.
 Span span_of(const RunSettings& settings, bool live);
 
+/// Of a recording that can be asked for it; reads its beginning.
+std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live);
+
 /// Of a recording: 0 is as fast as it goes. Throws Error (usage) for --realtime without a pace.
 double speed_of(const RunSettings& settings);
 

@@ -122,6 +122,10 @@ std::string same(const std::string& text) {
     return text;
 }
 
+ColourFilter parse_bayer(const std::string& text) {
+    return ColourFilter(parse_choice(text, {"none", "rggb", "grbg", "gbrg", "bggr"}));
+}
+
 std::string check_hot_pixels(const std::string& text) {
     if (text.empty()) throw_usage("off, learn or a file", text);
     return text;
@@ -275,6 +279,14 @@ void RunSettings::add_network(SettingTable& table) {
                        "for as long as what they "
                        "show holds; use says so where none came; ignore leaves them alone.",
                        {"auto", "use", "ignore"}));
+    add(open_setting<ColourFilter>(
+        "bayer", bayer, "none|rggb|grbg|gbrg|bggr",
+        "The sensor's colour filter, from its top left corner; auto: what the camera or recording "
+        "says. Its images are demosaiced.",
+        "auto", parse_bayer, [](const ColourFilter& f) { return std::string{name_of(f)}; }));
+    add(flag_setting("colour", colour,
+                     "Frames in colour, of a sensor with a colour filter: folders, videos, Y4M, "
+                     "window and page."));
     add(flag_setting("reset_on_gap", reset_on_gap,
                      "Reset the recurrent state where data were lost, instead of keeping it."));
 }

@@ -9,6 +9,7 @@
 #include "pipeline/sinks/adjust.h"
 #include "pipeline/sinks/draw_frame.h"
 #include "pipeline/sinks/raw_stream.h"
+#include "src/core/bayer.h"
 #include "src/model/engine.h"
 #include "src/model/renderer.h"
 
@@ -73,6 +74,8 @@ struct RunSettings {
     int threads = 0;
     std::string state_in, state_out;
     bool reset_on_gap = false;
+    std::optional<ColourFilter> bayer;  ///< empty: what the camera or recording says
+    bool colour = false;
     CameraFrames frames = CameraFrames::automatic;
     std::vector<std::string> filter;  ///< make_data_filter(), in this order
     std::string hot_pixels = "off";

@@ -1,0 +1,159 @@
+// Colour cameras.
+#include "apps/cli/run/colour.h"
+
+#include "replay/formats.h"
+#include "src/core/error.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <string>
+
+namespace eventide::app {
+
+namespace {
+
+/// Of AEDAT 3's first image that tells it, as long as that comes with the first of the recording.
+ColourFilter filter_of_images(const RunSettings& settings) {
+    constexpr std::uint64_t kMostBytes = 256 << 20;
+    const auto recording = open_recording(settings.source, settings.input.options());
+    const auto parser = recording->make_parser();
+    RawPacket packet;
+    Batch batch;
+    for (std::uint64_t bytes = 0; bytes < kMostBytes; bytes += packet.bytes.size()) {
+        if (recording->read(packet) == ReadStatus::end) break;
+        batch.clear();
+        parser->parse(packet.bytes, batch);
+        for (const ReferenceImage& image : batch.images)
+            if (image.filter != ColourFilter::none) return image.filter;
+        if (!batch.images.empty()) break;
+    }
+    return ColourFilter::none;
+}
+
+/// What the image's own top left corner begins with.
+ColourFilter filter_at(ColourFilter filter, int x0, int y0) {
+    for (const ColourFilter shifted :
+         {ColourFilter::rggb, ColourFilter::grbg, ColourFilter::gbrg, ColourFilter::bggr})
+        if (channel_at(shifted, 0, 0) == channel_at(filter, x0, y0) &&
+            channel_at(shifted, 1, 0) == channel_at(filter, x0 + 1, y0) &&
+            channel_at(shifted, 0, 1) == channel_at(filter, x0, y0 + 1))
+            return shifted;
+    return filter;
+}
+
+int opencv_code(ColourFilter filter) {
+    switch (filter) {
+        case ColourFilter::grbg:
+            return cv::COLOR_BayerGRBG2BGR;
+        case ColourFilter::gbrg:
+            return cv::COLOR_BayerGBRG2BGR;
+        case ColourFilter::bggr:
+            return cv::COLOR_BayerBGGR2BGR;
+        case ColourFilter::none:
+        case ColourFilter::rggb:
+            break;
+    }
+    return cv::COLOR_BayerRGGB2BGR;
+}
+
+void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourFilter filter) {
+    const auto refuse = [](const std::string& what) {
+        throw Error(ErrorKind::usage, "--colour: " + what);
+    };
+    if (filter == ColourFilter::none)
+        refuse(
+            "expected a camera or recording that tells its colour filter, or --bayer rggb, "
+            "grbg, gbrg or bggr; found neither in " +
+            settings.source);
+    if (sensor.width % 2 != 0 || sensor.height % 2 != 0)
+        refuse("expected a sensor with even sides, found " +
+               show_size({sensor.width, sensor.height}));
+    if (!settings.state_in.empty() || !settings.state_out.empty())
+        refuse(
+            "the state of four networks is no file yet; expected no --state-in and no "
+            "--state-out");
+}
+
+}  // namespace
+
+ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& sensor, bool live) {
+    ColourFilter filter = settings.bayer.value_or(sensor.colour_filter);
+    if (!settings.bayer && sensor.format == "aedat3" && !live && settings.source != "-")
+        filter = filter_of_images(settings);
+    if (filter != ColourFilter::none)
+        for (const std::string& text : settings.filter)
+            if (text.starts_with("flip:") || text == "transpose" ||
+                (text.starts_with("subsample:") && text.find('x') != text.npos))
+                throw Error(ErrorKind::usage,
+                            "--filter " + text + ": changes which pixel of the " +
+                                std::string{name_of(filter)} +
+                                " sensor is which; expected --bayer none, or no such filter");
+    if (settings.colour) check_colour(settings, sensor, filter);
+    return filter;
+}
+
+ReferenceImage demosaiced(const ReferenceImage& image, ColourFilter filter) {
+    if (filter == ColourFilter::none) filter = image.filter;
+    // Of less than two rows or columns there is nothing to interpolate.
+    if (image.channels != 1 || filter == ColourFilter::none || image.pixels.height() < 2 ||
+        image.pixels.width() < 2)
+        return image;
+    ReferenceImage colour = image;
+    colour.channels = 3;
+    colour.filter = ColourFilter::none;
+    colour.pixels = Array2<std::uint16_t>(image.pixels.height(), 3 * image.pixels.width());
+    const cv::Mat mosaic(image.pixels.height(), image.pixels.width(), CV_16UC1,
+                         const_cast<std::uint16_t*>(image.pixels.values().data()));
+    cv::Mat bgr(mosaic.rows, mosaic.cols, CV_16UC3, colour.pixels.values().data());
+    cv::cvtColor(mosaic, bgr, opencv_code(filter_at(filter, image.x0, image.y0)));
+    return colour;
+}
+
+ColourNetworks::ColourNetworks(Network& network, const SensorInfo& sensor, ColourFilter filter,
+                               const RenderRequest& request, bool fuse, EncodeStage& encode,
+                               RenderStage& render)
+    : filter_{filter} {
+    SensorInfo half = sensor;
+    half.width /= 2;
+    half.height /= 2;
+    RenderRequest own = request;  // of all the pixels of a colour
+    own.width = half.width;
+    own.height = half.height;
+    own.region = {};
+    own.want_sigma = fuse && request.want_sigma;
+    std::array<EncodeStage*, 3> encoders{};
+    std::array<RenderStage*, 3> renderers{};
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        Channel& channel = channels_[c];
+        channel.encoder.emplace(network.make_encoder(half));
+        channel.renderer.emplace(network.make_renderer(half));
+        if (fuse)
+            channel.render.emplace(*channel.renderer, own, half.width, half.height, channel.images);
+        else
+            channel.render.emplace(*channel.renderer, own);
+        encoders[c] = &*channel.encoder;
+        renderers[c] = &*channel.render;
+    }
+    encode_.emplace(encode, encoders, filter, sensor.width, sensor.height, network.config().bins);
+    const ColourRenderStage::View view{request.width, request.height, request.region.x,
+                                       request.region.y};
+    render_.emplace(render, renderers, filter, sensor.width, sensor.height, view,
+                    encode_->make_output());
+}
+
+void ColourNetworks::see(const std::vector<ReferenceImage>& images) {
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        // One for each, as they are counted.
+        std::vector<ReferenceImage> parts(images.size());
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            const BayerSite site = site_of(filter_, kColourChannels[c]);
+            if (auto part = image_of_site(images[i], site, kColourChannels[c]))
+                parts[i] = std::move(*part);
+            else
+                parts[i].t = images[i].t;
+        }
+        channels_[c].images.put(parts);
+    }
+}
+
+}  // namespace eventide::app

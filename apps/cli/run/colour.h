@@ -1,0 +1,53 @@
+// Colour cameras: the filter before their pixels, their images, and networks for single colours.
+#pragma once
+
+#include "apps/cli/run/loaded_model.h"
+#include "apps/cli/settings/run_settings.h"
+#include "pipeline/colour_stages.h"
+#include "pipeline/model_render_stage.h"
+#include "pipeline/source.h"
+#include "src/model/encoder.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace eventide::app {
+
+/// --bayer, else what the camera or recording says; of AEDAT 3, where each image says it, the first
+/// that does. Throws Error (usage) where filters of events change which pixel is which, where
+/// --colour finds no colours, or contradicts something else that was asked for.
+ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& sensor, bool live);
+
+/// A mosaic as BGR (OpenCV, bilinear); images that are none stay as they are. An image that says
+/// its own filter is taken at its word where `filter` is none.
+ReferenceImage demosaiced(const ReferenceImage& image, ColourFilter filter);
+
+/// What --colour adds to the stages for all pixels.
+class ColourNetworks {
+public:
+    /// The camera's images correct each colour's frames where `fuse`.
+    ColourNetworks(Network& network, const SensorInfo& sensor, ColourFilter filter,
+                   const RenderRequest& request, bool fuse, EncodeStage& encode,
+                   RenderStage& render);
+
+    EncodeStage& encode() { return *encode_; }
+    RenderStage& render() { return *render_; }
+    /// Bin thread. Mosaics or colours.
+    void see(const std::vector<ReferenceImage>& images);
+
+private:
+    struct Channel {
+        std::optional<Encoder> encoder;
+        std::optional<Renderer> renderer;
+        std::optional<ModelRenderStage> render;
+        ImagesOnTheWay images;
+    };
+    ColourFilter filter_;
+    std::array<Channel, 3> channels_;
+    std::optional<ColourEncodeStage> encode_;
+    std::optional<ColourRenderStage> render_;
+};
+
+}  // namespace eventide::app

@@ -1,0 +1,191 @@
+// Colour out of a sensor with a colour filter.
+#include "pipeline/colour_stages.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace eventide {
+
+namespace {
+
+/// Every second row and column, from the site on.
+void take_site(const VoxelGrid& grid, const BayerSite& site, VoxelGrid& part) {
+    const int height = part.values.height(), width = part.values.width();
+    assert(part.values.channels() == grid.values.channels());
+    const bool tracked = !grid.touched.empty();
+    part.window = grid.window;
+    part.events = grid.events;
+    part.gap_before = grid.gap_before;
+    part.reset_before = grid.reset_before;
+    part.images = grid.images;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const int from_y = 2 * y + site.y, from_x = 2 * x + site.x;
+            std::ranges::copy(grid.values.pixel(from_y, from_x), part.values.pixel(y, x).begin());
+            if (tracked) part.touched(y, x) = grid.touched(from_y, from_x);
+        }
+}
+
+void take_site(const Array2<float>& map, const BayerSite& site, Array2<float>& part) {
+    for (int y = 0; y < part.height(); ++y)
+        for (int x = 0; x < part.width(); ++x) part(y, x) = map(2 * y + site.y, 2 * x + site.x);
+}
+
+/// Rec. 601, as src/core/grey.h.
+constexpr std::array<float, 3> kLuma{.114F, .587F, .299F};
+
+}  // namespace
+
+ColourEncodeStage::ColourEncodeStage(EncodeStage& all, std::array<EncodeStage*, 3> channels,
+                                     ColourFilter filter, int sensor_width, int sensor_height,
+                                     int bins)
+    : all_(all), channels_(channels), filter_(filter) {
+    part_.values = Array3<float>(sensor_height / 2, sensor_width / 2, 4 * bins + 1);
+    part_.touched = Array2<std::uint8_t>(sensor_height / 2, sensor_width / 2);
+}
+
+LatentMap ColourEncodeStage::make_output() const {
+    LatentMap latent = all_.make_output();
+    for (const EncodeStage* stage : channels_) {
+        LatentMap codes = stage->make_output();
+        latent.channels.push_back({std::move(codes.values), std::move(codes.history)});
+    }
+    return latent;
+}
+
+void ColourEncodeStage::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
+    all_.encode(grid, latent);
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        take_site(grid, site_of(filter_, kColourChannels[c]), part_);
+        std::swap(codes_.values, latent.channels[c].values);
+        std::swap(codes_.history, latent.channels[c].history);
+        channels_[c]->encode(part_, codes_);
+        std::swap(codes_.values, latent.channels[c].values);
+        std::swap(codes_.history, latent.channels[c].history);
+    }
+}
+
+void ColourEncodeStage::reset() noexcept {
+    all_.reset();
+    for (EncodeStage* stage : channels_) stage->reset();
+}
+
+ColourRenderStage::ColourRenderStage(RenderStage& all, std::array<RenderStage*, 3> channels,
+                                     ColourFilter filter, int sensor_width, int sensor_height,
+                                     const View& view, const LatentMap& codes)
+    : all_(all),
+      channels_(channels),
+      filter_(filter),
+      sensor_width_(sensor_width),
+      sensor_height_(sensor_height),
+      view_(view) {
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        parts_[c] = channels_[c]->make_output();
+        codes_[c].values = codes.channels[c].values;
+        codes_[c].history = codes.channels[c].history;
+        codes_[c].events_per_pixel = Array2<float>(sensor_height / 2, sensor_width / 2);
+    }
+    make_taps(all_.make_output());
+}
+
+Frame ColourRenderStage::make_output() const {
+    Frame frame = all_.make_output();
+    for (Array2<float>& plane : frame.colour)
+        plane = Array2<float>(frame.intensity.height(), frame.intensity.width());
+    return frame;
+}
+
+/// Corners of frames lie on corners of the sensor (docs/model.md).
+std::vector<ColourRenderStage::Tap> ColourRenderStage::taps(int count, int offset, int whole,
+                                                            int sensor, int site) {
+    const double scale = whole > 1 ? double(sensor - 1) / (whole - 1) : 0;
+    const int last = sensor / 2 - 1;
+    std::vector<Tap> taps(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+        const double at = std::clamp(((offset + i) * scale - site) / 2, 0.0, double(last));
+        const int first = int(at);
+        taps[std::size_t(i)] = {first, std::min(first + 1, last), float(at - first)};
+    }
+    return taps;
+}
+
+void ColourRenderStage::make_taps(const Frame& frame) {
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        const BayerSite site = site_of(filter_, kColourChannels[c]);
+        rows_[c] = taps(frame.intensity.height(), view_.top, view_.height, sensor_height_, site.y);
+        columns_[c] = taps(frame.intensity.width(), view_.left, view_.width, sensor_width_, site.x);
+    }
+}
+
+void ColourRenderStage::push(const LatentMap& latent) noexcept {
+    all_.push(latent);
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        LatentMap& codes = codes_[c];
+        codes.window = latent.window;
+        codes.events = latent.events;
+        codes.arrived = latent.arrived;
+        codes.gap_before = latent.gap_before;
+        codes.reset_before = latent.reset_before;
+        codes.images = latent.images;
+        codes.values = latent.channels[c].values;
+        codes.history = latent.channels[c].history;
+        if (!latent.events_per_pixel.empty())
+            take_site(latent.events_per_pixel, site_of(filter_, kColourChannels[c]),
+                      codes.events_per_pixel);
+        channels_[c]->push(codes);
+    }
+}
+
+void ColourRenderStage::finish() noexcept {
+    all_.finish();
+    for (RenderStage* stage : channels_) stage->finish();
+}
+
+void ColourRenderStage::reset() noexcept {
+    all_.reset();
+    for (RenderStage* stage : channels_) stage->reset();
+}
+
+void ColourRenderStage::render(SensorTime t, const Window& window, Frame& frame) noexcept {
+    all_.render(t, window, frame);
+    for (std::size_t c = 0; c < channels_.size(); ++c) channels_[c]->render(t, window, parts_[c]);
+    const int height = frame.intensity.height(), width = frame.intensity.width();
+    for (Array2<float>& plane : frame.colour)
+        if (plane.height() != height || plane.width() != width)
+            plane = Array2<float>(height, width);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            std::array<float, 3> colour;
+            float luma = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Tap &row = rows_[c][std::size_t(y)], &column = columns_[c][std::size_t(x)];
+                const Array2<float>& part = parts_[c].intensity;
+                const auto across = [&](int r) {
+                    const float left = part(r, column.first), right = part(r, column.second);
+                    return left + column.share * (right - left);
+                };
+                const float above = across(row.first);
+                colour[c] = above + row.share * (across(row.second) - above);
+                luma += kLuma[c] * colour[c];
+            }
+            for (std::size_t c = 0; c < 3; ++c)
+                frame.colour[c](y, x) = frame.intensity(y, x) + colour[c] - luma;
+        }
+}
+
+bool ColourRenderStage::change_lookahead(int lookahead) {
+    bool all = all_.change_lookahead(lookahead);
+    for (RenderStage* stage : channels_) all = stage->change_lookahead(lookahead) && all;
+    return all;
+}
+
+bool ColourRenderStage::change_size(int width, int height, Frame& frame) {
+    if (!all_.change_size(width, height, frame)) return false;
+    view_.width = width;
+    view_.height = height;
+    for (Array2<float>& plane : frame.colour) plane = Array2<float>(height, width);
+    make_taps(frame);
+    return true;
+}
+
+}  // namespace eventide

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# Reconstructs recordings as an array job of Slurm, or prepares it for other hands (--plan).
+#   scripts/slurm/submit.sh [--plan] [--segment SECONDS] [--warmup SECONDS|all] [--sbatch 'OPTIONS'] OUT RECORDING... [-- RUN OPTIONS]
+# OUT/NAME gets what `eventide run RECORDING --out OUT/NAME/` writes (docs/services.md). Run it again to do what is missing.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$here/common.sh"
+
+plan_only=false segment= warmup=all sbatch_options=
+while [[ ${1:-} == --* && $1 != -- ]]; do
+  case $1 in
+    --plan) plan_only=true ;;
+    --segment) segment=$(whole_number --segment "${2:-}"); shift ;;
+    --warmup) warmup=${2:-}; [[ $warmup == all ]] || warmup=$(whole_number --warmup "$warmup"); shift ;;
+    --sbatch) sbatch_options=${2:-}; shift ;;
+    *) refuse "submit.sh: unknown option $1" ;;
+  esac
+  shift
+done
+[ $# -ge 2 ] || refuse "submit.sh: expected OUT and at least one RECORDING"
+out=$1
+shift
+recordings=()
+while [ $# -gt 0 ] && [ "$1" != -- ]; do recordings+=("$1"); shift; done
+[ "${1:-}" != -- ] || shift
+for option in "$@"; do
+  case $option in
+    --out* | -o* | --from* | --to* | --duration* | --warmup* | --state-* | --overwrite* | --config*)
+      refuse "submit.sh: $option: the tasks set that themselves" ;;
+  esac
+done
+
+# One line per task: recording, name, from and to (us of the sensor; - for the recording's own), length of the warm-up (us).
+new=$(mktemp)
+trap 'rm -f "$new" "$new.options"' EXIT
+declare -A taken
+for recording in "${recordings[@]}"; do
+  [ -e "$recording" ] || refuse "submit.sh: $recording: no such recording"
+  name=$(basename "$recording"); name=${name%.*}
+  [[ $recording != *$'\t'* && $recording != *$'\n'* ]] || refuse "submit.sh: $recording: names with tabs or line ends cannot be planned"
+  [ -z "${taken[$name]:-}" ] || refuse "submit.sh: $recording and ${taken[$name]}: both would be OUT/$name"
+  taken[$name]=$recording
+  path=$(realpath "$recording")
+  if [ -z "$segment" ]; then
+    printf '%s\t%s\t-\t-\t0\n' "$path" "$name" >> "$new"
+    continue
+  fi
+  info=$("$EVENTIDE" info "$recording" --json) || refuse "submit.sh: $recording: cannot be read"
+  # Frames count from just before the first event, as of one run.
+  first=$(($(number_in "$info" first_us) - 1)) last=$(number_in "$info" last_us)
+  for ((from = first; from <= last; from += segment * 1000000)); do
+    before=$((from - first))
+    [[ $warmup == all ]] || before=$((before < warmup * 1000000 ? before : warmup * 1000000))
+    begin=$from
+    [ "$from" -gt "$first" ] || begin=-
+    printf '%s\t%s\t%s\t%s\t%s\n' "$path" "$name" "$begin" $((from + segment * 1000000)) "$before" >> "$new"
+  done
+done
+printf '%s\0' "$@" > "$new.options"
+[ $# -gt 0 ] || : > "$new.options"
+
+mkdir -p "$out/parts"
+if [ -e "$out/plan.tsv" ]; then
+  cmp -s "$new" "$out/plan.tsv" && cmp -s "$new.options" "$out/options" ||
+    refuse "submit.sh: $out: holds another plan; expected the same recordings, segments and options, or another folder"
+else
+  cp "$new.options" "$out/options"
+  cp "$new" "$out/plan.tsv.part" && mv "$out/plan.tsv.part" "$out/plan.tsv"
+fi
+tasks=$(wc -l < "$out/plan.tsv")
+echo "$tasks tasks in $out/plan.tsv" >&2
+$plan_only && exit 0
+
+out=$(realpath "$out")
+# Slurm runs a copy of a script, which would not find the others: what it runs is one line that calls ours.
+# SCRIPT SBATCH-OPTION...
+submit() {
+  local line
+  printf -v line 'exec %q %q' "$here/$1" "$out"
+  # shellcheck disable=SC2086  # options of sbatch are words
+  sbatch --parsable --job-name="eventide-$1" --open-mode=append $sbatch_options "${@:2}" --wrap "$line"
+}
+job=$(submit task.sh --array="0-$((tasks - 1))" --output="$out/task-%a.log")
+submit merge.sh --dependency="afterok:$job" --output="$out/merge.log" > /dev/null
+echo "job $job, and a job behind it that joins the parts" >&2

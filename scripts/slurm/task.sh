@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# One task of a plan: task.sh OUT [NUMBER]; the number, from 0, is else $SLURM_ARRAY_TASK_ID. What is done already is left as it is; what a killed
+# task left is made anew, beside its place, and renamed when it is whole.
+set -euo pipefail
+. "$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/common.sh"
+out=${1:?task.sh: expected OUT, the folder of a plan}
+number=${2:-${SLURM_ARRAY_TASK_ID:-}}
+[[ $number =~ ^[0-9]+$ ]] || refuse "task.sh: expected a task's number or SLURM_ARRAY_TASK_ID, found '$number'"
+[ -e "$out/plan.tsv" ] || refuse "task.sh: $out: expected plan.tsv (submit.sh makes it), found none"
+IFS=$'\t' read -r recording name from to before < <(sed -n "$((number + 1))p" "$out/plan.tsv") ||
+  refuse "task.sh: $out/plan.tsv: expected task $number, found $(wc -l < "$out/plan.tsv") tasks"
+part=$out/parts/$(part_name "$name" "$number")
+if is_finished "$part"; then
+  echo "$part: done before" >&2
+  exit 0
+fi
+
+options=()
+while IFS= read -r -d '' option; do options+=("$option"); done < "$out/options"
+# Frames wait for event windows behind their own: a second more, of which merge.sh keeps nothing.
+[ "$from" = - ] || options+=(--from "@$from" --warmup "${before}us")
+[ "$to" = - ] || options+=(--to "@$((to + 1000000))")
+work=$part.$(hostname).$$.work
+rm -rf "$part".*.work "$part"
+"$EVENTIDE" run "$recording" "${options[@]}" --out "$work/"
+is_finished "$work" || refuse "task.sh: $work: expected a finished run"
+mv -T "$work" "$part"

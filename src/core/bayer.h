@@ -1,0 +1,86 @@
+// Colour filters of sensors: which pixel sees which colour.
+#pragma once
+
+#include "src/core/array.h"
+#include "src/core/event.h"
+
+#include <eventide/event.h>
+
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace eventide {
+
+/// Of a square of 2x2 pixels that begins at even x and y.
+struct BayerSite {
+    int x = 0, y = 0;  ///< 0 or 1 each
+};
+
+/// As Frame::colour orders them.
+enum class ColourChannel : std::uint8_t { blue, green, red };
+
+inline std::string_view name_of(ColourFilter filter) {
+    constexpr std::array<std::string_view, 5> kNames{"none", "rggb", "grbg", "gbrg", "bggr"};
+    return kNames[std::size_t(filter)];
+}
+
+/// What libcaer, AEDAT 3 and AEDAT 4 number 0 to 4 (docs/protocols.md, A.4, D.2, D.3): RGBG, GRGB,
+/// GBGR and BGRG there, which go round the square, so that the third letter lies below the second.
+/// Empty for other numbers.
+inline std::optional<ColourFilter> colour_filter_of_number(std::uint32_t number) {
+    if (number > std::uint32_t(ColourFilter::bggr)) return std::nullopt;
+    return ColourFilter(number);
+}
+inline std::uint32_t number_of(ColourFilter filter) {
+    return std::uint32_t(filter);
+}
+
+/// The filter is not none.
+inline ColourChannel channel_at(ColourFilter filter, int x, int y) {
+    assert(filter != ColourFilter::none);
+    constexpr auto kBlue = ColourChannel::blue, kGreen = ColourChannel::green,
+                   kRed = ColourChannel::red;
+    constexpr ColourChannel kPatterns[4][2][2] = {{{kRed, kGreen}, {kGreen, kBlue}},
+                                                  {{kGreen, kRed}, {kBlue, kGreen}},
+                                                  {{kGreen, kBlue}, {kRed, kGreen}},
+                                                  {{kBlue, kGreen}, {kGreen, kRed}}};
+    return kPatterns[std::size_t(filter) - 1][y & 1][x & 1];
+}
+
+/// Where the colour is; of green, the one in red's row. The filter is not none.
+inline BayerSite site_of(ColourFilter filter, ColourChannel channel) {
+    const bool red_above = channel_at(filter, 0, 0) == ColourChannel::red ||
+                           channel_at(filter, 1, 0) == ColourChannel::red;
+    for (const int y : {red_above ? 0 : 1, red_above ? 1 : 0})
+        for (int x = 0; x < 2; ++x)
+            if (channel_at(filter, x, y) == channel) return {x, y};
+    return {};
+}
+
+/// The pixels of one site as an image of their own, at half the place and size: of a mosaic, or of
+/// the channel of a BGR image. Empty where the image holds none of them.
+inline std::optional<ReferenceImage> image_of_site(const ReferenceImage& mosaic,
+                                                   const BayerSite& site, ColourChannel channel) {
+    const int stride = mosaic.channels, shift = stride >= 3 ? int(channel) : 0;
+    // The first of the site in the image, whose corner may lie on any.
+    const int left = (site.x + mosaic.x0) & 1, top = (site.y + mosaic.y0) & 1;
+    const int columns = (mosaic.pixels.width() / stride - left + 1) / 2;
+    const int rows = (mosaic.pixels.height() - top + 1) / 2;
+    if (columns < 1 || rows < 1) return std::nullopt;
+    ReferenceImage image;
+    image.t = mosaic.t;
+    image.exposure_begin = mosaic.exposure_begin;
+    image.exposure_end = mosaic.exposure_end;
+    image.x0 = (mosaic.x0 + left) / 2;
+    image.y0 = (mosaic.y0 + top) / 2;
+    image.pixels = Array2<std::uint16_t>(rows, columns);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            image.pixels(y, x) = mosaic.pixels(top + 2 * y, (left + 2 * x) * stride + shift);
+    return image;
+}
+
+}  // namespace eventide

@@ -1,0 +1,180 @@
+// Colours out of a mosaic: each network sees the pixels of its colour, and frames put them where
+// they are.
+#include "pipeline/colour_stages.h"
+#include "src/core/grey.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace eventide {
+namespace {
+
+constexpr int kHeight = 8, kWidth = 12, kBins = 2;
+
+/// Its codes are the grid's first number, and its frames the newest codes, of any size, cut where
+/// the request says: corners on corners.
+class EchoEncoder final : public EncodeStage {
+public:
+    EchoEncoder(int height, int width) : height_(height), width_(width) {}
+    LatentMap make_output() const override {
+        LatentMap latent;
+        latent.values = Array3<float>(height_, width_, 1);
+        return latent;
+    }
+    void reset() noexcept override { ++resets; }
+    int resets = 0;
+
+private:
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x) latent.values(y, x, 0) = grid.values(y, x, 0);
+    }
+
+    int height_, width_;
+};
+
+class EchoRenderer final : public RenderStage {
+public:
+    EchoRenderer(int height, int width, int out_height, int out_width)
+        : height_(height), width_(width), out_height_(out_height), out_width_(out_width) {}
+    Frame make_output() const override {
+        Frame frame;
+        frame.intensity = frame.sigma = Array2<float>(out_height_, out_width_);
+        return frame;
+    }
+    void push(const LatentMap& latent) noexcept override { newest_ = latent.values; }
+    void finish() noexcept override {}
+    void reset() noexcept override {}
+    void render(SensorTime, const Window&, Frame& frame) noexcept override {
+        for (int y = 0; y < out_height_; ++y)
+            for (int x = 0; x < out_width_; ++x) {
+                const double v = double(y) * (height_ - 1) / (out_height_ - 1),
+                             u = double(x) * (width_ - 1) / (out_width_ - 1);
+                frame.intensity(y, x) = newest_(int(std::lround(v)), int(std::lround(u)), 0);
+                frame.sigma(y, x) = .125F;
+            }
+    }
+
+private:
+    int height_, width_, out_height_, out_width_;
+    Array3<float> newest_;
+};
+
+/// Intensity of each colour, slanted so that places can be told.
+float shown(ColourChannel channel, double x, double y) {
+    switch (channel) {
+        case ColourChannel::blue:
+            return float(.2 + .010 * x);
+        case ColourChannel::green:
+            return float(.5 + .008 * y);
+        case ColourChannel::red:
+            break;
+    }
+    return float(.9 - .012 * x - .004 * y);
+}
+
+class ColourStages : public testing::TestWithParam<ColourFilter> {
+protected:
+    VoxelGrid grid() const {
+        VoxelGrid grid;
+        grid.values = Array3<float>(kHeight, kWidth, 4 * kBins + 1);
+        grid.touched = Array2<std::uint8_t>(kHeight, kWidth);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                grid.values(y, x, 0) = shown(channel_at(GetParam(), x, y), x, y);
+        return grid;
+    }
+};
+
+TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
+    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
+        red{kHeight / 2, kWidth / 2};
+    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
+    for (const int scale : {1, 3}) {
+        const int width = (kWidth - 1) * scale + 1, height = (kHeight - 1) * scale + 1;
+        EchoRenderer whole{kHeight, kWidth, height, width};
+        std::array<EchoRenderer, 3> parts{
+            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+            EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
+        LatentMap latent = encode.make_output();
+        ColourRenderStage render{whole,      {&parts[0], &parts[1], &parts[2]},
+                                 GetParam(), kWidth,
+                                 kHeight,    {width, height, 0, 0},
+                                 latent};
+        encode.encode(grid(), latent);
+        render.push(latent);
+        Frame frame = render.make_output();
+        render.render({}, {}, frame);
+        ASSERT_EQ(frame.colour[0].width(), width);
+        EXPECT_EQ(frame.sigma(0, 0), .125F) << "one map, that of all pixels";
+        // Inside, where every colour has pixels on both sides, differences of colours are exact.
+        for (int y = scale; y < height - scale; ++y)
+            for (int x = scale; x < width - scale; ++x) {
+                const double u = double(x) / scale, v = double(y) / scale;
+                const float b = shown(ColourChannel::blue, u, v),
+                            g = shown(ColourChannel::green, u, v),
+                            r = shown(ColourChannel::red, u, v);
+                EXPECT_NEAR(frame.colour[2](y, x) - frame.colour[0](y, x), r - b, 1e-5);
+                EXPECT_NEAR(frame.colour[1](y, x) - frame.colour[0](y, x), g - b, 1e-5);
+                // And the luma is the intensity of all pixels.
+                EXPECT_NEAR(.114F * frame.colour[0](y, x) + .587F * frame.colour[1](y, x) +
+                                .299F * frame.colour[2](y, x),
+                            frame.intensity(y, x), 1e-5);
+            }
+    }
+    encode.reset();
+    EXPECT_EQ(all.resets + blue.resets + green.resets + red.resets, 4);
+}
+
+TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
+    for (const int x0 : {0, 3})
+        for (const int y0 : {0, 1}) {
+            ReferenceImage mosaic;
+            mosaic.x0 = x0;
+            mosaic.y0 = y0;
+            mosaic.pixels = Array2<std::uint16_t>(5, 7);
+            ReferenceImage bgr = mosaic;
+            bgr.channels = 3;
+            bgr.pixels = Array2<std::uint16_t>(5, 21);
+            for (int y = 0; y < 5; ++y)
+                for (int x = 0; x < 7; ++x)
+                    for (int c = 0; c < 3; ++c) {
+                        const auto value = std::uint16_t(1000 * c + 50 * (y + y0) + x + x0);
+                        bgr.pixels(y, 3 * x + c) = value;
+                        if (int(channel_at(GetParam(), x + x0, y + y0)) == c)
+                            mosaic.pixels(y, x) = value;
+                    }
+            for (const ColourChannel channel : kColourChannels) {
+                const BayerSite site = site_of(GetParam(), channel);
+                const auto part = image_of_site(mosaic, site, channel);
+                ASSERT_TRUE(part);
+                for (int y = 0; y < part->pixels.height(); ++y)
+                    for (int x = 0; x < part->pixels.width(); ++x)
+                        EXPECT_EQ(part->pixels(y, x), 1000 * int(channel) +
+                                                          50 * (2 * (y + part->y0) + site.y) +
+                                                          2 * (x + part->x0) + site.x);
+                EXPECT_EQ(image_of_site(bgr, site, channel)->pixels, part->pixels);
+            }
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFilters, ColourStages,
+                         testing::Values(ColourFilter::rggb, ColourFilter::grbg, ColourFilter::gbrg,
+                                         ColourFilter::bggr),
+                         [](const auto& filter) { return std::string{name_of(filter.param)}; });
+
+TEST(ColourFilterNumbers, AreThoseOfLibcaer) {
+    // 1 is RGBG: red and green above, green and blue below.
+    const ColourFilter first = *colour_filter_of_number(1);
+    EXPECT_EQ(channel_at(first, 0, 0), ColourChannel::red);
+    EXPECT_EQ(channel_at(first, 1, 0), ColourChannel::green);
+    EXPECT_EQ(channel_at(first, 0, 1), ColourChannel::green);
+    EXPECT_EQ(channel_at(first, 1, 1), ColourChannel::blue);
+    EXPECT_EQ(channel_at(*colour_filter_of_number(4), 2, 2), ColourChannel::blue);
+    EXPECT_EQ(colour_filter_of_number(5), std::nullopt);
+}
+
+}  // namespace
+}  // namespace eventide

@@ -1,0 +1,112 @@
+// scripts/slurm/ without Slurm: tasks by hand, as an array job would call them.
+#include "tests/system/program_test.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <string>
+
+namespace eventide::test {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Slurm : public ProgramTest {
+protected:
+    Result script(const std::string& name, std::vector<std::string> arguments,
+                  std::map<std::string, std::string> environment = {}) const {
+        arguments.insert(arguments.begin(),
+                         std::string{EVENTIDE_SOURCE_DIR} + "/scripts/slurm/" + name);
+        environment["EVENTIDE"] = EVENTIDE_PROGRAM;
+        environment["EVENTIDE_MODELS"] = fs::path{model()}.parent_path().string();
+        return run(arguments,
+                   {.environment = std::move(environment), .folder = temp_.path().string()});
+    }
+    void simulate(const std::string& out) const {
+        const Result made = eventide(
+            {"simulate", "--scene", "demo", "--seconds", "2.2", "--size", "32x24", "--out", out});
+        ASSERT_EQ(made.exit_code, 0) << made.error;
+    }
+    std::vector<std::string> plan(std::vector<std::string> options) const {
+        options.insert(options.begin(), "--plan");
+        options.insert(options.end(),
+                       {"--", "--fps", "20", "--precision", "f32", "--kernels", "own"});
+        return options;
+    }
+    std::string all_of(const std::string& folder) const {
+        std::string content;
+        std::vector<fs::path> files;
+        for (const auto& entry : fs::recursive_directory_iterator{temp_ / folder})
+            if (entry.is_regular_file() && entry.path().filename() != "run.json")
+                files.push_back(entry.path());
+        std::ranges::sort(files);
+        for (const fs::path& file : files)
+            content += fs::relative(file, temp_ / folder).string() + "\n" + read_text(file);
+        return content;
+    }
+};
+
+TEST_F(Slurm, SegmentsAreJoinedToWhatOneRunWrites) {
+    simulate("long.aedat4");
+    ASSERT_EQ(eventide({"run", "long.aedat4", "--fps", "20", "--precision", "f32", "--kernels",
+                        "own", "--out", "one/"})
+                  .exit_code,
+              0);
+    const Result planned = script("submit.sh", plan({"--segment", "1", "out", "long.aedat4"}));
+    ASSERT_EQ(planned.exit_code, 0) << planned.error;
+    EXPECT_THAT(planned.error, HasSubstr("3 tasks"));
+    for (const char* task : {"2", "0"}) {
+        const Result done = script("task.sh", {"out"}, {{"SLURM_ARRAY_TASK_ID", task}});
+        ASSERT_EQ(done.exit_code, 0) << done.error;
+    }
+    const Result early = script("merge.sh", {"out"});
+    EXPECT_EQ(early.exit_code, 2);
+    EXPECT_THAT(early.error, HasSubstr("tasks 1 are not done"));
+    EXPECT_FALSE(fs::exists(temp_ / "out/long"));
+
+    // What a killed task and a killed merge leave is in nobody's way.
+    fs::create_directories(temp_ / "out/parts/long.000001.host.1.work/frames");
+    fs::create_directories(temp_ / "out/long.1.work/frames");
+    ASSERT_EQ(script("task.sh", {"out", "1"}).exit_code, 0);
+    const Result again = script("task.sh", {"out", "1"});
+    EXPECT_THAT(again.error, HasSubstr("done before"));
+    EXPECT_FALSE(fs::exists(temp_ / "out/parts/long.000001.host.1.work"));
+    const Result merged = script("merge.sh", {"out"});
+    ASSERT_EQ(merged.exit_code, 0) << merged.error;
+    const std::string one = all_of("one"), joined = all_of("out/long");
+    EXPECT_GT(one.size(), 44U * 1000);
+    EXPECT_TRUE(joined == one) << "every frame, sigma and time, bit for bit";
+    EXPECT_THAT(script("merge.sh", {"out"}).error, HasSubstr("done before"));
+    EXPECT_FALSE(fs::exists(temp_ / "out/long.1.work"));
+}
+
+TEST_F(Slurm, OneTaskForEachRecording) {
+    simulate("a.aedat4");
+    fs::copy_file(temp_ / "a.aedat4", temp_ / "b.aedat4");
+    ASSERT_EQ(script("submit.sh", plan({"out", "a.aedat4", "b.aedat4"})).exit_code, 0);
+    for (const char* task : {"0", "1"}) ASSERT_EQ(script("task.sh", {"out", task}).exit_code, 0);
+    ASSERT_EQ(script("merge.sh", {"out"}).exit_code, 0);
+    EXPECT_TRUE(all_of("out/a") == all_of("out/b"));
+    EXPECT_TRUE(all_of("out/a") == all_of("out/parts/a.000000"));
+}
+
+TEST_F(Slurm, WhatCannotBeIsNamed) {
+    simulate("a.aedat4");
+    EXPECT_THAT(script("submit.sh", plan({"out", "none.aedat4"})).error,
+                HasSubstr("none.aedat4: no such recording"));
+    EXPECT_THAT(script("submit.sh", plan({"--segment", "1s", "out", "a.aedat4"})).error,
+                HasSubstr("--segment: expected whole seconds, found '1s'"));
+    EXPECT_THAT(script("submit.sh", {"--plan", "out", "a.aedat4", "--", "--out", "x/"}).error,
+                HasSubstr("--out: the tasks set that themselves"));
+    ASSERT_EQ(script("submit.sh", plan({"out", "a.aedat4"})).exit_code, 0);
+    EXPECT_EQ(script("submit.sh", plan({"out", "a.aedat4"})).exit_code, 0) << "the same again";
+    EXPECT_THAT(script("submit.sh", plan({"--segment", "1", "out", "a.aedat4"})).error,
+                HasSubstr("out: holds another plan"));
+    EXPECT_THAT(script("task.sh", {"out", "7"}).error, HasSubstr("expected task 7, found 1 tasks"));
+    EXPECT_THAT(script("task.sh", {"out"}).error, HasSubstr("SLURM_ARRAY_TASK_ID"));
+    EXPECT_THAT(script("merge.sh", {"."}).error, HasSubstr("expected plan.tsv"));
+}
+
+}  // namespace
+}  // namespace eventide::test
