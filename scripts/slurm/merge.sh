@@ -14,24 +14,34 @@ while IFS=$'\t' read -r _ name _; do
 done < "$out/plan.tsv"
 [ ${#missing[@]} -eq 0 ] || refuse "merge.sh: $out: tasks ${missing[*]} are not done (task.sh $out NUMBER does one)"
 
-# PART TO: the lines of timestamps.csv before `to` become lines of the whole, with images under new numbers.
+# PART TO: the lines of timestamps.csv before `to` become lines of the whole, with images under new numbers. Prints how many frames the whole has then,
+# and the last number on its frame clock. In Perl, which links without a process for each image.
 take_part() {
-  local part=$1 to=$2 line rest frame index t seconds new old events=0
-  [ ! -d "$part/events" ] || events=1
-  paste -d '|' <(tail -n +2 "$part/timestamps.csv") "$part/timestamps.txt" > "$work/lines"
-  while IFS='|' read -r line seconds; do
-    IFS=, read -r frame index t rest <<< "$line"
-    [ "$to" = - ] || [ "$t" -lt "$to" ] || break
-    printf -v old '%010d' "$frame"
-    printf -v new '%010d' "$count"
-    ln "$part/frames/frame_$old.png" "$work/frames/frame_$new.png"
-    [ ! -e "$part/uncertainty/unc_$old.tiff" ] || ln "$part/uncertainty/unc_$old.tiff" "$work/uncertainty/unc_$new.tiff"
-    [ $events = 0 ] || ln "$part/events/events_$old.png" "$work/events/events_$new.png"
-    echo "$count,$((base + index)),$t,$rest" >> "$work/timestamps.csv"
-    echo "$seconds" >> "$work/timestamps.txt"
-    count=$((count + 1)) last_index=$((base + index))
-  done < "$work/lines"
-  rm "$work/lines"
+  perl -e '
+    use strict; use warnings;
+    my ($part, $work, $to, $count, $last) = @ARGV;
+    my $base = $last + 1;
+    sub opened { my ($how, $file) = @_; open(my $h, $how, $file) or die "merge.sh: $file: $!\n"; $h }
+    my ($lines, $seconds) = (opened("<", "$part/timestamps.csv"), opened("<", "$part/timestamps.txt"));
+    my ($table, $times) = (opened(">>", "$work/timestamps.csv"), opened(">>", "$work/timestamps.txt"));
+    my @kinds = grep { -d "$part/$_->[0]" } ["frames", "frame", "png"], ["uncertainty", "unc", "tiff"], ["events", "events", "png"];
+    <$lines>;
+    while (my $line = <$lines>) {
+      my ($frame, $index, $t, $rest) = split /,/, $line, 4;
+      last if $to ne "-" && $t >= $to;
+      for my $kind (@kinds) {
+        my ($folder, $name, $end) = @$kind;
+        my $from = sprintf "%s/%s/%s_%010d.%s", $part, $folder, $name, $frame, $end;
+        link $from, sprintf("%s/%s/%s_%010d.%s", $work, $folder, $name, $count, $end) or die "merge.sh: $from: $!\n";
+      }
+      $last = $base + $index;
+      print $table "$count,$last,$t,$rest";
+      print $times scalar <$seconds>;
+      ++$count;
+    }
+    close($table) && close($times) or die "merge.sh: $work: $!\n";
+    print "$count $last\n";
+  ' "$1" "$work" "$2" "$count" "$last_index"
 }
 
 cut -f 2 "$out/plan.tsv" | uniq | while read -r whole; do
@@ -42,15 +52,15 @@ cut -f 2 "$out/plan.tsv" | uniq | while read -r whole; do
   work=$out/$whole.$$.work
   rm -rf "$out/$whole".*.work
   mkdir -p "$work/frames"
-  number=0 count=0 base=0 last_index=-1
+  number=0 count=0 last_index=-1
   while IFS=$'\t' read -r _ name _ to _; do
     part=$out/parts/$(part_name "$name" $number)
     number=$((number + 1))
     [ "$name" = "$whole" ] || continue
     [ -e "$work/timestamps.csv" ] || head -n 1 "$part/timestamps.csv" > "$work/timestamps.csv"
     for kind in uncertainty events; do [ ! -d "$part/$kind" ] || mkdir -p "$work/$kind"; done
-    base=$((last_index + 1))
-    take_part "$part" "$to"
+    joined=$(take_part "$part" "$to")
+    read -r count last_index <<< "$joined"
   done < "$out/plan.tsv"
   printf '{\n  "program": "scripts/slurm/merge.sh",\n  "frames": %d,\n  "parts": "%s",\n  "finished": true\n}\n' "$count" "parts/$whole.*" > "$work/run.json"
   [ ! -e "$out/$whole" ] || refuse "merge.sh: $out/$whole: something else is there; expected nothing"

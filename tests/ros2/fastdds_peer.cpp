@@ -61,6 +61,9 @@ public:
 /// On loopback alone, asking at the ports that Cyclone's participants have.
 DomainParticipant* join(unsigned domain) {
     DomainParticipantQos qos;
+    // As Fast DDS does by itself: multicast, on all networks.
+    if (std::getenv("FASTDDS_PEER_ON_NETWORK") != nullptr)
+        return DomainParticipantFactory::get_instance()->create_participant(domain, qos);
     qos.transport().use_builtin_transports = false;
     auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
     udp->interfaceWhiteList.emplace_back("127.0.0.1");
