@@ -111,11 +111,14 @@ private:
         return reference_ ? std::min(guess, reference_->latest(*arrived_)) : guess;
     }
 
-    /// Whole wraps may be missing: adds as many as bring `candidate` nearest to the expected time.
+    /// Whole wraps may be missing: adds as many as bring `candidate` nearest to the expected time,
+    /// and no fewer than bring it past the time told before, unless that was a guess itself.
     void catch_up(std::int64_t candidate, Damage& damage) {
         const auto expected = this->expected();
         if (!expected) return;
-        const double wraps = std::round(double(*expected - candidate) / double(kWrapUs));
+        double wraps = std::round(double(*expected - candidate) / double(kWrapUs));
+        if (!doubt_ || doubt_->guessed == 0)
+            wraps = std::max(wraps, std::ceil(double(told_ - candidate) / double(kWrapUs)));
         if (!doubt_) doubt_ = Doubt{.window_began = *arrived_};
         doubt_->lost_at = *arrived_;
         if (wraps > 0) shift(std::int64_t(wraps), damage);

@@ -7,12 +7,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 #include <thread>
 
 namespace eventide::test {
 namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
+
+std::string text_of(const Damage& damaged) {
+    std::string text;
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        if (const auto reason = DamageReason(i); damaged[reason] > 0)
+            text += std::string{name_of(reason)} + " " + std::to_string(damaged[reason]) + " ";
+    return text;
+}
 
 TEST(DavisOverload, WhatThePipelineCannotTakeIsCountedAndTheStreamCarriesAGap) {
     testing_support::DavisModelSettings small;
@@ -47,7 +56,7 @@ TEST(DavisOverload, WhatThePipelineCannotTakeIsCountedAndTheStreamCarriesAGap) {
                             [](const ToySink::Seen& frame) { return frame.gap; }));
     // On a busy machine the loss may be long enough for the clock to be set right after it.
     EXPECT_EQ(end.damaged.total(), end.damaged[DamageReason::time_corrected])
-        << "nothing behind the gap is garbled";
+        << "nothing behind the gap is garbled: " << text_of(end.damaged);
 }
 
 }  // namespace
