@@ -2,9 +2,11 @@
 #include "src/io/late_library.h"
 
 #include "src/core/error.h"
+#include "src/io/system_words.h"
 
 #include <dlfcn.h>
 
+#include <cerrno>
 #include <string>
 
 namespace eventide {
@@ -12,8 +14,11 @@ namespace eventide {
 LateLibrary::LateLibrary(const char* soname, const char* needed_for, const char* package)
     : soname_{soname}, library_{dlopen(soname, RTLD_LAZY | RTLD_LOCAL)} {
     if (library_ == nullptr)
-        throw Error(ErrorKind::failed, std::string{needed_for} + ": " + dlerror() +
-                                           "; Debian's package is " + package);
+        throw Error(ErrorKind::failed,
+                    std::string{needed_for} + ": " +
+                        (out_of_descriptors(1)
+                             ? system_words(EMFILE)
+                             : std::string{dlerror()} + "; Debian's package is " + package));
 }
 
 void* LateLibrary::address_of(const char* name) const {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace eventide {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr int kSide = 24;  // px: more than one tile of the latent map in strided networks
 constexpr int kWindows = 6;
 constexpr SensorDuration kWidth{50'000};
-constexpr float kLargest = 1e6F;  // of what is 0 for black and 1 for white
+constexpr float kLargest = 1e6F;  // of codes, and of what is 0 for black and 1 for white
 
 /// Window `k`: the pixels of a patch that moves have events; in window 3 none, in the last all.
 VoxelGrid made_up_grid(const ModelConfig& config, int k) {
@@ -40,8 +41,8 @@ VoxelGrid made_up_grid(const ModelConfig& config, int k) {
 }
 
 /// Also what overflowed on the way and was made finite again by a ReLU is seen by its size.
-bool is_sound(const Array2<float>& map) {
-    return std::ranges::all_of(map.values(), [](float v) { return std::abs(v) <= kLargest; });
+bool is_sound(std::span<const float> values) {
+    return std::ranges::all_of(values, [](float v) { return std::abs(v) <= kLargest; });
 }
 
 }  // namespace
@@ -61,7 +62,9 @@ void try_model(const Model& model, const std::string& file) {
         renderer.push(latent);
         request.t = grid.window.end;
         renderer.render(request, frame);
-        if (is_sound(frame.intensity) && is_sound(frame.sigma)) continue;
+        if (is_sound(latent.values.values()) && is_sound(frame.intensity.values()) &&
+            is_sound(frame.sigma.values()))
+            continue;
         throw Error(ErrorKind::input,
                     file +
                         ": expected a network that gives frames of about 0 to 1, found NaN, "

@@ -108,9 +108,9 @@ TEST(Pipeline, ALiveSourceSkipsTheOldestFramesWhenRenderingIsSlow) {
     line.sink.before_write = [&](std::uint64_t frame) {
         if (frame == 5) behind.acquire();
     };
-    // At the fourth event window the second and third wait behind the one being rendered.
+    // At the fifth event window the second to fourth wait behind the one being rendered.
     line.encoder.before_encode = [&, calls = 0]() mutable {
-        if (++calls == 4) behind.release();
+        if (++calls == 5) behind.release();
     };
     line.run();
     const Snapshot s = line.snapshot();

@@ -1,6 +1,7 @@
 // Colour cameras.
 #include "apps/cli/run/colour.h"
 
+#include "drivers/simulated/simulated_name.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
 
@@ -78,7 +79,8 @@ void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourF
 
 ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& sensor, bool live) {
     ColourFilter filter = settings.bayer.value_or(sensor.colour_filter);
-    if (!settings.bayer && sensor.format == "aedat3" && !live && settings.source != "-")
+    if (!settings.bayer && sensor.format == "aedat3" && !live && settings.source != "-" &&
+        !names_simulation(settings.source))
         filter = filter_of_images(settings);
     if (filter != ColourFilter::none)
         for (const std::string& text : settings.filter)

@@ -91,8 +91,8 @@ Run::Run(Program& program, RunSettings& settings)
         watch_.colour(&*colour_);
     }
     if (opened_.recording != nullptr && span_.begin) {
-        if (const auto first = first_event_of(settings, live()); first && !filters_.empty())
-            filters_.count_from(*first);
+        if (!filters_.empty())
+            if (const auto first = first_event_of(settings, live())) filters_.count_from(*first);
         opened_.recording->seek(*span_.begin);
     }
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)

@@ -36,7 +36,7 @@ TimePointReader moments_of(const RunSettings& settings) {
 }  // namespace
 
 std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live) {
-    if (live || settings.source == "-") return {};
+    if (live || settings.source == "-" || names_simulation(settings.source)) return {};
     return moments_of(settings).time_of({});
 }
 
