@@ -38,7 +38,7 @@ def install_tree(build, prefix, cmake_args):
     python = getattr(sys, "_base_executable", sys.executable)
     configure = ["cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                  "-DEVENTIDE_TESTS=OFF", "-DEVENTIDE_TRAIN=OFF", "-DEVENTIDE_PYTHON=ON",
-                 f"-DPython3_EXECUTABLE={python}", "-DEVENTIDE_PYTHON_DIR=.",
+                 f"-DPython3_EXECUTABLE={python}", "-DEVENTIDE_PYTHON_DIR:STRING=.",
                  "-DCMAKE_INSTALL_LIBDIR=eventide/lib", "-DCMAKE_INSTALL_DATADIR=eventide/share",
                  "-DCMAKE_INSTALL_DOCDIR=eventide/share/doc", *cmake_args]
     for command in [configure, ["cmake", "--build", build, "--target", "eventide_python"],
@@ -50,6 +50,14 @@ def install_tree(build, prefix, cmake_args):
         target = link.resolve()
         link.unlink()
         shutil.move(target, link)
+
+
+def check_tree(prefix):
+    """What a user would miss only when he imports it."""
+    for needed in ("__init__.py", "_eventide.*.so", "lib/libeventide.so.*",
+                   "share/eventide/models/default.safetensors"):
+        if not list((prefix / "eventide").glob(needed)):
+            raise RuntimeError(f"eventide/{needed}: expected in what CMake installed, found none")
 
 
 def metadata():
@@ -94,6 +102,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         build = pathlib.Path(settings.get("build-dir", pathlib.Path(scratch) / "build"))
         prefix = pathlib.Path(scratch) / "tree"
         install_tree(build, prefix, shlex.split(settings.get("cmake-args", "")))
+        check_tree(prefix)
         return write_wheel(prefix, wheel_directory)
 
 
