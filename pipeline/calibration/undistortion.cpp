@@ -3,6 +3,7 @@
 
 #include "pipeline/calibration/undistortion_map.h"
 #include "src/core/error.h"
+#include "src/core/frame_stamp.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -110,12 +111,7 @@ void Undistortion::make_map(int width, int height) {
 const Frame& Undistortion::apply(const Frame& frame) {
     const int width = frame.intensity.width(), height = frame.intensity.height();
     if (!plan_.fixed && (width != map_->width || height != map_->height)) make_map(width, height);
-    shown_.t = frame.t;
-    shown_.window = frame.window;
-    shown_.index = frame.index;
-    shown_.events = frame.events;
-    shown_.arrived = frame.arrived;
-    shown_.gap_before = frame.gap_before;
+    copy_stamp(frame, shown_);
     map_->apply(frame.intensity, shown_.intensity, cv::INTER_CUBIC, 0);
     if (frame.sigma.empty())
         shown_.sigma = {};

@@ -2,6 +2,7 @@
 #include "pipeline/sinks/adjust.h"
 
 #include "src/core/error.h"
+#include "src/core/frame_stamp.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -86,12 +87,7 @@ const Frame& Look::apply(const Frame& frame) {
                                           ": nothing is left of a frame of " +
                                           std::to_string(frame.intensity.width()) + "x" +
                                           std::to_string(frame.intensity.height()));
-    shown_.t = frame.t;
-    shown_.window = frame.window;
-    shown_.index = frame.index;
-    shown_.events = frame.events;
-    shown_.arrived = frame.arrived;
-    shown_.gap_before = frame.gap_before;
+    copy_stamp(frame, shown_);
     crop_and_flip(frame.intensity, settings_.crop_px, settings_.flip, shown_.intensity);
     if (frame.sigma.empty())
         shown_.sigma = {};

@@ -79,7 +79,9 @@ void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourF
 
 ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& sensor, bool live) {
     ColourFilter filter = settings.bayer.value_or(sensor.colour_filter);
-    if (!settings.bayer && sensor.format == "aedat3" && !live && settings.source != "-" &&
+    // Else each image is taken at its word (demosaiced()), and nothing is read twice.
+    const bool needed = settings.colour || !settings.filter.empty();
+    if (needed && !settings.bayer && sensor.format == "aedat3" && !live && settings.source != "-" &&
         !names_simulation(settings.source))
         filter = filter_of_images(settings);
     if (filter != ColourFilter::none)
