@@ -105,6 +105,21 @@ TEST(QualityControl, FreesCoresStepByStepForEncodingThatTakesTooLong) {
     EXPECT_EQ(machine.level(), (QualityLevel{1.0 / 3, 2}));
 }
 
+TEST(QualityControl, NeverTakesMoreForFramesWhereEncodingTakesTooLong) {
+    // A third of the size at the full rate takes more than a quarter of the frames at full size.
+    ASSERT_GT(load_of(kCost, {1.0 / 3, 0}, {20, 40, 1, {}}).frames,
+              load_of(kCost, {1, 2}, {20, 40, 1, {}}).frames);
+    Machine machine;
+    double before = load_of(kCost, machine.level(), {20, 40, 1, {}}).frames;
+    for (int second = 0; second < 30; ++second) {
+        machine.run(1, 1, 6);
+        const double now = load_of(kCost, machine.level(), {20, 40, 1, {}}).frames;
+        EXPECT_LE(now, before) << "at " << second << " s";
+        before = now;
+    }
+    EXPECT_EQ(machine.level(), (QualityLevel{1.0 / 3, 2}));
+}
+
 TEST(QualityControl, WindowsThatHadToBeMergedCallForLess) {
     Machine machine;
     machine.run(5, 1);

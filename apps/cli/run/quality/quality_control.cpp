@@ -79,9 +79,14 @@ bool QualityControl::look(const QualityMeasure& now) {
 
 bool QualityControl::lower(Seconds now) {
     std::size_t to = at_ + 1;
-    // Windows that cost too much gain from fewer frames only what both want of the same cores.
-    const bool is_encoding = load_at(at_).encode > kHolds;
-    while (!is_encoding && to + 1 < levels_.size() && !holds(to, kComfortable)) ++to;
+    const NetworkLoad load = load_at(at_);
+    if (load.encode > kHolds) {
+        // Windows gain only the cores that frames leave: one step, over levels (small frames, but
+        // all of them) that would take more.
+        while (to < levels_.size() && load_at(to).frames >= load.frames) ++to;
+    } else {
+        while (to + 1 < levels_.size() && !holds(to, kComfortable)) ++to;
+    }
     if (to >= levels_.size()) return false;
     if (now - raised_ < kTakenBack) patience_ = std::min(2 * patience_, kMostPatience);
     return move(to, now);

@@ -26,10 +26,11 @@ struct QualityMeasure {
 /// Work is compared with the profile: by how much windows and frames cost more or less than
 /// measured there, every level will. A level holds where encoding and frames each leave their
 /// thread a margin, and all work together the budget. Down, to the best level that leaves a
-/// quarter (where encoding takes too long, by one), after a second and a half in which the present one did not hold or event windows had to
-/// be merged; up, to the best level that leaves 40 %, after 5 s in which there was one. A step up
-/// that was taken back within 15 s doubles this time, up to 80 s; a minute without a change halves
-/// it: where the load lies between two levels, it stays at the lower one.
+/// quarter (where encoding takes too long, to the next one whose frames take less), after a second
+/// and a half in which the present one did not hold or event windows had to be merged; up, to the
+/// best level that leaves 40 %, after 5 s in which there was one. A step up that was taken back
+/// within 15 s doubles this time, up to 80 s; a minute without a change halves it: where the load
+/// lies between two levels, it stays at the lower one.
 class QualityControl {
 public:
     /// `at`: the level it begins with.
