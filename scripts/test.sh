@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to the result of every test: installs what is missing, builds, runs ctest.
-#   scripts/test.sh [preset] [ctest arguments]      presets: dev (default), asan, tsan
+#   scripts/test.sh [preset] [ctest arguments]      presets: dev (default), asan, tsan; parsers: of asan, what reads bytes and words from outside
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=dev
-case "${1:-}" in dev | asan | tsan) preset=$1; shift ;; esac
+case "${1:-}" in dev | asan | tsan | parsers) preset=$1; shift ;; esac
 
 scripts/install-packages.sh --tests
 echo "building (preset $preset) ..."
-cmake --preset "$preset" >/dev/null
+cmake --preset "${preset/parsers/asan}" >/dev/null
 cmake --build --preset "$preset"
 echo "testing ..."
 ctest --preset "$preset" --output-on-failure -j "$(nproc)" "$@"

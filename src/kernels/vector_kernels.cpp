@@ -50,15 +50,14 @@ void elu(const float* in, float* out, std::size_t n) {
     map(Elu{}, n, out, in, in, in, in);
 }
 void double_row(const DoubleRow& r) {
-    const auto *above = static_cast<const float*>(r.above),
-               *under = static_cast<const float*>(r.under);
-    auto* out = static_cast<float*>(r.out);
-    const auto n = std::ptrdiff_t(r.channels);
-    for (int x = r.x0; x < r.x1; ++x, out += n) {
-        const std::ptrdiff_t left = x / 2 * n, right = std::min((x + 1) / 2, r.last) * n;
-        map(Average{}, std::size_t(n), out, above + left, above + right, under + left,
-            under + right);
-    }
+    std::ptrdiff_t c = 0;
+    const auto blocks = [&](auto d) HWY_ATTR {
+        for (const auto lanes = std::ptrdiff_t(hn::Lanes(d)); c + lanes <= r.channels; c += lanes)
+            double_channels(d, r, c);
+    };
+    blocks(D());
+    blocks(Narrow());  // half a register of AVX-512
+    blocks(hn::CappedTag<float, 1>());
 }
 
 bool are_near(const float* a, const float* b, float bound, std::size_t n) {

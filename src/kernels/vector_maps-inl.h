@@ -161,11 +161,28 @@ struct NormEluAlone {
 struct Elu {
     HWY_INLINE V operator()(V v, V, V, V) const { return elu_of(v); }
 };
-struct Average {
-    HWY_INLINE V operator()(V a, V b, V c, V d) const {
-        return hn::Mul(hn::Add(hn::Add(a, b), hn::Add(c, d)), hn::Set(D(), 0.25F));
+/// Channels c to c + Lanes(d) of a DoubleRow. Sample by sample, for the two pixels that it is left
+/// of: the one on it, and the one before the next.
+template <class Tag>
+HWY_INLINE void double_channels(Tag d, const DoubleRow& r, std::ptrdiff_t c) {
+    const std::ptrdiff_t n = r.channels;
+    const auto *above = static_cast<const float*>(r.above) + c,
+               *under = static_cast<const float*>(r.under) + c;
+    auto* const out = static_cast<float*>(r.out) + c - r.x0 * n;
+    const auto quarter = hn::Set(d, 0.25F);
+    const auto column = [&](int sample) HWY_ATTR {
+        return hn::Add(hn::LoadU(d, above + sample * n), hn::LoadU(d, under + sample * n));
+    };
+    auto left = column(r.x0 / 2);
+    for (int sample = r.x0 / 2; 2 * sample < r.x1; ++sample) {
+        const auto right = column(std::min(sample + 1, r.last));
+        if (2 * sample >= r.x0)
+            hn::StoreU(hn::Mul(hn::Add(left, left), quarter), d, out + 2 * sample * n);
+        if (2 * sample + 1 < r.x1)
+            hn::StoreU(hn::Mul(hn::Add(left, right), quarter), d, out + (2 * sample + 1) * n);
+        left = right;
     }
-};
+}
 
 }  // namespace eventide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
