@@ -63,6 +63,7 @@ double Validation::sigma_scale(const ModelConfig& config, const Parameters& para
         ratios.push_back(ratio.index_select(0, counted).flatten());
     }
     const torch::Tensor all = std::get<0>(torch::cat(ratios).sort());
+    if (all.size(0) == 0) return 1;  // scenes too short for a frame that counts
     return all[std::int64_t(0.8 * double(all.size(0) - 1))].item<double>() / 1.2816;
 }
 
