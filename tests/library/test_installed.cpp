@@ -90,6 +90,9 @@ TEST_F(Installed, FindPackageGivesAProgramTheSameFrames) {
         run({temp_ / "build/tracker", recording()}, {.environment = {{"EVENTIDE_MODELS", ""}}});
     EXPECT_EQ(tracked.exit_code, 0) << tracked.error;
     EXPECT_NE(tracked.output.find("the centre moves by"), std::string::npos) << tracked.output;
+    const Result own =
+        run({temp_ / "build/own_source"}, {.environment = {{"EVENTIDE_MODELS", ""}}});
+    EXPECT_NE(own.output.find("190000 us: "), std::string::npos) << own.output << own.error;
     expect_frames_of_text_with_the_core_alone(temp_ / "build/from_text");
 }
 
