@@ -21,16 +21,6 @@ eventide_status failed(eventide_status status, const char* message) noexcept {
     return status;
 }
 
-std::span<const Event> events_of(const eventide_event* events, std::size_t count,
-                                 std::vector<Event>& into) {
-    into.clear();
-    if (count == 0) return into;
-    given(events, "events");
-    for (const eventide_event& e : std::span{events, count})
-        into.push_back({from_us(e.t), e.x, e.y, e.on != 0 ? Polarity::on : Polarity::off});
-    return into;
-}
-
 }  // namespace eventide
 
 extern "C" {

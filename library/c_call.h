@@ -13,8 +13,9 @@
 
 namespace eventide {
 
-/// Keeps the words for eventide_error_message(). Thread: its own.
-eventide_status failed(eventide_status status, const char* message) noexcept;
+/// Keeps the words for eventide_error_message(). Thread: its own. Shown to libeventide.so alone
+/// (exported_frames.map), so that the words of both libraries are kept in one place.
+EVENTIDE_API eventide_status failed(eventide_status status, const char* message) noexcept;
 
 /// Runs `body`, which returns a status; what it throws becomes one.
 template <typename Body>

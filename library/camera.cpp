@@ -23,6 +23,7 @@ public:
         : camera_(open(name, settings)), parser_(camera_->make_parser()) {}
 
     Camera& camera() { return *camera_; }
+    bool is_live() const { return camera_->is_live(); }
     const Parser& parser() const { return *parser_; }
     bool gap_before() const { return gap_before_; }
 
@@ -94,6 +95,9 @@ std::optional<SensorTime> EventCamera::clock() const {
 }
 bool EventCamera::gap_before() const noexcept {
     return impl_->gap_before();
+}
+bool EventCamera::is_live() const noexcept {
+    return impl_->is_live();
 }
 std::uint64_t EventCamera::damaged() const noexcept {
     return impl_->parser().damaged().total();

@@ -2,7 +2,7 @@
 #include "src/metrics/image_measures.h"
 #include "src/metrics/uncertainty.h"
 
-#include <eventide/measures.h>
+#include <eventide/simulation.h>
 
 namespace eventide {
 

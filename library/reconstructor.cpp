@@ -1,46 +1,18 @@
 // The public face of the network at work.
+#include "library/network_options.h"
 #include "library/reconstructor_impl.h"
-#include "src/core/error.h"
-#include "src/core/sensor_limits.h"
-#include "src/model/model_folders.h"
-#include "src/model/model_trial.h"
 #include "src/nn/safetensors.h"
 
-#include <new>
 #include <string>
 
 namespace eventide {
-namespace {
-
-/// Before anything is made for it.
-void check_side(int side, const char* name) {
-    if (side < 1 || side > kLargestSensorSide)
-        throw Error(ErrorKind::usage, std::string{"sensor "} + name + ": expected 1 to " +
-                                          std::to_string(kLargestSensorSide) + " px, found " +
-                                          std::to_string(side));
-}
-
-/// A model file whose network was seen to work.
-Model tried_model(const std::string& name) {
-    const std::filesystem::path file = find_model(name);
-    Model model = load_model(file);
-    try_model(model, file.string());
-    return model;
-}
-
-}  // namespace
 
 Reconstructor::Reconstructor(const std::string& model, int width, int height,
                              const ReconstructorOptions& options) {
-    check_side(width, "width");
-    check_side(height, "height");
-    try {
-        impl_ = std::make_unique<Impl>(tried_model(model), width, height, options);
-    } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::failed, "model '" + model + "' for a sensor of " +
-                                           std::to_string(width) + "x" + std::to_string(height) +
-                                           ": expected enough memory for it, found too little");
-    }
+    check_sensor(width, height);
+    impl_ = with_enough_memory(model, width, height, [&] {
+        return std::make_unique<Impl>(tried_model(model), width, height, options);
+    });
 }
 
 Reconstructor::~Reconstructor() = default;

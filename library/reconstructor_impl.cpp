@@ -1,8 +1,7 @@
 // The network at work.
 #include "library/reconstructor_impl.h"
 
-#include "pipeline/filters/event_filter.h"
-#include "pipeline/parallel_tbb.h"
+#include "library/network_options.h"
 #include "src/core/error.h"
 #include "src/nn/safetensors.h"
 
@@ -11,22 +10,6 @@
 
 namespace eventide {
 namespace {
-
-SlicerSettings slicer_of(const ReconstructorOptions& options, const ModelConfig& config) {
-    return parse_window(options.window == "model" ? config.window : options.window);
-}
-
-EngineOptions engine_of(const ReconstructorOptions& options) {
-    EngineOptions engine;
-    engine.precision = options.precision;
-    engine.kernels = options.kernels;
-    engine.parallel_for = parallel_for_with(options.threads);
-    return engine;
-}
-
-FrameRate rate_of(const ReconstructorOptions& options) {
-    return options.fps == "frame" ? FrameRate{} : parse_frame_rate(options.fps);
-}
 
 bool same(const FrameSize& a, const FrameSize& b) {
     return a.width == b.width && a.height == b.height && a.region.x == b.region.x &&
@@ -45,8 +28,7 @@ Reconstructor::Impl::Impl(const Model& model, int width, int height,
     : options_(options),
       engine_(engine_of(options)),
       intake_(slicer_of(options, model.config), width, height,
-              event_filter({options.hot_pixels, options.noise_filter}, model.config, width, height),
-              counters_),
+              filter_of(options, model.config, width, height), counters_),
       binner_(model.config.bins, height, width),
       encoder_(model, width, height, engine_),
       renderer_(model, width, height, engine_),
@@ -206,11 +188,7 @@ bool Reconstructor::Impl::gap_before(SensorTime t) const {
 /// Throws Error (usage) for an impossible size; rendering cannot fail afterwards.
 void Reconstructor::Impl::make_room(const FrameSize& size) {
     if (room_for_ && same(size, *room_for_)) return;
-    for (const int side : {size.width, size.height})
-        if (side < 0 || side > kLargestFrameSide)
-            throw Error(ErrorKind::usage,
-                        "frame size: expected 1 to " + std::to_string(kLargestFrameSide) +
-                            " px each way, or 0 for the sensor's, found " + std::to_string(side));
+    check_frame_size(size);
     RenderRequest request = request_;
     request.width = size.width;
     request.height = size.height;

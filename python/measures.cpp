@@ -2,7 +2,7 @@
 #include "python/arrays.h"
 #include "python/parts.h"
 
-#include <eventide/measures.h>
+#include <eventide/simulation.h>
 
 #include <pybind11/stl.h>
 

@@ -42,8 +42,8 @@ def install_tree(build, prefix, cmake_args):
                  "-DCMAKE_INSTALL_LIBDIR=eventide/lib", "-DCMAKE_INSTALL_DATADIR=eventide/share",
                  "-DCMAKE_INSTALL_DOCDIR=eventide/share/doc", *cmake_args]
     for command in [configure, ["cmake", "--build", build, "--target", "eventide_python"],
-                    ["cmake", "--install", build, "--prefix", prefix, "--component", "library"],
-                    ["cmake", "--install", build, "--prefix", prefix, "--component", "python"]]:
+                    *[["cmake", "--install", build, "--prefix", prefix, "--component", component]
+                      for component in ("core", "library", "python")]]:
         subprocess.run(command, check=True, env=environment)
     # A wheel holds no links: of the library only the name that programs load it by.
     for link in [p for p in prefix.rglob("*") if p.is_symlink()]:
@@ -55,6 +55,7 @@ def install_tree(build, prefix, cmake_args):
 def check_tree(prefix):
     """What a user would miss only when he imports it."""
     for needed in ("__init__.py", "_eventide.*.so", "lib/libeventide.so.*",
+                   "lib/libeventide-core.so.*",
                    "share/eventide/models/default.safetensors"):
         if not list((prefix / "eventide").glob(needed)):
             raise RuntimeError(f"eventide/{needed}: expected in what CMake installed, found none")

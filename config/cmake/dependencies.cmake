@@ -1,21 +1,43 @@
 # Every package the project stands on, in one place. All are Debian's; scripts/install-packages.sh installs them.
+# Events to frames (libeventide-core).
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
-find_package(ZLIB REQUIRED)
-find_package(BZip2 REQUIRED)
-find_package(Eigen3 REQUIRED NO_MODULE)
-find_package(nlohmann_json REQUIRED)
 find_package(TBB REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs highgui)
-pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
-pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
-pkg_check_modules(spdlog REQUIRED IMPORTED_TARGET spdlog)
-pkg_check_modules(libav REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
+find_package(nlohmann_json REQUIRED)  # headers alone, as is Eigen
+
+# Recordings, cameras and simulations (libeventide).
+find_package(ZLIB QUIET)
+find_package(BZip2 QUIET)
+find_package(Eigen3 QUIET NO_MODULE)
+find_package(OpenCV QUIET COMPONENTS core imgproc imgcodecs highgui)
+pkg_check_modules(lz4 IMPORTED_TARGET liblz4)
+pkg_check_modules(zstd IMPORTED_TARGET libzstd)
+# Header-only, without a CMake package in Debian 12.
+find_path(CONCURRENTQUEUE_DIR concurrentqueue.h PATH_SUFFIXES concurrentqueue moodycamel)
+eventide_feature(EVENTIDE_IO "recordings, cameras and simulations: libeventide" DEFAULT ON
+  CHECK ZLIB_FOUND BZIP2_FOUND Eigen3_FOUND OpenCV_FOUND lz4_FOUND zstd_FOUND CONCURRENTQUEUE_DIR)
+
+# The programs.
+pkg_check_modules(spdlog IMPORTED_TARGET spdlog)
+pkg_check_modules(libav IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
+find_package(CLI11 QUIET)
+set(program ON)
+if(NOT EVENTIDE_IO_ENABLED AND NOT EVENTIDE_PROGRAM STREQUAL "ON")
+  set(program AUTO)  # the library of frames alone has none
+endif()
+eventide_feature(EVENTIDE_PROGRAM "the program eventide, which its tests need" DEFAULT ${program}
+  CHECK spdlog_FOUND libav_FOUND CLI11_FOUND EVENTIDE_IO_ENABLED)
+foreach(other EVENTIDE_TESTS EVENTIDE_BENCH EVENTIDE_FUZZ)
+  if(${other} AND NOT EVENTIDE_PROGRAM_ENABLED)
+    message(FATAL_ERROR "${other}=ON: expected a build with EVENTIDE_PROGRAM, found one without; choose -D${other}=OFF")
+  endif()
+endforeach()
+
+# What can be left out of either.
 pkg_check_modules(libusb IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(httplib IMPORTED_TARGET cpp-httplib)
 pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)
-find_package(CLI11 REQUIRED)
 find_package(CycloneDDS QUIET)
 find_program(EVENTIDE_IDLC idlc)
 pkg_check_modules(yaml IMPORTED_TARGET yaml-0.1)
@@ -48,28 +70,28 @@ set(Python3_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The Python that the modu
 find_package(Python3 COMPONENTS Interpreter Development.Module NumPy QUIET)
 find_path(PYBIND11_HEADERS pybind11/pybind11.h)
 
-# Header-only, without a CMake package in Debian 12.
-find_path(CONCURRENTQUEUE_DIR concurrentqueue.h PATH_SUFFIXES concurrentqueue moodycamel REQUIRED)
-add_library(eventide_concurrentqueue INTERFACE)
-target_include_directories(eventide_concurrentqueue SYSTEM INTERFACE ${CONCURRENTQUEUE_DIR})
+if(EVENTIDE_IO_ENABLED)
+  add_library(eventide_concurrentqueue INTERFACE)
+  target_include_directories(eventide_concurrentqueue SYSTEM INTERFACE ${CONCURRENTQUEUE_DIR})
 
-# OpenCV 4.6 headers warn under C++20; they are system headers to us.
-add_library(eventide_opencv INTERFACE)
-target_include_directories(eventide_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-target_link_libraries(eventide_opencv INTERFACE opencv_core opencv_imgproc)
-# Those that bring a hundred others are loaded when they are first used, by the name that whoever links them would load them by.
-foreach(part IMGCODECS HIGHGUI)
-  string(TOLOWER opencv_${part} target)
-  get_target_property(configuration ${target} IMPORTED_CONFIGURATIONS)
-  list(GET configuration 0 configuration)
-  get_target_property(EVENTIDE_OPENCV_${part} ${target} IMPORTED_SONAME_${configuration})
-  if(NOT EVENTIDE_OPENCV_${part})
-    message(FATAL_ERROR "OpenCV: expected ${target} as a shared library, found none")
-  endif()
-endforeach()
-# What looks at image files in tests.
-add_library(eventide_opencv_files INTERFACE)
-target_link_libraries(eventide_opencv_files INTERFACE eventide_opencv opencv_imgcodecs)
+  # OpenCV 4.6 headers warn under C++20; they are system headers to us.
+  add_library(eventide_opencv INTERFACE)
+  target_include_directories(eventide_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+  target_link_libraries(eventide_opencv INTERFACE opencv_core opencv_imgproc)
+  # Those that bring a hundred others are loaded when they are first used, by the name that whoever links them would load them by.
+  foreach(part IMGCODECS HIGHGUI)
+    string(TOLOWER opencv_${part} target)
+    get_target_property(configuration ${target} IMPORTED_CONFIGURATIONS)
+    list(GET configuration 0 configuration)
+    get_target_property(EVENTIDE_OPENCV_${part} ${target} IMPORTED_SONAME_${configuration})
+    if(NOT EVENTIDE_OPENCV_${part})
+      message(FATAL_ERROR "OpenCV: expected ${target} as a shared library, found none")
+    endif()
+  endforeach()
+  # What looks at image files in tests.
+  add_library(eventide_opencv_files INTERFACE)
+  target_link_libraries(eventide_opencv_files INTERFACE eventide_opencv opencv_imgcodecs)
+endif()
 
 if(EVENTIDE_TESTS)
   find_package(GTest REQUIRED)
@@ -80,13 +102,13 @@ endif()
 
 eventide_feature(EVENTIDE_ONEDNN "fast convolutions" CHECK dnnl_FOUND)
 find_path(V4L2_HEADERS linux/videodev2.h)
-eventide_feature(EVENTIDE_V4L2 "V4L2 event sensors" CHECK V4L2_HEADERS)
-eventide_feature(EVENTIDE_HTTP "the live page in the browser (--out http:)" CHECK httplib_FOUND)
-eventide_feature(EVENTIDE_USB "USB event cameras" CHECK libusb_FOUND)
-eventide_feature(EVENTIDE_EMULATOR "software DAVIS for tests" CHECK umockdev_FOUND)
-eventide_feature(EVENTIDE_SQLITE "ROS 2 bags in SQLite files" CHECK SQLite3_FOUND)
-eventide_feature(EVENTIDE_HDF5 "HDF5 recordings" CHECK hdf5_FOUND)
-eventide_feature(EVENTIDE_CALIBRATION "calibrations of cameras, in YAML" CHECK yaml_FOUND)
-eventide_feature(EVENTIDE_ROS2 "ROS 2 topics through Cyclone DDS" CHECK CycloneDDS_FOUND EVENTIDE_IDLC EVENTIDE_CALIBRATION_ENABLED)
-eventide_feature(EVENTIDE_TRAIN "training with libtorch" CHECK Torch_FOUND)
-eventide_feature(EVENTIDE_PYTHON "the Python module" CHECK Python3_Development.Module_FOUND Python3_NumPy_FOUND PYBIND11_HEADERS)
+eventide_feature(EVENTIDE_V4L2 "V4L2 event sensors" CHECK V4L2_HEADERS EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_HTTP "the live page in the browser (--out http:)" CHECK httplib_FOUND EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_USB "USB event cameras" CHECK libusb_FOUND EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_EMULATOR "software DAVIS for tests" CHECK umockdev_FOUND EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_SQLITE "ROS 2 bags in SQLite files" CHECK SQLite3_FOUND EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_HDF5 "HDF5 recordings" CHECK hdf5_FOUND EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_CALIBRATION "calibrations of cameras, in YAML" CHECK yaml_FOUND EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_ROS2 "ROS 2 topics through Cyclone DDS" CHECK CycloneDDS_FOUND EVENTIDE_IDLC EVENTIDE_CALIBRATION_ENABLED EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_TRAIN "training with libtorch" CHECK Torch_FOUND EVENTIDE_PROGRAM_ENABLED)
+eventide_feature(EVENTIDE_PYTHON "the Python module" CHECK Python3_Development.Module_FOUND Python3_NumPy_FOUND PYBIND11_HEADERS EVENTIDE_IO_ENABLED)

@@ -95,11 +95,14 @@ function(eventide_fuzz name)
   target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
 endfunction()
 
-# eventide_feature(EVENTIDE_X "what it gives" CHECK found): AUTO becomes ON or OFF; ON without the package
+# eventide_feature(EVENTIDE_X "what it gives" CHECK found [DEFAULT ON]): AUTO becomes ON or OFF; ON without the package
 # stops the build. Sets EVENTIDE_X_ENABLED.
 function(eventide_feature option what)
-  cmake_parse_arguments(arg "" "" "CHECK" ${ARGN})
-  set(${option} AUTO CACHE STRING "${what}: AUTO, ON or OFF")
+  cmake_parse_arguments(arg "" "DEFAULT" "CHECK" ${ARGN})
+  if(NOT arg_DEFAULT)
+    set(arg_DEFAULT AUTO)
+  endif()
+  set(${option} ${arg_DEFAULT} CACHE STRING "${what}: AUTO, ON or OFF")
   set_property(CACHE ${option} PROPERTY STRINGS AUTO ON OFF)
   set(enabled OFF)
   if(NOT ${option} STREQUAL "OFF")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <eventide/event.h>
+#include <eventide/pipeline.h>
 #include <eventide/version.h>
 
 #include <cstdint>
@@ -19,37 +20,40 @@ struct CameraSettings {
 };
 
 /// A camera that sends events from the first read() on. Thread: one at a time, stop() excepted.
-class EVENTIDE_API EventCamera {
+class EVENTIDE_API EventCamera final : public EventSource {
 public:
     /// "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
     /// "v4l2:/dev/video0"; "ros2:/TOPIC", event packets of a ROS 2 driver;
     /// "sim:SCENE" is one in software. Throws Error: usage for a name that
     /// makes no sense, device for a camera that is missing or cannot be used, with what to do.
     explicit EventCamera(const std::string& name, const CameraSettings& settings = {});
-    ~EventCamera();
+    ~EventCamera() override;
     EventCamera(EventCamera&&) noexcept;
     EventCamera& operator=(EventCamera&&) noexcept;
 
-    const SensorInfo& info() const noexcept;
+    const SensorInfo& info() const noexcept override;
     int width() const noexcept;   ///< px
     int height() const noexcept;  ///< px
 
     /// Waits for data, at most some 20 ms: `batch` is emptied first and stays empty where none came
     /// in that time. Events are as EventReader::read() gives them. False after stop(). Throws Error
     /// (device) when the camera is lost.
-    bool read(Batch& batch);
+    bool read(Batch& batch) override;
 
     /// Every event before this time has been read: what Reconstructor::advance() wants, so that
     /// frames go on while nothing moves. Empty before the first data.
-    std::optional<SensorTime> clock() const;
+    std::optional<SensorTime> clock() const override;
 
     /// Whether data were lost before the newest batch: what Reconstructor::mark_gap() wants.
-    bool gap_before() const noexcept;
+    bool gap_before() const noexcept override;
+
+    /// False for a simulation as fast as it can be ("sim:demo?speed=max").
+    bool is_live() const noexcept override;
 
     std::uint64_t damaged() const noexcept;  ///< places where bytes made no sense, so far
 
     /// Thread: any. A read() that waits returns false soon.
-    void stop() noexcept;
+    void stop() noexcept override;
 
 private:
     class Impl;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <eventide/camera.h>
-#include <eventide/measures.h>
+#include <eventide/pipeline.h>
 #include <eventide/reader.h>
 #include <eventide/reconstructor.h>
 #include <eventide/simulation.h>

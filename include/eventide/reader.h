@@ -2,6 +2,7 @@
 #pragma once
 
 #include <eventide/event.h>
+#include <eventide/pipeline.h>
 #include <eventide/version.h>
 
 #include <cstdint>
@@ -21,16 +22,16 @@ struct ReaderOptions {
 /// AEDAT 1, 2, 3.1 and 4, Prophesee RAW (EVT2, EVT2.1, EVT3) and DAT, text, and folders of the
 /// Event Camera Dataset, found by their content. Read in bounded memory, a batch at a time.
 /// Thread: one at a time.
-class EVENTIDE_API EventReader {
+class EVENTIDE_API EventReader final : public EventSource {
 public:
     /// "-" is standard input. Throws Error: input naming the path, what was expected and what was
     /// found; usage for options that make no sense.
     explicit EventReader(const std::string& path, const ReaderOptions& options = {});
-    ~EventReader();
+    ~EventReader() override;
     EventReader(EventReader&&) noexcept;
     EventReader& operator=(EventReader&&) noexcept;
 
-    const SensorInfo& info() const noexcept;
+    const SensorInfo& info() const noexcept override;
     int width() const noexcept;   ///< px; 0 where the recording does not say
     int height() const noexcept;  ///< px; 0 where the recording does not say
 
@@ -41,7 +42,7 @@ public:
     /// Events are inside the sensor and in order of time; one earlier than the one before it means
     /// that the sensor's clock began anew. False at the end. Throws Error (input) where the file
     /// cannot be read; damaged bytes are left out and counted.
-    bool read(Batch& batch);
+    bool read(Batch& batch) override;
 
     /// Goes on from `t`: the next events are those from then on, and perhaps some before. Does
     /// nothing on standard input. Throws Error (input).
@@ -49,7 +50,7 @@ public:
 
     /// The newest time the recording told so far, which may lie after its newest event; at the end
     /// it is the end of the recording. Empty before the first.
-    std::optional<SensorTime> clock() const;
+    std::optional<SensorTime> clock() const override;
 
     /// Places where bytes made no sense, so far.
     std::uint64_t damaged() const noexcept;

@@ -15,7 +15,7 @@ namespace eventide {
 /// any thread, also at once.
 class Lpips {
 public:
-    /// An npz file with core.net.event window*.*, core.lins.*.model.1.weight and
+    /// An npz file with core.net.slice*.*, core.lins.*.model.1.weight and
     /// core.scaling_layer.*. Throws Error(input).
     explicit Lpips(const std::filesystem::path& weights);
     ~Lpips();

@@ -1,9 +1,13 @@
 // The shared library shows its public face and nothing else.
 #include "tests/library/library_test.h"
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <array>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace eventide::test {
 namespace {
@@ -15,25 +19,70 @@ constexpr std::array kPublic{"eventide_",
                              "eventide::EventWriter::",
                              "eventide::EventCamera::",
                              "eventide::EventSimulation::",
+                             "eventide::EventPipeline::",
+                             "eventide::EventSource::",
+                             "eventide::FrameSink::",
                              "eventide::measure(",
-                             "typeinfo for eventide::Error",
-                             "typeinfo name for eventide::Error",
-                             "vtable for eventide::Error",
-                             "EVENTIDE_1"};
+                             "eventide::failed(eventide_status, char const*)",
+                             "typeinfo for eventide::",
+                             "typeinfo name for eventide::",
+                             "vtable for eventide::",
+                             "EVENTIDE_1",
+                             "EVENTIDE_PRIVATE"};
 
-TEST(ExportedSymbols, AreThePublicFaceAlone) {
-    const Result result = run({"nm", "--dynamic", "--demangle", "--defined-only", "--format=posix",
-                               EVENTIDE_SHARED_LIBRARY});
-    ASSERT_EQ(result.exit_code, 0) << result.error;
+/// The names that `nm` finds, which must be public; gives how many.
+int expect_public(std::vector<std::string> nm, const std::string& file) {
+    nm.insert(nm.begin(), {"nm", "--demangle", "--defined-only", "--format=posix"});
+    nm.push_back(file);
+    const Result result = run(nm);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
     std::istringstream lines{result.output};
     int symbols = 0;
-    for (std::string line; std::getline(lines, line); ++symbols) {
+    for (std::string line; std::getline(lines, line);) {
+        if (line.ends_with(":")) continue;  // the name of an archive's member
+        ++symbols;
         EXPECT_TRUE(std::ranges::any_of(kPublic, [&](const char* name) {
             return line.starts_with(name);
         })) << line;
         EXPECT_EQ(line.find("::Impl"), std::string::npos) << line;
     }
-    EXPECT_GT(symbols, 50);
+    return symbols;
+}
+
+TEST(ExportedSymbols, AreThePublicFaceAlone) {
+    EXPECT_GT(expect_public({"--dynamic"}, EVENTIDE_CORE_LIBRARY), 40);
+    EXPECT_GT(expect_public({"--dynamic"}, EVENTIDE_WHOLE_LIBRARY), 50);
+}
+
+TEST(ExportedSymbols, OfTheStaticLibrariesAreTheSame) {
+    EXPECT_GT(expect_public({"--extern-only"}, EVENTIDE_CORE_ARCHIVE), 40);
+    EXPECT_GT(expect_public({"--extern-only"}, EVENTIDE_WHOLE_ARCHIVE), 50);
+}
+
+/// Of the packages that eventide is built with.
+std::vector<std::string> needed_by(const std::string& library) {
+    const Result result = run({"readelf", "--dynamic", library});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    std::istringstream lines{result.output};
+    std::vector<std::string> names;
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t begin = line.find("Shared library: [");
+        if (begin == std::string::npos) continue;
+        const std::string name = line.substr(begin + 17, line.find(".so", begin) - begin - 17);
+        const bool is_of_the_system = name == "libc" || name == "libm" || name == "libstdc++" ||
+                                      name == "libgcc_s" || name.starts_with("ld-linux");
+        if (!is_of_the_system) names.push_back(name);
+    }
+    return names;
+}
+
+TEST(NeededPackages, OfEventsToFramesAreHighwayAndTbb) {
+    std::vector<std::string> allowed{"libtbb", "libhwy"};
+#ifdef EVENTIDE_HAS_ONEDNN
+    allowed.insert(allowed.end(), {"libdnnl", "libgomp"});
+#endif
+    EXPECT_THAT(needed_by(EVENTIDE_CORE_LIBRARY), testing::UnorderedElementsAreArray(allowed));
+    EXPECT_THAT(needed_by(EVENTIDE_WHOLE_LIBRARY), testing::Contains("libeventide-core"));
 }
 
 TEST(Version, OfTheLibraryIsThatOfTheHeaders) {

@@ -39,16 +39,43 @@ protected:
     void expect_frames_of_run(std::vector<std::string> example,
                               ProcessSettings settings = {}) const {
         example.insert(example.end(), {recording(), temp_ / "ours"});
-        settings.environment["EVENTIDE_MODELS"] = "";
+        settings.environment.try_emplace("EVENTIDE_MODELS", "");
         succeed(example, settings);
-        const Result theirs = eventide({"run", recording(), "--frames", "ignore", "--model",
-                                        prefix() + "/share/eventide/models/default.safetensors",
-                                        "--precision", "f32", "--out", "grayf32:theirs",
-                                        "--uncertainty", "separate", "--sigma-white", "1"});
+        expect_ours_of_run({recording()});
+    }
+
+    /// from_text writes what `eventide run` does of the same file, and loads nothing but the core.
+    void expect_frames_of_text_with_the_core_alone(const std::string& from_text) const {
+        const Result text = eventide({"convert", recording(), "events.txt"});
+        ASSERT_EQ(text.exit_code, 0) << text.error;
+        succeed({from_text, temp_ / "events.txt", temp_ / "ours"},
+                {.environment = {{"EVENTIDE_MODELS", prefix() + "/share/eventide/models"}}});
+        expect_ours_of_run({"events.txt"});
+        const std::string loaded = libraries_of(from_text);
+        for (const char* const package : {"libopencv", "libusb", "liblz4", "libeventide.so"})
+            EXPECT_EQ(loaded.find(package), std::string::npos) << loaded;
+    }
+
+    void expect_ours_of_run(const std::vector<std::string>& source) const {
+        std::vector<std::string> arguments{"run"};
+        arguments.insert(arguments.end(), source.begin(), source.end());
+        arguments.insert(
+            arguments.end(),
+            {"--frames", "ignore", "--model",
+             prefix() + "/share/eventide/models/default.safetensors", "--precision", "f32", "--out",
+             "grayf32:theirs", "--overwrite", "--uncertainty", "separate", "--sigma-white", "1"});
+        const Result theirs = eventide(arguments);
         ASSERT_EQ(theirs.exit_code, 0) << theirs.error;
         const std::string frames = read_text(temp_ / "ours");
         EXPECT_GE(frames.size(), 12U * 64 * 48 * 8);
         EXPECT_TRUE(frames == read_text(temp_ / "theirs"));
+    }
+
+    /// What a program loads, as ldd says.
+    static std::string libraries_of(const std::string& program) {
+        const Result result = run({"ldd", program});
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return result.output;
     }
 
     inline static std::unique_ptr<TempFolder> place_;
@@ -63,6 +90,51 @@ TEST_F(Installed, FindPackageGivesAProgramTheSameFrames) {
         run({temp_ / "build/tracker", recording()}, {.environment = {{"EVENTIDE_MODELS", ""}}});
     EXPECT_EQ(tracked.exit_code, 0) << tracked.error;
     EXPECT_NE(tracked.output.find("the centre moves by"), std::string::npos) << tracked.output;
+    const Result own =
+        run({temp_ / "build/own_source"}, {.environment = {{"EVENTIDE_MODELS", ""}}});
+    EXPECT_NE(own.output.find("189999 us: "), std::string::npos) << own.output << own.error;
+    expect_frames_of_text_with_the_core_alone(temp_ / "build/from_text");
+}
+
+TEST_F(Installed, StaticLibrariesGiveAProgramTheSameFrames) {
+    succeed({EVENTIDE_CMAKE, "-S", example(""), "-B", temp_ / "build",
+             "-DCMAKE_PREFIX_PATH=" + prefix(), "-Deventide_USE_STATIC_LIBS=ON",
+             "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=ON"});
+    succeed({EVENTIDE_CMAKE, "--build", temp_ / "build"});
+    EXPECT_EQ(libraries_of(temp_ / "build/reconstruct").find("libeventide"), std::string::npos);
+    const ProcessSettings models{
+        .environment = {{"EVENTIDE_MODELS", prefix() + "/share/eventide/models"}}};
+    expect_frames_of_run({temp_ / "build/reconstruct"}, models);
+    expect_frames_of_text_with_the_core_alone(temp_ / "build/from_text");
+}
+
+/// Where the static libraries are all there is.
+TEST_F(Installed, PkgConfigTellsWhatStaticLibrariesNeed) {
+    const std::string only = temp_ / "eventide";
+    fs::copy(prefix(), only, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
+    const std::string folder = only + "/" EVENTIDE_LIBDIR;
+    for (const auto& entry : fs::directory_iterator{folder})
+        if (entry.path().filename().string().find(".so") != std::string::npos)
+            fs::remove(entry.path());
+    fs::remove(folder + "/cmake/eventide/eventideShared.cmake");
+    succeed({"sh", "-c",
+             "cc -std=c11 -Werror " + example("reconstruct.c") + " -o " + (temp_ / "reconstruct") +
+                 " $(pkg-config --static --cflags --libs eventide)"},
+            {.environment = {{"PKG_CONFIG_PATH", folder + "/pkgconfig"}}});
+    EXPECT_EQ(libraries_of(temp_ / "reconstruct").find("libeventide"), std::string::npos);
+    expect_frames_of_run({temp_ / "reconstruct"},
+                         {.environment = {{"EVENTIDE_MODELS", only + "/share/eventide/models"}}});
+}
+
+TEST_F(Installed, ComponentThatIsNotThereIsRefusedByName) {
+    write_text(temp_ / "CMakeLists.txt",
+               "cmake_minimum_required(VERSION 3.25)\nproject(asks LANGUAGES CXX)\n"
+               "find_package(eventide 1 REQUIRED COMPONENTS core teleport)\n");
+    const Result result = run({EVENTIDE_CMAKE, "-S", temp_.path().string(), "-B", temp_ / "build",
+                               "-DCMAKE_PREFIX_PATH=" + prefix()});
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_NE(result.error.find("component 'teleport'"), std::string::npos) << result.error;
+    EXPECT_NE(result.error.find("(core,"), std::string::npos) << result.error;
 }
 
 TEST_F(Installed, PkgConfigGivesAProgramInCTheSameFrames) {
@@ -174,9 +246,13 @@ TEST_F(Installed, DebianPackagesHoldTheSameAndSayWhatTheyNeed) {
             packages[name.substr(0, name.find('_'))] = entry.path().string();
             succeed({"dpkg-deb", "-x", entry.path().string(), temp_ / "root"});
         }
-    ASSERT_TRUE(packages.contains("libeventide1") && packages.contains("libeventide-dev") &&
-                packages.contains("eventide"));
-    EXPECT_NE(field(packages["libeventide1"], "Depends").find("libtbb12"), std::string::npos);
+    ASSERT_TRUE(packages.contains("libeventide-core1") && packages.contains("libeventide1") &&
+                packages.contains("libeventide-dev") && packages.contains("eventide"));
+    const std::string core = field(packages["libeventide-core1"], "Depends");
+    EXPECT_NE(core.find("libtbb12"), std::string::npos);
+    EXPECT_EQ(core.find("opencv"), std::string::npos) << core;
+    EXPECT_NE(field(packages["libeventide1"], "Depends").find("libeventide-core1 (= "),
+              std::string::npos);
     EXPECT_NE(field(packages["eventide"], "Depends").find("libavformat"), std::string::npos);
     EXPECT_EQ(field(packages["libeventide-dev"], "Depends"),
               "libeventide1 (= " EVENTIDE_VERSION ")\n");

@@ -1,0 +1,37 @@
+// from_text EVENTS.txt OUT: a line "width height", then events "t x y p" (seconds, px, px, 0 or 1)
+// -> intensity and sigma of each frame, as rows of float32. With libeventide-core alone:
+// find_package(eventide COMPONENTS core).
+#include <eventide/error.h>
+#include <eventide/reconstructor.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+
+int main(int argc, char** argv) try {
+    if (argc != 3) throw eventide::Error(eventide::ErrorKind::usage, "from_text EVENTS.txt OUT");
+    std::ifstream events(argv[1]);
+    std::ofstream out(argv[2], std::ios::binary);
+    int width = 0, height = 0, x = 0, y = 0, p = 0;
+    events >> width >> height;
+    eventide::Reconstructor reconstructor(
+        "default", width, height,
+        {.window = "auto", .lookahead = 2, .precision = eventide::Precision::f32});
+    double t = 0;
+    while (events) {
+        if (events >> t >> x >> y >> p) {
+            const eventide::Event event{eventide::from_us(std::llround(1e6 * t)), std::uint16_t(x),
+                                        std::uint16_t(y), eventide::Polarity(p > 0)};
+            reconstructor.push({&event, 1});
+        } else {
+            reconstructor.finish();
+        }
+        for (eventide::Frame frame; reconstructor.next(frame);)
+            for (const auto* plane : {&frame.intensity, &frame.sigma})
+                out.write(reinterpret_cast<const char*>(plane->values().data()),
+                          std::streamsize(plane->values().size_bytes()));
+    }
+} catch (const eventide::Error& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+}

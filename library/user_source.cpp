@@ -1,0 +1,113 @@
+#include "library/user_source.h"
+
+#include "src/core/error.h"
+
+#include <eventide/reconstructor.h>
+
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+namespace eventide {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<Event>);
+
+/// Of a packet. Image times follow, then events.
+struct Head {
+    std::uint64_t images = 0, imu = 0, triggers = 0, events = 0;
+    bool has_clock = false;
+    SensorTime clock{};
+};
+
+template <typename T>
+void append(const T* values, std::size_t count, std::vector<std::byte>& out) {
+    const auto* begin = reinterpret_cast<const std::byte*>(values);
+    out.insert(out.end(), begin, begin + count * sizeof(T));
+}
+
+template <typename T>
+T taken_from(std::span<const std::byte>& bytes) {
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    bytes = bytes.subspan(sizeof value);
+    return value;
+}
+
+/// Reads whole packets of UserSource, which nobody splits.
+class UserParser final : public Parser {
+public:
+    UserParser(int width, int height) : width_(unsigned(width)), height_(unsigned(height)) {}
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override {
+        const Head head = taken_from<Head>(bytes);
+        if (head.has_clock) clock_ = head.clock;
+        for (std::uint64_t i = 0; i < head.images; ++i) {
+            const auto t = taken_from<SensorTime>(bytes);
+            if (!is_far(t)) into.images.emplace_back().t = t;
+        }
+        into.imu.resize(into.imu.size() + head.imu);
+        into.triggers.resize(into.triggers.size() + head.triggers);
+        for (std::uint64_t i = 0; i < head.events; ++i) {
+            const auto event = taken_from<Event>(bytes);
+            if (event.x >= width_ || event.y >= height_)
+                damage_.count(DamageReason::out_of_range);
+            else if (is_far(event.t))
+                damage_.count(DamageReason::bad_record);
+            else
+                into.events.push_back(event);
+        }
+    }
+    void finish(Batch&) override {}
+    void resync() override {}
+    std::optional<SensorTime> clock() const override { return clock_; }
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    static bool is_far(SensorTime t) {
+        return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
+    }
+
+    const unsigned width_, height_;
+    std::optional<SensorTime> clock_;
+    Damage damage_;
+};
+
+}  // namespace
+
+UserSource::UserSource(EventSource& source) : source_(source) {}
+
+/// The end is a packet of its own: a recording's clock may have gone on since the last data.
+ReadStatus UserSource::read(RawPacket& into) {
+    into.bytes.clear();
+    if (ended_ || stopped_.load(std::memory_order_relaxed)) return ReadStatus::end;
+    ended_ = !source_.read(batch_);
+    if (ended_) batch_.clear();
+    into.arrived = std::chrono::steady_clock::now();
+    into.gap_before = source_.gap_before();
+    const std::optional<SensorTime> clock = source_.clock();
+    if (is_live() && !ended_ && batch_.empty() && clock == clock_ && !into.gap_before)
+        return ReadStatus::timeout;
+    clock_ = clock;
+    const Head head{.images = batch_.images.size(),
+                    .imu = batch_.imu.size(),
+                    .triggers = batch_.triggers.size(),
+                    .events = batch_.events.size(),
+                    .has_clock = clock.has_value(),
+                    .clock = clock.value_or(SensorTime{})};
+    append(&head, 1, into.bytes);
+    for (const ReferenceImage& image : batch_.images) append(&image.t, 1, into.bytes);
+    append(batch_.events.data(), batch_.events.size(), into.bytes);
+    return ReadStatus::data;
+}
+
+void UserSource::stop() noexcept {
+    stopped_.store(true, std::memory_order_relaxed);
+    source_.stop();
+}
+
+std::unique_ptr<Parser> UserSource::make_parser() const {
+    return std::make_unique<UserParser>(info().width, info().height);
+}
+
+}  // namespace eventide

@@ -1,0 +1,168 @@
+// Sources and sinks of a user around the library's pipeline.
+#include "tests/library/library_test.h"
+
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+#include <thread>
+
+namespace eventide::test {
+namespace {
+
+/// Frames as `eventide run` writes them.
+class Collector : public FrameSink {
+public:
+    explicit Collector(int most = 1 << 30) : most_(most) {}
+    bool write(const Frame& frame) override {
+        append_frame(frame, bytes);
+        return ++frames < most_;
+    }
+    void close() override { ++closed; }
+
+    std::string bytes;
+    int frames = 0, closed = 0;
+
+private:
+    const int most_;
+};
+
+/// Events out of memory, some at a time.
+class EventsInMemory : public EventSource {
+public:
+    EventsInMemory(std::vector<Event> events, std::size_t per_batch)
+        : info_{.name = "memory", .serial = "", .format = "", .width = 64, .height = 48},
+          events_(std::move(events)),
+          per_batch_(per_batch) {}
+    const SensorInfo& info() const noexcept override { return info_; }
+    bool read(Batch& batch) override {
+        batch.clear();
+        if (at_ == fails_at) throw std::runtime_error("the cable came off");
+        if (at_ == events_.size()) return false;
+        const std::size_t end = std::min(at_ + per_batch_, events_.size());
+        batch.events.assign(events_.begin() + std::ptrdiff_t(at_),
+                            events_.begin() + std::ptrdiff_t(end));
+        at_ = end;
+        return true;
+    }
+
+    std::size_t fails_at = std::size_t(-1);
+
+protected:
+    SensorInfo info_;
+
+private:
+    std::vector<Event> events_;
+    std::size_t per_batch_, at_ = 0;
+};
+
+class Pipelines : public LibraryTest {
+protected:
+    static PipelineOptions options(const std::string& window, int lookahead, bool sequential) {
+        return {.frames = repeatable(window, lookahead), .sequential = sequential};
+    }
+};
+
+TEST_F(Pipelines, OfARecordingGiveTheFramesOfEventideRun) {
+    for (const bool sequential : {false, true}) {
+        EventReader reader{recording()};
+        Collector sink;
+        EventPipeline pipeline{reader, {&sink}, model(), options("auto", 2, sequential)};
+        pipeline.run();
+        const std::string expected = frames_of_run(repeatable_arguments("auto", 2));
+        ASSERT_GT(expected.size(), 30U * 64 * 48 * 8);
+        EXPECT_TRUE(sink.bytes == expected) << sink.bytes.size() << " for " << expected.size();
+        EXPECT_EQ(sink.closed, 1);
+        EXPECT_EQ(pipeline.counters().frames, std::uint64_t(sink.frames));
+        EXPECT_EQ(pipeline.counters().lost_batches, 0U);
+    }
+}
+
+TEST_F(Pipelines, OfAUsersSourceGiveTheFramesOfTheReconstructor) {
+    const std::vector<Event> events = events_of(recording());
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 1));
+    reconstructor.push(events);
+    reconstructor.finish();
+    std::string expected;
+    append_frames(reconstructor, expected);
+    for (const std::size_t per_batch : {std::size_t{57}, std::size_t{4000}, events.size()}) {
+        EventsInMemory source{events, per_batch};
+        Collector first, second;
+        EventPipeline pipeline{source, {&first, &second}, model(), options("7ms", 1, false)};
+        pipeline.run();
+        EXPECT_TRUE(first.bytes == expected) << per_batch;
+        EXPECT_TRUE(second.bytes == expected) << per_batch;
+        EXPECT_EQ(pipeline.counters().events, events.size());
+    }
+}
+
+TEST_F(Pipelines, OfACameraEndWhenASinkWantsNoMore) {
+    EventCamera camera{"sim:demo?size=64x48&speed=1"};
+    EXPECT_TRUE(camera.is_live());
+    Collector sink{5};
+    EventPipeline pipeline{camera, {&sink}, model(), options("10ms", 0, false)};
+    pipeline.run();
+    EXPECT_EQ(sink.frames, 5);
+    EXPECT_EQ(sink.closed, 1);
+}
+
+TEST_F(Pipelines, StopFromAnotherThread) {
+    EventCamera camera{"sim:demo?size=64x48&speed=1"};
+    Collector sink;
+    EventPipeline pipeline{camera, {&sink}, model(), options("10ms", 0, false)};
+    std::jthread stopper{[&] {
+        while (pipeline.counters().frames == 0) std::this_thread::yield();
+        pipeline.stop();
+    }};
+    pipeline.run();
+    EXPECT_GT(sink.frames, 0);
+}
+
+TEST_F(Pipelines, ThrowWhatASourceThrowsAndCloseTheSinks) {
+    EventsInMemory source{events_of(recording()), 1000};
+    source.fails_at = 3000;
+    Collector sink;
+    EventPipeline pipeline{source, {&sink}, model(), options("7ms", 0, false)};
+    try {
+        pipeline.run();
+        ADD_FAILURE() << "no error";
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "the cable came off");
+    }
+    EXPECT_EQ(sink.closed, 1);
+    EXPECT_THAT(error_of([&] { pipeline.run(); }), testing::HasSubstr("one run"));
+}
+
+TEST_F(Pipelines, LeaveOutAndCountEventsThatMakeNoSense) {
+    std::vector<Event> events = events_of(recording());
+    const std::size_t sound = events.size();
+    events.insert(events.begin() + 100, {events[99].t, 64, 0, Polarity::on});
+    events.insert(events.begin() + 200, {events[199].t, 0, 48, Polarity::on});
+    events.push_back({from_us((std::int64_t{1} << 60) + 1), 0, 0, Polarity::on});
+    EventsInMemory source{events, 512};
+    Collector sink;
+    EventPipeline pipeline{source, {&sink}, model(), options("7ms", 0, false)};
+    pipeline.run();
+    EXPECT_EQ(pipeline.counters().damaged, 3U);
+    EXPECT_EQ(pipeline.counters().events, sound);
+}
+
+class Sizeless final : public EventsInMemory {
+public:
+    Sizeless() : EventsInMemory({}, 1) { info_.width = 0; }
+};
+
+TEST_F(Pipelines, RefuseWhatCannotRun) {
+    Sizeless sizeless;
+    EventsInMemory source{{}, 1};
+    Collector sink;
+    const auto made = [&](EventSource& from, FrameSink* to, const PipelineOptions& with) {
+        return error_of([&] { EventPipeline{from, {to}, model(), with}; });
+    };
+    EXPECT_THAT(made(sizeless, &sink, {}), testing::HasSubstr("sensor width"));
+    EXPECT_THAT(made(source, nullptr, {}), testing::HasSubstr("null pointer"));
+    EXPECT_THAT(made(source, &sink, {.frames = {.lookahead = 9}}), testing::HasSubstr("lookahead"));
+    EXPECT_THAT(made(source, &sink, {.frames = {.fps = "many"}}), testing::HasSubstr("many"));
+}
+
+}  // namespace
+}  // namespace eventide::test
