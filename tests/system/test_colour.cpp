@@ -112,6 +112,36 @@ TEST_F(Colour, LeavesIntensityAndSigmaAsTheyAre) {
                 HasSubstr("80,60,rgb24"));
 }
 
+TEST_F(Colour, FollowsTheFilterBehindWhatMovesPixels) {
+    simulate("rggb", "rggb.aedat4");
+    // Mirrored before and after, so that frames are as the truth.
+    const auto frames_of = [&](std::vector<std::string> source) {
+        source.insert(source.begin(), "run");
+        source.insert(source.end(), {"--colour", "--frames", "use", "--fps", "25", "--flip",
+                                     "horizontal", "--precision", "f32", "--kernels", "own",
+                                     "--out", "frames/", "--overwrite"});
+        const Result made = eventide(source);
+        EXPECT_EQ(made.exit_code, 0) << made.error;
+        return pixels("frames");
+    };
+    const std::string found = frames_of({"rggb.aedat4", "--filter", "flip:x"});
+    const std::string truth = pixels("truth"), first = found.substr(0, truth.size());
+    EXPECT_LT(2 * colour_error(first, truth, false), colour_error(first, truth, true));
+
+    // From AEDAT 4 to AEDAT 3 and back: one says it of the sensor, the other of each image.
+    std::string from = "rggb.aedat4";
+    for (const std::vector<std::string>& step :
+         {std::vector<std::string>{"mirrored.aedat4", "--filter", "flip:x"},
+          {"again.aedat"},
+          {"back.aedat4"}}) {
+        std::vector<std::string> convert{"convert", from};
+        convert.insert(convert.end(), step.begin(), step.end());
+        ASSERT_EQ(eventide(convert).exit_code, 0) << step.front();
+        from = step.front();
+        EXPECT_TRUE(frames_of({from}) == found) << from;
+    }
+}
+
 TEST_F(Colour, WhatHasNoneIsNamed) {
     simulate("rggb", "rggb.aedat4");
     const auto refused = [&](std::vector<std::string> options) {
@@ -125,8 +155,8 @@ TEST_F(Colour, WhatHasNoneIsNamed) {
         EXPECT_THAT(refused({"--out", sink}), HasSubstr("--out " + sink + ": has no colour"));
     EXPECT_THAT(refused({"--out", "null", "--bayer", "none"}),
                 HasSubstr("--colour: expected a camera or recording that tells its colour filter"));
-    EXPECT_THAT(refused({"--out", "null", "--filter", "flip:x"}),
-                HasSubstr("--filter flip:x: changes which pixel of the rggb sensor"));
+    EXPECT_THAT(refused({"--out", "null", "--filter", "subsample:2x2"}),
+                HasSubstr("--filter subsample:2x2: leaves no square of colours of the rggb"));
     EXPECT_THAT(refused({"--out", "null", "--state-out", "s"}), HasSubstr("no --state-out"));
     const Result grey = eventide({"run", recording(), "--colour", "--out", "null"});
     EXPECT_EQ(grey.exit_code, 2);

@@ -34,18 +34,21 @@ SensorPixels size_of(const Source& source) {
 SensorInfo info_behind(SensorInfo info, const FilterChain& filters) {
     info.width = filters.size().width;
     info.height = filters.size().height;
+    info.colour_filter = filters.pattern(info.colour_filter);
     return info;
 }
 
 /// Null: not asked for.
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
-                                         const Span& span, EventFilter* filter) {
+                                         ColourFilter colours, const Span& span,
+                                         EventFilter* filter) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
     header.height = sensor.height;
     header.sensor_name = sensor.name;
     header.serial = sensor.serial;
+    header.colour_filter = colours;
     return std::make_unique<EventsOut>(
         filter, open_event_target(settings.events_out, settings.overwrite, true, header),
         span.frames_from, span.end);
@@ -74,7 +77,7 @@ Run::Run(Program& program, RunSettings& settings)
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), as_live())},
       undistortion_{undistortion_of(settings, sensor_)},
-      colour_filter_{colour_filter_of(settings, sensor_, live())},
+      colour_filter_{colour_filter_of(settings, opened_.source->info(), sensor_, filters_, live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
@@ -98,7 +101,7 @@ Run::Run(Program& program, RunSettings& settings)
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
     recorded_ = recorder_of(settings, *opened_.source);
-    events_out_ = events_out_of(settings, sensor_, span_, filter_.get());
+    events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get());
     watch_.write_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
     stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
