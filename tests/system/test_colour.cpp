@@ -142,6 +142,52 @@ TEST_F(Colour, FollowsTheFilterBehindWhatMovesPixels) {
     }
 }
 
+TEST_F(Colour, GoesOnFromAStateWithTheColours) {
+    simulate("rggb", "rggb.aedat4");
+    const auto frames_of = [&](std::vector<std::string> more) {
+        std::vector<std::string> all{"run",    "rggb.aedat4", "--colour", "--frames",
+                                     "ignore", "--window",    "10ms",     "--fps",
+                                     "50",     "--precision", "f32",      "--kernels",
+                                     "own",    "--out",       "frames/",  "--overwrite"};
+        all.insert(all.end(), more.begin(), more.end());
+        const Result made = eventide(all);
+        EXPECT_EQ(made.exit_code, 0) << made.error;
+        return pixels("frames");
+    };
+    const std::string whole = frames_of({}), last = whole.substr(whole.size() - 3 * kPixels);
+    frames_of({"--to", "100ms", "--state-out", "state"});
+    const auto last_with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--from", "100ms"});
+        const std::string found = frames_of(more);
+        return found.substr(found.size() - 3 * kPixels);
+    };
+    const auto differ = [&](const std::string& found) {
+        double sum = 0;
+        for (std::size_t i = 0; i < last.size(); ++i)
+            sum += std::abs(int(std::uint8_t(found[i])) - int(std::uint8_t(last[i])));
+        return sum / double(last.size());
+    };
+    const std::string with = last_with({"--state-in", "state"});
+    const std::string without = last_with({"--warmup", "0s"});
+    EXPECT_LT(3 * differ(with), differ(without));
+
+    const auto refused = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"run", "rggb.aedat4", "--out", "null"});
+        const Result result = eventide(more);
+        EXPECT_EQ(result.exit_code, 3) << result.error;
+        return result.error;
+    };
+    EXPECT_THAT(refused({"--state-in", "state"}),
+                HasSubstr("state: expected the state of a run without colours, found that of one "
+                          "with those of rggb (--colour)"));
+    EXPECT_THAT(refused({"--state-in", "state", "--colour", "--bayer", "bggr"}),
+                HasSubstr("expected the state of a run with those of bggr"));
+    ASSERT_EQ(eventide({"run", "rggb.aedat4", "--out", "null", "--state-out", "grey"}).exit_code,
+              0);
+    EXPECT_THAT(refused({"--state-in", "grey", "--colour"}),
+                HasSubstr("found that of one without colours"));
+}
+
 TEST_F(Colour, WhatHasNoneIsNamed) {
     simulate("rggb", "rggb.aedat4");
     const auto refused = [&](std::vector<std::string> options) {
@@ -157,7 +203,6 @@ TEST_F(Colour, WhatHasNoneIsNamed) {
                 HasSubstr("--colour: expected a camera or recording that tells its colour filter"));
     EXPECT_THAT(refused({"--out", "null", "--filter", "subsample:2x2"}),
                 HasSubstr("--filter subsample:2x2: leaves no square of colours of the rggb"));
-    EXPECT_THAT(refused({"--out", "null", "--state-out", "s"}), HasSubstr("no --state-out"));
     const Result grey = eventide({"run", recording(), "--colour", "--out", "null"});
     EXPECT_EQ(grey.exit_code, 2);
     const Result plain =

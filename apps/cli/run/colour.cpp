@@ -47,10 +47,6 @@ void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourF
     if (sensor.width % 2 != 0 || sensor.height % 2 != 0)
         refuse("expected a sensor with even sides, found " +
                show_size({sensor.width, sensor.height}));
-    if (!settings.state_in.empty() || !settings.state_out.empty())
-        refuse(
-            "the state of four networks is no file yet; expected no --state-in and no "
-            "--state-out");
 }
 
 }  // namespace

@@ -41,6 +41,11 @@ public:
 
     EncodeStage& encode() { return *encode_; }
     RenderStage& render() { return *render_; }
+    ColourFilter filter() const { return filter_; }
+    Encoder& encoder(ColourChannel channel) { return *channels_[std::size_t(channel)].encoder; }
+    const Encoder& encoder(ColourChannel channel) const {
+        return *channels_[std::size_t(channel)].encoder;
+    }
     /// Bin thread. Mosaics or colours.
     void see(const std::vector<ReferenceImage>& images);
 

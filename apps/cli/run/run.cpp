@@ -6,11 +6,11 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/live_controls.h"
 #include "apps/cli/run/memory_use.h"
+#include "apps/cli/run/run_state.h"
 #include "apps/cli/run/status.h"
 #include "apps/cli/version.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
-#include "src/nn/safetensors.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -93,6 +93,8 @@ Run::Run(Program& program, RunSettings& settings)
                         render_.fused() != nullptr, network_.encoder(), render_);
         watch_.colour(&*colour_);
     }
+    if (!settings.state_in.empty())
+        restore_state(settings.state_in, network_, colour_ ? &*colour_ : nullptr);
     if (opened_.recording != nullptr && span_.begin) {
         if (!filters_.empty())
             if (const auto first = first_event_of(settings, live())) filters_.count_from(*first);
@@ -263,7 +265,8 @@ int Run::run() {
                   quality};
     run_pipeline();
     if (!settings_.state_out.empty())
-        write_safetensors(settings_.state_out, network_.encoder().state(), settings_.overwrite);
+        write_safetensors(settings_.state_out, state_of(network_, colour_ ? &*colour_ : nullptr),
+                          settings_.overwrite);
     const RunProgress end = status.finish();
     const Snapshot end_counters = counters();
     const CameraCounters camera = camera_counters();
