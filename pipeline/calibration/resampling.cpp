@@ -46,6 +46,17 @@ WeightTable<4> cubic_weights() {
     return table;
 }
 
+template <int kTaps>
+float weighed(const std::array<float, kTaps>& weights, const float* values) {
+    if constexpr (kTaps == 4)
+        return (weights[0] * values[0] + weights[1] * values[1]) +
+               (weights[2] * values[2] + weights[3] * values[3]);
+    else if constexpr (kTaps == 2)
+        return weights[0] * values[0] + weights[1] * values[1];
+    else
+        return weights[0] * values[0];
+}
+
 }  // namespace
 
 ResamplingMap::ResamplingMap(const SourcePlaces& places, const Region& source)
@@ -91,15 +102,20 @@ void ResamplingMap::take(const Array2<float>& from, std::span<float> to, const W
         const bool whole =
             left >= 0 && top >= 0 && left + kTaps - 1 <= last_x && top + kTaps - 1 <= last_y;
         float sum = 0;
-        for (int row = 0; row < kTaps; ++row) {
-            const int y = whole ? top + row : std::clamp(top + row, 0, last_y);
-            const float* const line = values + std::ptrdiff_t(y) * source_width_;
-            float along = 0;
-            for (int column = 0; column < kTaps; ++column) {
-                const int x = whole ? left + column : std::clamp(left + column, 0, last_x);
-                along += across[std::size_t(column)] * line[x];
+        if (whole) {
+            const float* line = values + std::ptrdiff_t(top) * source_width_ + left;
+            for (const float weight : down) {
+                sum += weight * weighed<kTaps>(across, line);
+                line += source_width_;
             }
-            sum += down[std::size_t(row)] * along;
+        } else {
+            std::array<float, kTaps> line;
+            for (int row = 0; row < kTaps; ++row) {
+                const int y = std::clamp(top + row, 0, last_y);
+                for (int column = 0; column < kTaps; ++column)
+                    line[std::size_t(column)] = from(y, std::clamp(left + column, 0, last_x));
+                sum += down[std::size_t(row)] * weighed<kTaps>(across, line.data());
+            }
         }
         to[i] = sum;
     }
