@@ -31,6 +31,16 @@ Query query_of(const ReferenceSequence& sequence, std::size_t i) {
     return query;
 }
 
+/// "truncated 1, time_backwards 12"
+std::string text_of(const Damage& damaged) {
+    std::string text;
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        if (const auto n = damaged[DamageReason(i)]; n > 0)
+            text += (text.empty() ? "" : ", ") + std::string{name_of(DamageReason(i))} + " " +
+                    std::to_string(n);
+    return text;
+}
+
 /// Which images count, by number, in order of time.
 std::vector<std::size_t> scored_images(const ReferenceSequence& sequence,
                                        const ScoredImages& which) {
@@ -75,7 +85,11 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
     else
         for_each_cut_window(sequence, window, push);
     ask_until(SensorTime::max());
-    return judged.finish();
+    SequenceResult result = judged.finish();
+    if (sequence.damaged.total() > 0)
+        result.notes.push_back(sequence.name + ": left out of the recording, as it is damaged: " +
+                               text_of(sequence.damaged));
+    return result;
 }
 
 EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how) {

@@ -1,14 +1,13 @@
 // The layouts in which ECD, MVSEC and HQF are found.
 #include "apps/evaluate/evreal_sequence.h"
 
-#include "apps/evaluate/mvsec_file.h"
 #include "apps/evaluate/seconds.h"
 #include "src/core/error.h"
 #include "src/core/partition_row.h"
-#include "src/io/bag_file.h"
 #include "src/io/npy.h"
 
 #include <algorithm>
+#include <array>
 #include <ranges>
 
 namespace eventide {
@@ -24,7 +23,8 @@ bool is_sequence(const fs::path& path) {
     if (fs::is_directory(path))
         return is_npy_folder(path) ||
                (fs::exists(path / "events.txt") && fs::exists(path / "images.txt"));
-    return is_hdf5_file(path) || is_bag_file(path) || path.extension() == ".aedat4";
+    constexpr std::array kExtensions{".hdf5", ".h5", ".bag", ".aedat4"};
+    return std::ranges::find(kExtensions, path.extension()) != kExtensions.end();
 }
 
 /// Of an array of times.
@@ -122,7 +122,6 @@ std::vector<fs::path> evreal_sequences(const fs::path& dataset) {
 
 ReferenceSequence read_evreal_sequence(const fs::path& path, std::optional<double> from_s,
                                        std::optional<double> to_s) {
-    if (is_hdf5_file(path)) return read_mvsec_file(path, from_s, to_s);
     if (!is_npy_folder(path)) return read_reference_sequence(path, from_s, to_s);
     // EVREAL's tools have already moved the first event or image to 0.
     const Span span{time_from_seconds(from_s.value_or(-1e12)).value_or(SensorTime::min()),

@@ -6,7 +6,6 @@
 #include "src/core/error.h"
 #include "src/core/grey.h"
 #include "src/core/sensor_limits.h"
-#include "src/io/bag_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,24 +83,7 @@ void read_recording(const std::filesystem::path& path, Keeper& keeper, Reference
     }
     parser->finish(batch);
     keeper.take(batch);
-}
-
-void read_bag(const std::filesystem::path& path, Keeper& keeper, ReferenceSequence& into) {
-    BagFile bag{path};
-    Batch batch;
-    for (std::optional<SensorTime> clock; !keeper.past_end(clock) && bag.read(batch);) {
-        if (!batch.events.empty()) clock = batch.events.back().t;
-        keeper.take(batch);
-    }
-    into.width = bag.width();
-    into.height = bag.height();
-    if (into.events.empty() && into.images.empty())
-        throw Error(ErrorKind::input, path.string() +
-                                          ": expected dvs_msgs/EventArray and sensor_msgs/Image in "
-                                          "the time asked for, found " +
-                                          bag.types());
-    // Messages of one camera may overlap by a little.
-    std::ranges::stable_sort(into.events, {}, &Event::t);
+    into.damaged = parser->damaged();
 }
 
 }  // namespace
@@ -112,10 +94,7 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     ReferenceSequence sequence;
     sequence.name = name_of(path);
     Keeper keeper{sequence, from_s, to_s};
-    if (is_bag_file(path))
-        read_bag(path, keeper, sequence);
-    else
-        read_recording(path, keeper, sequence);
+    read_recording(path, keeper, sequence);
     mend_times(sequence.images);
 
     const auto refuse = [&](const std::string& what) {

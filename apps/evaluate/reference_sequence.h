@@ -2,6 +2,7 @@
 // into event windows.
 #pragma once
 
+#include "src/core/damage.h"
 #include "src/core/event.h"
 #include "src/core/frame_data.h"
 
@@ -20,11 +21,12 @@ struct ReferenceSequence {
     /// Of the recording's first event or image, also where that was not kept: times in seconds are
     /// told from here.
     SensorTime first{};
+    Damage damaged;                      ///< what was left out of it, by reason
     std::vector<Event> events;           ///< in order of time
     std::vector<ReferenceImage> images;  ///< in order of time
 };
 
-/// Reads a recording of any format, or a ROS bag (bag_file.h). Where given, only data in [from, to]
+/// Reads a recording of any format. Where given, only data in [from, to]
 /// (s from `first`) are kept. A single image time that lies after the next one is taken as the
 /// middle of its neighbours, as EVREAL does (HQF has one). Throws Error(input) where there are no
 /// events, no images, or no sensor size.

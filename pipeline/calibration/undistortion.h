@@ -2,11 +2,13 @@
 #pragma once
 
 #include "pipeline/calibration/calibration.h"
+#include "pipeline/calibration/resampling.h"
 #include "pipeline/sinks/fan_out.h"
 
 #include <eventide/frame.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace eventide {
@@ -38,18 +40,15 @@ public:
     static constexpr float kUnseen = 0.57735f;
 
     explicit Undistortion(UndistortionPlan plan);
-    ~Undistortion();
-    Undistortion(Undistortion&&) noexcept;
 
     /// The undistorted frame, borrowed until the next call.
     const Frame& apply(const Frame& frame);
 
 private:
-    struct Map;
     void make_map(int width, int height);
 
     UndistortionPlan plan_;
-    std::unique_ptr<Map> map_, preview_map_;
+    std::optional<ResamplingMap> map_, preview_map_;
     Frame shown_;
 };
 

@@ -3,6 +3,8 @@
 
 #include "src/core/event.h"
 
+#include <eventide/event.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +26,9 @@ public:
     virtual void count_from(SensorTime) {}
     /// Of the sensor as it looks behind the filter.
     virtual SensorPixels size() const = 0;
+    /// The colour filter before its pixels as they lie behind this one; none where what is left of
+    /// them is no such pattern.
+    virtual ColourFilter pattern(ColourFilter before) const { return before; }
 };
 
 /// "NAME" or "NAME:ARGUMENTS", for data of a sensor of that size:

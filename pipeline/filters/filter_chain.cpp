@@ -58,6 +58,11 @@ FilterChain::FilterChain(const std::vector<std::string>& texts, const SensorPixe
     }
 }
 
+ColourFilter FilterChain::pattern(ColourFilter before) const {
+    for (const Link& link : links_) before = link.filter->pattern(before);
+    return before;
+}
+
 void FilterChain::process(Batch& batch) {
     for (Link& link : links_) {
         const std::size_t before = batch.events.size();
@@ -84,6 +89,7 @@ FilteredSource::FilteredSource(Source& source, FilterChain& chain)
     : source_(source), chain_(chain), info_(source.info()) {
     info_.width = chain.size().width;
     info_.height = chain.size().height;
+    info_.colour_filter = chain.pattern(info_.colour_filter);
 }
 
 std::unique_ptr<Parser> FilteredSource::make_parser() const {

@@ -19,6 +19,8 @@ public:
 
     bool empty() const { return links_.empty(); }
     SensorPixels size() const { return size_; }  ///< behind the last
+    /// The sensor's colour filter as DataFilter::pattern() says, behind the last.
+    ColourFilter pattern(ColourFilter before) const;
     void process(Batch& batch);
     /// Tells when the recording's first event was, where that is not the first that is processed.
     void count_from(SensorTime first) {

@@ -1,6 +1,8 @@
 // Filters that put events and images elsewhere.
 #include "pipeline/filters/placing_filters.h"
 
+#include "src/core/bayer.h"
+
 #include <utility>
 
 namespace eventide {
@@ -25,7 +27,23 @@ Array2<std::uint16_t> placed(const ReferenceImage& image, int width, int height,
     return pixels;
 }
 
+/// That of pixels whose (x, y) lay at place(x, y).
+template <typename Place>
+ColourFilter pattern_of_places(ColourFilter before, Place place) {
+    if (before == ColourFilter::none) return before;
+    return filter_with([&](int x, int y) {
+        const auto [from_x, from_y] = place(x, y);
+        return channel_at(before, from_x, from_y);
+    });
+}
+
 }  // namespace
+
+ColourFilter FlipFilter::pattern(ColourFilter before) const {
+    return pattern_of_places(before, [this](int x, int y) {
+        return across_ ? std::pair{size_.width - 1 - x, y} : std::pair{x, size_.height - 1 - y};
+    });
+}
 
 void FlipFilter::process(Batch& batch) {
     for (Event& event : batch.events) {
@@ -43,7 +61,12 @@ void FlipFilter::process(Batch& batch) {
             image.x0 = size_.width - image.x0 - width;
         else
             image.y0 = size_.height - image.y0 - height;
+        image.filter = pattern(image.filter);
     }
+}
+
+ColourFilter TransposeFilter::pattern(ColourFilter before) const {
+    return pattern_of_places(before, [](int x, int y) { return std::pair{y, x}; });
 }
 
 void TransposeFilter::process(Batch& batch) {
@@ -53,7 +76,14 @@ void TransposeFilter::process(Batch& batch) {
             return std::pair{y, x};
         });
         std::swap(image.x0, image.y0);
+        image.filter = pattern(image.filter);
     }
+}
+
+ColourFilter ThinningFilter::pattern(ColourFilter before) const {
+    return pattern_of_places(before, [this](int x, int y) {
+        return std::pair{x * columns_, y * rows_};
+    });
 }
 
 void ThinningFilter::process(Batch& batch) {
@@ -78,6 +108,7 @@ void ThinningFilter::process(Batch& batch) {
         });
         image.x0 = (image.x0 + dx) / columns_;
         image.y0 = (image.y0 + dy) / rows_;
+        image.filter = pattern(image.filter);
     }
     std::erase_if(batch.images, [](const ReferenceImage& image) { return image.pixels.empty(); });
 }

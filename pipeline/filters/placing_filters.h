@@ -11,6 +11,7 @@ public:
     FlipFilter(const SensorPixels& size, bool across) : size_(size), across_(across) {}
     void process(Batch& batch) override;
     SensorPixels size() const override { return size_; }
+    ColourFilter pattern(ColourFilter before) const override;
 
 private:
     SensorPixels size_;
@@ -22,6 +23,7 @@ public:
     explicit TransposeFilter(const SensorPixels& size) : size_{size.height, size.width} {}
     void process(Batch& batch) override;
     SensorPixels size() const override { return size_; }
+    ColourFilter pattern(ColourFilter before) const override;
 
 private:
     SensorPixels size_;
@@ -36,6 +38,7 @@ public:
           rows_(rows) {}
     void process(Batch& batch) override;
     SensorPixels size() const override { return size_; }
+    ColourFilter pattern(ColourFilter before) const override;
 
 private:
     SensorPixels size_;

@@ -68,7 +68,7 @@ private:
 /// Writes AEDAT 3.1: packets of at most kPacketRecords, colour frames as RGB, IMU samples with a
 /// magnetometer's values as IMU9, triggers as special events. A line "#Geometry: WxH", which other
 /// readers pass over, keeps the size. Throws Error (usage) for times below zero and coordinates
-/// above 32767.
+/// above 32767. An image that does not say its colour filter has that of the header.
 class Aedat3Writer final : public StreamWriter {
 public:
     static constexpr std::size_t kPacketRecords = 4096;
@@ -76,6 +76,9 @@ public:
     void begin(const StreamHeader& header, std::vector<std::byte>& out) override;
     void write(const Batch& batch, std::vector<std::byte>& out) override;
     void finish(std::vector<std::byte>&) override {}
+
+private:
+    ColourFilter colours_ = ColourFilter::none;
 };
 
 }  // namespace eventide

@@ -134,9 +134,10 @@ std::optional<ReferenceImage> read_frame(std::span<const std::byte> record, std:
     return image;
 }
 
-void write_frame(const ReferenceImage& image, std::int64_t base_us, std::vector<std::byte>& out) {
+void write_frame(const ReferenceImage& image, ColourFilter filter, std::int64_t base_us,
+                 std::vector<std::byte>& out) {
     const auto stamp = [&](SensorTime t) { append_little(out, std::uint32_t(to_us(t) - base_us)); };
-    append_little(out, 1U | std::uint32_t(image.channels) << 1 | number_of(image.filter) << 4);
+    append_little(out, 1U | std::uint32_t(image.channels) << 1 | number_of(filter) << 4);
     stamp(image.exposure_begin);  // start and end of the frame: not known better
     stamp(image.exposure_end);
     stamp(image.exposure_begin);

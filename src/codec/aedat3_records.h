@@ -51,6 +51,7 @@ void write_imu(const ImuSample& sample, bool with_magnetometer, std::uint32_t st
 /// the bottom up (AEDAT 3.0), in a sensor of `height` px.
 std::optional<ReferenceImage> read_frame(std::span<const std::byte> record, std::int64_t base_us,
                                          bool lower_left, int height);
-void write_frame(const ReferenceImage& image, std::int64_t base_us, std::vector<std::byte>& out);
+void write_frame(const ReferenceImage& image, ColourFilter filter, std::int64_t base_us,
+                 std::vector<std::byte>& out);
 
 }  // namespace eventide

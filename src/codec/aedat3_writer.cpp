@@ -66,7 +66,8 @@ void append_event(const Event& event, std::vector<std::byte>& out) {
     append_little(out, stamp_of(event.t));
 }
 
-void append_image(const ReferenceImage& image, std::vector<std::byte>& out) {
+void append_image(const ReferenceImage& image, ColourFilter of_sensor,
+                  std::vector<std::byte>& out) {
     const std::size_t bytes = Aedat3Packet::kFrameHeaderBytes + 2 * image.pixels.values().size();
     if (image.pixels.empty() || bytes > Aedat3Packet::kMaxFrameBytes || image.x0 < 0 ||
         image.y0 < 0)
@@ -75,7 +76,8 @@ void append_image(const ReferenceImage& image, std::vector<std::byte>& out) {
                                           std::to_string(image.pixels.height()));
     const std::uint32_t overflow = overflow_of(image.exposure_begin);
     append_header(Aedat3Type::frame, std::uint32_t(bytes), overflow, 1, out);
-    write_frame(image, std::int64_t(overflow) << 31, out);
+    const bool says = image.channels != 1 || image.filter != ColourFilter::none;
+    write_frame(image, says ? image.filter : of_sensor, std::int64_t(overflow) << 31, out);
 }
 
 bool has_magnetometer(const ImuSample& sample) {
@@ -101,6 +103,7 @@ void append_imu(const std::vector<ImuSample>& samples, std::vector<std::byte>& o
 }  // namespace
 
 void Aedat3Writer::begin(const StreamHeader& header, std::vector<std::byte>& out) {
+    colours_ = header.colour_filter;
     const std::string name = header.sensor_name.empty() ? "unknown" : header.sensor_name;
     append(out, "#!AER-DAT3.1\r\n#Format: RAW\r\n#Source " + std::to_string(kSource) + ": " + name +
                     "\r\n");
@@ -114,7 +117,7 @@ void Aedat3Writer::write(const Batch& batch, std::vector<std::byte>& out) {
     out.reserve(out.size() + Aedat3Packet::kPolarityBytes * batch.events.size());
     append_packets(Aedat3Type::polarity, Aedat3Packet::kPolarityBytes, batch.events, out,
                    [&](const Event& event) { append_event(event, out); });
-    for (const ReferenceImage& image : batch.images) append_image(image, out);
+    for (const ReferenceImage& image : batch.images) append_image(image, colours_, out);
     append_imu(batch.imu, out);
     append_packets(Aedat3Type::special, Aedat3Packet::kSpecialBytes, batch.triggers, out,
                    [&](const Trigger& trigger) {

@@ -50,6 +50,20 @@ inline ColourChannel channel_at(ColourFilter filter, int x, int y) {
     return kPatterns[std::size_t(filter) - 1][y & 1][x & 1];
 }
 
+/// The filter of a sensor whose pixel (x, y) sees channel(x, y) in its first square; none where no
+/// filter has it so.
+template <typename Channel>
+ColourFilter filter_with(const Channel& channel) {
+    for (const ColourFilter filter :
+         {ColourFilter::rggb, ColourFilter::grbg, ColourFilter::gbrg, ColourFilter::bggr}) {
+        bool same = true;
+        for (int at = 0; at < 4; ++at)
+            same = same && channel_at(filter, at & 1, at >> 1) == channel(at & 1, at >> 1);
+        if (same) return filter;
+    }
+    return ColourFilter::none;
+}
+
 /// Where the colour is; of green, the one in red's row. The filter is not none.
 inline BayerSite site_of(ColourFilter filter, ColourChannel channel) {
     const bool red_above = channel_at(filter, 0, 0) == ColourChannel::red ||

@@ -5,6 +5,7 @@
 #include "apps/cli/commands/disorder.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
+#include "apps/cli/run/colour.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/settings/time_point.h"
 #include "pipeline/filters/filter_chain.h"
@@ -140,6 +141,10 @@ int ConvertCommand::run(Program& program) {
     FilterChain filters{filter_, {header.width, header.height}};
     header.width = filters.size().width;
     header.height = filters.size().height;
+    // AEDAT 3 says it with each image, AEDAT 4 at its beginning.
+    if (format != nullptr && format->name == "aedat4" && recording->info().format == "aedat3")
+        header.colour_filter = filter_of_images(from_file_, options);
+    header.colour_filter = filters.pattern(header.colour_filter);
     if (!filters.empty() && how.from && from_file_ != "-") filters.count_from(moments.time_of({}));
     if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
     std::unique_ptr<ConvertTarget> target;

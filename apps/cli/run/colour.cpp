@@ -7,39 +7,17 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 namespace eventide::app {
 
 namespace {
 
-/// Of AEDAT 3's first image that tells it, as long as that comes with the first of the recording.
-ColourFilter filter_of_images(const RunSettings& settings) {
-    constexpr std::uint64_t kMostBytes = 256 << 20;
-    const auto recording = open_recording(settings.source, settings.input.options());
-    const auto parser = recording->make_parser();
-    RawPacket packet;
-    Batch batch;
-    for (std::uint64_t bytes = 0; bytes < kMostBytes; bytes += packet.bytes.size()) {
-        if (recording->read(packet) == ReadStatus::end) break;
-        batch.clear();
-        parser->parse(packet.bytes, batch);
-        for (const ReferenceImage& image : batch.images)
-            if (image.filter != ColourFilter::none) return image.filter;
-        if (!batch.images.empty()) break;
-    }
-    return ColourFilter::none;
-}
-
 /// What the image's own top left corner begins with.
 ColourFilter filter_at(ColourFilter filter, int x0, int y0) {
-    for (const ColourFilter shifted :
-         {ColourFilter::rggb, ColourFilter::grbg, ColourFilter::gbrg, ColourFilter::bggr})
-        if (channel_at(shifted, 0, 0) == channel_at(filter, x0, y0) &&
-            channel_at(shifted, 1, 0) == channel_at(filter, x0 + 1, y0) &&
-            channel_at(shifted, 0, 1) == channel_at(filter, x0, y0 + 1))
-            return shifted;
-    return filter;
+    return filter_with([&](int x, int y) { return channel_at(filter, x0 + x, y0 + y); });
 }
 
 int opencv_code(ColourFilter filter) {
@@ -69,29 +47,46 @@ void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourF
     if (sensor.width % 2 != 0 || sensor.height % 2 != 0)
         refuse("expected a sensor with even sides, found " +
                show_size({sensor.width, sensor.height}));
-    if (!settings.state_in.empty() || !settings.state_out.empty())
-        refuse(
-            "the state of four networks is no file yet; expected no --state-in and no "
-            "--state-out");
 }
 
 }  // namespace
 
-ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& sensor, bool live) {
-    ColourFilter filter = settings.bayer.value_or(sensor.colour_filter);
+ColourFilter filter_of_images(const std::string& source, const OpenOptions& options) {
+    constexpr std::uint64_t kMostBytes = 256 << 20;
+    std::error_code none;
+    if (source == "-" || std::filesystem::is_other(source, none)) return ColourFilter::none;
+    const auto recording = open_recording(source, options);
+    const auto parser = recording->make_parser();
+    RawPacket packet;
+    Batch batch;
+    for (std::uint64_t bytes = 0; bytes < kMostBytes; bytes += packet.bytes.size()) {
+        if (recording->read(packet) == ReadStatus::end) break;
+        batch.clear();
+        parser->parse(packet.bytes, batch);
+        for (const ReferenceImage& image : batch.images)
+            if (image.filter != ColourFilter::none) return image.filter;
+        if (!batch.images.empty()) break;
+    }
+    return ColourFilter::none;
+}
+
+ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& source,
+                              const SensorInfo& sensor, const FilterChain& filters, bool live) {
+    ColourFilter before = settings.bayer.value_or(source.colour_filter);
     // Else each image is taken at its word (demosaiced()), and nothing is read twice.
     const bool needed = settings.colour || !settings.filter.empty();
-    if (needed && !settings.bayer && sensor.format == "aedat3" && !live && settings.source != "-" &&
+    if (needed && !settings.bayer && source.format == "aedat3" && !live &&
         !names_simulation(settings.source))
-        filter = filter_of_images(settings);
-    if (filter != ColourFilter::none)
+        before = filter_of_images(settings.source, settings.input.options());
+    const ColourFilter filter = filters.pattern(before);
+    if (filter == ColourFilter::none && before != ColourFilter::none)
         for (const std::string& text : settings.filter)
-            if (text.starts_with("flip:") || text == "transpose" ||
-                (text.starts_with("subsample:") && text.find('x') != text.npos))
+            if (text.starts_with("subsample:"))
                 throw Error(ErrorKind::usage,
-                            "--filter " + text + ": changes which pixel of the " +
-                                std::string{name_of(filter)} +
-                                " sensor is which; expected --bayer none, or no such filter");
+                            "--filter " + text + ": leaves no square of colours of the " +
+                                std::string{name_of(before)} +
+                                " sensor whole; expected odd steps, such as subsample:3x3, or "
+                                "--bayer none");
     if (settings.colour) check_colour(settings, sensor, filter);
     return filter;
 }

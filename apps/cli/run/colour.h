@@ -4,6 +4,7 @@
 #include "apps/cli/run/loaded_model.h"
 #include "apps/cli/settings/run_settings.h"
 #include "pipeline/colour_stages.h"
+#include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/source.h"
 #include "src/model/encoder.h"
@@ -15,10 +16,16 @@
 
 namespace eventide::app {
 
-/// --bayer, else what the camera or recording says; of AEDAT 3, where each image says it, the first
-/// that does. Throws Error (usage) where filters of events change which pixel is which, where
-/// --colour finds no colours, or contradicts something else that was asked for.
-ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& sensor, bool live);
+/// Of AEDAT 3's first image that tells it, as long as that comes with the first of the recording;
+/// none, too, of what can be read but once.
+ColourFilter filter_of_images(const std::string& source, const OpenOptions& options);
+
+/// --bayer, else what the camera or recording says (of AEDAT 3, where each image says it, the first
+/// that does), as it is behind the filters of events. Throws Error (usage) where those leave no
+/// such pattern, where --colour finds no colours, or contradicts something else that was asked for.
+/// `source` is before the filters, `sensor` behind them.
+ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& source,
+                              const SensorInfo& sensor, const FilterChain& filters, bool live);
 
 /// A mosaic as BGR (OpenCV, bilinear); images that are none stay as they are. An image that says
 /// its own filter is taken at its word where `filter` is none.
@@ -34,6 +41,11 @@ public:
 
     EncodeStage& encode() { return *encode_; }
     RenderStage& render() { return *render_; }
+    ColourFilter filter() const { return filter_; }
+    Encoder& encoder(ColourChannel channel) { return *channels_[std::size_t(channel)].encoder; }
+    const Encoder& encoder(ColourChannel channel) const {
+        return *channels_[std::size_t(channel)].encoder;
+    }
     /// Bin thread. Mosaics or colours.
     void see(const std::vector<ReferenceImage>& images);
 

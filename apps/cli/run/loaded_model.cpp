@@ -5,7 +5,6 @@
 #include "apps/cli/settings/model_path.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/model/model_trial.h"
-#include "src/nn/safetensors.h"
 
 #include <new>
 
@@ -37,10 +36,7 @@ Network::Network(const RunSettings& settings, const SensorInfo& sensor)
       engine_{settings.engine, settings.precision, settings.kernels,
               parallel_for_with(settings.threads)},
       encoder_{made_for<Encoder>(model_, sensor, engine_)},
-      renderer_{made_for<Renderer>(model_, sensor, engine_)} {
-    if (!settings.state_in.empty())
-        encoder_.restore(read_safetensors(settings.state_in), settings.state_in);
-}
+      renderer_{made_for<Renderer>(model_, sensor, engine_)} {}
 
 Encoder Network::make_encoder(const SensorInfo& sensor) const {
     return made_for<Encoder>(model_, sensor, engine_);

@@ -11,8 +11,8 @@
 
 namespace eventide::app {
 
-/// Throws Error (input) when the model cannot be found, is not one or gives no finite frames, or
-/// when state_in belongs to another; Error (failed) when there is too little memory for it.
+/// Throws Error (input) when the model cannot be found, is not one or gives no finite frames; Error
+/// (failed) when there is too little memory for it.
 class Network {
 public:
     Network(const RunSettings& settings, const SensorInfo& sensor);

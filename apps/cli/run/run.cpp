@@ -6,11 +6,11 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/live_controls.h"
 #include "apps/cli/run/memory_use.h"
+#include "apps/cli/run/run_state.h"
 #include "apps/cli/run/status.h"
 #include "apps/cli/version.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
-#include "src/nn/safetensors.h"
 
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
@@ -34,18 +34,21 @@ SensorPixels size_of(const Source& source) {
 SensorInfo info_behind(SensorInfo info, const FilterChain& filters) {
     info.width = filters.size().width;
     info.height = filters.size().height;
+    info.colour_filter = filters.pattern(info.colour_filter);
     return info;
 }
 
 /// Null: not asked for.
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
-                                         const Span& span, EventFilter* filter) {
+                                         ColourFilter colours, const Span& span,
+                                         EventFilter* filter) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
     header.height = sensor.height;
     header.sensor_name = sensor.name;
     header.serial = sensor.serial;
+    header.colour_filter = colours;
     return std::make_unique<EventsOut>(
         filter, open_event_target(settings.events_out, settings.overwrite, true, header),
         span.frames_from, span.end);
@@ -74,7 +77,7 @@ Run::Run(Program& program, RunSettings& settings)
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), as_live())},
       undistortion_{undistortion_of(settings, sensor_)},
-      colour_filter_{colour_filter_of(settings, sensor_, live())},
+      colour_filter_{colour_filter_of(settings, opened_.source->info(), sensor_, filters_, live())},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
@@ -90,6 +93,8 @@ Run::Run(Program& program, RunSettings& settings)
                         render_.fused() != nullptr, network_.encoder(), render_);
         watch_.colour(&*colour_);
     }
+    if (!settings.state_in.empty())
+        restore_state(settings.state_in, network_, colour_ ? &*colour_ : nullptr);
     if (opened_.recording != nullptr && span_.begin) {
         if (!filters_.empty())
             if (const auto first = first_event_of(settings, live())) filters_.count_from(*first);
@@ -98,7 +103,7 @@ Run::Run(Program& program, RunSettings& settings)
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
     recorded_ = recorder_of(settings, *opened_.source);
-    events_out_ = events_out_of(settings, sensor_, span_, filter_.get());
+    events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get());
     watch_.write_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
     stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
@@ -260,7 +265,8 @@ int Run::run() {
                   quality};
     run_pipeline();
     if (!settings_.state_out.empty())
-        write_safetensors(settings_.state_out, network_.encoder().state(), settings_.overwrite);
+        write_safetensors(settings_.state_out, state_of(network_, colour_ ? &*colour_ : nullptr),
+                          settings_.overwrite);
     const RunProgress end = status.finish();
     const Snapshot end_counters = counters();
     const CameraCounters camera = camera_counters();

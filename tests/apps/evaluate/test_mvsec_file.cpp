@@ -1,7 +1,6 @@
 // MVSEC's layout, written here as its authors describe it: what is read is what was written.
 #include "apps/evaluate/evaluate.h"
 #include "apps/evaluate/evreal_sequence.h"
-#include "apps/evaluate/mvsec_file.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/small_model.h"
 
@@ -80,7 +79,7 @@ fs::path write_file(const std::string& name, const Mvsec& content,
 
 std::string refusal_of(const fs::path& path) {
     try {
-        read_mvsec_file(path, {}, {});
+        read_evreal_sequence(path, {}, {});
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
         return error.what();
@@ -89,26 +88,32 @@ std::string refusal_of(const fs::path& path) {
     return {};
 }
 
-TEST(MvsecFile, GivesEventsAndImagesFromTheFirstEventOn) {
+SensorTime after_begin(std::int64_t us) {
+    return from_us(std::llround(kBegin * 1e6) + us);
+}
+
+TEST(MvsecFile, GivesEventsAndImagesAndTheFirstTime) {
     const fs::path path = write_file("whole", small_file(.5, .001, .1));
     const ReferenceSequence sequence = read_evreal_sequence(path, {}, {});
     EXPECT_EQ(sequence.width, kWidth);
     EXPECT_EQ(sequence.height, kHeight);
     ASSERT_EQ(sequence.events.size(), 500U);
     ASSERT_EQ(sequence.images.size(), 5U);
-    EXPECT_EQ(sequence.events[0], (Event{from_us(0), 0, 0, Polarity::on}));
-    EXPECT_EQ(sequence.events[3], (Event{from_us(3000), 21, 15, Polarity::off}));
-    EXPECT_EQ(sequence.images[1].t, from_us(150'000));
+    EXPECT_EQ(sequence.first, after_begin(0));
+    EXPECT_EQ(sequence.events[0], (Event{after_begin(0), 0, 0, Polarity::on}));
+    EXPECT_EQ(sequence.events[3], (Event{after_begin(3000), 21, 15, Polarity::off}));
+    EXPECT_EQ(sequence.images[1].t, after_begin(150'000));
+    EXPECT_EQ(sequence.damaged.total(), 0U);
     EXPECT_EQ(sequence.images[1].pixels(0, 3), 13 * 257);
 }
 
 TEST(MvsecFile, GivesThePartThatWasAskedFor) {
     const fs::path path = write_file("part", small_file(.5, .001, .1));
-    const ReferenceSequence part = read_mvsec_file(path, .1, .3);
-    EXPECT_EQ(part.events.front().t, from_us(100'000));
-    EXPECT_EQ(part.events.back().t, from_us(300'000));
+    const ReferenceSequence part = read_evreal_sequence(path, .1, .3);
+    EXPECT_EQ(part.events.front().t, after_begin(100'000));
+    EXPECT_EQ(part.events.back().t, after_begin(300'000));
     EXPECT_EQ(part.images.size(), 2U);
-    EXPECT_THROW(read_mvsec_file(path, 7, 8), Error);
+    EXPECT_THROW(read_evreal_sequence(path, 7, 8), Error);
 }
 
 TEST(MvsecFile, IsASequenceOfTheEvrealProtocolWithItsCut) {
@@ -119,51 +124,26 @@ TEST(MvsecFile, IsASequenceOfTheEvrealProtocolWithItsCut) {
     EXPECT_NEAR(report.sequences[0].frames.front().time_s, 10.5, 1e-5);
 }
 
-TEST(MvsecFile, NamesWhatIsMissingOrOfAnotherShape) {
+TEST(MvsecFile, WhatIsMissingIsNamed) {
     const Mvsec content = small_file(.5, .001, .1);
     EXPECT_NE(refusal_of(write_file("no_events", content, "events")).find("davis/left/events"),
               std::string::npos);
-    Mvsec fewer = content;
-    fewer.image_events.pop_back();
-    EXPECT_NE(refusal_of(write_file("fewer", fewer)).find("expected 5 rows"), std::string::npos);
-    const fs::path text = write_file("text", content);
-    fs::resize_file(text, 10);
-    EXPECT_NE(refusal_of(text).find("expected an HDF5 file"), std::string::npos);
-}
-
-TEST(MvsecFile, RefusesRowsThatTheFileDoesNotHold) {
-    const fs::path path = write_file("rows", small_file(.5, .001, .1), "events");
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-    const hsize_t shape[] = {hsize_t{1} << 40, 4};  // nothing is written of it
-    const hid_t space = H5Screate_simple(2, shape, nullptr);
-    H5Dclose(H5Dcreate2(file, "davis/left/events", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
-                        H5P_DEFAULT, H5P_DEFAULT));
-    H5Sclose(space);
-    H5Fclose(file);
-    EXPECT_NE(refusal_of(path).find("[1099511627776, 4] numbers, found 0 bytes"),
+    Mvsec no_images = content;
+    no_images.image_times.clear();
+    no_images.images.clear();
+    no_images.image_events.clear();
+    EXPECT_NE(refusal_of(write_file("no_images", no_images)).find("expected reference images"),
               std::string::npos);
 }
 
-TEST(MvsecFile, RefusesTimesThatAreNone) {
-    for (const double wrong : {std::nan(""), 1e300}) {
-        Mvsec file = small_file(.5, .001, .1);
-        file.events[4 * 30 + 2] = wrong;
-        EXPECT_NE(refusal_of(write_file("times", file)).find("expected times in seconds"),
-                  std::string::npos);
-    }
-}
-
-TEST(MvsecFile, RefusesIndicesThatSayOtherThanTheTimes) {
-    const Mvsec content = small_file(.5, .001, .1);
-    for (const std::int64_t wrong : {std::int64_t{0}, std::int64_t{400}, std::int64_t{5000}}) {
-        Mvsec file = content;
-        file.image_events[2] = wrong;
-        EXPECT_NE(refusal_of(write_file("indices", file)).find("image 2"), std::string::npos);
-    }
-    Mvsec silent = content;  // an image before the first event has none
-    silent.image_times[0] = kBegin - .01;
-    silent.image_events[0] = -1;
-    EXPECT_EQ(read_mvsec_file(write_file("silent", silent), {}, {}).events[0].t, from_us(10'000));
+TEST(MvsecFile, WhatIsLeftOutIsToldInTheReport) {
+    Mvsec content = small_file(21, .01, 1);
+    content.events[4 * 30 + 2] = std::nan("");
+    const EvaluateReport report =
+        evaluate_evreal(write_file("damaged", content), small_model());
+    ASSERT_FALSE(report.notes.empty());
+    EXPECT_NE(report.notes.front().find("damaged: bad_record 1"), std::string::npos)
+        << report.notes.front();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The filters that users chain, each by events made to show what it does.
 #include "pipeline/filters/filter_chain.h"
+#include "src/core/bayer.h"
 #include "src/core/error.h"
 
 #include <gmock/gmock.h>
@@ -137,6 +138,57 @@ TEST(DataFilters, FlipAndTransposeMoveEventsAndImagesAlike) {
     EXPECT_EQ(filtered({"flip:x"}, batch).events[0], at(1, 60, 7));
     EXPECT_EQ(FilterChain({"transpose"}, kSensor).size(), (SensorPixels{48, 64}));
     EXPECT_EQ(FilterChain({"transpose", "subsample:2x2"}, kSensor).size(), (SensorPixels{24, 32}));
+}
+
+/// What a sensor with that filter would send of a part of a scene that shows each colour as its
+/// number.
+ReferenceImage mosaic(ColourFilter filter, int x0, int y0, int width, int height) {
+    ReferenceImage image = numbered_image(width, height);
+    image.x0 = x0;
+    image.y0 = y0;
+    image.filter = filter;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            image.pixels(y, x) = std::uint16_t(channel_at(filter, x0 + x, y0 + y));
+    return image;
+}
+
+/// As many pixels of `image` see another colour than its filter says.
+int wrong_colours(const ReferenceImage& image) {
+    int wrong = 0;
+    for (int y = 0; y < image.pixels.height(); ++y)
+        for (int x = 0; x < image.pixels.width(); ++x)
+            wrong += image.pixels(y, x) !=
+                     std::uint16_t(channel_at(image.filter, image.x0 + x, image.y0 + y));
+    return wrong;
+}
+
+TEST(DataFilters, WhatMovesPixelsSaysTheirColoursAnew) {
+    using enum ColourFilter;
+    const std::vector<std::vector<std::string>> chains{
+        {"region:3,5,20x20"}, {"flip:x"},        {"flip:y"},
+        {"transpose"},        {"subsample:3x5"}, {"flip:x", "transpose", "flip:y"}};
+    for (const SensorPixels& size : {SensorPixels{64, 48}, SensorPixels{63, 48}})
+        for (const ColourFilter before : {rggb, grbg, gbrg, bggr})
+            for (const auto& texts : chains) {
+                FilterChain chain(texts, size);
+                Batch batch;
+                batch.images = {mosaic(before, 0, 0, size.width, size.height),
+                                mosaic(before, 5, 2, 21, 30)};
+                ASSERT_EQ(wrong_colours(batch.images[1]), 0);
+                chain.process(batch);
+                for (const ReferenceImage& image : batch.images) {
+                    EXPECT_EQ(image.filter, chain.pattern(before)) << texts.back();
+                    EXPECT_EQ(wrong_colours(image), 0) << texts.back() << " " << size.width;
+                }
+            }
+    EXPECT_EQ(FilterChain({"flip:x"}, {64, 48}).pattern(rggb), grbg);
+    EXPECT_EQ(FilterChain({"flip:y"}, {64, 48}).pattern(rggb), gbrg);
+    EXPECT_EQ(FilterChain({"flip:x"}, {63, 48}).pattern(rggb), rggb);
+    EXPECT_EQ(FilterChain({"transpose"}, kSensor).pattern(grbg), gbrg);
+    for (const char* none_left : {"subsample:2x2", "subsample:2x1", "subsample:1x4"})
+        EXPECT_EQ(FilterChain({none_left}, kSensor).pattern(rggb), none) << none_left;
+    EXPECT_EQ(FilterChain({"flip:x"}, kSensor).pattern(none), none);
 }
 
 TEST(DataFilters, TimeKeepsAllKindsOfDataBetweenItsEnds) {
