@@ -225,7 +225,7 @@ TEST_F(Commands, BenchReportsSpeedAgainstErrorInOnePage) {
         has_front |= row["front"].get<bool>();
     }
     EXPECT_TRUE(has_front);
-    EXPECT_LT(json["speed"][0]["codes_rms_to_double"].get<double>(), 1e-5);
+    EXPECT_LT(json["speed"][0]["codes_rms_of_range"].get<double>(), 1e-5);
     EXPECT_EQ(json["loads"].size(), 7U);
     EXPECT_GT(json["memory"][0]["resident_mib"].get<double>(), 1);
     const std::string page = read_text(temp_ / "report/index.html");

@@ -57,7 +57,7 @@ double codes_against_double(const Model& model, const std::vector<bench::SceneWi
         encoder.encode(grid, map);
         distance.add(map.values.values(), exact->step(stress::in_double(grid.values)).values());
     }
-    return distance.rms();
+    return distance.rms_of_range();
 }
 
 class Measurement {

@@ -68,7 +68,7 @@ std::string speed_table(const Report& report) {
                         row.is_on_front ? "yes" : ""});
     return table({"model", "engine", "sensor", "window", "encode, ms", "frame, ms", "both, ms",
                   "per second", "MSE", report.lpips_name.empty() ? "LPIPS" : report.lpips_name,
-                  "codes to double, RMS", "front"},
+                  "codes to double, RMS of range", "front"},
                  rows);
 }
 
@@ -213,7 +213,7 @@ nlohmann::ordered_json json_of(const SpeedRow& row) {
                                 {"front", row.is_on_front}};
     if (row.error.raw.lpips) json["lpips"] = *row.error.raw.lpips;
     if (row.error.raw.ssim > 0) json["ssim"] = row.error.raw.ssim;
-    if (row.against_double > 0) json["codes_rms_to_double"] = row.against_double;
+    if (row.against_double > 0) json["codes_rms_of_range"] = row.against_double;
     return json;
 }
 

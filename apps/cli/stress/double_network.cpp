@@ -51,6 +51,8 @@ void Distance::add(std::span<const float> fast, std::span<const double> exact) {
         largest = std::max(largest, std::abs(exact[i]));
         squares += difference * difference;
         power += exact[i] * exact[i];
+        lowest = std::min(lowest, exact[i]);
+        highest = std::max(highest, exact[i]);
     }
     if (!(most / largest <= worst)) worst = most / largest;
     compared += exact.size();
@@ -60,11 +62,17 @@ void Distance::add(const Distance& other) {
     if (!(other.worst <= worst)) worst = other.worst;
     squares += other.squares;
     power += other.power;
+    lowest = std::min(lowest, other.lowest);
+    highest = std::max(highest, other.highest);
     compared += other.compared;
 }
 
 double Distance::rms() const {
     return power == 0 ? 0 : std::sqrt(squares / power);
+}
+
+double Distance::rms_of_range() const {
+    return lowest == highest ? 0 : std::sqrt(squares / double(compared)) / (highest - lowest);
 }
 
 }  // namespace eventide::stress

@@ -16,11 +16,13 @@ struct Distance {
                          ///< either has one
     double squares = 0;  ///< of the differences
     double power = 0;    ///< of double precision's numbers
+    double lowest = 0, highest = 0;  ///< of them, and 0
     std::uint64_t compared = 0;
 
     void add(std::span<const float> fast, std::span<const double> exact);
     void add(const Distance& other);
-    double rms() const;  ///< relative
+    double rms() const;           ///< over that of double precision's numbers
+    double rms_of_range() const;  ///< over their range
 };
 
 /// The recurrent network.
