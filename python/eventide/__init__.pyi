@@ -156,6 +156,15 @@ def open_camera(name: str, settings: Union[str, PathLike[str]] = "") -> Camera: 
 def simulate(
     scene: str = "demo", size: Tuple[int, int] = (240, 180), seconds: float = 4, **options: Any
 ) -> Simulation: ...
+class PerceptualDistance:
+    def __init__(self, weights: Union[str, PathLike[str]]) -> None: ...
+    @property
+    def name(self) -> str: ...
+    def between(self, a: npt.NDArray[Any], b: npt.NDArray[Any]) -> float: ...
+
 def evaluate(
-    intensity: npt.NDArray[Any], truth: npt.NDArray[Any], sigma: Optional[npt.NDArray[Any]] = None
+    intensity: npt.NDArray[Any],
+    truth: npt.NDArray[Any],
+    sigma: Optional[npt.NDArray[Any]] = None,
+    lpips: Optional[PerceptualDistance] = None,
 ) -> Dict[str, Optional[float]]: ...
