@@ -15,12 +15,12 @@ namespace {
 
 /// Of AEDAT 3's first image that tells it, as long as that comes with the first of the recording.
 ColourFilter filter_of_images(const RunSettings& settings) {
-    constexpr std::uint64_t kMaxBytes = 256 << 20;
+    constexpr std::uint64_t kMostBytes = 256 << 20;
     const auto recording = open_recording(settings.source, settings.input.options());
     const auto parser = recording->make_parser();
     RawPacket packet;
     Batch batch;
-    for (std::uint64_t bytes = 0; bytes < kMaxBytes; bytes += packet.bytes.size()) {
+    for (std::uint64_t bytes = 0; bytes < kMostBytes; bytes += packet.bytes.size()) {
         if (recording->read(packet) == ReadStatus::end) break;
         batch.clear();
         parser->parse(packet.bytes, batch);
