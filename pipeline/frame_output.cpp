@@ -29,7 +29,7 @@ FrameOutput::FrameOutput(RenderStage& renderer, std::vector<Sink*> sinks, const 
       lookahead_(settings.lookahead),
       halvings_(settings.halvings),
       schedule_(settings.rate, settings.from),
-      shedder_(settings.waits_at_most),
+      dropper_(settings.waits_at_most),
       frame_(renderer.make_output()) {
     if (settings.lookahead < 0 || settings.lookahead > kMaxLookahead)
         throw Error(ErrorKind::usage,
@@ -87,7 +87,7 @@ void FrameOutput::present_oldest() {
     --held_count_;
     schedule_.open(held.window);
     check_silence(held);
-    if (settings_.live) open_shedder();
+    if (settings_.live) open_dropper();
     while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
         const DueFrame due = schedule_.next();
         if (!is_watched()) {
@@ -97,11 +97,11 @@ void FrameOutput::present_oldest() {
                 present(due, held);
             else
                 counters_.present.skipped_frames.add();
-        } else if (shedder_.keeps_next(waiting_())) {
+        } else if (dropper_.keeps_next(waiting_())) {
             const HostTime begun = Clock::now();
             present(due, held);
             const HostTime::duration work = Clock::now() - begun;
-            shedder_.took(work);
+            dropper_.took(work);
             keeper_.frame_took(work);
         } else {
             counters_.present.skipped_frames.add();
@@ -119,9 +119,9 @@ bool FrameOutput::is_wanted(const DueFrame& due) const {
     return (due.index & ((std::uint64_t{1} << halvings_) - 1)) == 0;
 }
 
-void FrameOutput::open_shedder() {
+void FrameOutput::open_dropper() {
     const HostTime now = Clock::now();
-    shedder_.open({schedule_.next_index(), schedule_.due(), std::max(keeper_.halvings(), halvings_),
+    dropper_.open({schedule_.next_index(), schedule_.due(), std::max(keeper_.halvings(), halvings_),
                    keeper_.frames_in_time(now - arrived_)},
                   now);
 }

@@ -9,6 +9,7 @@
 #include "pipeline/sink.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"
+#include "src/core/sensor_limits.h"
 
 #include <array>
 #include <functional>
@@ -28,7 +29,7 @@ struct Encoded {
 /// those that will not come (the live edge).
 class FrameOutput {
 public:
-    static constexpr int kMaxLookahead = 2;
+    static constexpr int kMaxLookahead = eventide::kMaxLookahead;
     /// Of a recording, in a row and without events: more are times that are wrong (a stamp of 0
     /// before times since 1970), and would fill any disk. 9 hours at 30 frames/s.
     static constexpr std::uint64_t kMaxSilentFrames = 1'000'000;
@@ -77,7 +78,7 @@ private:
     };
     void change();
     void present_oldest();
-    void open_shedder();
+    void open_dropper();
     bool is_watched() const;
     bool is_wanted(const DueFrame& due) const;
     void check_silence(const Waiting& held);
@@ -94,7 +95,7 @@ private:
     int lookahead_;
     unsigned halvings_;
     FrameSchedule schedule_;
-    FrameDropper shedder_;
+    FrameDropper dropper_;
     std::array<Waiting, kMaxLookahead + 1> held_;  // a ring
     std::size_t oldest_ = 0, held_count_ = 0;
     std::uint64_t silent_ = 0;  // frames in a row without events

@@ -53,7 +53,7 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
       packets_(settings.buffers.packets),
       grids_(settings.buffers.grids),
       latents_(settings.buffers.latents),
-      presenter_(
+      output_(
           parts.renderer, parts.sinks, presenter_settings(parts, settings),
           [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {}
 
@@ -116,13 +116,13 @@ void Pipeline::encode() {  // grids -> latent maps
 void Pipeline::present() {  // latent maps -> frames -> sinks
     const bool complete = guarded([&] {
         while (auto encoded = latents_.pop()) {
-            presenter_.accept(**encoded);
+            output_.accept(**encoded);
             encoded.reset();  // home, before its frames are rendered
-            if (!presenter_.present()) stop();
+            if (!output_.present()) stop();
         }
     });
     while (!complete && latents_.pop()) continue;
-    if (complete) guarded([&] { presenter_.finish(); });
+    if (complete) guarded([&] { output_.finish(); });
 }
 
 // ---- one step of each ------------------------------------------------------------------------
@@ -198,7 +198,7 @@ void Pipeline::encode_one(const VoxelGrid& grid, Encoded& encoded) {
 }
 
 void Pipeline::present_one(const Encoded& encoded) {
-    if (!presenter_.take(encoded)) stop();
+    if (!output_.take(encoded)) stop();
 }
 
 Encoded Pipeline::make_encoded() const {
@@ -249,7 +249,7 @@ void Pipeline::run_sequential() {
             event_windows_.finish(ending());
             for_each_event_window(hand_on);
         });
-    if (presenting) guarded([&] { presenter_.finish(); });
+    if (presenting) guarded([&] { output_.finish(); });
     close_and_report();
 }
 
@@ -297,7 +297,7 @@ bool Pipeline::guarded(Body body) noexcept {
 }
 
 void Pipeline::close_and_report() {
-    guarded([&] { presenter_.close(); });
+    guarded([&] { output_.close(); });
     error_.rethrow_if_any();
 }
 

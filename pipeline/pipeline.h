@@ -121,7 +121,7 @@ private:
     Link<Pool<VoxelGrid>::Handle> grids_;
     Link<Pool<Encoded>::Handle> latents_;
 
-    FrameOutput presenter_;  // the caller's thread
+    FrameOutput output_;  // the caller's thread
 };
 
 }  // namespace eventide

@@ -10,4 +10,5 @@ PYBIND11_MODULE(_eventide, module) {
     eventide::python::add_sources(module);
     eventide::python::add_simulation(module);
     eventide::python::add_measures(module);
+    eventide::python::add_pipeline(module);
 }

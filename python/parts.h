@@ -36,6 +36,10 @@ inline std::optional<std::int64_t> us_of(std::optional<SensorTime> t) {
     return t ? std::optional{to_us(*t)} : std::nullopt;
 }
 
+/// The options of Reconstructor by name, the others as they are. Throws Error (usage) for unknown
+/// ones.
+ReconstructorOptions options_of(const pybind11::dict& given);
+
 using FramePointer = std::shared_ptr<Frame>;
 
 /// The array, which keeps `owner`, or None where sigma was not asked for.
@@ -47,5 +51,6 @@ void add_reconstructor(pybind11::module_& module);
 void add_sources(pybind11::module_& module);
 void add_simulation(pybind11::module_& module);
 void add_measures(pybind11::module_& module);
+void add_pipeline(pybind11::module_& module);
 
 }  // namespace eventide::python

@@ -30,6 +30,18 @@ T choice_of(const std::string& text, const char* name, const std::map<std::strin
                 std::string{name} + ": expected " + expected + ", found '" + text + "'");
 }
 
+Precision precision_of(const std::string& text) {
+    return choice_of<Precision>(
+        text, "precision",
+        {{"auto", Precision::automatic}, {"f32", Precision::f32}, {"bf16", Precision::bf16}});
+}
+
+Kernels kernels_of(const std::string& text) {
+    return choice_of<Kernels>(
+        text, "kernels",
+        {{"auto", Kernels::automatic}, {"own", Kernels::own}, {"onednn", Kernels::onednn}});
+}
+
 FrameSize size_of(const Size& size, const Roi& roi, FrameSize otherwise = {}) {
     if (size) {
         otherwise = {size->first, size->second, {}};
@@ -56,23 +68,18 @@ std::unique_ptr<SizedReconstructor> make(const std::string& model, int width, in
                                          std::string noise_filter, const std::string& precision,
                                          const std::string& kernels, int threads, bool reset_on_gap,
                                          bool allow_silence) {
-    const ReconstructorOptions options{
-        .window = std::move(window),
-        .lookahead = lookahead,
-        .fps = std::move(fps),
-        .size = size_of(size, roi),
-        .sigma = sigma,
-        .noise_filter = std::move(noise_filter),
-        .hot_pixels = std::move(hot_pixels),
-        .precision = choice_of<Precision>(
-            precision, "precision",
-            {{"auto", Precision::automatic}, {"f32", Precision::f32}, {"bf16", Precision::bf16}}),
-        .kernels = choice_of<Kernels>(
-            kernels, "kernels",
-            {{"auto", Kernels::automatic}, {"own", Kernels::own}, {"onednn", Kernels::onednn}}),
-        .threads = threads,
-        .reset_on_gap = reset_on_gap,
-        .allow_silence = allow_silence};
+    const ReconstructorOptions options{.window = std::move(window),
+                                       .lookahead = lookahead,
+                                       .fps = std::move(fps),
+                                       .size = size_of(size, roi),
+                                       .sigma = sigma,
+                                       .noise_filter = std::move(noise_filter),
+                                       .hot_pixels = std::move(hot_pixels),
+                                       .precision = precision_of(precision),
+                                       .kernels = kernels_of(kernels),
+                                       .threads = threads,
+                                       .reset_on_gap = reset_on_gap,
+                                       .allow_silence = allow_silence};
     const py::gil_scoped_release released;
     return std::make_unique<SizedReconstructor>(model, width, height, options);
 }
@@ -214,6 +221,45 @@ void add_frames_out(Class& it) {
 }
 
 }  // namespace
+
+ReconstructorOptions options_of(const py::dict& given) {
+    ReconstructorOptions options;
+    Size size;
+    Roi roi;
+    for (const auto& [key, value] : given) {
+        const auto name = key.cast<std::string>();
+        if (name == "window")
+            options.window = value.cast<std::string>();
+        else if (name == "lookahead")
+            options.lookahead = value.cast<int>();
+        else if (name == "fps")
+            options.fps = value.cast<std::string>();
+        else if (name == "size")
+            size = value.cast<Size>();
+        else if (name == "roi")
+            roi = value.cast<Roi>();
+        else if (name == "sigma")
+            options.sigma = value.cast<bool>();
+        else if (name == "hot_pixels")
+            options.hot_pixels = value.cast<std::string>();
+        else if (name == "noise_filter")
+            options.noise_filter = value.cast<std::string>();
+        else if (name == "precision")
+            options.precision = precision_of(value.cast<std::string>());
+        else if (name == "kernels")
+            options.kernels = kernels_of(value.cast<std::string>());
+        else if (name == "threads")
+            options.threads = value.cast<int>();
+        else if (name == "reset_on_gap")
+            options.reset_on_gap = value.cast<bool>();
+        else if (name == "allow_silence")
+            options.allow_silence = value.cast<bool>();
+        else
+            throw Error(ErrorKind::usage, "expected an option of Reconstructor, found " + name);
+    }
+    options.size = size_of(size, roi);
+    return options;
+}
 
 void add_reconstructor(py::module_& module) {
     add_frame(module);

@@ -120,8 +120,8 @@ std::vector<std::string> flags_of(const CLI::App& app) {
 }
 
 /// Of all arguments that were not expected, the first says most.
-[[noreturn]] void complain_about_extras(const std::vector<std::string>& arguments,
-                                        const CLI::App& app, const std::string& command) {
+[[noreturn]] void refuse_extras(const std::vector<std::string>& arguments, const CLI::App& app,
+                                const std::string& command) {
     const std::string help = help_hint(command);
     if (command.empty()) {
         std::vector<std::string> names;
@@ -199,7 +199,7 @@ Parsed parse_command_line(const std::vector<std::string>& arguments, const Setti
         app.exit(success, std::cout, std::cerr);
         return {};
     } catch (const CLI::ExtrasError&) {
-        complain_about_extras(arguments, app, command_of(app));
+        refuse_extras(arguments, app, command_of(app));
     } catch (const CLI::ParseError& error) {
         throw Error(ErrorKind::usage, error.what() + help_hint(command_of(app)));
     }

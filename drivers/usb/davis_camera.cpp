@@ -150,15 +150,15 @@ std::uint64_t DavisCamera::dropped(UsbDevice& device) {
 
 std::unique_ptr<Parser> DavisCamera::make_parser() const {
     // Of several parsers (the pipeline's, the recorder's) one at a time adjusts the exposure.
-    const bool nobody_adjusts = exposure_wish_.use_count() == 1;
+    const bool nobody_adjusts = exposure_request_.use_count() == 1;
     if (!settings_.auto_exposure || !settings_.frames || !nobody_adjusts)
         return std::make_unique<DavisParser>(sensor_);
-    return std::make_unique<ExposingDavisParser>(sensor_, settings_.exposure_us, exposure_wish_);
+    return std::make_unique<ExposingDavisParser>(sensor_, settings_.exposure_us, exposure_request_);
 }
 
 /// On the source thread: a control request inside event handling would wait for itself.
 void DavisCamera::between_transfers(UsbDevice& device) {
-    const int wish_us = exposure_wish_->exchange(0, std::memory_order_relaxed);
+    const int wish_us = exposure_request_->exchange(0, std::memory_order_relaxed);
     if (wish_us <= 0) return;
     settings_.exposure_us = wish_us;  // also where the camera has to be opened again
     device.write_register({kApsExposure, adc_cycles(wish_us, features_)});

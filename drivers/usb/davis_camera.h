@@ -45,7 +45,7 @@ private:
     DavisSettings settings_;
     DavisSensor sensor_;
     DavisFeatures features_;
-    std::shared_ptr<ExposureRequest> exposure_wish_ = std::make_shared<ExposureRequest>(0);
+    std::shared_ptr<ExposureRequest> exposure_request_ = std::make_shared<ExposureRequest>(0);
 };
 
 }  // namespace eventide

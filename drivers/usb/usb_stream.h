@@ -43,7 +43,7 @@ public:
     UsbStream(const UsbStream&) = delete;
     UsbStream& operator=(const UsbStream&) = delete;
 
-    /// Source thread. Waits at most `patience`. Data and messages come in the order in which they
+    /// Source thread. Waits at most `timeout`. Data and messages come in the order in which they
     /// arrived. After `lost` the device is gone and nothing more will come. Throws Error (device)
     /// for an endpoint that halts again and again.
     Status read(std::vector<std::byte>& into, std::chrono::milliseconds timeout);

@@ -38,7 +38,7 @@ public:
     int width() const { return width_; }  ///< of the format; event drivers may say 0 or nonsense
     int height() const { return height_; }
 
-    /// Waits at most `patience`, whatever the driver does.
+    /// Waits at most `timeout`, whatever the driver does.
     Status read(Filled& into, std::chrono::milliseconds timeout);
 
 private:

@@ -65,6 +65,29 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// LPIPS v0.1 (Zhang et al. 2018): how different two images look to a network that was trained to
+/// name what images show. Const functions: any thread, also at once.
+class EVENTIDE_API PerceptualDistance {
+public:
+    /// An npz file with the weights of SqueezeNet 1.1 or AlexNet and their linear heads (docs/
+    /// accuracy.md says where from); none is installed. Throws Error (input).
+    explicit PerceptualDistance(const std::filesystem::path& weights);
+    ~PerceptualDistance();
+    PerceptualDistance(PerceptualDistance&&) noexcept;
+    PerceptualDistance& operator=(PerceptualDistance&&) noexcept;
+
+    /// "LPIPS-Squeeze" or "LPIPS-Alex": the two give different numbers.
+    std::string name() const;
+
+    /// 0 for equal images; about .1 similar, .7 unlike. [y][x] from 0 to 1, of one size, at least
+    /// 17 px each way (Squeeze) or 31 px (Alex). Throws Error (usage) else.
+    double between(const Array2<float>& a, const Array2<float>& b) const;
+
+private:
+    class Impl;
+    std::unique_ptr<const Impl> impl_;
+};
+
 /// Of one frame, all pixels alike. Numbers as `eventide evaluate` prints them.
 struct FrameMeasures {
     double mse = 0;   ///< mean of (intensity - truth)^2
@@ -77,11 +100,14 @@ struct FrameMeasures {
     std::optional<double>
         picp80;  ///< share of pixels within 1.2816 sigma of the truth; .8 is right
     std::optional<double> log_likelihood;  ///< mean, nats per pixel, of a Gaussian of this sigma
+
+    std::optional<double> lpips;  ///< empty where no PerceptualDistance was given
 };
 
-/// `intensity` is clipped to 0..1 first; `sigma` may be empty. [y][x], of one size, at least 11 px
-/// each way. Throws Error (usage) else.
+/// `intensity` is clipped to 0..1 first; `sigma` may be empty, `lpips` null. [y][x], of one size,
+/// at least 11 px each way, and what `lpips` wants. Throws Error (usage) else.
 EVENTIDE_API FrameMeasures measure(const Array2<float>& intensity, const Array2<float>& sigma,
-                                   const Array2<float>& truth);
+                                   const Array2<float>& truth,
+                                   const PerceptualDistance* lpips = nullptr);
 
 }  // namespace eventide

@@ -49,10 +49,10 @@ Made make_region(const Arguments& arguments, const SensorPixels& size) {
     const auto [left, after_left] = split(arguments.text, ",");
     const auto [top, extent] = split(after_left, ",");
     const auto [width_text, height_text] = split(extent, "x");
-    constexpr int kMost = kLargestSensorSide;
-    const auto x = whole_number(left, 0, kMost), y = whole_number(top, 0, kMost),
-               width = whole_number(width_text, 1, kMost),
-               height = whole_number(height_text, 1, kMost);
+    constexpr int kMax = kLargestSensorSide;
+    const auto x = whole_number(left, 0, kMax), y = whole_number(top, 0, kMax),
+               width = whole_number(width_text, 1, kMax),
+               height = whole_number(height_text, 1, kMax);
     if (!x || !y || !width || !height) arguments.refuse("a region such as 10,20,100x50 (X,Y,WxH)");
     if (*x >= size.width || *y >= size.height)
         arguments.refuse("a region on the sensor of " + std::to_string(size.width) + "x" +

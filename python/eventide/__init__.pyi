@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -156,6 +156,33 @@ def open_camera(name: str, settings: Union[str, PathLike[str]] = "") -> Camera: 
 def simulate(
     scene: str = "demo", size: Tuple[int, int] = (240, 180), seconds: float = 4, **options: Any
 ) -> Simulation: ...
+class Pipeline:
+    def __init__(
+        self,
+        source: Iterable[npt.NDArray[np.void]],
+        sinks: Union[Callable[[Frame], object], Sequence[Callable[[Frame], object]]],
+        model: str = "default",
+        *,
+        width: int = 0,
+        height: int = 0,
+        latency: float = 0.25,
+        sequential: bool = False,
+        **options: Any,
+    ) -> None: ...
+    def run(self) -> None: ...
+    def stop(self) -> None: ...
+    @property
+    def counters(self) -> Dict[str, int]: ...
+
+class PerceptualDistance:
+    def __init__(self, weights: Union[str, PathLike[str]]) -> None: ...
+    @property
+    def name(self) -> str: ...
+    def between(self, a: npt.NDArray[Any], b: npt.NDArray[Any]) -> float: ...
+
 def evaluate(
-    intensity: npt.NDArray[Any], truth: npt.NDArray[Any], sigma: Optional[npt.NDArray[Any]] = None
+    intensity: npt.NDArray[Any],
+    truth: npt.NDArray[Any],
+    sigma: Optional[npt.NDArray[Any]] = None,
+    lpips: Optional[PerceptualDistance] = None,
 ) -> Dict[str, Optional[float]]: ...

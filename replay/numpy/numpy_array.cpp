@@ -184,7 +184,7 @@ double numpy_number(const NumpyField& field, const std::byte* at) {
 }
 
 std::int64_t numpy_integer(const NumpyField& field, const std::byte* at) {
-    constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+    constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
     const bool is_signed = field.kind == 'i';
     switch (field.kind == 'f' ? 0 : field.bytes) {
         case 1:
@@ -197,7 +197,7 @@ std::int64_t numpy_integer(const NumpyField& field, const std::byte* at) {
                              : std::int64_t{load_little<std::uint32_t>(at)};
         case 8: {
             const auto value = load_little<std::uint64_t>(at);
-            return !is_signed && value > std::uint64_t(kMost) ? kMost : std::int64_t(value);
+            return !is_signed && value > std::uint64_t(kMax) ? kMax : std::int64_t(value);
         }
         default: {
             const double value = numpy_number(field, at);

@@ -1,10 +1,9 @@
 // A stream of records of one size, cut anywhere.
 #pragma once
 
-#include <algorithm>
-#include <array>
+#include "src/codec/whole_words.h"
+
 #include <cstddef>
-#include <cstring>
 #include <span>
 
 namespace eventide {
@@ -16,26 +15,16 @@ public:
     /// Calls use(const std::byte* record) for each record the bytes complete.
     template <typename Use>
     void feed(std::span<const std::byte> bytes, Use&& use) {
-        if (carried_ > 0) {
-            const std::size_t n = std::min(kBytes - carried_, bytes.size());
-            std::copy_n(bytes.begin(), n, carry_.begin() + carried_);
-            carried_ += n;
-            bytes = bytes.subspan(n);
-            if (carried_ < kBytes) return;
-            carried_ = 0;
-            use(carry_.data());
-        }
-        for (; bytes.size() >= kBytes; bytes = bytes.subspan(kBytes)) use(bytes.data());
-        std::copy(bytes.begin(), bytes.end(), carry_.begin());
-        carried_ = bytes.size();
+        words_.feed(bytes, [&](std::span<const std::byte> whole) {
+            for (; !whole.empty(); whole = whole.subspan(kBytes)) use(whole.data());
+        });
     }
 
-    bool is_half_read() const { return carried_ > 0; }
-    void drop() { carried_ = 0; }
+    bool is_half_read() const { return words_.is_half_read(); }
+    void drop() { words_.drop(); }
 
 private:
-    std::array<std::byte, kBytes> carry_{};
-    std::size_t carried_ = 0;
+    WholeWords<kBytes> words_;
 };
 
 }  // namespace eventide

@@ -22,6 +22,9 @@ struct BayerSite {
 /// As Frame::colour orders them.
 enum class ColourChannel : std::uint8_t { blue, green, red };
 
+constexpr std::array kColourFilters{ColourFilter::none, ColourFilter::rggb, ColourFilter::grbg,
+                                    ColourFilter::gbrg, ColourFilter::bggr};
+
 inline std::string_view name_of(ColourFilter filter) {
     constexpr std::array<std::string_view, 5> kNames{"none", "rggb", "grbg", "gbrg", "bggr"};
     return kNames[std::size_t(filter)];

@@ -262,9 +262,9 @@ std::vector<double> Hdf5File::number_attributes(const std::string& object,
     if (!opened.good() || h5.H5Aexists(opened.id(), name.c_str()) <= 0) return {};
     const Hdf5Handle attribute{h5.H5Aopen(opened.id(), name.c_str(), H5P_DEFAULT), h5.H5Aclose};
     const Hdf5Handle space{h5.H5Aget_space(attribute.id()), h5.H5Sclose};
-    constexpr hssize_t kMost = 16;
+    constexpr hssize_t kMax = 16;
     const hssize_t count = space.good() ? h5.H5Sget_simple_extent_npoints(space.id()) : 0;
-    if (count < 1 || count > kMost) return {};
+    if (count < 1 || count > kMax) return {};
     std::vector<double> values(static_cast<std::size_t>(count));
     if (h5.H5Aread(attribute.id(), h5.H5T_NATIVE_DOUBLE_g, values.data()) < 0) return {};
     return values;

@@ -144,15 +144,15 @@ EVENTIDE_AMX void dot_runs(const Work& work, const Run* runs, const std::uint32_
 /// all have the same length.
 template <bool kTwo>
 EVENTIDE_AMX void dot_outputs(const Work& work, const std::uint32_t* weight, int first) {
-    constexpr int kMost = kTwo ? kSumTiles / 2 : kSumTiles;
+    constexpr int kMax = kTwo ? kSumTiles / 2 : kSumTiles;
     const DotArea& r = work.area;
-    Run runs[kMost];
+    Run runs[kMax];
     int n = 0;
     for (int y = 0; y < r.height; ++y)
         for (int x = 0; x < r.width; x += work.pixels) {
             runs[n++] = {y, std::min(x, r.width - work.pixels)};
-            if (n < kMost) continue;
-            dot_runs<kMost, kTwo>(work, runs, weight, first);
+            if (n < kMax) continue;
+            dot_runs<kMax, kTwo>(work, runs, weight, first);
             n = 0;
         }
     if (n == 1) dot_runs<1, kTwo>(work, runs, weight, first);
@@ -206,13 +206,13 @@ bool amx_there() {
 const Bf16Kernels* amx_kernels() {
     if (kernels_limited() || amx_left_out() || !amx_there()) return nullptr;
     const Bf16Kernels& vectors = avx512_bf16::bf16_kernels();
-    static const Bf16Kernels kKernels{"AMX",
-                                      dot_area,
-                                      vectors.pixels_to_bf16,
-                                      vectors.row_to_bf16,
-                                      vectors.double_row,
-                                      vectors.offset_rows,
-                                      amx::hidden_rows};
+    static const Bf16Kernels kKernels{.name = "AMX",
+                                      .dot_area = dot_area,
+                                      .pixels_to_bf16 = vectors.pixels_to_bf16,
+                                      .row_to_bf16 = vectors.row_to_bf16,
+                                      .double_row = vectors.double_row,
+                                      .offset_rows = vectors.offset_rows,
+                                      .hidden_rows = amx::hidden_rows};
     return &kKernels;
 }
 

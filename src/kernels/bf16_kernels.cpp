@@ -262,8 +262,13 @@ bool there() {
 
 const Bf16Kernels& bf16_kernels() {
 #if defined(__x86_64__)
-    static const Bf16Kernels kKernels{"AVX512_BF16", dot_area,    pixels_to_bf16, row_to_bf16,
-                                      double_row,    offset_rows, hidden_rows};
+    static const Bf16Kernels kKernels{.name = "AVX512_BF16",
+                                      .dot_area = dot_area,
+                                      .pixels_to_bf16 = pixels_to_bf16,
+                                      .row_to_bf16 = row_to_bf16,
+                                      .double_row = double_row,
+                                      .offset_rows = offset_rows,
+                                      .hidden_rows = hidden_rows};
     return kKernels;
 #else
     return plain::bf16_kernels();

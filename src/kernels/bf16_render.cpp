@@ -16,10 +16,10 @@
 namespace eventide::amx {
 namespace {
 
-constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMostNumbers = 32;
+constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMaxNumbers = 32;
 
 struct Room {
-    alignas(64) std::uint16_t numbers[kBoth][kMostNumbers] = {};
+    alignas(64) std::uint16_t numbers[kBoth][kMaxNumbers] = {};
     alignas(64) float sums[4][kRun][kTileOutputs];  // of 16 pixels: outputs 0-15, 16-31
 
     int pairs(int pixel, int k) const {
@@ -171,7 +171,7 @@ EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
 template <bool kTiles>
 EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
     const OffsetRows& offset = r.offset;
-    if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMostNumbers ||
+    if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMaxNumbers ||
         r.outputs <= kTileOutputs || r.outputs > 2 * kTileOutputs)
         return false;
     if (kTiles) start_tiles(r);

@@ -74,22 +74,22 @@ bool are_near(const float* a, const float* b, float bound, std::size_t n) {
 }
 
 const VectorKernels* table() {
-    static const VectorKernels kernels{hwy::TargetName(HWY_TARGET),
-                                       int(hn::Lanes(D())),
-                                       dot_area,
-                                       compress,
-                                       sigmoid_row,
-                                       reset_state,
-                                       update_state,
-                                       add_relu,
-                                       norm_elu,
-                                       elu,
-                                       double_row,
-                                       are_near,
-                                       offset_rows,
-                                       two_outputs,
-                                       weigh_rows,
-                                       scaled_exp};
+    static const VectorKernels kernels{.name = hwy::TargetName(HWY_TARGET),
+                                       .lanes = int(hn::Lanes(D())),
+                                       .dot_area = dot_area,
+                                       .compress = compress,
+                                       .sigmoid = sigmoid_row,
+                                       .reset_state = reset_state,
+                                       .update_state = update_state,
+                                       .add_relu = add_relu,
+                                       .norm_elu = norm_elu,
+                                       .elu = elu,
+                                       .double_row = double_row,
+                                       .are_near = are_near,
+                                       .offset_rows = offset_rows,
+                                       .two_outputs = two_outputs,
+                                       .weigh_rows = weigh_rows,
+                                       .scaled_exp = scaled_exp};
     return &kernels;
 }
 

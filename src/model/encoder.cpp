@@ -2,6 +2,7 @@
 #include "src/model/encoder.h"
 
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 #include "src/model/cores.h"
 #include "src/model/sampling.h"
 #include "src/nn/tiling.h"
@@ -11,11 +12,10 @@
 namespace eventide {
 namespace {
 
-constexpr int kMaxSide = 65535;
-
 void check_size(int width, int height) {
-    if (width < 1 || width > kMaxSide || height < 1 || height > kMaxSide)
-        throw Error(ErrorKind::usage, "sensor size: expected 1 to 65535 px, found " +
+    if (width < 1 || width > kLargestSensorSide || height < 1 || height > kLargestSensorSide)
+        throw Error(ErrorKind::usage, "sensor size: expected 1 to " +
+                                          std::to_string(kLargestSensorSide) + " px, found " +
                                           std::to_string(width) + "x" + std::to_string(height));
 }
 

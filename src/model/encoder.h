@@ -16,8 +16,8 @@ class EncoderCore;
 /// allocated.
 class Encoder final : public EncodeStage {
 public:
-    /// For a sensor of width x height pixels (1 to 65535 each). Throws Error where the model does
-    /// not hold together or the precision is not there.
+    /// For a sensor of width x height pixels (1 to kLargestSensorSide each). Throws Error where the
+    /// model does not hold together or the precision is not there.
     Encoder(const Model& model, int width, int height, const EngineOptions& options = {});
     ~Encoder() override;
     Encoder(Encoder&&) noexcept;

@@ -14,21 +14,32 @@ void FastRenderer::evaluate(const Member& member, const Span& span, float* blend
     if (pixels == 0) return;
     float* mu = blended + 3 * width;
     const Outputs out{mu, mu + width, needs_squares_ ? mu + 2 * width : nullptr};
-    const OffsetRows offset{member.sums,
-                            member.ahead,
-                            columns.column[member.side].data() + begin,
-                            columns.offset[member.side].data() + begin,
-                            member.base,
-                            slope_[1].data(),
-                            int(pixels),
-                            first_,
-                            nullptr};
-    if (layers_.size() != 1 || !layers_[0].run({offset, nullptr, nullptr, 0, last_weight_.data(),
-                                                last_bias_.data(), out.mu, out.log_sigma}))
+    const OffsetRows offset{.sums = member.sums,
+                            .ahead = member.ahead,
+                            .column = columns.column[member.side].data() + begin,
+                            .dx = columns.offset[member.side].data() + begin,
+                            .base = member.base,
+                            .slope = slope_[1].data(),
+                            .pixels = int(pixels),
+                            .width = first_};
+    if (layers_.size() != 1 || !layers_[0].run(HiddenRows{.offset = offset,
+                                                          .last_weight = last_weight_.data(),
+                                                          .last_bias = last_bias_.data(),
+                                                          .mu = out.mu,
+                                                          .log_sigma = out.log_sigma}))
         run_blocks(offset, out, scratch);
     add(member, begin, int(pixels), out, blended, width);
 }
 
+/// So many pixels at a time that their activations stay in a core's first cache from layer to
+/// layer:
+///
+///     scratch      numbers a pixel      written by               read by
+///     activations  widest_              the first layer          the second
+///     room, 1st    widest_              second, fourth ...       third, fifth ...
+///     room, 2nd    widest_              third, fifth ...         fourth, sixth ...
+///
+/// kBlock pixels each; run_layers() swaps the two halves of `room`.
 void FastRenderer::run_blocks(const OffsetRows& all, const Outputs& out,
                               float* scratch) const noexcept {
     float* activations = scratch;
@@ -41,17 +52,27 @@ void FastRenderer::run_blocks(const OffsetRows& all, const Outputs& out,
         block.out = activations;
         numbers_.offset_rows(block);
         const float* last = run_layers(activations, block.pixels, room);
-        vector_kernels().two_outputs({last, last_weight_.data(), last_bias_.data(), block.pixels,
-                                      config_.mlp.back(), out.mu + begin, out.log_sigma + begin});
+        vector_kernels().two_outputs({.in = last,
+                                      .weight = last_weight_.data(),
+                                      .bias = last_bias_.data(),
+                                      .pixels = block.pixels,
+                                      .width = config_.mlp.back(),
+                                      .first = out.mu + begin,
+                                      .second = out.log_sigma + begin});
     }
 }
 
 void FastRenderer::add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
                        float* blended, int width) const noexcept {
     const FrameColumns& columns = layout_.pixels;
-    vector_kernels().weigh_rows({outputs.mu, outputs.log_sigma, outputs.square,
-                                 columns.weight[member.side].data() + begin, member.weight,
-                                 config_.log_sigma_min, config_.log_sigma_max, pixels});
+    vector_kernels().weigh_rows({.mu = outputs.mu,
+                                 .log_sigma = outputs.log_sigma,
+                                 .square = outputs.square,
+                                 .share = columns.weight[member.side].data() + begin,
+                                 .weight = member.weight,
+                                 .least = config_.log_sigma_min,
+                                 .most = config_.log_sigma_max,
+                                 .pixels = pixels});
     const int* pixel = columns.pixel[member.side].data() + begin;
     const float* const parts[] = {outputs.mu, outputs.log_sigma, outputs.square};
     for (const float* part : parts) {

@@ -110,16 +110,24 @@ void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& st
     }
     const PaddedMap& above = states[number_ - 1].read();
     const Tile& region = target.region;
-    in_.run({{{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
-             target.out,
-             target.pitch,
-             true,
-             region.height(),
-             region.width()},
+    in_.run({.in = {{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
+             .out = target.out,
+             .out_pitch = target.pitch,
+             .narrow = true,
+             .height = region.height(),
+             .width = region.width()},
             scratch);
 }
 
-/// Of the compressed grid around the region, zeros outside the sensor.
+/// Of the compressed grid around the region, zeros outside the sensor. A tile in the grid's upper
+/// left corner, as the convolution reads it from scratch:
+///
+///     0 0 0 0 0 0      r: the region, for whose pixels the layer puts something out; of a level
+///     0 r r r r g      that remembers, the tile and 2 more on each side within the map
+///     0 r r r r g      (conv_gru.cpp)
+///     0 r r r r g      g: a rim of one pixel, which the 3x3 layer reads; 0: past the sensor's edge
+///     0 g g g g g      rows of [pixel][channel], one after the other, `row` units each; behind
+///                      them one row in float32, where layers read bf16
 void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
                            float* scratch) const noexcept {
     const Tile& region = target.region;
@@ -141,7 +149,12 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
                                   pixels * std::size_t(channels));
         if (compressed != to) numbers.narrow(compressed, pixels, channels, to);
     }
-    in_.run({{{{scratch, row}}}, target.out, target.pitch, true, region.height(), region.width()},
+    in_.run({.in = {{{scratch, row}}},
+             .out = target.out,
+             .out_pitch = target.pitch,
+             .narrow = true,
+             .height = region.height(),
+             .width = region.width()},
             rest);
 }
 

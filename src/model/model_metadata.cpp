@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <array>
@@ -212,7 +213,7 @@ void check_config(const ModelConfig& config, const std::string& file) {
     if (config.unfold != 1 && config.unfold != 3)
         refuse(file, "unfold", "1 or 3", std::to_string(config.unfold));
     check_list(file, "mlp", config.mlp, kMaxLayers, 1, kMaxWidth);
-    check_list(file, "lookaheads", config.lookaheads, 3, 0, 2);
+    check_list(file, "lookaheads", config.lookaheads, kMaxLookahead + 1, 0, kMaxLookahead);
     if (config.log_sigma_min > config.log_sigma_max)
         refuse(file, "log_sigma_min", "at most log_sigma_max", number_text(config.log_sigma_min));
     if (!(config.sigma_scale > 0))

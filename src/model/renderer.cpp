@@ -2,14 +2,13 @@
 #include "src/model/renderer.h"
 
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 #include "src/model/cores.h"
 
 #include <algorithm>
 
 namespace eventide {
 namespace {
-
-constexpr int kMaxSide = 65535;
 
 FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height) {
     FrameGeometry geometry;
@@ -27,9 +26,9 @@ FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int se
 }
 
 void check_axis(const char* name, int size, int at, int part) {
-    if (size < 1 || size > kMaxSide)
-        throw Error(ErrorKind::usage, std::string{"frame "} + name +
-                                          ": expected 1 to 65535 px, found " +
+    if (size < 1 || size > kLargestFrameSide)
+        throw Error(ErrorKind::usage, std::string{"frame "} + name + ": expected 1 to " +
+                                          std::to_string(kLargestFrameSide) + " px, found " +
                                           std::to_string(size));
     if (at < 0 || part < 1 || at > size - part)
         throw Error(ErrorKind::usage, std::string{"--roi exceeds the frame, "} + name +
@@ -88,7 +87,7 @@ Frame Renderer::make_output(const RenderRequest& request) const {
     const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
     check_axis("width", geometry.width, geometry.x, geometry.part_width);
     check_axis("height", geometry.height, geometry.y, geometry.part_height);
-    if (request.lookahead < 0 || request.lookahead > 2)
+    if (request.lookahead < 0 || request.lookahead > kMaxLookahead)
         throw Error(ErrorKind::usage,
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(request.lookahead));
     Frame frame;

@@ -6,7 +6,16 @@
 //     gates        (side + 2)^2   2 C float32: u, r         kept, new state
 //     candidate    side^2         C float32                 new state
 //
-// h is read by the gates where it lies, in the state's map.
+// h is read by the gates where it lies, in the state's map. Each 3x3 layer reads one pixel more on
+// each side than it puts out, so that a tile's step has rims, which neighbouring tiles compute,
+// too:
+//
+//     a a a a a a a a     candidate and new state: the tile (t)
+//     a g g g g g g a     gates and r.h: it and 1 more (g), of which the candidate reads
+//     a g t t t t g a     input: it and 2 more (a), of which the gates read
+//     a g t t t t g a
+//     a g g g g g g a     Past the map's edge there is nothing to compute: zeros, which begin()
+//     a a a a a a a a     writes for the tiles that lie there.
 #include "src/nn/conv_gru.h"
 
 #include "src/kernels/vector_kernels.h"
@@ -65,22 +74,20 @@ void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
 
     const Tile close = tile.grown(1, state.height(), state.width());
     const PaddedMap& h = state.read();
-    gates_.run({{{{input_at(input, i, close.y0 - 1, close.x0 - 1), input_pitch()},
-                  {h.at(close.y0 - 1, close.x0 - 1), h.pitch()}}},
-                gates_at(gates, i, close.y0, close.x0),
-                gates_pitch(),
-                false,
-                close.height(),
-                close.width()},
+    gates_.run({.in = {{{input_at(input, i, close.y0 - 1, close.x0 - 1), input_pitch()},
+                        {h.at(close.y0 - 1, close.x0 - 1), h.pitch()}}},
+                .out = gates_at(gates, i, close.y0, close.x0),
+                .out_pitch = gates_pitch(),
+                .height = close.height(),
+                .width = close.width()},
                scratch);
     keep(state, i, close, gates, kept, scratch);
-    candidate_.run({{{{input_at(input, i, tile.y0 - 1, tile.x0 - 1), input_pitch()},
-                      {kept_at(kept, i, tile.y0 - 1, tile.x0 - 1), kept_pitch()}}},
-                    candidate,
-                    std::ptrdiff_t(tile.width()) * channels_,
-                    false,
-                    tile.height(),
-                    tile.width()},
+    candidate_.run({.in = {{{input_at(input, i, tile.y0 - 1, tile.x0 - 1), input_pitch()},
+                            {kept_at(kept, i, tile.y0 - 1, tile.x0 - 1), kept_pitch()}}},
+                    .out = candidate,
+                    .out_pitch = std::ptrdiff_t(tile.width()) * channels_,
+                    .height = tile.height(),
+                    .width = tile.width()},
                    scratch);
     update(state, i, mask, gates, candidate);
 }

@@ -8,6 +8,14 @@
 
 namespace eventide {
 
+/// In the order in which the kernels go through them, so that they are read one after the other.
+/// For outputs 0 .. 39 and vectors of 16 (L):
+///
+///     outputs 0 .. 31, a block of two vectors      then 32 .. 39, a block of one
+///     stretch 0   pixel 0  unit 0   w0 .. w31      stretch 0 ...   w32 .. w39, 8 zeros
+///                          unit 1   w0 .. w31
+///                 pixel 1  unit 0   ...            unit: a channel in float32, in bf16 a pair of
+///     stretch 1   ...                              channels, whose two numbers lie side by side
 template <typename Number, typename Value>
 void PackedWeights::pack(int lanes, const Value& value, Number* packed) const {
     for (int first = 0; first < outputs_;) {
@@ -84,9 +92,9 @@ bool PackedWeights::run(HiddenRows rows) const noexcept {
 
 void PackedWeights::run(const void* in, std::ptrdiff_t pitch, std::ptrdiff_t step, int count,
                         float* out, std::ptrdiff_t out_step) const noexcept {
-    constexpr std::size_t kMost = 16;
-    std::array<Stretch, kMost> stretches;
-    assert(shapes_.size() <= kMost);
+    constexpr std::size_t kMax = 16;
+    std::array<Stretch, kMax> stretches;
+    assert(shapes_.size() <= kMax);
     for (std::size_t s = 0; s < shapes_.size(); ++s)
         stretches[s] = {static_cast<const float*>(in) + std::ptrdiff_t(s) * pitch, step, 0,
                         shapes_[s].pixels * this->step()};
@@ -110,7 +118,7 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
       sources_(std::move(sources)) {
     if (sources_.empty()) sources_ = {weights.in};
     assert(std::accumulate(sources_.begin(), sources_.end(), 0) == weights.in);
-    assert(sources_.size() <= ConvArea::kMostSources);
+    assert(sources_.size() <= ConvArea::kMaxSources);
     single_ = packed(weights, 1, relu, arithmetic.products);
     if (arithmetic.onednn && side_ == 3) {
         onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, arithmetic.bf16(),
@@ -174,8 +182,11 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
         onednn_->run(call, scratch);
         return;
     }
-    ConvArea area{
-        {{{call.in, call.in_pitch}}}, call.out, call.out_pitch, false, call.height, call.width};
+    ConvArea area{.in = {{{call.in, call.in_pitch}}},
+                  .out = call.out,
+                  .out_pitch = call.out_pitch,
+                  .height = call.height,
+                  .width = call.width};
     if (numbers().bf16() != nullptr) {
         const int rows = reach(call.height), columns = reach(call.width);
         const std::ptrdiff_t pitch = std::ptrdiff_t(columns) * numbers().units(inputs_);
@@ -202,7 +213,7 @@ void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step) const no
 /// `count` times one or two outputs of each row, from `first` on.
 void PackedConv::run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
                           int at_once) const noexcept {
-    std::array<Stretch, std::size_t{3} * ConvArea::kMostSources> stretches;
+    std::array<Stretch, std::size_t{3} * ConvArea::kMaxSources> stretches;
     int n = 0;
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         const auto [in, pitch] = area.in[i];

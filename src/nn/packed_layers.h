@@ -68,8 +68,8 @@ struct ConvSource {
 
 /// Where a convolution reads and writes.
 struct ConvArea {
-    static constexpr int kMostSources = 3;
-    std::array<ConvSource, kMostSources> in{};
+    static constexpr int kMaxSources = 3;
+    std::array<ConvSource, kMaxSources> in{};
     void* out = nullptr;           ///< pixels of a row one after the other
     std::ptrdiff_t out_pitch = 0;  ///< units between rows
     bool narrow = false;           ///< outputs of the kind that layers read, else float32

@@ -1,5 +1,6 @@
 // Scenes and measures of the library: what the program simulates, and what it would say of a frame.
 #include "tests/library/library_test.h"
+#include "tests/metrics/images.h"
 
 #include <vector>
 
@@ -54,6 +55,28 @@ TEST(Measures, SayWhatIsWrongWithAFrame) {
     EXPECT_FALSE(alone.picp80.has_value());
     EXPECT_NEAR(measure(shown, sigma, truth).picp80.value_or(0), .5, .01);
     error_of([&] { measure(shown, sigma, Array2<float>(20, 31)); });
+}
+
+TEST(Measures, OfLpipsAreThoseOfItsWeights) {
+    EXPECT_NE(
+        error_of([] { PerceptualDistance{"/missing.npz"}; }, ErrorKind::input).find("/missing.npz"),
+        std::string::npos);
+    const auto weights = shared_data() / "perceptual/lpips_squeeze_v0.1.npz";
+    if (!std::filesystem::exists(weights)) GTEST_SKIP() << "no LPIPS weights: " << weights;
+    const PerceptualDistance lpips{weights};
+    EXPECT_EQ(lpips.name(), "LPIPS-Squeeze");
+    Array2<float> truth(40, 50), noisy(40, 50);
+    for (std::size_t i = 0; i < truth.values().size(); ++i) {
+        truth.values()[i] = float(i % 50) / 50;
+        noisy.values()[i] = truth.values()[i] * (i % 3 == 0 ? .2F : 1.F);
+    }
+    const FrameMeasures same = measure(truth, {}, truth, &lpips);
+    EXPECT_EQ(same.lpips, 0);
+    EXPECT_EQ(measure(noisy, {}, truth, &lpips).lpips, lpips.between(noisy, truth));
+    EXPECT_GT(lpips.between(noisy, truth), .05);
+    EXPECT_EQ(measure(noisy, {}, truth).lpips, std::nullopt);
+    EXPECT_NE(error_of([&] { lpips.between(truth, Array2<float>(40, 49)); }).find("50x40"),
+              std::string::npos);
 }
 
 }  // namespace

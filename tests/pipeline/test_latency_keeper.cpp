@@ -125,7 +125,7 @@ private:
             if (schedule_.due() == 0 && !open_next()) return;
             while (schedule_.due() > 0 && !rendering_) {
                 schedule_.next();
-                if (shedder_.keeps_next(latents_.size()))
+                if (dropper_.keeps_next(latents_.size()))
                     rendering_ = true;
                 else
                     ++skipped;
@@ -136,7 +136,7 @@ private:
     void finish_frame() {
         rendering_ = false;
         ++frames;
-        shedder_.took(kFrameCost);
+        dropper_.took(kFrameCost);
         keeper_.frame_took(kFrameCost);
         // What has to be learned first is not the bound's.
         if (now_.time_since_epoch() > 1s) latency.record(now_ - arrived_);
@@ -147,7 +147,7 @@ private:
         latents_.pop_front();
         arrived_ = next.arrived;
         schedule_.open(next.window);
-        shedder_.open({schedule_.next_index(), schedule_.due(), keeper_.halvings(),
+        dropper_.open({schedule_.next_index(), schedule_.due(), keeper_.halvings(),
                        keeper_.frames_in_time(now_ - arrived_)},
                       now_);
         return true;
@@ -164,7 +164,7 @@ private:
     std::optional<Encoding> encoding_;
     EncoderGate<Lent, HandOn> gate_{keeper_, {}, Lent{this}, HandOn{this}};
     FrameSchedule schedule_{{60, 1}};
-    FrameDropper shedder_{2};
+    FrameDropper dropper_{2};
     bool rendering_ = false;
 };
 

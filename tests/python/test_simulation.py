@@ -50,6 +50,11 @@ class Evaluation(RecordedTest):
         self.assertAlmostEqual(right["picp80"], 0.8, delta=0.03)
         self.assertAlmostEqual(right["log_likelihood"], -0.5 * np.log(2 * np.pi * 0.05**2) - 0.5, delta=0.05)
 
+    def test_perceptual_distance_wants_its_weights(self):
+        with self.assertRaisesRegex(eventide.InputError, "missing"):
+            eventide.PerceptualDistance(self.folder / "missing")
+        self.assertIsNone(eventide.evaluate(np.zeros((20, 20)), np.zeros((20, 20)))["lpips"])
+
     def test_planes_of_other_shapes_are_refused(self):
         plane = np.zeros((20, 20))
         for wrong in (np.zeros((20, 21)), np.zeros((5, 5)), np.zeros(20), np.zeros((20, 20, 3))):

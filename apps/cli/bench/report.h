@@ -3,7 +3,7 @@
 
 #include "apps/bench/activity.h"
 #include "apps/bench/peaks.h"
-#include "apps/cli/bench/pipeline_bench.h"
+#include "apps/cli/bench/bench_settings.h"
 #include "apps/cli/command.h"
 #include "apps/evaluate/plot.h"
 
@@ -19,16 +19,6 @@ struct PeerRow {
     Size sensor;
     int threads = 1;
     double cpu_ms = 0;  ///< an event window and a frame of it
-};
-
-struct ReportSettings {
-    std::string scene = "demo";
-    std::vector<std::string> models{"default", "small"}, sizes{"240x180", "640x480"};
-    double seconds = 2;  ///< of each simulated recording
-    int lookahead = 0;
-    int repetitions = bench::kLeastRepetitions;  ///< of stages
-    std::filesystem::path lpips;                 ///< weights; empty: frames are not judged by it
-    std::vector<PeerRow> peers;
 };
 
 /// One way to run a network: what it takes for an event window and a frame of it, on one thread,
@@ -77,7 +67,8 @@ struct Report {
 };
 
 /// A few minutes. Ends early, with what there is, when a signal comes.
-Report measure_report(const ReportSettings& settings, Program& program);
+Report measure_report(const BenchSettings& settings, const std::vector<PeerRow>& peers,
+                      Program& program);
 
 /// Marks, of each sensor size, the rows that no other beats in both time and MSE; of rows with the
 /// same error within half a per cent, the fastest.

@@ -62,7 +62,7 @@ double codes_against_double(const Model& model, const std::vector<bench::SceneWi
 
 class Measurement {
 public:
-    Measurement(const ReportSettings& settings, Program& program)
+    Measurement(const BenchSettings& settings, Program& program)
         : settings_{settings}, program_{program}, progress_{program.quiet} {}
 
     void speed(Report& report) {
@@ -225,7 +225,7 @@ private:
         return double(usage.ru_maxrss) / 1024;
     }
 
-    const ReportSettings& settings_;
+    const BenchSettings& settings_;
     Program& program_;
     Progress progress_;
 };
@@ -245,13 +245,14 @@ void mark_front(std::vector<SpeedRow>& rows) {
         });
 }
 
-Report measure_report(const ReportSettings& settings, Program& program) {
+Report measure_report(const BenchSettings& settings, const std::vector<PeerRow>& peers,
+                      Program& program) {
     Report report;
     report.machine = processor_text();
     report.program = "eventide " + version() + ", " + compiler_text();
     report.settings =
         "scene " + settings.scene + ", lookahead " + std::to_string(settings.lookahead);
-    report.peers = settings.peers;
+    report.peers = peers;
     Measurement measurement{settings, program};
     measurement.memory(report);  // first: the system counts what this process held before, too
     report.peaks = bench::measure_peaks(Instructions::best);

@@ -100,33 +100,36 @@ std::string BenchCommand::examples() const {
 SettingTable BenchCommand::settings() {
     SettingTable table{"bench", "eventide bench: speed against error.", {}};
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(text_setting("scene", scene_, "NAME", "Scene of the simulated recordings."));
-    add(list_setting("sizes", sizes_, "WxH", "Sensor sizes, any number of times."));
-    add(list_setting("models", models_, "NAME|FILE", "Models, any number of times."));
-    add(list_setting("precisions", precisions_, "P", "auto, f32 or bf16, any number of times."));
-    add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
+    add(text_setting("scene", settings_.scene, "NAME", "Scene of the simulated recordings."));
+    add(list_setting("sizes", settings_.sizes, "WxH", "Sensor sizes, any number of times."));
+    add(list_setting("models", settings_.models, "NAME|FILE", "Models, any number of times."));
+    add(list_setting("precisions", settings_.precisions, "P",
+                     "auto, f32 or bf16, any number of times."));
+    add(choice_setting("engine", settings_.engine, "As in eventide run.", kEngineWords));
     add(choice_setting("instructions", instructions_,
                        "What the kernels may use: best (all the processor has), or no more than "
                        "an older one; avx512: all but AMX.",
-                       {"best", "avx512", "avx2", "sse4"}));
-    add(number_setting("seconds", seconds_, "S", "Duration of each recording, seconds.", 0.2,
-                       3600));
-    add(number_setting("scale", scale_, "S", "Size of the frames, times the sensor's.", 0.1, 16));
-    add(whole_setting("lookahead", lookahead_, "0|1|2", "As in eventide run.", 0, 2));
-    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+                       kInstructionWords));
+    add(number_setting("seconds", settings_.seconds, "S", "Duration of each recording, seconds.",
+                       0.2, 3600));
+    add(number_setting("scale", settings_.scale, "S", "Size of the frames, times the sensor's.",
+                       0.1, 16));
+    add(whole_setting("lookahead", settings_.lookahead, "0|1|2", "As in eventide run.", 0,
+                      kMaxLookahead));
+    add(whole_setting("threads", settings_.threads, "N", "As in eventide run.", 0, 1024));
     add(flag_setting("stages", stages_, "The stages alone, without the pipeline after them."));
     add(flag_setting("activity", activity_,
                      "Cost and error when 0, 1, 5, 25 and 100 % of the scene moves, without the "
                      "pipeline."));
-    add(number_setting("still_codes", still_codes_, "D",
+    add(number_setting("still_codes", settings_.still_codes, "D",
                        "With --activity, frames at changing places in the window: a part whose "
                        "codes changed by no more than this is copied.",
                        0, 100));
-    add(number_setting("still_time", still_time_, "WINDOWS",
+    add(number_setting("still_time", settings_.still_time, "WINDOWS",
                        "And no further than this from the place in the window it is copied from.",
                        0, 1));
-    add(whole_setting("repetitions", repetitions_, "N", "Of each stage.", bench::kLeastRepetitions,
-                      1'000'000));
+    add(whole_setting("repetitions", settings_.repetitions, "N", "Of each stage.",
+                      bench::kLeastRepetitions, 1'000'000));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
     add(text_setting("report", report_, "FOLDER",
@@ -134,7 +137,8 @@ SettingTable BenchCommand::settings() {
                      "arithmetic and lengths of event windows, frame rate, activity, latency by "
                      "rate of events, and memory, with its plots and JSON; minutes, of --sizes, "
                      "--models and --seconds."));
-    add(text_setting("lpips", lpips_, "FILE", "With --report: LPIPS weights, as in evaluate."));
+    add(text_setting("lpips", settings_.lpips, "FILE",
+                     "With --report: LPIPS weights, as in evaluate."));
     add(text_setting("peers", peers_, "FILE",
                      "With --report: other networks, as bench_peers --table measured them."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
@@ -144,34 +148,28 @@ SettingTable BenchCommand::settings() {
 BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& data,
                                const std::string& model, Precision precision,
                                Program& program) const {
-    PipelineBenchSettings settings;
-    settings.model = model;
-    settings.precision = precision;
-    settings.engine = engine_;
-    settings.threads = threads_;
-    settings.scale = scale_;
-    settings.lookahead = lookahead_;
+    PipelineBenchSettings settings = settings_.pipeline(model, precision);
     const PipelineBench free = measure_pipeline(data, settings, program.signals);
     settings.lookahead = 0;
     settings.speed = 1;
     const PipelineBench live = measure_pipeline(data, settings, program.signals);
-    return {free.model,
-            free.engine,
-            free.sensor,
-            double(free.counters.events) / seconds_,
-            milliseconds(free.counters.encode.p50),
-            milliseconds(free.counters.render.p50),
-            seconds_ / free.seconds,
-            milliseconds(live.counters.latency.p50),
-            milliseconds(live.counters.latency.p99),
-            free.error.frames > 0 ? free.error.raw.mse : std::nan("")};
+    return {.model = free.model,
+            .engine = free.engine,
+            .sensor = free.sensor,
+            .event_rate = double(free.counters.events) / settings_.seconds,
+            .encode_ms = milliseconds(free.counters.encode.p50),
+            .render_ms = milliseconds(free.counters.render.p50),
+            .times_real_time = settings_.seconds / free.seconds,
+            .latency_p50_ms = milliseconds(live.counters.latency.p50),
+            .latency_p99_ms = milliseconds(live.counters.latency.p99),
+            .mse = free.error.frames > 0 ? free.error.raw.mse : std::nan("")};
 }
 
 void BenchCommand::name_bench_files(NamedFiles& files) const {
     files.may_replace(overwrite_);
-    for (const std::string& model : models_) files.reads("--models", find_model(model));
+    for (const std::string& model : settings_.models) files.reads("--models", find_model(model));
     files.writes("--json", json_);
-    files.reads("--lpips", lpips_);
+    files.reads("--lpips", settings_.lpips);
     files.reads("--peers", peers_);
     if (!report_.empty())
         for (const std::filesystem::path& name : report_files())
@@ -182,10 +180,6 @@ void BenchCommand::name_bench_files(NamedFiles& files) const {
 }
 
 namespace {
-
-Precision precision_of(const std::string& name) {
-    return Precision(parse_choice(name, {"auto", "f32", "bf16"}));
-}
 
 std::string what_of(const std::string& model, const std::string& precision,
                     const std::string& size) {
@@ -199,25 +193,17 @@ void BenchCommand::for_each_stage(const std::string& what, Program& program,
                                   const Measure& measure) const {
     constexpr int kWindows = 6;
     Progress progress{program.quiet};
-    for (const std::string& text : sizes_) {
+    for (const std::string& text : settings_.sizes) {
         const Size size = parse_size(text);
         progress.show(0, "simulating " + text);
-        const auto windows = bench::scene_windows(recording_of(scene_, size), kWindows);
-        for (const std::string& name : models_)
-            for (const std::string& precision : precisions_) {
+        const auto windows = bench::scene_windows(recording_of(settings_.scene, size), kWindows);
+        for (const std::string& name : settings_.models)
+            for (const std::string& precision : settings_.precisions) {
                 if (program.signals.stopping()) return;
                 progress.show(0, what + " of " + what_of(name, precision, text));
                 const std::filesystem::path file = find_model(name);
-                bench::StageSettings settings;
-                settings.width = size.width;
-                settings.height = size.height;
-                settings.scale = scale_;
-                settings.lookahead = lookahead_;
-                settings.repetitions = repetitions_;
-                settings.engine.engine = engine_;
-                settings.engine.precision = precision_of(precision);
-                settings.engine.still_codes = still_codes_;
-                settings.engine.still_time = still_time_;
+                const bench::StageSettings settings =
+                    settings_.stage(size, parse_word(precision, kPrecisionWords));
                 measure(printable(file.stem().string()), load_model(file), windows, settings);
             }
     }
@@ -249,30 +235,22 @@ std::vector<bench::ActivityRow> BenchCommand::measure_activity(Program& program)
 std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
     std::vector<BenchRow> rows;
     Progress progress{program.quiet};
-    for (const std::string& size : sizes_) {
+    for (const std::string& size : settings_.sizes) {
         progress.show(0, "simulating " + size);
-        const auto data = simulated_packets(scene_, parse_size(size), seconds_);
-        for (const std::string& model : models_)
-            for (const std::string& precision : precisions_) {
+        const auto data = simulated_packets(settings_.scene, parse_size(size), settings_.seconds);
+        for (const std::string& model : settings_.models)
+            for (const std::string& precision : settings_.precisions) {
                 if (program.signals.stopping()) return rows;
                 progress.show(0, what_of(model, precision, size));
-                rows.push_back(measure(data, model, precision_of(precision), program));
+                rows.push_back(
+                    measure(data, model, parse_word(precision, kPrecisionWords), program));
             }
     }
     return rows;
 }
 
 int BenchCommand::report(Program& program) const {
-    ReportSettings settings;
-    settings.scene = scene_;
-    settings.models = models_;
-    settings.sizes = sizes_;
-    settings.seconds = seconds_;
-    settings.lookahead = lookahead_;
-    settings.repetitions = repetitions_;
-    settings.lpips = lpips_;
-    settings.peers = read_peers(peers_);
-    write_report(measure_report(settings, program), report_, overwrite_);
+    write_report(measure_report(settings_, read_peers(peers_), program), report_, overwrite_);
     spdlog::info("{}", (std::filesystem::path{report_} / "index.html").string());
     return exit_done;
 }
@@ -282,7 +260,8 @@ int BenchCommand::run(Program& program) {
     name_bench_files(program.files);
     if (!report_.empty()) return report(program);
     std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
-                version().c_str(), compiler_text().c_str(), scene_.c_str(), lookahead_);
+                version().c_str(), compiler_text().c_str(), settings_.scene.c_str(),
+                settings_.lookahead);
     const bench::Peaks peaks = bench::measure_peaks(instructions_);
     std::fputs(bench::peaks_text(peaks).c_str(), stdout);
     std::vector<bench::StageRow> stages;
@@ -292,7 +271,7 @@ int BenchCommand::run(Program& program) {
         std::printf(
             "anywhere: frames at changing places in the window; copied where codes changed "
             "by at most %g and the place by %g windows\n",
-            still_codes_, still_time_);
+            settings_.still_codes, settings_.still_time);
         activity = measure_activity(program);
         std::fputs(bench::activity_text(activity).c_str(), stdout);
     }
@@ -302,7 +281,8 @@ int BenchCommand::run(Program& program) {
     }
     if (!stages_ && !activity_) {
         std::printf("\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
-                    threads_ == 0 ? "all" : std::to_string(threads_).c_str(), seconds_);
+                    settings_.threads == 0 ? "all" : std::to_string(settings_.threads).c_str(),
+                    settings_.seconds);
         rows = measure_pipelines(program);
         print_table(rows);
     }

@@ -3,6 +3,7 @@
 
 #include "apps/bench/activity.h"
 #include "apps/bench/stages.h"
+#include "apps/cli/bench/bench_settings.h"
 #include "apps/cli/command.h"
 #include "apps/cli/commands/recording_in_memory.h"
 #include "apps/cli/settings/run_settings.h"
@@ -52,14 +53,9 @@ private:
     int report(Program& program) const;
     void name_bench_files(NamedFiles& files) const;
 
-    std::string scene_ = "demo";
-    std::vector<std::string> sizes_{"240x180", "346x260", "640x480"}, models_{"default"},
-        precisions_{"auto"};
-    double seconds_ = 2, scale_ = 1, still_codes_ = 0.02, still_time_ = 1;
-    int threads_ = 0, lookahead_ = 2, repetitions_ = bench::kLeastRepetitions;
-    Engine engine_ = Engine::fast;
+    BenchSettings settings_;
     Instructions instructions_ = Instructions::best;
-    std::string json_, plots_, lpips_, report_, peers_;
+    std::string json_, plots_, report_, peers_;
 
     bool stages_ = false, activity_ = false, overwrite_ = false;
 };

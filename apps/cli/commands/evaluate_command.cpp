@@ -8,6 +8,7 @@
 #include "pipeline/parallel_tbb.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 #include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
@@ -74,13 +75,16 @@ SettingTable EvaluateCommand::settings() {
                        "recordings: between their reference images; evreal: ECD, MVSEC and HQF as "
                        "EVREAL does; simulated: the project's test set; folders: images against "
                        "images.",
-                       {"recordings", "evreal", "simulated", "folders"}));
+                       {{Protocol::recordings, "recordings"},
+                        {Protocol::evreal, "evreal"},
+                        {Protocol::simulated, "simulated"},
+                        {Protocol::folders, "folders"}}));
     add(text_setting("model", model_, "NAME|FILE", "As in eventide run."));
     add(text_setting(
         "lpips", lpips_, "FILE",
         "Weights of LPIPS as npz (lpips_squeeze_v0.1.npz); empty: LPIPS is left out."));
     add(whole_setting("lookahead", lookahead_, "0|1|2",
-                      "Event windows after the frame's own that may be used.", 0, 2));
+                      "Event windows after the frame's own that may be used.", 0, kMaxLookahead));
     add(parsed_setting<std::string>(
         "window", window_, "WINDOW",
         "recordings: reference (an event window between reference images), or as in eventide run.",
@@ -101,11 +105,10 @@ SettingTable EvaluateCommand::settings() {
                         "all.",
                         "start"));
     add(seconds_setting("to", to_, "recordings: score until here; end: all.", "end"));
-    add(choice_setting("sigma_rule", sigma_rule_, "As in eventide run.",
-                       {"model", "log_blend", "mixture"}));
+    add(choice_setting("sigma_rule", sigma_rule_, "As in eventide run.", sigma_words()));
     add(text_setting("noise_filter", noise_filter_, "model|auto|off|TIME", "As in eventide run."));
-    add(choice_setting("precision", precision_, "As in eventide run.", {"auto", "f32", "bf16"}));
-    add(choice_setting("engine", engine_, "As in eventide run.", {"plain", "fast"}));
+    add(choice_setting("precision", precision_, "As in eventide run.", kPrecisionWords));
+    add(choice_setting("engine", engine_, "As in eventide run.", kEngineWords));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
 
     add(text_setting("images", images_, "FOLDER",
@@ -137,7 +140,9 @@ SettingTable EvaluateCommand::settings() {
     add(choice_setting("calibration", calibration_,
                        "What --calibrated fits: coverage (PICP80 becomes .8), cautious (in the "
                        "sequence that needs it most) or likelihood.",
-                       {"coverage", "likelihood", "cautious"}));
+                       {{CalibrationRule::coverage, "coverage"},
+                        {CalibrationRule::likelihood, "likelihood"},
+                        {CalibrationRule::cautious, "cautious"}}));
     add(text_setting(
         "calibrated", calibrated_, "FILE",
         "Fit one factor for sigma on what was evaluated, and write the model with it."));
@@ -150,9 +155,7 @@ EvaluateSettings EvaluateCommand::how(Program& program) const {
     if (protocol_ != Protocol::folders) how.model = find_model(model_);
     how.lpips = lpips_;
     how.lookahead = lookahead_;
-    if (sigma_rule_ != SigmaChoice::model)
-        how.sigma_rule =
-            sigma_rule_ == SigmaChoice::mixture ? SigmaRule::mixture : SigmaRule::log_blend;
+    how.sigma_rule = sigma_rule_;
     how.engine.engine = engine_;
     how.noise_filter = noise_filter_;
     how.engine.precision = precision_;

@@ -38,7 +38,7 @@ private:
     Protocol protocol_ = Protocol::recordings;
     std::string model_ = "default", lpips_, window_ = "reference";
     int lookahead_ = 0, skip_ = 3, given_images_ = 0, threads_ = 0;
-    SigmaChoice sigma_rule_ = SigmaChoice::model;
+    SigmaChoice sigma_rule_;
     std::string noise_filter_ = "model";
     Precision precision_ = Precision::automatic;
     Engine engine_ = Engine::fast;

@@ -31,10 +31,6 @@ const Format* format_of(const std::string& path) {
     return format;
 }
 
-ColourFilter filter_named(const std::string& bayer) {
-    return ColourFilter(parse_choice(bayer, {"none", "rggb", "grbg", "gbrg", "bggr"}));
-}
-
 Frame frame_of(const Truth& truth) {
     Frame frame;
     frame.t = truth.t;
@@ -128,15 +124,11 @@ SettingTable SimulateCommand::settings() {
     add(text_setting("textures", textures_, "PATH",
                      "Folder of images or pack of textures to draw the scene from; empty: "
                      "procedural textures."));
-    add(parsed_setting<std::string>(
-        "bayer", bayer_, "none|rggb|grbg|gbrg|bggr",
+    add(choice_setting(
+        "bayer", bayer_,
         "A colour camera: the filter before its pixels, from the top left corner. Images are "
         "mosaics, the truth is in colour, and --textures is a folder of colour images.",
-        [](const std::string& text) {
-            parse_choice(text, {"none", "rggb", "grbg", "gbrg", "bggr"});
-            return text;
-        },
-        [](const std::string& text) { return text; }));
+        bayer_words()));
     add(flag_setting("overwrite", overwrite_,
                      "Replace files that exist; of a folder, what an earlier run wrote."));
     return table;
@@ -160,7 +152,7 @@ SimRecordingSettings SimulateCommand::plan() const {
 void SimulateCommand::simulate(
     const SimRecordingSettings& what, const ColourRecording::Textures& textures,
     const std::function<bool(const Batch&, std::vector<Frame>&)>& emit) const {
-    const ColourFilter filter = filter_named(bayer_);
+    const ColourFilter filter = bayer_;
     std::vector<Frame> frames;
     if (filter == ColourFilter::none) {
         simulate_recording(what, textures[0],
@@ -200,17 +192,17 @@ int SimulateCommand::run(Program& program) {
         throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
     name_output_files(program.files);
     const SimRecordingSettings what = plan();
-    if (bayer_ != "none" && !std::filesystem::is_directory(textures_))
-        throw Error(ErrorKind::usage, "--bayer " + bayer_ +
+    if (bayer_ != ColourFilter::none && !std::filesystem::is_directory(textures_))
+        throw Error(ErrorKind::usage, "--bayer " + std::string{name_of(bayer_)} +
                                           ": expected --textures and a folder of colour images, "
                                           "found '" +
                                           textures_ + "'");
     const ColourRecording::Textures textures =
-        bayer_ == "none"
+        bayer_ == ColourFilter::none
             ? ColourRecording::Textures{open_textures(textures_, kProceduralTextures), {}, {}}
             : colour_textures_from_folder(textures_);
     StreamHeader header = header_of(what);
-    header.colour_filter = filter_named(bayer_);
+    header.colour_filter = bayer_;
     RecordingOut out{out_, overwrite_, format_of(out_), header};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);

@@ -29,7 +29,8 @@ private:
     void name_output_files(NamedFiles& files) const;
 
     std::string scene_ = "demo", out_, truth_, textures_;
-    std::string seed_ = "auto", bayer_ = "none";
+    std::string seed_ = "auto";
+    ColourFilter bayer_ = ColourFilter::none;
     Size size_{240, 180};
     double seconds_ = 4, images_per_second_ = 25, truths_per_second_ = 25, truth_scale_ = 1;
     bool overwrite_ = false, list_ = false;

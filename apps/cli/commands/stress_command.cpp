@@ -141,8 +141,7 @@ SettingTable StressCommand::settings() {
                        "Instead of the cases: so many hours of stream time as fast as possible, "
                        "with pauses and bursts.",
                        0, 1e4));
-    add(choice_setting("instructions", instructions_, "As in eventide bench.",
-                       {"best", "avx512", "avx2", "sse4"}));
+    add(choice_setting("instructions", instructions_, "As in eventide bench.", kInstructionWords));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER",

@@ -170,9 +170,7 @@ RenderRequest request_of(const RunSettings& settings, const SensorInfo& sensor, 
     request.height = size.height;
     if (settings.region) request.region = undistortion ? undistortion->source : *settings.region;
     request.lookahead = lookahead;
-    if (settings.sigma_rule != SigmaChoice::model)
-        request.sigma_rule =
-            settings.sigma_rule == SigmaChoice::mixture ? SigmaRule::mixture : SigmaRule::log_blend;
+    request.sigma_rule = settings.sigma_rule;
     request.want_sigma = settings.uncertainty != Uncertainty::none;
     return request;
 }

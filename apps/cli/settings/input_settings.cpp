@@ -39,7 +39,11 @@ void InputSettings::add_to(SettingTable& table) {
         "input_time_unit", open.text.unit,
         "Unit of the times in a text recording; auto: seconds where there is a decimal point, else "
         "microseconds, or what makes sense of the rate of events.",
-        {"auto", "s", "ms", "us", "ns"}));
+        {{TextTimeUnit::automatic, "auto"},
+         {TextTimeUnit::seconds, "s"},
+         {TextTimeUnit::milliseconds, "ms"},
+         {TextTimeUnit::microseconds, "us"},
+         {TextTimeUnit::nanoseconds, "ns"}}));
     table.settings.push_back(parsed_setting<SensorDuration>(
         "reorder", open.text.reorder, "TIME",
         "Put rows of a text recording in order that come at most so long after a later one; 0s "

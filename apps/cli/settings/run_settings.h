@@ -37,7 +37,14 @@ struct SizeChoice {
 /// automatic chooses what is left open where there is a pace to hold.
 enum class QualityMode { automatic, fixed };
 
-enum class SigmaChoice { model, log_blend, mixture };
+/// How the members of the local ensemble give one sigma; empty: as the model says.
+using SigmaChoice = std::optional<SigmaRule>;
+
+inline std::vector<Word<SigmaChoice>> sigma_words() {
+    return {{std::nullopt, "model"},
+            {SigmaRule::log_blend, "log_blend"},
+            {SigmaRule::mixture, "mixture"}};
+}
 
 /// What becomes of the camera's own images: automatic uses them where some come.
 enum class CameraFrames { automatic, use, ignore };
@@ -67,7 +74,7 @@ struct RunSettings {
     SizeChoice size;
     std::optional<Region> region;
     std::optional<int> lookahead;
-    SigmaChoice sigma_rule = SigmaChoice::model;
+    SigmaChoice sigma_rule;
     Precision precision = Precision::automatic;
     Kernels kernels = Kernels::automatic;
     Engine engine = Engine::fast;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "apps/cli/settings/values.h"
+#include "apps/cli/settings/words.h"
 #include "src/core/error.h"
 
 #include <functional>
@@ -81,16 +82,17 @@ Setting parsed_setting(std::string key, T& value, std::string value_name, std::s
     return setting;
 }
 
-/// One of a few words: `names` in the order of the enumerators from 0.
+/// One of a few words.
 template <typename Enum>
 Setting choice_setting(std::string key, Enum& value, std::string help,
-                       const std::vector<std::string>& names) {
+                       const std::vector<Word<Enum>>& words) {
     std::string value_name;
-    for (const std::string& name : names) value_name += (value_name.empty() ? "" : "|") + name;
+    for (const Word<Enum>& word : words)
+        value_name += (value_name.empty() ? "" : "|") + std::string{word.text};
     return parsed_setting<Enum>(
         std::move(key), value, value_name, std::move(help),
-        [names](const std::string& text) { return Enum(parse_choice(text, names)); },
-        [names](const Enum& v) { return names[std::size_t(v)]; });
+        [words](const std::string& text) { return parse_word(text, words); },
+        [words](const Enum& v) { return show_word(v, words); });
 }
 
 }  // namespace eventide::app

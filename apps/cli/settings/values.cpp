@@ -5,6 +5,8 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
+#include <eventide/frame.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -66,7 +68,7 @@ std::string show_duration(SensorDuration duration) {
 }
 
 Size parse_size(const std::string& text) {
-    constexpr int kMax = 16384;
+    constexpr int kMax = kLargestFrameSide;
     const auto [width, height] = size_in(text).value_or(std::pair{0, 0});
     if (width < 1 || height < 1 || width > kMax || height > kMax)
         throw_usage("a size such as 640x480, each from 1 to " + std::to_string(kMax), text);

@@ -97,8 +97,13 @@ void offset_rows(const OffsetRows& r) {
 }  // namespace
 
 const Bf16Kernels& bf16_kernels() {
-    static const Bf16Kernels kKernels{"emulated", dot_area,    pixels_to_bf16, row_to_bf16,
-                                      double_row, offset_rows, nullptr};
+    static const Bf16Kernels kKernels{.name = "emulated",
+                                      .dot_area = dot_area,
+                                      .pixels_to_bf16 = pixels_to_bf16,
+                                      .row_to_bf16 = row_to_bf16,
+                                      .double_row = double_row,
+                                      .offset_rows = offset_rows,
+                                      .hidden_rows = nullptr};
     return kKernels;
 }
 

@@ -52,11 +52,11 @@ public:
     /// The least of the repetitions, ms: whatever else the machine does only adds.
     template <typename Body>
     double least(Body body) const {
-        constexpr int kMost = 12;
+        constexpr int kMax = 12;
         const auto begun = Clock::now();
         body();
         bench::Stopwatch watch;
-        for (int i = 0; i < kMost && (i == 0 || Clock::now() - begun < slice_); ++i) {
+        for (int i = 0; i < kMax && (i == 0 || Clock::now() - begun < slice_); ++i) {
             if (settings_.give_up && settings_.give_up())
                 throw Error(ErrorKind::failed,
                             "stopped while it measured what this processor does");

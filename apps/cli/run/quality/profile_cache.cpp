@@ -27,7 +27,7 @@ fs::path absolute_folder(const char* variable) {
 
 /// Letters and digits of a name, in lower case, with single hyphens for the rest.
 std::string slug(const std::string& name) {
-    constexpr std::size_t kMost = 60;
+    constexpr std::size_t kMax = 60;
     std::string text;
     for (const char c : name) {
         const bool upper = c >= 'A' && c <= 'Z';
@@ -36,7 +36,7 @@ std::string slug(const std::string& name) {
         else if (!text.empty() && text.back() != '-')
             text += '-';
     }
-    text.resize(std::min(text.size(), kMost));
+    text.resize(std::min(text.size(), kMax));
     while (text.ends_with('-')) text.pop_back();
     return text;
 }
@@ -46,8 +46,8 @@ std::optional<QualityProfile> read_profile(const fs::path& file, const ProfileKe
     std::ifstream in{file, std::ios::binary};
     if (!in) return {};
     // More than any profile has: somebody else's file.
-    constexpr std::size_t kMost = 1 << 16;
-    std::string text(kMost, '\0');
+    constexpr std::size_t kMax = 1 << 16;
+    std::string text(kMax, '\0');
     in.read(text.data(), std::streamsize(text.size()));
     text.resize(std::size_t(in.gcount()));
     try {

@@ -10,8 +10,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kLook{0.5};                       // shorter spans jump
-constexpr Seconds kPatience{5}, kMostPatience{80};  // of calm, before a step up
+constexpr Seconds kLook{0.5};                      // shorter spans jump
+constexpr Seconds kPatience{5}, kMaxPatience{80};  // of calm, before a step up
 constexpr Seconds kTakenBack{15}, kForgotten{60};
 constexpr unsigned kStrainedLooks = 3;
 constexpr double kHolds = 0.9, kComfortable = 0.75, kEasy = 0.6;
@@ -88,7 +88,7 @@ bool QualityControl::lower(Seconds now) {
         while (to + 1 < levels_.size() && !holds(to, kComfortable)) ++to;
     }
     if (to >= levels_.size()) return false;
-    if (now - raised_ < kTakenBack) patience_ = std::min(2 * patience_, kMostPatience);
+    if (now - raised_ < kTakenBack) patience_ = std::min(2 * patience_, kMaxPatience);
     return move(to, now);
 }
 

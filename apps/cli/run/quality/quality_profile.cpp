@@ -25,29 +25,28 @@ Json json_of(const ProfileKey& key) {
             {"width", key.width},         {"height", key.height}};
 }
 
-[[noreturn]] void complain(const std::string& expected, const std::string& found) {
+[[noreturn]] void refuse(const std::string& expected, const std::string& found) {
     throw Error(ErrorKind::input, "expected " + expected + ", found " + found);
 }
 
 const Json& member(const Json& json, const char* name) {
-    if (!json.is_object() || !json.contains(name))
-        complain("\"" + std::string{name} + "\"", "none");
+    if (!json.is_object() || !json.contains(name)) refuse("\"" + std::string{name} + "\"", "none");
     return json.at(name);
 }
 
 /// More than nothing, less than an hour.
 double milliseconds(const Json& json, const char* name) {
     const Json& value = member(json, name);
-    constexpr double kMost = 3.6e6;
-    if (!value.is_number() || !(value.get<double>() > 0) || value.get<double>() > kMost)
-        complain(std::string{name} + " above 0 ms", value.dump());
+    constexpr double kMax = 3.6e6;
+    if (!value.is_number() || !(value.get<double>() > 0) || value.get<double>() > kMax)
+        refuse(std::string{name} + " above 0 ms", value.dump());
     return value.get<double>();
 }
 
 PrecisionCost precision_cost(const Json& json) {
     const Json &name = member(json, "precision"), &engine = member(json, "engine");
-    if (name != "f32" && name != "bf16") complain("f32 or bf16", name.dump());
-    if (!engine.is_string()) complain("the engine's name", engine.dump());
+    if (name != "f32" && name != "bf16") refuse("f32 or bf16", name.dump());
+    if (!engine.is_string()) refuse("the engine's name", engine.dump());
     return {name == "f32" ? Precision::f32 : Precision::bf16,
             engine.get<std::string>(),
             milliseconds(json, "encode_ms"),
@@ -61,7 +60,7 @@ void check_key(const Json& found, const ProfileKey& key) {
     const Json expected = json_of(key);
     for (const auto& [name, value] : expected.items())
         if (member(found, name.c_str()) != value)
-            complain(name + " " + value.dump(), found.at(name).dump());
+            refuse(name + " " + value.dump(), found.at(name).dump());
 }
 
 }  // namespace
@@ -87,13 +86,13 @@ std::string profile_text(const QualityProfile& profile) {
 
 QualityProfile parse_profile(const std::string& text, const ProfileKey& key) {
     const Json json = Json::parse(text, nullptr, false);
-    if (json.is_discarded()) complain("JSON", "something else");
-    if (member(json, "format") != kFormat) complain(kFormat, json.at("format").dump());
+    if (json.is_discarded()) refuse("JSON", "something else");
+    if (member(json, "format") != kFormat) refuse(kFormat, json.at("format").dump());
     if (member(json, "version") != kVersion)
-        complain("version " + std::to_string(kVersion), json.at("version").dump());
+        refuse("version " + std::to_string(kVersion), json.at("version").dump());
     check_key(member(json, "key"), key);
     const Json& costs = member(json, "costs");
-    if (!costs.is_array() || costs.empty()) complain("a list of costs", costs.dump());
+    if (!costs.is_array() || costs.empty()) refuse("a list of costs", costs.dump());
     QualityProfile profile{key, {}};
     for (const Json& cost : costs) profile.costs.push_back(precision_cost(cost));
     return profile;

@@ -1,0 +1,99 @@
+// The part of `eventide run`'s table that says with which network, and which buffers around it.
+#include "apps/cli/settings/open_setting.h"
+#include "apps/cli/settings/run_settings.h"
+
+namespace eventide::app {
+
+namespace {
+
+/// A number of buffers, or auto.
+Setting buffers_setting(std::string key, std::optional<int>& value, std::string help) {
+    return open_setting<int>(
+        std::move(key), value, "N", std::move(help), "auto",
+        [](const std::string& text) { return parse_whole(text, 1, 1024); },
+        [](const int& n) { return std::to_string(n); });
+}
+
+std::string check_latency(const std::string& text) {
+    if (text != "auto" && text != "none" && parse_duration(text) <= SensorDuration{0})
+        throw_usage("auto, none or a time above 0", text);
+    return text;
+}
+
+}  // namespace
+
+/// With which network, and what it remembers.
+void RunSettings::add_network(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(noted(text_setting(
+                  "model", model, "NAME|FILE",
+                  "A name from the models folder (default, small, thesis) or a safetensors file."),
+              model_given));
+    add(choice_setting("sigma_rule", sigma_rule,
+                       "How the members of the local ensemble give one sigma; model: as the model "
+                       "says.",
+                       sigma_words()));
+    add(choice_setting("precision", precision,
+                       "Arithmetic precision: auto measures at the start which is faster.",
+                       kPrecisionWords));
+    add(choice_setting(
+        "kernels", kernels,
+        "Whose convolutions the fast engine calls: auto takes what pays best on this "
+        "processor; own (built-in kernels) or onednn give bit-identical results.",
+        {{Kernels::automatic, "auto"}, {Kernels::own, "own"}, {Kernels::onednn, "onednn"}}));
+    add(choice_setting("engine", engine, "plain is the readable reference, fast the usual one.",
+                       kEngineWords));
+    add(whole_setting("threads", threads, "N",
+                      "Threads the network may use; 0: as many as this process may run on.", 0,
+                      1024));
+    add(text_setting("state_in", state_in, "FILE",
+                     "Go on from the network's state that an earlier run saved."));
+    add(text_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
+    add(choice_setting("frames", frames,
+                       "The camera's own images (APS): auto and use correct the frames by them, "
+                       "for as long as what they "
+                       "show holds; use says so where none came; ignore leaves them alone.",
+                       {{CameraFrames::automatic, "auto"},
+                        {CameraFrames::use, "use"},
+                        {CameraFrames::ignore, "ignore"}}));
+    add(open_setting<ColourFilter>(
+        "bayer", bayer, "none|rggb|grbg|gbrg|bggr",
+        "The sensor's colour filter, from its top left corner; auto: what the camera or recording "
+        "says. Its images are demosaiced.",
+        "auto", [](const std::string& text) { return parse_word(text, bayer_words()); },
+        [](const ColourFilter& f) { return std::string{name_of(f)}; }));
+    add(flag_setting("colour", colour,
+                     "Frames in colour, of a sensor with a colour filter: folders, videos, Y4M, "
+                     "window and page."));
+    add(flag_setting("reset_on_gap", reset_on_gap,
+                     "Reset the recurrent state where data were lost, instead of keeping it."));
+}
+
+/// Cameras, and the numbers of buffers.
+void RunSettings::add_machinery(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
+    add(parsed_setting<std::string>(
+        "latency", latency, "TIME",
+        "Of a live source: how late frames may be. What does not fit is left out, in this order: "
+        "frames, half of their rate, event windows (merged into one), packets. none: as late as "
+        "the buffers allow; auto: 250ms.",
+        check_latency, same_text));
+    add(text_setting("camera", camera, "FILE", "Settings of a camera, as in config/cameras."));
+    add(flag_setting("reconnect", reconnect, "Wait for an unplugged camera to come back."));
+    add(whole_setting(
+        "buffers_packets", buffers_packets, "N",
+        "Packets between reading and binning: the burst a live source may send. Of a recording, "
+        "which waits, at most 8.",
+        1, 1 << 16));
+    add(buffers_setting("buffers_grids", buffers_grids,
+                        "Event windows between binning and the network; auto: 3 of a live source, "
+                        "2 of a recording."));
+    add(buffers_setting(
+        "buffers_latents", buffers_latents,
+        "Event windows between the network and rendering: more bridge longer bursts "
+        "and allow more latency. auto: 3 of a live source, 2 of a recording."));
+    add(flag_setting("sequential", sequential,
+                     "Everything on one thread: the same frames, for comparison."));
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,175 @@
+// The pipeline of threads for Python: anything that can be iterated is a source, any callable a
+// sink.
+#include "python/arrays.h"
+#include "python/parts.h"
+
+#include <eventide/error.h>
+#include <eventide/pipeline.h>
+
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace eventide::python {
+
+namespace py = pybind11;
+
+namespace {
+
+int size_of(const py::object& source, const char* name, int given) {
+    if (given != 0) return given;
+    if (py::hasattr(source, name)) return source.attr(name).cast<int>();
+    throw Error(ErrorKind::usage, std::string{"Pipeline: expected a source with a "} + name +
+                                      ", or the argument " + name + ", found neither");
+}
+
+/// Reads on a thread that is none of Python's: everything here takes Python's lock.
+class IteratedSource final : public EventSource {
+public:
+    IteratedSource(py::object source, int width, int height)
+        : source_(std::move(source)),
+          events_(py::iter(source_)),
+          live_(py::hasattr(source_, "gap_before")),
+          info_{.name = "python",
+                .serial = "",
+                .format = "",
+                .width = size_of(source_, "width", width),
+                .height = size_of(source_, "height", height)} {}
+
+    const SensorInfo& info() const noexcept override { return info_; }
+    bool is_live() const noexcept override { return live_; }
+    bool gap_before() const noexcept override { return gap_before_; }
+    std::optional<SensorTime> clock() const override { return clock_; }
+
+    bool read(Batch& batch) override {
+        const py::gil_scoped_acquire locked;
+        batch.clear();
+        const auto events =
+            py::reinterpret_steal<py::object>(PyIter_Next(events_.ptr()));  // null at the end
+        if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+        if (py::hasattr(source_, "clock"))
+            if (const py::object clock = source_.attr("clock"); !clock.is_none())
+                clock_ = from_us(clock.cast<std::int64_t>());
+        if (!events) return false;
+        append_events(events.cast<py::array>(), batch.events);
+        gap_before_ = live_ && source_.attr("gap_before").cast<bool>();
+        return true;
+    }
+
+    void stop() noexcept override {
+        const py::gil_scoped_acquire locked;
+        try {
+            if (py::hasattr(source_, "stop")) source_.attr("stop")();
+        } catch (py::error_already_set& error) {
+            error.discard_as_unraisable("stop()");
+        }
+    }
+
+private:
+    py::object source_;
+    py::object events_;
+    const bool live_;
+    const SensorInfo info_;
+    bool gap_before_ = false;
+    std::optional<SensorTime> clock_;
+};
+
+/// Calls with a frame that is the callee's to keep; False ends the run.
+class CalledSink final : public FrameSink {
+public:
+    explicit CalledSink(py::object callable) : callable_(std::move(callable)) {}
+    bool write(const Frame& frame) override {
+        const py::gil_scoped_acquire locked;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        return !callable_(std::make_shared<Frame>(frame)).is(py::bool_(false));
+    }
+
+private:
+    py::object callable_;
+};
+
+class PipelineOfPython {
+public:
+    PipelineOfPython(const py::object& source, const py::object& sinks, const std::string& model,
+                     int width, int height, double latency, bool sequential,
+                     const py::kwargs& options)
+        : source_(source, width, height) {
+        for (const py::handle sink : py::isinstance<py::sequence>(sinks)
+                                         ? py::list(sinks)
+                                         : py::list(py::make_tuple(sinks)))
+            sinks_.push_back(
+                std::make_unique<CalledSink>(py::reinterpret_borrow<py::object>(sink)));
+        std::vector<FrameSink*> all;
+        for (const auto& sink : sinks_) all.push_back(sink.get());
+        if (!(latency >= 0 && latency <= 1e6))
+            throw Error(ErrorKind::usage,
+                        "latency: expected 0 to 1000000 s, found " + std::to_string(latency));
+        PipelineOptions how;
+        how.frames = options_of(options);
+        how.latency = std::chrono::microseconds{std::llround(1e6 * latency)};
+        how.sequential = sequential;
+        const py::gil_scoped_release released;
+        pipeline_ = std::make_unique<EventPipeline>(source_, all, model, how);
+    }
+
+    void run() {
+        const py::gil_scoped_release released;
+        pipeline_->run();
+    }
+    void stop() {
+        const py::gil_scoped_release released;
+        pipeline_->stop();
+    }
+    std::map<std::string, std::uint64_t> counters() const {
+        const PipelineCounters c = pipeline_->counters();
+        return {{"batches", c.batches},
+                {"lost_batches", c.lost_batches},
+                {"gaps", c.gaps},
+                {"events", c.events},
+                {"filtered", c.filtered},
+                {"damaged", c.damaged},
+                {"event_windows", c.event_windows},
+                {"merged_windows", c.merged_windows},
+                {"frames", c.frames},
+                {"skipped_frames", c.skipped_frames},
+                {"latency_p50_us", std::uint64_t(c.latency_p50.count())},
+                {"latency_p99_us", std::uint64_t(c.latency_p99.count())}};
+    }
+
+private:
+    IteratedSource source_;
+    std::vector<std::unique_ptr<CalledSink>> sinks_;
+    std::unique_ptr<EventPipeline> pipeline_;
+};
+
+}  // namespace
+
+void add_pipeline(py::module_& module) {
+    py::class_<PipelineOfPython>(
+        module, "Pipeline",
+        "Reading, cutting, encoding and rendering on a thread each.\n\n"
+        "source: a Reader, a Camera, or anything that gives structured arrays of events when it "
+        "is\n"
+        "iterated; width and height where it does not have them. sinks: a callable, or a list of\n"
+        "them, each called with every Frame on the thread of run(); False ends the run.\n"
+        "latency: of a Camera, seconds, what a frame may be late at most; 0: anything.\n"
+        "Other options are those of Reconstructor.")
+        .def(py::init<const py::object&, const py::object&, const std::string&, int, int, double,
+                      bool, const py::kwargs&>(),
+             py::arg("source"), py::arg("sinks"), py::arg("model") = "default", py::kw_only(),
+             py::arg("width") = 0, py::arg("height") = 0, py::arg("latency") = 0.25,
+             py::arg("sequential") = false)
+        .def("run", &PipelineOfPython::run,
+             "Until the source has ended, a sink returns False, or stop(); once. What a source or "
+             "sink raises comes out of it.")
+        .def("stop", &PipelineOfPython::stop, "From any thread: what was read is still finished.")
+        .def_property_readonly("counters", &PipelineOfPython::counters, "so far");
+}
+
+}  // namespace eventide::python
