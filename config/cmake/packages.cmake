@@ -27,14 +27,14 @@ foreach(part IMGCODECS HIGHGUI)
 endforeach()
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS ${opencv_IMGCODECS})
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION}), ${opencv_IMGCODECS}, ${opencv_HIGHGUI}")  # its models
-# Loaded when a ROS 2 topic is named, or an HDF5 or SQLite file is opened, so that dpkg-shlibdeps does not see them.
+# Loaded when a ROS 2 topic is named or an HDF5 file is opened, so that dpkg-shlibdeps does not see them.
 if(EVENTIDE_ROS2_ENABLED)
   list(APPEND loaded libddsc0debian)
 endif()
 if(EVENTIDE_HDF5_ENABLED)
   list(APPEND loaded libhdf5-103-1)
 endif()
-if(EVENTIDE_SQLITE_ENABLED)
+if(EVENTIDE_SQLITE_ENABLED)  # likewise, with the first of its files
   list(APPEND loaded libsqlite3-0)
 endif()
 list(JOIN loaded ", " loaded)
