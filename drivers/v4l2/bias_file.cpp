@@ -1,8 +1,10 @@
-// Prophesee's .bias files.
+// Prophesee's files of biases.
 #include "drivers/v4l2/bias_file.h"
 
 #include "src/core/error.h"
 #include "src/io/input_file.h"
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -13,9 +15,20 @@ namespace eventide {
 
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, std::size_t line,
-                         const std::string& what) {
-    throw Error(ErrorKind::usage, file.string() + ":" + std::to_string(line) + ": " + what);
+constexpr std::size_t kMaxBiases = 1000;
+
+[[noreturn]] void refuse(const std::string& place, const std::string& what) {
+    throw Error(ErrorKind::usage, place + ": " + what);
+}
+
+void add(const Bias& bias, std::vector<Bias>& to) {
+    const auto before = std::ranges::find(to, bias.name, &Bias::name);
+    if (before == to.end())
+        to.push_back(bias);
+    else if (before->value != bias.value)
+        refuse(bias.place, "'" + bias.name + "' is " + std::to_string(bias.value) + " here, and " +
+                               std::to_string(before->value) + " in " + before->place);
+    if (to.size() > kMaxBiases) refuse(bias.place, "expected at most 1000 biases");
 }
 
 /// What the ioctl takes: 32 bits and a sign.
@@ -33,7 +46,7 @@ std::optional<std::int64_t> number_of(const std::string& text) {
     return negative ? -std::int64_t{value} : std::int64_t{value};
 }
 
-Bias bias_of(const std::filesystem::path& file, const std::string& text, std::size_t line) {
+Bias bias_of(const std::string& place, const std::string& text) {
     // Metavision pads values to five characters, so that longer ones touch the %.
     const std::size_t percent = std::min(text.find('%'), text.size());
     std::istringstream before{text.substr(0, percent)}, after{text.substr(percent)};
@@ -43,19 +56,11 @@ Bias bias_of(const std::filesystem::path& file, const std::string& text, std::si
     const auto number = number_of(value);
     if (!number || !more.empty() || separator != "%" || name.empty() ||
         (!rest.empty() && rest != "%"))
-        refuse(file, line,
-               "expected VALUE % NAME, such as 299 % bias_diff_on, found '" + text + "'");
-    return {name, *number, line};
+        refuse(place, "expected VALUE % NAME, such as 299 % bias_diff_on, found '" + text + "'");
+    return {name, *number, place};
 }
 
-}  // namespace
-
-bool names_bias_file(const std::filesystem::path& file) {
-    return file.extension() == ".bias";
-}
-
-std::vector<Bias> read_bias_file(const std::filesystem::path& file) {
-    constexpr std::size_t kMaxBiases = 1000;
+std::vector<Bias> read_lines(const std::filesystem::path& file) {
     std::ifstream stream = open_to_read(file, ErrorKind::usage);
     std::vector<Bias> biases;
     std::size_t line = 0;
@@ -64,18 +69,59 @@ std::vector<Bias> read_bias_file(const std::filesystem::path& file) {
         while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.pop_back();
         const std::size_t begin = text.find_first_not_of(" \t");
         if (begin == text.npos || text[begin] == '%') continue;
-        const Bias bias = bias_of(file, text, line);
-        const auto before = std::ranges::find(biases, bias.name, &Bias::name);
-        if (before == biases.end())
-            biases.push_back(bias);
-        else if (before->value != bias.value)
-            refuse(file, line,
-                   "'" + bias.name + "' is " + std::to_string(bias.value) + " here, and " +
-                       std::to_string(before->value) + " in line " + std::to_string(before->line));
-        if (biases.size() > kMaxBiases) refuse(file, line, "expected at most 1000 biases");
+        add(bias_of(file.string() + ":" + std::to_string(line), text), biases);
     }
-    if (biases.empty()) refuse(file, line, "expected lines of VALUE % NAME, found none");
+    if (biases.empty()) refuse(file.string(), "expected lines of VALUE % NAME, found none");
     return biases;
+}
+
+using Json = nlohmann::json;
+
+/// proto3's JSON may leave out a value of 0.
+Bias bias_of(const Json& each, const std::string& place) {
+    const bool named =
+        each.is_object() && each.contains("name") && each["name"].is_string() && each["name"] != "";
+    const Json value = each.is_object() ? each.value("value", Json(0)) : Json();
+    const bool whole = value.is_number_integer() &&
+                       (!value.is_number_unsigned() || value.get<std::uint64_t>() <= INT32_MAX) &&
+                       value.get<std::int64_t>() >= INT32_MIN;
+    if (!named || !whole)
+        refuse(place, R"(expected {"name": "bias_fo", "value": 0} with a whole number, found )" +
+                          each.dump());
+    return {each["name"].get<std::string>(), value.get<std::int64_t>(), place};
+}
+
+std::vector<Bias> read_json(const std::filesystem::path& file) {
+    std::ifstream stream = open_to_read(file, ErrorKind::usage);
+    Json root;
+    try {
+        root = Json::parse(stream);
+    } catch (const Json::parse_error& error) {
+        refuse(file.string(), std::string("expected JSON: ") + error.what());
+    }
+    const Json* state =
+        root.is_object() && root.contains("ll_biases_state") ? &root["ll_biases_state"] : nullptr;
+    if (state == nullptr || !state->is_object() || !state->contains("bias") ||
+        !(*state)["bias"].is_array() || (*state)["bias"].empty())
+        refuse(file.string(),
+               "expected camera settings of Metavision with ll_biases_state.bias, a list of biases "
+               "with name and value, found none");
+    std::vector<Bias> biases;
+    const Json& list = (*state)["bias"];
+    for (std::size_t i = 0; i < list.size(); ++i)
+        add(bias_of(list[i], file.string() + ": ll_biases_state.bias[" + std::to_string(i) + "]"),
+            biases);
+    return biases;
+}
+
+}  // namespace
+
+bool names_bias_file(const std::filesystem::path& file) {
+    return file.extension() == ".bias" || file.extension() == ".json";
+}
+
+std::vector<Bias> read_bias_file(const std::filesystem::path& file) {
+    return file.extension() == ".json" ? read_json(file) : read_lines(file);
 }
 
 }  // namespace eventide

@@ -1,7 +1,6 @@
-// Prophesee's .bias files: what Metavision saves of a sensor's biases.
+// Prophesee's files of biases: what Metavision saves of a sensor's.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -12,14 +11,17 @@ namespace eventide {
 struct Bias {
     std::string name;  ///< "bias_fo"
     std::int64_t value = 0;
-    std::size_t line = 0;  ///< from 1
+    std::string place;  ///< "x.bias:3", "x.json: ll_biases_state.bias[2]"
 };
 
+/// By its extension, .bias or .json.
 bool names_bias_file(const std::filesystem::path& file);
 
-/// Lines of `VALUE % NAME`, the value decimal or 0x...; what follows the name behind another % is
-/// passed over, as are empty lines and header lines, which begin with %. Throws Error (usage) with
-/// file and line for anything else, for a name with two values, and for a file without a bias.
+/// A .bias file: lines of `VALUE % NAME`, the value decimal or 0x...; what follows the name behind
+/// another % is passed over, as are empty lines and header lines, which begin with %. A .json file:
+/// camera settings as Metavision 4 and later save them (OpenEB's device_state.proto), of which
+/// ll_biases_state.bias, [{"name": ..., "value": ...}], is read. Throws Error (usage) with file and
+/// place for anything else, for a name with two values, and for a file without a bias.
 std::vector<Bias> read_bias_file(const std::filesystem::path& file);
 
 }  // namespace eventide

@@ -39,8 +39,8 @@ struct V4l2Settings {
     int buffers = 32;
 };
 
-/// config/cameras/*.toml, or a .bias file of Prophesee's, whose names are the driver's. Unknown
-/// keys are refused with file and line (Error, usage).
+/// config/cameras/*.toml, or a .bias or .json file of Prophesee's, whose names are the driver's.
+/// Unknown keys are refused with file and line (Error, usage).
 V4l2Settings load_v4l2_settings(const std::filesystem::path& file);
 
 /// The bytes before the end-of-data word that the Raspberry Pi's driver puts after the last good

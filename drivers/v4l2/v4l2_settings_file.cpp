@@ -11,13 +11,12 @@ namespace {
 
 void add_biases(const std::filesystem::path& file, V4l2Settings& settings) {
     for (const Bias& bias : read_bias_file(file)) {
-        const std::string place = file.string() + ":" + std::to_string(bias.line);
         if (const auto other = settings.control_places.find(bias.name);
             other != settings.control_places.end())
-            throw Error(ErrorKind::usage, place + ": '" + bias.name + "' is also in " +
+            throw Error(ErrorKind::usage, bias.place + ": '" + bias.name + "' is also in " +
                                               other->second + "; expected it in one place");
         settings.controls[bias.name] = bias.value;
-        settings.control_places[bias.name] = place;
+        settings.control_places[bias.name] = bias.place;
     }
 }
 
@@ -72,7 +71,8 @@ V4l2Settings load_v4l2_settings(const std::filesystem::path& file) {
     reader.custom("biases", [&](const toml::node& node) {
         const auto path = node.value_exact<std::string>();
         if (!path || !names_bias_file(*path))
-            reader.refuse(node, "biases: expected a file such as \"imx636.bias\"");
+            reader.refuse(node,
+                          "biases: expected a file such as \"imx636.bias\" or \"settings.json\"");
         biases = file.parent_path() / *path;
     });
     reader.number("buffers", settings.buffers, 2, 256);

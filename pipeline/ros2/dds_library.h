@@ -31,6 +31,7 @@ namespace eventide {
     X(dds_set_guardcondition)             \
     X(dds_set_log_sink)                   \
     X(dds_set_status_mask)                \
+    X(dds_set_trace_sink)                 \
     X(dds_strretcode)                     \
     X(dds_take)                           \
     X(dds_wait_for_acks)                  \

@@ -345,13 +345,41 @@ TEST_F(BiasFile, WhatDoesNotFitIsNamedWithItsLine) {
                 HasSubstr("sensor.bias:1: control 'bias_diff' of /dev/video0 cannot be written: "
                           "expected its value, 300, found 299"));
     EXPECT_THAT(failure("5 % bias_fo\n6 % bias_fo\n"),
-                HasSubstr("sensor.bias:2: 'bias_fo' is 6 here, and 5 in line 1"));
+                HasSubstr("sensor.bias:2: 'bias_fo' is 6 here, and 5 in "));
     EXPECT_THAT(failure("5 bias_fo\n"), HasSubstr("sensor.bias:1: expected VALUE % NAME"));
     EXPECT_THAT(failure("5 5 % bias_fo\n"), HasSubstr("sensor.bias:1: expected VALUE % NAME"));
     EXPECT_THAT(failure("5 % bias_fo bias_hpf\n"), HasSubstr("sensor.bias:1: expected VALUE"));
     EXPECT_THAT(failure("99999999999 % bias_fo\n"), HasSubstr("sensor.bias:1: expected VALUE"));
     EXPECT_THAT(failure("% header\n"), HasSubstr("found none"));
     EXPECT_THAT(failure_of([] { load_v4l2_settings("/none/x.bias"); }), HasSubstr("/none/x.bias"));
+}
+
+TEST_F(BiasFile, IsReadFromMetavisionsCameraSettings) {
+    V4l2Testbed bed{with_biases()};
+    const auto settings_of = [&](const std::string& text) {
+        return load_v4l2_settings(write(text, "settings.json"));
+    };
+    open(settings_of(R"({"digital_crop_state": {"enabled": false},
+        "ll_biases_state": {"bias": [{"name": "bias_diff_off", "value": 221},
+                                     {"name": "bias_fo", "value": -5}, {"name": "bias_refr"}]}})"));
+    EXPECT_EQ(bed.control("bias_diff_off").value, 221);
+    EXPECT_EQ(bed.control("bias_fo").value, -5);
+    EXPECT_EQ(bed.control("bias_refr").value, 0);
+    const auto refusal = [&](const std::string& biases) {
+        return failure_of(
+            [&] { open(settings_of(R"({"ll_biases_state": {"bias": )" + biases + "}}")); });
+    };
+    EXPECT_THAT(refusal(R"([{"name": "bias_fo", "value": 5}, {"name": "bias_hpf", "value": 1}])"),
+                HasSubstr("settings.json: ll_biases_state.bias[1]: /dev/video0 has no control "
+                          "'bias_hpf'"));
+    for (const char* wrong :
+         {R"([{"name": "bias_fo", "value": 1.5}])", R"([{"name": "bias_fo", "value": "1"}])",
+          R"([{"name": "bias_fo", "value": 3000000000}])", R"([{"value": 1}])", "[7]", "[null]"})
+        EXPECT_THAT(refusal(wrong), HasSubstr("ll_biases_state.bias[0]: expected {\"name\""))
+            << wrong;
+    EXPECT_THAT(refusal("[]"), HasSubstr("expected camera settings of Metavision"));
+    EXPECT_THAT(refusal("{"), HasSubstr("expected JSON: "));
+    EXPECT_THAT(failure_of([&] { settings_of("[1]"); }), HasSubstr("ll_biases_state.bias"));
 }
 
 TEST_F(BiasFile, StandsBesideOtherSettings) {

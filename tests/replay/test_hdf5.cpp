@@ -3,6 +3,7 @@
 #include "replay/formats.h"
 #include "replay/summary.h"
 #include "src/core/error.h"
+#include "src/simulate/sim_recording.h"
 #include "tests/replay/hdf5_files.h"
 #include "tests/replay/recording_files.h"
 
@@ -141,6 +142,58 @@ TEST_P(Hdf5Layouts, GiveTheEventsThatWereWritten) {
     EXPECT_TRUE(batch.events == events_);
     EXPECT_EQ(parser->damaged().total(), 0U);
     EXPECT_EQ(recording->position_bytes(), recording->size_bytes());
+}
+
+/// Moved to where the layouts' times lie.
+std::vector<Event> moved(std::vector<Event> events) {
+    const SensorDuration by = from_us(kOffset + 700) - events.front().t;
+    for (Event& event : events) event.t += by;
+    return events;
+}
+
+std::vector<Event> simulated_events() {
+    SimRecordingSettings settings;
+    settings.scene = simulation_preset("demo").scene;
+    settings.sensor = simulation_preset("demo").sensor;
+    settings.seconds = .5;
+    std::vector<Event> events;
+    simulate_recording(settings, procedural_textures(5, 64),
+                       [&](const Batch& batch, const std::vector<Truth>&) {
+                           events.insert(events.end(), batch.events.begin(), batch.events.end());
+                           return true;
+                       });
+    return moved(events);
+}
+
+TEST_P(Hdf5Layouts, GiveTheSimulatorsEvents) {
+    const auto events = simulated_events();
+    ASSERT_GT(events.size(), 10'000U);
+    GetParam().write(folder_.path("s.h5"), events);
+    EXPECT_TRUE(read_everything(*open_recording(folder_.path("s.h5"))).events == events);
+}
+
+TEST_P(Hdf5Layouts, GiveTheKnownCountsOfRealRecordings) {
+    struct Known {
+        const char* path;
+        std::uint64_t events, on;
+    };
+    for (const Known& known : {Known{"formats/davis346_robotarm.aedat4", 117'667, 72'363},
+                               Known{"formats/davis346_desk.aedat4", 6'676, 3'563},
+                               Known{"recordings/slider_depth_head", 50'000, 0}}) {
+        const auto path =
+            std::filesystem::path(EVENTIDE_SOURCE_DIR) / ".." / "shared" / "data" / known.path;
+        if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << known.path << " at hand";
+        GetParam().write(folder_.path("r.h5"),
+                         moved(read_everything(*open_recording(path.string())).events));
+        // Of a DAVIS240's size some layouts say.
+        OpenOptions options;
+        options.width = 346;
+        options.height = 260;
+        const Summary sum = summarize(*open_recording(folder_.path("r.h5"), options));
+        EXPECT_EQ(sum.events, known.events) << known.path;
+        if (known.on > 0) EXPECT_EQ(sum.on, known.on) << known.path;
+        EXPECT_EQ(sum.damaged.total(), 0U) << known.path;
+    }
 }
 
 TEST_P(Hdf5Layouts, SeekThenReadIsReadThenSkip) {

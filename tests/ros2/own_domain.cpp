@@ -22,7 +22,8 @@ const bool done = [] {
            "ParticipantIndex>"
            "<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex><Peers><Peer "
            "address=\"127.0.0.1\"/></Peers>"
-           "</Discovery><Tracing><Category>error</Category></Tracing></Domain></CycloneDDS>",
+           "</Discovery><Tracing><Category>error</Category>"
+           "<OutputFile>/dev/null</OutputFile></Tracing></Domain></CycloneDDS>",
            1);
     for (const char* name :
          {"ROS_LOCALHOST_ONLY", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS"})

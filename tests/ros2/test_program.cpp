@@ -193,6 +193,7 @@ TEST_F(Ros2Program, DoctorLooksAtIt) {
     const Result result = eventide({"doctor", "--json"});
     EXPECT_THAT(result.output, HasSubstr("Cyclone DDS"));
     EXPECT_THAT(result.output, HasSubstr("net.core.rmem_max"));
+    EXPECT_THAT(result.output, HasSubstr("interface lo (udp/127.0.0.1)"));
 }
 
 }  // namespace

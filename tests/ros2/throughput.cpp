@@ -1,6 +1,6 @@
-// Not a test: ros2-throughput FPS SECONDS [WIDTH HEIGHT [KEYS]] publishes frames of random numbers
-// with --out ros2:'s sink to a subscriber in a process of its own, and tells what was lost and how
-// long it took.
+// Not a test: ros2-throughput FPS SECONDS [WIDTH HEIGHT [KEYS [FASTDDS_PEER]]] publishes frames of
+// random numbers with --out ros2:'s sink to a subscriber in a process of its own, of Cyclone DDS or
+// that of Fast DDS which is named, and tells what was lost and how long it took.
 #include "pipeline/ros2/ros2_sink.h"
 #include "tests/ros2/topics.h"
 #include "tests/system/process.h"
@@ -53,7 +53,7 @@ void read_all(test::Process& subscriber, Seen& seen) {
 
 int main(int argc, char** argv) {
     if (argc < 3) {
-        std::fprintf(stderr, "ros2-throughput FPS SECONDS [WIDTH HEIGHT [KEYS]]\n");
+        std::fprintf(stderr, "ros2-throughput FPS SECONDS [WIDTH HEIGHT [KEYS [FASTDDS_PEER]]]\n");
         return 2;
     }
     const double fps = std::atof(argv[1]), length = std::atof(argv[2]);
@@ -61,13 +61,16 @@ int main(int argc, char** argv) {
               height = argc > 4 ? std::atoi(argv[4]) : 480;
     const std::string name = test::own_name("/throughput");
     Ros2SinkSettings settings;
-    settings.name = parse_ros2_sink_name(name + "?subscribers=1" +
-                                         (argc > 5 ? std::string{"&"} + argv[5] : ""));
+    settings.name = parse_ros2_sink_name(
+        name + "?subscribers=1" + (argc > 5 && *argv[5] != 0 ? std::string{"&"} + argv[5] : ""));
     settings.with_sigma = false;
     settings.warn = [](const std::string& text) { std::printf("%s\n", text.c_str()); };
     const auto sink = open_ros2_sink(std::move(settings));
-    test::Process subscriber{{EVENTIDE_ROS2_LISTENER, name + "/image_raw", "image", "reliable"},
-                             {.output_to_pipe = true}};
+    const std::string topic = name + "/image_raw";
+    test::Process subscriber{
+        argc > 6 ? std::vector<std::string>{argv[6], "listen", topic, "reliable"}
+                 : std::vector<std::string>{EVENTIDE_ROS2_LISTENER, topic, "image", "reliable"},
+        {.output_to_pipe = true}};
     Seen seen;
     std::jthread reading{[&] { read_all(subscriber, seen); }};
 

@@ -13,6 +13,9 @@ if [ "${1:-}" != --inside ]; then
 fi
 shift
 eventide=$1 listener=$2 peer=${3:-}
+for program in "$eventide" "$listener" ${peer:+"$peer"}; do
+  [ -x "$program" ] || { echo "expected the program $program, found none: it has to be built" >&2; exit 1; }
+done
 
 work=$(mktemp -d)
 pids=()

@@ -273,7 +273,7 @@ TEST_F(Commands, DoctorSaysWhatWorksAndWhatToDo) {
     const Json findings = Json::parse(eventide({"doctor", "--json"}).output);
     std::map<std::string, Json> by_subject;
     for (const Json& finding : findings) by_subject[finding["subject"]] = finding;
-    for (const char* subject : {"processor", "network", "video", "window"})
+    for (const char* subject : {"processor", "network", "video", "window", "page"})
         EXPECT_EQ(by_subject.count(subject), 1U) << subject;
     EXPECT_EQ(by_subject["video"]["state"], "ok");
     EXPECT_EQ(by_subject["window"]["state"], "absent") << "the tests' environment has no display";

@@ -6,10 +6,13 @@
 #include "apps/cli/version.h"
 #include "drivers/devices.h"
 #include "pipeline/ros2/ros2_sink.h"
+#include "pipeline/sinks/http/listening_socket.h"
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
 
 #include <nlohmann/json.hpp>
+
+#include <unistd.h>
 
 #include <iostream>
 #include <string>
@@ -72,6 +75,17 @@ Finding window() {
     }
 }
 
+/// The port that --out http: takes where none is named.
+Finding page() {
+    HttpAddress address;
+    try {
+        ::close(listen_at(address));
+        return {"page", State::good, "nobody listens at " + url_of(address) + " yet", ""};
+    } catch (const Error& error) {
+        return {"page", State::absent, error.what(), ""};
+    }
+}
+
 Finding ros2() {
     const Ros2State state = look_at_ros2();
     const bool good = state.works && state.advice.empty();
@@ -112,7 +126,7 @@ SettingTable DoctorCommand::settings() {
 }
 
 int DoctorCommand::run(Program&) {
-    std::vector<Finding> findings{processor(), network(), video(), window(), ros2()};
+    std::vector<Finding> findings{processor(), network(), video(), window(), page(), ros2()};
     for (Finding& camera : cameras()) findings.push_back(std::move(camera));
     auto list = nlohmann::ordered_json::array();
     bool bad = false;
