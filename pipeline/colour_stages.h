@@ -11,7 +11,8 @@
 
 namespace eventide {
 
-inline constexpr std::array kColourChannels{ColourChannel::blue, ColourChannel::green, ColourChannel::red};
+inline constexpr std::array kColourChannels{ColourChannel::blue, ColourChannel::green,
+                                            ColourChannel::red};
 
 /// Grids of the whole sensor, whose sides are even, become LatentMap::values by the stage for all
 /// pixels, and LatentMap::channels by those for one colour each, half as wide and high.

@@ -139,8 +139,7 @@ TEST(MvsecFile, WhatIsMissingIsNamed) {
 TEST(MvsecFile, WhatIsLeftOutIsToldInTheReport) {
     Mvsec content = small_file(21, .01, 1);
     content.events[4 * 30 + 2] = std::nan("");
-    const EvaluateReport report =
-        evaluate_evreal(write_file("damaged", content), small_model());
+    const EvaluateReport report = evaluate_evreal(write_file("damaged", content), small_model());
     ASSERT_FALSE(report.notes.empty());
     EXPECT_NE(report.notes.front().find("damaged: bad_record 1"), std::string::npos)
         << report.notes.front();
