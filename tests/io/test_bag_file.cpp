@@ -107,14 +107,14 @@ TEST_F(BagFiles, TakeNoMemoryForWhatIsOnlySaid) {
                 refusal(
                     save("said", bag(record(5, {{"compression", packing}, {"size", little(said)}},
                                             packed(packing, "a few bytes"))))),
-                HasSubstr(std::to_string(said) + " bytes"));
+                HasSubstr("expected messages with events"));
             EXPECT_LT(peak_memory(), before + (std::size_t{32} << 20)) << packing;
         }
     EXPECT_THAT(
         refusal(save("sensor",
                      bag(chunk("none", connection(kEvents, "dvs_msgs/EventArray") +
                                            message(kEvents, event_array(65535, 65535, {})))))),
-        HasSubstr("65535x65535"));
+        HasSubstr("found dvs_msgs/EventArray, and damage"));
 }
 
 }  // namespace
