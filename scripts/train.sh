@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
-# Trains the default network on, from the committed checkpoint, and writes the checkpoint anew.
+# Trains the default network (MODEL=small: the small one) on, from its committed checkpoint, and writes the checkpoint anew.
 #   scripts/train.sh DATA MINUTES [OPTIONS]     DATA as in scripts/accuracy.sh; MINUTES of wall clock, from now on;
 # OPTIONS of eventide-train, which the checkpoint keeps.
 # One thread at low priority, at the full learning rate (CONSTANT=.6: it falls in the last two fifths of all minutes so
 # far, for a model to ship: OUT/model.safetensors). Ctrl-C ends it after the step at hand with everything written.
-# TRAIN, PACK name the programs, OUT the folder of the run (out/train).
+# TRAIN, PACK name the programs, OUT the folder of the run (out/train; with MODEL out/MODEL), PACKS that of the pictures, packed (out/train).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -ge 2 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 build=build/release/apps/train
 train=${TRAIN:-$build/eventide-train}
 pack=${PACK:-$build/eventide-pack-pictures}
-out=${OUT:-out/train}
-checkpoint=config/models/checkpoints/default.safetensors
-mkdir -p "$out"
-[ -e "$out/train.pack" ] || "$pack" "$out/train.pack" 400 "$1/images/photos" 0 0 "$1/images/objects" 0 0 "$1/images/elementary" 0 0 "$1/images/bsds500" 0 400
-[ -e "$out/held_out.pack" ] || "$pack" "$out/held_out.pack" 400 "$1/images/bsds500" 400 100
+out=${OUT:-out/${MODEL:-train}}
+packs=${PACKS:-out/train}
+checkpoint=config/models/checkpoints/${MODEL:-default}.safetensors
+mkdir -p "$out" "$packs"
+[ -e "$packs/train.pack" ] || "$pack" "$packs/train.pack" 400 "$1/images/photos" 0 0 "$1/images/objects" 0 0 "$1/images/elementary" 0 0 "$1/images/bsds500" 0 400
+[ -e "$packs/held_out.pack" ] || "$pack" "$packs/held_out.pack" 400 "$1/images/bsds500" 400 100
 ln -sf "$(realpath "$1/perceptual/lpips_squeeze_v0.1.npz")" "$out/lpips_squeeze_v0.1.npz"
 
 # What the run has had, so that MINUTES are added to it.
@@ -26,4 +27,4 @@ jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { path = $NF } END { print pa
 exec nice -n 10 env ${jemalloc:+LD_PRELOAD=$jemalloc MALLOC_CONF=dirty_decay_ms:20000,muzzy_decay_ms:20000,narenas:4,oversize_threshold:0,thp:always} \
   "$train" --resume "$checkpoint" --minutes "$minutes" --steps 0 --clock wall --constant-share "${CONSTANT:-.999}" \
   --checkpoint-minutes 10 --validate-minutes 20 --validation-scenes 24 --out "$out" --keep "$checkpoint" --export "$out/model.safetensors" \
-  --textures "$out/train.pack" --validation-textures "$out/held_out.pack" --lpips "$out/lpips_squeeze_v0.1.npz" "${@:3}"
+  --textures "$packs/train.pack" --validation-textures "$packs/held_out.pack" --lpips "$out/lpips_squeeze_v0.1.npz" "${@:3}"

@@ -115,8 +115,10 @@ Result still_scene(const Bench& bench) {
     const SensorTime end{kMoving + bench.budget.length(SensorDuration{kHour}, 10 * kSecond)};
     StillScene scene{how.width, how.height, kMoving};
     const auto is_late = bench.budget.clock(.35);
+    const SensorTime earliest_end{kMoving + 10 * kSecond};  // however slow: noise must be seen
     const auto make = [&](std::vector<Event>& into) {
-        while (into.empty() && scene.now() < end && !is_late()) scene.advance(into);
+        while (into.empty() && scene.now() < end && (scene.now() < earliest_end || !is_late()))
+            scene.advance(into);
     };
     Array2<float> moving;
     FrameChange now, worst;
