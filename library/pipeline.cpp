@@ -5,7 +5,7 @@
 #include "library/user_source.h"
 #include "pipeline/model_render_stage.h"
 #include "src/core/error.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 
 #include <eventide/pipeline.h>
 

@@ -6,8 +6,8 @@
 #include "pipeline/frame_clock.h"
 #include "pipeline/frame_output.h"
 #include "src/binning/binner.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 
 #include <array>
 #include <filesystem>

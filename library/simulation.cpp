@@ -1,7 +1,7 @@
 // Simulations behind the public face.
 #include "src/core/error.h"
+#include "src/simulate/scene/textures_folder.h"
 #include "src/simulate/sim_recording.h"
-#include "src/simulate/textures_folder.h"
 
 #include <eventide/simulation.h>
 

@@ -1,7 +1,7 @@
 // What went through the pipeline, and what did not, by reason.
 #pragma once
 
-#include "pipeline/latency.h"
+#include "pipeline/pace/latency.h"
 #include "src/binning/slicer.h"
 #include "src/core/damage.h"
 #include "src/core/frame_data.h"

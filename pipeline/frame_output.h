@@ -3,9 +3,9 @@
 
 #include "pipeline/counters.h"
 #include "pipeline/frame_clock.h"
-#include "pipeline/frame_dropper.h"
-#include "pipeline/latency_keeper.h"
 #include "pipeline/live_changes.h"
+#include "pipeline/pace/frame_dropper.h"
+#include "pipeline/pace/latency_keeper.h"
 #include "pipeline/sink.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"

@@ -4,7 +4,7 @@
 
 #include "pipeline/images_on_the_way.h"
 #include "pipeline/stages.h"
-#include "src/model/fused_renderer.h"
+#include "src/model/render/fused_renderer.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,7 +1,7 @@
 // The pipeline: four functions, each one thread.
 #include "pipeline/pipeline.h"
 
-#include "pipeline/encoder_gate.h"
+#include "pipeline/pace/encoder_gate.h"
 #include "src/binning/grid_sums.h"
 #include "src/core/error.h"
 

@@ -2,8 +2,8 @@
 #include "replay/ecd_folder.h"
 
 #include "replay/image_file.h"
-#include "src/codec/text_number.h"
-#include "src/codec/text_row.h"
+#include "src/codec/text/text_number.h"
+#include "src/codec/text/text_row.h"
 #include "src/io/input_file.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Recordings in the manner of the Event Camera Dataset: events.txt beside images.txt and images/.
 #pragma once
 
-#include "replay/file_recording.h"
 #include "replay/recording.h"
+#include "replay/stream/file_recording.h"
 
 #include <deque>
 #include <optional>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "replay/data_reader.h"
-#include "replay/file_recording.h"
 #include "replay/file_writer.h"
 #include "replay/open_options.h"
 #include "replay/recording.h"
+#include "replay/stream/file_recording.h"
 #include "src/codec/stream.h"
 #include "src/io/output_file.h"
 

@@ -1,7 +1,7 @@
 // What a user may state about a recording that its bytes do not say, or say wrongly.
 #pragma once
 
-#include "src/codec/text_layout.h"
+#include "src/codec/text/text_layout.h"
 
 #include <string>
 

@@ -1,9 +1,9 @@
 // From a path to a Recording: reads the first bytes, asks the table, completes the geometry.
-#include "replay/aedat4_streams.h"
 #include "replay/data_recording.h"
 #include "replay/ecd_folder.h"
 #include "replay/formats.h"
-#include "replay/scan_geometry.h"
+#include "replay/stream/aedat4_streams.h"
+#include "replay/stream/scan_geometry.h"
 #include "replay/unsupported_formats.h"
 #include "src/core/error.h"
 

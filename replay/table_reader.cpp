@@ -1,7 +1,7 @@
 // Rows of arrays become events; bisection finds the first row of a time.
 #include "replay/table_reader.h"
 
-#include "replay/scan_geometry.h"
+#include "replay/stream/scan_geometry.h"
 #include "src/core/error.h"
 #include "src/core/partition_row.h"
 

@@ -9,5 +9,5 @@ command -v $formatter >/dev/null || { echo "format: expected $formatter (scripts
 
 how=(--dry-run -Werror)
 [ "${1:-}" = "--fix" ] && how=(-i)
-find include library python examples src pipeline replay drivers tests \( -name '*.cpp' -o -name '*.h' \) -print0 | xargs -0 -n 40 -P "$(nproc)" $formatter "${how[@]}"
+find include library python examples src pipeline replay drivers apps tests \( -name '*.cpp' -o -name '*.h' \) -print0 | xargs -0 -n 40 -P "$(nproc)" $formatter "${how[@]}"
 echo "format: as .clang-format says"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs every fuzz target for so many seconds, from its corpus, and prints what came of it. What a target learns is kept in
-# build/fuzz/corpus/TARGET and used the next time; an input that broke something is kept in build/fuzz/findings, and the exit code is 1.
-# runs/s are per second of processor time, coverage is of edges.
+# build/fuzz/corpus/TARGET and used the next time, how often it ran in build/fuzz/runs/TARGET ("in all"); an input that broke something
+# is kept in build/fuzz/findings, and the exit code is 1. runs/s are per second of processor time, coverage is of edges.
 #   scripts/fuzz.sh SECONDS [TARGET...]      scripts/fuzz.sh 60 aedat4 config
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -20,13 +20,16 @@ fi
 
 # Of what has run: user and system, in ms. So rates do not depend on how busy the machine is.
 look_at_processor() {
-  times >"$findings/times" # in this shell: a pipe's has none of its own
-  processor_ms=$(awk -F '[ms ]+' 'NR == 2 { printf "%d", (($1 + $3) * 60 + $2 + $4) * 1000 }' "$findings/times")
+  times >"$times" # in this shell: a pipe's has none of its own
+  processor_ms=$(awk -F '[ms ]+' 'NR == 2 { printf "%d", (($1 + $3) * 60 + $2 + $4) * 1000 }' "$times")
 }
+times=$(mktemp)
+trap 'rm -f "$times"' EXIT
 findings=build/fuzz/findings
-mkdir -p "$findings"
+counts=build/fuzz/runs
+mkdir -p "$findings" "$counts"
 failed=0
-printf '%-16s %12s %10s %9s %9s %9s\n' target runs runs/s coverage inputs findings
+printf '%-16s %12s %12s %10s %9s %9s %9s\n' target runs 'in all' runs/s coverage inputs findings
 for target in "${targets[@]}"; do
   kept=build/fuzz/corpus/$target seeds=tests/fuzz/corpus/$target log=$findings/$target.log
   mkdir -p "$kept"
@@ -43,7 +46,9 @@ for target in "${targets[@]}"; do
   rate=$((${runs:-0} * 1000 / (processor_ms - before + 1)))
   found=$(($(find "$findings" -name "$target-*" ! -name '*-slow-unit-*' | wc -l) - began))
   coverage=$({ grep -o 'cov: [0-9]*' "$log" || true; } | tail -1 | cut -d' ' -f2)
-  printf '%-16s %12s %10s %9s %9s %9s\n' "$target" "${runs:--}" "$rate" "${coverage:--}" "$(find "$kept" -type f | wc -l)" "$found"
+  in_all=$(($(cat "$counts/$target" 2>/dev/null || echo 0) + ${runs:-0}))
+  echo "$in_all" >"$counts/$target"
+  printf '%-16s %12s %12s %10s %9s %9s %9s\n' "$target" "${runs:--}" "$in_all" "$rate" "${coverage:--}" "$(find "$kept" -type f | wc -l)" "$found"
 done
 if [ "$failed" -ne 0 ]; then
   echo "fuzz: failed; inputs and logs are in $findings" >&2

@@ -2,8 +2,8 @@
 #include "apps/bench/activity.h"
 
 #include "src/binning/binner.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "src/model/model_config.h"
-#include "src/model/sampling.h"
+#include "src/model/render/sampling.h"
 
 #include <vector>
 

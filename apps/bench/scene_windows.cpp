@@ -1,7 +1,7 @@
 // See scene_windows.h.
 #include "apps/bench/scene_windows.h"
 
-#include "src/simulate/textures.h"
+#include "src/simulate/scene/textures.h"
 
 namespace eventide::bench {
 namespace {

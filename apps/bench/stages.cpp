@@ -3,8 +3,8 @@
 
 #include "apps/bench/products.h"
 #include "src/binning/binner.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 
 #include <cmath>
 

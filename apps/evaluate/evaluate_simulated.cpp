@@ -3,7 +3,7 @@
 #include "apps/evaluate/simulated_sequence.h"
 #include "src/core/error.h"
 #include "src/simulate/presets.h"
-#include "src/simulate/textures_folder.h"
+#include "src/simulate/scene/textures_folder.h"
 
 #include <cmath>
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "src/binning/binner.h"
-#include "src/model/encoder.h"
-#include "src/model/fused_renderer.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/fused_renderer.h"
+#include "src/model/render/renderer.h"
 
 #include <deque>
 #include <functional>

@@ -12,7 +12,9 @@
 namespace eventide {
 namespace {
 
+// Of the drawing; the legend stands to the right of it.
 constexpr double kWidth = 640, kHeight = 400, kLeft = 72, kRight = 16, kTop = 36, kBottom = 52;
+constexpr double kLegendMark = 28, kCharacterWidth = 6.6;
 constexpr std::array<const char*, 6> kColours{"#1b6ca8", "#d1495b", "#2e8b57",
                                               "#8a5cb8", "#c77d0a", "#555555"};
 
@@ -42,8 +44,9 @@ struct Axis {
     std::vector<double> ticks() const {
         std::vector<double> out;
         if (logarithmic) {
+            const bool wide = high > 100 * low;
             for (double v = std::pow(10, std::floor(std::log10(low))); v <= high * 1.001; v *= 10)
-                for (const double m : {1., 3.})
+                for (const double m : wide ? std::vector{1., 3.} : std::vector{1., 2., 5.})
                     if (v * m >= low * .999 && v * m <= high * 1.001) out.push_back(v * m);
             return out;
         }
@@ -59,6 +62,10 @@ struct Axis {
 struct Axes {
     Axis x, y;
 };
+
+bool has_labels(const Plot& plot) {
+    return std::ranges::any_of(plot.series, [](const Series& s) { return !s.labels.empty(); });
+}
 
 Axes axes_of(const Plot& plot) {
     double x0 = std::numeric_limits<double>::max(), x1 = std::numeric_limits<double>::lowest();
@@ -77,6 +84,11 @@ Axes axes_of(const Plot& plot) {
     if (y0 > 0 && y0 < .6 * y1) y0 = 0;  // show zero where it is near
     if (y1 <= y0) y0 = std::min(0., y0), y1 = y1 > 0 ? 1.25 * y1 : y0 + 1;
     if (x1 <= x0) x1 = x0 + 1;
+    if (has_labels(plot)) {  // room beside the outermost points
+        const double room = plot.log_x ? std::pow(x1 / x0, .12) : .12 * (x1 - x0);
+        x0 = plot.log_x ? x0 / std::sqrt(room) : x0 - room / 4;
+        x1 = plot.log_x ? x1 * room : x1 + room;
+    }
     const double margin = .04 * (y1 - y0);
     return {{x0, x1, kLeft, kWidth - kRight, plot.log_x},
             {y0 == 0 ? 0 : y0 - margin, y1 + margin, kHeight - kBottom, kTop, false}};
@@ -119,6 +131,9 @@ std::string drawn(const Series& s, const Axes& axes, const std::string& colour) 
         const std::string x = number(axes.x.at(s.x[i])), y = number(axes.y.at(s.y[i]));
         path += x + "," + y + " ";
         dots += "<circle cx='" + x + "' cy='" + y + "' r='2.5' fill='" + colour + "'/>\n";
+        if (i < s.labels.size())
+            dots += text(axes.x.at(s.x[i]) + 5, axes.y.at(s.y[i]) - 5, s.labels[i],
+                         "font-size='10' fill='" + colour + "'");
         if (i >= s.spread.size()) continue;
         above += x + "," + number(axes.y.at(s.y[i] + s.spread[i])) + " ";
         below = x + "," + number(axes.y.at(s.y[i] - s.spread[i])) + " " + below;
@@ -132,12 +147,35 @@ std::string drawn(const Series& s, const Axes& axes, const std::string& colour) 
     return out + dots;
 }
 
+/// Pixels beside the drawing that the labels of its series need; 0 where a title says it all.
+double legend_width(const Plot& plot) {
+    std::size_t longest = 0;
+    for (const Series& s : plot.series) longest = std::max(longest, s.label.size());
+    return longest == 0 ? 0 : kLegendMark + 12 + kCharacterWidth * double(longest);
+}
+
+std::string legend_of(const Plot& plot) {
+    std::string out;
+    double y = kTop + 10;
+    for (std::size_t i = 0; i < plot.series.size(); ++i, y += 18) {
+        const std::string colour = "'" + std::string(kColours[i % kColours.size()]) + "'";
+        if (plot.series[i].joined)
+            out +=
+                line(kWidth, y - 4, kWidth + 18, y - 4, "stroke=" + colour + " stroke-width='2'");
+        else
+            out += "<circle cx='" + number(kWidth + 9) + "' cy='" + number(y - 4) +
+                   "' r='3' fill=" + colour + "/>\n";
+        out += text(kWidth + kLegendMark, y, plot.series[i].label, "");
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string svg(const Plot& plot) {
     const Axes axes = axes_of(plot);
-    std::string out = "<svg xmlns='http://www.w3.org/2000/svg' width='" + number(kWidth) +
-                      "' height='" + number(kHeight) +
+    std::string out = "<svg xmlns='http://www.w3.org/2000/svg' width='" +
+                      number(kWidth + legend_width(plot)) + "' height='" + number(kHeight) +
                       "' font-family='sans-serif' font-size='12'>\n"
                       "<rect width='100%' height='100%' fill='white'/>\n" +
                       frame_of(plot, axes);
@@ -147,15 +185,9 @@ std::string svg(const Plot& plot) {
         out += line(axes.x.at(low), axes.y.at(low), axes.x.at(high), axes.y.at(high),
                     "stroke='#888' stroke-dasharray='5 4'");
     }
-    double y = kTop + 14;
-    for (std::size_t i = 0; i < plot.series.size(); ++i, y += 16) {
-        const std::string colour = kColours[i % kColours.size()];
-        out += drawn(plot.series[i], axes, colour);
-        out +=
-            line(kLeft + 10, y - 4, kLeft + 28, y - 4, "stroke='" + colour + "' stroke-width='2'");
-        out += text(kLeft + 34, y, plot.series[i].label, "");
-    }
-    return out + "</svg>\n";
+    for (std::size_t i = 0; i < plot.series.size(); ++i)
+        out += drawn(plot.series[i], axes, kColours[i % kColours.size()]);
+    return out + legend_of(plot) + "</svg>\n";
 }
 
 std::string csv(const Plot& plot) {

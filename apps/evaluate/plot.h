@@ -10,8 +10,9 @@ namespace eventide {
 struct Series {
     std::string label{};
     std::vector<double> x{}, y{};
-    std::vector<double> spread{};  ///< standard deviation, drawn as a band; empty: none
-    bool joined = true;            ///< by lines; else points alone
+    std::vector<double> spread{};       ///< standard deviation, drawn as a band; empty: none
+    std::vector<std::string> labels{};  ///< beside the points; empty: none
+    bool joined = true;                 ///< by lines; else points alone
 };
 
 struct Plot {

@@ -5,8 +5,8 @@
 #include "apps/evaluate/model_run.h"
 #include "src/binning/noise_filter.h"
 #include "src/core/frame_data.h"
+#include "src/simulate/scene/textures.h"
 #include "src/simulate/simulated_stream.h"
-#include "src/simulate/textures.h"
 
 #include <functional>
 #include <memory>

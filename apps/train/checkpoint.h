@@ -1,7 +1,7 @@
 // A run in one file, so that it goes on as if it had never stopped.
 #pragma once
 
-#include "apps/train/batch.h"
+#include "apps/train/data/batch.h"
 #include "apps/train/optimiser.h"
 #include "src/nn/safetensors.h"
 

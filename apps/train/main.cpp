@@ -1,7 +1,7 @@
 // eventide-train: makes the models that eventide runs. docs/training.md tells how.
 #include "apps/train/trainer.h"
 #include "src/core/error.h"
-#include "src/simulate/texture_pack.h"
+#include "src/simulate/scene/texture_pack.h"
 
 #include <csignal>
 #include <fstream>

@@ -1,7 +1,7 @@
 // Adam (Kingma and Ba 2015) with clipped gradients, and a running mean of the weights.
 #pragma once
 
-#include "apps/train/parameters.h"
+#include "apps/train/network/parameters.h"
 
 #include <cstdint>
 

@@ -1,10 +1,10 @@
 // The command line of eventide-train: one table that is parsed, printed as help, and recorded.
 #pragma once
 
-#include "apps/train/data_loader.h"
-#include "apps/train/losses.h"
+#include "apps/train/data/data_loader.h"
+#include "apps/train/network/losses.h"
+#include "apps/train/network/parameters.h"
 #include "apps/train/optimiser.h"
-#include "apps/train/parameters.h"
 #include "src/model/model_config.h"
 
 #include <functional>

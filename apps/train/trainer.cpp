@@ -2,7 +2,7 @@
 
 #include "apps/train/blas.h"
 #include "apps/train/device.h"
-#include "apps/train/warm_start.h"
+#include "apps/train/network/warm_start.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // whoever watches.
 #pragma once
 
-#include "apps/train/losses.h"
+#include "apps/train/network/losses.h"
 #include "apps/train/validation.h"
 
 #include <array>

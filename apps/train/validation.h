@@ -1,7 +1,7 @@
 // Scenes nobody learns from: they choose the weights and set the scale of sigma.
 #pragma once
 
-#include "apps/train/batch.h"
+#include "apps/train/data/batch.h"
 
 #include <array>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // Simulates a little ahead, writes bytes, and waits for their time.
 #include "drivers/simulated/simulated_camera.h"
 
-#include "src/simulate/textures_folder.h"
+#include "src/simulate/scene/textures_folder.h"
 
 #include <cmath>
 

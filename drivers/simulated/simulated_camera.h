@@ -3,7 +3,7 @@
 
 #include "drivers/camera.h"
 #include "drivers/simulated/simulated_name.h"
-#include "src/codec/aedat3.h"
+#include "src/codec/aedat/aedat3.h"
 
 #include <condition_variable>
 #include <memory>

@@ -2,7 +2,7 @@
 
 #include "drivers/usb/verified_writes.h"
 #include "src/codec/byte_order.h"
-#include "src/codec/davis.h"
+#include "src/codec/inivation/davis.h"
 #include "src/core/bayer.h"
 #include "src/core/error.h"
 

@@ -2,7 +2,7 @@
 // thread.
 #pragma once
 
-#include "src/codec/davis.h"
+#include "src/codec/inivation/davis.h"
 
 #include <atomic>
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "drivers/usb/davis_registers.h"
 #include "drivers/usb/usb_settings.h"
-#include "src/codec/davis_sensor.h"
+#include "src/codec/inivation/davis_sensor.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -2,7 +2,7 @@
 
 #include "drivers/settings_file.h"
 #include "src/codec/byte_order.h"
-#include "src/codec/dvs128.h"
+#include "src/codec/inivation/dvs128.h"
 #include "src/core/error.h"
 
 #include <utility>

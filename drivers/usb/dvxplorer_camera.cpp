@@ -2,8 +2,8 @@
 
 #include "drivers/usb/verified_writes.h"
 #include "src/codec/byte_order.h"
-#include "src/codec/dvxplorer.h"
-#include "src/codec/dvxplorer_mini.h"
+#include "src/codec/inivation/dvxplorer.h"
+#include "src/codec/inivation/dvxplorer_mini.h"
 #include "src/core/error.h"
 
 #include <string>

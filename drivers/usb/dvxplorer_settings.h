@@ -3,7 +3,7 @@
 
 #include "drivers/usb/dvxplorer_registers.h"
 #include "drivers/usb/usb_settings.h"
-#include "src/codec/dvxplorer_sensor.h"
+#include "src/codec/inivation/dvxplorer_sensor.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "drivers/v4l2/v4l2_camera.h"
 
-#include "src/codec/evt2.h"
-#include "src/codec/evt3.h"
+#include "src/codec/prophesee/evt2.h"
+#include "src/codec/prophesee/evt3.h"
 #include "src/core/error.h"
 
 #include <fcntl.h>

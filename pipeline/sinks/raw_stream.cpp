@@ -2,7 +2,7 @@
 #include "pipeline/sinks/raw_stream.h"
 
 #include "pipeline/sinks/raw_pixels.h"
-#include "pipeline/sinks/yuv.h"
+#include "pipeline/sinks/video/yuv.h"
 #include "src/codec/byte_order.h"
 #include "src/core/error.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "replay/event_table.h"
-#include "src/io/hdf5_file.h"
+#include "src/io/hdf5/hdf5_file.h"
 
 #include <memory>
 #include <optional>

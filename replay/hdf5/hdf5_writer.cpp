@@ -2,8 +2,8 @@
 #include "replay/hdf5/hdf5_writer.h"
 
 #include "src/core/error.h"
-#include "src/io/hdf5_file.h"
-#include "src/io/hdf5_library.h"
+#include "src/io/hdf5/hdf5_file.h"
+#include "src/io/hdf5/hdf5_library.h"
 #include "src/io/system_words.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Bytes of an array in a file, as they are or deflated.
 #pragma once
 
-#include "replay/byte_file.h"
+#include "replay/stream/byte_file.h"
 
 #include <zlib.h>
 

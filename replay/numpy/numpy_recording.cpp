@@ -4,7 +4,7 @@
 #include "replay/numpy/numpy_table.h"
 #include "replay/numpy/zip_directory.h"
 #include "replay/table_reader.h"
-#include "src/codec/text_layout.h"
+#include "src/codec/text/text_layout.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "replay/event_table.h"
 #include "replay/numpy/byte_source.h"
 #include "replay/numpy/numpy_array.h"
-#include "src/codec/text_layout.h"
+#include "src/codec/text/text_layout.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,7 +1,7 @@
 // What is in a zip archive, and where.
 #pragma once
 
-#include "replay/byte_file.h"
+#include "replay/stream/byte_file.h"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,9 @@
 // MCAP, as rosbag2 writes it: records of u8 kind and u64 length, some of them packed in chunks
 // (mcap.dev/spec).
-#include "replay/byte_file.h"
 #include "replay/ros/bag_recording.h"
 #include "replay/ros/ros_reader.h"
-#include "src/codec/aedat4_compression.h"
+#include "replay/stream/byte_file.h"
+#include "src/codec/aedat4/aedat4_compression.h"
 #include "src/io/bag_records.h"
 
 #include <algorithm>

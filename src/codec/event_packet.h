@@ -1,8 +1,8 @@
 // event_camera_msgs/EventPacket of ROS drivers, in its four encodings.
 #pragma once
 
-#include "src/codec/evt3.h"
 #include "src/codec/parser.h"
+#include "src/codec/prophesee/evt3.h"
 #include "src/codec/whole_words.h"
 
 #include <array>

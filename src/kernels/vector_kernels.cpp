@@ -73,8 +73,13 @@ bool are_near(const float* a, const float* b, float bound, std::size_t n) {
                        hn::Le(hn::AbsDiff(load_some(a + i, n - i), load_some(b + i, n - i)), most));
 }
 
+/// As processors' documents say it; Highway's targets are smaller the more they can.
+const char* name_of_target() {
+    return HWY_TARGET <= HWY_AVX3 ? "AVX-512" : hwy::TargetName(HWY_TARGET);
+}
+
 const VectorKernels* table() {
-    static const VectorKernels kernels{.name = hwy::TargetName(HWY_TARGET),
+    static const VectorKernels kernels{.name = name_of_target(),
                                        .lanes = int(hn::Lanes(D())),
                                        .dot_area = dot_area,
                                        .compress = compress,

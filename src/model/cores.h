@@ -4,7 +4,7 @@
 #include "src/model/engine.h"
 #include "src/model/latent_window.h"
 #include "src/model/model_file.h"
-#include "src/model/sampling.h"
+#include "src/model/render/sampling.h"
 
 #include <memory>
 #include <string>

@@ -1,9 +1,9 @@
 // Which fast network stands behind Encoder and Renderer, and with which numbers.
 #include "src/core/error.h"
 #include "src/model/cores.h"
-#include "src/model/fast_gated_encoder.h"
-#include "src/model/fast_renderer.h"
-#include "src/model/fast_thesis_encoder.h"
+#include "src/model/encode/fast_gated_encoder.h"
+#include "src/model/encode/fast_thesis_encoder.h"
+#include "src/model/render/fast_renderer.h"
 
 namespace eventide {
 namespace {

@@ -2,8 +2,8 @@
 #include "src/model/model_trial.h"
 
 #include "src/core/error.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 
 #include <algorithm>
 #include <cmath>

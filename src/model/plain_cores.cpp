@@ -1,7 +1,7 @@
 // The plain networks behind the run-time interfaces.
 #include "src/model/cores.h"
-#include "src/model/plain_encoder.h"
-#include "src/model/plain_renderer.h"
+#include "src/model/encode/plain_encoder.h"
+#include "src/model/render/plain_renderer.h"
 
 #include <algorithm>
 

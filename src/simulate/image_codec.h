@@ -1,7 +1,7 @@
 // Lossless code of one grey image: prediction and adaptive Golomb-Rice bits.
 #pragma once
 
-#include "src/simulate/textures.h"
+#include "src/simulate/scene/textures.h"
 
 #include <cstddef>
 #include <span>

@@ -1,8 +1,8 @@
 // Named scenes and sensors.
 #pragma once
 
-#include "src/simulate/scene_settings.h"
-#include "src/simulate/sensor_settings.h"
+#include "src/simulate/scene/scene_settings.h"
+#include "src/simulate/sensor/sensor_settings.h"
 
 #include <string>
 #include <string_view>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "src/simulate/presets.h"
+#include "src/simulate/scene/textures.h"
 #include "src/simulate/simulated_stream.h"
-#include "src/simulate/textures.h"
 
 #include <functional>
 #include <memory>

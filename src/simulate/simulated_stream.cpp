@@ -2,10 +2,10 @@
 #include "src/simulate/simulated_stream.h"
 
 #include "src/core/error.h"
-#include "src/simulate/event_sensor.h"
-#include "src/simulate/exposure.h"
-#include "src/simulate/readout.h"
-#include "src/simulate/scene.h"
+#include "src/simulate/scene/scene.h"
+#include "src/simulate/sensor/event_sensor.h"
+#include "src/simulate/sensor/exposure.h"
+#include "src/simulate/sensor/readout.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // DAVIS words to events, from memory, on one core.
-#include "src/codec/davis.h"
-#include "src/codec/davis_writer.h"
+#include "src/codec/inivation/davis.h"
+#include "src/codec/inivation/davis_writer.h"
 
 #include <benchmark/benchmark.h>
 

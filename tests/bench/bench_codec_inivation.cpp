@@ -1,7 +1,7 @@
 // Events per second of the text and AEDAT parsers, from memory, on one core.
-#include "src/codec/aedat2.h"
-#include "src/codec/aedat3.h"
-#include "src/codec/text.h"
+#include "src/codec/aedat/aedat2.h"
+#include "src/codec/aedat/aedat3.h"
+#include "src/codec/text/text.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,12 +1,12 @@
 // Events per second of the AEDAT4, EVT and DAT parsers, from memory, on one core. Real recordings
 // are used where they are at hand (EVENTIDE_DATA names the folder that holds formats/).
-#include "src/codec/aedat4.h"
-#include "src/codec/aedat4_writer.h"
+#include "src/codec/aedat4/aedat4.h"
+#include "src/codec/aedat4/aedat4_writer.h"
 #include "src/codec/byte_order.h"
-#include "src/codec/dat.h"
-#include "src/codec/evt2.h"
-#include "src/codec/evt3.h"
-#include "src/codec/evt_header.h"
+#include "src/codec/prophesee/dat.h"
+#include "src/codec/prophesee/evt2.h"
+#include "src/codec/prophesee/evt3.h"
+#include "src/codec/prophesee/evt_header.h"
 
 #include <benchmark/benchmark.h>
 

@@ -5,8 +5,8 @@
 // processor without AVX-512.
 #include "apps/bench/products.h"
 #include "pipeline/parallel_tbb.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 #include "src/nn/packed_layers.h"
 #include "tests/bench/peak.h"
 #include "tests/model/streams.h"

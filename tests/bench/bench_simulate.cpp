@@ -1,8 +1,8 @@
 // Speed of the simulator, in million pixel-steps per second of one core: pixels times sub-frames,
 // each with its light, its sensor and its events.
 #include "src/simulate/presets.h"
+#include "src/simulate/scene/textures.h"
 #include "src/simulate/simulated_stream.h"
-#include "src/simulate/textures.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,8 +1,8 @@
 // Small AEDAT4 files that hold some of everything, and what the parser makes of them.
 #pragma once
 
-#include "src/codec/aedat4.h"
-#include "src/codec/aedat4_writer.h"
+#include "src/codec/aedat4/aedat4.h"
+#include "src/codec/aedat4/aedat4_writer.h"
 #include "tests/codec/parser_checks.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // AEDAT 1.0 and 2.0, from words written as the format's description says.
-#include "src/codec/aedat2.h"
+#include "src/codec/aedat/aedat2.h"
 
 #include "src/core/error.h"
 #include "tests/codec/parser_checks.h"

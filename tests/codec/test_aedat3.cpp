@@ -1,5 +1,5 @@
 // AEDAT 3.1, from packets spelled out and from the writer.
-#include "src/codec/aedat3.h"
+#include "src/codec/aedat/aedat3.h"
 
 #include "src/codec/byte_order.h"
 #include "src/core/error.h"

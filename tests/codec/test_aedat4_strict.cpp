@@ -1,7 +1,7 @@
 // What the AEDAT4 writer writes, read and verified by the flatbuffers library itself; and what that
 // library writes, read by ours.
-#include "src/codec/aedat4.h"
-#include "src/codec/aedat4_writer.h"
+#include "src/codec/aedat4/aedat4.h"
+#include "src/codec/aedat4/aedat4_writer.h"
 #include "src/codec/byte_order.h"
 #include "tests/codec/parser_checks.h"
 

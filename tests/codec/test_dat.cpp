@@ -1,5 +1,5 @@
 // DAT, record by record.
-#include "src/codec/dat.h"
+#include "src/codec/prophesee/dat.h"
 
 #include "src/codec/byte_order.h"
 #include "src/core/error.h"

@@ -1,7 +1,7 @@
 // DAVIS words, spelled out, and read(write(x)) = x.
-#include "src/codec/davis.h"
-#include "src/codec/davis_writer.h"
-#include "tests/support/davis_sensors.h"
+#include "src/codec/inivation/davis.h"
+#include "src/codec/inivation/davis_writer.h"
+#include "tests/support/usb/davis_sensors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

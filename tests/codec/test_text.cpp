@@ -1,5 +1,5 @@
 // Text recordings: layouts found, rows read, damage counted, and back again.
-#include "src/codec/text.h"
+#include "src/codec/text/text.h"
 
 #include "src/core/error.h"
 #include "tests/codec/parser_checks.h"

@@ -1,5 +1,5 @@
 // Decimal numbers must be exact to the microsecond.
-#include "src/codec/text_number.h"
+#include "src/codec/text/text_number.h"
 
 #include <gtest/gtest.h>
 

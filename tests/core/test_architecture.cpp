@@ -55,7 +55,7 @@ const std::vector<Rule> kRules{
     {"opencv2/",
      {"pipeline/sinks/", "pipeline/calibration/", "pipeline/ros2/", "apps/", "src/simulate/",
       "src/metrics/", "replay/image_file", "src/io/image_codecs"}},
-    {"hdf5.h", {"src/io/hdf5_library.h"}},
+    {"hdf5.h", {"src/io/hdf5/hdf5_library.h"}},
     {"libusb", {"drivers/usb/"}},
     {"httplib.h", {"pipeline/sinks/http/"}},
     {"pipeline/sinks/http/", {"pipeline/sinks/http/", "apps/cli/"}},

@@ -5,9 +5,9 @@
 #include "src/codec/parser.h"
 #include "src/core/error.h"
 #include "src/core/event.h"
-#include "tests/support/davis_model.h"
-#include "tests/support/davis_sensors.h"
-#include "tests/support/usb_testbed.h"
+#include "tests/support/usb/davis_model.h"
+#include "tests/support/usb/davis_sensors.h"
+#include "tests/support/usb/usb_testbed.h"
 
 #include <cstdint>
 #include <functional>

@@ -3,7 +3,7 @@
 
 #include "drivers/usb/dvxplorer_camera.h"
 #include "tests/drivers/usb_sessions.h"
-#include "tests/support/dvxplorer_model.h"
+#include "tests/support/usb/dvxplorer_model.h"
 
 #include <memory>
 #include <random>

@@ -2,8 +2,8 @@
 // the driver.
 #include "replay/formats.h"
 #include "tests/drivers/davis_streams.h"
-#include "tests/support/davis_fire_hose.h"
-#include "tests/support/recorded_scene.h"
+#include "tests/support/usb/davis_fire_hose.h"
+#include "tests/support/usb/recorded_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "drivers/devices.h"
 #include "tests/drivers/usb_sessions.h"
-#include "tests/support/dvs128_model.h"
+#include "tests/support/usb/dvs128_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,15 +5,15 @@
 #include "drivers/usb/dvxplorer_registers.h"
 #include "drivers/usb/dvxplorer_settings.h"
 #include "replay/formats.h"
-#include "src/codec/davis.h"
-#include "src/codec/dvs128.h"
-#include "src/codec/dvxplorer.h"
-#include "src/codec/dvxplorer_mini.h"
+#include "src/codec/inivation/davis.h"
+#include "src/codec/inivation/dvs128.h"
+#include "src/codec/inivation/dvxplorer.h"
+#include "src/codec/inivation/dvxplorer_mini.h"
 #include "tests/drivers/davis_streams.h"
 #include "tests/drivers/dvxplorer_boards.h"
-#include "tests/support/davis_fire_hose.h"
-#include "tests/support/dvs128_model.h"
-#include "tests/support/recorded_scene.h"
+#include "tests/support/usb/davis_fire_hose.h"
+#include "tests/support/usb/dvs128_model.h"
+#include "tests/support/usb/recorded_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // A DAVIS whose bytes are lost at random, for a minute of made time: what is recorded keeps the
 // camera's time, and what the host's clock had to set right is counted.
 #include "pipeline/event_windows.h"
-#include "src/codec/inivation_clock.h"
+#include "src/codec/inivation/inivation_clock.h"
 #include "tests/drivers/davis_streams.h"
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "replay/formats.h"
 #include "src/core/error.h"
 #include "tests/support/preload.h"
-#include "tests/support/v4l2_testbed.h"
+#include "tests/support/v4l2/v4l2_testbed.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

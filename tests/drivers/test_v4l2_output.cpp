@@ -3,7 +3,7 @@
 #include "pipeline/sinks/v4l2_output.h"
 #include "src/core/error.h"
 #include "tests/support/preload.h"
-#include "tests/support/v4l2_testbed.h"
+#include "tests/support/v4l2/v4l2_testbed.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include "src/codec/parser.h"
 #include "src/core/error.h"
 #include "src/core/event.h"
-#include "tests/support/usb_testbed.h"
+#include "tests/support/usb/usb_testbed.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // The first bytes of any file: every format's header, whether or not it would be chosen.
 #include "replay/formats.h"
 #include "replay/unsupported_formats.h"
-#include "src/codec/aedat_header.h"
-#include "src/codec/evt_header.h"
+#include "src/codec/aedat/aedat_header.h"
+#include "src/codec/prophesee/evt_header.h"
 #include "src/core/error.h"
-#include "tests/fuzz/fuzz_parser.h"
+#include "tests/fuzz/codec/fuzz_parser.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace eventide;

@@ -1,6 +1,6 @@
 // Any bytes as a model file: refused with an Error, or a network that runs.
 #include "src/core/error.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

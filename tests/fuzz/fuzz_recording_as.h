@@ -3,8 +3,8 @@
 
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "tests/fuzz/codec/fuzz_parser.h"
 #include "tests/fuzz/fuzz_file.h"
-#include "tests/fuzz/fuzz_parser.h"
 
 #include <cstdint>
 #include <string>

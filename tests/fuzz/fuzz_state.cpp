@@ -1,6 +1,6 @@
 // Any bytes as a hidden state: refused with an Error, or what comes back is the same.
 #include "src/core/error.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 #include "src/nn/safetensors.h"
 #include "tests/fuzz/tiny_network.h"
 

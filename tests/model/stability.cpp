@@ -9,11 +9,11 @@
 // Fails where there is a NaN, a recurrent state leaves [-1, 1], or double is further off than it
 // may be. `stability --help` lists the options.
 #include "src/binning/binner.h"
-#include "src/model/encoder.h"
-#include "src/model/plain_encoder.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/encode/plain_encoder.h"
 #include "src/simulate/presets.h"
+#include "src/simulate/scene/textures.h"
 #include "src/simulate/simulated_stream.h"
-#include "src/simulate/textures.h"
 #include "tests/model/streams.h"
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 // All memory is taken before the first step: steps and frames allocate nothing.
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 #include "tests/model/backends.h"
 #include "tests/model/streams.h"
 #include "tests/support/allocation_counter.h"

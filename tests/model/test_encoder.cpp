@@ -1,6 +1,6 @@
 // The encoder: fast against plain against double, and what must not change anything.
 #include "src/core/error.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 #include "tests/model/backends.h"
 #include "tests/model/streams.h"
 

@@ -1,7 +1,7 @@
 // Images of the camera beside its events: what is added to the model's frames, where and for how
 // long.
-#include "src/model/encoder.h"
-#include "src/model/fused_renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/fused_renderer.h"
 #include "tests/model/streams.h"
 
 #include <gtest/gtest.h>

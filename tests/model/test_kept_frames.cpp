@@ -1,7 +1,7 @@
 // Tiles of frames that are copied from frames before: never another bit where nothing may change,
 // within the stated bound elsewhere, and work that follows what changes.
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 #include "tests/model/streams.h"
 
 #include <gtest/gtest.h>

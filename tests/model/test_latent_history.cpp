@@ -1,6 +1,6 @@
 // What a latent map says of its changes: copies that are renewed in part are whole copies.
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 #include "tests/model/streams.h"
 
 #include <gtest/gtest.h>

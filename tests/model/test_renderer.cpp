@@ -1,7 +1,7 @@
 // The implicit decoder: unfolded against hoisted against fast, and its geometry.
 #include "src/core/error.h"
-#include "src/model/plain_renderer.h"
-#include "src/model/renderer.h"
+#include "src/model/render/plain_renderer.h"
+#include "src/model/render/renderer.h"
 #include "tests/model/backends.h"
 #include "tests/model/streams.h"
 #include "tests/model/threads.h"

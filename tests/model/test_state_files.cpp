@@ -1,6 +1,6 @@
 // The hidden state as a file: what comes back, and what is refused and why.
 #include "src/core/error.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 #include "tests/model/streams.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Encoder and renderer together, every back end, against double precision: over a long run, at real
 // sizes, and with the shipped network.
-#include "src/model/encoder.h"
-#include "src/model/plain_encoder.h"
-#include "src/model/plain_renderer.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/encode/plain_encoder.h"
+#include "src/model/render/plain_renderer.h"
+#include "src/model/render/renderer.h"
 #include "tests/model/backends.h"
 #include "tests/model/streams.h"
 #include "tests/model/threads.h"

@@ -1,5 +1,5 @@
 // What is rendered when not all can be: the newest always, the rest evenly.
-#include "pipeline/frame_dropper.h"
+#include "pipeline/pace/frame_dropper.h"
 
 #include <gtest/gtest.h>
 

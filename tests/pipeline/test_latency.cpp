@@ -1,5 +1,5 @@
 // Percentiles from buckets against percentiles from sorting.
-#include "pipeline/latency.h"
+#include "pipeline/pace/latency.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // The line in made time: a source sends a multiple of what the engine can do, and frames are no
 // later than the bound. All decisions are the pipeline's own; only work and waiting are made.
-#include "pipeline/encoder_gate.h"
 #include "pipeline/frame_clock.h"
-#include "pipeline/frame_dropper.h"
-#include "pipeline/latency.h"
-#include "pipeline/latency_keeper.h"
+#include "pipeline/pace/encoder_gate.h"
+#include "pipeline/pace/frame_dropper.h"
+#include "pipeline/pace/latency.h"
+#include "pipeline/pace/latency_keeper.h"
 
 #include <gtest/gtest.h>
 

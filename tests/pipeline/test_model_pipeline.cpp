@@ -2,7 +2,7 @@
 #include "pipeline/model_render_stage.h"
 #include "pipeline/parallel_tbb.h"
 #include "pipeline/pipeline.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 #include "tests/model/streams.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/toy_stages.h"

@@ -1,7 +1,7 @@
 // A recording of any length takes the memory of a short one.
 #include "replay/formats.h"
 #include "replay/summary.h"
-#include "src/codec/aedat4_header.h"
+#include "src/codec/aedat4/aedat4_header.h"
 #include "tests/replay/made_formats.h"
 
 #include <unistd.h>

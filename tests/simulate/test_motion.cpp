@@ -1,6 +1,6 @@
 // Motion, pauses and changes of light.
-#include "src/simulate/motion.h"
-#include "src/simulate/scene.h"
+#include "src/simulate/scene/motion.h"
+#include "src/simulate/scene/scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The way from the pixels to the bus: delay, order, speed and losses.
-#include "src/simulate/readout.h"
+#include "src/simulate/sensor/readout.h"
 
 #include <gtest/gtest.h>
 

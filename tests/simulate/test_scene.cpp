@@ -1,7 +1,7 @@
 // The geometry, light and layers of scenes.
 #include "src/core/error.h"
 #include "src/simulate/presets.h"
-#include "src/simulate/scene.h"
+#include "src/simulate/scene/scene.h"
 
 #include <gtest/gtest.h>
 

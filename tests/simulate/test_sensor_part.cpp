@@ -1,9 +1,9 @@
 // A part of a sensor: it must see what the whole one sees there, under the whole one's exposure.
 #include "src/core/error.h"
-#include "src/simulate/scene_settings.h"
-#include "src/simulate/sensor_settings.h"
+#include "src/simulate/scene/scene_settings.h"
+#include "src/simulate/scene/textures.h"
+#include "src/simulate/sensor/sensor_settings.h"
 #include "src/simulate/simulated_stream.h"
-#include "src/simulate/textures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // The stream as training sees it: determinism, cuts, and truth that agrees with the events.
 #include "src/core/error.h"
 #include "src/simulate/presets.h"
+#include "src/simulate/scene/textures.h"
 #include "src/simulate/simulated_stream.h"
-#include "src/simulate/textures.h"
 
 #include <gtest/gtest.h>
 

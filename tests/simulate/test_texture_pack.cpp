@@ -2,8 +2,8 @@
 #include "src/core/error.h"
 #include "src/simulate/image_codec.h"
 #include "src/simulate/random.h"
-#include "src/simulate/texture_pack.h"
-#include "src/simulate/textures_folder.h"
+#include "src/simulate/scene/texture_pack.h"
+#include "src/simulate/scene/textures_folder.h"
 
 #include <gtest/gtest.h>
 

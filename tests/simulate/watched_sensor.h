@@ -2,7 +2,7 @@
 // events.
 #pragma once
 
-#include "src/simulate/event_sensor.h"
+#include "src/simulate/sensor/event_sensor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // The built program with the other USB cameras in software: what each of them saw is what it
 // records.
-#include "tests/support/dvs128_model.h"
-#include "tests/support/dvxplorer_model.h"
-#include "tests/support/usb_testbed.h"
+#include "tests/support/usb/dvs128_model.h"
+#include "tests/support/usb/dvxplorer_model.h"
+#include "tests/support/usb/usb_testbed.h"
 #include "tests/system/program_test.h"
 #include "tests/system/recorded.h"
 

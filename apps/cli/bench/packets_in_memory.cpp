@@ -2,7 +2,7 @@
 #include "apps/cli/bench/packets_in_memory.h"
 
 #include "drivers/simulated/simulated_camera.h"
-#include "src/codec/aedat3.h"
+#include "src/codec/aedat/aedat3.h"
 
 #include <algorithm>
 #include <cmath>

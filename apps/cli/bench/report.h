@@ -27,7 +27,7 @@ struct SpeedRow {
     std::string model, engine, window;
     Size sensor;
     double encode_ms = 0, render_ms = 0;  ///< processor time, medians
-    double against_double = 0;            ///< root mean square of codes, of their range; 0: not measured
+    double against_double = 0;  ///< root mean square of codes, of their range; 0: not measured
     SequenceScores error;
     bool is_on_front = false;  ///< none of its size is both faster and nearer to the truth
 

@@ -1,14 +1,11 @@
-// The report as a page, as JSON and as files.
+// The report as a page, and as files.
 #include "apps/bench/stage_table.h"
 #include "apps/cli/bench/report.h"
 #include "apps/cli/printable.h"
 #include "src/io/output_file.h"
 
-#include <nlohmann/json.hpp>
-
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 namespace eventide::app {
 
@@ -118,110 +115,7 @@ std::string peer_table(const Report& report) {
     return table({"network", "engine", "instructions", "sensor", "threads", "ms"}, rows);
 }
 
-std::string label_of(const SpeedRow& row) {
-    return row.model + ", " + show_size(row.sensor);
-}
-
-/// One series of points for each model and size, and the front of each size as a line.
-Plot speed_plot(const Report& report) {
-    Plot plot{.name = "speed_error",
-              .title = "Error against time per event window and frame",
-              .x_label = "processor time, ms",
-              .y_label = "MSE",
-              .log_x = true};
-    std::map<std::string, Series> points;
-    std::map<std::string, std::map<double, double>> fronts;
-    for (const SpeedRow& row : report.speed) {
-        Series& series = points[label_of(row)];
-        series.label = label_of(row);
-        series.joined = false;
-        series.x.push_back(row.total_ms());
-        series.y.push_back(row.error.raw.mse);
-        if (row.is_on_front) fronts[show_size(row.sensor)][row.total_ms()] = row.error.raw.mse;
-    }
-    for (auto& [label, series] : points) plot.series.push_back(std::move(series));
-    for (const auto& [size, front] : fronts) {
-        Series series{.label = "front, " + size, .x = {}, .y = {}, .spread = {}};
-        for (const auto& [x, y] : front) {
-            series.x.push_back(x);
-            series.y.push_back(y);
-        }
-        plot.series.push_back(std::move(series));
-    }
-    return plot;
-}
-
-Plot rate_plot(const Report& report) {
-    Plot plot{.name = "frame_rate",
-              .title = "What more frames per second cost",
-              .x_label = "frames/s of the video",
-              .y_label = "times real time",
-              .log_x = true};
-    std::map<std::string, Series> by_model;
-    for (const RateRow& row : report.rates) {
-        Series& series = by_model[row.model];
-        series.label = row.model;
-        series.x.push_back(row.fps);
-        series.y.push_back(row.times_real_time);
-    }
-    for (auto& [model, series] : by_model) plot.series.push_back(std::move(series));
-    return plot;
-}
-
-Plot activity_plot(const Report& report) {
-    Plot plot{.name = "activity",
-              .title = "What moves is what costs",
-              .x_label = "% of the sensor that moves",
-              .y_label = "ms"};
-    Series encode{.label = "encode"}, frame{.label = "frame"};
-    for (const bench::ActivityRow& row : report.activity) {
-        encode.x.push_back(100 * row.moving);
-        encode.y.push_back(row.encode_ms.median);
-        frame.x.push_back(100 * row.moving);
-        frame.y.push_back(row.render_ms.median);
-    }
-    plot.series = {encode, frame};
-    return plot;
-}
-
-Plot load_plot(const Report& report) {
-    Plot plot{.name = "latency",
-              .title = "Latency at the camera's pace, lookahead 0",
-              .x_label = "million events/s",
-              .y_label = "ms",
-              .log_x = true};
-    Series p50{.label = "p50"}, p99{.label = "p99"};
-    for (const LoadRow& row : report.loads) {
-        p50.x.push_back(row.events_per_s / 1e6);
-        p50.y.push_back(row.p50_ms);
-        p99.x.push_back(row.events_per_s / 1e6);
-        p99.y.push_back(row.p99_ms);
-    }
-    plot.series = {p50, p99};
-    return plot;
-}
-
-nlohmann::ordered_json json_of(const SpeedRow& row) {
-    nlohmann::ordered_json json{{"model", row.model},
-                                {"engine", row.engine},
-                                {"width", row.sensor.width},
-                                {"height", row.sensor.height},
-                                {"window", row.window},
-                                {"encode_ms", row.encode_ms},
-                                {"render_fresh_ms", row.render_ms},
-                                {"mse", row.error.raw.mse},
-                                {"front", row.is_on_front}};
-    if (row.error.raw.lpips) json["lpips"] = *row.error.raw.lpips;
-    if (row.error.raw.ssim > 0) json["ssim"] = row.error.raw.ssim;
-    if (row.against_double > 0) json["codes_rms_of_range"] = row.against_double;
-    return json;
-}
-
 }  // namespace
-
-std::vector<Plot> plots_of(const Report& report) {
-    return {speed_plot(report), rate_plot(report), activity_plot(report), load_plot(report)};
-}
 
 std::string page_of(const Report& report) {
     const std::vector<Plot> plots = plots_of(report);
@@ -260,41 +154,6 @@ std::string page_of(const Report& report) {
            escaped(report.settings) + "<br>" +
            escaped(without_line_end(bench::peaks_text(report.peaks))) + "</p>\n" + body +
            "</body></html>\n";
-}
-
-std::string json_of(const Report& report) {
-    nlohmann::ordered_json json;
-    json["machine"] = report.machine;
-    json["program"] = report.program;
-    json["settings"] = report.settings;
-    for (const char* list : {"speed", "peers", "rates", "loads", "memory"})
-        json[list] = nlohmann::ordered_json::array();
-    for (const SpeedRow& row : report.speed) json["speed"].push_back(json_of(row));
-    for (const RateRow& row : report.rates)
-        json["rates"].push_back({{"model", row.model},
-                                 {"fps", row.fps},
-                                 {"render_ms", row.render_ms},
-                                 {"times_real_time", row.times_real_time}});
-    for (const PeerRow& row : report.peers)
-        json["peers"].push_back({{"network", row.network},
-                                 {"engine", row.engine},
-                                 {"instructions", row.instructions},
-                                 {"width", row.sensor.width},
-                                 {"height", row.sensor.height},
-                                 {"threads", row.threads},
-                                 {"cpu_ms", row.cpu_ms}});
-    json["activity"] = bench::activity_json(report.activity);
-    for (const LoadRow& row : report.loads)
-        json["loads"].push_back({{"events_per_s", row.events_per_s},
-                                 {"latency_p50_ms", row.p50_ms},
-                                 {"latency_p99_ms", row.p99_ms},
-                                 {"time_taken", row.behind}});
-    for (const MemoryRow& row : report.memory)
-        json["memory"].push_back({{"model", row.model},
-                                  {"width", row.sensor.width},
-                                  {"height", row.sensor.height},
-                                  {"resident_mib", row.resident_mib}});
-    return json_text(json) + "\n";
 }
 
 std::vector<std::filesystem::path> report_files() {

@@ -9,7 +9,7 @@
 #include "src/core/error.h"
 #include "src/simulate/colour_recording.h"
 #include "src/simulate/presets.h"
-#include "src/simulate/textures_folder.h"
+#include "src/simulate/scene/textures_folder.h"
 
 #include <spdlog/spdlog.h>
 

@@ -7,7 +7,7 @@
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/source.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 
 #include <array>
 #include <memory>

@@ -1,7 +1,7 @@
 // A model file as a network that runs, made for one sensor.
 #include "apps/cli/run/loaded_model.h"
 
-#include "apps/cli/run/memory_use.h"
+#include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/settings/model_path.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/model/model_trial.h"

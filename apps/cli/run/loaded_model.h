@@ -3,9 +3,9 @@
 
 #include "apps/cli/settings/run_settings.h"
 #include "pipeline/source.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 #include "src/model/model_file.h"
-#include "src/model/renderer.h"
+#include "src/model/render/renderer.h"
 
 #include <filesystem>
 

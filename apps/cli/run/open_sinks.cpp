@@ -10,8 +10,8 @@
 #include "pipeline/sinks/null.h"
 #include "pipeline/sinks/raw_stream.h"
 #include "pipeline/sinks/v4l2_output.h"
-#include "pipeline/sinks/video.h"
-#include "pipeline/sinks/video_kind.h"
+#include "pipeline/sinks/video/video.h"
+#include "pipeline/sinks/video/video_kind.h"
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
 

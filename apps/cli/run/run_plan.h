@@ -7,7 +7,7 @@
 #include "pipeline/stages.h"
 #include "src/binning/slicer_settings.h"
 #include "src/model/model_config.h"
-#include "src/model/renderer.h"
+#include "src/model/render/renderer.h"
 
 #include <memory>
 #include <optional>

@@ -11,7 +11,7 @@
 #include "pipeline/sinks/raw_stream.h"
 #include "src/core/bayer.h"
 #include "src/model/engine.h"
-#include "src/model/renderer.h"
+#include "src/model/render/renderer.h"
 
 #include <optional>
 #include <string>

@@ -6,8 +6,8 @@
 #include "pipeline/ros2/ros2_name.h"
 #include "pipeline/sinks/folder.h"
 #include "pipeline/sinks/http/http_address.h"
-#include "pipeline/sinks/video.h"
-#include "pipeline/sinks/video_kind.h"
+#include "pipeline/sinks/video/video.h"
+#include "pipeline/sinks/video/video_kind.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // A model's networks in double precision.
 #include "apps/cli/stress/double_network.h"
 
-#include "src/model/plain_encoder.h"
+#include "src/model/encode/plain_encoder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/core/frame_data.h"
-#include "src/model/encoder.h"
+#include "src/model/encode/encoder.h"
 #include "src/model/model_file.h"
 
 #include <cstdint>

@@ -4,8 +4,8 @@
 #include "pipeline/filters/event_filter.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 
 #include <bit>
 #include <cmath>

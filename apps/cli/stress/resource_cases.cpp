@@ -4,7 +4,7 @@
 #include "pipeline/sinks/contact_sheet.h"
 #include "pipeline/sinks/folder.h"
 #include "pipeline/sinks/raw_stream.h"
-#include "pipeline/sinks/video.h"
+#include "pipeline/sinks/video/video.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
 #include "src/core/error.h"

@@ -1,5 +1,5 @@
 // Sensors and frames of unusual sizes, unusual rates, and queries on edges.
-#include "apps/cli/run/memory_use.h"
+#include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/stress/process_size.h"
 #include "apps/cli/stress/stress_case.h"
 

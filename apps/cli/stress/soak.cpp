@@ -2,8 +2,8 @@
 #include "apps/cli/stress/soak.h"
 
 #include "apps/cli/stress/process_size.h"
-#include "pipeline/latency.h"
 #include "pipeline/model_render_stage.h"
+#include "pipeline/pace/latency.h"
 
 #include <algorithm>
 #include <cmath>

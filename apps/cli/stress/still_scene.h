@@ -2,8 +2,8 @@
 // noise of a real camera.
 #pragma once
 
-#include "src/simulate/event_sensor.h"
 #include "src/simulate/random.h"
+#include "src/simulate/sensor/event_sensor.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Times that are large, wrap, or go back.
 #include "apps/cli/stress/stress_case.h"
 #include "apps/cli/stress/wire_words.h"
-#include "src/codec/text.h"
+#include "src/codec/text/text.h"
 
 #include <cstdio>
 

@@ -3,8 +3,8 @@
 
 #include "apps/cli/stress/double_network.h"
 #include "pipeline/model_render_stage.h"
-#include "src/model/encoder.h"
-#include "src/model/plain_renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/plain_renderer.h"
 
 #include <deque>
 #include <memory>

@@ -1,12 +1,12 @@
 // Events as words of cameras and files.
 #include "apps/cli/stress/wire_words.h"
 
-#include "src/codec/dat.h"
-#include "src/codec/davis.h"
-#include "src/codec/davis_writer.h"
-#include "src/codec/dvs128.h"
-#include "src/codec/evt2.h"
-#include "src/codec/evt3.h"
+#include "src/codec/inivation/davis.h"
+#include "src/codec/inivation/davis_writer.h"
+#include "src/codec/inivation/dvs128.h"
+#include "src/codec/prophesee/dat.h"
+#include "src/codec/prophesee/evt2.h"
+#include "src/codec/prophesee/evt3.h"
 
 namespace eventide::stress {
 namespace {

@@ -1,5 +1,5 @@
 // The counters of a run, as JSON and as words.
-#include "apps/cli/run/run_report.h"
+#include "apps/cli/run/report/run_report.h"
 #include "apps/cli/terminal.h"
 
 #include <nlohmann/json.hpp>

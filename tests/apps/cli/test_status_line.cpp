@@ -1,6 +1,6 @@
 // The moving line: what people watch a run for is there on every terminal of 40 columns and more.
 #include "apps/cli/run/fitted_line.h"
-#include "apps/cli/run/status_line.h"
+#include "apps/cli/run/report/status_line.h"
 
 #include <gtest/gtest.h>
 

@@ -43,6 +43,24 @@ TEST(Plot, SurvivesNoPointsOnePointAndLogarithmsOfZero) {
         }
 }
 
+TEST(Plot, NamesSeriesBesideTheDrawingAndPointsInIt) {
+    const Plot plot{.name = "p",
+                    .series = {{.label = "AVX2 alone",
+                                .x = {1, 2},
+                                .y = {1, 2},
+                                .labels = {"near", "far"},
+                                .joined = false}}};
+    const std::string drawn = svg(plot);
+    const auto x_of = [&](const std::string& word) {
+        const auto end = drawn.find(">" + word + "<");
+        return std::stod(drawn.substr(drawn.rfind("<text x='", end) + 9));
+    };
+    const double width = std::stod(drawn.substr(drawn.find("width='") + 7));
+    EXPECT_GT(x_of("AVX2 alone"), x_of("far"));
+    EXPECT_GT(x_of("far"), x_of("near"));
+    EXPECT_LT(x_of("AVX2 alone"), width);
+}
+
 TEST(Plot, IsWrittenAsImageAndNumbers) {
     const auto folder = std::filesystem::path{testing::TempDir()} / "eventide_plots";
     const Plot plot{.name = "some", .series = {{"s", {1, 2}, {3, 4}, {}}}};

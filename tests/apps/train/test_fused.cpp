@@ -1,5 +1,5 @@
 // The fused steps give the values and the gradients that torch's own operations give.
-#include "apps/train/fused.h"
+#include "apps/train/fused/fused.h"
 
 #include <gtest/gtest.h>
 

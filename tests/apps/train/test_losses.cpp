@@ -1,5 +1,5 @@
 // The measures that training makes small are those that evaluation reports.
-#include "apps/train/losses.h"
+#include "apps/train/network/losses.h"
 #include "src/metrics/image_measures.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Training and the engine compute the same: torch against plain and fast, with the same weights.
-#include "apps/train/batch.h"
-#include "apps/train/networks.h"
-#include "apps/train/render.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "apps/train/data/batch.h"
+#include "apps/train/network/networks.h"
+#include "apps/train/network/render.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 #include "tests/model/streams.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Floats become bytes, and sigma becomes visible, as the headers promise.
 #include "pipeline/sinks/draw_frame.h"
 #include "pipeline/sinks/raw_pixels.h"
-#include "pipeline/sinks/yuv.h"
+#include "pipeline/sinks/video/yuv.h"
 #include "tests/pipeline/sinks/frames.h"
 
 #include <gtest/gtest.h>

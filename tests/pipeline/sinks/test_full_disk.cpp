@@ -2,7 +2,7 @@
 #include "pipeline/sinks/contact_sheet.h"
 #include "pipeline/sinks/folder.h"
 #include "pipeline/sinks/raw_stream.h"
-#include "pipeline/sinks/video.h"
+#include "pipeline/sinks/video/video.h"
 #include "src/core/error.h"
 #include "tests/pipeline/sinks/frames.h"
 #include "tests/support/file_limit.h"

@@ -1,5 +1,5 @@
 // Videos: every frame with its exact time, in files that survive a killed program.
-#include "pipeline/sinks/video.h"
+#include "pipeline/sinks/video/video.h"
 #include "src/core/error.h"
 #include "tests/pipeline/sinks/frames.h"
 #include "tests/system/process.h"

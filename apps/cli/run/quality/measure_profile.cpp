@@ -5,8 +5,8 @@
 #include "apps/cli/version.h"
 #include "src/binning/binner.h"
 #include "src/core/error.h"
-#include "src/model/encoder.h"
-#include "src/model/renderer.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
 #include "src/nn/arithmetic.h"
 
 #include <algorithm>

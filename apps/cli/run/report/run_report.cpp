@@ -1,0 +1,146 @@
+// The counters of a run as people and programs read them.
+#include "apps/cli/run/report/run_report.h"
+
+#include "apps/cli/terminal.h"
+#include "src/core/damage.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace eventide::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double milliseconds(std::chrono::nanoseconds duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+Json json_of(const LatencySummary& summary) {
+    return {{"p50", milliseconds(summary.p50)},
+            {"p90", milliseconds(summary.p90)},
+            {"p99", milliseconds(summary.p99)},
+            {"max", milliseconds(summary.max)},
+            {"mean", summary.count == 0 ? 0 : milliseconds(summary.total) / double(summary.count)}};
+}
+
+Json json_of(const Damage& damage) {
+    Json counts = Json::object();
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        counts[std::string{name_of(DamageReason(i))}] = damage[DamageReason(i)];
+    return counts;
+}
+
+/// printf into a string; what is shown is short.
+template <typename... Args>
+std::string text_of(const char* format, Args... args) {
+    char text[256];
+    std::snprintf(text, sizeof text, format, args...);
+    return text;
+}
+
+std::string latency_text(const Snapshot& now) {
+    return text_of("latency %.1f/%.1f ms", milliseconds(now.latency.p50),
+                   milliseconds(now.latency.p99));
+}
+
+std::string losses_text(const Snapshot& now) {
+    return "lost " + std::to_string(now.lost()) + "  skipped " +
+           std::to_string(now.skipped_frames) + "  damaged " + std::to_string(now.damaged.total());
+}
+
+}  // namespace
+
+bool lost_data(const Snapshot& end) {
+    return end.lost_packets > 0 || end.gaps > 0 || end.damaged.total() > 0 ||
+           end.slicing.too_many > 0;
+}
+
+std::string summary_text(const Snapshot& end, const RunProgress& progress) {
+    const double seconds = progress.elapsed.count();
+    std::string text =
+        text_of("%llu frames from %s events in %.2f s", static_cast<unsigned long long>(end.frames),
+                short_count(double(end.events)).c_str(), seconds);
+    if (seconds > 0) text += text_of(" (%.1f frames/s)", double(end.frames) / seconds);
+    if (progress.in_step) text += "; " + latency_text(end) + " (p50/p99)";
+    text += "\n" + losses_text(end);
+    if (end.filtered_events > 0) text += "  filtered " + short_count(double(end.filtered_events));
+    if (end.merged_windows > 0) text += "  merged " + std::to_string(end.merged_windows);
+    if (end.gaps > 0) text += "  gaps " + std::to_string(end.gaps);
+    for (std::size_t i = 0; i < kDamageReasons; ++i)
+        if (const auto n = end.damaged[DamageReason(i)]; n > 0)
+            text += "\n  " + std::string{name_of(DamageReason(i))} + ": " + std::to_string(n);
+    return text;
+}
+
+std::string why_no_frames(const Snapshot& end) {
+    if (end.frames > 0 || end.skipped_frames > 0) return {};
+    const SlicerCounters& cut = end.slicing;
+    if (end.events == 0)
+        return "no frame: no event was read; eventide info says from when to when there are any";
+    if (cut.before_begin == end.events) return "no frame: all events lie before --from";
+    if (cut.before_begin + cut.after_end == end.events)
+        return "no frame: no event lies between --from and --to";
+    return "no frame: what was asked for is shorter than the time between two frames (--fps)";
+}
+
+std::string camera_text(const CameraCounters& camera) {
+    std::string text;
+    const auto say = [&](const char* what, std::uint64_t n) {
+        if (n > 0)
+            text += (text.empty() ? "\ncamera: " : ", ") + std::string{what} + std::to_string(n);
+    };
+    say("events dropped by itself ", camera.device_dropped);
+    say("came back ", camera.reconnects);
+    say("stalls cleared ", camera.halts);
+    say("transfers cut within a word ", camera.odd_transfers);
+    return text;
+}
+
+std::string stats_json(const Snapshot& now, const RunProgress& progress, bool final) {
+    Json json;
+    json["elapsed_s"] = progress.elapsed.count();
+    json["final"] = final;
+    const double seconds = progress.elapsed.count();
+    const bool mean = final && seconds > 0;
+    json["event_rate"] = mean ? double(now.events) / seconds : progress.event_rate;
+    json["events"] = now.events;
+    json["images"] = now.images;
+    json["imu"] = now.imu;
+    json["triggers"] = now.triggers;
+    json["packets"] = now.packets;
+    json["bytes"] = now.bytes;
+    json["lost_packets"] = now.lost_packets;
+    json["lost_bytes"] = now.lost_bytes;
+    json["gaps"] = now.gaps;
+    json["filtered_events"] = now.filtered_events;
+    json["damaged"] = json_of(now.damaged);
+    json["slicing"] = {{"before_begin", now.slicing.before_begin},
+                       {"after_end", now.slicing.after_end},
+                       {"too_many", now.slicing.too_many},
+                       {"late", now.slicing.late},
+                       {"late_references", now.slicing.late_references},
+                       {"time_resets", now.slicing.time_resets}};
+    json["event_windows"] = now.event_windows;
+    json["silent_windows"] = now.silent_frames;
+    json["merged_windows"] = now.merged_windows;
+    json["window_begin_us"] = to_us(now.window.begin);
+    json["window_end_us"] = to_us(now.window.end);
+    json["encoded"] = now.encoded;
+    json["state_resets"] = now.state_resets;
+    json["frames"] = now.frames;
+    json["skipped_frames"] = now.skipped_frames;
+    json["broken_frames"] = now.broken_frames;
+    json["newest_frame_us"] = now.frames > 0 ? Json(to_us(now.newest_frame)) : Json(nullptr);
+    json["latency_ms"] = json_of(now.latency);
+    json["work_ms"] = {{"bin", json_of(now.bin)},
+                       {"encode", json_of(now.encode)},
+                       {"render", json_of(now.render)},
+                       {"write", json_of(now.write)}};
+    if (progress.quality) json["quality"] = quality_json(*progress.quality, false);
+    return json.dump();
+}
+
+}  // namespace eventide::app

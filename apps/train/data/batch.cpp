@@ -1,0 +1,94 @@
+#include "apps/train/data/batch.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide {
+
+RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t streams,
+                                     std::int64_t height, std::int64_t width,
+                                     torch::TensorOptions options) {
+    const std::int64_t s = config.latent_stride;
+    return {
+        empty_state(config, streams, height, width, options),
+        torch::zeros({streams, config.latent, (height + s - 1) / s, (width + s - 1) / s}, options)
+            .contiguous(torch::MemoryFormat::ChannelsLast)};
+}
+
+RecurrentState begin_window(const RecurrentState& memory, const std::vector<bool>& fresh) {
+    std::vector<float> keep;
+    for (const bool anew : fresh) keep.push_back(anew ? 0.0F : 1.0F);
+    const auto factor = torch::tensor(keep).view({-1, 1, 1, 1}).to(memory.latent.options());
+    RecurrentState next{{}, memory.latent.detach() * factor};
+    for (const torch::Tensor& map : memory.state) next.state.push_back(map.detach() * factor);
+    return next;
+}
+
+torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Device device) {
+    const Array3<float>& first = *grids[0];
+    const auto n = std::int64_t(grids.size());
+    torch::Tensor all = torch::empty({n, first.height(), first.width(), first.channels()});
+    float* out = all.data_ptr<float>();
+    for (const Array3<float>* grid : grids)
+        out = std::copy(grid->values().begin(), grid->values().end(), out);
+    // The binner's layout is torch's channels-last, seen through another order of indices.
+    return all.to(device).permute({0, 3, 1, 2});
+}
+
+TrainingBatch to_batch(std::span<const StreamWindow> windows, torch::Device device) {
+    TrainingBatch batch;
+    const StreamWindow& like = windows[0];
+    for (const StreamWindow& window : windows) batch.fresh.push_back(window.fresh);
+    for (std::size_t k = 0; k < like.grids.size(); ++k) {
+        std::vector<const Array3<float>*> grids;
+        for (const StreamWindow& window : windows) grids.push_back(&window.grids[k]);
+        batch.grids.push_back(to_torch(grids, device));
+    }
+    const auto tasks = std::int64_t(like.f.size()), streams = std::int64_t(windows.size());
+    const int patch = like.truth[0].height();
+    batch.truth = torch::empty({tasks * streams, patch, patch});
+    float* out = batch.truth.data_ptr<float>();
+    std::vector<float> weight;
+    for (std::size_t i = 0; i < like.f.size(); ++i) {
+        std::vector<float> f;
+        for (const StreamWindow& window : windows) {
+            f.push_back(window.f[i]);
+            weight.push_back(window.weight[i]);
+            out = std::copy(window.truth[i].values().begin(), window.truth[i].values().end(), out);
+        }
+        batch.f.push_back(torch::tensor(f).to(device));
+    }
+    batch.truth = batch.truth.to(device);
+    batch.weight = torch::tensor(weight).to(device);
+    return batch;
+}
+
+Images run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
+                  const TrainingBatch& batch, int patch, RecurrentState& memory) {
+    const auto type = parameters.begin()->second.scalar_type();
+    std::vector<torch::Tensor> z{memory.latent.to(type)};  // z[k + 1] belongs to frame k
+    for (const torch::Tensor& grid : batch.grids) {
+        Encoded encoded = encode(config, parameters, grid, memory.state);
+        memory.state = std::move(encoded.state);
+        z.push_back(encoded.latent.to(type));
+    }
+    memory.latent = z.back().to(memory.latent.scalar_type());
+
+    std::vector<RenderTask> tasks;
+    for (std::size_t i = 0; i < batch.f.size(); ++i) {
+        const std::size_t k = std::size_t(plan.first_rendered) + i;
+        // Codes past the window's end are not known, whatever the lookahead.
+        const auto code = [&](std::size_t ahead) {
+            const bool known = int(ahead) <= plan.lookahead[i] && k + 1 + ahead < z.size();
+            return known ? z[k + 1 + ahead] : torch::Tensor{};
+        };
+        tasks.push_back({z[k], z[k + 1], code(1), code(2), batch.f[i]});
+        if (config.live_edge == LiveEdge::fade && k > 0) tasks.back().before = z[k - 1];
+    }
+    const double s = config.latent_stride;
+    const PatchGrid points = patch_grid(plan.y0 / s, plan.x0 / s, plan.span / s, patch);
+    const Rendered out = render(config, parameters, tasks, points);
+    return {out.mu, out.log_sigma, batch.truth, batch.weight, std::int64_t(batch.fresh.size())};
+}
+
+}  // namespace eventide

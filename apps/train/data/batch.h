@@ -1,0 +1,43 @@
+// Lanes' windows as torch tensors, and a network's pass over one window.
+#pragma once
+
+#include "apps/train/data/data_loader.h"
+#include "apps/train/network/losses.h"
+#include "apps/train/network/networks.h"
+#include "apps/train/network/render.h"
+
+#include <span>
+#include <vector>
+
+namespace eventide {
+
+/// What N lanes carry from window to window.
+struct RecurrentState {
+    EncoderState state;
+    torch::Tensor latent;  ///< of the last event window, [N][D][h][w]
+};
+
+RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t streams,
+                                     std::int64_t height, std::int64_t width,
+                                     torch::TensorOptions options);
+
+/// Lanes with `fresh` begin empty; gradients do not reach into the window before.
+RecurrentState begin_window(const RecurrentState& memory, const std::vector<bool>& fresh);
+
+struct TrainingBatch {
+    std::vector<torch::Tensor> grids;  ///< per frame, [N][4B+1][H][W]
+    std::vector<torch::Tensor> f;      ///< per rendered frame, [N]
+    torch::Tensor truth, weight;       ///< [tasks * N][patch][patch], [tasks * N]
+    std::vector<bool> fresh;
+};
+TrainingBatch to_batch(std::span<const StreamWindow> windows, torch::Device device);
+
+/// Encodes a window and renders the frames the plan names. `memory` goes in as begin_window() left
+/// it and comes out as it is after the window, still attached.
+Images run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
+                  const TrainingBatch& batch, int patch, RecurrentState& memory);
+
+/// [N][C][H][W] of grids [y][x][channel].
+torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Device device);
+
+}  // namespace eventide

@@ -1,0 +1,123 @@
+// Training data, simulated while training goes on: endless lanes of event windows with the truth.
+#pragma once
+
+#include "src/core/array.h"
+#include "src/simulate/scene/scene_settings.h"
+#include "src/simulate/scene/textures.h"
+#include "src/simulate/sensor/event_sensor.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace eventide {
+
+struct DataSettings {
+    int bins = 5;
+    int crop = 64;  ///< px, side of the part of a sensor that is simulated
+    /// px, log-uniform per episode; width of that sensor, whose height is three quarters of it.
+    /// Never smaller than the crop.
+    Range sensor_width{128, 346};
+    int frames = 8;            ///< event windows per window: gradients flow through one window
+    int rendered = 4;          ///< of them, consecutive, are compared with the truth
+    int patch = 64;            ///< px, side of the images compared
+    Range episode{20, 400};    ///< log-uniform; event windows until a lane starts anew
+    Range frame_s{.01, .1};    ///< log-uniform per episode; width of the event windows
+    double frame_jitter = .3;  ///< ln; widths of one episode's frames differ by up to this ...
+    double jitter_probability = .5;  ///< ... in this share of the episodes
+    double whole_probability = .6;   ///< patches whose points are pixels
+    double span_scale_max = 4;       ///< else log-uniform 1..this points per pixel
+    double edge_probability = .4;    ///< images at the end of their event window; else anywhere
+    int warm_frames = 4;             ///< frames of a new lane that count nothing
+    double content_share = 0;        ///< episodes whose windows end by content, too:
+    Range content_epp{.2, 1};        ///< log-uniform; at so many events per pixel, never under 1 ms
+    bool noise_filter = false;       ///< events are left out as NoiseFilter does
+    double thesis_share = 0;  ///< episodes lit, sensed and shown as the thesis' (see `Camera`)
+    std::uint64_t seed = 1;
+    SceneSettings scene = training_scenes();
+    SensorSettings sensor;
+
+    /// The simulator's own ranges, less of what shows next to nothing: a scene that stands still
+    /// from its first frame on cannot be learned from.
+    static SceneSettings training_scenes();
+};
+
+/// What all lanes of one window share, so that they are computed together.
+struct WindowPlan {
+    int first_rendered = 0;           ///< frame of the window
+    double y0 = 0, x0 = 0, span = 0;  ///< px, of the patch
+    std::vector<int> lookahead;       ///< per rendered frame: 0, 1 or 2
+};
+WindowPlan window_plan(const DataSettings& settings, std::int64_t window);
+
+/// One lane's part of a window.
+struct StreamWindow {
+    bool fresh = false;                ///< a new scene: the state before it is empty
+    std::vector<Array3<float>> grids;  ///< per frame, [y][x][channel]
+    std::vector<float> f;              ///< per rendered frame, instant in the event window (0, 1]
+    std::vector<float> weight;         ///< per rendered frame
+    std::vector<Array2<float>> truth;  ///< per rendered frame, patch x patch
+};
+
+/// Which lane, and how often its turn comes: window w of the run is made of the lanes of group
+/// w % groups. Neighbouring steps then see other scenes, and scenes may be long all the same.
+struct StreamPlace {
+    int stream = 0;
+    int group = 0, groups = 1;
+};
+
+/// Windows of one lane, one after the other; the same for the same settings and place.
+class SceneStream {
+public:
+    /// Goes on where the run is at `first_window`.
+    SceneStream(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
+                StreamPlace place, std::int64_t first_window);
+    ~SceneStream();
+
+    StreamWindow next();
+
+private:
+    struct Episode;
+    void start_episode();
+    void open_episode();
+
+    DataSettings settings_;
+    std::shared_ptr<const TextureLibrary> textures_;
+    StreamPlace place_;
+    std::int64_t window_ = 0, episode_ = -1, windows_left_ = 0;
+    std::unique_ptr<Episode> now_;
+};
+
+/// Lanes that simulate ahead on threads of their own, a bounded number of windows.
+class DataLoader {
+public:
+    /// `lanes` in each of `groups`.
+    DataLoader(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
+               int streams, int groups, std::int64_t first_window);
+    ~DataLoader();
+
+    /// The next window of the lanes whose turn it is; waits. Rethrows what a lane threw.
+    std::vector<StreamWindow> next();
+
+private:
+    struct Slot {
+        std::deque<StreamWindow> ready;
+        std::exception_ptr failure;
+    };
+    void simulate(std::stop_token stop, StreamPlace place, std::int64_t first_window);
+
+    DataSettings settings_;
+    std::shared_ptr<const TextureLibrary> textures_;
+    int streams_, groups_;
+    std::int64_t window_;
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::vector<Slot> slots_;            // by mutex_
+    std::vector<std::jthread> threads_;  // last: they stop before the rest goes
+};
+
+}  // namespace eventide

@@ -1,0 +1,74 @@
+// Frames as H.264 in MP4 or Matroska, each with its own exact time.
+#include "pipeline/sinks/video/video.h"
+
+#include "pipeline/sinks/video/video_file.h"
+#include "src/core/error.h"
+
+#include <opencv2/core.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace eventide {
+
+namespace {
+
+std::unique_ptr<VideoFile> create(const std::filesystem::path& path,
+                                  const VideoSettings& settings) {
+    return std::make_unique<VideoFile>(
+        path, EncoderSettings{settings.preset, settings.crf, settings.fps, settings.overwrite});
+}
+
+}  // namespace
+
+std::filesystem::path sigma_path(std::filesystem::path path) {
+    const std::string extension = path.extension().string();
+    return path.replace_extension(".sigma" + extension);
+}
+
+VideoSink::VideoSink(VideoSettings settings) : settings_{std::move(settings)} {
+    if (settings_.uncertainty == Uncertainty::alpha)
+        throw Error(ErrorKind::usage, settings_.path.string() +
+                                          ": H.264 has no transparency; expected --uncertainty "
+                                          "none, separate, side or overlay, found alpha");
+    if (settings_.uncertainty == Uncertainty::overlay && !video_kind_of(settings_.path).colour)
+        throw Error(ErrorKind::usage, settings_.path.string() +
+                                          ": its 256 colours are greys; expected --uncertainty "
+                                          "none, separate or side, found overlay");
+    intensity_ = create(settings_.path, settings_);
+    if (settings_.uncertainty == Uncertainty::separate)
+        sigma_ = create(sigma_path(settings_.path), settings_);
+}
+
+VideoSink::~VideoSink() = default;
+
+std::int64_t VideoSink::microseconds_to_show(SensorTime t) {
+    if (last_us_ < 0) origin_ = t;
+    const auto shown_at = [&] {
+        return begin_us_ + std::llround(double((t - origin_).count()) * settings_.slow);
+    };
+    if (shown_at() <= last_us_) {  // the sensor's clock went back
+        origin_ = t;
+        begin_us_ = last_us_ + std::llround(1e6 / settings_.fps);
+    }
+    return last_us_ = shown_at();
+}
+
+void VideoSink::write(const Frame& frame) {
+    const std::int64_t t_us = microseconds_to_show(frame.t);
+    draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
+    if (settings_.events) draw_events_beside(frame, image_);
+    if (!video_kind_of(settings_.path).colour && image_.channels() == 3)
+        cv::extractChannel(image_, image_, 2);  // of events' red and blue: a light and a dark grey
+    intensity_->write(image_, t_us);
+    if (!sigma_) return;
+    draw_sigma(frame, settings_.sigma_white, image_);
+    sigma_->write(image_, t_us);
+}
+
+void VideoSink::close() {
+    intensity_->finish();
+    if (sigma_) sigma_->finish();
+}
+
+}  // namespace eventide

@@ -1,0 +1,38 @@
+// The kinds of video file.
+#include "pipeline/sinks/video/video_kind.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <string>
+
+namespace eventide {
+
+namespace {
+
+constexpr VideoKind kKinds[]{{".mp4", "libx264", AV_PIX_FMT_YUV420P, false, 1'000'000, 1e6, true},
+                             {".mkv", "libx264", AV_PIX_FMT_YUV420P, false, 1'000'000, 1e6, true},
+                             // A Motion JPEG file has one rate and no times.
+                             {".avi", "mjpeg", AV_PIX_FMT_YUVJ420P, true, 0, 1e6, true},
+                             // 256 colours: all the greys there are. Players show what is to stand
+                             // shorter than 20 ms for 100 ms.
+                             {".gif", "gif", AV_PIX_FMT_GRAY8, true, 100, 50, false}};
+
+const VideoKind* find(const std::filesystem::path& path) {
+    const auto found = std::ranges::find(kKinds, path.extension().string(), &VideoKind::extension);
+    return found == std::end(kKinds) ? nullptr : found;
+}
+
+}  // namespace
+
+const VideoKind& video_kind_of(const std::filesystem::path& path) {
+    if (const VideoKind* kind = find(path)) return *kind;
+    throw Error(ErrorKind::usage,
+                path.string() + ": expected a video file ending in .mp4, .mkv, .avi or .gif");
+}
+
+bool names_video(const std::filesystem::path& path) {
+    return find(path) != nullptr;
+}
+
+}  // namespace eventide

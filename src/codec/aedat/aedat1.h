@@ -1,0 +1,55 @@
+// AEDAT 1.0: 16-bit addresses of a DVS128 and 32-bit times, big-endian (docs/protocols.md
+// D.1).
+#pragma once
+
+#include "src/codec/aedat/aedat_timeline.h"
+#include "src/codec/fixed_records.h"
+#include "src/codec/parser.h"
+#include "src/codec/stream.h"
+
+namespace eventide {
+
+/// What an address of a DVS128 says, in image coordinates.
+struct Dvs128Address {
+    std::uint16_t x, y;
+    bool bit0;
+    bool external;  ///< no event but an edge on the external input
+};
+Dvs128Address read_dvs128_address(std::uint32_t address);
+
+/// The data of DVS128 records, in AEDAT 1 or 2. An edge on the external input becomes a Trigger of
+/// kind pulse: the format does not say which edge.
+class Dvs128Events {
+public:
+    explicit Dvs128Events(bool one_is_on) : one_is_on_(one_is_on) {}
+    void take(const AedatRecord& record, std::int64_t t_us, Batch& into, Damage& damage);
+    void resync() { last_event_us_.reset(); }
+
+private:
+    bool one_is_on_;
+    std::optional<std::int64_t> last_event_us_;
+};
+
+/// True for a header that says 1.0, or says nothing and is followed by bytes that are no text.
+bool looks_like_aedat1(std::span<const std::byte> first_bytes);
+StreamHeader read_aedat1_header(std::span<const std::byte> first_bytes);
+
+class Aedat1Parser final : public Parser {
+public:
+    /// `one_is_on`: what bit 0 of the address means (see OpenOptions).
+    explicit Aedat1Parser(bool one_is_on = false) : events_(one_is_on) {}
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override;
+    void finish(Batch& into) override;
+    void resync() override;
+    std::optional<SensorTime> clock() const override;
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    FixedRecords<6> records_;
+    AedatTimeline timeline_;
+    Dvs128Events events_;
+    Damage damage_;
+};
+
+}  // namespace eventide

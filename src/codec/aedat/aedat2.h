@@ -1,0 +1,54 @@
+// AEDAT 2.0: 32-bit addresses and times, big-endian, of a DVS128 or a DAVIS (docs/protocols.md
+// D.1).
+#pragma once
+
+#include "src/codec/aedat/aedat1.h"
+#include "src/codec/aedat/aedat2_frame.h"
+#include "src/codec/aedat/aedat2_imu.h"
+#include "src/codec/aedat/aedat_timeline.h"
+#include "src/codec/fixed_records.h"
+#include "src/codec/parser.h"
+#include "src/codec/stream.h"
+
+namespace eventide {
+
+enum class Aedat2Sensor : std::uint8_t { dvs128, davis };
+
+struct Aedat2Header {
+    StreamHeader stream;
+    Aedat2Sensor sensor = Aedat2Sensor::dvs128;
+};
+
+/// The sensor is the one the AEChip line names. Without one (older recorders): the stated size
+/// says, else addresses of 16 bits mean a DVS128. Throws Error (input) when none of this tells.
+Aedat2Header read_aedat2_header(std::span<const std::byte> first_bytes, int stated_width = 0,
+                                int stated_height = 0);
+
+class Aedat2Parser final : public Parser {
+public:
+    /// `one_is_on`: what bit 0 of a DVS128's address means (see OpenOptions).
+    Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on = false);
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override;
+    void finish(Batch& into) override;
+    void resync() override;
+    std::optional<SensorTime> clock() const override;
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    void take(const AedatRecord& record, std::int64_t t_us, Batch& into);
+    void take_davis(std::uint32_t address, std::int64_t t_us, Batch& into);
+    void add_event(std::uint32_t address, std::int64_t t_us, Batch& into);
+
+    Aedat2Sensor sensor_;
+    std::uint32_t width_, height_;
+    FixedRecords<8> records_;
+    AedatTimeline timeline_;
+    Dvs128Events dvs128_;
+    Aedat2FrameAssembler frame_;
+    Aedat2ImuAssembler imu_;
+    std::optional<std::int64_t> last_event_us_;
+    Damage damage_;
+};
+
+}  // namespace eventide

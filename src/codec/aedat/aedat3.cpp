@@ -1,0 +1,295 @@
+// AEDAT 3 packets -> events, frames, IMU samples, triggers.
+#include "src/codec/aedat/aedat3.h"
+
+#include "src/codec/aedat/aedat3_records.h"
+#include "src/codec/byte_order.h"
+
+#include <algorithm>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::uint32_t kInvalidStamp = 1U << 31;  // and above: stamps have 31 bits
+constexpr std::uint32_t kLastStamp = kInvalidStamp - 1;
+
+// Frames and IMU samples come up to a packet's time after events that are newer.
+constexpr std::int64_t kLatestPacket = 1'000'000;  // us
+
+struct PolarityWord {
+    std::uint32_t bits;
+    bool is_valid() const { return (bits & 1) != 0; }
+    bool is_on() const { return (bits & 2) != 0; }
+    std::uint32_t x() const { return bits >> 17; }
+    std::uint32_t y() const { return (bits >> 2) & 0x7FFF; }
+};
+
+}  // namespace
+
+Aedat3Parser::Aedat3Parser(const Aedat3Header& header, int width, int height)
+    : lower_left_(header.lower_left),
+      source_(header.source),
+      validator_(std::uint64_t(width), std::uint64_t(height)) {}
+
+void Aedat3Parser::move_clock(std::int64_t t_us) {
+    newest_us_ = std::max(newest_us_.value_or(t_us), t_us);
+}
+
+/// Slides over the bytes until 28 of them make a header.
+std::span<const std::byte> Aedat3Parser::search_header(std::span<const std::byte> bytes) {
+    while (true) {
+        if (unit_.size() == Aedat3Packet::kHeaderBytes) {
+            const Aedat3Packet packet = read_aedat3_packet(unit_.data());
+            const bool of_ours = !source_ || packet.source == *source_;
+            if (is_plausible(packet) && packet.number > 0 && of_ours) {
+                begin_packet(packet);
+                return bytes;
+            }
+            unit_.erase(unit_.begin());
+        }
+        const std::size_t n = std::min(Aedat3Packet::kHeaderBytes - unit_.size(), bytes.size());
+        if (n == 0) return bytes;
+        unit_.insert(unit_.end(), bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
+        bytes = bytes.subspan(n);
+    }
+}
+
+std::span<const std::byte> Aedat3Parser::read_header(std::span<const std::byte> bytes) {
+    const std::size_t n = std::min(Aedat3Packet::kHeaderBytes - unit_.size(), bytes.size());
+    unit_.insert(unit_.end(), bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
+    bytes = bytes.subspan(n);
+    if (unit_.size() < Aedat3Packet::kHeaderBytes) return bytes;
+    const Aedat3Packet packet = read_aedat3_packet(unit_.data());
+    if (is_plausible(packet)) {
+        begin_packet(packet);
+    } else {
+        damage_.count(DamageReason::bad_length);
+        state_ = State::searching;
+    }
+    return bytes;
+}
+
+void Aedat3Parser::begin_packet(const Aedat3Packet& packet) {
+    unit_.clear();
+    packet_ = packet;
+    const bool of_other_source = source_ && packet.source != *source_;
+    if (of_other_source) damage_.count(DamageReason::unknown_word);
+    if (of_other_source || packet.type > std::int16_t(Aedat3Type::imu9)) {
+        left_ = std::uint64_t(packet.record_bytes) * packet.number;
+        state_ = State::passing_over;
+    } else {
+        if (!source_) source_ = packet.source;
+        left_ = packet.number;
+        base_us_ = (std::int64_t(packet.overflow) << 31) + offset_us_;
+        state_ = State::records;
+    }
+    if (left_ == 0) state_ = State::header;
+}
+
+std::span<const std::byte> Aedat3Parser::pass_over(std::span<const std::byte> bytes) {
+    const auto n = std::size_t(std::min<std::uint64_t>(left_, bytes.size()));
+    left_ -= n;
+    if (left_ == 0) state_ = State::header;
+    return bytes.subspan(n);
+}
+
+/// A reset sets the camera's clock to zero; ours goes on. Files written after the fact have no step
+/// back, and need nothing.
+void Aedat3Parser::rebase_after_reset(std::uint32_t stamp) {
+    if (!was_reset_ || !newest_us_) return;
+    const std::int64_t t = base_us_ + stamp;
+    const bool is_events = Aedat3Type(packet_.type) == Aedat3Type::polarity;
+    const auto last_event = validator_.newest_us();
+    const bool stepped_back =
+        is_events ? last_event && t < *last_event : t < *newest_us_ - kLatestPacket;
+    if (stepped_back) {
+        base_us_ += *newest_us_ - offset_us_;
+        offset_us_ = *newest_us_;
+    }
+    if (stepped_back || is_events) was_reset_ = false;
+}
+
+void Aedat3Parser::take_event(const std::byte* record, Batch& into) {
+    const PolarityWord word{load_little<std::uint32_t>(record)};
+    const auto stamp = load_little<std::uint32_t>(record + 4);
+    if (!word.is_valid()) return;  // left out by the recorder's filters
+    if (stamp >= kInvalidStamp) {
+        damage_.count(DamageReason::bad_record);
+        return;
+    }
+    rebase_after_reset(stamp);
+    std::uint64_t y = word.y();
+    if (lower_left_) y = validator_.height() - 1 - y;
+    validator_.add(base_us_ + stamp, word.x(), y, word.is_on(), into, damage_);
+    if (const auto newest = validator_.newest_us()) move_clock(*newest);
+}
+
+/// Like take_event() for each, with one look per record as long as nothing is wrong.
+void Aedat3Parser::take_many_events(std::span<const std::byte> records, Batch& into) {
+    constexpr std::size_t kBytes = Aedat3Packet::kPolarityBytes;
+    constexpr std::size_t kBlock = 512;  // records: bounds what a damaged one makes us do again
+    const std::byte* p = records.data();
+    const std::byte* const end = p + records.size();
+    const auto width = std::uint32_t(validator_.width()),
+               height = std::uint32_t(validator_.height());
+    while (p < end) {
+        const auto first_stamp = load_little<std::uint32_t>(p + 4);
+        const bool quick =
+            !lower_left_ && !was_reset_ && validator_.is_plain(base_us_ + first_stamp);
+        if (quick) {
+            const std::size_t before = into.events.size();
+            const std::size_t n = std::min(kBlock, std::size_t(end - p) / kBytes);
+            const std::byte* const block_end = p + n * kBytes;
+            into.events.resize(before + n);
+            Event* out = into.events.data() + before;
+            // Above kLastStamp nothing is plain, so stamps need no look of their own.
+            std::int64_t newest = *validator_.newest_us() - base_us_;
+            for (; p < block_end; p += kBytes) {
+                const PolarityWord word{load_little<std::uint32_t>(p)};
+                const std::int64_t stamp = load_little<std::uint32_t>(p + 4);
+                // Not &&: six branches a record cost more than six comparisons.
+                const int plain = int(word.is_valid()) & int(word.x() < width) &
+                                  int(word.y() < height) & int(stamp >= newest) &
+                                  int(stamp <= std::int64_t(kLastStamp)) &
+                                  int(stamp - newest <= EventValidator::kLongestStep);
+                if (plain == 0) break;
+                *out++ = {from_us(base_us_ + stamp), std::uint16_t(word.x()),
+                          std::uint16_t(word.y()), Polarity(word.is_on())};
+                newest = stamp;
+            }
+            into.events.resize(std::size_t(out - into.events.data()));
+            validator_.pass(base_us_ + newest);
+            move_clock(base_us_ + newest);
+            if (p == block_end) continue;
+        }
+        if (p < end) {
+            take_event(p, into);
+            p += kBytes;
+        }
+    }
+}
+
+void Aedat3Parser::take_special(const std::byte* record, Batch& into) {
+    const auto word = load_little<std::uint32_t>(record);
+    const auto stamp = load_little<std::uint32_t>(record + 4);
+    if ((word & 1) == 0) return;
+    auto trigger = read_special(word);
+    const bool is_reset = trigger && trigger->kind == Trigger::Kind::timestamp_reset;
+    if (stamp >= kInvalidStamp) {
+        damage_.count(DamageReason::bad_record);
+        return;
+    }
+    // Recorders stamp resets with the last possible time, which is none.
+    if (is_reset && stamp == kLastStamp) {
+        trigger->t = from_us(newest_us_.value_or(base_us_));
+    } else {
+        rebase_after_reset(stamp);
+        move_clock(base_us_ + stamp);
+        if (trigger) trigger->t = from_us(base_us_ + stamp);
+    }
+    if (trigger) into.triggers.push_back(*trigger);
+    was_reset_ |= is_reset;
+}
+
+void Aedat3Parser::take_frame(std::span<const std::byte> record, Batch& into) {
+    if ((load_little<std::uint32_t>(record.data()) & 1) == 0) return;
+    rebase_after_reset(load_little<std::uint32_t>(&record[12]));
+    auto image = read_frame(record, base_us_, lower_left_, int(validator_.height()));
+    if (!image) {
+        damage_.count(DamageReason::bad_record);
+        return;
+    }
+    move_clock(to_us(image->exposure_end));
+    into.images.push_back(std::move(*image));
+}
+
+void Aedat3Parser::take(std::span<const std::byte> record, Batch& into) {
+    switch (Aedat3Type(packet_.type)) {
+        case Aedat3Type::special:
+            take_special(record.data(), into);
+            break;
+        case Aedat3Type::polarity:
+            take_event(record.data(), into);
+            break;
+        case Aedat3Type::frame:
+            take_frame(record, into);
+            break;
+        case Aedat3Type::imu6:
+        case Aedat3Type::imu9:
+            if ((load_little<std::uint32_t>(record.data()) & 1) == 0) break;
+            rebase_after_reset(load_little<std::uint32_t>(&record[4]));
+            into.imu.push_back(read_imu(record, base_us_));
+            move_clock(to_us(into.imu.back().t));
+            break;
+    }
+}
+
+std::span<const std::byte> Aedat3Parser::read_records(std::span<const std::byte> bytes,
+                                                      Batch& into) {
+    const std::size_t record_bytes = packet_.record_bytes;
+    if (unit_.empty()) {
+        const auto whole = std::size_t(std::min<std::uint64_t>(left_, bytes.size() / record_bytes));
+        const auto records = bytes.first(whole * record_bytes);
+        if (Aedat3Type(packet_.type) == Aedat3Type::polarity)
+            take_many_events(records, into);
+        else
+            for (std::size_t i = 0; i < whole; ++i)
+                take(records.subspan(i * record_bytes, record_bytes), into);
+        left_ -= whole;
+        bytes = bytes.subspan(records.size());
+    }
+    if (left_ > 0 && !bytes.empty()) {
+        const std::size_t n = std::min(record_bytes - unit_.size(), bytes.size());
+        unit_.insert(unit_.end(), bytes.begin(), bytes.begin() + std::ptrdiff_t(n));
+        bytes = bytes.subspan(n);
+        if (unit_.size() == record_bytes) {
+            take(unit_, into);
+            unit_.clear();
+            --left_;
+        }
+    }
+    if (left_ == 0) state_ = State::header;
+    return bytes;
+}
+
+void Aedat3Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    while (!bytes.empty()) switch (state_) {
+            case State::header:
+                bytes = read_header(bytes);
+                break;
+            case State::searching:
+                bytes = search_header(bytes);
+                break;
+            case State::records:
+                bytes = read_records(bytes, into);
+                break;
+            case State::passing_over:
+                bytes = pass_over(bytes);
+                break;
+        }
+}
+
+void Aedat3Parser::finish(Batch& into) {
+    const bool inside = state_ == State::records || state_ == State::passing_over;
+    if (inside || (state_ == State::header && !unit_.empty()))
+        damage_.count(DamageReason::truncated);
+    validator_.finish(into, damage_);
+    if (const auto newest = validator_.newest_us()) move_clock(*newest);
+    unit_.clear();
+    state_ = State::header;
+}
+
+void Aedat3Parser::resync() {
+    unit_.clear();
+    state_ = State::searching;
+    offset_us_ = 0;
+    was_reset_ = false;
+    newest_us_.reset();
+    validator_.resync(damage_);
+}
+
+std::optional<SensorTime> Aedat3Parser::clock() const {
+    return newest_us_ ? std::optional(from_us(*newest_us_)) : std::nullopt;
+}
+
+}  // namespace eventide

@@ -1,0 +1,84 @@
+// AEDAT 3.1 (and 3.0): packets of polarity events, frames, IMU samples and special events,
+// little-endian (docs/protocols.md D.2).
+#pragma once
+
+#include "src/codec/aedat/aedat3_packet.h"
+#include "src/codec/event_validator.h"
+#include "src/codec/parser.h"
+#include "src/codec/stream.h"
+
+#include <optional>
+#include <vector>
+
+namespace eventide {
+
+struct Aedat3Header {
+    StreamHeader stream;        ///< width and height where the source's name tells them
+    bool lower_left = false;    ///< AEDAT 3.0: the origin is at the lower left
+    std::optional<int> source;  ///< number of the first source named
+};
+
+/// Throws Error (input) when it is no RAW AEDAT 3 file.
+Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes);
+
+/// Reads the packets of one source: those of others count as unknown_word. After a timestamp reset
+/// that sets the clock back, time goes on from where it was. Packets of types beyond IMU9 are
+/// passed over.
+class Aedat3Parser final : public Parser {
+public:
+    Aedat3Parser(const Aedat3Header& header, int width, int height);
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override;
+    void finish(Batch& into) override;
+    void resync() override;
+    std::optional<SensorTime> clock() const override;
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    enum class State { header, searching, records, passing_over };
+
+    std::span<const std::byte> search_header(std::span<const std::byte> bytes);
+    std::span<const std::byte> read_header(std::span<const std::byte> bytes);
+    void begin_packet(const Aedat3Packet& packet);
+    std::span<const std::byte> read_records(std::span<const std::byte> bytes, Batch& into);
+    std::span<const std::byte> pass_over(std::span<const std::byte> bytes);
+    void take(std::span<const std::byte> record, Batch& into);
+    void take_many_events(std::span<const std::byte> records, Batch& into);
+    void take_event(const std::byte* record, Batch& into);
+    void take_special(const std::byte* record, Batch& into);
+    void take_frame(std::span<const std::byte> record, Batch& into);
+    void rebase_after_reset(std::uint32_t stamp);
+    void move_clock(std::int64_t t_us);
+
+    bool lower_left_;
+    std::optional<int> source_;
+    EventValidator validator_;
+    Damage damage_;
+
+    State state_ = State::header;
+    std::vector<std::byte> unit_;  ///< the beginning of a header or record whose end has not come
+    Aedat3Packet packet_;          ///< whose records are being read
+    std::uint64_t left_ = 0;       ///< records of it to come; in passing_over: bytes
+    std::int64_t base_us_ = 0;     ///< what its overflow adds, and the offset
+    std::int64_t offset_us_ = 0;   ///< time before the last reset
+    bool was_reset_ = false;       ///< since the last packet of events
+    std::optional<std::int64_t> newest_us_;
+};
+
+/// Writes AEDAT 3.1: packets of at most kPacketRecords, colour frames as RGB, IMU samples with a
+/// magnetometer's values as IMU9, triggers as special events. A line "#Geometry: WxH", which other
+/// readers pass over, keeps the size. Throws Error (usage) for times below zero and coordinates
+/// above 32767. An image that does not say its colour filter has that of the header.
+class Aedat3Writer final : public StreamWriter {
+public:
+    static constexpr std::size_t kPacketRecords = 4096;
+
+    void begin(const StreamHeader& header, std::vector<std::byte>& out) override;
+    void write(const Batch& batch, std::vector<std::byte>& out) override;
+    void finish(std::vector<std::byte>&) override {}
+
+private:
+    ColourFilter colours_ = ColourFilter::none;
+};
+
+}  // namespace eventide

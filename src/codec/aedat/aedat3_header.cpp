@@ -1,0 +1,77 @@
+// The lines of text before the packets of AEDAT 3.
+#include "src/codec/aedat/aedat3.h"
+#include "src/codec/aedat/aedat_header.h"
+#include "src/core/error.h"
+#include "src/core/number_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+
+namespace eventide {
+
+namespace {
+
+struct NamedSize {
+    std::string_view name;  ///< how the source's name begins, in upper case
+    int width, height;
+};
+constexpr std::array kSizes{
+    NamedSize{"DVS128", 128, 128},    NamedSize{"DAVIS240", 240, 180},
+    NamedSize{"DAVIS346", 346, 260},  NamedSize{"DAVIS208", 208, 192},
+    NamedSize{"DAVIS128", 128, 128},  NamedSize{"DAVIS640", 640, 480},
+    NamedSize{"DVXPLORER", 640, 480},
+};
+
+void set_size_by_name(StreamHeader& header) {
+    std::string upper;
+    for (const char c : header.sensor_name)
+        upper += char(std::toupper(static_cast<unsigned char>(c)));
+    for (const NamedSize& size : kSizes)
+        if (upper.starts_with(size.name)) {
+            header.width = size.width;
+            header.height = size.height;
+            return;
+        }
+}
+
+/// "640x480"
+void set_size(StreamHeader& header, std::string_view geometry) {
+    const auto [width, height] = size_in(geometry).value_or(std::pair{0, 0});
+    if (width < 1 || height < 1 || width > 32768 || height > 32768) return;
+    header.width = width;
+    header.height = height;
+}
+
+}  // namespace
+
+Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes) {
+    const AedatHeaderLines lines = read_aedat_lines(first_bytes);
+    if (lines.lines.empty() || !lines.lines[0].starts_with("!AER-DAT3."))
+        throw Error(ErrorKind::input,
+                    "AEDAT 3: expected a first line \"#!AER-DAT3.1\", found none");
+    const std::string_view format = find_value(lines, "Format");
+    if (!format.empty() && format != "RAW")
+        throw Error(ErrorKind::input, "AEDAT 3: expected Format RAW, found \"" +
+                                          std::string(format.substr(0, 40)) + "\"");
+    Aedat3Header header;
+    header.lower_left = lines.lines[0].starts_with("!AER-DAT3.0");
+    header.stream.format = "aedat3";
+    header.stream.data_offset = lines.end;
+    header.stream.source_text = find_value(lines, "Start-Time");
+    // "Source 1: DAVIS346"
+    const std::string_view source = find_value(lines, "Source ");
+    std::string_view digits = source;
+    if (const auto number = take_number<int>(digits)) header.source = *number;
+    const std::size_t colon = source.find(':');
+    if (colon != source.npos) {
+        const std::string_view name = source.substr(colon + 1);
+        header.stream.sensor_name = name.substr(std::min(name.find_first_not_of(' '), name.size()));
+    }
+    set_size_by_name(header.stream);
+    set_size(header.stream, find_value(lines, "Geometry"));
+    return header;
+}
+
+}  // namespace eventide

@@ -1,0 +1,47 @@
+// What an AEDAT4 file says first: compression, where its table lies, and its streams.
+#pragma once
+
+#include "src/codec/aedat4/aedat4_compression.h"
+#include "src/codec/stream.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eventide {
+
+constexpr std::string_view kAedat4Magic = "#!AER-DAT4.0\r\n";
+
+/// The kinds of packets read, and their flatbuffer identifiers.
+enum class Aedat4Kind : std::uint8_t { events, image, imu, triggers };
+constexpr std::array<std::string_view, 4> kAedat4Identifiers{"EVTS", "FRME", "IMUS", "TRIG"};
+
+struct Aedat4Stream {
+    std::int32_t id = 0;
+    std::string identifier;     ///< of its packets: "EVTS", ...
+    int width = 0, height = 0;  ///< px; 0 where it does not say
+    std::string source;         ///< "DAVIS346_00000104"
+    int colour_filter = 0;      ///< libcaer's number; 0 none
+};
+
+struct Aedat4Header {
+    StreamHeader stream;
+    Aedat4Compression compression = Aedat4Compression::none;
+    std::int64_t table_position = -1;  ///< -1: never written
+    std::vector<Aedat4Stream> streams;
+    /// Per kind the stream that is read: the first of the camera of the first event stream, for a
+    /// file may hold several cameras, or the same camera's data before and after a filter.
+    std::array<std::optional<std::int32_t>, 4> chosen;
+};
+
+/// `first_bytes` hold the whole header. Throws Error (input) when it is none.
+Aedat4Header read_aedat4_header(std::span<const std::byte> first_bytes);
+
+/// The streams that the XML of an info node describes; what cannot be read is left out.
+std::vector<Aedat4Stream> read_aedat4_streams(std::string_view xml);
+
+}  // namespace eventide

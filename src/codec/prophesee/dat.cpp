@@ -1,0 +1,180 @@
+// DAT records -> events or triggers.
+#include "src/codec/prophesee/dat.h"
+
+#include "src/codec/byte_order.h"
+#include "src/codec/prophesee/evt_header.h"
+#include "src/core/error.h"
+#include "src/core/number_text.h"
+
+#include <algorithm>
+#include <string>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
+constexpr std::int64_t kWrap = std::int64_t(1) << 32;
+
+struct Place {
+    std::uint32_t x, y;
+    bool on;
+};
+
+// Version 2: x 14 bits, y 14 bits, polarity 4 bits; version 1: 9, 8, 1.
+template <bool kVersion1>
+Place place_of(std::uint32_t word) {
+    if constexpr (kVersion1) return {word & 0x1FF, word >> 9 & 0xFF, (word >> 17 & 1) != 0};
+    return {word & 0x3FFF, word >> 14 & 0x3FFF, (word >> 28 & 0xF) != 0};
+}
+
+std::uint32_t side(int px, std::uint32_t most) {
+    return px > 0 ? std::min(std::uint32_t(px), most) : most;
+}
+
+int number(std::string_view text) {
+    const int value = take_number<int>(text).value_or(0);
+    return value > 0 && value <= 16384 ? value : 0;
+}
+
+}  // namespace
+
+std::optional<DatHeader> find_dat_header(std::span<const std::byte> first_bytes) {
+    const PercentLines lines = read_percent_lines(first_bytes);
+    if (lines.bytes == 0 || lines.bytes + 2 > first_bytes.size()) return {};
+    const auto type = std::to_integer<int>(first_bytes[lines.bytes]);
+    const auto bytes = std::to_integer<int>(first_bytes[lines.bytes + 1]);
+    if ((type != 0x00 && type != 0x0C && type != 0x0E) || bytes != 8) return {};
+    if (!lines.value("evt").empty() || !lines.value("format").empty()) return {};
+    DatHeader header;
+    header.stream.format = "dat";
+    header.stream.data_offset = lines.bytes + 2;
+    header.stream.width = number(lines.value("Width"));
+    header.stream.height = number(lines.value("Height"));
+    header.stream.source_text = lines.value("Data");
+    const bool version_1 = type == 0x00 && lines.value("Version") != "2";
+    header.record = type == 0x0E ? DatHeader::Record::triggers
+                    : version_1  ? DatHeader::Record::events_v1
+                                 : DatHeader::Record::events_v2;
+    return header;
+}
+
+DatHeader read_dat_header(std::span<const std::byte> first_bytes) {
+    const auto header = find_dat_header(first_bytes);
+    if (!header)
+        throw Error(ErrorKind::input,
+                    "DAT header: expected lines of \"% ...\", then a record type 0, 12 or 14 and a "
+                    "record size of 8, found something else");
+    return *header;
+}
+
+DatParser::DatParser(DatHeader::Record record, int width, int height)
+    : record_(record),
+      width_(side(width, record == DatHeader::Record::events_v1 ? 512 : 16384)),
+      height_(side(height, record == DatHeader::Record::events_v1 ? 256 : 16384)) {}
+
+void DatParser::parse(std::span<const std::byte> bytes, Batch& into) {
+    words_.feed(bytes, [&](std::span<const std::byte> records) { take(records, into); });
+}
+
+/// A fall by at least half the range is a wrap, a smaller one noise.
+std::int64_t DatParser::unwrapped(std::uint32_t stamp) const {
+    if (last_us_ == kNoTime) return stamp;
+    const std::int64_t in_range = last_us_ & (kWrap - 1), step = std::int64_t(stamp) - in_range;
+    return last_us_ + step + (step <= -kWrap / 2 ? kWrap : 0);
+}
+
+void DatParser::take(std::span<const std::byte> records, Batch& into) {
+    Event* const out = block_.data();
+    const bool version_1 = record_ == DatHeader::Record::events_v1;
+    std::size_t n = 0;
+    for (; !records.empty(); records = records.subspan(8)) {
+        const auto stamp = load_little<std::uint32_t>(records.data());
+        const auto word = load_little<std::uint32_t>(records.data() + 4);
+        if (record_ == DatHeader::Record::triggers) {
+            take_trigger(stamp, word, into);
+            continue;
+        }
+        if (EventBlock::full(n)) {
+            block_.pass(n, into);
+            n = 0;
+        }
+        const Place at = version_1 ? place_of<true>(word) : place_of<false>(word);
+        const std::int64_t t = unwrapped(stamp);
+        if (last_us_ != kNoTime && !held_ && t >= last_us_ && t - last_us_ <= kLongestStep &&
+            at.x < width_ && at.y < height_) {
+            out[n++] = {from_us(t), std::uint16_t(at.x), std::uint16_t(at.y), Polarity(at.on)};
+            last_us_ = t;
+            continue;
+        }
+        block_.pass(n, into);
+        n = 0;
+        take_event(stamp, at.x, at.y, at.on, into);
+    }
+    block_.pass(n, into);
+}
+
+void DatParser::take_event(std::uint32_t stamp, std::uint32_t x, std::uint32_t y, bool on,
+                           Batch& into) {
+    if (x >= width_ || y >= height_) {
+        damage_.count(DamageReason::out_of_range);
+        return;
+    }
+    if (held_) {
+        const Event held = *held_;
+        held_.reset();
+        const std::int64_t before = last_us_;
+        last_us_ = to_us(held.t);
+        const std::int64_t after = unwrapped(stamp) - last_us_;
+        if (after >= 0 && after < kWrap / 4) {
+            into.events.push_back(held);
+        } else {
+            last_us_ = before;
+            damage_.count(DamageReason::bad_record);
+        }
+    }
+    const std::int64_t t = unwrapped(stamp);
+    const Event event{from_us(t), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
+    if (last_us_ != kNoTime && t < last_us_) {
+        damage_.count(DamageReason::time_backwards);
+    } else if (last_us_ != kNoTime && t - last_us_ > kLongestStep) {
+        held_ = event;
+    } else {
+        last_us_ = t;
+        into.events.push_back(event);
+    }
+}
+
+/// Value in bit 0, number of the input in bits 12-8.
+void DatParser::take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& into) {
+    const std::int64_t t = unwrapped(stamp);
+    if (last_us_ != kNoTime && t < last_us_) {
+        damage_.count(DamageReason::time_backwards);
+        return;
+    }
+    last_us_ = t;
+    into.triggers.push_back({from_us(t),
+                             (word & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
+                             std::uint8_t(word >> 8 & 0x1F)});
+}
+
+void DatParser::finish(Batch& into) {
+    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
+    words_.drop();
+    if (!held_) return;
+    last_us_ = to_us(held_->t);
+    into.events.push_back(*held_);
+    held_.reset();
+}
+
+void DatParser::resync() {
+    words_.drop();
+    held_.reset();
+    last_us_ = kNoTime;
+}
+
+std::optional<SensorTime> DatParser::clock() const {
+    return last_us_ == kNoTime ? std::nullopt : std::optional(from_us(last_us_));
+}
+
+}  // namespace eventide

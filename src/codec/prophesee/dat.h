@@ -1,0 +1,55 @@
+// Prophesee's DAT: 8 bytes for each event or trigger (docs/protocols.md D.4).
+#pragma once
+
+#include "src/codec/parser.h"
+#include "src/codec/prophesee/evt_words.h"
+#include "src/codec/stream.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace eventide {
+
+struct DatHeader {
+    enum class Record { events_v1, events_v2, triggers };
+    StreamHeader stream;
+    Record record = Record::events_v2;
+};
+
+/// Empty when it is no DAT file.
+std::optional<DatHeader> find_dat_header(std::span<const std::byte> first_bytes);
+
+/// Throws Error (input) naming what was found.
+DatHeader read_dat_header(std::span<const std::byte> first_bytes);
+
+/// Reads the records after the header. Times are the file's own, with wraps of the 32 bits counted.
+class DatParser final : public Parser {
+public:
+    /// Size in px, 0 when not known (then what the record's bits hold).
+    explicit DatParser(DatHeader::Record record, int width = 0, int height = 0);
+
+    void parse(std::span<const std::byte> bytes, Batch& into) override;
+    void finish(Batch& into) override;
+    void resync() override;
+    std::optional<SensorTime> clock() const override;
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    void take(std::span<const std::byte> records, Batch& into);
+    void take_event(std::uint32_t stamp, std::uint32_t x, std::uint32_t y, bool on, Batch& into);
+    std::int64_t unwrapped(std::uint32_t stamp) const;
+    void take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& into);
+
+    DatHeader::Record record_;
+    std::uint32_t width_, height_;
+    WholeWords<8> words_;
+    EventBlock block_;
+    Damage damage_;
+    std::int64_t last_us_ = kNoTime;  ///< of the records taken
+    /// A record after a long step, believed when the next one does not lie before it: one flipped
+    /// bit would otherwise put all that follows in the past.
+    std::optional<Event> held_;
+};
+
+}  // namespace eventide

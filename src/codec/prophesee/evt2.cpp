@@ -1,0 +1,192 @@
+// EVT2 and EVT2.1 words -> events: a short loop for events, one function for all else.
+#include "src/codec/prophesee/evt2.h"
+
+#include "src/codec/byte_order.h"
+
+#include <bit>
+
+namespace eventide {
+
+namespace {
+
+enum Type : unsigned {
+    cd_off = 0x0,
+    cd_on = 0x1,
+    time_high = 0x8,
+    trigger = 0xA,
+    others = 0xE,
+    continued = 0xF
+};
+
+constexpr std::uint32_t kPadding = 0x99999999;
+constexpr std::int64_t kLongestLeap = 60'000'000;  // us
+
+constexpr std::uint32_t x_of(std::uint32_t word) {
+    return word >> 11 & 0x7FF;
+}
+constexpr std::uint32_t y_of(std::uint32_t word) {
+    return word & 0x7FF;
+}
+constexpr std::int64_t low_time_of(std::uint32_t word) {
+    return word >> 22 & 0x3F;
+}
+
+std::uint32_t side(int px) {
+    return px > 0 && px < 2048 ? std::uint32_t(px) : 2048;
+}
+
+}  // namespace
+
+Evt2Base::Evt2Base(int width, int height)
+    : width_(side(width)), height_(side(height)), high_(28, 6, kLongestLeap) {}
+
+void Evt2Base::take_event(std::int64_t t_us, std::uint32_t x, std::uint32_t y, bool on,
+                          Batch& into) {
+    if (!high_.is_known()) return;  // taken up in the middle of the stream
+    if (!high_.is_sure()) {
+        damage_.count(DamageReason::bad_record);
+    } else if (x >= width_ || y >= height_) {
+        damage_.count(DamageReason::out_of_range);
+    } else if (t_us < last_event_us_) {
+        damage_.count(DamageReason::time_backwards);
+    } else {
+        last_event_us_ = t_us;
+        into.events.push_back({from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)});
+    }
+}
+
+void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
+    switch (upper >> 28) {
+        case time_high:
+            high_.push(upper & 0x0FFFFFFF, damage_);
+            if (high_.is_sure()) move_clock(high_.us());
+            break;
+        case trigger: {
+            if (!high_.is_sure()) break;
+            const std::int64_t t = high_.us() + low_time_of(upper);
+            into.triggers.push_back(
+                {from_us(t), (upper & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
+                 std::uint8_t(upper >> 8 & 0x1F)});
+            move_clock(t);
+            break;
+        }
+        case others:
+        case continued:
+            break;
+        default:
+            if (!is_padding) damage_.count(DamageReason::unknown_word);
+    }
+}
+
+void Evt2Base::begin_anew() {
+    high_.gap();
+    newest_us_ = last_event_us_ = kNoTime;
+}
+
+std::optional<SensorTime> Evt2Base::clock() const {
+    return newest_us_ == kNoTime ? std::nullopt : std::optional(from_us(newest_us_));
+}
+
+void Evt2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
+}
+
+void Evt2Parser::take(std::span<const std::byte> words, Batch& into) {
+    Event* const out = block_.data();
+    const std::uint32_t width = width_, height = height_;
+    std::int64_t high_us = high_.us(), last_us = last_event_us_;
+    bool sure = high_.is_sure();
+    std::size_t n = 0;
+    const auto pass_on = [&] {
+        block_.pass(n, into);
+        n = 0;
+    };
+    const std::byte* const end = words.data() + words.size();
+    for (const std::byte* at = words.data(); at != end; at += 4) {
+        if (EventBlock::full(n)) pass_on();
+        const auto word = load_little<std::uint32_t>(at);
+        const std::uint32_t x = x_of(word), y = y_of(word);
+        const std::int64_t t = high_us + low_time_of(word);
+        const bool is_event = word >> 28 <= cd_on;
+        if (is_event && sure && x < width && y < height && t >= last_us) {
+            out[n++] = {from_us(t), std::uint16_t(x), std::uint16_t(y), Polarity(word >> 28)};
+            last_us = t;
+            continue;
+        }
+        pass_on();
+        last_event_us_ = last_us;
+        if (is_event)
+            take_event(t, x, y, word >> 28 == cd_on, into);
+        else
+            take_other(word, word == kPadding, into);
+        last_us = last_event_us_;
+        high_us = high_.us();
+        sure = high_.is_sure();
+    }
+    pass_on();
+    last_event_us_ = last_us;
+    move_clock(last_us);
+}
+
+void Evt2Parser::finish(Batch&) {
+    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
+    words_.drop();
+}
+
+void Evt2Parser::resync() {
+    words_.drop();
+    begin_anew();
+}
+
+void Evt21Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
+}
+
+void Evt21Parser::take(std::span<const std::byte> words, Batch& into) {
+    Event* const out = block_.data();
+    const std::uint32_t width = width_, height = height_;
+    const std::size_t upper_at = order_ == Order::upper_half_first ? 0 : 4;
+    std::size_t n = 0;
+    const auto pass_on = [&] {
+        block_.pass(n, into);
+        n = 0;
+    };
+    const std::byte* const end = words.data() + words.size();
+    for (const std::byte* at = words.data(); at != end; at += 8) {
+        if (EventBlock::full(n)) pass_on();
+        const auto upper = load_little<std::uint32_t>(at + upper_at);
+        auto mask = load_little<std::uint32_t>(at + 4 - upper_at);
+        const std::uint32_t x = x_of(upper), y = y_of(upper);
+        if (upper >> 28 > cd_on) {
+            pass_on();
+            take_other(upper, upper == kPadding && mask == kPadding, into);
+            continue;
+        }
+        const std::int64_t t = high_.us() + low_time_of(upper);
+        const bool on = upper >> 28 == cd_on;
+        if (high_.is_sure() && x + 32 <= width && y < height && t >= last_event_us_) {
+            if (mask != 0) last_event_us_ = t;
+            for (; mask != 0; mask &= mask - 1)
+                out[n++] = {from_us(t), std::uint16_t(x + std::uint32_t(std::countr_zero(mask))),
+                            std::uint16_t(y), Polarity(on)};
+            continue;
+        }
+        pass_on();
+        for (; mask != 0; mask &= mask - 1)
+            take_event(t, x + std::uint32_t(std::countr_zero(mask)), y, on, into);
+    }
+    pass_on();
+    move_clock(last_event_us_);
+}
+
+void Evt21Parser::finish(Batch&) {
+    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
+    words_.drop();
+}
+
+void Evt21Parser::resync() {
+    words_.drop();
+    begin_anew();
+}
+
+}  // namespace eventide

@@ -1,0 +1,204 @@
+// EVT3 words -> events: a short loop for the usual, one function for everything.
+#include "src/codec/prophesee/evt3.h"
+
+#include "src/codec/byte_order.h"
+
+#include <bit>
+
+namespace eventide {
+
+namespace {
+
+enum Type : unsigned {
+    address_y = 0x0,
+    address_x = 0x2,
+    vector_base_x = 0x3,
+    vector_12 = 0x4,
+    vector_8 = 0x5,
+    time_low = 0x6,
+    continued_4 = 0x7,
+    time_high = 0x8,
+    trigger = 0xA,
+    others = 0xE,  // of the camera itself, and the ends of frames of some receivers
+    continued_12 = 0xF
+};
+
+constexpr std::uint16_t kPadding = 0x9999;
+constexpr unsigned kColumnBits = 0x7FF, kOnBit = 0x800, kTimeBits = 0xFFF;
+// A quarter of the range: longer ones would not be told from wraps.
+constexpr std::int64_t kLongestLeap = std::int64_t(1) << 22;  // us
+
+std::uint32_t side(int px) {
+    return px > 0 && px < 2048 ? std::uint32_t(px) : 2048;
+}
+
+}  // namespace
+
+Evt3Parser::Evt3Parser(int width, int height, std::int64_t time_base_us)
+    : width_(side(width)),
+      height_(side(height)),
+      time_base_us_(time_base_us),
+      high_(12, 12, kLongestLeap) {}
+
+void Evt3Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
+}
+
+/// Rows, single events, vectors and times that grow, while nothing is wrong.
+void Evt3Parser::take(std::span<const std::byte> words, Batch& into) {
+    Event* const out = block_.data();
+    const std::uint32_t width = width_;
+    std::int64_t t = t_us_;
+    std::uint32_t y = y_, base_x = base_x_;
+    bool base_on = base_on_, plain = plain_;
+    std::size_t n = 0;
+    const auto pass_on = [&] {
+        if (n > 0) last_event_us_ = to_us(out[n - 1].t) - time_base_us_;
+        block_.pass(n, into);
+        n = 0;
+    };
+    const auto put_down = [&] {
+        t_us_ = t, y_ = y, base_x_ = base_x, base_on_ = base_on;
+        if (plain && t > newest_us_) newest_us_ = t;
+    };
+    const auto make = [&, base = time_base_us_](std::uint32_t x, bool on) {
+        return Event{from_us(t + base), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
+    };
+    const std::byte* const end = words.data() + words.size();
+    for (const std::byte* at = words.data(); at != end; at += 2) {
+        if (EventBlock::full(n)) pass_on();
+        const auto word = load_little<std::uint16_t>(at);
+        const unsigned type = word >> 12, x = word & kColumnBits;
+        if (plain) {
+            if (type == address_x && x < width) {
+                out[n++] = make(x, (word & kOnBit) != 0);
+                continue;
+            }
+            if (type == address_y && x < height_) {
+                y = x;
+                continue;
+            }
+            if (type == time_low && (word & kTimeBits) >= (t & kTimeBits)) {
+                t = (t & ~std::int64_t(kTimeBits)) | (word & kTimeBits);
+                continue;
+            }
+            if (type == vector_base_x) {
+                base_x = x;
+                base_on = (word & kOnBit) != 0;
+                continue;
+            }
+            if ((type == vector_12 || type == vector_8) && base_x + 12 <= width) {
+                const unsigned bits = type == vector_12 ? 12 : 8;
+                for (unsigned mask = word & ((1U << bits) - 1); mask != 0; mask &= mask - 1)
+                    out[n++] = make(base_x + unsigned(std::countr_zero(mask)), base_on);
+                base_x += bits;
+                continue;
+            }
+        }
+        pass_on();
+        put_down();
+        take_one(word, into);
+        t = t_us_, y = y_, base_x = base_x_, base_on = base_on_, plain = plain_;
+    }
+    pass_on();
+    put_down();
+}
+
+void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
+    const unsigned content = word & 0xFFF;
+    switch (word >> 12) {
+        case address_y:
+            y_ = content & kColumnBits;
+            break;
+        case address_x:
+            take_event(content & kColumnBits, (content & kOnBit) != 0, into);
+            break;
+        case vector_base_x:
+            base_x_ = content & kColumnBits;
+            base_on_ = (content & kOnBit) != 0;
+            break;
+        case vector_12:
+            take_vector(content, 12, into);
+            break;
+        case vector_8:
+            take_vector(content & 0xFF, 8, into);
+            break;
+        case time_low:
+            if (high_.is_sure()) move_time(high_.us() + content);
+            break;
+        case time_high: {
+            const std::int64_t before = high_.us();
+            const bool first = !high_.is_known();
+            high_.push(content, damage_);
+            // The low bits follow in their own word and begin anew.
+            if (high_.is_sure() && (first || high_.us() != before)) move_time(high_.us());
+            break;
+        }
+        case trigger:
+            if (!high_.is_sure()) break;
+            into.triggers.push_back(
+                {from_us(t_us_ + time_base_us_),
+                 (content & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
+                 std::uint8_t(content >> 8)});
+            break;
+        case continued_4:
+        case continued_12:
+        case others:
+            break;
+        default:
+            if (word != kPadding) damage_.count(DamageReason::unknown_word);
+    }
+    look();
+}
+
+void Evt3Parser::look() {
+    plain_ = high_.is_sure() && y_ < height_ && t_us_ >= last_event_us_;
+}
+
+void Evt3Parser::move_time(std::int64_t t_us) {
+    t_us_ = t_us;
+    if (t_us > newest_us_) newest_us_ = t_us;
+}
+
+void Evt3Parser::take_event(unsigned x, bool on, Batch& into) {
+    if (!high_.is_known() || y_ == kNoRow) return;  // taken up in the middle of the stream
+    if (!high_.is_sure()) {
+        damage_.count(DamageReason::bad_record);
+    } else if (x >= width_ || y_ >= height_) {
+        damage_.count(DamageReason::out_of_range);
+    } else if (t_us_ < last_event_us_) {
+        damage_.count(DamageReason::time_backwards);
+    } else {
+        last_event_us_ = t_us_;
+        into.events.push_back(
+            {from_us(t_us_ + time_base_us_), std::uint16_t(x), std::uint16_t(y_), Polarity(on)});
+    }
+}
+
+void Evt3Parser::take_vector(unsigned mask, unsigned bits, Batch& into) {
+    if (base_x_ == kNoColumn) return;
+    for (; mask != 0; mask &= mask - 1)
+        take_event(base_x_ + unsigned(std::countr_zero(mask)), base_on_, into);
+    base_x_ = std::min(base_x_ + bits, kNoColumn - 1);
+}
+
+void Evt3Parser::finish(Batch&) {
+    if (words_.is_half_read()) damage_.count(DamageReason::truncated);
+    words_.drop();
+}
+
+void Evt3Parser::resync() {
+    words_.drop();
+    high_.gap();
+    y_ = kNoRow;
+    base_x_ = kNoColumn;
+    newest_us_ = last_event_us_ = kNoTime;
+    look();
+}
+
+std::optional<SensorTime> Evt3Parser::clock() const {
+    return newest_us_ == kNoTime ? std::nullopt
+                                 : std::optional(from_us(newest_us_ + time_base_us_));
+}
+
+}  // namespace eventide

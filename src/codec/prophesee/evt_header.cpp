@@ -1,0 +1,130 @@
+// Keys of RAW headers through the years (docs/protocols.md D.4).
+#include "src/codec/prophesee/evt_header.h"
+
+#include "src/core/error.h"
+#include "src/core/number_text.h"
+
+#include <algorithm>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::size_t kLongestLine = 4096;
+
+bool is_text(std::string_view line) {
+    return std::all_of(line.begin(), line.end(),
+                       [](char c) { return c == '\t' || c == '\r' || c < 0 || c >= ' '; });
+}
+
+int side(std::string_view text) {
+    const int px = number_in<int>(text).value_or(0);
+    return px > 0 && px <= 65536 ? px : 0;
+}
+
+/// "EVT3;height=720;width=1280"
+std::string_view option_of(std::string_view format, std::string_view key) {
+    for (std::size_t at = 0; at < format.size();) {
+        const std::size_t end = std::min(format.find(';', at), format.size());
+        const std::string_view option = format.substr(at, end - at);
+        if (option.starts_with(key) && option.substr(key.size()).starts_with('='))
+            return option.substr(key.size() + 1);
+        at = end + 1;
+    }
+    return {};
+}
+
+std::string_view format_name(const PercentLines& lines) {
+    const std::string_view format = lines.value("format"), version = lines.value("evt");
+    const std::string_view name = format.substr(0, format.find(';'));
+    if (name == "EVT2" || version == "2.0") return "evt2";
+    if (name == "EVT21" || name == "EVT2.1" || version == "2.1") return "evt21";
+    if (name == "EVT3" || version == "3.0") return "evt3";
+    return {};
+}
+
+void find_size(const PercentLines& lines, StreamHeader& stream) {
+    const std::string_view format = lines.value("format"), geometry = lines.value("geometry");
+    stream.width = side(option_of(format, "width"));
+    stream.height = side(option_of(format, "height"));
+    const std::size_t cross = geometry.find('x');
+    if (cross != std::string_view::npos && (stream.width == 0 || stream.height == 0)) {
+        stream.width = side(geometry.substr(0, cross));
+        stream.height = side(geometry.substr(cross + 1));
+    }
+    if (stream.width > 0 && stream.height > 0) return;
+    // Before 2021 only the system's number, or the name of its plugin, tells the sensor.
+    const int system = number_in<int>(lines.value("system_ID")).value_or(0);
+    const std::string_view plugin = lines.value("plugin_name");
+    const auto named = [&](std::string_view sensor) {
+        return plugin.find(sensor) != std::string_view::npos;
+    };
+    stream.width = stream.height = 0;
+    if (system == 48 || system == 49 || named("gen4") || named("imx636")) {
+        stream.width = 1280;
+        stream.height = 720;
+    } else if (system == 21 || named("gen3")) {
+        stream.width = 640;
+        stream.height = 480;
+    } else if (named("genx320")) {
+        stream.width = stream.height = 320;
+    }
+}
+
+}  // namespace
+
+std::string_view PercentLines::value(std::string_view key) const {
+    const auto found =
+        std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == key; });
+    return found == values.end() ? std::string_view{} : std::string_view(found->second);
+}
+
+PercentLines read_percent_lines(std::span<const std::byte> first_bytes) {
+    PercentLines lines;
+    std::string_view text(reinterpret_cast<const char*>(first_bytes.data()), first_bytes.size());
+    while (text.starts_with("% ")) {
+        const std::size_t end = text.substr(0, kLongestLine).find('\n');
+        if (end == std::string_view::npos || !is_text(text.substr(0, end))) break;
+        std::string_view line = text.substr(2, end - 2);
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        const std::size_t space = std::min(line.find(' '), line.size());
+        lines.values.emplace_back(line.substr(0, space),
+                                  line.substr(std::min(space + 1, line.size())));
+        lines.bytes += end + 1;
+        text.remove_prefix(end + 1);
+        if (line == "end") break;
+    }
+    return lines;
+}
+
+std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes) {
+    const PercentLines lines = read_percent_lines(first_bytes);
+    const std::string_view name = format_name(lines);
+    if (name.empty()) return {};
+    EvtHeader header;
+    header.stream.format = name;
+    header.stream.data_offset = lines.bytes;
+    header.stream.serial = lines.value("serial_number");
+    header.stream.sensor_name = lines.value("camera_integration_name");
+    if (header.stream.sensor_name.empty()) header.stream.sensor_name = lines.value("system_ID");
+    header.stream.source_text = lines.value("plugin_name");
+    find_size(lines, header.stream);
+    header.halves_swapped = lines.value("endianness") == "legacy" ||
+                            option_of(lines.value("format"), "endianness") == "legacy";
+    // Nearer to the ends of time than this, sums could overflow.
+    const auto base = number_in<std::int64_t>(lines.value("time_base_us")).value_or(0);
+    if (base > -(std::int64_t(1) << 61) && base < (std::int64_t(1) << 61))
+        header.time_base_us = base;
+    return header;
+}
+
+EvtHeader read_evt_header(std::span<const std::byte> first_bytes) {
+    const auto header = find_evt_header(first_bytes);
+    if (!header)
+        throw Error(ErrorKind::input,
+                    "RAW header: expected a line \"% format EVT2|EVT21|EVT3\" or \"% evt "
+                    "2.0|2.1|3.0\", found none");
+    return *header;
+}
+
+}  // namespace eventide

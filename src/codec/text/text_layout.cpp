@@ -1,0 +1,320 @@
+// Finds out how a text recording is written from its first lines.
+#include "src/codec/text/text_layout.h"
+
+#include "src/codec/text/text_number.h"
+#include "src/codec/text/text_row.h"
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace eventide {
+
+namespace {
+
+constexpr std::size_t kRowsToLookAt = 1000;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+using Fields = std::vector<std::string_view>;
+
+/// The lines that carry something, one after the other, with their place.
+class Lines {
+public:
+    explicit Lines(std::string_view text) : text_(text) {
+        if (text_.starts_with(kByteOrderMark)) position_ = kByteOrderMark.size();
+    }
+
+    std::optional<std::string_view> next() {
+        while (position_ < text_.size()) {
+            const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+            const auto line = text_.substr(position_, end - position_);
+            line_begin_ = position_;
+            position_ = std::min(end + 1, text_.size());
+            if (!is_comment(line)) return line;
+        }
+        return {};
+    }
+    std::size_t line_begin() const { return line_begin_; }  ///< of the line next() gave
+
+private:
+    std::string_view text_;
+    std::size_t position_ = 0, line_begin_ = 0;
+};
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+bool is_number(std::string_view field) {
+    return parse_decimal(field).has_value();
+}
+
+bool is_row(const Fields& fields) {
+    if (fields.size() < 4) return false;
+    const auto numbers = std::count_if(fields.begin(), fields.begin() + 4, is_number);
+    // One of the four may be a polarity in words.
+    const auto is_truth = [](std::string_view field) {
+        return field == "true" || field == "false" || field == "True" || field == "False" ||
+               field == "T" || field == "F" || field == "TRUE" || field == "FALSE";
+    };
+    return numbers == 4 || (numbers == 3 && std::any_of(fields.begin(), fields.end(), is_truth));
+}
+
+/// The "width height" of a first line of two whole numbers.
+std::optional<std::array<std::int64_t, 2>> geometry_of(const Fields& fields) {
+    if (fields.size() != 2) return {};
+    std::array<std::int64_t, 2> sides{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto value = parse_decimal(fields[i]);
+        if (!value || value->fractional || value->negative) return {};
+        const auto side = scaled_integer(*value, 0);
+        if (!side) return {};
+        sides[i] = *side;
+    }
+    return sides;
+}
+
+struct ColumnName {
+    TextField field = TextField::ignored;
+    TextTimeUnit unit = TextTimeUnit::automatic;
+};
+
+/// What a header row calls a column: "t", "time", "timestamp_us", "t[s]", "x", "pol", ...
+ColumnName column_named(std::string_view title) {
+    std::string name;
+    for (const char c : title)
+        if (c != '"' && c != '\'') name += char(std::tolower(static_cast<unsigned char>(c)));
+    if (name == "x") return {TextField::x, {}};
+    if (name == "y") return {TextField::y, {}};
+    if (name == "p" || name == "pol" || name == "polarity" || name == "on")
+        return {TextField::polarity, {}};
+    const std::size_t end = std::min(name.find_first_of("_[("), name.size());
+    const std::string stem = name.substr(0, end);
+    if (stem != "t" && stem != "ts" && stem != "time" && stem != "timestamp" &&
+        stem != "timestamps")
+        return {};
+    std::string unit;
+    for (const char c : name.substr(end))
+        if (std::isalpha(static_cast<unsigned char>(c))) unit += c;
+    if (unit.empty()) return {TextField::time, {}};
+    if (unit == "s") return {TextField::time, TextTimeUnit::seconds};
+    if (unit == "ms") return {TextField::time, TextTimeUnit::milliseconds};
+    if (unit == "us") return {TextField::time, TextTimeUnit::microseconds};
+    if (unit == "ns") return {TextField::time, TextTimeUnit::nanoseconds};
+    return {};
+}
+
+/// The layout a header row gives; empty when it does not name all four columns.
+std::optional<TextLayout> layout_named(const Fields& titles) {
+    TextLayout layout;
+    layout.unit = TextTimeUnit::automatic;
+    layout.n_columns = 0;
+    std::array<int, 4> seen{};
+    for (std::size_t i = 0; i < std::min(titles.size(), TextLayout::kMaxColumns); ++i) {
+        const ColumnName column = column_named(titles[i]);
+        layout.columns[i] = column.field;
+        if (column.field == TextField::ignored) continue;
+        layout.n_columns = i + 1;
+        ++seen[std::size_t(column.field)];
+        if (column.field == TextField::time) layout.unit = column.unit;
+    }
+    const bool once = std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; });
+    return once ? std::optional(layout) : std::nullopt;
+}
+
+TextLayout layout_stated(std::string_view columns) {
+    TextLayout layout;
+    layout.unit = TextTimeUnit::automatic;
+    constexpr std::string_view kLetters = "txyp";
+    std::string sorted(columns);
+    std::sort(sorted.begin(), sorted.end());
+    if (sorted != "ptxy")
+        throw Error(ErrorKind::usage,
+                    "columns of a text recording: expected an order of t, x, y, "
+                    "p such as \"txyp\", found \"" +
+                        std::string(columns) + "\"");
+    for (std::size_t i = 0; i < 4; ++i) layout.columns[i] = TextField(kLetters.find(columns[i]));
+    return layout;
+}
+
+bool is_fractional(std::string_view field) {
+    const auto value = parse_decimal(field);
+    return value && value->fractional;
+}
+
+/// How many of the rows of whole numbers can be events in this order, none before the last.
+std::size_t rows_that_fit(const std::vector<Fields>& rows, std::string_view order) {
+    constexpr std::int64_t kMaxSide = 65536;
+    std::size_t fit = 0;
+    std::int64_t last = std::numeric_limits<std::int64_t>::min();
+    for (const Fields& row : rows) {
+        const auto whole = [&](char column) {
+            const auto value = parse_decimal(row[order.find(column)]);
+            return value ? scaled_integer(*value, 0) : std::nullopt;
+        };
+        const auto t = whole('t'), x = whole('x'), y = whole('y'), p = whole('p');
+        // A polarity in words is no number.
+        if (!t || !x || !y || *t < last || (p && (*p < -1 || *p > 1))) continue;
+        if (*x < 0 || *x >= kMaxSide || *y < 0 || *y >= kMaxSide) continue;
+        last = *t;
+        ++fit;
+    }
+    return fit;
+}
+
+/// Without names the order is t x y p, unless exactly one other column has fractions (only times
+/// can), or all are whole and another common order makes events of more rows.
+TextLayout layout_guessed(const std::vector<Fields>& rows) {
+    std::array<bool, 4> fractions{};
+    for (const Fields& row : rows)
+        for (std::size_t i = 0; i < 4; ++i) fractions[i] |= is_fractional(row[i]);
+    const auto n = std::count(fractions.begin(), fractions.end(), true);
+    if (n == 1 && fractions[2]) return layout_stated("xytp");
+    if (n == 1 && fractions[3]) return layout_stated("xypt");
+    std::string_view best = "txyp";
+    if (n == 0)
+        for (const std::string_view order : {"xytp", "xypt"})
+            if (rows_that_fit(rows, order) > rows_that_fit(rows, best)) best = order;
+    return layout_stated(best);
+}
+
+struct Times {
+    std::size_t count = 0;
+    std::int64_t first = 0, last = 0;  ///< the least and the largest, rounded
+    bool fractions = false;
+};
+
+Times times_of(const std::vector<Fields>& rows, const TextLayout& layout) {
+    const auto column =
+        std::size_t(std::find(layout.columns.begin(), layout.columns.end(), TextField::time) -
+                    layout.columns.begin());
+    Times times;
+    for (const Fields& row : rows) {
+        const auto value = column < row.size() ? parse_decimal(row[column]) : std::nullopt;
+        const auto whole = value ? scaled_integer(*value, 0) : std::nullopt;
+        if (!whole) continue;
+        times.fractions |= value->fractional;
+        times.first = times.count == 0 ? *whole : std::min(times.first, *whole);
+        times.last = times.count == 0 ? *whole : std::max(times.last, *whole);
+        ++times.count;
+    }
+    return times;
+}
+
+/// "2.5e+06 events/s"
+std::string rate_text(double rate) {
+    char text[48];
+    std::snprintf(text, sizeof text, "%.2g events/s", rate);
+    return text;
+}
+
+/// Whole numbers are microseconds, unless no sensor sends so few or so many events in them and
+/// another unit makes sense; nanoseconds since 1970 stand out by themselves.
+TextTimeUnit guess_unit(const Times& times, std::vector<std::string>& remarks) {
+    constexpr std::size_t kFewest = 100;                               // rows that tell a rate
+    constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
+    constexpr std::int64_t kNanosecondsIn2001 = 1'000'000'000'000'000'000;
+    if (times.fractions) return TextTimeUnit::seconds;
+    const double span = double(times.last) - double(times.first);
+    if (times.count < kFewest || span <= 0) return TextTimeUnit::microseconds;
+    struct Unit {
+        TextTimeUnit unit;
+        const char* name;
+        double seconds;
+    };
+    constexpr std::array<Unit, 4> kUnits{{{TextTimeUnit::microseconds, "microseconds", 1e-6},
+                                          {TextTimeUnit::nanoseconds, "nanoseconds", 1e-9},
+                                          {TextTimeUnit::milliseconds, "milliseconds", 1e-3},
+                                          {TextTimeUnit::seconds, "seconds", 1}}};
+    const auto rate = [&](const Unit& unit) { return double(times.count) / (span * unit.seconds); };
+    const auto makes_sense = [&](const Unit& unit) {
+        return rate(unit) >= kSlowest && rate(unit) <= kFastest;
+    };
+    const Unit* chosen = times.first >= kNanosecondsIn2001
+                             ? &kUnits[1]
+                             : std::find_if(kUnits.begin(), kUnits.end(), makes_sense);
+    const bool none = chosen == kUnits.end();
+    if (none) chosen = kUnits.data();
+    if (none || chosen != kUnits.data() || rate(*chosen) < kDoubtful)
+        remarks.push_back("times are whole numbers, taken for " + std::string(chosen->name) + ": " +
+                          rate_text(rate(*chosen)) + (none ? ", which no sensor sends" : "") +
+                          "; --input-time-unit states the unit");
+    return chosen->unit;
+}
+
+bool is_printable(std::string_view text) {
+    return std::none_of(text.begin(), text.end(), [](char c) {
+        const auto code = static_cast<unsigned char>(c);
+        return (code < 0x20 && c != '\t' && c != '\r' && c != '\n' && c != '\f') || code == 0x7F;
+    });
+}
+
+}  // namespace
+
+bool looks_like_text(std::span<const std::byte> first_bytes) {
+    const std::string_view text =
+        as_text(first_bytes.first(std::min<std::size_t>(first_bytes.size(), 65536)));
+    Lines lines(text);
+    auto line = lines.next();
+    if (!line || !is_printable(text.substr(0, std::min<std::size_t>(text.size(), 512))))
+        return false;
+    Fields fields = split_fields(*line);
+    if (geometry_of(fields)) {
+        line = lines.next();
+        if (!line) return true;
+        fields = split_fields(*line);
+    }
+    return is_row(fields) || layout_named(fields);
+}
+
+TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOptions& options) {
+    TextHeader header;
+    header.stream.format = "text";
+    Lines lines(as_text(first_bytes));
+    auto line = lines.next();
+    if (line) {
+        if (const auto geometry = geometry_of(split_fields(*line))) {
+            const auto [width, height] = *geometry;
+            constexpr int kMaxSide = 65536;
+            if (std::min(width, height) < 1 || std::max(width, height) > kMaxSide)
+                throw Error(ErrorKind::input,
+                            "text recording: expected a sensor's size in the line of two numbers, "
+                            "each from 1 to 65536, found \"" +
+                                std::string(line->substr(0, 60)) + "\"");
+            header.stream.width = int(width);
+            header.stream.height = int(height);
+            line = lines.next();
+        }
+    }
+    std::optional<TextLayout> named;
+    if (line && !is_row(split_fields(*line))) {
+        named = layout_named(split_fields(*line));
+        if (named) line = lines.next();
+    }
+    if (!line || !is_row(split_fields(*line)))
+        throw Error(ErrorKind::input, "text recording: expected rows \"t x y p\", found " +
+                                          (line ? "\"" + std::string(line->substr(0, 60)) + "\""
+                                                : std::string("no row of data")));
+    header.stream.data_offset = lines.line_begin();
+
+    std::vector<Fields> rows;
+    for (; line && rows.size() < kRowsToLookAt; line = lines.next())
+        if (Fields fields = split_fields(*line); is_row(fields)) rows.push_back(std::move(fields));
+
+    if (!options.columns.empty())
+        header.layout = layout_stated(options.columns);
+    else
+        header.layout = named ? *named : layout_guessed(rows);
+    if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
+    if (header.layout.unit == TextTimeUnit::automatic)
+        header.layout.unit = guess_unit(times_of(rows, header.layout), header.remarks);
+    return header;
+}
+
+}  // namespace eventide

@@ -1,0 +1,33 @@
+// One line of a text recording, read with care and without hurry.
+#pragma once
+
+#include "src/codec/text/text_layout.h"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace eventide {
+
+/// The fields of a line: separated by spaces, tabs, a comma or a semicolon, without the pipeline's
+/// end.
+std::vector<std::string_view> split_fields(std::string_view line);
+
+/// True for what carries no data and is no damage: blank lines and comments ('#' or '%').
+bool is_comment(std::string_view line);
+
+struct TextRow {
+    std::int64_t t_us = 0;
+    std::int64_t x = 0, y = 0;
+    bool on = false;
+};
+
+/// Empty where the line is no row of this layout.
+std::optional<TextRow> parse_row(std::string_view line, const TextLayout& layout);
+
+/// The power of ten between the unit and the microsecond.
+int decimal_shift(TextTimeUnit unit);
+
+}  // namespace eventide

@@ -1,0 +1,216 @@
+// See first_layer_cache.h; docs/model.md has the formulas.
+#include "src/model/encode/first_layer_cache.h"
+
+#include "src/kernels/vector_kernels.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide {
+namespace {
+
+/// Layer 1 as a convolution over the first `codes` of the three codes, joined per pixel.
+plain::ConvWeights<float> hoisted_weights(const Model& model, int codes) {
+    const Tensor& first = model.weights.at("renderer.mlp.0.weight");
+    const int outputs = int(first.shape[0]), inputs = int(first.shape[1]);
+    const int depth = model.config.latent, side = model.config.unfold, taps = side * side;
+    plain::ConvWeights<float> weights{
+        outputs, codes * depth, {}, model.weights.at("renderer.mlp.0.bias").values, side};
+    for (int o = 0; o < outputs; ++o)
+        for (int code = 0; code < codes; ++code)
+            for (int d = 0; d < depth; ++d)
+                for (int tap = 0; tap < taps; ++tap)
+                    weights.weight.push_back(
+                        first.values[std::size_t(o * inputs + (code * taps + tap) * depth + d)]);
+    return weights;
+}
+
+}  // namespace
+
+FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
+                                 const EngineOptions& options, const Arithmetic& arithmetic)
+    : options_(options),
+      height_(height),
+      width_(width),
+      depth_(model.config.latent),
+      outputs_(model.config.mlp[0]),
+      reach_(model.config.unfold / 2),
+      tiles_(latent_tiles(height, width)),
+      tile_columns_(int(std::ranges::count(tiles_, 0, &Tile::y0))),
+      numbers_(arithmetic.products) {
+    const auto extents = extents_of(tiles_, 0, height, width);
+    past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents, std::vector<int>(2, depth_)};
+    whole_ = {hoisted_weights(model, 3),  1, false, arithmetic, extents,
+              std::vector<int>(3, depth_)};
+    for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_)};
+    zeros_ = {1, kLatentSide, numbers_.units(depth_)};
+    for (LatentHistory& history : histories_) history.changed.reserve(tiles_.size());
+    for (Sums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
+    for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
+    active_.reserve(tiles_.size());
+    scratch_.assign(kLanes, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
+                                                  whole_.scratch_size(kLatentSide, kLatentSide),
+                                                  std::size_t(kLatentSide * depth_)})));
+}
+
+void FirstLayerCache::reset() noexcept {
+    for (Sums& sums : kept_) sums.k = 0;
+    newest_ = 0;
+}
+
+const PaddedMap* FirstLayerCache::code(std::int64_t k) const noexcept {
+    return k >= 1 ? &codes_[LatentWindow::slot(k)] : nullptr;
+}
+
+void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
+    newest_ = k;
+    const std::size_t slot = LatentWindow::slot(k);
+    const StaleTiles outdated{histories_[slot], latent.history};
+    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int lane, int n) {
+        if (outdated(std::size_t(n)))
+            hold_tile(k, tiles_[std::size_t(n)], latent.values, scratch_[std::size_t(lane)].data());
+    });
+    histories_[slot] = latent.history;
+    note_changes(k, latent.history);
+}
+
+void FirstLayerCache::hold_tile(std::int64_t k, const Tile& tile, const Array3<float>& latent,
+                                float* row) noexcept {
+    PaddedMap& mine = codes_[LatentWindow::slot(k)];
+    const PaddedMap* before = options_.skip_quiet && k > 1 ? code(k - 1) : nullptr;
+    const bool is_held =
+        before != nullptr && options_.still_codes > 0 && is_still(*before, tile, latent, row);
+    const auto width = std::size_t(tile.width());
+    for (int y = tile.y0; y < tile.y1; ++y)
+        if (is_held)
+            std::memcpy(mine.at(y, tile.x0), before->at(y, tile.x0),
+                        width * std::size_t(mine.channels()) * sizeof(float));
+        else
+            numbers_.narrow(latent.pixel(y, tile.x0).data(), width, depth_, mine.at(y, tile.x0));
+}
+
+bool FirstLayerCache::is_still(const PaddedMap& before, const Tile& tile,
+                               const Array3<float>& latent, float* row) const noexcept {
+    const auto width = std::size_t(tile.width());
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        numbers_.widen(before.at(y, tile.x0), width, depth_, row);
+        if (!vector_kernels().are_near(latent.pixel(y, tile.x0).data(), row,
+                                       float(options_.still_codes), width * std::size_t(depth_)))
+            return false;
+    }
+    return true;
+}
+
+/// Compares z_k with z_{k-1}, where the encoder's own account does not already say they are alike.
+void FirstLayerCache::note_changes(std::int64_t k, const LatentHistory& history) noexcept {
+    const PaddedMap& mine = *code(k);
+    const PaddedMap* before = code(k - 1);
+    std::vector<std::uint8_t>& changed = changed_[std::size_t(k % kChangesKept)];
+    const bool comparable = before != nullptr && options_.skip_quiet;
+    const StaleTiles since{histories_[LatentWindow::slot(k - 1)], history};
+    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
+        const Tile near = tiles_[std::size_t(n)].grown(1, height_, width_);
+        const auto bytes = std::size_t(near.width()) * std::size_t(mine.channels()) * sizeof(float);
+        bool same = comparable;
+        const bool may_differ = same && around(n, since);
+        for (int y = near.y0; may_differ && same && y < near.y1; ++y)
+            same = std::memcmp(mine.at(y, near.x0), before->at(y, near.x0), bytes) == 0;
+        changed[std::size_t(n)] = std::uint8_t(!same);
+    });
+}
+
+/// Whether a tile or one beside it may have changed.
+bool FirstLayerCache::around(int tile, const StaleTiles& since) const noexcept {
+    const int rows = int(tiles_.size()) / tile_columns_, columns = tile_columns_;
+    const int row = tile / columns, column = tile % columns;
+    for (int r = std::max(0, row - 1); r <= std::min(row + 1, rows - 1); ++r)
+        for (int c = std::max(0, column - 1); c <= std::min(column + 1, columns - 1); ++c)
+            if (since(std::size_t(r * columns + c))) return true;
+    return false;
+}
+
+/// Whether a tile of `from` already holds what event window k would give: every code it reads is
+/// the one read then.
+bool FirstLayerCache::unchanged(const Sums& from, std::int64_t k, bool whole,
+                                std::size_t tile) const noexcept {
+    if (from.k < 1 || from.whole != whole || k < from.k) return false;
+    return still(tile, from.k - 1, whole ? k + 1 : k);
+}
+
+bool FirstLayerCache::still(std::size_t tile, std::int64_t from, std::int64_t to) const noexcept {
+    // z_0, before the first, reads as zeros, and changed_ says that z_1 differs from it.
+    if (from < 0 || from <= newest_ - kChangesKept) return false;
+    for (std::int64_t j = from + 1; j <= to; ++j)
+        if (changed_[std::size_t(j % kChangesKept)][tile] != 0) return false;
+    return true;
+}
+
+std::vector<int> FirstLayerCache::row_edges() const {
+    std::vector<int> edges;
+    for (std::size_t i = 0; i < tiles_.size(); i += std::size_t(tile_columns_))
+        edges.push_back(tiles_[i].y0);
+    edges.push_back(height_);
+    return edges;
+}
+
+std::vector<int> FirstLayerCache::column_edges() const {
+    std::vector<int> edges;
+    for (std::size_t i = 0; i < std::size_t(tile_columns_); ++i) edges.push_back(tiles_[i].x0);
+    edges.push_back(width_);
+    return edges;
+}
+
+const FirstLayerCache::Sums* FirstLayerCache::find(std::int64_t k, bool whole) const noexcept {
+    for (const Sums& there : kept_)
+        if (there.k == k && there.whole == whole) return &there;
+    return nullptr;
+}
+
+std::array<const FirstLayerCache::Sums*, 2> FirstLayerCache::pair(std::int64_t k, bool whole,
+                                                                  bool next_whole) noexcept {
+    // The later one, if there already, must not be overwritten by the earlier.
+    const Sums& first = bring(k, whole, find(k + 1, next_whole));
+    return {&first, &bring(k + 1, next_whole, &first)};
+}
+
+/// Brings one of the two kept maps to event window k; never the one to `keep`.
+const FirstLayerCache::Sums& FirstLayerCache::bring(std::int64_t k, bool whole,
+                                                    const Sums* keep) noexcept {
+    if (const Sums* there = find(k, whole)) return *there;
+    // The one that shares most with what is wanted: of the same kind, and newest.
+    const auto worth = [&](const Sums& there) {
+        if (&there == keep) return std::int64_t{-2};
+        return there.whole == whole && there.k <= k ? there.k : std::int64_t{-1};
+    };
+    Sums& to = worth(kept_[1]) > worth(kept_[0]) ? kept_[1] : kept_[0];
+    active_.clear();
+    for (std::size_t i = 0; i < tiles_.size(); ++i)
+        if (!unchanged(to, k, whole, i)) active_.push_back(int(i));
+    to.k = k;
+    to.whole = whole;
+    for_each_tile(options_.parallel_for, int(active_.size()), [&](int lane, int n) {
+        compute_tile(to, tiles_[std::size_t(active_[std::size_t(n)])],
+                     scratch_[std::size_t(lane)].data());
+    });
+    return to;
+}
+
+/// The convolution over the codes of a tile and its rim, each read where it lies.
+void FirstLayerCache::compute_tile(Sums& to, const Tile& tile, float* scratch) noexcept {
+    ConvArea call;
+    for (std::size_t c = 0; c < (to.whole ? 3 : 2); ++c) {
+        // The maps' own borders of zeros are what lies outside.
+        if (const PaddedMap* z = code(to.k - 1 + std::int64_t(c)))
+            call.in[c] = {z->at(tile.y0 - reach_, tile.x0 - reach_), z->pitch()};
+        else
+            call.in[c] = {zeros_.at(0, -1), 0};
+    }
+    call.out = to.values.pixel(tile.y0, tile.x0).data();
+    call.out_pitch = std::ptrdiff_t(width_) * to.values.channels();
+    call.narrow = true;
+    call.height = tile.height();
+    call.width = tile.width();
+    (to.whole ? whole_ : past_).run(call, scratch);
+}
+
+}  // namespace eventide

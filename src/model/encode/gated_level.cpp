@@ -1,0 +1,161 @@
+// See gated_level.h; docs/model.md has the formulas.
+#include "src/model/encode/gated_level.h"
+
+#include "src/kernels/vector_kernels.h"
+#include "src/nn/load_weights.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide {
+namespace {
+
+/// Small enough that a tile's maps stay in a core's own cache, large enough that borders computed
+/// twice cost little. Deeper levels have more channels and smaller maps.
+constexpr int kSides[] = {48, 24, 16, 12};
+
+/// Grids are larger than a core's cache, and pieces of rows too short for its own foresight.
+constexpr int kRowsAhead = 2;
+void fetch(const float* numbers, std::size_t n) {
+    constexpr std::size_t kLine = 64 / sizeof(float);
+    for (std::size_t i = 0; i < n; i += kLine) __builtin_prefetch(numbers + i);
+}
+
+/// Enough tiles for all threads, few enough that not every tile's next state is held at once.
+constexpr std::size_t kLeastGroup = 32;
+
+/// What a GRU's step reads of its input reaches 2 further than its tile.
+constexpr int kGruReach = 2;
+
+}  // namespace
+
+std::string encoder_layer(const char* part, std::size_t i) {
+    return "encoder." + std::string{part} + "." + std::to_string(i);
+}
+
+GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
+                       const Arithmetic& arithmetic)
+    : number_(number),
+      size_(size),
+      channels_(model.config.widths[number]),
+      inputs_(number == 0 ? model.config.input_channels() : model.config.widths[number - 1]),
+      side_(kSides[std::min(number, std::size(kSides) - 1)]),
+      tiles_(tiles_of(size.height, size.width, side_)),
+      recurrent_(model.config.recurrent[number] != 0),
+      mask_(size.height, size.width) {
+    in_ = {plain::conv_weights<float>(model.weights,
+                                      number == 0 ? "encoder.in" : encoder_layer("down", number)),
+           number == 0 ? 1 : 2, true, arithmetic,
+           extents_of(tiles_, recurrent_ ? kGruReach : 0, size.height, size.width)};
+    if (!recurrent_) return;
+    const auto row = std::size_t(std::ranges::count(tiles_, tiles_.front().y0, &Tile::y0));
+    group_ = row * ((kLeastGroup + row - 1) / row);
+    gru_ = {plain::gru_weights<float>(model.weights, encoder_layer("gru", number)),
+            size,
+            tiles_,
+            side_,
+            arithmetic,
+            2 * group_};
+}
+
+// Scratch of a level that is not recurrent: a tile's next state, and what feed() needs. Of the top
+// level: the compressed grid as layers read it, then a row of it in float32.
+std::size_t GatedLevel::scratch_size() const {
+    const int side = side_ + (recurrent_ ? 2 * kGruReach : 0);
+    const auto wide = std::size_t(side + 2);
+    const std::size_t grid =
+        number_ == 0 ? wide * wide * std::size_t(in_.numbers().units(inputs_)) : 0;
+    const std::size_t row = number_ == 0 ? wide * std::size_t(inputs_) : 0;
+    const std::size_t next = recurrent_ ? gru_.scratch_size() : next_size();
+    return next + grid + std::max(row, in_.scratch_size(side, side));
+}
+
+void GatedLevel::advance(const Array3<float>& grid, std::vector<StateMap>& states, std::size_t i,
+                         float* scratch) noexcept {
+    if (recurrent_) {
+        float* rest = scratch + gru_.scratch_size();
+        gru_.step(states[number_], i, &mask_, scratch,
+                  [&](const Target& target) { feed(grid, states, target, rest); });
+        return;
+    }
+    const Tile& tile = tiles_[i];
+    feed(grid, states, {tile, scratch, std::ptrdiff_t(tile.width()) * units()},
+         scratch + next_size());
+    write(states[number_].read(), tile, scratch);
+}
+
+void GatedLevel::commit(std::vector<StateMap>& states, std::size_t i) noexcept {
+    gru_.commit(states[number_], i);
+}
+
+void GatedLevel::write(PaddedMap& h, const Tile& tile, const float* next) const noexcept {
+    const auto u = std::size_t(units()), row = std::size_t(tile.width()) * u;
+    for (int y = tile.y0; y < tile.y1; ++y, next += row) {
+        if (std::memchr(&mask_(y, tile.x0), 0, std::size_t(tile.width())) == nullptr) {
+            std::memcpy(h.at(y, tile.x0), next, row * sizeof(float));
+            continue;
+        }
+        for (int x = tile.x0; x < tile.x1; ++x)
+            if (mask_(y, x) != 0)
+                std::memcpy(h.at(y, x), next + std::size_t(x - tile.x0) * u, u * sizeof(float));
+    }
+}
+
+/// a_l in a region.
+void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& states,
+                      const Target& target, float* scratch) const noexcept {
+    if (number_ == 0) {
+        feed_grid(grid, target, scratch);
+        return;
+    }
+    const PaddedMap& above = states[number_ - 1].read();
+    const Tile& region = target.region;
+    in_.run({.in = {{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
+             .out = target.out,
+             .out_pitch = target.pitch,
+             .narrow = true,
+             .height = region.height(),
+             .width = region.width()},
+            scratch);
+}
+
+/// Of the compressed grid around the region, zeros outside the sensor. A tile in the grid's upper
+/// left corner, as the convolution reads it from scratch:
+///
+///     0 0 0 0 0 0      r: the region, for whose pixels the layer puts something out; of a level
+///     0 r r r r g      that remembers, the tile and 2 more on each side within the map
+///     0 r r r r g      (conv_gru.cpp)
+///     0 r r r r g      g: a rim of one pixel, which the 3x3 layer reads; 0: past the sensor's edge
+///     0 g g g g g      rows of [pixel][channel], one after the other, `row` units each; behind
+///                      them one row in float32, where layers read bf16
+void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
+                           float* scratch) const noexcept {
+    const Tile& region = target.region;
+    const Tile wide{region.y0 - 1, region.x0 - 1, region.y1 + 1, region.x1 + 1};
+    const Tile inside = region.grown(1, grid.height(), grid.width());
+    const Numbers& numbers = in_.numbers();
+    const int channels = grid.channels();
+    const std::ptrdiff_t units = numbers.units(channels), row = wide.width() * units;
+    if (inside.height() < wide.height() || inside.width() < wide.width())
+        std::memset(scratch, 0, std::size_t(wide.height() * row) * sizeof(float));
+    float* rest = scratch + wide.height() * row;
+    const auto pixels = std::size_t(inside.width());
+    for (int y = inside.y0; y < inside.y1; ++y) {
+        if (y + kRowsAhead < inside.y1)
+            fetch(grid.pixel(y + kRowsAhead, inside.x0).data(), pixels * std::size_t(channels));
+        float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
+        float* compressed = numbers.bf16() != nullptr ? rest : to;
+        vector_kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
+                                  pixels * std::size_t(channels));
+        if (compressed != to) numbers.narrow(compressed, pixels, channels, to);
+    }
+    in_.run({.in = {{{scratch, row}}},
+             .out = target.out,
+             .out_pitch = target.pitch,
+             .narrow = true,
+             .height = region.height(),
+             .width = region.width()},
+            rest);
+}
+
+}  // namespace eventide

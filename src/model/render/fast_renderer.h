@@ -1,0 +1,102 @@
+// The implicit decoder in blocks of pixels: layer 1 is kept per latent map (first_layer_cache.h),
+// the layers behind it run while their numbers are in cache, and tiles whose inputs are those of a
+// frame rendered before are copied from it (kept_frames.h).
+#pragma once
+
+#include "src/model/encode/first_layer_cache.h"
+#include "src/model/render/frame_layout.h"
+#include "src/model/render/kept_frames.h"
+
+#include <array>
+#include <vector>
+
+namespace eventide {
+
+class FastRenderer final : public RendererCore {
+public:
+    FastRenderer(const Model& model, int sensor_width, int sensor_height,
+                 const EngineOptions& options, const Arithmetic& arithmetic);
+
+    std::string description() const override;
+    void make_room(const FrameGeometry& geometry) override { lay_out(geometry); }
+    void push(std::int64_t k, const LatentMap& latent) noexcept override;
+    void reset() noexcept override;
+    void render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
+                Array2<float>& intensity, Array2<float>* sigma) noexcept override;
+    std::uint64_t pixels_rendered() const override { return pixels_rendered_; }
+
+private:
+    /// Pixels that go through the layers together: two maps of 56 x 64 numbers fill half a
+    /// first-level cache; a multiple of the kernels' 14 and near one of their 6.
+    static constexpr int kBlock = 56;
+    /// A stretch of a row to be rendered: that of the tiles first <= c < last.
+    struct Span {
+        int row, first, last;
+    };
+    /// What the two maps of a frame are written to.
+    struct Target {
+        float* intensity;
+        float* sigma;  ///< may be null
+    };
+    /// Everything about a frame but its pixels.
+    struct Job {
+        const FrameGeometry& geometry;
+        SigmaRule rule;
+        AxisSamples t;
+        std::array<const FirstLayerCache::Sums*, 2> hoisted;  ///< of the samples with a weight
+    };
+    /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
+    struct Member {
+        const float* sums;     // the sample row, as layers read it
+        std::ptrdiff_t ahead;  // units to the sums of the next row; 0: none
+        const float* base;     // [H_1], the time and row part of layer 1's offset term
+        float weight;          // of time and row
+        std::size_t side;      // left or right
+    };
+
+    AxisSamples time_samples(const CodeChoice& codes) const noexcept;
+    void lay_out(const FrameGeometry& geometry);
+    std::array<const FirstLayerCache::Sums*, 2> bring_sums(const CodeChoice& codes,
+                                                           const AxisSamples& t) noexcept;
+    FrameKind kind_of(const CodeChoice& codes, const Job& job, bool has_sigma) const noexcept;
+    /// Fills spans_ with what of the kept frame is out of date, and stamps it.
+    void find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept;
+    bool is_up_to_date(const KeptFrame& kept, int row, int column,
+                       const CodeChoice& codes) const noexcept;
+    void render_spans(const Job& job, const Target& target) noexcept;
+    void render_span(const Job& job, const Span& span, const Target& target,
+                     std::size_t lane) noexcept;
+    /// Adds a member's part to the three sums of every pixel of the span.
+    void evaluate(const Member& member, const Span& span, float* blended, int width,
+                  float* scratch) const noexcept;
+    /// What a member gives each pixel of a span, not yet added to what others do.
+    struct Outputs {
+        float *mu, *log_sigma, *square;  // square: null where not needed
+    };
+    void run_blocks(const OffsetRows& all, const Outputs& out, float* scratch) const noexcept;
+    void add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
+             float* blended, int width) const noexcept;
+    /// The hidden layers behind the first; `room` holds 2 kBlock widest_ numbers. Returns where the
+    /// result is, float32.
+    const float* run_layers(const float* activations, int pixels, float* room) const noexcept;
+
+    ModelConfig config_;
+    EngineOptions options_;
+    Arithmetic arithmetic_;
+    Numbers numbers_;
+    int first_ = 0, widest_ = 0;  // outputs of layer 1, of the widest layer
+    FirstLayerCache hoisted_;
+    std::vector<PackedWeights> layers_;           // hidden layers behind the first
+    std::array<std::vector<float>, 3> slope_;     // layer 1's columns for t, x, y
+    std::vector<float> last_weight_, last_bias_;  // [2][H], [2]
+
+    FrameLayout layout_;
+    FrameGeometry laid_out_;
+    KeptFrames kept_;
+    std::vector<Span> spans_;
+    std::uint64_t pixels_rendered_ = 0;
+    bool needs_squares_ = false;
+    std::vector<FloatBuffer> scratch_, row_sums_;  // per lane
+};
+
+}  // namespace eventide

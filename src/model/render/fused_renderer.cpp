@@ -1,0 +1,91 @@
+// A renderer whose frames are corrected by the camera's own images.
+#include "src/model/render/fused_renderer.h"
+
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <new>
+#include <string>
+#include <utility>
+
+namespace eventide {
+
+FusedRenderer::FusedRenderer(Renderer& renderer, int sensor_width, int sensor_height, int lookahead)
+    : renderer_(renderer), width_(sensor_width), height_(sensor_height), lookahead_(lookahead) {
+    if (lookahead < 0 || lookahead >= int(waiting_.size()))
+        throw Error(ErrorKind::usage,
+                    "lookahead: expected 0, 1 or 2, found " + std::to_string(lookahead));
+}
+
+void FusedRenderer::prepare(const RenderRequest& request) {
+    if (fusion_) fusion_->prepare(request);
+    prepared_ = request;
+}
+
+/// All or nothing.
+void FusedRenderer::begin() {
+    ImageFusion fusion{width_, height_};
+    fusion.prepare(prepared_);
+    shown_ = renderer_.make_output({.lookahead = lookahead_, .want_sigma = false});
+    for (Waiting& waiting : waiting_) waiting.events = Array2<float>(height_, width_);
+    fusion_.emplace(std::move(fusion));
+}
+
+void FusedRenderer::reset() noexcept {
+    if (fusion_) fusion_->reset();
+    active_ = false;
+    waiting_count_ = 0;
+    images_.clear();
+}
+
+void FusedRenderer::give(ReferenceImage image) noexcept {
+    try {
+        if (!fusion_) begin();
+        images_.push_back(std::move(image));
+    } catch (const std::bad_alloc&) {
+        ++dropped_;
+        return;
+    }
+    if (images_.size() <= kMaxWaiting) return;
+    images_.pop_front();
+    ++dropped_;
+}
+
+void FusedRenderer::push(const Window& window, const Array2<float>& events) noexcept {
+    active_ = active_ || (!images_.empty() && images_.front().t <= window.end);
+    if (!active_) return;
+    if (waiting_count_ == waiting_.size()) settle_oldest();
+    Waiting& newest = waiting_[(oldest_ + waiting_count_++) % waiting_.size()];
+    newest.window = window;
+    std::ranges::copy(events.values(), newest.events.values().begin());
+    while (waiting_count_ > std::size_t(lookahead_)) settle_oldest();
+}
+
+void FusedRenderer::settle_oldest() noexcept {
+    const Waiting& settled = waiting_[oldest_];
+    oldest_ = (oldest_ + 1) % waiting_.size();
+    --waiting_count_;
+    fusion_->advance(settled.window, settled.events);
+    for (; !images_.empty() && images_.front().t <= settled.window.end; images_.pop_front())
+        use(images_.front(), settled.window);
+}
+
+void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexcept {
+    // What the model showed when the image was taken; where that is no longer known, at the
+    // window's begin.
+    SensorTime t = image.t;
+    if (!renderer_.ready(t, lookahead_)) t = window.begin + SensorDuration{1};
+    if (!renderer_.ready(t, lookahead_)) t = window.end;
+    renderer_.render({.t = t, .lookahead = lookahead_, .want_sigma = false}, shown_);
+    ++(fusion_->correct(image, shown_) ? used_ : dropped_);
+}
+
+void FusedRenderer::render(const RenderRequest& request, Frame& frame) noexcept {
+    while (waiting_count_ > 0 && waiting_[oldest_].window.begin < request.t) settle_oldest();
+    renderer_.render(request, frame);
+    if (!active_) return;
+    frame.t = request.t;
+    fusion_->apply(request, frame);
+}
+
+}  // namespace eventide

@@ -1,0 +1,69 @@
+// A renderer whose frames are corrected by the camera's own images, window by window.
+#pragma once
+
+#include "src/model/render/image_fusion.h"
+
+#include <array>
+#include <deque>
+#include <optional>
+
+namespace eventide {
+
+/// Stands beside a Renderer, which it borrows, and sees the same event windows. Frames of a
+/// window know the images that were given before the window was pushed, or before those that its
+/// lookahead waits for. One thread at a time; nothing fails after construction. What corrections
+/// take (some 140 bytes a pixel) is taken with the first image: most sensors give none.
+class FusedRenderer {
+public:
+    /// Throws Error (usage) for a lookahead that is not 0, 1 or 2.
+    FusedRenderer(Renderer& renderer, int sensor_width, int sensor_height, int lookahead);
+
+    void reset() noexcept;
+
+    /// In order of time. Of more than kMaxWaiting images whose time has not come, the oldest are
+    /// dropped; so are those that there is no memory for.
+    void give(ReferenceImage image) noexcept;
+
+    /// After Renderer::push() of the same window; events per pixel, [y][x] of the sensor.
+    void push(const Window& window, const Array2<float>& events) noexcept;
+
+    /// 0, 1 or 2, as of the next window pushed.
+    void change_lookahead(int lookahead) noexcept { lookahead_ = lookahead; }
+
+    /// The memory that the correction takes for requests of this size and region.
+    void prepare(const RenderRequest& request);
+
+    /// As Renderer::render() of a request that was prepared for, for times that do not decrease by
+    /// more than their window.
+    void render(const RenderRequest& request, Frame& frame) noexcept;
+
+    std::uint64_t used() const { return used_; }  ///< images that corrected something
+    std::uint64_t dropped() const {
+        return dropped_;
+    }  ///< images that came too late or in too great a number
+
+    static constexpr std::size_t kMaxWaiting = 64;
+
+private:
+    struct Waiting {
+        Window window{};
+        Array2<float> events;
+    };
+    void begin();
+    void settle_oldest() noexcept;
+    void use(const ReferenceImage& image, const Window& window) noexcept;
+
+    Renderer& renderer_;
+    int width_, height_;  // px, of the sensor
+    int lookahead_;
+    RenderRequest prepared_;
+    bool active_ = false;                // since the first image's window; before, nothing is spent
+    std::optional<ImageFusion> fusion_;  // none: before the first image
+    Frame shown_;                        // by the model alone, at an image's time
+    std::array<Waiting, 3> waiting_;     // windows that the lookahead holds back
+    std::size_t oldest_ = 0, waiting_count_ = 0;
+    std::deque<ReferenceImage> images_;
+    std::uint64_t used_ = 0, dropped_ = 0;
+};
+
+}  // namespace eventide

@@ -1,0 +1,125 @@
+// Renderer: requests checked, times located, then handed over to the engine that was chosen.
+#include "src/model/render/renderer.h"
+
+#include "src/core/error.h"
+#include "src/core/sensor_limits.h"
+#include "src/model/cores.h"
+
+#include <algorithm>
+
+namespace eventide {
+namespace {
+
+FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height) {
+    FrameGeometry geometry;
+    geometry.sensor_width = sensor_width;
+    geometry.sensor_height = sensor_height;
+    geometry.width = request.width != 0 ? request.width : sensor_width;
+    geometry.height = request.height != 0 ? request.height : sensor_height;
+    geometry.x = request.region.x;
+    geometry.y = request.region.y;
+    geometry.part_width =
+        request.region.width != 0 ? request.region.width : geometry.width - geometry.x;
+    geometry.part_height =
+        request.region.height != 0 ? request.region.height : geometry.height - geometry.y;
+    return geometry;
+}
+
+void check_axis(const char* name, int size, int at, int part) {
+    if (size < 1 || size > kLargestFrameSide)
+        throw Error(ErrorKind::usage, std::string{"frame "} + name + ": expected 1 to " +
+                                          std::to_string(kLargestFrameSide) + " px, found " +
+                                          std::to_string(size));
+    if (at < 0 || part < 1 || at > size - part)
+        throw Error(ErrorKind::usage, std::string{"--roi exceeds the frame, "} + name +
+                                          ": expected to lie within " + std::to_string(size) +
+                                          " px, found " + std::to_string(part) + " from " +
+                                          std::to_string(at));
+}
+
+void fit(Array2<float>& map, int height, int width) {
+    if (map.height() != height || map.width() != width) map = {height, width};
+}
+
+}  // namespace
+
+Renderer::Renderer(const Model& model, int sensor_width, int sensor_height,
+                   const EngineOptions& options)
+    : config_(model.config), sensor_width_(sensor_width), sensor_height_(sensor_height) {
+    check_axis("width of the sensor", sensor_width, 0, 1);
+    check_axis("height of the sensor", sensor_height, 0, 1);
+    check_model(model, "renderer");
+    core_ = options.engine == Engine::plain
+                ? make_plain_renderer(model)
+                : make_fast_renderer(model, sensor_width, sensor_height, options);
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+std::string Renderer::description() const {
+    return core_->description();
+}
+
+std::uint64_t Renderer::pixels_rendered() const noexcept {
+    return core_->pixels_rendered();
+}
+
+void Renderer::push(const LatentMap& latent) noexcept {
+    core_->push(window_.push(latent), latent);
+}
+
+void Renderer::finish() noexcept {
+    window_.finish();
+}
+
+void Renderer::reset() noexcept {
+    window_.reset();
+    core_->reset();
+}
+
+Readiness Renderer::readiness(SensorTime t, int lookahead) const noexcept {
+    return window_.readiness(t, lookahead);
+}
+
+Frame Renderer::make_output(const RenderRequest& request) const {
+    const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
+    check_axis("width", geometry.width, geometry.x, geometry.part_width);
+    check_axis("height", geometry.height, geometry.y, geometry.part_height);
+    if (request.lookahead < 0 || request.lookahead > kMaxLookahead)
+        throw Error(ErrorKind::usage,
+                    "lookahead: expected 0, 1 or 2, found " + std::to_string(request.lookahead));
+    Frame frame;
+    frame.intensity = {geometry.part_height, geometry.part_width};
+    if (request.want_sigma) frame.sigma = {geometry.part_height, geometry.part_width};
+    core_->make_room(geometry);
+    return frame;
+}
+
+void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
+    if (window_.newest() == 0) return;
+    FramePosition at = window_.locate(request.t);
+    // A time that is not ready() shows the nearest event window kept: wrong, but never unsafe.
+    if (at.k > window_.newest()) at = {window_.newest(), 1};
+    if (at.k == 0)
+        at = {std::max<std::int64_t>(1, window_.newest() - LatentWindow::kLatentsKept + 3), 0};
+    const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
+    const CodeChoice codes{at.k,
+                           at.fraction,
+                           {window_.known(at.k + 1, at.k, request.lookahead),
+                            window_.known(at.k + 2, at.k, request.lookahead)}};
+    fit(frame.intensity, geometry.part_height, geometry.part_width);
+    if (request.want_sigma)
+        fit(frame.sigma, geometry.part_height, geometry.part_width);
+    else
+        frame.sigma = {};
+    core_->render(codes, geometry, request.sigma_rule.value_or(config_.sigma_rule), frame.intensity,
+                  request.want_sigma ? &frame.sigma : nullptr);
+    frame.t = request.t;
+    frame.window = window_.stamp(at.k).window;
+    frame.events = window_.stamp(at.k).events;
+    frame.arrived = window_.stamp(std::min(window_.newest(), at.k + request.lookahead)).arrived;
+}
+
+}  // namespace eventide

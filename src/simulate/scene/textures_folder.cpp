@@ -1,0 +1,94 @@
+// Reads image files with OpenCV.
+#include "src/simulate/scene/textures_folder.h"
+
+#include "src/core/error.h"
+#include "src/io/image_codecs.h"
+#include "src/simulate/scene/texture_pack.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace eventide {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> image_files(const fs::path& folder) {
+    constexpr std::array<std::string_view, 8> kEndings{".png", ".jpg",  ".jpeg", ".bmp",
+                                                       ".tif", ".tiff", ".webp", ".pgm"};
+    if (!fs::is_directory(folder))
+        throw Error(ErrorKind::input, folder.string() + ": expected a folder of images");
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator{folder}) {
+        std::string ending = entry.path().extension().string();
+        std::ranges::transform(ending, ending.begin(),
+                               [](unsigned char c) { return char(std::tolower(c)); });
+        if (entry.is_regular_file() && std::ranges::count(kEndings, ending) > 0)
+            files.push_back(entry.path());
+    }
+    if (files.empty())
+        throw Error(ErrorKind::input, folder.string() + ": expected images, found none");
+    std::ranges::sort(files);
+    return files;
+}
+
+namespace {
+
+cv::Mat checked_image(const fs::path& file, int how) {
+    cv::Mat read = read_image(file.string(), how);
+    if (read.empty() || read.rows < 2 || read.cols < 2)
+        throw Error(ErrorKind::input, file.string() + ": expected an image of at least 2 x 2 px");
+    return read;
+}
+
+GreyImage image_of(const cv::Mat& read) {
+    GreyImage image(read.rows, read.cols);
+    for (int y = 0; y < read.rows; ++y)
+        std::copy_n(read.ptr<std::uint8_t>(y), read.cols, image.row(y).begin());
+    return image;
+}
+
+}  // namespace
+
+GreyImage read_grey_image(const fs::path& file) {
+    return image_of(checked_image(file, cv::IMREAD_GRAYSCALE));
+}
+
+GreyImage read_colour_image(const fs::path& file, int channel) {
+    cv::Mat plane;
+    cv::extractChannel(checked_image(file, cv::IMREAD_COLOR), plane, channel);
+    return image_of(plane);
+}
+
+std::array<std::shared_ptr<const TextureLibrary>, 3> colour_textures_from_folder(
+    const fs::path& folder, int longest) {
+    std::array<std::shared_ptr<const TextureLibrary>, 3> libraries;
+    for (int channel = 0; channel < 3; ++channel) {
+        auto library = std::make_shared<TextureLibrary>();
+        for (const fs::path& file : image_files(folder)) {
+            const GreyImage image = read_colour_image(file, channel);
+            library->add(longest > 0 ? shrunk(image, longest) : image);
+        }
+        libraries[std::size_t(channel)] = std::move(library);
+    }
+    return libraries;
+}
+
+std::shared_ptr<TextureLibrary> textures_from_folder(const fs::path& folder, int longest) {
+    auto library = std::make_shared<TextureLibrary>();
+    for (const fs::path& file : image_files(folder)) {
+        const GreyImage image = read_grey_image(file);
+        library->add(longest > 0 ? shrunk(image, longest) : image);
+    }
+    return library;
+}
+
+std::shared_ptr<const TextureLibrary> open_textures(const fs::path& path, std::size_t procedural) {
+    if (path.empty()) return procedural_textures(procedural);
+    if (fs::is_directory(path)) return textures_from_folder(path);
+    return textures_from_pack(path);
+}
+
+}  // namespace eventide

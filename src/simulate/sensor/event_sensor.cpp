@@ -1,0 +1,194 @@
+// Low-pass, thresholds, refractory time, leak, shot noise and hot pixels.
+#include "src/simulate/sensor/event_sensor.h"
+
+#include "src/simulate/sensor/simd4.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace eventide {
+
+namespace {
+
+/// A reference no value can be near: the pixel is in its refractory time and takes its reference
+/// when that ends.
+constexpr float kHeld = 1e30f;
+
+std::size_t whole_lanes(std::size_t n) {
+    return (n + 3) & ~std::size_t(3);
+}
+
+/// Time constant of the photoreceptor: what its bandwidth in bright and in dim light give together.
+struct Photoreceptor {
+    float tau_bright = 0;     // s
+    float tau_per_light = 0;  // s lux
+
+    explicit Photoreceptor(const SensorTraits& t) {
+        const auto tau = [](double hz) {
+            return hz > 0 ? float(1 / (2 * std::numbers::pi * hz)) : 0.f;
+        };
+        tau_bright = tau(t.bandwidth_hz);
+        tau_per_light = tau(t.bandwidth_hz_per_lux);
+    }
+    bool instant() const { return tau_bright == 0 && tau_per_light == 0; }
+};
+
+}  // namespace
+
+struct EventSensor::Step {
+    SensorTime begin;
+    double begin_s, end_s, seconds;
+    std::int64_t us;
+};
+
+EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Random random)
+    : traits_(traits),
+      width_(width),
+      height_(height),
+      pixels_(std::size_t(width) * std::size_t(height)),
+      random_(random),
+      noise_(traits, pixels_, random_.fork()) {
+    const std::size_t n = whole_lanes(pixels_);
+    for (std::vector<float>* values : {&now_, &before_, &reference_, &leak_}) values->assign(n, 0);
+    on_.assign(n, kHeld);  // what pads the last lanes never fires
+    off_.assign(n, kHeld);
+    ready_s_.assign(n, -1);
+    for (std::size_t i = 0; i < pixels_; ++i) {
+        const auto vary = [&](double mean, double share) {
+            return mean * (1 + share * random_.normal());
+        };
+        on_[i] = float(std::max(traits.threshold_min, vary(traits.threshold_on, traits.mismatch)));
+        off_[i] =
+            float(std::max(traits.threshold_min, vary(traits.threshold_off, traits.mismatch)));
+        const double rate = std::max(0.0, vary(traits.leak_hz, traits.leak_mismatch));
+        leak_[i] = float(rate * double(on_[i]));
+    }
+    const auto hot = std::size_t(traits.hot_share * double(pixels_) + random_.uniform());
+    for (std::size_t i = 0; i < hot; ++i) {
+        HotPixel pixel{.pixel = std::uint32_t(random_.uniform() * double(pixels_)),
+                       .rate_hz = random_.log_uniform(traits.hot_hz)};
+        pixel.on_share = random_.chance(.6) ? 1 : random_.uniform();
+        pixel.next_s = random_.exponential() / pixel.rate_hz;
+        hot_.push_back(pixel);
+    }
+}
+
+void EventSensor::settle(const Array2<float>& lux, double gain) {
+    for (std::size_t i = 0; i < pixels_; ++i) {
+        now_[i] = std::log(lux.values()[i] * float(gain) + float(traits_.dark_lux));
+        const double phase = traits_.random_phase ? random_.uniform() : 0;
+        reference_[i] = now_[i] + float(phase) * off_[i];
+        if (random_.chance(.5)) reference_[i] = now_[i] - float(phase) * on_[i];
+    }
+}
+
+void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lux, double gain,
+                       std::vector<Event>& events) {
+    using namespace lanes;
+    const Step step{.begin = begin,
+                    .begin_s = double(to_us(begin)) * 1e-6,
+                    .end_s = double(to_us(end)) * 1e-6,
+                    .seconds = double((end - begin).count()) * 1e-6,
+                    .us = (end - begin).count()};
+    const Photoreceptor receptor{traits_};
+    const auto dt = float(step.seconds), light_gain = float(gain), dark = float(traits_.dark_lux);
+    std::swap(now_, before_);
+
+    const auto block = [&](std::size_t i, F4 light) {
+        light = light * light_gain + dark;
+        const F4 before = load(&before_[i]);
+        F4 now = log(light);
+        if (!receptor.instant()) {
+            const F4 tau = receptor.tau_bright + receptor.tau_per_light / light;
+            now += (before - now) * decay(dt / tau);
+        }
+        store(&now_[i], now);
+        const F4 reference = load(&reference_[i]) - load(&leak_[i]) * dt;
+        store(&reference_[i], reference);
+        const F4 change = now - reference;
+        const I4 fires = (change >= load(&on_[i])) | (change <= -load(&off_[i]));
+        if (!any(fires)) return;
+        for (std::size_t lane = 0; lane < 4; ++lane)
+            if (fires[lane]) cross(step, i + lane, events);
+    };
+    const std::span<const float> light = lux.values();
+    std::size_t i = 0;
+    for (; i + 4 <= pixels_; i += 4) block(i, load(light.data() + i));
+    if (i < pixels_) {
+        F4 rest = splat(1.f);
+        for (std::size_t lane = 0; i + lane < pixels_; ++lane) rest[lane] = light[i + lane];
+        block(i, rest);
+    }
+    add_shot_noise(step, light, gain, events);
+    add_hot_pixels(step, events);
+}
+
+/// All crossings of one pixel in one step. A leak lowers the reference steadily, which is the same
+/// as a value that rises so much faster: in that view the reference stands still.
+void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>& events) {
+    const double v0 = double(before_[pixel]) - double(leak_[pixel]) * step.seconds;
+    const double v1 = double(now_[pixel]), slope = v1 - v0;
+    const double on = double(on_[pixel]), off = double(off_[pixel]);
+    double reference = double(reference_[pixel]), share = 0;
+    if (ready_s_[pixel] > step.begin_s) {
+        if (ready_s_[pixel] >= step.end_s) return;
+        share = (ready_s_[pixel] - step.begin_s) / step.seconds;
+    }
+    if (reference_[pixel] == kHeld) reference = v0 + slope * share;
+    for (int n = 0;; ++n) {
+        const bool rises = v1 >= reference + on;
+        if (!rises && v1 > reference - off) break;
+        if (n == kMaxPerStep) {
+            reference = v1;
+            break;
+        }
+        reference += rises ? on : -off;
+        if (slope != 0) share = std::clamp((reference - v0) / slope, share, 1.0);
+        events.push_back(event(step, pixel, share, rises ? Polarity::on : Polarity::off));
+        if (traits_.refractory_s <= 0) continue;
+        ready_s_[pixel] = step.begin_s + share * step.seconds + traits_.refractory_s;
+        if (ready_s_[pixel] >= step.end_s) {
+            reference = double(kHeld);
+            break;
+        }
+        share = (ready_s_[pixel] - step.begin_s) / step.seconds;
+        reference = v0 + slope * share;
+    }
+    reference_[pixel] = float(reference);
+}
+
+/// The light's own events go on from the reference they had: noise swings about the light and takes
+/// nothing of it. A noise event only keeps its pixel busy, like any other.
+void EventSensor::add_shot_noise(const Step& step, std::span<const float> lux, double gain,
+                                 std::vector<Event>& events) {
+    const auto fire = [&](std::size_t pixel, double t_s, Polarity polarity) {
+        if (t_s < ready_s_[pixel]) return false;
+        events.push_back(event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity));
+        ready_s_[pixel] = t_s + traits_.refractory_s;
+        return true;
+    };
+    noise_.until(
+        step.end_s, [&](std::size_t pixel) { return double(lux[pixel]) * gain; }, fire);
+}
+
+void EventSensor::add_hot_pixels(const Step& step, std::vector<Event>& events) {
+    for (HotPixel& hot : hot_)
+        for (; hot.next_s <= step.end_s; hot.next_s += random_.exponential() / hot.rate_hz) {
+            const double share = (hot.next_s - step.begin_s) / step.seconds;
+            const bool on = random_.chance(hot.on_share);
+            events.push_back(event(step, hot.pixel, share, on ? Polarity::on : Polarity::off));
+        }
+}
+
+/// `share` of the step; times are rounded up, so that they lie in (begin, end].
+Event EventSensor::event(const Step& step, std::size_t pixel, double share,
+                         Polarity polarity) const {
+    const auto us =
+        std::clamp<std::int64_t>(std::int64_t(std::ceil(share * double(step.us))), 1, step.us);
+    const std::size_t width = std::size_t(width_);
+    return {step.begin + SensorDuration{us}, std::uint16_t(pixel % width),
+            std::uint16_t(pixel / width), polarity};
+}
+
+}  // namespace eventide

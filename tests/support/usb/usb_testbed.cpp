@@ -1,0 +1,117 @@
+#include "tests/support/usb/usb_testbed.h"
+
+#include "tests/support/preload.h"
+#include "tests/support/usb/usb_testbed_parts.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace eventide::testing_support {
+namespace {
+
+constexpr const char* kSysfsPath = "/sys/devices/usb1";
+constexpr const char* kNode = "/dev/bus/usb/001/001";
+
+}  // namespace
+
+UsbTestbed::UsbTestbed() : parts_(std::make_unique<Parts>()) {
+    if (!runs_in_testbed())
+        throw std::runtime_error("the USB testbed needs umockdev's preload library");
+    parts_->testbed.reset(umockdev_testbed_new());
+    parts_->handler.reset(umockdev_ioctl_base_new());
+    g_signal_connect(parts_->handler.get(), "handle-ioctl", G_CALLBACK(&Parts::on_ioctl),
+                     parts_.get());
+}
+
+UsbTestbed::~UsbTestbed() {
+    unplug();
+}
+
+// ---- plugging ----------------------------------------------------------------------------------
+
+void UsbTestbed::plug_in(std::shared_ptr<UsbModel> camera) {
+    Parts& p = *parts_;
+    {
+        const std::lock_guard lock{p.mutex};
+        p.camera = std::move(camera);
+        p.identity = p.camera->identity();
+        p.gone = p.halted = false;
+        p.requests = p.looks = p.transfers = 0;
+    }
+    GError* error = nullptr;
+    const std::string record = device_record(p.identity);
+    if (!umockdev_testbed_add_from_string(p.testbed.get(), record.c_str(), &error) ||
+        !umockdev_testbed_attach_ioctl(p.testbed.get(), kNode, p.handler.get(), &error)) {
+        const Owned<GError> owned{error};
+        throw std::runtime_error(std::string{"umockdev: "} + owned->message);
+    }
+    p.attached = true;
+    umockdev_testbed_uevent(p.testbed.get(), kSysfsPath, "add");
+}
+
+void UsbTestbed::unplug() {
+    Parts& p = *parts_;
+    if (!p.attached) return;
+    {
+        const std::lock_guard lock{p.mutex};
+        p.pull_cable();
+    }
+    umockdev_testbed_uevent(p.testbed.get(), kSysfsPath, "remove");
+    umockdev_testbed_detach_ioctl(p.testbed.get(), kNode, nullptr);
+    umockdev_testbed_remove_device(p.testbed.get(), kSysfsPath);
+    p.attached = false;
+}
+
+// ---- faults ------------------------------------------------------------------------------------
+
+void UsbTestbed::unplug_after(int requests) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.unplug_after = requests;
+}
+
+int UsbTestbed::requests() const {
+    const std::lock_guard lock{parts_->mutex};
+    return parts_->requests;
+}
+
+void UsbTestbed::stall_control(int requests) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.control_stalls = requests;
+}
+
+void UsbTestbed::delay_control(int looks) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.control_delay = looks;
+}
+
+void UsbTestbed::halt_data(int times) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.halts = times;
+}
+
+void UsbTestbed::fail_messages(int error) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.message_error = error;
+}
+
+void UsbTestbed::limit_transfer(std::size_t bytes) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.transfer_limit = bytes;
+}
+
+void UsbTestbed::lose_last_byte_of_every(int transfers) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.loses_byte_of_every = transfers;
+}
+
+void UsbTestbed::limit_memory(std::size_t bytes) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.memory = bytes;
+}
+
+void UsbTestbed::look(const std::function<void()>& at) {
+    const std::lock_guard lock{parts_->mutex};
+    at();
+}
+
+}  // namespace eventide::testing_support

@@ -1,0 +1,250 @@
+// What the testbed's V4L2 node answers to each request.
+#include "tests/support/v4l2/v4l2_testbed_parts.h"
+
+#include <sys/ioctl.h>
+
+#include <linux/v4l2-subdev.h>
+#include <linux/videodev2.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace eventide::testing_support {
+namespace {
+
+constexpr std::uint32_t kFirstControl = 0x00980900;
+constexpr char kCard[] = "eventide testbed";
+
+const char* name_of(gulong request) {
+    switch (request) {
+        case VIDIOC_QUERYCAP:
+            return "QUERYCAP";
+        case VIDIOC_G_FMT:
+            return "G_FMT";
+        case VIDIOC_S_FMT:
+            return "S_FMT";
+        case VIDIOC_REQBUFS:
+            return "REQBUFS";
+        case VIDIOC_QUERYBUF:
+            return "QUERYBUF";
+        case VIDIOC_QBUF:
+            return "QBUF";
+        case VIDIOC_DQBUF:
+            return "DQBUF";
+        case VIDIOC_STREAMON:
+            return "STREAMON";
+        case VIDIOC_STREAMOFF:
+            return "STREAMOFF";
+        default:
+            return "other";
+    }
+}
+
+}  // namespace
+
+gboolean V4l2Testbed::Parts::handle(UMockdevIoctlClient* client) {
+    const std::lock_guard lock{mutex};
+    const gulong request = umockdev_ioctl_client_get_request(client);
+    requests.emplace_back(name_of(request));
+    const int result = answer(request, umockdev_ioctl_client_get_arg(client));
+    umockdev_ioctl_client_complete(client, result == 0 ? 0 : -1, result);
+    return TRUE;
+}
+
+gboolean V4l2Testbed::Parts::handle_write(UMockdevIoctlClient* client) {
+    const std::lock_guard lock{mutex};
+    UMockdevIoctlData* data = umockdev_ioctl_client_get_arg(client);
+    if (error != 0 || refusals > 0) {
+        umockdev_ioctl_client_complete(client, -1, error != 0 ? error : EAGAIN);
+        if (refusals > 0) --refusals;
+        return TRUE;
+    }
+    const auto* bytes = reinterpret_cast<const std::byte*>(data->data);
+    written.emplace_back(bytes, bytes + data->data_len);
+    umockdev_ioctl_client_complete(client, data->data_len, 0);
+    return TRUE;
+}
+
+int V4l2Testbed::Parts::answer(gulong request, UMockdevIoctlData* arg) {
+    for (const auto part :
+         {&Parts::answer_format, &Parts::answer_buffers, &Parts::answer_controls}) {
+        const int result = (this->*part)(request, arg);
+        if (result != ENOTTY) return result;
+    }
+    return ENOTTY;
+}
+
+/// What the node is and what it delivers.
+int V4l2Testbed::Parts::answer_format(gulong request, UMockdevIoctlData* arg) {
+    switch (request) {
+        case VIDIOC_QUERYCAP:
+            return with<v4l2_capability>(arg, [&](v4l2_capability& c, auto*) {
+                std::memcpy(c.card, kCard, sizeof kCard);
+                c.device_caps = settings.output ? V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_READWRITE
+                                : settings.multi_planar
+                                    ? V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING
+                                    : V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
+                c.capabilities = c.device_caps | V4L2_CAP_DEVICE_CAPS;
+                return 0;
+            });
+        case VIDIOC_G_FMT:
+            return with<v4l2_format>(arg, [&](v4l2_format& f, auto*) {
+                auto& pix = f.fmt.pix;
+                if (settings.multi_planar) {
+                    f.fmt.pix_mp.pixelformat = settings.fourcc;
+                    f.fmt.pix_mp.width = std::uint32_t(settings.width);
+                    f.fmt.pix_mp.height = std::uint32_t(settings.height);
+                } else {
+                    pix.pixelformat = settings.fourcc;
+                    pix.width = std::uint32_t(settings.width);
+                    pix.height = std::uint32_t(settings.height);
+                }
+                return 0;
+            });
+        case VIDIOC_S_FMT:
+            return with<v4l2_format>(arg, [&](v4l2_format& f, auto*) { return set_format(f); });
+        case VIDIOC_SUBDEV_G_SELECTION:
+            return with<v4l2_subdev_selection>(arg, [&](v4l2_subdev_selection& s, auto*) {
+                s.r = {0, 0, std::uint32_t(settings.sensor_width),
+                       std::uint32_t(settings.sensor_height)};
+                return settings.sensor_width > 0 ? 0 : ENOTTY;
+            });
+        default:
+            return ENOTTY;
+    }
+}
+
+/// Streaming, as between a client and videobuf2.
+int V4l2Testbed::Parts::answer_buffers(gulong request, UMockdevIoctlData* arg) {
+    switch (request) {
+        case VIDIOC_REQBUFS:
+            return with<v4l2_requestbuffers>(arg, [&](v4l2_requestbuffers& r, auto*) {
+                buffers = r.count = std::min<std::uint32_t>(r.count, 4);
+                return ::ftruncate(backing, off_t(buffers * settings.buffer_bytes)) == 0 ? 0
+                                                                                         : ENOMEM;
+            });
+        case VIDIOC_QUERYBUF:
+            return with<v4l2_buffer>(arg, [&](v4l2_buffer& b, UMockdevIoctlData* data) {
+                const auto offset = std::uint32_t(b.index * settings.buffer_bytes);
+                Owned<UMockdevIoctlData> holder;
+                if (v4l2_plane* plane = settings.multi_planar ? plane_of(data, holder) : nullptr) {
+                    plane->length = std::uint32_t(settings.buffer_bytes);
+                    plane->m.mem_offset = offset;
+                } else {
+                    b.length = std::uint32_t(settings.buffer_bytes);
+                    b.m.offset = offset;
+                }
+                return b.index < buffers ? 0 : EINVAL;
+            });
+        case VIDIOC_QBUF:
+            return with<v4l2_buffer>(arg, [&](v4l2_buffer& b, auto*) {
+                if (b.index >= buffers || std::count(queued.begin(), queued.end(), b.index) > 0)
+                    return EINVAL;
+                queued.push_back(b.index);
+                return 0;
+            });
+        case VIDIOC_DQBUF:
+            return with<v4l2_buffer>(
+                arg, [&](v4l2_buffer& b, UMockdevIoctlData* data) { return dequeue(b, data); });
+        case VIDIOC_STREAMON:
+            return 0;
+        case VIDIOC_STREAMOFF:
+            queued.clear();
+            return 0;
+        default:
+            return ENOTTY;
+    }
+}
+
+int V4l2Testbed::Parts::answer_controls(gulong request, UMockdevIoctlData* arg) {
+    switch (request) {
+        case VIDIOC_QUERY_EXT_CTRL:
+            return with<v4l2_query_ext_ctrl>(
+                arg, [&](v4l2_query_ext_ctrl& q, auto*) { return query_control(q); });
+        case VIDIOC_S_CTRL:
+            return with<v4l2_control>(arg, [&](v4l2_control& c, auto*) {
+                auto* control = find_control(c.id);
+                if (control == nullptr) return EINVAL;
+                control->value = c.value;
+                return 0;
+            });
+        case VIDIOC_G_CTRL:
+            return with<v4l2_control>(arg, [&](v4l2_control& c, auto*) {
+                const auto* control = find_control(c.id);
+                if (control == nullptr) return EINVAL;
+                c.value = control->value;
+                return 0;
+            });
+        default:
+            return ENOTTY;
+    }
+}
+
+int V4l2Testbed::Parts::set_format(v4l2_format& format) const {
+    if (settings.refuse_format_with != 0) return settings.refuse_format_with;
+    const auto& takes = settings.takes;
+    // As v4l2loopback does, an unknown format is changed to one it knows.
+    if (std::find(takes.begin(), takes.end(), format.fmt.pix.pixelformat) == takes.end())
+        format.fmt.pix.pixelformat = takes.empty() ? 0 : takes.front();
+    return 0;
+}
+
+v4l2_plane* V4l2Testbed::Parts::plane_of(UMockdevIoctlData* buffer,
+                                         Owned<UMockdevIoctlData>& holder) {
+    holder.reset(umockdev_ioctl_data_resolve(buffer, offsetof(v4l2_buffer, m.planes),
+                                             sizeof(v4l2_plane), nullptr));
+    return holder ? reinterpret_cast<v4l2_plane*>(holder->data) : nullptr;
+}
+
+int V4l2Testbed::Parts::dequeue(v4l2_buffer& buffer, UMockdevIoctlData* data) {
+    if (error != 0) return error;
+    if (contents.empty() || queued.empty()) return EAGAIN;
+    const Content content = std::move(contents.front());
+    contents.pop_front();
+    buffer.index = queued.front();
+    queued.pop_front();
+    buffer.sequence = sequence += content.skipped_before;
+    ++sequence;
+    buffer.flags = content.error_flag ? V4L2_BUF_FLAG_ERROR : 0;
+    const std::size_t offset = settings.multi_planar ? settings.data_offset : 0;
+    const std::size_t n = std::min(content.bytes.size(), settings.buffer_bytes - offset);
+    Owned<UMockdevIoctlData> holder;
+    if (v4l2_plane* plane = settings.multi_planar ? plane_of(data, holder) : nullptr) {
+        plane->bytesused = std::uint32_t(offset + n);  // with what lies before the data
+        plane->data_offset = std::uint32_t(offset);
+    } else {
+        buffer.bytesused = std::uint32_t(n);
+    }
+    return ::pwrite(backing, content.bytes.data(), n,
+                    off_t(buffer.index * settings.buffer_bytes + offset)) == ssize_t(n)
+               ? 0
+               : EIO;
+}
+
+/// Enumeration by V4L2_CTRL_FLAG_NEXT_CTRL, ids in the order of the names.
+int V4l2Testbed::Parts::query_control(v4l2_query_ext_ctrl& query) const {
+    const std::uint32_t after =
+        query.id & ~std::uint32_t(V4L2_CTRL_FLAG_NEXT_CTRL | V4L2_CTRL_FLAG_NEXT_COMPOUND);
+    std::uint32_t id = kFirstControl;
+    for (const auto& [name, control] : settings.controls) {
+        if (id++ < after + 1 && after != 0) continue;
+        query = {};
+        query.id = id - 1;
+        std::strncpy(query.name, name.c_str(), sizeof query.name - 1);
+        query.minimum = control.minimum;
+        query.maximum = control.maximum;
+        query.flags = control.read_only ? V4L2_CTRL_FLAG_READ_ONLY : 0;
+        return 0;
+    }
+    return EINVAL;
+}
+
+V4l2NodeSettings::Control* V4l2Testbed::Parts::find_control(std::uint32_t id) {
+    std::uint32_t at = kFirstControl;
+    for (auto& [name, control] : settings.controls)
+        if (at++ == id) return &control;
+    return nullptr;
+}
+
+}  // namespace eventide::testing_support
