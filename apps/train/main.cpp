@@ -44,10 +44,9 @@ void read_options(const std::vector<std::string>& words, OptionTable& table,
 }
 
 void train(const TrainOptions& options, const std::string& record) {
-    std::filesystem::create_directories(options.out);
-    std::ofstream{std::filesystem::path{options.out} / "options.txt"} << record;
     Trainer trainer{options, library(options.textures, 1), library(options.validation_textures, 2),
                     [](const std::string& line) { std::cout << line << std::endl; }};
+    std::ofstream{std::filesystem::path{options.out} / "options.txt"} << record;
     trainer.run(stop_asked);
     if (!options.keep.empty()) trainer.keep(options.keep);
     if (!options.export_file.empty()) save_model(options.export_file, trainer.finished_model());

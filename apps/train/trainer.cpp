@@ -18,6 +18,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kCheckpoint = "checkpoint.safetensors";
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -30,6 +32,11 @@ const TrainOptions& sound(const TrainOptions& options) {
     require_blas_for_threads(options.threads);
     if (!options.initial.empty() && !options.resume.empty())
         throw Error(ErrorKind::usage, "--initial: expected no --resume, found both");
+    // Hours of training, and the best of them would pass for this run's.
+    const auto other = std::filesystem::path{options.out} / kCheckpoint;
+    if (options.resume.empty() && std::filesystem::exists(other))
+        throw Error(ErrorKind::usage, "--out " + options.out + ": holds another run; --resume " +
+                                          other.string() + " goes on with it");
     return options;
 }
 
@@ -189,7 +196,7 @@ void Trainer::validate() {
 }
 
 void Trainer::checkpoint() {
-    save_checkpoint(file("checkpoint.safetensors"), progress_, optimiser_);
+    save_checkpoint(file(kCheckpoint), progress_, optimiser_);
 }
 
 void Trainer::run(const std::atomic<bool>& stop) {

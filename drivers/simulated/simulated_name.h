@@ -11,7 +11,7 @@ namespace eventide {
 struct SimulatedSourceSettings {
     std::string scene = "demo";  ///< a name in simulation_presets()
     SimRecordingSettings recording;
-    double speed = 1;      ///< sensor time over host time; 0: as fast as it goes, and not live
+    double speed = 1;      ///< sensor time over host time; 0: as fast as possible, and not live
     std::string textures;  ///< folder of images or pack of textures; empty: procedural
 };
 

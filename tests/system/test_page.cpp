@@ -66,12 +66,12 @@ TEST_F(Page, ShowsFramesThatMove) {
     EXPECT_TRUE(browser.becomes_true("window.eventide && eventide.shown > 3", kLong))
         << browser.value("document.body.innerText");
     EXPECT_EQ(browser.value("document.getElementById('intensity').width"), 64);
-    EXPECT_GT(browser.value(look_at("intensity", "values.size")), 8) << "a flat picture";
+    EXPECT_GT(browser.value(look_at("intensity", "values.size")), 8) << "a flat frame";
     EXPECT_GT(browser.value(look_at("sigma", "values.size")), 2);
     EXPECT_TRUE(browser.becomes_true(look_at("events", "values.size > 3"), kLong));
     const auto before = browser.value(look_at("intensity", "sum")).dump();
     EXPECT_TRUE(browser.becomes_true(look_at("intensity", "sum") + " !== " + before, kLong))
-        << "the picture stands still";
+        << "the frame stands still";
     EXPECT_EQ(browser.value("document.getElementById('state').innerText"), "live");
     // For people: EVENTIDE_SCREENSHOT=page.png test_page --gtest_filter=*ThatMove
     if (const char* file = std::getenv("EVENTIDE_SCREENSHOT")) browser.screenshot(file);

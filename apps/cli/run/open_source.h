@@ -17,7 +17,7 @@ struct OpenedSource {
     RealTimePlayback* paced = nullptr;  ///< the same, where it keeps a pace
 };
 
-/// `speed`: 0 is as fast as it goes. `give_up` is asked while something is waited for: true ends
+/// `speed`: 0 is as fast as possible. `give_up` is asked while something is waited for: true ends
 /// that with an Error. Throws Error.
 OpenedSource open_source(const RunSettings& settings, double speed,
                          const std::function<bool()>& give_up = {});

@@ -28,7 +28,7 @@ Span span_of(const RunSettings& settings, bool live);
 /// Of a recording that can be asked for it; reads its beginning.
 std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live);
 
-/// Of a recording: 0 is as fast as it goes. Throws Error (usage) for --realtime without a pace.
+/// Of a recording: 0 is as fast as possible. Throws Error (usage) for --realtime without a pace.
 double speed_of(const RunSettings& settings);
 
 /// The bound of a live source's latency; empty where there is none. Throws Error (usage) for a

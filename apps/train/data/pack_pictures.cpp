@@ -1,4 +1,4 @@
-// eventide-pack-images: photographs into the one file that eventide-train reads.
+// eventide-pack-pictures: photographs into the one file that eventide-train reads.
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/io/output_file.h"
@@ -16,7 +16,7 @@ using namespace eventide;
 
 constexpr const char* kUsage =
     "eventide-pack-pictures OUT LONGEST (FOLDER FIRST COUNT)...\n"
-    "Pictures FIRST .. FIRST + COUNT - 1 of each folder, by name (COUNT 0: all from FIRST on),\n"
+    "Images FIRST .. FIRST + COUNT - 1 of each folder, by name (COUNT 0: all from FIRST on),\n"
     "as grey images of at most LONGEST px.\n";
 
 std::size_t whole(const std::string& text) {
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
         refuse_existing(words[0], false);
         const auto images = photos(words);
         write_texture_pack(words[0], images);
-        std::cout << images.size() << " pictures\n";
+        std::cout << images.size() << " images\n";
     } catch (const Error& error) {
         std::cerr << "eventide-pack-pictures: " << error.what() << "\n";
         return int(error.kind());

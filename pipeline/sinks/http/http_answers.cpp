@@ -179,7 +179,7 @@ std::shared_ptr<const void> HttpAnswers::place(Slots& slots, const char* of_what
 }
 
 void HttpAnswers::page_frames(Response& response) {
-    if (auto held = place(viewers_, "pictures", response))
+    if (auto held = place(viewers_, "frames", response))
         send_frames(newest_, std::move(held), response);
 }
 
@@ -189,14 +189,14 @@ void HttpAnswers::motion_jpeg(const Request& request, Response& response) {
     if (settings_.uncertainty == Uncertainty::overlay) wanted.show = Show::overlay;
     if (request.has_param("show")) wanted.show = show_named(request.get_param_value("show"));
     if (request.has_param("fps")) wanted.fps = rate_named(request.get_param_value("fps"));
-    if (auto held = place(viewers_, "pictures", response))
+    if (auto held = place(viewers_, "frames", response))
         send_motion_jpeg(newest_, wanted, std::move(held), response);
 }
 
 void HttpAnswers::one_frame(const Request& request, Response& response) {
     const Show show =
         request.has_param("show") ? show_named(request.get_param_value("show")) : Show::intensity;
-    const auto held = place(viewers_, "pictures", response);
+    const auto held = place(viewers_, "frames", response);
     if (!held) return;
     const auto shown = newest_.next(nullptr, Clock::now() + kFrameTime);
     if (!shown) return say(response, 503, "no frame came within 5 seconds");

@@ -79,7 +79,7 @@ void add_line(Text& text, const Snapshot& now) {
 std::string metrics_text(const Snapshot& now, const HttpCounters& http) {
     Text text;
     add_line(text, now);
-    text.gauge("http_viewers", "Connections that are sent pictures.", double(http.viewers));
+    text.gauge("http_viewers", "Connections that are sent frames.", double(http.viewers));
     text.gauge("http_listeners", "Connections that are sent statistics.", double(http.listeners));
     text.counter("http_requests_total", "Requests.", http.requests);
     text.counter("http_refused_total", "Requests refused: host, origin, token, too many.",

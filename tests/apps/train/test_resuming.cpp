@@ -57,8 +57,8 @@ TEST(Training, ADeeperNetworkBeginsWithWhatAShallowerOneHasLearned) {
 
     options.model.widths = {8, 8, 8};
     options.model.recurrent = {1, 1, 1};
-    options.out = (out / "deep").string();
     for (const char* file : {"shallow.safetensors", "shallow/checkpoint.safetensors"}) {
+        options.out = (out / "deep" / file).string();
         options.initial = (out / file).string();
         const auto deep = trainer(options);
         for (const auto& [name, values] : shallow->finished_model().weights) {
@@ -93,6 +93,24 @@ TEST(Training, WeightsOfAnotherNetworkAreRefused) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
         EXPECT_NE(std::string{error.what()}.find("other.safetensors"), std::string::npos);
     }
+}
+
+TEST(Training, ANewRunIsNotWrittenOverAnother) {
+    const fs::path out = empty_folder("other");
+    TrainOptions options = tiny_options(out);
+    options.steps = 1;
+    train(*trainer(options));
+    const auto before = fs::last_write_time(out / "checkpoint.safetensors");
+    try {
+        trainer(options);
+        FAIL() << "expected an error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string{error.what()}.find("--resume " + (out / "checkpoint").string()),
+                  std::string::npos)
+            << error.what();
+    }
+    EXPECT_EQ(fs::last_write_time(out / "checkpoint.safetensors"), before);
 }
 
 TEST(Training, ARunBeginsOrGoesOnNotBoth) {

@@ -119,7 +119,7 @@ function fit(canvas, bitmap) {
   canvas.height = bitmap.height;
 }
 
-/// A grey picture through a table, into `canvas`.
+/// A grey image through a table, into `canvas`.
 function paint(canvas, bitmap, colour) {
   fit(canvas, bitmap);
   fit(scratch, bitmap);
