@@ -74,20 +74,20 @@ void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
 
     const Tile close = tile.grown(1, state.height(), state.width());
     const PaddedMap& h = state.read();
-    gates_.run({.in = {{{input_at(input, i, close.y0 - 1, close.x0 - 1), input_pitch()},
-                        {h.at(close.y0 - 1, close.x0 - 1), h.pitch()}}},
-                .out = gates_at(gates, i, close.y0, close.x0),
-                .out_pitch = gates_pitch(),
-                .height = close.height(),
-                .width = close.width()},
+    gates_.run(ConvArea{.in = {{{input_at(input, i, close.y0 - 1, close.x0 - 1), input_pitch()},
+                                {h.at(close.y0 - 1, close.x0 - 1), h.pitch()}}},
+                        .out = gates_at(gates, i, close.y0, close.x0),
+                        .out_pitch = gates_pitch(),
+                        .height = close.height(),
+                        .width = close.width()},
                scratch);
     keep(state, i, close, gates, kept, scratch);
-    candidate_.run({.in = {{{input_at(input, i, tile.y0 - 1, tile.x0 - 1), input_pitch()},
-                            {kept_at(kept, i, tile.y0 - 1, tile.x0 - 1), kept_pitch()}}},
-                    .out = candidate,
-                    .out_pitch = std::ptrdiff_t(tile.width()) * channels_,
-                    .height = tile.height(),
-                    .width = tile.width()},
+    candidate_.run(ConvArea{.in = {{{input_at(input, i, tile.y0 - 1, tile.x0 - 1), input_pitch()},
+                                    {kept_at(kept, i, tile.y0 - 1, tile.x0 - 1), kept_pitch()}}},
+                            .out = candidate,
+                            .out_pitch = std::ptrdiff_t(tile.width()) * channels_,
+                            .height = tile.height(),
+                            .width = tile.width()},
                    scratch);
     update(state, i, mask, gates, candidate);
 }

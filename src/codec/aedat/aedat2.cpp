@@ -86,7 +86,8 @@ Aedat2Parser::Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_
       width_(std::uint32_t(width)),
       height_(std::uint32_t(height)),
       dvs128_(one_is_on),
-      frame_(width, height) {}
+      frame_(sensor == Aedat2Sensor::davis ? width : 0,
+             sensor == Aedat2Sensor::davis ? height : 0) {}
 
 void Aedat2Parser::add_event(std::uint32_t address, std::int64_t t_us, Batch& into) {
     // The chip's origin is at the lower left, and X is stored mirrored.

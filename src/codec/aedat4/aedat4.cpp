@@ -34,9 +34,10 @@ std::uint64_t side(int px) {
 
 }  // namespace
 
-Aedat4Parser::Aedat4Parser(const Aedat4Header& header, int width, int height)
+Aedat4Parser::Aedat4Parser(const Aedat4Header& header, int width, int height, std::size_t largest)
     : header_(header),
       validator_(side(width), side(height), EventValidator::LeapEnds::with_next_packet),
+      unpacker_(largest),
       chosen_(header.chosen),
       all_streams_(header.streams.empty()),
       position_(header.stream.data_offset) {

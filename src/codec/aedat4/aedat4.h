@@ -21,8 +21,9 @@ namespace eventide {
 /// A file table that is missing or does not fit counts as bad_table and is not needed.
 class Aedat4Parser final : public Parser {
 public:
-    /// Size in px.
-    Aedat4Parser(const Aedat4Header& header, int width, int height);
+    /// Size in px. Packets of more than `largest` bytes, unpacked, count as damaged.
+    Aedat4Parser(const Aedat4Header& header, int width, int height,
+                 std::size_t largest = kLargestAedat4Packet);
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;

@@ -63,7 +63,8 @@ struct Aedat4Unpacker::Contexts {
     ZSTD_DCtx* zstd = nullptr;
 };
 
-Aedat4Unpacker::Aedat4Unpacker() : contexts_(std::make_unique<Contexts>()) {}
+Aedat4Unpacker::Aedat4Unpacker(std::size_t largest)
+    : largest_(largest), contexts_(std::make_unique<Contexts>()) {}
 
 Aedat4Unpacker::~Aedat4Unpacker() {
     LZ4F_freeDecompressionContext(contexts_->lz4);
@@ -114,9 +115,9 @@ std::optional<std::span<const std::byte>> Aedat4Unpacker::unpack(
         bool too_small = false;
         const auto n = lz4 ? unpack_lz4(packed, too_small) : unpack_zstd(packed, too_small);
         if (n) return std::span<const std::byte>(unpacked_).first(*n);
-        if (!too_small || unpacked_.size() >= kLargestAedat4Packet) return {};
+        if (!too_small || unpacked_.size() >= largest_) return {};
         unpacked_.clear();
-        unpacked_.resize(std::min(2 * unpacked_.capacity(), kLargestAedat4Packet));
+        unpacked_.resize(std::min(2 * unpacked_.capacity(), largest_));
     }
 }
 

@@ -23,7 +23,8 @@ bool is_zstd_frame(std::span<const std::byte> bytes);
 /// Unpacks one packet after the other; keeps its memory.
 class Aedat4Unpacker {
 public:
-    Aedat4Unpacker();
+    /// A packet of more than `largest` bytes, unpacked, is too large.
+    explicit Aedat4Unpacker(std::size_t largest = kLargestAedat4Packet);
     ~Aedat4Unpacker();
 
     /// The content of an LZ4 or ZSTD frame, or the bytes themselves when they are neither. Borrowed
@@ -35,6 +36,7 @@ private:
     std::optional<std::size_t> unpack_lz4(std::span<const std::byte> packed, bool& too_small);
     std::optional<std::size_t> unpack_zstd(std::span<const std::byte> packed, bool& too_small);
 
+    std::size_t largest_;
     std::unique_ptr<Contexts> contexts_;
     std::vector<std::byte> unpacked_;
 };

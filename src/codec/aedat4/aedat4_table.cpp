@@ -45,8 +45,9 @@ bool Aedat4Table::has_times() const {
     });
 }
 
-std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes) {
-    Aedat4Unpacker unpacker;
+std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes,
+                                             std::size_t largest) {
+    Aedat4Unpacker unpacker{largest};
     const auto unpacked = unpacker.unpack(bytes);
     const auto root = unpacked ? read_flat_root(*unpacked) : std::nullopt;
     if (!root || root->identifier != "FTAB") return {};

@@ -1,6 +1,7 @@
 // The table at the end of an AEDAT4 file: where each packet lies and which times it holds.
 #pragma once
 
+#include "src/codec/aedat4/aedat4_compression.h"
 #include "src/codec/aedat4/aedat4_header.h"
 #include "src/core/sensor_time.h"
 
@@ -27,8 +28,9 @@ struct Aedat4Table {
     bool has_times() const;
 };
 
-/// The table from its (packed) bytes; empty when they are damaged.
-std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes);
+/// The table from its (packed) bytes; empty when they are damaged, or more than `largest` unpacked.
+std::optional<Aedat4Table> read_aedat4_table(std::span<const std::byte> bytes,
+                                             std::size_t largest = kLargestAedat4Packet);
 
 /// Fills the bytes from a position in the file and returns how many there were.
 using ReadAt = std::function<std::size_t(std::uint64_t position, std::span<std::byte> into)>;

@@ -194,8 +194,8 @@ void FastThesisEncoder::step_half() noexcept {
         half_gru_.step(states_[1], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
             const std::ptrdiff_t row = std::ptrdiff_t(region.width()) * channels_;
-            down_.run({x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), wide, row,
-                       channels_, region.height(), region.width()},
+            down_.run(ConvCall{x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), wide, row,
+                               channels_, region.height(), region.width()},
                       wide + region.height() * row);
             vector_kernels().elu(wide, wide, std::size_t(region.height() * row));
             for (int y = 0; y < region.height(); ++y)

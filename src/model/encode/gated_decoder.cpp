@@ -63,23 +63,23 @@ void GatedDecoder::run(const std::vector<GatedLevel>& levels, const std::vector<
 void GatedDecoder::write_codes(const std::vector<StateMap>& states, const Tile& tile,
                                Array3<float>& codes, float* scratch) const noexcept {
     const PaddedMap& from = decoded(top_, states);
-    out_.run({{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
-              codes.pixel(tile.y0, tile.x0).data(),
-              std::ptrdiff_t(codes.width()) * codes.channels(),
-              false,
-              tile.height(),
-              tile.width()},
+    out_.run(ConvArea{{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
+                      codes.pixel(tile.y0, tile.x0).data(),
+                      std::ptrdiff_t(codes.width()) * codes.channels(),
+                      false,
+                      tile.height(),
+                      tile.width()},
              scratch);
 }
 
 void GatedDecoder::convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to,
                             bool narrow, const Tile& tile, float* scratch) noexcept {
-    conv.run({{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
-              to.at(tile.y0, tile.x0),
-              to.pitch(),
-              narrow,
-              tile.height(),
-              tile.width()},
+    conv.run(ConvArea{{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
+                      to.at(tile.y0, tile.x0),
+                      to.pitch(),
+                      narrow,
+                      tile.height(),
+                      tile.width()},
              scratch);
 }
 
@@ -158,12 +158,12 @@ void GatedDecoder::join_tile(const PaddedMap& h, const PaddedMap& below, std::si
     for (int y = near.y0; y < near.y1; ++y)
         double_row(below, numbers_, widths_[l + 1], y, near.x0, near.x1,
                    scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * units);
-    level.up.run({{{{scratch, row}, {h.at(tile.y0 - 1, tile.x0 - 1), h.pitch()}}},
-                  level.d.at(tile.y0, tile.x0),
-                  level.d.pitch(),
-                  true,
-                  tile.height(),
-                  tile.width()},
+    level.up.run(ConvArea{{{{scratch, row}, {h.at(tile.y0 - 1, tile.x0 - 1), h.pitch()}}},
+                          level.d.at(tile.y0, tile.x0),
+                          level.d.pitch(),
+                          true,
+                          tile.height(),
+                          tile.width()},
                  scratch + (tile.height() + 2) * row);
 }
 

@@ -110,12 +110,12 @@ void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& st
     }
     const PaddedMap& above = states[number_ - 1].read();
     const Tile& region = target.region;
-    in_.run({.in = {{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
-             .out = target.out,
-             .out_pitch = target.pitch,
-             .narrow = true,
-             .height = region.height(),
-             .width = region.width()},
+    in_.run(ConvArea{.in = {{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
+                     .out = target.out,
+                     .out_pitch = target.pitch,
+                     .narrow = true,
+                     .height = region.height(),
+                     .width = region.width()},
             scratch);
 }
 
@@ -149,12 +149,12 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
                                   pixels * std::size_t(channels));
         if (compressed != to) numbers.narrow(compressed, pixels, channels, to);
     }
-    in_.run({.in = {{{scratch, row}}},
-             .out = target.out,
-             .out_pitch = target.pitch,
-             .narrow = true,
-             .height = region.height(),
-             .width = region.width()},
+    in_.run(ConvArea{.in = {{{scratch, row}}},
+                     .out = target.out,
+                     .out_pitch = target.pitch,
+                     .narrow = true,
+                     .height = region.height(),
+                     .width = region.width()},
             rest);
 }
 
