@@ -47,6 +47,7 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
 
 void UsbCamera::open() {
     UsbSelector selector;
+    selector.name = kind_.name;
     selector.products = kind_.products;
     selector.serial = options_.serial;
     selector.bus = options_.bus;

@@ -106,10 +106,8 @@ void for_each_device(libusb_context* context, const UsbSelector& selector, Visit
 }
 
 std::string describe(const UsbSelector& selector) {
-    std::string text = "with USB id";
-    for (const auto product : selector.products)
-        text += " " + hex(selector.vendor) + ":" + hex(product);
-    if (!selector.serial.empty()) text += " and serial '" + selector.serial + "'";
+    std::string text = selector.name;
+    if (!selector.serial.empty()) text += " with serial '" + selector.serial + "'";
     if (selector.bus >= 0) text += " on bus " + std::to_string(selector.bus);
     if (selector.address >= 0) text += " at address " + std::to_string(selector.address);
     return text;
@@ -183,9 +181,8 @@ UsbDevice::UsbDevice(const UsbSelector& selector) : context_(make_context()) {
     if (!handle_) {
         throw Error(ErrorKind::device,
                     problem.empty()
-                        ? "no camera " + describe(selector) +
-                              " was found: plug it in; eventide devices lists what is there"
-                        : "the camera " + describe(selector) + " cannot be opened: " + problem);
+                        ? "no " + describe(selector) + " found; run eventide devices"
+                        : "the " + describe(selector) + " cannot be opened: " + problem);
     }
     int configuration = 0;
     check_usb(libusb_get_configuration(handle_.get(), &configuration),

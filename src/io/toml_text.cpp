@@ -7,35 +7,94 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 namespace eventide {
 namespace {
 
-/// Of a bare or quoted key, or what toml++ refuses itself: nothing, a second bracket, an end.
+/// Of a bare or quoted key, or what toml++ refuses itself: nothing, a second bracket.
 bool may_begin_a_name(char c) {
-    const auto byte = static_cast<unsigned char>(c);
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view{"_-\"'[]"}.find(c) != std::string_view::npos || byte == '\r';
+           std::string_view{"_-\"'[]"}.find(c) != std::string_view::npos;
 }
+
+/// Walks through TOML as far as it is sound, which is as far as toml++ comes: past strings,
+/// comments and lists, so that only what begins a table's header is taken for one.
+class Walk {
+public:
+    explicit Walk(std::string_view text) : rest_(text) {
+        if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+    }
+
+    /// To the name of the next table, behind its brackets; false: there is none.
+    bool next_table() {
+        while (!rest_.empty()) {
+            if (std::exchange(begins_line_, false) && depth_ == 0) {
+                skip_blanks();
+                if (rest_.starts_with('[')) {
+                    take(rest_.starts_with("[[") ? 2 : 1);
+                    skip_blanks();
+                    return true;
+                }
+            }
+            step();
+        }
+        return false;
+    }
+    void skip_line() { take(std::min(rest_.find('\n'), rest_.size())); }
+    std::string_view rest() const { return rest_; }
+    int line() const { return line_; }
+
+private:
+    /// Past one character, or one string or comment.
+    void step() {
+        if (rest_.empty()) return;
+        const char c = rest_.front();
+        if (c == '#') return skip_line();
+        if (c == '"' || c == '\'') return skip_string(c);
+        if (c == '[') ++depth_;
+        if (c == ']' && depth_ > 0) --depth_;
+        begins_line_ = c == '\n';
+        take(1);
+    }
+
+    void skip_string(char quote) {
+        const std::string three(3, quote);
+        const bool is_long = rest_.starts_with(three);
+        take(is_long ? 3 : 1);
+        while (!rest_.empty() && (is_long || rest_.front() != '\n')) {
+            if (is_long ? rest_.starts_with(three) : rest_.front() == quote) {
+                take(is_long ? 3 : 1);
+                // Two more may be the end of what it says.
+                for (int i = 0; i < 2 && is_long && rest_.starts_with(quote); ++i) take(1);
+                return;
+            }
+            take(quote == '"' && rest_.front() == '\\' ? 2 : 1);
+        }
+    }
+
+    void skip_blanks() { take(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }
+    void take(std::size_t n) {
+        const std::string_view taken = rest_.substr(0, n);
+        line_ += int(std::ranges::count(taken, '\n'));
+        rest_.remove_prefix(taken.size());
+    }
+
+    std::string_view rest_;
+    int line_ = 1, depth_ = 0;  // depth: of lists
+    bool begins_line_ = true;
+};
 
 }  // namespace
 
 void check_table_names(const std::string& path, std::string_view text) {
-    constexpr std::string_view kBlank = " \t";
-    int number = 0;
-    while (!text.empty()) {
-        ++number;
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
-        if (!line.starts_with('[')) continue;
-        line.remove_prefix(line.starts_with("[[") ? 2 : 1);
-        line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
-        if (!line.empty() && !may_begin_a_name(line.front()))
-            throw Error(ErrorKind::usage, path + ":" + std::to_string(number) +
-                                              ": expected the name of a table after '[', found '" +
-                                              line.front() + "'");
+    for (Walk walk{text}; walk.next_table(); walk.skip_line()) {
+        if (walk.rest().empty() || may_begin_a_name(walk.rest().front())) continue;
+        const char found = walk.rest().front();
+        throw Error(ErrorKind::usage, path + ":" + std::to_string(walk.line()) +
+                                          ": expected the name of a table after '[', found " +
+                                          (found == '\n' ? std::string{"the end of the line"}
+                                                         : std::string{'\'', found, '\''}));
     }
 }
 

@@ -133,7 +133,8 @@ TEST_F(ExitCodes, ThreeIsAnInputThatIsNotWhatItSays) {
 }
 
 TEST_F(ExitCodes, FourIsACameraThatIsNotThere) {
-    expect(4, {"run", "davis:nobody", "--out", "null"}, "nobody");
+    expect(4, {"run", "davis:nobody", "--out", "null"},
+           "no DAVIS with serial 'nobody' found; run eventide devices");
 }
 
 TEST_F(ExitCodes, FiveIsDamageUnderStrictOnly) {
