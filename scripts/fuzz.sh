@@ -41,7 +41,7 @@ for target in "${targets[@]}"; do
   began=$(find "$findings" -name "$target-*" ! -name '*-slow-unit-*' | wc -l)
   look_at_processor
   before=$processor_ms
-  "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len="$most" -timeout=10 -print_final_stats=1 \
+  "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len="$most" -timeout=10 -print_funcs=0 -print_final_stats=1 \
     -artifact_prefix="$findings/$target-" "$kept" $([ ! -d "$seeds" ] || echo "$seeds") >"$log" 2>&1 </dev/null || failed=1
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   look_at_processor

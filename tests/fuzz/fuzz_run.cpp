@@ -1,38 +1,51 @@
-// eventide run as a whole, of any bytes, with the tiniest network and sensor: four threads, frames,
-// sigma. A sensor of any size is for the target recording: here every pixel costs time.
-#include "apps/cli/program.h"
+// eventide run as a whole, of any bytes, with the tiniest network and sensor: every stage, frames,
+// sigma. A sensor of any size is for the target recording, words of a command line for
+// command_line: here every pixel and every setting costs time. One input of eight has a thread for
+// each stage.
+#include "apps/cli/commands/run_command.h"
+#include "apps/cli/settings/config.h"
 #include "apps/cli/signals.h"
+#include "apps/cli/terminal.h"
+#include "src/core/error.h"
 #include "tests/fuzz/fuzz_file.h"
 
-#include <iostream>
+namespace {
+
+using namespace eventide;
+using namespace eventide::app;
+
+std::map<std::string, std::vector<std::string>> flags(bool threads) {
+    return {{"model", {EVENTIDE_FUZZ_MODEL}},
+            {"input_size", {"16x12"}},
+            {"out", {"gray8:/dev/null"}},
+            {"overwrite", {"true"}},
+            {"size", {"8x6"}},
+            {"fps", {"50"}},
+            {"precision", {"f32"}},
+            {"duration", {"100ms"}},
+            {"threads", {"1"}},
+            {"sequential", {threads ? "false" : "true"}}};
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    start_talk({.log_level = "off", .quiet = true});
+    return 0;
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace eventide;
-    static app::Signals signals;
+    static Signals signals;
     static MemoryFile recording;
     recording.hold(data, size);
-    const int code = app::run_program(signals, {"run",
-                                                recording.path(),
-                                                "--model",
-                                                EVENTIDE_FUZZ_MODEL,
-                                                "--input-size",
-                                                "16x12",
-                                                "--out",
-                                                "gray8:/dev/null",
-                                                "--overwrite",
-                                                "--size",
-                                                "8x6",
-                                                "--fps",
-                                                "50",
-                                                "--precision",
-                                                "f32",
-                                                "--duration",
-                                                "100ms",
-                                                "--threads",
-                                                "1",
-                                                "--quiet",
-                                                "--log-level",
-                                                "off"});
-    if (code != 0 && code != 1 && code != 2 && code != 3) std::abort();
+    RunCommand command;
+    SettingTable table = command.settings();
+    resolve_settings(table, {}, flags(size % 8 == 0));
+    *command.positionals().front().value = recording.path();
+    Program program{signals, {}, true};
+    try {
+        command.run(program);
+    } catch (const Error&) {
+    }
     return 0;
 }
