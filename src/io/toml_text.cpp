@@ -12,10 +12,10 @@
 namespace eventide {
 namespace {
 
-/// Of a bare or quoted key, or what toml++ refuses itself: nothing, a second bracket.
+/// Of a bare or quoted key, or what toml++ refuses itself: nothing.
 bool may_begin_a_name(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view{"_-\"'[]"}.find(c) != std::string_view::npos;
+           std::string_view{"_-\"']"}.find(c) != std::string_view::npos;
 }
 
 /// Walks through TOML as far as it is sound, which is as far as toml++ comes: past strings,
