@@ -10,7 +10,7 @@ tidy() {
   cmake --preset dev >/dev/null
   # Headers that the build writes.
   cmake --build --preset dev
-  find src pipeline replay drivers -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/dev --quiet
+  find apps src pipeline replay drivers library python -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/dev --quiet
 }
 
 # A warning fails.

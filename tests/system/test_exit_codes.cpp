@@ -46,6 +46,7 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"run", recording(), "--out", "a.mp4", "--video-preset", "quick"}, "quick");
     expect(2, {"run", recording(), "--out", "null", "--from", "2s", "--to", "1s"}, "--to");
     expect(2, {"run", recording(), "--out", "window"}, "display");
+    expect(2, {"bench", "--peers", "peers.csv"}, "expected --report");
     expect(2, {"convert", recording(), "a.xyz"}, "a.xyz");
     expect(2, {"simulate", "--scene", "nowhere", "--out", "a.aedat4"}, "nowhere");
     expect(2, {"evaluate", recording(), "--protocol", "folders"}, "two folders");

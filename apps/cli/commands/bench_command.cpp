@@ -8,6 +8,7 @@
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/version.h"
 #include "apps/evaluate/plot.h"
+#include "src/core/error.h"
 #include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
@@ -259,6 +260,9 @@ int BenchCommand::run(Program& program) {
     limit_instructions(instructions_);
     name_bench_files(program.files);
     if (!report_.empty()) return report(program);
+    if (!peers_.empty())
+        throw Error(ErrorKind::usage,
+                    "--peers " + peers_ + ": expected --report FOLDER, found none");
     std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
                 version().c_str(), compiler_text().c_str(), settings_.scene.c_str(),
                 settings_.lookahead);
