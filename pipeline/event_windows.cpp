@@ -1,6 +1,10 @@
 // packets -> event windows.
 #include "pipeline/event_windows.h"
 
+#include "src/core/error.h"
+
+#include <new>
+
 namespace eventide {
 
 EventWindows::EventWindows(const Source& source, const Settings& settings, EventFilter* filter,
@@ -26,6 +30,15 @@ void EventWindows::take(const RawPacket& packet) {
     pass_on(packet.arrived);
     if (live_) advance_clock(packet.arrived);
     counters_.note(parser_->damaged(), slicer_.counters());
+}
+
+/// Who asked sees it in the windows.
+void EventWindows::change_window(const SlicerSettings& wanted) noexcept {
+    try {
+        slicer_.change(wanted);
+    } catch (const Error&) {
+    } catch (const std::bad_alloc&) {
+    }
 }
 
 void EventWindows::finish(End end) {

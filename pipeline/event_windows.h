@@ -33,6 +33,8 @@ public:
                  DataObserver* observer, Counters& counters);
 
     void take(const RawPacket& packet);
+    /// As Slicer::change(), except that what is out of range changes nothing.
+    void change_window(const SlicerSettings& wanted) noexcept;
     /// After the last packet. Where the end was asked for, half a record in hand is no damage.
     enum class End { of_source, asked_for };
     void finish(End end);

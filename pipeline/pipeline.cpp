@@ -88,7 +88,7 @@ void Pipeline::bin() {  // bytes -> events -> grids
     const auto take = [&](const EventWindow& event_window) { gate.take(event_window); };
     const bool complete = for_each(packets_, [&](const RawPacket& packet) {
         const HostTime begun = Clock::now();
-        event_windows_.take(packet);
+        cut(packet);
         for_each_event_window(take);
         gate.look_again();
         counters_.bin.merged_windows.set(gate.merged());
@@ -166,6 +166,13 @@ EventWindows::End Pipeline::ending() const {
     return stop_.is_set() ? EventWindows::End::asked_for : EventWindows::End::of_source;
 }
 
+void Pipeline::cut(const RawPacket& packet) {
+    if (settings_.changes != nullptr)
+        if (const auto window = settings_.changes->take_window())
+            event_windows_.change_window(*window);
+    event_windows_.take(packet);
+}
+
 void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
     const HostTime begun = Clock::now();
     if (event_window.reset_before || (event_window.gap_before && settings_.reset_on_gap))
@@ -240,7 +247,7 @@ void Pipeline::run_sequential() {
     };
     const bool complete = guarded([&] {
         while (reads()) {
-            event_windows_.take(packet);
+            cut(packet);
             for_each_event_window(hand_on);
         }
     });

@@ -88,6 +88,7 @@ private:
     bool read_one(RawPacket& into);
     Pool<RawPacket>::Handle packet_to_fill();
     void hand_on(const EventWindow& event_window);
+    void cut(const RawPacket& packet);
     void bin_one(const EventWindow& event_window, VoxelGrid& grid);
     void encode_one(const VoxelGrid& grid, Encoded& encoded);
     void present_one(const Encoded& encoded);

@@ -33,16 +33,37 @@ void check(bool good, const char* name, std::int64_t found) {
 }  // namespace
 
 Slicer::Slicer(const SlicerSettings& settings, int width, int height)
-    : settings_(settings),
-      step_(settings.rule == WindowRule::duration ? settings.width : settings.max_width),
-      most_events_(events_per_frame(settings, width, height)) {
-    check(step_ >= kMicrosecond, "the (maximum) width in us", step_.count());
-    check(most_events_ >= 1, "the number of events", std::int64_t(most_events_));
-    check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
+    : width_(width), height_(height) {
     check(width >= 1 && height >= 1, "the sensor's size", std::min(width, height));
-    if (settings.rule == WindowRule::content)
-        activity_ = {settings.events_per_pixel, width, height};
+    adopt(settings);
     reset();
+}
+
+void Slicer::adopt(const SlicerSettings& settings) {
+    const SensorDuration step =
+        settings.rule == WindowRule::duration ? settings.width : settings.max_width;
+    const std::uint64_t most = events_per_frame(settings, width_, height_);
+    check(step >= kMicrosecond, "the (maximum) width in us", step.count());
+    check(most >= 1, "the number of events", std::int64_t(most));
+    check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
+    if (settings.rule == WindowRule::content)
+        activity_ = {settings.events_per_pixel, width_, height_};
+    settings_ = settings;
+    step_ = step;
+    most_events_ = most;
+}
+
+void Slicer::change(const SlicerSettings& wanted) {
+    SlicerSettings now = settings_;
+    now.rule = wanted.rule;
+    now.width = wanted.width;
+    now.events = wanted.events;
+    now.events_per_pixel = wanted.events_per_pixel;
+    now.min_width = wanted.min_width;
+    now.max_width = wanted.max_width;
+    adopt(now);
+    if (begin_) origin_ = *begin_;
+    look_again();
 }
 
 void Slicer::reset() {

@@ -53,6 +53,11 @@ public:
     /// Nothing more will come: what is open ends at the newest time known.
     void finish() { finished_ = true; }
 
+    /// The open event window and those after it are cut so: rule, width, events, events_per_pixel,
+    /// min_width and max_width; the rest stays as constructed. Throws Error (usage) for settings out
+    /// of range, and stays as it was.
+    void change(const SlicerSettings& wanted);
+
     /// The next complete event window, borrowed until the next call of anything here.
     bool next(EventWindow& event_window);
 
@@ -84,7 +89,9 @@ private:
     void emit(SensorTime end, EventWindow& event_window);
     void cross_seam();
     void look_again();
+    void adopt(const SlicerSettings& settings);
 
+    int width_, height_;  // px
     SlicerSettings settings_;
     SensorDuration step_;        // width of a frame without events
     std::uint64_t most_events_;  // per frame

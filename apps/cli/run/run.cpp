@@ -181,9 +181,7 @@ std::vector<HttpControl> Run::controls() {
     if (opened_.paced != nullptr)
         plan.set_speed = [this](double factor) { opened_.paced->set_speed(factor); };
     plan.live = live();
-    plan.window = settings_.window == "model" || (settings_.window == "auto" && as_live())
-                      ? network_.config().window
-                      : settings_.window;
+    plan.slicer = slicer_;
     auto controls = live_controls(plan);
     for (HttpControl& control : controls) {
         if (!control.set || (control.name != "fps" && control.name != "scale")) continue;
