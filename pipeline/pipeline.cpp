@@ -55,7 +55,11 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
       latents_(settings.buffers.latents),
       output_(
           parts.renderer, parts.sinks, presenter_settings(parts, settings),
-          [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {}
+          [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {
+    if (settings.resume == nullptr) return;
+    event_windows_.resume(settings.resume->t, settings.resume->slicer);
+    binner_.restore(settings.resume->ages);
+}
 
 // ---- the pipeline ----------------------------------------------------------------------------
 
@@ -173,6 +177,15 @@ void Pipeline::cut(const RawPacket& packet) {
     event_windows_.take(packet);
 }
 
+void Pipeline::keep_memory(SensorTime t) {
+    const auto slicer = event_windows_.memory();
+    if (!slicer)
+        throw Error(ErrorKind::input, "the state at " + std::to_string(to_us(t)) +
+                                          " us: expected events before, windows that images do "
+                                          "not cut, and a clock that did not begin anew");
+    settings_.memory_stops.keep({t, *slicer, binner_.ages()});
+}
+
 void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
     const HostTime begun = Clock::now();
     if (event_window.reset_before || (event_window.gap_before && settings_.reset_on_gap))
@@ -221,6 +234,8 @@ Encoded Pipeline::make_encoded() const {
 // ---- starting, ending, failing ---------------------------------------------------------------
 
 void Pipeline::run() {
+    if (!settings_.memory_stops.times.empty())
+        throw Error(ErrorKind::usage, "states on the way: expected a sequential run");
     {
         std::jthread reading, binning, encoding;
         start(reading, "eventide-read", &Pipeline::read, packets_);
@@ -241,6 +256,10 @@ void Pipeline::run_sequential() {
         encode_one(grid, encoded);
         presenting = presenting && guarded([&] { present_one(encoded); });
     };
+    event_windows_.stop_at(settings_.memory_stops.times, [&](SensorTime t) {
+        for_each_event_window(hand_on);
+        keep_memory(t);
+    });
     const auto reads = [&] {
         bool more = false;
         return guarded([&] { more = read_one(packet); }) && more;

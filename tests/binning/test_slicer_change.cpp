@@ -36,16 +36,15 @@ Edges edges_of_change(const SlicerSettings& before, const SlicerSettings& after)
 }
 
 TEST(SlicerChange, NarrowerWindowsBeginWithTheOpenOne) {
-    EXPECT_EQ(edges_of_change(by_duration(1000), by_duration(400)),
-              (Edges{{0, 1000},
-                     {1000, 2000},
-                     {2000, 2400},
-                     {2400, 2800},
-                     {2800, 3200},
-                     {3200, 3600},
-                     {3600, 4000},
-                     {4000, 4400},
-                     {4400, 4800}}));
+    EXPECT_EQ(edges_of_change(by_duration(1000), by_duration(400)), (Edges{{0, 1000},
+                                                                           {1000, 2000},
+                                                                           {2000, 2400},
+                                                                           {2400, 2800},
+                                                                           {2800, 3200},
+                                                                           {3200, 3600},
+                                                                           {3600, 4000},
+                                                                           {4000, 4400},
+                                                                           {4400, 4800}}));
 }
 
 TEST(SlicerChange, WiderWindowsBeginWithTheOpenOne) {

@@ -109,17 +109,18 @@ struct WindowRange {
 WindowRange window_range(const SlicerSettings& slicer) {
     const auto put_epp = [](SlicerSettings& to, double value) { to.events_per_pixel = value; };
     if (slicer.rule == WindowRule::duration)
-        return {"ms", 1, 500, 1, double(slicer.width.count()) / 1e3,
-                [](SlicerSettings& to, double ms) {
-                    to.width = SensorDuration{std::max(1LL, std::llround(ms * 1e3))};
-                }};
+        return {
+            "ms", 1, 500, 1, double(slicer.width.count()) / 1e3, [](SlicerSettings& to, double ms) {
+                to.width = SensorDuration{std::max(1LL, std::llround(ms * 1e3))};
+            }};
     if (slicer.rule == WindowRule::content)
-        return {"events per pixel where most moves", 0.05, 5,      0.05,
-                slicer.events_per_pixel,             put_epp};
+        return {
+            "events per pixel where most moves", 0.05, 5, 0.05, slicer.events_per_pixel, put_epp};
     if (slicer.events_per_pixel > 0)
         return {"events per pixel", 0.01, 10, 0.01, slicer.events_per_pixel, put_epp};
-    return {"events", 100, 1'000'000, 100, double(slicer.events),
-            [](SlicerSettings& to, double n) { to.events = std::uint64_t(std::llround(n)); }};
+    return {"events", 100, 1'000'000, 100, double(slicer.events), [](SlicerSettings& to, double n) {
+                to.events = std::uint64_t(std::llround(n));
+            }};
 }
 
 HttpControl window_control(const LiveControlsPlan& plan) {

@@ -27,9 +27,9 @@ struct LiveControlsPlan {
 /// The first sink whose frames must be all alike, as it was named.
 std::optional<std::string> rigid_sink(const RunSettings& settings);
 
-/// fps, scale, lookahead, speed, window, in this order; a window in the unit of its rule. Those that
-/// cannot be changed say why: windows between images are cut by those, and files and streams have
-/// frames that are all alike.
+/// fps, scale, lookahead, speed, window, in this order; a window in the unit of its rule. Those
+/// that cannot be changed say why: windows between images are cut by those, and files and streams
+/// have frames that are all alike.
 std::vector<HttpControl> live_controls(const LiveControlsPlan& plan);
 
 }  // namespace eventide::app

@@ -80,6 +80,8 @@ struct RunSettings {
     Engine engine = Engine::fast;
     int threads = 0;
     std::string state_in, state_out;
+    std::string states_out;              ///< a folder
+    std::vector<std::string> states_at;  ///< parse_time_point(), ascending
     bool reset_on_gap = false;
     std::optional<ColourFilter> bayer;  ///< empty: what the camera or recording says
     bool colour = false;
