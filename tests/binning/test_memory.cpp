@@ -111,7 +111,9 @@ TEST(NoiseFilterMemory, AnotherLeavesOutTheSame) {
         second.process(theirs);
         fresh.process(without);
         EXPECT_EQ(ours, theirs) << stop;
-        if (stop > 1) EXPECT_NE(ours, without) << "the detector detects";
+        if (stop > 1) {
+            EXPECT_NE(ours, without) << "the detector detects";
+        }
     }
 }
 
