@@ -80,8 +80,6 @@ struct RunSettings {
     Engine engine = Engine::fast;
     int threads = 0;
     std::string state_in, state_out;
-    std::string states_out;              ///< a folder
-    std::vector<std::string> states_at;  ///< parse_time_point(), ascending
     bool reset_on_gap = false;
     std::optional<ColourFilter> bayer;  ///< empty: what the camera or recording says
     bool colour = false;
@@ -118,6 +116,10 @@ struct RunSettings {
     int buffers_packets = 64;
     std::optional<int> buffers_grids, buffers_latents;  ///< empty: 3 of a live source, else 2
     bool sequential = false;
+
+    // for other runs
+    std::string states_out;              ///< a folder
+    std::vector<std::string> states_at;  ///< parse_time_point(), ascending
 
     RunSettings() = default;
     RunSettings(const RunSettings&) = delete;  // table() points into it
