@@ -1,6 +1,12 @@
 // packets -> event windows.
 #include "pipeline/event_windows.h"
 
+#include "src/core/error.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
 namespace eventide {
 
 EventWindows::EventWindows(const Source& source, const Settings& settings, EventFilter* filter,
@@ -28,6 +34,15 @@ void EventWindows::take(const RawPacket& packet) {
     counters_.note(parser_->damaged(), slicer_.counters());
 }
 
+/// Who asked sees it in the windows.
+void EventWindows::change_window(const SlicerSettings& wanted) noexcept {
+    try {
+        slicer_.change(wanted);
+    } catch (const Error&) {
+    } catch (const std::bad_alloc&) {
+    }
+}
+
 void EventWindows::finish(End end) {
     if (end == End::of_source && !is_past_end()) parser_->finish(batch_);
     pass_on(last_data_.value_or(HostTime{}));
@@ -51,21 +66,52 @@ void EventWindows::pass_on(HostTime arrived) {
     counters_.bin.triggers.add(batch_.triggers.size());
     if (observer_) observer_->see(batch_);
     for (const ReferenceImage& image : batch_.images) slicer_.push_reference(image.t);
-    if (filter_ && !batch_.events.empty())
-        push_filtered(arrived);
-    else
-        slicer_.push(batch_.events, arrived);
+    if (resumed_at_) leave_out_known();
+    while (!stops_.empty() && !batch_.events.empty() && batch_.events.back().t > stops_.back())
+        stop(arrived);
+    push(batch_.events, arrived);
     batch_.clear();
 }
 
+/// A source that was asked to go to a time may begin before it.
+void EventWindows::leave_out_known() {
+    const auto known = [this](const Event& event) { return event.t <= *resumed_at_; };
+    const auto first = std::ranges::find_if_not(batch_.events, known);
+    if (first != batch_.events.end()) resumed_at_.reset();
+    batch_.events.erase(batch_.events.begin(), first);
+}
+
+void EventWindows::stop(HostTime arrived) {
+    const SensorTime t = stops_.back();
+    stops_.pop_back();
+    const auto first =
+        std::ranges::find_if(batch_.events, [t](const Event& event) { return event.t > t; });
+    part_.assign(batch_.events.begin(), first);
+    batch_.events.erase(batch_.events.begin(), first);
+    push(part_, arrived);
+    at_stop_(t);
+}
+
 /// Events that are left out tell the time all the same.
-void EventWindows::push_filtered(HostTime arrived) {
-    const SensorTime newest = batch_.events.back().t;
-    const std::size_t before = batch_.events.size();
-    filter_->process(batch_.events);
-    counters_.bin.filtered_events.add(before - batch_.events.size());
-    slicer_.push(batch_.events, arrived);
+void EventWindows::push(std::vector<Event>& events, HostTime arrived) {
+    if (filter_ == nullptr || events.empty()) return slicer_.push(events, arrived);
+    const SensorTime newest = events.back().t;
+    const std::size_t before = events.size();
+    filter_->process(events);
+    counters_.bin.filtered_events.add(before - events.size());
+    slicer_.push(events, arrived);
     slicer_.advance(newest, arrived);
+}
+
+void EventWindows::stop_at(std::vector<SensorTime> times, std::function<void(SensorTime)> at) {
+    stops_ = std::move(times);
+    std::ranges::reverse(stops_);
+    at_stop_ = std::move(at);
+}
+
+void EventWindows::resume(SensorTime t, const Slicer::Memory& memory) {
+    slicer_.restore(memory);
+    resumed_at_ = t;
 }
 
 void EventWindows::advance_clock(HostTime arrived) {

@@ -7,8 +7,10 @@
 #include "pipeline/stages.h"
 #include "src/binning/slicer.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace eventide {
 
@@ -33,6 +35,16 @@ public:
                  DataObserver* observer, Counters& counters);
 
     void take(const RawPacket& packet);
+    /// As Slicer::change(), except that what is out of range changes nothing.
+    void change_window(const SlicerSettings& wanted) noexcept;
+    /// At each of the times (ascending), once all events up to it were cut and before any other is:
+    /// `at` takes the event windows that there are. Of recordings.
+    void stop_at(std::vector<SensorTime> times, std::function<void(SensorTime)> at);
+    /// Slicer::memory().
+    std::optional<Slicer::Memory> memory() const { return slicer_.memory(); }
+    /// Goes on from such a stop at t: events up to then are left out, whatever the source gives.
+    /// Throws as Slicer::restore().
+    void resume(SensorTime t, const Slicer::Memory& memory);
     /// After the last packet. Where the end was asked for, half a record in hand is no damage.
     enum class End { of_source, asked_for };
     void finish(End end);
@@ -42,7 +54,9 @@ public:
 private:
     void note_gap();
     void pass_on(HostTime arrived);
-    void push_filtered(HostTime arrived);
+    void leave_out_known();
+    void stop(HostTime arrived);
+    void push(std::vector<Event>& events, HostTime arrived);
     void advance_clock(HostTime arrived);
     void advance_in_silence(HostTime now);
 
@@ -52,6 +66,10 @@ private:
     DataObserver* observer_;
     Counters& counters_;
     Batch batch_;
+    std::optional<SensorTime> resumed_at_;  // until an event after it has come
+    std::vector<SensorTime> stops_;         // descending
+    std::function<void(SensorTime)> at_stop_;
+    std::vector<Event> part_;  // of a batch, up to a stop
     const bool live_;
     const SensorDuration silence_margin_;
     std::optional<SensorTime> clock_;    // the newest the stream told

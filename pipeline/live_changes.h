@@ -1,7 +1,9 @@
-// What may be changed while a line runs: asked for by any thread, taken by the render thread.
+// What may be changed while a line runs: asked for by any thread, taken by the render thread, and
+// how events are cut by the bin thread.
 #pragma once
 
 #include "pipeline/frame_clock.h"
+#include "src/binning/slicer_settings.h"
 
 #include <atomic>
 #include <mutex>
@@ -36,6 +38,20 @@ public:
         ask([&] { wanted_.size = Wanted::Pixels{width, height}; });
     }
 
+    /// As Slicer::change() takes it.
+    void set_window(const SlicerSettings& window) {
+        const std::lock_guard lock{mutex_};
+        window_ = window;
+        any_window_ = true;
+    }
+
+    /// The window that was asked for since the last time; bin thread, once for each packet.
+    std::optional<SlicerSettings> take_window() {
+        if (!any_window_.exchange(false)) return std::nullopt;
+        const std::lock_guard lock{mutex_};
+        return std::exchange(window_, std::nullopt);
+    }
+
     /// What was asked for since the last time; once for each event window, so it costs a load where
     /// nothing was.
     Wanted take() {
@@ -53,7 +69,8 @@ private:
     }
     std::mutex mutex_;
     Wanted wanted_;
-    std::atomic<bool> any_{false};
+    std::optional<SlicerSettings> window_;
+    std::atomic<bool> any_{false}, any_window_{false};
 };
 
 }  // namespace eventide

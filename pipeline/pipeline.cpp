@@ -55,7 +55,11 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
       latents_(settings.buffers.latents),
       output_(
           parts.renderer, parts.sinks, presenter_settings(parts, settings),
-          [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {}
+          [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {
+    if (settings.resume == nullptr) return;
+    event_windows_.resume(settings.resume->t, settings.resume->slicer);
+    binner_.restore(settings.resume->ages);
+}
 
 // ---- the pipeline ----------------------------------------------------------------------------
 
@@ -88,7 +92,7 @@ void Pipeline::bin() {  // bytes -> events -> grids
     const auto take = [&](const EventWindow& event_window) { gate.take(event_window); };
     const bool complete = for_each(packets_, [&](const RawPacket& packet) {
         const HostTime begun = Clock::now();
-        event_windows_.take(packet);
+        cut(packet);
         for_each_event_window(take);
         gate.look_again();
         counters_.bin.merged_windows.set(gate.merged());
@@ -166,6 +170,22 @@ EventWindows::End Pipeline::ending() const {
     return stop_.is_set() ? EventWindows::End::asked_for : EventWindows::End::of_source;
 }
 
+void Pipeline::cut(const RawPacket& packet) {
+    if (settings_.changes != nullptr)
+        if (const auto window = settings_.changes->take_window())
+            event_windows_.change_window(*window);
+    event_windows_.take(packet);
+}
+
+void Pipeline::keep_memory(SensorTime t) {
+    const auto slicer = event_windows_.memory();
+    if (!slicer)
+        throw Error(ErrorKind::input, "the state at " + std::to_string(to_us(t)) +
+                                          " us: expected events before, windows that images do "
+                                          "not cut, and a clock that did not begin anew");
+    settings_.memory_stops.keep({t, *slicer, binner_.ages()});
+}
+
 void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
     const HostTime begun = Clock::now();
     if (event_window.reset_before || (event_window.gap_before && settings_.reset_on_gap))
@@ -214,6 +234,8 @@ Encoded Pipeline::make_encoded() const {
 // ---- starting, ending, failing ---------------------------------------------------------------
 
 void Pipeline::run() {
+    if (!settings_.memory_stops.times.empty())
+        throw Error(ErrorKind::usage, "states on the way: expected a sequential run");
     {
         std::jthread reading, binning, encoding;
         start(reading, "eventide-read", &Pipeline::read, packets_);
@@ -234,13 +256,17 @@ void Pipeline::run_sequential() {
         encode_one(grid, encoded);
         presenting = presenting && guarded([&] { present_one(encoded); });
     };
+    event_windows_.stop_at(settings_.memory_stops.times, [&](SensorTime t) {
+        for_each_event_window(hand_on);
+        keep_memory(t);
+    });
     const auto reads = [&] {
         bool more = false;
         return guarded([&] { more = read_one(packet); }) && more;
     };
     const bool complete = guarded([&] {
         while (reads()) {
-            event_windows_.take(packet);
+            cut(packet);
             for_each_event_window(hand_on);
         }
     });

@@ -13,6 +13,7 @@
 #include "pipeline/source.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"
+#include "pipeline/stream_memory.h"
 #include "src/binning/binner.h"
 
 #include <cstddef>
@@ -42,8 +43,10 @@ struct PipelineSettings {
     bool event_preview = false;     ///< fill Frame::event_preview
     bool events_per_pixel = false;  ///< fill LatentMap::events_per_pixel
     PipelineBuffers buffers;
-    LiveChanges* changes = nullptr;  ///< borrowed; null: nothing is changed while it runs
-    unsigned halvings = 0;           ///< every 2^n-th frame is rendered, until that is changed
+    LiveChanges* changes = nullptr;        ///< borrowed; null: nothing is changed while it runs
+    const StreamMemory* resume = nullptr;  ///< borrowed until it is constructed; null: from nothing
+    MemoryStops memory_stops;              ///< of run_sequential() alone
+    unsigned halvings = 0;  ///< every 2^n-th frame is rendered, until that is changed
 };
 
 /// All borrowed for the pipeline's life; filter and observer may be null.
@@ -61,7 +64,7 @@ struct PipelineParts {
 /// excepted, and what host time tells in its silence).
 class Pipeline {
 public:
-    /// Throws Error (usage) for settings out of range.
+    /// Throws Error: usage for settings out of range, input for a memory that does not fit.
     Pipeline(const PipelineParts& parts, const PipelineSettings& settings);
 
     /// Reads, bins and encodes on threads of its own; renders and writes on the caller's. Returns
@@ -88,6 +91,8 @@ private:
     bool read_one(RawPacket& into);
     Pool<RawPacket>::Handle packet_to_fill();
     void hand_on(const EventWindow& event_window);
+    void cut(const RawPacket& packet);
+    void keep_memory(SensorTime t);
     void bin_one(const EventWindow& event_window, VoxelGrid& grid);
     void encode_one(const VoxelGrid& grid, Encoded& encoded);
     void present_one(const Encoded& encoded);

@@ -34,9 +34,24 @@ foreach(other EVENTIDE_TESTS EVENTIDE_BENCH EVENTIDE_FUZZ)
   endif()
 endforeach()
 
+# The name that whoever links a library would load it by.
+function(eventide_soname into name folders)
+  find_library(file ${name} HINTS ${folders} NO_CACHE REQUIRED)
+  execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${file} OUTPUT_VARIABLE headers)
+  string(REGEX MATCH "SONAME +([^ \n]+)" soname "${headers}")
+  set(${into} ${CMAKE_MATCH_1} PARENT_SCOPE)
+endfunction()
+
 # What can be left out of either.
 pkg_check_modules(libusb IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(httplib IMPORTED_TARGET cpp-httplib)
+if(httplib_FOUND)
+  # Headers alone: the library is loaded when a page is opened (late_httplib.cpp).
+  add_library(eventide_httplib INTERFACE)
+  target_include_directories(eventide_httplib SYSTEM INTERFACE ${httplib_INCLUDE_DIRS})
+  target_compile_options(eventide_httplib INTERFACE ${httplib_CFLAGS})
+  eventide_soname(EVENTIDE_HTTPLIB_LIBRARY cpp-httplib "${httplib_LIBRARY_DIRS}")
+endif()
 pkg_check_modules(umockdev IMPORTED_TARGET umockdev-1.0)
 find_package(CycloneDDS QUIET)
 find_program(EVENTIDE_IDLC idlc)
@@ -58,11 +73,7 @@ if(hdf5_FOUND)
   add_library(eventide_linked_hdf5 INTERFACE)
   target_include_directories(eventide_linked_hdf5 SYSTEM INTERFACE ${hdf5_INCLUDE_DIRS})
   target_link_libraries(eventide_linked_hdf5 INTERFACE PkgConfig::hdf5)
-  # The name that whoever links it would load it by.
-  find_library(EVENTIDE_HDF5_FILE hdf5 HINTS ${hdf5_LIBRARY_DIRS} NO_CACHE REQUIRED)
-  execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${EVENTIDE_HDF5_FILE} OUTPUT_VARIABLE hdf5_headers)
-  string(REGEX MATCH "SONAME +([^ \n]+)" hdf5_soname "${hdf5_headers}")
-  set(EVENTIDE_HDF5_LIBRARY ${CMAKE_MATCH_1})
+  eventide_soname(EVENTIDE_HDF5_LIBRARY hdf5 "${hdf5_LIBRARY_DIRS}")
 endif()
 
 # Debian's Python, for which its NumPy is; pybind11 is headers alone.

@@ -47,6 +47,9 @@ endif()
 if(EVENTIDE_HDF5_ENABLED)
   list(APPEND loaded libhdf5-103-1)
 endif()
+if(EVENTIDE_HTTP_ENABLED)  # likewise, with the first page
+  list(APPEND loaded libcpp-httplib0.11)
+endif()
 if(EVENTIDE_SQLITE_ENABLED)  # likewise, with the first of its files
   list(APPEND loaded libsqlite3-0)
 endif()

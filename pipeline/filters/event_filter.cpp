@@ -19,12 +19,19 @@ public:
         if (noise_) noise_->process(events);
     }
 
+    NoiseFilter* noise() { return noise_ ? &*noise_ : nullptr; }
+
 private:
     std::optional<HotPixelFilter> hot_pixels_;
     std::optional<NoiseFilter> noise_;
 };
 
 }  // namespace
+
+NoiseFilter* noise_filter_in(EventFilter* filter) {
+    auto* const chain = dynamic_cast<FilterChain*>(filter);
+    return chain == nullptr ? nullptr : chain->noise();
+}
 
 std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const ModelConfig& model,
                                           int width, int height) {

@@ -14,6 +14,11 @@ struct EventFilterChoice {
     std::string noise_filter;  ///< parse_noise_filter()
 };
 
+class NoiseFilter;
+
+/// The one within a filter of event_filter(); null: there is none.
+NoiseFilter* noise_filter_in(EventFilter* filter);
+
 /// Hot pixels first, then what nothing supports; null where all events stay. Throws Error (usage).
 std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const ModelConfig& model,
                                           int width, int height);

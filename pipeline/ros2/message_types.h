@@ -24,6 +24,9 @@ inline const MessageType kCompressedImageType{
 inline const MessageType kCameraInfoType{
     sensor_msgs_msg_dds__CameraInfo__desc, "sensor_msgs/msg/CameraInfo",
     "RIHS01_b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275"};
+inline const MessageType kDiagnosticArrayType{
+    diagnostic_msgs_msg_dds__DiagnosticArray__desc, "diagnostic_msgs/msg/DiagnosticArray",
+    "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"};
 inline const MessageType kEventPacketType{
     event_camera_msgs_msg_dds__EventPacket__desc, "event_camera_msgs/msg/EventPacket",
     "RIHS01_d6fa176260b1f37e5a40845305315e150a0f18191241eb64f407442aa29844aa"};

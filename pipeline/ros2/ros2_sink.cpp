@@ -1,6 +1,8 @@
 // Frames as ROS 2 topics.
 #include "pipeline/ros2/ros2_sink.h"
 
+#include "pipeline/ros2/diagnostics_topic.h"
+#include "pipeline/ros2/message_parts.h"
 #include "pipeline/ros2/participant.h"
 #include "pipeline/ros2/socket_buffer.h"
 #include "pipeline/ros2/stamp_clock.h"
@@ -10,7 +12,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -20,28 +21,6 @@ namespace eventide {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-
-/// DDS's C structs hold pointers they do not write through.
-char* borrowed(const std::string& text) {
-    return const_cast<char*>(text.c_str());
-}
-
-template <typename Sequence, typename T>
-void borrow(Sequence& sequence, const std::vector<T>& values) {
-    sequence._length = sequence._maximum = std::uint32_t(values.size());
-    sequence._buffer = const_cast<T*>(values.data());
-    sequence._release = false;
-}
-
-std_msgs_msg_dds__Header_ header_of(std::int64_t stamp_us, const std::string& frame_id) {
-    constexpr std::int64_t kSecond = 1'000'000;
-    const std::int64_t rest = ((stamp_us % kSecond) + kSecond) % kSecond;
-    std_msgs_msg_dds__Header_ header{};
-    header.stamp.sec = std::int32_t((stamp_us - rest) / kSecond);
-    header.stamp.nanosec = std::uint32_t(rest * 1000);
-    header.frame_id = borrowed(frame_id);
-    return header;
-}
 
 std::size_t pixel_bytes(ImageEncoding encoding) {
     constexpr std::size_t kBytes[]{1, 2, 4};
@@ -181,6 +160,7 @@ public:
           participant_{Participant::join()},
           image_{participant_, topic("/image_raw"), settings_.name.encoding},
           info_{participant_, topic("/camera_info"), calibration_, settings_.geometry},
+          diagnostics_{participant_, settings_.name.name_space},
           clock_{settings_.name.stamp, settings_.live, settings_.lookahead} {
         if (settings_.with_sigma)
             sigma_.emplace(participant_, topic("/uncertainty"), settings_.name.uncertainty);
@@ -195,7 +175,7 @@ public:
         const bool first = !begun_;
         if (first && !begin(frame)) return;
         const std::int64_t stamp = clock_.stamp_us(frame, system_us(frame.arrived));
-        if (clock_.is_set_anew()) tell_offset();
+        tell_offset(frame, stamp);
         const auto header = header_of(stamp, settings_.name.frame_id);
         if (image_.writer.readers() > 0) count(image_.write(frame.intensity, header));
         if (sigma_ && sigma_->writer.readers() > 0 && !frame.sigma.empty())
@@ -237,7 +217,7 @@ private:
     std::string topic(const char* name) const { return settings_.name.name_space + name; }
 
     std::vector<Ros2Writer*> writers() {
-        std::vector<Ros2Writer*> all{&image_.writer, &info_.writer};
+        std::vector<Ros2Writer*> all{&image_.writer, &info_.writer, &diagnostics_.writer};
         if (sigma_) all.push_back(&sigma_->writer);
         if (compressed_) all.push_back(&compressed_->writer);
         return all;
@@ -261,11 +241,10 @@ private:
         return true;
     }
 
-    void tell_offset() {
-        char text[64];
-        std::snprintf(text, sizeof text, "%.6f", clock_.offset_us() / 1e6);
-        say(clock_.offset_us() == 0 ? "stamps are the sensor's time"
-                                    : "stamps are the sensor's time + " + std::string{text} + " s");
+    void tell_offset(const Frame& frame, std::int64_t stamp_us) {
+        if (clock_.is_set_anew()) say(offset_words(clock_.offset_us()));
+        count(diagnostics_.tell(
+            {stamp_us, to_us(frame.t), clock_.offset_us(), clock_.is_set_anew(), unsent_}));
     }
 
     void count(bool sent) { unsent_ += sent ? 0 : 1; }
@@ -283,6 +262,7 @@ private:
     ImageTopic image_;
     std::optional<ImageTopic> sigma_;
     InfoTopic info_;
+    DiagnosticsTopic diagnostics_;
     std::optional<CompressedTopic> compressed_;
     StampClock clock_;
     bool begun_ = false;

@@ -25,6 +25,13 @@ is_finished() {
   [ -e "$1/run.json" ] && grep -Eq '"finished": *true' "$1/run.json"
 }
 
+# OUT NUMBER: what the task begins with; the states of a recording have numbers of their own.
+state_file() {
+  local name
+  name=$(sed -n "$(($2 + 1))p" "$1/plan.tsv" | cut -f 2)
+  printf '%s/states/%s/state_%06d.safetensors' "$1" "$name" "$(head -n "$2" "$1/plan.tsv" | awk -F '\t' -v name="$name" '$2 == name && $6 != "-"' | wc -l)"
+}
+
 part_name() {
   printf '%s.%06d' "$1" "$2"
 }

@@ -1,22 +1,25 @@
 #!/usr/bin/env bash
 # Reconstructs recordings as an array job of Slurm, or prepares it for other hands (--plan).
-#   scripts/slurm/submit.sh [--plan] [--segment SECONDS] [--warmup SECONDS|all] [--sbatch 'OPTIONS'] OUT RECORDING... [-- RUN OPTIONS]
+#   scripts/slurm/submit.sh [--plan] [--segment SECONDS] [--warmup SECONDS|all | --states] [--sbatch 'OPTIONS'] OUT RECORDING... [-- RUN OPTIONS]
 # OUT/NAME gets what `eventide run RECORDING --out OUT/NAME/` writes (docs/services.md). Run it again to do what is missing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$here/common.sh"
 
-plan_only=false segment= warmup=all sbatch_options=
+plan_only=false segment= warmup=all states=false sbatch_options=
 while [[ ${1:-} == --* && $1 != -- ]]; do
   case $1 in
     --plan) plan_only=true ;;
     --segment) segment=$(whole_number --segment "${2:-}"); shift ;;
     --warmup) warmup=${2:-}; [[ $warmup == all ]] || warmup=$(whole_number --warmup "$warmup"); shift ;;
+    --states) states=true ;;
     --sbatch) sbatch_options=${2:-}; shift ;;
     *) refuse "submit.sh: unknown option $1" ;;
   esac
   shift
 done
+! $states || [ "$warmup" = all ] || refuse "submit.sh: --states and --warmup $warmup: expected one of them"
+! $states || [ -n "$segment" ] || refuse "submit.sh: --states: expected --segment SECONDS, found none"
 [ $# -ge 2 ] || refuse "submit.sh: expected OUT and at least one RECORDING"
 out=$1
 shift
@@ -30,7 +33,8 @@ for option in "$@"; do
   esac
 done
 
-# One line per task: recording, name, from and to (us of the sensor; - for the recording's own), length of the warm-up (us).
+# One line per task: recording, name, from and to (us of the sensor; - for the recording's own), length of the warm-up (us), time of the state that it
+# begins with (us; - for none): a second before its part, for the network's latest maps, which a state does not hold.
 new=$(mktemp)
 trap 'rm -f "$new" "$new.options"' EXIT
 declare -A taken
@@ -42,7 +46,7 @@ for recording in "${recordings[@]}"; do
   taken[$name]=$recording
   path=$(realpath "$recording")
   if [ -z "$segment" ]; then
-    printf '%s\t%s\t-\t-\t0\n' "$path" "$name" >> "$new"
+    printf '%s\t%s\t-\t-\t0\t-\n' "$path" "$name" >> "$new"
     continue
   fi
   info=$("$EVENTIDE" info "$recording" --json) || refuse "submit.sh: $recording: cannot be read"
@@ -53,7 +57,9 @@ for recording in "${recordings[@]}"; do
     [[ $warmup == all ]] || before=$((before < warmup * 1000000 ? before : warmup * 1000000))
     begin=$from
     [ "$from" -gt "$first" ] || begin=-
-    printf '%s\t%s\t%s\t%s\t%s\n' "$path" "$name" "$begin" $((from + segment * 1000000)) "$before" >> "$new"
+    state=-
+    if $states && [ "$before" -gt 1000000 ]; then state=$((from - 1000000)) before=0; fi
+    printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$path" "$name" "$begin" $((from + segment * 1000000)) "$before" "$state" >> "$new"
   done
 done
 printf '%s\0' "$@" > "$new.options"
@@ -80,6 +86,12 @@ submit() {
   # shellcheck disable=SC2086  # options of sbatch are words
   sbatch --parsable --job-name="eventide-$1" --open-mode=append $sbatch_options "${@:2}" --wrap "$line"
 }
-job=$(submit task.sh --array="0-$((tasks - 1))" --output="$out/task-%a.log")
+after=()
+if $states; then
+  recordings=$(cut -f 2 "$out/plan.tsv" | uniq | wc -l)
+  job=$(submit states.sh --array="0-$((recordings - 1))" --output="$out/states-%a.log")
+  after=(--dependency="afterok:$job")
+fi
+job=$(submit task.sh --array="0-$((tasks - 1))" --output="$out/task-%a.log" "${after[@]}")
 submit merge.sh --dependency="afterok:$job" --output="$out/merge.log" > /dev/null
 echo "job $job, and a job behind it that joins the parts" >&2

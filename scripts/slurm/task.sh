@@ -7,7 +7,7 @@ out=${1:?task.sh: expected OUT, the folder of a plan}
 number=${2:-${SLURM_ARRAY_TASK_ID:-}}
 [[ $number =~ ^[0-9]+$ ]] || refuse "task.sh: expected a task's number or SLURM_ARRAY_TASK_ID, found '$number'"
 [ -e "$out/plan.tsv" ] || refuse "task.sh: $out: expected plan.tsv (submit.sh makes it), found none"
-IFS=$'\t' read -r recording name from to before < <(sed -n "$((number + 1))p" "$out/plan.tsv") ||
+IFS=$'\t' read -r recording name from to before state < <(sed -n "$((number + 1))p" "$out/plan.tsv") ||
   refuse "task.sh: $out/plan.tsv: expected task $number, found $(wc -l < "$out/plan.tsv") tasks"
 part=$out/parts/$(part_name "$name" "$number")
 if is_finished "$part"; then
@@ -18,7 +18,13 @@ fi
 options=()
 while IFS= read -r -d '' option; do options+=("$option"); done < "$out/options"
 # Frames wait for event windows behind their own: a second more, of which merge.sh keeps nothing.
-[ "$from" = - ] || options+=(--from "@$from" --warmup "${before}us")
+if [ "$state" != - ]; then
+  state=$(state_file "$out" "$number")
+  [ -e "$state" ] || refuse "task.sh: expected $state (states.sh $out makes it), found none"
+  options+=(--from "@$from" --state-in "$state")
+elif [ "$from" != - ]; then
+  options+=(--from "@$from" --warmup "${before}us")
+fi
 [ "$to" = - ] || options+=(--to "@$((to + 1000000))")
 work=$part.$(hostname).$$.work
 rm -rf "$part".*.work "$part"

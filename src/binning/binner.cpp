@@ -64,6 +64,15 @@ void Binner::reset() noexcept {
     std::fill(ages_.begin(), ages_.end(), kOldest);
 }
 
+void Binner::restore(const std::vector<std::uint8_t>& ages) {
+    if (ages.size() != ages_.size())
+        throw Error(ErrorKind::input, "voxel grid: expected the ages of " +
+                                          std::to_string(ages_.size()) + " pixels, found " +
+                                          std::to_string(ages.size()));
+    std::ranges::transform(ages, ages_.begin(),
+                           [](std::uint8_t age) { return std::min(age, kOldest); });
+}
+
 void Binner::process(const EventWindow& event_window, VoxelGrid& grid) noexcept {
     assert(grid.values.height() == height_ && grid.values.width() == width_ &&
            grid.values.channels() == 4 * bins_ + 1 && grid.touched.values().size() == ages_.size());

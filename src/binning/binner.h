@@ -32,6 +32,12 @@ public:
 
     int bins() const { return bins_; }
 
+    /// [y][x]: event windows since each pixel's last event; all it knows of those before.
+    const std::vector<std::uint8_t>& ages() const { return ages_; }
+    /// Throws Error (input) for ages of another sensor, and is then as it was. What is older than
+    /// counts is as old as counts.
+    void restore(const std::vector<std::uint8_t>& ages);
+
 private:
     /// Of one pixel in the bin at hand.
     struct Moments {

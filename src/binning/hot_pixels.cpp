@@ -1,8 +1,11 @@
 // Finds the pixels of an event sensor that fire by themselves.
 #include "src/binning/hot_pixels.h"
 
+#include "src/core/error.h"
+
 #include <algorithm>
 #include <chrono>
+#include <string>
 
 namespace eventide {
 
@@ -16,6 +19,28 @@ HotPixels::HotPixels(int width, int height, double hz, SensorDuration interval)
 std::size_t HotPixels::count() const {
     return std::size_t(
         std::ranges::count_if(pixels_, [](const Pixel& pixel) { return pixel.hot; }));
+}
+
+HotPixels::Memory HotPixels::memory() const {
+    Memory memory{{}, {}, interval_end_};
+    for (const Pixel& pixel : pixels_) {
+        memory.events.push_back(pixel.events);
+        memory.hot.push_back(pixel.hot ? 1 : 0);
+    }
+    return memory;
+}
+
+void HotPixels::restore(const Memory& memory) {
+    if (memory.events.size() != pixels_.size() || memory.hot.size() != pixels_.size())
+        throw Error(ErrorKind::input, "hot pixels: expected a memory of " +
+                                          std::to_string(pixels_.size()) + " pixels, found " +
+                                          std::to_string(memory.events.size()) + " and " +
+                                          std::to_string(memory.hot.size()));
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        pixels_[i].events = memory.events[i] & 0x7FFF'FFFF;
+        pixels_[i].hot = memory.hot[i] != 0;
+    }
+    interval_end_ = memory.interval_end;
 }
 
 void HotPixels::renew(SensorTime t) noexcept {

@@ -33,6 +33,17 @@ public:
     /// How many pixels are hot now.
     std::size_t count() const;
 
+    /// All that it has learned, to go on from elsewhere.
+    struct Memory {
+        std::vector<std::uint32_t> events;  ///< [y][x], of the open interval
+        std::vector<std::uint8_t> hot;      ///< [y][x], 0 or 1
+        std::optional<SensorTime> interval_end;
+        friend bool operator==(const Memory&, const Memory&) = default;
+    };
+    Memory memory() const;
+    /// Throws Error (input) for a memory of another sensor, and is then as it was.
+    void restore(const Memory& memory);
+
 private:
     struct Pixel {
         std::uint32_t events : 31 = 0;  // of this interval

@@ -58,13 +58,33 @@ public:
     SensorDuration within() const { return within_; }
     SensorDuration quiet_within() const { return quiet_within_; }
 
+    /// What it knows of a part of the sensor.
+    struct Tile {
+        std::uint32_t events = 0, before = 0;  ///< in this interval, less hot pixels'; in the last
+        std::uint32_t supported = 0;           ///< of them, as quiet tiles ask for
+        double noise = 0;                      ///< events per interval
+        friend bool operator==(const Tile&, const Tile&) = default;
+    };
+    /// All that it has learned, to go on from elsewhere: with the same settings it leaves out what
+    /// this one would have.
+    struct Memory {
+        /// [y + 1][x + 1], with a rim of one pixel; of each pixel's newest event, SensorTime::min()
+        /// where there was none
+        std::vector<SensorTime> newest;
+        std::vector<Polarity> polarity;  ///< as `newest`
+        std::vector<Tile> tiles;         ///< [row][column]
+        std::optional<SensorTime> interval, last;
+        double noise_hz = 0;
+        bool measured = false;
+        HotPixels::Memory hot_pixels;
+        friend bool operator==(const Memory&, const Memory&) = default;
+    };
+    Memory memory() const;
+    /// Throws Error (input) for a memory of another sensor, and is then as it was.
+    void restore(const Memory& memory);
+
 private:
     static constexpr int kTile = 8;
-    struct Tile {
-        std::uint32_t events = 0, before = 0;  // in this interval, less hot pixels'; in the last
-        std::uint32_t supported = 0;           // of them, as quiet tiles ask for
-        double noise = 0;                      // events per interval
-    };
     struct Support {
         int within = 0;  // neighbours: in within_
         int alike = 0;   // of the event's polarity, in quiet_within_

@@ -33,16 +33,37 @@ void check(bool good, const char* name, std::int64_t found) {
 }  // namespace
 
 Slicer::Slicer(const SlicerSettings& settings, int width, int height)
-    : settings_(settings),
-      step_(settings.rule == WindowRule::duration ? settings.width : settings.max_width),
-      most_events_(events_per_frame(settings, width, height)) {
-    check(step_ >= kMicrosecond, "the (maximum) width in us", step_.count());
-    check(most_events_ >= 1, "the number of events", std::int64_t(most_events_));
-    check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
+    : width_(width), height_(height) {
     check(width >= 1 && height >= 1, "the sensor's size", std::min(width, height));
-    if (settings.rule == WindowRule::content)
-        activity_ = {settings.events_per_pixel, width, height};
+    adopt(settings);
     reset();
+}
+
+void Slicer::adopt(const SlicerSettings& settings) {
+    const SensorDuration step =
+        settings.rule == WindowRule::duration ? settings.width : settings.max_width;
+    const std::uint64_t most = events_per_frame(settings, width_, height_);
+    check(step >= kMicrosecond, "the (maximum) width in us", step.count());
+    check(most >= 1, "the number of events", std::int64_t(most));
+    check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
+    if (settings.rule == WindowRule::content)
+        activity_ = {settings.events_per_pixel, width_, height_};
+    settings_ = settings;
+    step_ = step;
+    most_events_ = most;
+}
+
+void Slicer::change(const SlicerSettings& wanted) {
+    SlicerSettings now = settings_;
+    now.rule = wanted.rule;
+    now.width = wanted.width;
+    now.events = wanted.events;
+    now.events_per_pixel = wanted.events_per_pixel;
+    now.min_width = wanted.min_width;
+    now.max_width = wanted.max_width;
+    adopt(now);
+    if (begin_) origin_ = *begin_;
+    look_again();
 }
 
 void Slicer::reset() {
@@ -58,6 +79,36 @@ void Slicer::reset() {
     gap_ = reset_ = finished_ = past_end_ = false;
     first_stream_ = true;
     if (settings_.begin) begin_at(*settings_.begin);
+}
+
+std::optional<Slicer::Memory> Slicer::memory() const {
+    if (!begin_ || newest_event_ == SensorTime::min() || !first_stream_ ||
+        settings_.rule == WindowRule::reference)
+        return std::nullopt;
+    return Memory{
+        *begin_,    origin_, newest_, newest_event_,
+        same_time_, silent_, gap_,    {pending_.begin() + std::ptrdiff_t(head_), pending_.end()}};
+}
+
+void Slicer::restore(const Memory& memory) {
+    constexpr SensorTime kFarthest{SensorDuration{std::int64_t{1} << 60}};  // sums of times fit
+    const auto in_order = [](const Event& a, const Event& b) { return a.t < b.t; };
+    if (memory.origin < SensorTime{-kFarthest.time_since_epoch()} || memory.newest > kFarthest ||
+        memory.origin > memory.begin || memory.begin > memory.newest || memory.silent < 0 ||
+        memory.newest_event > memory.newest || !std::ranges::is_sorted(memory.events, in_order) ||
+        (!memory.events.empty() &&
+         (memory.events.front().t <= memory.begin || memory.events.back().t > memory.newest_event)))
+        throw Error(ErrorKind::input,
+                    "event windows: expected events in order within the open window, found others");
+    reset();
+    begin_ = memory.begin;
+    origin_ = memory.origin;
+    newest_ = memory.newest;
+    newest_event_ = memory.newest_event;
+    same_time_ = memory.same_time;
+    silent_ = std::min(memory.silent, settings_.silent_frames);
+    gap_ = memory.gap;
+    pending_ = memory.events;
 }
 
 void Slicer::begin_at(SensorTime begin) {

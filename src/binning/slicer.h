@@ -53,6 +53,11 @@ public:
     /// Nothing more will come: what is open ends at the newest time known.
     void finish() { finished_ = true; }
 
+    /// The open event window and those after it are cut so: rule, width, events, events_per_pixel,
+    /// min_width and max_width; the rest stays as constructed. Throws Error (usage) for settings
+    /// out of range, and stays as it was.
+    void change(const SlicerSettings& wanted);
+
     /// The next complete event window, borrowed until the next call of anything here.
     bool next(EventWindow& event_window);
 
@@ -62,6 +67,24 @@ public:
 
     /// As constructed; counters stay.
     void reset();
+
+    /// What is open, to go on from elsewhere. Of a stream whose clock was not reset.
+    struct Memory {
+        SensorTime begin{}, origin{};  ///< of the open window; of the edges of rule duration
+        SensorTime newest{}, newest_event{};
+        std::uint64_t same_time = 0;
+        int silent = 0;
+        bool gap = false;
+        std::vector<Event> events;  ///< of the open window, in order
+        friend bool operator==(const Memory&, const Memory&) = default;
+    };
+    /// Once next() gave no more event window. Empty before anything came, after a reset of the
+    /// clock, and with rule reference, which remembers images.
+    std::optional<Memory> memory() const;
+    /// Of a slicer of the same settings that has seen nothing; `begin` and `end` of the settings
+    /// hold for what comes. Throws Error (input) for a memory that holds no truth, and is then as
+    /// it was.
+    void restore(const Memory& memory);
 
 private:
     /// Where time went back: events from `index` on are a new stream; the old one ends at `final`.
@@ -84,7 +107,9 @@ private:
     void emit(SensorTime end, EventWindow& event_window);
     void cross_seam();
     void look_again();
+    void adopt(const SlicerSettings& settings);
 
+    int width_, height_;  // px
     SlicerSettings settings_;
     SensorDuration step_;        // width of a frame without events
     std::uint64_t most_events_;  // per frame

@@ -159,6 +159,29 @@ TEST(Pipeline, EndsAtTheAskedTime) {
     }
 }
 
+TEST(Pipeline, CutsAsItIsAskedWhileItRuns) {
+    const auto has_width = [](const ToySink& sink, std::int64_t us) {
+        return std::ranges::any_of(
+            sink.seen, [us](const auto& frame) { return frame.end_us - frame.begin_us == us; });
+    };
+    for (const bool threaded : {true, false}) {
+        LiveChanges changes;
+        PipelineSettings settings = quick_settings();  // windows of 1000 us
+        settings.changes = &changes;
+        PipelineUnderTest line{one_frame_per_packet(6), settings};
+        line.source.before_read = [&](std::size_t packet) {
+            if (packet == 3) changes.set_window({.width = SensorDuration{500}});
+        };
+        threaded ? line.run() : line.run_sequential();
+        EXPECT_TRUE(has_width(line.sink, 500));
+        EXPECT_TRUE(threaded || has_width(line.sink, 1000)) << "until then";
+        EXPECT_FALSE(changes.take_window()) << "it was taken";
+    }
+    PipelineUnderTest unchanged{one_frame_per_packet(6), quick_settings()};
+    unchanged.run();
+    EXPECT_FALSE(has_width(unchanged.sink, 500)) << "the detector detects";
+}
+
 TEST(Pipeline, OfAnEmptySourceWritesNothingAndClosesItsSinks) {
     for (const bool threaded : {true, false}) {
         PipelineUnderTest line({}, quick_settings());

@@ -154,8 +154,8 @@ TEST(TypeHashes, AreThoseOfTheTypeDescriptions) {
         test::run({"python3", EVENTIDE_SOURCE_DIR "/tests/ros2/type_hashes.py",
                    EVENTIDE_SOURCE_DIR "/pipeline/ros2/ros2_messages.idl"});
     ASSERT_EQ(computed.exit_code, 0) << computed.error;
-    for (const MessageType* type :
-         {&kImageType, &kCompressedImageType, &kCameraInfoType, &kEventPacketType})
+    for (const MessageType* type : {&kImageType, &kCompressedImageType, &kCameraInfoType,
+                                    &kDiagnosticArrayType, &kEventPacketType})
         EXPECT_THAT(computed.output,
                     HasSubstr(std::string{type->name} + " " + std::string{type->hash} + "\n"));
     // Published by others, in the type description files of ROS 2: what the script makes of the

@@ -232,6 +232,51 @@ TEST_F(Ros2SinkTest, TheOffsetOfASensorThatCountsFromItsStartIsSaid) {
     EXPECT_THAT(said_[0], HasSubstr("stamps are the sensor's time + 1"));
 }
 
+TEST_F(Ros2SinkTest, DiagnosticsTellTheOffsetOnceAndThenEachSecond) {
+    TopicReader diagnostics{kDiagnosticArrayType, "/diagnostics"},
+        image{kImageType, name_ + "/image_raw"};
+    const auto sink = open("?lazy=yes");
+    ASSERT_TRUE(diagnostics.wait_for_writers(1) && image.wait_for_writers(1));
+    EXPECT_EQ(diagnostics.writer().user_data,
+              "typehash=" + std::string{kDiagnosticArrayType.hash} + ";");
+    Frame sent = frame(0);
+    const auto send_at = [&](std::int64_t us) {
+        sent.t = from_us(us);
+        sent.window = {from_us(us - 1000), from_us(us + 1000)};
+        sent.arrived = std::chrono::steady_clock::now();
+        sink->write(sent);
+        const Image* shown = image.next<Image>();
+        return shown == nullptr ? 0 : stamp_us(shown->header);
+    };
+    std::vector<std::int64_t> stamps;
+    for (const std::int64_t us : {1'000, 500'000, 900'000, 1'001'000, 1'500'000})
+        stamps.push_back(send_at(us));
+    for (const std::size_t told : {0U, 3U}) {
+        const auto* message = diagnostics.next<diagnostic_msgs_msg_dds__DiagnosticArray_>();
+        ASSERT_NE(message, nullptr);
+        EXPECT_EQ(stamp_us(message->header), stamps[told]);
+        ASSERT_EQ(message->status._length, 1U);
+        const auto& status = message->status._buffer[0];
+        EXPECT_EQ(status.level, 0);
+        EXPECT_EQ(status.name, "eventide: " + name_ + " stamps");
+        EXPECT_THAT(status.message, HasSubstr(said_[0].substr(said_[0].find("stamps are"))));
+        ASSERT_EQ(status.values._length, 4U);
+        EXPECT_STREQ(status.values._buffer[0].key, "offset_s");
+        EXPECT_NEAR(std::stod(status.values._buffer[0].value), double(stamps[0] - 1'000) / 1e6,
+                    2e-6);
+        EXPECT_STREQ(status.values._buffer[2].key, "sensor_time_s");
+        EXPECT_STREQ(status.values._buffer[2].value, told == 0 ? "0.001000" : "1.001000");
+    }
+    EXPECT_EQ(said_.size(), 1U);
+}
+
+TEST_F(Ros2SinkTest, WhoReadsDiagnosticsMakesNoFrames) {
+    TopicReader diagnostics{kDiagnosticArrayType, "/diagnostics"};
+    const auto sink = open("?lazy=yes");
+    ASSERT_TRUE(diagnostics.wait_for_writers(1));
+    EXPECT_FALSE(sink->is_watched());
+}
+
 TEST_F(Ros2SinkTest, WaitsForItsSubscribers) {
     std::optional<TopicReader> image;
     Ros2SinkSettings settings;

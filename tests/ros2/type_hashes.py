@@ -10,13 +10,15 @@ import sys
 
 PRIMITIVES = {"octet": 3, "long": 6, "unsigned long": 7, "unsigned long long": 9, "double": 11, "boolean": 15, "string": 17}
 NESTED, ARRAY, SEQUENCE = 1, 48, 144
+# IDL has one word for ROS's uint8 and byte; these are bytes.
+BYTES, BYTE = {"diagnostic_msgs/msg/DiagnosticStatus.level"}, 16
 
 
-def field_of(declaration):
+def field_of(declaration, owner):
     kind, name, capacity = re.fullmatch(r"(.+?)\s+(\w+)(?:\[(\d+)\])?", declaration.strip()).groups()
     sequence = re.fullmatch(r"sequence<(.+)>", kind)
     element = sequence[1] if sequence else kind
-    type_id = PRIMITIVES.get(element, NESTED)
+    type_id = BYTE if f"{owner}.{name}" in BYTES else PRIMITIVES.get(element, NESTED)
     nested = "" if element in PRIMITIVES else ros_name(element.split("::"))
     type_id += SEQUENCE if sequence else ARRAY if capacity else 0
     return {"name": name, "type": {"type_id": type_id, "capacity": int(capacity or 0), "string_capacity": 0,
@@ -34,7 +36,8 @@ def types_of(idl):
     types = {}
     for package, body in re.findall(r"module (\w+) \{ module msg \{ module dds_ \{(.*?)\}; \}; \};", idl, re.S):
         for name, fields in re.findall(r"@final struct (\w+) \{(.*?)\};", body, re.S):
-            types[ros_name([package, "msg", "dds_", name])] = [field_of(f) for f in fields.split(";") if f.strip()]
+            owner = ros_name([package, "msg", "dds_", name])
+            types[owner] = [field_of(f, owner) for f in fields.split(";") if f.strip()]
     return types
 
 

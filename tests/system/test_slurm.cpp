@@ -81,6 +81,34 @@ TEST_F(Slurm, SegmentsAreJoinedToWhatOneRunWrites) {
     EXPECT_FALSE(fs::exists(temp_ / "out/long.1.work"));
 }
 
+TEST_F(Slurm, StatesGiveTheSegmentsWhatOneRunRemembered) {
+    ASSERT_EQ(eventide({"simulate", "--scene", "demo", "--seconds", "5.2", "--size", "32x24",
+                        "--out", "long.aedat4"})
+                  .exit_code,
+              0);
+    const std::vector<std::string> options{"--fps",     "20",  "--precision", "f32",
+                                           "--kernels", "own", "--frames",    "ignore"};
+    std::vector<std::string> whole{"run", "long.aedat4", "--out", "one/"};
+    whole.insert(whole.end(), options.begin(), options.end());
+    ASSERT_EQ(eventide(whole).exit_code, 0);
+    std::vector<std::string> words{"--plan", "--states",    "--segment", "2",
+                                   "out",    "long.aedat4", "--"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Result planned = script("submit.sh", words);
+    ASSERT_EQ(planned.exit_code, 0) << planned.error;
+    EXPECT_THAT(script("task.sh", {"out", "1"}).error, HasSubstr("states.sh out makes it"));
+    const Result states = script("states.sh", {"out"}, {{"SLURM_ARRAY_TASK_ID", "0"}});
+    ASSERT_EQ(states.exit_code, 0) << states.error;
+    EXPECT_THAT(script("states.sh", {"out", "0"}).error, HasSubstr("nothing to do"));
+    for (const char* task : {"2", "0", "1"}) {
+        const Result done = script("task.sh", {"out", task});
+        ASSERT_EQ(done.exit_code, 0) << done.error;
+    }
+    ASSERT_EQ(script("merge.sh", {"out"}).exit_code, 0);
+    EXPECT_TRUE(all_of("one") == all_of("out/long")) << "every frame, sigma and time, bit for bit";
+    EXPECT_THAT(read_text(temp_ / "out/parts/long.000002/run.json"), HasSubstr("state_000001"));
+}
+
 TEST_F(Slurm, OneTaskForEachRecording) {
     simulate("a.aedat4");
     fs::copy_file(temp_ / "a.aedat4", temp_ / "b.aedat4");
@@ -95,6 +123,12 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
     simulate("a.aedat4");
     EXPECT_THAT(script("submit.sh", plan({"out", "none.aedat4"})).error,
                 HasSubstr("none.aedat4: no such recording"));
+    EXPECT_THAT(script("submit.sh", plan({"--states", "out", "a.aedat4"})).error,
+                HasSubstr("--states: expected --segment SECONDS"));
+    EXPECT_THAT(script("submit.sh",
+                       plan({"--states", "--warmup", "2", "--segment", "1", "out", "a.aedat4"}))
+                    .error,
+                HasSubstr("expected one of them"));
     EXPECT_THAT(script("submit.sh", plan({"--segment", "1s", "out", "a.aedat4"})).error,
                 HasSubstr("--segment: expected whole seconds, found '1s'"));
     EXPECT_THAT(script("submit.sh", {"--plan", "out", "a.aedat4", "--", "--out", "x/"}).error,

@@ -25,7 +25,8 @@ std::vector<Positional> RunCommand::positionals() {
 }
 
 int RunCommand::run(Program& program) {
-    if (settings_.out.empty())
+    if (!settings_.states_out.empty()) settings_.sequential = true;
+    if (settings_.out.empty() && settings_.states_out.empty())
         throw Error(ErrorKind::usage,
                     "expected at least one --out, such as --out video.mp4 or --out window");
     name_run_files(settings_, program.files);

@@ -99,12 +99,53 @@ HttpControl speed_control(const LiveControlsPlan& plan) {
     return speed;
 }
 
+/// What the slider of the event window moves, by its rule.
+struct WindowRange {
+    const char* unit;
+    double least, most, step, now;
+    std::function<void(SlicerSettings&, double)> put;
+};
+
+WindowRange window_range(const SlicerSettings& slicer) {
+    const auto put_epp = [](SlicerSettings& to, double value) { to.events_per_pixel = value; };
+    if (slicer.rule == WindowRule::duration)
+        return {
+            "ms", 1, 500, 1, double(slicer.width.count()) / 1e3, [](SlicerSettings& to, double ms) {
+                to.width = SensorDuration{std::max(1LL, std::llround(ms * 1e3))};
+            }};
+    if (slicer.rule == WindowRule::content)
+        return {
+            "events per pixel where most moves", 0.05, 5, 0.05, slicer.events_per_pixel, put_epp};
+    if (slicer.events_per_pixel > 0)
+        return {"events per pixel", 0.01, 10, 0.01, slicer.events_per_pixel, put_epp};
+    return {"events", 100, 1'000'000, 100, double(slicer.events), [](SlicerSettings& to, double n) {
+                to.events = std::uint64_t(std::llround(n));
+            }};
+}
+
 HttpControl window_control(const LiveControlsPlan& plan) {
-    HttpControl window;
-    window.name = "window";
-    window.label = "Event window";
-    window.text = plan.window;
-    window.fixed = "chosen at the start (--window)";
+    if (plan.slicer.rule == WindowRule::reference) {
+        HttpControl window;
+        window.name = "window";
+        window.label = "Event window";
+        window.text = window_text(plan.slicer);
+        window.fixed = "cut at the camera's images (--window aps)";
+        return window;
+    }
+    const WindowRange range = window_range(plan.slicer);
+    const Value value = made(range.now);
+    HttpControl window = control("window", "Event window", range.unit, value);
+    // The slider's ends, where the run began beyond them.
+    window.least = std::min(range.least, range.now);
+    window.most = std::max(range.most, range.now);
+    window.step = range.step;
+    window.set = [value, &changes = plan.changes, slicer = plan.slicer,
+                  put = range.put](double wanted) {
+        SlicerSettings now = slicer;
+        put(now, wanted);
+        changes.set_window(now);
+        *value = wanted;
+    };
     return window;
 }
 

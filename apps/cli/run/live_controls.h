@@ -21,14 +21,15 @@ struct LiveControlsPlan {
     double speed = 0;                            ///< of a recording at a pace, at the start
     std::function<void(double)> set_speed = {};  ///< empty: the source has one speed
     bool live = false;
-    std::string window = {};  ///< as --window writes it
+    SlicerSettings slicer = {};  ///< at the start
 };
 
 /// The first sink whose frames must be all alike, as it was named.
 std::optional<std::string> rigid_sink(const RunSettings& settings);
 
-/// fps, scale, lookahead, speed, window, in this order. Those that cannot be changed say why: a
-/// window is cut before there are frames, and files and streams have frames that are all alike.
+/// fps, scale, lookahead, speed, window, in this order; a window in the unit of its rule. Those
+/// that cannot be changed say why: windows between images are cut by those, and files and streams
+/// have frames that are all alike.
 std::vector<HttpControl> live_controls(const LiveControlsPlan& plan);
 
 }  // namespace eventide::app

@@ -9,6 +9,7 @@
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/run_state.h"
 #include "apps/cli/version.h"
+#include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 
@@ -16,7 +17,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <new>
+#include <utility>
 
 namespace eventide::app {
 
@@ -54,6 +57,24 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
         span.frames_from, span.end);
 }
 
+std::optional<TensorFile> state_in_of(const RunSettings& settings) {
+    if (settings.state_in.empty()) return std::nullopt;
+    return read_safetensors(settings.state_in);
+}
+
+std::optional<StreamState> stream_in(const RunSettings& settings, std::optional<TensorFile>& state,
+                                     const SensorInfo& sensor, bool live) {
+    if (!state) return std::nullopt;
+    auto stream = take_stream_state(*state, settings.state_in, sensor.width, sensor.height);
+    if (stream) check_stream_state(settings, "--state-in " + settings.state_in, live);
+    return stream;
+}
+
+Span span_in(const RunSettings& settings, const std::optional<StreamState>& resumed, bool live) {
+    const Span span = span_of(settings, live);
+    return resumed ? resumed_span(settings, span, resumed->stream.t) : span;
+}
+
 /// Null: not asked for.
 std::unique_ptr<OutputFile> stats_of(const RunSettings& settings) {
     if (settings.stats.empty()) return nullptr;
@@ -70,7 +91,10 @@ Run::Run(Program& program, RunSettings& settings)
       opened_{open_source(settings, speed_, [&program] { return program.signals.stopping(); })},
       filters_{settings.filter, size_of(*opened_.source)},
       sensor_{info_behind(opened_.source->info(), filters_)},
-      span_{span_of(settings, live())},
+      state_{state_in_of(settings)},
+      resumed_{stream_in(settings, state_, sensor_, live())},
+      states_at_{state_times_of(settings)},
+      span_{span_in(settings, resumed_, live())},
       quality_{settings, quality_place(), [&program] { return program.signals.stopping(); }},
       network_{settings, sensor_},
       slicer_{slicer_of(settings, network_.config(), span_, as_live())},
@@ -93,8 +117,8 @@ Run::Run(Program& program, RunSettings& settings)
                         render_.fused() != nullptr, network_.encoder(), render_);
         watch_.colour(&*colour_);
     }
-    if (!settings.state_in.empty())
-        restore_state(settings.state_in, network_, colour_ ? &*colour_ : nullptr);
+    if (state_) resume();
+    if (!settings.states_out.empty()) check_stream_state(settings, "--states-out", live());
     if (opened_.recording != nullptr && span_.begin) {
         if (!filters_.empty())
             if (const auto first = first_event_of(settings, live())) filters_.count_from(*first);
@@ -106,6 +130,7 @@ Run::Run(Program& program, RunSettings& settings)
     events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get());
     watch_.write_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
+    if (!settings.states_out.empty()) std::filesystem::create_directories(settings.states_out);
     stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
     try {
         pipeline_.emplace(parts(), pipeline_settings());
@@ -181,9 +206,7 @@ std::vector<HttpControl> Run::controls() {
     if (opened_.paced != nullptr)
         plan.set_speed = [this](double factor) { opened_.paced->set_speed(factor); };
     plan.live = live();
-    plan.window = settings_.window == "model" || (settings_.window == "auto" && as_live())
-                      ? network_.config().window
-                      : settings_.window;
+    plan.slicer = slicer_;
     auto controls = live_controls(plan);
     for (HttpControl& control : controls) {
         if (!control.set || (control.name != "fps" && control.name != "scale")) continue;
@@ -198,6 +221,38 @@ std::vector<HttpControl> Run::controls() {
             };
     }
     return controls;
+}
+
+/// Goes on where another run stopped: the networks, and where it was kept also the stream.
+void Run::resume() {
+    restore_state(*std::exchange(state_, std::nullopt), settings_.state_in, network_,
+                  colour_ ? &*colour_ : nullptr);
+    if (!resumed_) return;
+    const auto require = [this](const char* option, const std::string& kept,
+                                const std::string& found) {
+        if (kept != found)
+            throw Error(ErrorKind::input, settings_.state_in +
+                                              ": expected the state of a run with " + option + ' ' +
+                                              found + ", found that of one with " + kept);
+    };
+    require("--window", resumed_->window, window_text(slicer_));
+    require("--noise-filter", resumed_->noise_filter,
+            noise_filter_of(settings_, network_.config()));
+    NoiseFilter* const noise = noise_filter_in(filter_.get());
+    if (resumed_->noise.has_value() != (noise != nullptr))
+        throw Error(ErrorKind::input,
+                    settings_.state_in + ": expected what the noise filter knows");
+    if (noise != nullptr) noise->restore(*resumed_->noise);
+}
+
+void Run::keep_state(const StreamMemory& memory) {
+    StreamState state{memory, std::nullopt, window_text(slicer_),
+                      noise_filter_of(settings_, network_.config())};
+    if (const NoiseFilter* const noise = noise_filter_in(filter_.get()))
+        state.noise = noise->memory();
+    TensorFile file = state_of(network_, nullptr);
+    put_stream_state(state, sensor_.width, file);
+    write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);
 }
 
 ModelRenderStage Run::render_stage() {
@@ -221,6 +276,10 @@ PipelineSettings Run::pipeline_settings() {
     settings.event_windows.slicer = slicer_;
     settings.rate = rate_;
     settings.frames_from = span_.frames_from;
+    if (settings_.out.empty()) settings.frames_from = from_us(std::int64_t{1} << 60);  // none
+    if (resumed_) settings.resume = &resumed_->stream;
+    settings.memory_stops = {states_at_,
+                             [this](const StreamMemory& memory) { keep_state(memory); }};
     settings.lookahead = lookahead_;
     settings.latency = latency_of(settings_, live());
     settings.reset_on_gap = settings_.reset_on_gap;
@@ -276,8 +335,12 @@ int Run::run() {
                                               end_counters.damaged);
         !why.empty())
         spdlog::warn("{}", why);
+    if (states_ < states_at_.size() && !program_.signals.stopping())
+        throw Error(ErrorKind::input, "--states-at: expected " + std::to_string(states_at_.size()) +
+                                          " times before the last event, found " +
+                                          std::to_string(states_));
     if (const std::string why = why_no_frames(end_counters);
-        !why.empty() && !program_.signals.stopping())
+        !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);
     if (render_.fused() != nullptr && render_.fused()->used() > 0)
         spdlog::info("frames corrected by {} of the camera's images", render_.fused()->used());

@@ -12,6 +12,7 @@
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run_plan.h"
+#include "apps/cli/run/stream_state.h"
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"
@@ -75,6 +76,8 @@ private:
     ModelRenderStage render_stage();
     PipelineParts parts();
     PipelineSettings pipeline_settings();
+    void resume();
+    void keep_state(const StreamMemory& memory);
     void run_pipeline();
     CameraCounters camera_counters() const;
     RunProgress progress() const;
@@ -91,6 +94,9 @@ private:
     OpenedSource opened_;
     FilterChain filters_;
     const SensorInfo sensor_;
+    std::optional<TensorFile> state_;     // none: not asked for, or restored
+    std::optional<StreamState> resumed_;  // none: the stream begins anew
+    const std::vector<SensorTime> states_at_;
     const Span span_;
     RunQuality quality_;  // puts into the settings what it chooses
     Network network_;
@@ -116,6 +122,7 @@ private:
     std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
     std::vector<std::unique_ptr<Sink>> sinks_;
     std::optional<Pipeline> pipeline_;
+    std::size_t states_ = 0;  // kept until now
 };
 
 }  // namespace eventide::app

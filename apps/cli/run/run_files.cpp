@@ -5,6 +5,7 @@
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/quality/run_quality.h"
+#include "apps/cli/run/stream_state.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/sink_name.h"
 #include "drivers/devices.h"
@@ -46,6 +47,10 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
             files.reads("--filter", filter.substr(filter.find(':') + 1));
     if (settings.stats != "-") files.writes("--stats", settings.stats);
     files.writes("--state-out", settings.state_out);
+    if (settings.states_out.empty()) return;
+    files.writes_folder("--states-out", settings.states_out);
+    for (std::size_t i = 0; i < settings.states_at.size(); ++i)
+        files.writes("--states-out", state_file(settings.states_out, i));
 }
 
 }  // namespace eventide::app

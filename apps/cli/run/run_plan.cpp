@@ -65,6 +65,35 @@ Span span_of(const RunSettings& settings, bool live) {
     return span;
 }
 
+Span resumed_span(const RunSettings& settings, Span span, SensorTime t) {
+    const std::string option = "--state-in " + settings.state_in;
+    if (settings.warmup)
+        throw Error(ErrorKind::usage, option + ": expected no --warmup; it begins with the state");
+    const SensorTime begin = t + SensorDuration{1};
+    if (span.frames_from.value_or(begin) < begin)
+        throw Error(ErrorKind::usage, option + ": expected --from after the state's time, " +
+                                          std::to_string(to_us(t)) + " us, found " +
+                                          std::to_string(to_us(*span.frames_from)) + " us");
+    span.begin = begin;
+    span.frames_from = span.frames_from.value_or(begin);
+    return span;
+}
+
+std::vector<SensorTime> state_times_of(const RunSettings& settings) {
+    if (settings.states_at.empty() != settings.states_out.empty())
+        throw Error(ErrorKind::usage, "--states-out and --states-at: expected both, found one");
+    const TimePointReader moments = moments_of(settings);
+    std::vector<SensorTime> times;
+    for (const std::string& text : settings.states_at) {
+        const SensorTime t = moments.time_of(parse_time_point(text));
+        if (!times.empty() && t <= times.back())
+            throw Error(ErrorKind::usage,
+                        "--states-at " + text + ": expected times that ascend, found one before");
+        times.push_back(t);
+    }
+    return times;
+}
+
 double speed_of(const RunSettings& settings) {
     if (settings.speed == "max" && settings.realtime)
         throw Error(ErrorKind::usage,

@@ -25,6 +25,14 @@ struct Span {
 /// cannot be had: --from of a live source or, relative, of standard input.
 Span span_of(const RunSettings& settings, bool live);
 
+/// The span of a run that goes on from a state that was kept at `t`. Throws Error (usage) for
+/// frames from before it, and for a warm-up, which it has no use for.
+Span resumed_span(const RunSettings& settings, Span span, SensorTime t);
+
+/// Of --states-at, with --states-out. Throws Error (usage) where they do not ascend, or one of the
+/// two is missing.
+std::vector<SensorTime> state_times_of(const RunSettings& settings);
+
 /// Of a recording that can be asked for it; reads its beginning.
 std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live);
 

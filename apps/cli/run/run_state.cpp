@@ -55,8 +55,8 @@ TensorFile state_of(const Network& network, const ColourNetworks* colour) {
     return all;
 }
 
-void restore_state(const std::string& file, Network& network, ColourNetworks* colour) {
-    TensorFile state = read_safetensors(file);
+void restore_state(TensorFile state, const std::string& file, Network& network,
+                   ColourNetworks* colour) {
     check_filter(state, file, colour == nullptr ? ColourFilter::none : colour->filter());
     if (colour != nullptr)
         for (const ColourChannel channel : kColourChannels) {

@@ -13,8 +13,10 @@ namespace eventide::app {
 /// name ("red.h.0"). `colour` may be null.
 TensorFile state_of(const Network& network, const ColourNetworks* colour);
 
-/// Throws Error (input) naming the file and what differs, where it is of another model or sensor,
-/// or with colours where there are none, and the other way round.
-void restore_state(const std::string& file, Network& network, ColourNetworks* colour);
+/// `file` is what `state` was read from. Throws Error (input) naming the file and what differs,
+/// where it is of another model or sensor, or with colours where there are none, and the other way
+/// round.
+void restore_state(TensorFile state, const std::string& file, Network& network,
+                   ColourNetworks* colour);
 
 }  // namespace eventide::app

@@ -47,8 +47,15 @@ void RunSettings::add_network(SettingTable& table) {
                       "Threads the network may use; 0: as many as this process may run on.", 0,
                       1024));
     add(text_setting("state_in", state_in, "FILE",
-                     "Go on from the network's state that an earlier run saved."));
+                     "Go on from the state that an earlier run saved: the network's "
+                     "(--state-out), or all of it (--states-out)."));
     add(text_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
+    add(text_setting("states_out", states_out, "FOLDER",
+                     "Save all that a run remembers at each time of --states-at, on one thread: "
+                     "runs with such a file as --state-in give the frames of one run of all. "
+                     "Without --out nothing is rendered."));
+    add(list_setting("states_at", states_at, "TIME...",
+                     "Of a recording, ascending, as --from has them."));
     add(choice_setting("frames", frames,
                        "The camera's own images (APS): auto and use correct the frames by them, "
                        "for as long as what they "

@@ -117,6 +117,10 @@ struct RunSettings {
     std::optional<int> buffers_grids, buffers_latents;  ///< empty: 3 of a live source, else 2
     bool sequential = false;
 
+    // for other runs
+    std::string states_out;              ///< a folder
+    std::vector<std::string> states_at;  ///< parse_time_point(), ascending
+
     RunSettings() = default;
     RunSettings(const RunSettings&) = delete;  // table() points into it
     RunSettings& operator=(const RunSettings&) = delete;

@@ -24,7 +24,7 @@ protected:
         plan.speed = speed_;
         if (speed_ > 0) plan.set_speed = [this](double factor) { speed_ = factor; };
         plan.live = live_;
-        plan.window = "50ms";
+        plan.slicer = parse_window(window_);
         return live_controls(plan);
     }
     HttpControl control(const std::string& name) {
@@ -35,6 +35,7 @@ protected:
     RunSettings settings_;
     LiveChanges changes_;
     double speed_ = 1;
+    std::string window_ = "50ms";
     bool live_ = false;
 };
 
@@ -74,8 +75,10 @@ TEST_F(LiveControls, LeaveFramesAloneThatMustBeAlike) {
 }
 
 TEST_F(LiveControls, SayWhatCannotBeChanged) {
+    window_ = "aps";
     EXPECT_FALSE(control("window").set);
-    EXPECT_EQ(control("window").text, "50ms");
+    EXPECT_EQ(control("window").text, "aps,1s");
+    EXPECT_THAT(control("window").fixed, HasSubstr("images"));
     EXPECT_TRUE(control("speed").set);
     control("speed").set(0.5);
     EXPECT_EQ(speed_, 0.5);
@@ -89,6 +92,32 @@ TEST_F(LiveControls, SayWhatCannotBeChanged) {
     settings_.region.reset();
     settings_.size.exact = Size{640, 480};
     EXPECT_FALSE(control("scale").set);
+}
+
+TEST_F(LiveControls, MoveTheWindowInTheUnitOfItsRule) {
+    const auto moved = [this](const char* window, double at_start, double to) {
+        window_ = window;
+        const HttpControl slider = control("window");
+        EXPECT_EQ(slider.get(), at_start) << window;
+        EXPECT_LE(slider.least, at_start);
+        EXPECT_GE(slider.most, at_start);
+        slider.set(to);
+        EXPECT_EQ(slider.get(), to);
+        const auto wanted = changes_.take_window();
+        EXPECT_TRUE(wanted);
+        EXPECT_FALSE(changes_.take_window()) << "once";
+        return wanted.value_or(SlicerSettings{});
+    };
+    EXPECT_EQ(window_text(moved("50ms", 50, 20)), "20ms");
+    EXPECT_EQ(window_text(moved("250us", 0.25, 4.25)), "4250us");
+    EXPECT_EQ(window_text(moved("2s", 2000, 1)), "1ms");
+    EXPECT_EQ(window_text(moved("20000ev,200ms", 20'000, 500)), "500ev,200ms");
+    EXPECT_EQ(window_text(moved("0.35epp", 0.35, 1)), "1epp,100ms");
+    const SlicerSettings content = moved("auto", 0.5, 2);
+    EXPECT_EQ(content.rule, WindowRule::content);
+    EXPECT_EQ(content.events_per_pixel, 2);
+    EXPECT_EQ(content.max_width, SensorDuration{50'000});
+    EXPECT_EQ(control("window").unit, "events per pixel where most moves");
 }
 
 TEST(HttpName, IsASink) {

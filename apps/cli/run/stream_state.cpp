@@ -1,0 +1,264 @@
+// Whole numbers and doubles as tensors of float, which a state file holds: in parts that float has
+// exactly.
+#include "apps/cli/run/stream_state.h"
+
+#include "src/core/error.h"
+#include "src/core/number_text.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+
+namespace eventide::app {
+
+namespace {
+
+constexpr const char* kPrefix = "stream.";
+constexpr std::int64_t kExact = std::int64_t{1} << 24;  // float has all whole numbers up to it
+constexpr int kTileValues = 7, kEventValues = 5;
+/// Older than any filter looks back.
+static_assert(NoiseFilter::kMaxTime.count() < kExact);
+
+std::string text_of(SensorTime t) {
+    return std::to_string(to_us(t));
+}
+
+std::string text_of(const std::optional<SensorTime>& t) {
+    return t ? text_of(*t) : "none";
+}
+
+/// 16 bits each, the lowest first.
+void put_bits(double value, std::vector<float>& into) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (int shift = 0; shift < 64; shift += 16) into.push_back(float(bits >> shift & 0xFFFF));
+}
+
+Tensor made(std::vector<std::int64_t> shape, std::vector<float> values) {
+    return {std::move(shape), std::move(values)};
+}
+
+void put_slicer(const StreamMemory& stream, TensorFile& file) {
+    const Slicer::Memory& slicer = stream.slicer;
+    auto& words = file.metadata;
+    words["stream.t_us"] = text_of(stream.t);
+    words["stream.begin_us"] = text_of(slicer.begin);
+    words["stream.origin_us"] = text_of(slicer.origin);
+    words["stream.newest_us"] = text_of(slicer.newest);
+    words["stream.newest_event_us"] = text_of(slicer.newest_event);
+    words["stream.same_time"] = std::to_string(slicer.same_time);
+    words["stream.silent"] = std::to_string(slicer.silent);
+    words["stream.gap"] = slicer.gap ? "1" : "0";
+    std::vector<float> events;
+    for (const Event& event : slicer.events) {
+        const std::int64_t dt = (event.t - slicer.begin).count();
+        events.insert(events.end(), {float(dt / kExact), float(dt % kExact), float(event.x),
+                                     float(event.y), event.polarity == Polarity::on ? 1.F : 0.F});
+    }
+    file.tensors["stream.events"] =
+        made({std::int64_t(slicer.events.size()), kEventValues}, std::move(events));
+}
+
+void put_noise(const NoiseFilter::Memory& noise, SensorTime t, std::int64_t width,
+               TensorFile& file) {
+    auto& words = file.metadata;
+    words["stream.noise_interval_us"] = text_of(noise.interval);
+    words["stream.noise_last_us"] = text_of(noise.last);
+    words["stream.noise_measured"] = noise.measured ? "1" : "0";
+    words["stream.hot_end_us"] = text_of(noise.hot_pixels.interval_end);
+    std::vector<float> hz, ages, on, tiles;
+    put_bits(noise.noise_hz, hz);
+    for (const SensorTime newest : noise.newest) {
+        const bool old = newest == SensorTime::min() || (t - newest).count() >= kExact;
+        ages.push_back(old ? -1.F : float((t - newest).count()));
+    }
+    for (const Polarity polarity : noise.polarity) on.push_back(polarity == Polarity::on ? 1 : 0);
+    for (const NoiseFilter::Tile& tile : noise.tiles) {
+        tiles.insert(tiles.end(), {float(tile.events), float(tile.before), float(tile.supported)});
+        put_bits(tile.noise, tiles);
+    }
+    const std::int64_t wide = width + 2, high = std::int64_t(ages.size()) / wide;
+    file.tensors["stream.noise_hz"] = made({4}, std::move(hz));
+    file.tensors["stream.noise_ages"] = made({high, wide}, std::move(ages));
+    file.tensors["stream.noise_on"] = made({high, wide}, std::move(on));
+    file.tensors["stream.noise_tiles"] =
+        made({std::int64_t(noise.tiles.size()), kTileValues}, std::move(tiles));
+    const HotPixels::Memory& hot = noise.hot_pixels;
+    file.tensors["stream.hot_events"] =
+        made({high - 2, width}, {hot.events.begin(), hot.events.end()});
+    file.tensors["stream.hot"] = made({high - 2, width}, {hot.hot.begin(), hot.hot.end()});
+}
+
+/// Words and tensors of a file that was written by anybody.
+class Kept {
+public:
+    Kept(const TensorFile& file, const std::string& name) : file_{file}, name_{name} {}
+
+    std::int64_t number(const std::string& key) const {
+        const std::string text = word(key);
+        const auto value = number_in<std::int64_t>(text);
+        if (!value) refuse("'" + key + "': expected a whole number, found '" + text + "'");
+        return *value;
+    }
+    /// Such that sums of times fit.
+    SensorTime time(const std::string& key) const {
+        constexpr std::int64_t kFarthest = std::int64_t{1} << 60;
+        const std::int64_t us = number(key);
+        if (us < -kFarthest || us > kFarthest)
+            refuse("'" + key + "': expected a time that a clock can have, found " +
+                   std::to_string(us));
+        return from_us(us);
+    }
+    std::optional<SensorTime> time_or_none(const std::string& key) const {
+        if (word(key) == "none") return std::nullopt;
+        return time(key);
+    }
+    std::string word(const std::string& key) const {
+        const auto found = file_.metadata.find(key);
+        if (found == file_.metadata.end()) refuse("expected '" + key + "', found none");
+        return found->second;
+    }
+    bool has(const std::string& key) const { return file_.tensors.contains(key); }
+
+    /// Whole numbers from `least` to `most`; a shape's -1 is any.
+    const std::vector<float>& tensor(const std::string& key, std::vector<std::int64_t> shape,
+                                     float least, float most) const {
+        const auto found = file_.tensors.find(key);
+        if (found == file_.tensors.end()) refuse("expected tensor '" + key + "', found none");
+        const Tensor& tensor = found->second;
+        for (std::size_t i = 0; i < shape.size() && i < tensor.shape.size(); ++i)
+            if (shape[i] < 0) shape[i] = tensor.shape[i];
+        if (tensor.shape != shape)
+            refuse("tensor '" + key + "': expected shape " + shape_text(shape) + ", found " +
+                   shape_text(tensor.shape));
+        for (const float value : tensor.values)
+            if (!(value >= least && value <= most && value == std::floor(value)))
+                refuse("tensor '" + key + "': expected whole numbers from " +
+                       std::to_string(std::int64_t(least)) + " to " +
+                       std::to_string(std::int64_t(most)) + ", found " + std::to_string(value));
+        return tensor.values;
+    }
+    [[noreturn]] void refuse(const std::string& words) const {
+        throw Error(ErrorKind::input, name_ + ": state: " + words);
+    }
+
+private:
+    const TensorFile& file_;
+    const std::string& name_;
+};
+
+double bits_at(const std::vector<float>& values, std::size_t at) {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < 4; ++i) bits |= std::uint64_t(values[at + i]) << (16 * i);
+    return std::bit_cast<double>(bits);
+}
+
+StreamMemory stream_of(const Kept& kept, int width, int height) {
+    StreamMemory stream;
+    stream.t = kept.time("stream.t_us");
+    Slicer::Memory& slicer = stream.slicer;
+    slicer.begin = kept.time("stream.begin_us");
+    slicer.origin = kept.time("stream.origin_us");
+    slicer.newest = kept.time("stream.newest_us");
+    slicer.newest_event = kept.time("stream.newest_event_us");
+    slicer.same_time = std::uint64_t(kept.number("stream.same_time"));
+    slicer.silent = int(std::clamp<std::int64_t>(kept.number("stream.silent"), 0, 1 << 20));
+    slicer.gap = kept.number("stream.gap") != 0;
+    const auto& events = kept.tensor("stream.events", {-1, kEventValues}, 0, float(kExact));
+    for (std::size_t i = 0; i + kEventValues <= events.size(); i += kEventValues) {
+        if (events[i + 2] >= float(width) || events[i + 3] >= float(height))
+            kept.refuse("expected events on a sensor of " + std::to_string(width) + "x" +
+                        std::to_string(height) + ", found one at " +
+                        std::to_string(int(events[i + 2])) + ", " +
+                        std::to_string(int(events[i + 3])));
+        const SensorDuration dt{std::int64_t(events[i]) * kExact + std::int64_t(events[i + 1])};
+        slicer.events.push_back({slicer.begin + dt, std::uint16_t(events[i + 2]),
+                                 std::uint16_t(events[i + 3]),
+                                 events[i + 4] != 0 ? Polarity::on : Polarity::off});
+    }
+    const auto& ages = kept.tensor("stream.ages", {height, width}, 0, 255);
+    stream.ages.assign(ages.begin(), ages.end());
+    return stream;
+}
+
+NoiseFilter::Memory noise_of(const Kept& kept, SensorTime t, int width, int height) {
+    NoiseFilter::Memory noise;
+    noise.interval = kept.time_or_none("stream.noise_interval_us");
+    noise.last = kept.time_or_none("stream.noise_last_us");
+    noise.measured = kept.number("stream.noise_measured") != 0;
+    noise.noise_hz = bits_at(kept.tensor("stream.noise_hz", {4}, 0, 0xFFFF), 0);
+    if (!(noise.noise_hz >= 0 && noise.noise_hz <= 1e9))
+        kept.refuse("expected a rate of noise, found " + std::to_string(noise.noise_hz) + " Hz");
+    const std::vector<std::int64_t> rimmed{height + 2, width + 2}, sensor{height, width};
+    for (const float age : kept.tensor("stream.noise_ages", rimmed, -1, float(kExact)))
+        noise.newest.push_back(age < 0 ? SensorTime::min() : t - SensorDuration{std::int64_t(age)});
+    for (const float on : kept.tensor("stream.noise_on", rimmed, 0, 1))
+        noise.polarity.push_back(on != 0 ? Polarity::on : Polarity::off);
+    const auto& tiles = kept.tensor("stream.noise_tiles", {-1, kTileValues}, 0, float(kExact));
+    for (std::size_t i = 0; i + kTileValues <= tiles.size(); i += kTileValues) {
+        NoiseFilter::Tile tile{std::uint32_t(tiles[i]), std::uint32_t(tiles[i + 1]),
+                               std::uint32_t(tiles[i + 2]), bits_at(tiles, i + 3)};
+        if (!(tile.noise >= 0 && tile.noise <= 1e9))
+            kept.refuse("expected the noise of a tile, found " + std::to_string(tile.noise));
+        noise.tiles.push_back(tile);
+    }
+    const auto& events = kept.tensor("stream.hot_events", sensor, 0, float(kExact));
+    noise.hot_pixels.events.assign(events.begin(), events.end());
+    const auto& hot = kept.tensor("stream.hot", sensor, 0, 1);
+    noise.hot_pixels.hot.assign(hot.begin(), hot.end());
+    noise.hot_pixels.interval_end = kept.time_or_none("stream.hot_end_us");
+    return noise;
+}
+
+}  // namespace
+
+void put_stream_state(const StreamState& state, int width, TensorFile& file) {
+    file.metadata["stream.window"] = state.window;
+    file.metadata["stream.noise_filter"] = state.noise_filter;
+    put_slicer(state.stream, file);
+    const auto& ages = state.stream.ages;
+    file.tensors["stream.ages"] =
+        made({std::int64_t(ages.size()) / width, width}, {ages.begin(), ages.end()});
+    if (state.noise) put_noise(*state.noise, state.stream.t, width, file);
+}
+
+std::optional<StreamState> take_stream_state(TensorFile& file, const std::string& name, int width,
+                                             int height) {
+    const Kept kept{file, name};
+    if (!kept.has("stream.events")) return std::nullopt;
+    StreamState state;
+    state.window = kept.word("stream.window");
+    state.noise_filter = kept.word("stream.noise_filter");
+    state.stream = stream_of(kept, width, height);
+    if (kept.has("stream.noise_hz")) state.noise = noise_of(kept, state.stream.t, width, height);
+    std::erase_if(file.tensors, [](const auto& each) { return each.first.starts_with(kPrefix); });
+    return state;
+}
+
+std::filesystem::path state_file(const std::string& folder, std::size_t number) {
+    char name[48];
+    std::snprintf(name, sizeof name, "state_%06zu.safetensors", number);
+    return std::filesystem::path{folder} / name;
+}
+
+std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model) {
+    const auto noise = parse_noise_filter(settings.noise_filter, model.noise_filter);
+    return noise ? noise_filter_text(*noise) : "off";
+}
+
+void check_stream_state(const RunSettings& settings, const std::string& option, bool live) {
+    const auto refuse = [&option](const std::string& expected) {
+        throw Error(ErrorKind::usage, option + ": expected " + expected);
+    };
+    if (live || settings.source == "-")
+        refuse("a recording that is a file, found " + settings.source);
+    if (settings.frames != CameraFrames::ignore)
+        refuse("--frames ignore; what the camera's images corrected is not kept");
+    if (settings.colour) refuse("frames without --colour");
+    if (!settings.filter.empty())
+        refuse("no --filter, found '" + settings.filter.front() +
+               "'; what it remembers is not kept");
+    if (settings.hot_pixels == "learn") refuse("another --hot-pixels than learn");
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,145 @@
+// What slicer, noise filter and binner remember: another one goes on with it as the first would
+// have.
+#include "src/binning/binner.h"
+#include "src/binning/noise_filter.h"
+#include "src/core/error.h"
+#include "tests/binning/event_windows.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace eventide {
+namespace {
+
+/// `n` events on a sensor of 240 x 180 px, some together, with pauses.
+std::vector<Event> lively(int n, unsigned seed) {
+    std::mt19937 random{seed};
+    std::vector<Event> events;
+    std::int64_t us = 1'000'000;
+    for (int i = 0; i < n; ++i) {
+        us += random() % 1000 == 0 ? 90'000 : std::int64_t(random() % 60);
+        const bool cluster = random() % 3 != 0;
+        events.push_back({from_us(us), std::uint16_t(cluster ? 40 + random() % 6 : random() % 240),
+                          std::uint16_t(cluster ? 50 + random() % 6 : random() % 180),
+                          random() % 2 == 0 ? Polarity::on : Polarity::off});
+    }
+    return events;
+}
+
+std::vector<Event> part(const std::vector<Event>& events, std::size_t from, std::size_t to) {
+    return {events.begin() + std::ptrdiff_t(from), events.begin() + std::ptrdiff_t(to)};
+}
+
+std::vector<SlicerSettings> rules() {
+    return {by_duration(7000), by_count(300, 20'000), by_content(.01)};
+}
+
+TEST(SlicerMemory, AnotherGoesOnWithTheSameWindows) {
+    const std::vector<Event> events = lively(5000, 3);
+    for (const SlicerSettings& settings : rules())
+        for (const std::size_t stop : {1U, 700U, 2500U, 4999U}) {
+            Slicer first{settings, 240, 180}, second{settings, 240, 180};
+            std::vector<Kept> ours, theirs;
+            first.push(part(events, 0, stop));
+            take(first, ours);
+            const auto memory = first.memory();
+            ASSERT_TRUE(memory);
+            second.restore(*memory);
+            EXPECT_EQ(second.memory(), memory);
+            ours.clear();
+            for (Slicer* slicer : {&first, &second}) {
+                std::vector<Kept>& into = slicer == &first ? ours : theirs;
+                slicer->push(part(events, stop, events.size()));
+                take(*slicer, into);
+                slicer->finish();
+                take(*slicer, into);
+            }
+            EXPECT_EQ(ours, theirs) << stop;
+            EXPECT_FALSE(ours.empty());
+        }
+}
+
+TEST(SlicerMemory, ThereIsNoneOfWhatCannotGoOn) {
+    Slicer empty{by_duration(1000), 240, 180}, images{by_reference(1000), 240, 180},
+        reset{by_duration(1000), 240, 180};
+    EXPECT_FALSE(empty.memory());
+    images.push(std::vector{at(5)});
+    EXPECT_FALSE(images.memory());
+    reset.push(std::vector{at(5000), at(7)});
+    std::vector<Kept> kept;
+    take(reset, kept);
+    EXPECT_FALSE(reset.memory()) << "its clock began anew";
+}
+
+TEST(SlicerMemory, WhatHoldsNoTruthIsRefused) {
+    Slicer slicer{by_duration(1000), 240, 180};
+    Slicer::Memory good{from_us(1000), from_us(0),          from_us(1500), from_us(1500), 1, 0,
+                        false,         {at(1200), at(1500)}};
+    slicer.restore(good);
+    const auto refused = [&](auto spoil) {
+        Slicer::Memory bad = good;
+        spoil(bad);
+        EXPECT_THROW(slicer.restore(bad), Error);
+        EXPECT_EQ(slicer.memory(), good) << "as it was";
+    };
+    refused([](auto& m) { m.origin = from_us(2000); });
+    refused([](auto& m) { m.newest = from_us(900); });
+    refused([](auto& m) { m.newest_event = from_us(1600); });
+    refused([](auto& m) { m.silent = -1; });
+    refused([](auto& m) { m.newest = m.newest_event = from_us(std::int64_t{1} << 61); });
+    refused([](auto& m) { m.origin = SensorTime::min(); });
+    refused([](auto& m) { m.events.front().t = from_us(1000); });
+    refused([](auto& m) { std::ranges::reverse(m.events); });
+}
+
+TEST(NoiseFilterMemory, AnotherLeavesOutTheSame) {
+    const std::vector<Event> events = lively(40'000, 4);
+    for (const std::size_t stop : {1U, 12'345U, 39'000U}) {
+        NoiseFilter first{240, 180, {}}, second{240, 180, {}};
+        std::vector<Event> before = part(events, 0, stop);
+        first.process(before);
+        const NoiseFilter::Memory memory = first.memory();
+        second.restore(memory);
+        EXPECT_EQ(second.memory(), memory);
+        EXPECT_EQ(second.within(), first.within());
+        std::vector<Event> ours = part(events, stop, events.size()), theirs = ours;
+        NoiseFilter fresh{240, 180, {}};
+        std::vector<Event> without = ours;
+        first.process(ours);
+        second.process(theirs);
+        fresh.process(without);
+        EXPECT_EQ(ours, theirs) << stop;
+        if (stop > 1) {
+            EXPECT_NE(ours, without) << "the detector detects";
+        }
+    }
+}
+
+TEST(NoiseFilterMemory, OfAnotherSensorIsRefused) {
+    NoiseFilter filter{240, 180, {}};
+    EXPECT_THROW(filter.restore(NoiseFilter{180, 200, {}}.memory()), Error);
+    NoiseFilter::Memory hot = filter.memory();
+    hot.hot_pixels.hot.pop_back();
+    EXPECT_THROW(filter.restore(hot), Error);
+}
+
+TEST(BinnerMemory, AnotherKnowsTheAges) {
+    Binner first{3, 180, 240}, second{3, 180, 240}, fresh{3, 180, 240};
+    VoxelGrid ours = first.make_output(), theirs = second.make_output(),
+              without = fresh.make_output();
+    const std::vector<Event> events = lively(300, 5);
+    first.process({{from_us(0), from_us(2'000'000)}, events}, ours);
+    second.restore(first.ages());
+    const EventWindow next{{from_us(2'000'000), from_us(3'000'000)}, {}};
+    first.process(next, ours);
+    second.process(next, theirs);
+    fresh.process(next, without);
+    EXPECT_TRUE(std::ranges::equal(ours.values.values(), theirs.values.values()));
+    EXPECT_FALSE(std::ranges::equal(ours.values.values(), without.values.values()));
+    EXPECT_THROW(second.restore(std::vector<std::uint8_t>(7)), Error);
+}
+
+}  // namespace
+}  // namespace eventide
