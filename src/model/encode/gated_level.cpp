@@ -173,14 +173,14 @@ void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& st
 void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
                            float* scratch) const noexcept {
     const Tile& region = target.region;
-    const Tile wide{region.y0 - 1, region.x0 - 1, region.y1 + 1, region.x1 + 1};
+    const Tile wide = region.widened(1);
     const Tile inside = region.grown(1, grid.height(), grid.width());
     const Numbers& numbers = in_.numbers();
     const int channels = grid.channels();
     const std::ptrdiff_t units = numbers.units(map_channels_), row = wide.width() * units,
                          plane = wide.height() * row;
-    if (inside.height() < wide.height() || inside.width() < wide.width())
-        std::memset(scratch, 0, std::size_t(maps_ * plane) * sizeof(float));
+    for (int map = 0; map < maps_; ++map)
+        clear_outside(wide, inside, scratch + map * plane, row, units);
     float* rest = scratch + maps_ * plane;
     const auto pixels = std::size_t(inside.width());
     for (int y = inside.y0; y < inside.y1; ++y) {
