@@ -6,6 +6,7 @@
 #include "src/kernels/bf16_render.h"
 #include "src/kernels/dot_blocks.h"
 #include "src/kernels/narrow_pixels.h"
+#include "src/kernels/quad_dots.h"
 
 #include <algorithm>
 #include <array>
@@ -171,6 +172,10 @@ void dot_area_by(const DotArea& r) {
 }
 
 void dot_area(const DotArea& r) {
+    if (avx512::takes_quads(r)) {
+        avx512::dot_quads_bf16(r);
+        return;
+    }
     bf16_lanes(r.outputs) == Narrow::kLanes ? dot_area_by<Narrow>(r) : dot_area_by<Wide>(r);
 }
 
@@ -263,6 +268,7 @@ bool there() {
 const Bf16Kernels& bf16_kernels() {
 #if defined(__x86_64__)
     static const Bf16Kernels kKernels{.name = "AVX512_BF16",
+                                      .by_quads = true,
                                       .dot_area = dot_area,
                                       .pixels_to_bf16 = pixels_to_bf16,
                                       .row_to_bf16 = row_to_bf16,

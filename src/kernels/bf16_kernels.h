@@ -12,7 +12,8 @@
 namespace eventide {
 
 struct Bf16Kernels {
-    const char* name;  ///< of the instruction set
+    const char* name;       ///< of the instruction set
+    bool by_quads = false;  ///< as VectorKernels::by_quads
     /// Units are pairs of bf16 numbers. Weights: blocks of two vectors of bf16_lanes(outputs), then
     /// one; [s][pair][output][2].
     void (*dot_area)(const DotArea&);

@@ -7,6 +7,7 @@
 #endif
 
 #include "src/kernels/dot_blocks.h"
+#include "src/kernels/quad_dots.h"
 #include "src/kernels/vector_kernels.h"
 #include "src/kernels/vectors-inl.h"
 
@@ -104,7 +105,13 @@ void dot_area_by(const DotArea& r) {
     dot_in_blocks<float>(r, int(hn::Lanes(Tag())), kOne, kTwo);
 }
 
+constexpr bool kByQuads = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL;
+
 void dot_area(const DotArea& r) {
+    if (kByQuads && avx512::takes_quads(r)) {
+        avx512::dot_quads_f32(r);
+        return;
+    }
     r.lanes == int(hn::Lanes(D())) ? dot_area_by<D>(r) : dot_area_by<Narrow>(r);
 }
 

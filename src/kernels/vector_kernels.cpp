@@ -81,6 +81,7 @@ const char* name_of_target() {
 const VectorKernels* table() {
     static const VectorKernels kernels{.name = name_of_target(),
                                        .lanes = int(hn::Lanes(D())),
+                                       .by_quads = kByQuads,
                                        .dot_area = dot_area,
                                        .compress = compress,
                                        .sigmoid = sigmoid_row,

@@ -22,6 +22,7 @@ struct DoubleRow {
 struct VectorKernels {
     const char* name;  ///< of the instruction set
     int lanes;         ///< float32 numbers per vector
+    bool by_quads;     ///< whether dot_area does layers of 8 and 16 outputs as quad_dots.h says
     /// With fused multiply-adds, so that AVX2 and AVX-512 agree.
     void (*dot_area)(const DotArea&);
     /// out = sign(v) log1p(|v|)

@@ -47,11 +47,26 @@ HWY_INLINE void map(Function function, std::size_t n, float* out, const float* a
     over(n, Step{function, out, a, b, c, d});
 }
 
-/// Beyond this exp saturates in both functions to within float's last place.
+/// exp(v) of v within +-40, to within 2e-7 of itself; beyond, both functions below are saturated to
+/// float's last place. v = n ln 2 + f, exp(f) = 1 + f + f^2 P(f), P
+/// as Cephes has it.
 template <class Vector>
 HWY_INLINE Vector exp_within(Vector v) {
     const hn::DFromV<Vector> d;
-    return hn::Exp(d, hn::Min(hn::Max(v, hn::Set(d, -40.0F)), hn::Set(d, 40.0F)));
+    const hn::RebindToSigned<decltype(d)> i;
+    constexpr float kP[] = {1.9875691500e-4F, 1.3981999507e-3F, 8.3334519073e-3F,
+                            4.1665795894e-2F, 1.6666665459e-1F, 5.0000001201e-1F};
+    constexpr float kLn2High = 0.693359375F, kLn2Low = -2.12194440e-4F, kLog2E = 1.44269504F;
+    const Vector x = hn::Min(hn::Max(v, hn::Set(d, -40.0F)), hn::Set(d, 40.0F));
+    const auto n = hn::NearestInt(hn::Mul(x, hn::Set(d, kLog2E)));
+    const Vector whole = hn::ConvertTo(d, n);
+    const Vector f = hn::NegMulAdd(whole, hn::Set(d, kLn2Low),
+                                   hn::NegMulAdd(whole, hn::Set(d, kLn2High), x));
+    Vector p = hn::Set(d, kP[0]);
+    for (std::size_t k = 1; k < 6; ++k) p = hn::MulAdd(p, f, hn::Set(d, kP[k]));
+    p = hn::MulAdd(hn::Mul(f, f), p, hn::Add(f, hn::Set(d, 1.0F)));
+    const auto exponent = hn::ShiftLeft<23>(hn::Add(n, hn::Set(i, 127)));
+    return hn::Mul(p, hn::BitCast(d, exponent));
 }
 template <class Vector>
 HWY_INLINE Vector sigmoid(Vector v) {
@@ -122,6 +137,11 @@ HWY_INLINE hn::Vec<Tag> load_upto(Tag d, const float* from, int n) {
 template <class Tag>
 HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, const float* h,
                              float* out, int channels, int pixels) {
+    if (channels == int(hn::Lanes(d))) {
+        for (int p = 0; p < pixels; ++p, r += r_step, h += channels, out += channels)
+            hn::StoreU(hn::Mul(hn::LoadU(d, r), hn::LoadU(d, h)), d, out);
+        return;
+    }
     for (int p = 0; p < pixels; ++p, r += r_step, h += channels, out += channels)
         over_channels(d, channels, [&](int c, int n) HWY_ATTR {
             store_some(d, hn::Mul(load_upto(d, r + c, n), load_upto(d, h + c, n)), out + c, n);
@@ -131,6 +151,15 @@ HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, const
 template <class Tag>
 HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdiff_t u_step,
                               const float* candidate, float* out, int channels, int pixels) {
+    if (channels == int(hn::Lanes(d))) {
+        for (int p = 0; p < pixels;
+             ++p, u += u_step, h += channels, candidate += channels, out += channels) {
+            const auto old = hn::LoadU(d, h);
+            hn::StoreU(hn::MulAdd(hn::LoadU(d, u), hn::Sub(hn::LoadU(d, candidate), old), old), d,
+                       out);
+        }
+        return;
+    }
     for (int p = 0; p < pixels;
          ++p, u += u_step, h += channels, candidate += channels, out += channels)
         over_channels(d, channels, [&](int c, int n) HWY_ATTR {

@@ -59,9 +59,9 @@ std::size_t ConvGru::scratch_size() const {
 /// What lies outside the map reads as zero.
 void ConvGru::begin(std::size_t i, float* scratch, const Tile& near) const noexcept {
     const Tile& tile = tiles_[i];
-    if (near.height() == tile.height() + 4 && near.width() == tile.width() + 4) return;
-    const auto u = std::size_t(units());
-    std::memset(scratch, 0, (square(side_ + 4) + square(side_ + 2)) * u * sizeof(float));
+    clear_outside(tile.widened(2), near, scratch, input_pitch(), units());
+    clear_outside(tile.widened(1), tile.widened(1).within(near),
+                  scratch + (side_ + 4) * input_pitch(), kept_pitch(), units());
 }
 
 void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/kernels/bf16_kernels.h"
+#include "src/kernels/quad_dots.h"
 #include "src/kernels/vector_kernels.h"
 #include "src/nn/arithmetic.h"
 
@@ -22,6 +23,8 @@ public:
 
     /// Null where they are float32.
     const Bf16Kernels* bf16() const { return bf16_; }
+    /// Whether layers of 8 and 16 outputs go by quads of units (quad_dots.h).
+    bool by_quads() const { return bf16_ != nullptr ? bf16_->by_quads : vector_kernels().by_quads; }
     int units(int channels) const { return bf16_ != nullptr ? (channels + 1) / 2 : channels; }
 
     /// Pixels of so many channels, one after the other, from float32 and back.
@@ -41,6 +44,10 @@ public:
         for (std::size_t p = 0; p < pixels; ++p)
             for (std::size_t c = 0; c < count; ++c)
                 out[p * count + c] = from_bf16(numbers[p * step + c]);
+    }
+    /// See SplitRow; where by_quads().
+    void split(const avx512::SplitRow& row) const noexcept {
+        bf16_ != nullptr ? avx512::split_bf16(row) : avx512::split_f32(row);
     }
     /// See DoubleRow.
     void double_row(DoubleRow row) const noexcept {

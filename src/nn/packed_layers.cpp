@@ -110,15 +110,17 @@ void PackedWeights::run(const void* in, std::ptrdiff_t pitch, std::ptrdiff_t ste
 
 PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                        const Arithmetic& arithmetic, std::vector<Extent> extents,
-                       std::vector<int> sources)
+                       std::vector<int> sources, bool as_one)
     : stride_(stride),
       side_(weights.side),
       inputs_(weights.in),
       outputs_(weights.out),
-      sources_(std::move(sources)) {
+      sources_(std::move(sources)),
+      as_one_(as_one) {
     if (sources_.empty()) sources_ = {weights.in};
     assert(std::accumulate(sources_.begin(), sources_.end(), 0) == weights.in);
     assert(sources_.size() <= ConvArea::kMaxSources);
+    assert(!as_one || sources_.size() == 1 || !arithmetic.onednn);
     single_ = packed(weights, 1, relu, arithmetic.products);
     if (arithmetic.onednn && side_ == 3) {
         onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, arithmetic.bf16(),
@@ -127,8 +129,29 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
     }
     const int lanes = arithmetic.bf16() ? kBf16Lanes : vector_kernels().lanes;
     const bool is_whole = !arithmetic.bf16() || outputs_ % 2 == 0;
-    if (side_ > 1 && 2 * outputs_ <= lanes && is_whole)
+    if (!by_quads() && !as_one_ && side_ > 1 && 2 * outputs_ <= lanes && is_whole)
         pair_ = packed(weights, 2, relu, arithmetic.products);
+}
+
+bool PackedConv::by_quads() const {
+    constexpr int kQuad = 4;
+    return numbers().by_quads() && stride_ == 1 && (outputs_ == 8 || outputs_ == 16) &&
+           std::ranges::all_of(sources_, [&](int c) { return numbers().units(c) % kQuad == 0; });
+}
+
+/// body(source, row, first column) of each of the stretches that an output reads, in the order in
+/// which they are summed up.
+template <typename Body>
+void PackedConv::over_stretches(const Body& body) const {
+    const int sources = int(sources_.size());
+    if (as_one_) {
+        for (int row = 0; row < side_; ++row)
+            for (int x = 0; x < side_; ++x)
+                for (int i = 0; i < sources; ++i) body(i, row, x);
+    } else {
+        for (int i = 0; i < sources; ++i)
+            for (int row = 0; row < side_; ++row) body(i, row, 0);
+    }
 }
 
 /// Weights for so many pixels of output beside each other, which read the same stretches:
@@ -138,21 +161,21 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
 ///     output 1       0   w0  w1  w2
 PackedWeights PackedConv::packed(const plain::ConvWeights<float>& weights, int pixels, bool relu,
                                  Products products) const {
+    struct Place {
+        int channel, row, x;  // where a stretch begins
+    };
     std::vector<PackedWeights::Shape> stretches;
-    std::vector<int> first_channel;  // of each stretch
-    int channel = 0;
-    for (const int channels : sources_) {
-        for (int row = 0; row < side_; ++row) {
-            stretches.push_back({side_ + (pixels - 1) * stride_, channels});
-            first_channel.push_back(channel);
-        }
-        channel += channels;
-    }
+    std::vector<Place> places;
+    over_stretches([&](int source, int row, int x) {
+        const auto begin = sources_.begin();
+        stretches.push_back({as_one_ ? 1 : side_ + (pixels - 1) * stride_, begin[source]});
+        places.push_back({std::accumulate(begin, begin + source, 0), row, x});
+    });
     const auto weight = [&](int s, int at, int c, int o) {
-        const int x = at - o / outputs_ * stride_, y = s % side_;
+        const auto& [channel, y, first] = places[std::size_t(s)];
+        const int x = first + at - o / outputs_ * stride_;
         if (x < 0 || x >= side_) return 0.0F;
-        const int in = first_channel[std::size_t(s)] + c;
-        const int tap = (o % outputs_ * inputs_ + in) * side_ * side_ + y * side_ + x;
+        const int tap = (o % outputs_ * inputs_ + channel + c) * side_ * side_ + y * side_ + x;
         return weights.weight[std::size_t(tap)];
     };
     std::vector<float> bias;
@@ -213,17 +236,17 @@ void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step) const no
 /// `count` times one or two outputs of each row, from `first` on.
 void PackedConv::run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
                           int at_once) const noexcept {
-    std::array<Stretch, std::size_t{3} * ConvArea::kMaxSources> stretches;
+    std::array<Stretch, std::size_t{9} * ConvArea::kMaxSources> stretches;
     int n = 0;
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-        const auto [in, pitch] = area.in[i];
-        const std::ptrdiff_t step = std::ptrdiff_t(stride_) * numbers().units(sources_[i]);
-        const int length = (side_ + (at_once - 1) * stride_) * numbers().units(sources_[i]);
-        for (int row = 0; row < side_; ++row)
-            stretches[std::size_t(n++)] = {
-                static_cast<const float*>(in) + row * pitch + first * step, at_once * step,
-                stride_ * pitch, length};
-    }
+    over_stretches([&](int source, int row, int x) {
+        const auto [in, pitch] = area.in[std::size_t(source)];
+        const int units = numbers().units(sources_[std::size_t(source)]);
+        const std::ptrdiff_t step = std::ptrdiff_t(stride_) * units;
+        stretches[std::size_t(n++)] = {
+            static_cast<const float*>(in) + row * pitch + first * step + std::ptrdiff_t(x) * units,
+            at_once * step, stride_ * pitch,
+            as_one_ ? units : (side_ + (at_once - 1) * stride_) * units};
+    });
     DotArea dots;
     dots.stretches = stretches.data();
     dots.count = n;

@@ -81,10 +81,11 @@ public:
     PackedConv() = default;
     /// `extents`: of the regions run() is called for. Our own kernels take any region; they run
     /// every layer of 1x1. `sources`: how many of the input's channels lie in which map; all in one
-    /// where it is empty.
+    /// where it is empty. `as_one`: products are summed up as if all lay in one, whatever `sources`
+    /// says.
     PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                const Arithmetic& arithmetic, std::vector<Extent> extents = {},
-               std::vector<int> sources = {});
+               std::vector<int> sources = {}, bool as_one = false);
 
     const Numbers& numbers() const { return single_.numbers(); }
     /// Scratch numbers run() needs for height x width outputs or fewer.
@@ -100,11 +101,15 @@ private:
     void run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
                   int at_once) const noexcept;
     void run_onednn(const ConvArea& area, float* scratch) const noexcept;
+    bool by_quads() const;
+    template <typename Body>
+    void over_stretches(const Body& body) const;
     void gather(const ConvArea& area, void* dense) const noexcept;
     int reach(int outputs) const { return (outputs - 1) * stride_ + side_; }
 
     int stride_ = 1, side_ = 3, inputs_ = 0, outputs_ = 0;
     std::vector<int> sources_;  // channels
+    bool as_one_ = false;
     /// Our own kernels' weights: for one output pixel; and for two beside each other, where the
     /// outputs of one fill but half a vector.
     PackedWeights single_, pair_;

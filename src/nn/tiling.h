@@ -22,12 +22,35 @@ struct Tile {
         return {std::max(y0 - n, 0), std::max(x0 - n, 0), std::min(y1 + n, map_height),
                 std::min(x1 + n, map_width)};
     }
+    /// Larger by n on each side, past the map's edges, too.
+    Tile widened(int n) const { return {y0 - n, x0 - n, y1 + n, x1 + n}; }
+    Tile within(const Tile& other) const {
+        return {std::max(y0, other.y0), std::max(x0, other.x0), std::min(y1, other.y1),
+                std::min(x1, other.x1)};
+    }
     bool any(const Mask& mask) const {
         for (int y = y0; y < y1; ++y)
             if (std::memchr(&mask(y, x0), 1, std::size_t(width())) != nullptr) return true;
         return false;
     }
 };
+
+/// Zeros in what of `wide` lies outside `inside`. Its first pixel is at `out`, `pitch` numbers from
+/// one row to the next, `units` a pixel.
+inline void clear_outside(const Tile& wide, const Tile& inside, float* out, std::ptrdiff_t pitch,
+                          std::ptrdiff_t units) {
+    const auto clear = [&](int y, int x0, int x1) {
+        float* from = out + (y - wide.y0) * pitch + (x0 - wide.x0) * units;
+        std::fill_n(from, std::max<std::ptrdiff_t>((x1 - x0) * units, 0), 0.0F);
+    };
+    for (int y = wide.y0; y < wide.y1; ++y)
+        if (y < inside.y0 || y >= inside.y1) {
+            clear(y, wide.x0, wide.x1);
+        } else {
+            clear(y, wide.x0, inside.x0);
+            clear(y, inside.x1, wide.x1);
+        }
+}
 
 /// Tiles of about the same size, at most `side` long: they depend on the map's size alone.
 inline std::vector<Tile> tiles_of(int height, int width, int side) {

@@ -153,8 +153,7 @@ void GatedDecoder::join_tile(const PaddedMap& h, const PaddedMap& below, std::si
     Level& level = levels_[l];
     const std::ptrdiff_t units = below.channels(), row = (tile.width() + 2) * units;
     const Tile near = tile.grown(1, h.height(), h.width());
-    if (near.height() < tile.height() + 2 || near.width() < tile.width() + 2)
-        std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
+    clear_outside(tile.widened(1), near, scratch, row, units);
     for (int y = near.y0; y < near.y1; ++y)
         double_row(below, numbers_, widths_[l + 1], y, near.x0, near.x1,
                    scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * units);

@@ -24,6 +24,39 @@ void fetch(const float* numbers, std::size_t n) {
 /// Enough tiles for all threads, few enough that not every tile's next state is held at once.
 constexpr std::size_t kLeastGroup = 32;
 
+/// The input layer's channels in maps of one quad of units or two, where layers go by quads and not
+/// too many channels of zeros have to be added; else in one.
+struct InputMaps {
+    int count = 1, size = 0;
+};
+InputMaps input_maps(int channels, const Arithmetic& arithmetic) {
+    constexpr double kMostAdded = 1.34;  // pixels in pairs, the other way, cost as much
+    const Numbers numbers{arithmetic.products};
+    const bool is_bf16 = numbers.bf16() != nullptr;
+    InputMaps best{1, channels};
+    if (!numbers.by_quads() || arithmetic.onednn) return best;
+    for (const int size : {4, 8}) {
+        const int count = (channels + size - 1) / size;
+        if ((is_bf16 && size == 4) || count > ConvArea::kMaxSources) continue;
+        if (count * size > kMostAdded * channels) continue;
+        best = {count, size};
+        break;
+    }
+    return best;
+}
+
+/// With zeros for channels that are not there.
+plain::ConvWeights<float> with_inputs(const plain::ConvWeights<float>& weights, int inputs) {
+    plain::ConvWeights<float> wider{weights.out, inputs, {}, weights.bias, weights.side};
+    const std::size_t taps = std::size_t(weights.side) * std::size_t(weights.side),
+                      before = std::size_t(weights.in) * taps, after = std::size_t(inputs) * taps;
+    wider.weight.resize(std::size_t(weights.out) * after);
+    for (std::size_t o = 0; o < std::size_t(weights.out); ++o)
+        std::copy_n(weights.weight.begin() + std::ptrdiff_t(o * before), before,
+                    wider.weight.begin() + std::ptrdiff_t(o * after));
+    return wider;
+}
+
 /// What a GRU's step reads of its input reaches 2 further than its tile.
 constexpr int kGruReach = 2;
 
@@ -43,10 +76,18 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
       tiles_(tiles_of(size.height, size.width, side_)),
       recurrent_(model.config.recurrent[number] != 0),
       mask_(size.height, size.width) {
-    in_ = {plain::conv_weights<float>(model.weights,
-                                      number == 0 ? "encoder.in" : encoder_layer("down", number)),
-           number == 0 ? 1 : 2, true, arithmetic,
-           extents_of(tiles_, recurrent_ ? kGruReach : 0, size.height, size.width)};
+    const auto weights = plain::conv_weights<float>(
+        model.weights, number == 0 ? "encoder.in" : encoder_layer("down", number));
+    const InputMaps maps = number == 0 ? input_maps(inputs_, arithmetic) : InputMaps{1, inputs_};
+    maps_ = maps.count;
+    map_channels_ = maps.size;
+    in_ = {with_inputs(weights, maps_ * map_channels_),
+           number == 0 ? 1 : 2,
+           true,
+           arithmetic,
+           extents_of(tiles_, recurrent_ ? kGruReach : 0, size.height, size.width),
+           std::vector<int>(std::size_t(maps_), map_channels_),
+           maps_ > 1};
     if (!recurrent_) return;
     const auto row = std::size_t(std::ranges::count(tiles_, tiles_.front().y0, &Tile::y0));
     group_ = row * ((kLeastGroup + row - 1) / row);
@@ -64,7 +105,7 @@ std::size_t GatedLevel::scratch_size() const {
     const int side = side_ + (recurrent_ ? 2 * kGruReach : 0);
     const auto wide = std::size_t(side + 2);
     const std::size_t grid =
-        number_ == 0 ? wide * wide * std::size_t(in_.numbers().units(inputs_)) : 0;
+        number_ == 0 ? wide * wide * std::size_t(maps_ * in_.numbers().units(map_channels_)) : 0;
     const std::size_t row = number_ == 0 ? wide * std::size_t(inputs_) : 0;
     const std::size_t next = recurrent_ ? gru_.scratch_size() : next_size();
     return next + grid + std::max(row, in_.scratch_size(side, side));
@@ -127,29 +168,34 @@ void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& st
 ///     0 r r r r g      (conv_gru.cpp)
 ///     0 r r r r g      g: a rim of one pixel, which the 3x3 layer reads; 0: past the sensor's edge
 ///     0 g g g g g      rows of [pixel][channel], one after the other, `row` units each; behind
-///                      them one row in float32, where layers read bf16
+///                      them one row in float32, where layers read bf16. Where layers go by
+///                      quads, channels 0 to 7 lie so, behind them those from 8 on, ...
 void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
                            float* scratch) const noexcept {
     const Tile& region = target.region;
-    const Tile wide{region.y0 - 1, region.x0 - 1, region.y1 + 1, region.x1 + 1};
+    const Tile wide = region.widened(1);
     const Tile inside = region.grown(1, grid.height(), grid.width());
     const Numbers& numbers = in_.numbers();
     const int channels = grid.channels();
-    const std::ptrdiff_t units = numbers.units(channels), row = wide.width() * units;
-    if (inside.height() < wide.height() || inside.width() < wide.width())
-        std::memset(scratch, 0, std::size_t(wide.height() * row) * sizeof(float));
-    float* rest = scratch + wide.height() * row;
+    const std::ptrdiff_t units = numbers.units(map_channels_), row = wide.width() * units,
+                         plane = wide.height() * row;
+    for (int map = 0; map < maps_; ++map)
+        clear_outside(wide, inside, scratch + map * plane, row, units);
+    float* rest = scratch + maps_ * plane;
     const auto pixels = std::size_t(inside.width());
     for (int y = inside.y0; y < inside.y1; ++y) {
         if (y + kRowsAhead < inside.y1)
             fetch(grid.pixel(y + kRowsAhead, inside.x0).data(), pixels * std::size_t(channels));
         float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
-        float* compressed = numbers.bf16() != nullptr ? rest : to;
+        float* compressed = numbers.bf16() != nullptr || maps_ > 1 ? rest : to;
         vector_kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
                                   pixels * std::size_t(channels));
-        if (compressed != to) numbers.narrow(compressed, pixels, channels, to);
+        if (maps_ > 1)
+            numbers.split({compressed, inside.width(), channels, map_channels_, maps_, to, plane});
+        else if (compressed != to)
+            numbers.narrow(compressed, pixels, channels, to);
     }
-    in_.run(ConvArea{.in = {{{scratch, row}}},
+    in_.run(ConvArea{.in = {{{scratch, row}, {scratch + plane, row}, {scratch + 2 * plane, row}}},
                      .out = target.out,
                      .out_pitch = target.pitch,
                      .narrow = true,

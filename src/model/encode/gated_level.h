@@ -52,6 +52,7 @@ private:
     std::size_t number_;
     Extent size_;
     int channels_, inputs_, side_;
+    int maps_ = 1, map_channels_ = 0;  // that the layer's inputs are cut into; channels of each
     std::vector<Tile> tiles_;
     PackedConv in_;  // from the grid, or from the level above
     bool recurrent_;
