@@ -51,6 +51,8 @@ void add_errors(py::module_& module) {
              "A recording or model that cannot be read or is not what it says.", error);
     exceptions.device = make(module, "DeviceError",
                              "A camera that is missing, cannot be used, or was lost.", error);
+    // pybind11 takes functions of a value.
+    // NOLINTNEXTLINE(performance-unnecessary-value-param)
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(thrown);

@@ -62,6 +62,8 @@ public:
         return true;
     }
 
+    /// Without Python's lock, which may fail, nothing could be told anyone.
+    // NOLINTNEXTLINE(bugprone-exception-escape)
     void stop() noexcept override {
         const py::gil_scoped_acquire locked;
         try {

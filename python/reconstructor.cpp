@@ -264,7 +264,7 @@ ReconstructorOptions options_of(const py::dict& given) {
 void add_reconstructor(py::module_& module) {
     add_frame(module);
     add_iterator(module);
-    py::class_<GuardedReconstructor>(module, "_Guarded");
+    const py::class_<GuardedReconstructor> guarded(module, "_Guarded");
     py::class_<SizedReconstructor, GuardedReconstructor> it(
         module, "Reconstructor",
         "Events in, frames with uncertainty out.\n\n"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What .ci/run has no time for: clang-tidy over every source file, the tests under the sanitizers, a minute of fuzzing, the API pages, and a wheel for
+# What .ci/run has no time for: clang-tidy over the libraries' source files, the tests under the sanitizers, a minute of fuzzing, the API pages, and a wheel for
 # Python, and the library of events to frames alone. An hour or two on two cores; before a release, and after changes to parsers, threads or memory.
 #   scripts/check.sh [api] [wheel] [core] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
 set -euo pipefail
@@ -10,7 +10,7 @@ tidy() {
   cmake --preset dev >/dev/null
   # Headers that the build writes.
   cmake --build --preset dev
-  find apps src pipeline replay drivers library python -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/dev --quiet
+  find src pipeline replay drivers library python -name '*.cpp' -print0 | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/dev --quiet
 }
 
 # A warning fails.

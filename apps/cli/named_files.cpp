@@ -20,14 +20,16 @@ void NamedFiles::refuse_overlap(const Named& named, const std::vector<Named>& ot
     const auto holds = [](const Named& folder, const Named& file) {
         return folder.whole_folder && lies_in(file.path, folder.path);
     };
-    for (const Named& other : others) {
-        const bool same = named.identity.is_same_file(other.identity);
-        if (!same && !holds(named, other) && !holds(other, named)) continue;
+    const auto refuse = [&](const Named& other, bool same) {
         const std::string kind = named.identity.is_folder() ? "folder" : "file";
         throw Error(ErrorKind::usage,
                     named.text +
                         (same ? ": is the same " + kind + " as " : ": is in the same folder as ") +
                         other.text + "; expected a " + kind + " of its own");
+    };
+    for (const Named& other : others) {
+        const bool same = named.identity.is_same_file(other.identity);
+        if (same || holds(named, other) || holds(other, named)) refuse(other, same);
     }
 }
 

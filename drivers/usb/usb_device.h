@@ -30,7 +30,7 @@ struct UsbIdentity {
 
 /// Which device: all conditions that are set must hold.
 struct UsbSelector {
-    std::string name = "camera";      ///< in messages: "DAVIS"
+    std::string name = "camera";    ///< in messages: "DAVIS"
     std::uint16_t vendor = 0x152A;  ///< iniVation
     std::vector<std::uint16_t> products;
     std::string serial;

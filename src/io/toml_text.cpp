@@ -22,7 +22,7 @@ bool may_begin_a_name(char c) {
 /// comments and lists, so that only what begins a table's header is taken for one.
 class Walk {
 public:
-    explicit Walk(std::string_view text) : rest_(text) {
+    Walk(const std::string& path, std::string_view text) : path_(path), rest_(text) {
         if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
     }
 
@@ -41,16 +41,22 @@ public:
         }
         return false;
     }
-    void skip_line() { take(std::min(rest_.find('\n'), rest_.size())); }
     std::string_view rest() const { return rest_; }
-    int line() const { return line_; }
+    [[noreturn]] void refuse(const std::string& wanted) const {
+        const char found = rest_.front();
+        throw Error(ErrorKind::usage, path_ + ":" + std::to_string(line_) + ": expected " + wanted +
+                                          ", found " +
+                                          (found == '\n' ? std::string{"the end of the line"}
+                                                         : std::string{'\'', found, '\''}));
+    }
 
 private:
     /// Past one character, or one string or comment.
     void step() {
         if (rest_.empty()) return;
         const char c = rest_.front();
-        if (c == '#') return skip_line();
+        if (c == '#') return take(std::min(rest_.find('\n'), rest_.size()));
+        if (static_cast<unsigned char>(c) >= 0x80) refuse("letters without accents outside quotes");
         if (c == '"' || c == '\'') return skip_string(c);
         if (c == '[') ++depth_;
         if (c == ']' && depth_ > 0) --depth_;
@@ -80,6 +86,7 @@ private:
         rest_.remove_prefix(taken.size());
     }
 
+    const std::string& path_;
     std::string_view rest_;
     int line_ = 1, depth_ = 0;  // depth: of lists
     bool begins_line_ = true;
@@ -88,14 +95,10 @@ private:
 }  // namespace
 
 void check_table_names(const std::string& path, std::string_view text) {
-    for (Walk walk{text}; walk.next_table(); walk.skip_line()) {
-        if (walk.rest().empty() || may_begin_a_name(walk.rest().front())) continue;
-        const char found = walk.rest().front();
-        throw Error(ErrorKind::usage, path + ":" + std::to_string(walk.line()) +
-                                          ": expected the name of a table after '[', found " +
-                                          (found == '\n' ? std::string{"the end of the line"}
-                                                         : std::string{'\'', found, '\''}));
-    }
+    Walk walk{path, text};
+    while (walk.next_table())
+        if (!walk.rest().empty() && !may_begin_a_name(walk.rest().front()))
+            walk.refuse("the name of a table after '['");
 }
 
 std::string read_toml_text(const std::filesystem::path& path) {

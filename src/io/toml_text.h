@@ -8,7 +8,9 @@
 namespace eventide {
 
 /// toml++ 3 takes for granted that the name of a table begins as a key does, and does not look
-/// where assertions are off. Throws Error (usage) naming `path` and the line where one does not.
+/// where assertions are off; and it does not survive some letters in numbers. Throws Error (usage)
+/// naming `path` and the line where a name does not, or where a character that is not ASCII stands
+/// outside of strings and comments.
 void check_table_names(const std::string& path, std::string_view text);
 
 /// A whole file that toml++ may parse. Throws Error: as open_to_read() and check_table_names().

@@ -7,6 +7,7 @@
 #include "src/model/instructions.h"
 
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,7 @@ inline const std::vector<Word<Instructions>> kInstructionWords{{Instructions::be
 inline const std::vector<Word<ColourFilter>>& bayer_words() {
     static const std::vector<Word<ColourFilter>> words = [] {
         std::vector<Word<ColourFilter>> all;
+        all.reserve(std::size(kColourFilters));
         for (const ColourFilter filter : kColourFilters) all.push_back({filter, name_of(filter)});
         return all;
     }();

@@ -105,12 +105,14 @@ TEST(Config, MistakesAreNamedWithTheirLine) {
 }
 
 TEST(Config, NamesOfTablesThatAreNoneAreRefusedBeforeTomlTakesThemForGranted) {
-    for (const char* text : {"[?un]\nfps = 20\n", "[[[_un]", "[ [x]]", "a = 1\n  [[ \x7f]]\n",
-                             "[=]", "[\xc3\xa9]", "[\n]", "[[\r\n]]", "\xEF\xBB\xBF[?]",
-                             "a = [\n1] # [\n[ \n", "a = 'x\n[\n", "a = \"\"\"[\n\\\"\"\"\"\n[ \n"})
+    for (const char* text :
+         {"[?un]\nfps = 20\n", "[[[_un]", "[ [x]]", "a = 1\n  [[ \x7f]]\n", "[=]", "[\xc3\xa9]",
+          "a = 44+4\xcc\x9f", "[a] \xc3\xa9", "[\n]", "[[\r\n]]", "\xEF\xBB\xBF[?]",
+          "a = [\n1] # [\n[ \n", "a = 'x\n[\n", "a = \"\"\"[\n\\\"\"\"\"\n[ \n"})
         EXPECT_THROW(check_table_names("c.toml", text), Error) << text;
     for (const char* text : {"[run]\n", " [ \"a b\" ]\n", "[[x]]", "[", "[]", "out = [\n[\n'a' ]]",
-                             "a = \"\"\"\n[\n\"\"\"\n", "a = \'\'\'\n[?\'\'\'\'\'\n[run]", "# [\n"})
+                             "a = \"\"\"\n[\n\"\"\"\n", "a = \'\'\'\n[?\'\'\'\'\'\n[run]",
+                             "# [\xc3\xa9\n", "[\"\xc3\xa9\"] # \xc3\xa9\na = '\xc3\xa9'"})
         EXPECT_NO_THROW(check_table_names("c.toml", text)) << text;
 }
 
