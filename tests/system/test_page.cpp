@@ -110,8 +110,9 @@ TEST_F(Page, SlidersChangeTheRun) {
     EXPECT_TRUE(browser.becomes_true(
         "eventide.message.controls.find(c => c.name === 'lookahead').value === 2", kLong));
     // The model's windows are 50 ms long; what a frame says of its own is what the run did.
-    const std::string window = "parseFloat(document.getElementById('window-events').textContent"
-                               ".split(' in ')[1])";
+    const std::string window =
+        "parseFloat(document.getElementById('window-events').textContent"
+        ".split(' in ')[1])";
     EXPECT_TRUE(browser.becomes_true(window + " === 50", kLong));
     browser.value(move("window", "Math.log(20) / Math.log(500)"));
     EXPECT_TRUE(browser.becomes_true(window + " === 20", kLong)) << browser.value(window);
