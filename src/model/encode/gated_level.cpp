@@ -113,7 +113,7 @@ void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& st
     in_.run({.in = {{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
              .out = target.out,
              .out_pitch = target.pitch,
-             .narrow = true,
+             .to_bf16 = true,
              .height = region.height(),
              .width = region.width()},
             scratch);
@@ -147,12 +147,12 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
         float* compressed = numbers.bf16() != nullptr ? rest : to;
         vector_kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
                                   pixels * std::size_t(channels));
-        if (compressed != to) numbers.narrow(compressed, pixels, channels, to);
+        if (compressed != to) numbers.from_float(compressed, pixels, channels, to);
     }
     in_.run({.in = {{{scratch, row}}},
              .out = target.out,
              .out_pitch = target.pitch,
-             .narrow = true,
+             .to_bf16 = true,
              .height = region.height(),
              .width = region.width()},
             rest);
