@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What .ci/run has no time for: clang-tidy over the libraries' source files, the tests under the sanitizers, a minute of fuzzing, the API pages, and a wheel for
-# Python, and the library of events to frames alone. An hour or two on two cores; before a release, and after changes to parsers, threads or memory.
-#   scripts/check.sh [api] [wheel] [core] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
+# Python, the library of events to frames alone, and Debian packages in a system of their own. An hour or two on two cores; before a release, and after
+# changes to parsers, threads or memory.
+#   scripts/check.sh [api] [wheel] [core] [packages] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 fuzz_seconds=2  # of each target: a minute of all together
@@ -63,17 +64,46 @@ core() {
   grep -q "component 'io'" "$place/words"
 }
 
+# A clean Debian 12, made by debootstrap: packages are installed and run, and programs in C and Python built on them give the frames of
+# `eventide run`. As root, with Debian's archive at hand.
+packages() {
+  local place system
+  place=$(mktemp -d)
+  system=$place/system
+  trap 'umount "$system/proc" 2>/dev/null || true; rm -rf --one-file-system "$place"' RETURN
+  cmake --preset release >/dev/null
+  cmake --build --preset release
+  cpack --config build/release/CPackConfig.cmake -B "$place/packages"
+  debootstrap --variant=minbase bookworm "$system"
+  mount -t proc proc "$system/proc"
+  cp "$place"/packages/*.deb examples/reconstruct.c examples/reconstruct.py "$system/root/"
+  cp /etc/resolv.conf "$system/etc/"
+  chroot "$system" sh -euc '
+    cd /root
+    apt-get update -q
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends gcc libc6-dev pkg-config ./*.deb
+    eventide simulate --scene demo --seconds 1 --size 96x72 --out recording.aedat4
+    eventide run recording.aedat4 --out video.mp4 --uncertainty side
+    eventide run recording.aedat4 --frames ignore --precision f32 --out grayf32:theirs --uncertainty separate --sigma-white 1
+    cc -std=c11 reconstruct.c -o reconstruct $(pkg-config --cflags --libs eventide)
+    ./reconstruct recording.aedat4 in_c
+    python3 reconstruct.py recording.aedat4 in_python
+    cmp in_c theirs
+    cmp in_python theirs'
+}
+
 scripts/install-packages.sh --tests
 for check in "${@:-all}"; do
   case $check in
-    all) scripts/check-format.sh; api; wheel; core; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
+    all) scripts/check-format.sh; api; wheel; core; packages; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
     api) api ;;
     wheel) wheel ;;
     core) core ;;
+    packages) packages ;;
     tidy) tidy ;;
     fuzz) scripts/fuzz.sh $fuzz_seconds ;;
     asan | tsan) scripts/test.sh "$check" ;;
-    *) echo "check: expected api, wheel, core, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
+    *) echo "check: expected api, wheel, core, packages, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
   esac
 done
 echo "check: passed"

@@ -19,7 +19,7 @@ tests=(
   libtorch-dev ffmpeg python3
   libfastrtps-dev libfastcdr-dev
   clang clang-format clang-tidy libclang-rt-14-dev git
-  dpkg-dev file chromium doxygen
+  dpkg-dev file chromium doxygen zsh fish debootstrap
 )
 wanted=("${build[@]}")
 [ "${1:-}" = "--tests" ] && wanted+=("${tests[@]}")

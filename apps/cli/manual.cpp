@@ -1,4 +1,4 @@
-// The manual page and the shell's completion.
+// The manual page.
 #include "apps/cli/manual.h"
 
 #include "apps/cli/program.h"
@@ -47,29 +47,6 @@ void add_command(Command& command, std::string& page) {
     page += ".PP\n.nf\n" + literal(command.examples()) + "\n.fi\n";
 }
 
-/// The words of a setting that takes one of a few: "auto|f32|bf16".
-std::string words_of(const Setting& setting) {
-    std::string words = setting.value_name;
-    if (words.find('|') == words.npos) return {};
-    for (char& c : words)
-        if (c == '|') c = ' ';
-    return words;
-}
-
-/// The lines of a bash case: what may follow a flag, and which flags there are.
-struct Choices {
-    std::string words, flags;
-
-    void add(const std::string& command, const SettingTable& table) {
-        for (const Setting& setting : table.settings) {
-            flags += flag_of(setting) + " ";
-            if (const std::string choice = words_of(setting); !choice.empty())
-                words += "        \"" + command + " " + flag_of(setting) + "\") choice=\"" +
-                         choice + "\" ;;\n";
-        }
-    }
-};
-
 }  // namespace
 
 std::string manual_page(const SettingTable& common, const Commands& commands) {
@@ -87,37 +64,6 @@ std::string manual_page(const SettingTable& common, const Commands& commands) {
             "\nPrint a configuration file with all keys, their meaning and defaults, and exit.\n";
     for (const Setting& setting : common.settings) add_setting(setting, page);
     return page + ".SH EXIT STATUS\n" + literal(kExitCodes) + "\n";
-}
-
-std::string bash_completion(const SettingTable& common, const Commands& commands) {
-    std::string names, flag_cases, word_cases;
-    for (const auto& command : commands) {
-        Choices choices;
-        choices.add(command->name(), command->settings());
-        choices.add(command->name(), common);
-        names += (names.empty() ? "" : " ") + command->name();
-        flag_cases += "        " + command->name() + ") choice=\"" + choices.flags +
-                      "--config --print-config --help\" ;;\n";
-        word_cases += choices.words;
-    }
-    return "# bash completion of eventide\n"
-           "_eventide() {\n"
-           "    local word=${COMP_WORDS[COMP_CWORD]} choice=\n"
-           "    case \"${COMP_WORDS[1]} ${COMP_WORDS[COMP_CWORD - 1]}\" in\n" +
-           word_cases +
-           "    esac\n"
-           "    if [ -z \"$choice\" ] && [ \"$COMP_CWORD\" -eq 1 ]; then choice=\"" +
-           names +
-           " --help --version --default-config\"; fi\n"
-           "    if [ -z \"$choice\" ]; then\n"
-           "        case \"$word\" in -*) ;; *) return ;; esac\n"
-           "        case \"${COMP_WORDS[1]}\" in\n" +
-           flag_cases +
-           "        esac\n"
-           "    fi\n"
-           "    COMPREPLY=($(compgen -W \"$choice\" -- \"$word\"))\n"
-           "}\n"
-           "complete -o bashdefault -o default -F _eventide eventide\n";
 }
 
 }  // namespace eventide::app

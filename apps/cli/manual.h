@@ -1,4 +1,4 @@
-// The manual page and the shell's completion, out of the tables that the flags come from.
+// The manual page and the shells' completion, out of the tables that the flags come from.
 #pragma once
 
 #include "apps/cli/command.h"
@@ -14,7 +14,9 @@ using Commands = std::vector<std::unique_ptr<Command>>;
 /// eventide(1), for man.
 std::string manual_page(const SettingTable& common, const Commands& commands);
 
-/// For bash: commands, their flags, and the words a flag takes; else files.
+/// Commands, their flags, and the words a flag takes; else files.
 std::string bash_completion(const SettingTable& common, const Commands& commands);
+std::string zsh_completion(const SettingTable& common, const Commands& commands);
+std::string fish_completion(const SettingTable& common, const Commands& commands);
 
 }  // namespace eventide::app

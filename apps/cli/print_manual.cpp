@@ -1,16 +1,21 @@
-// For the build: the manual page or the completion that is installed beside the program.
+// For the build: the manual page or a shell's completion, installed beside the program.
 #include "apps/cli/program.h"
 
 #include <cstdio>
 #include <string>
+#include <utility>
 
 int main(int argc, char** argv) {
+    using namespace eventide::app;
     const std::string what = argc == 2 ? argv[1] : "";
-    if (what != "page" && what != "bash") {
-        std::fprintf(stderr, "print_manual: expected page or bash, found '%s'\n", what.c_str());
-        return 2;
-    }
-    const std::string text =
-        what == "page" ? eventide::app::manual_page() : eventide::app::bash_completion();
-    return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() ? 0 : 1;
+    for (const auto& [word, text] :
+         {std::pair{"page", &manual_page}, std::pair{"bash", &bash_completion},
+          std::pair{"zsh", &zsh_completion}, std::pair{"fish", &fish_completion}})
+        if (what == word) {
+            const std::string made = text();
+            return std::fwrite(made.data(), 1, made.size(), stdout) == made.size() ? 0 : 1;
+        }
+    std::fprintf(stderr, "print_manual: expected page, bash, zsh or fish, found '%s'\n",
+                 what.c_str());
+    return 2;
 }

@@ -139,6 +139,16 @@ std::string bash_completion() {
     return bash_completion(common.table(), all_commands());
 }
 
+std::string zsh_completion() {
+    CommonSettings common;
+    return zsh_completion(common.table(), all_commands());
+}
+
+std::string fish_completion() {
+    CommonSettings common;
+    return fish_completion(common.table(), all_commands());
+}
+
 int run_program(Signals& signals, std::vector<std::string> arguments) {
     start_talk({});
     try {

@@ -15,9 +15,11 @@ std::vector<std::unique_ptr<Command>> all_commands();
 /// config/default.toml holds.
 std::string default_config();
 
-/// eventide(1), and bash's completion of it: what is installed beside the program.
+/// eventide(1), and the shells' completion of it: what is installed beside the program.
 std::string manual_page();
 std::string bash_completion();
+std::string zsh_completion();
+std::string fish_completion();
 
 inline constexpr const char* kExitCodes =
     "Exit codes: 0 done, 1 failed while running, 2 wrong usage or configuration, 3 input "

@@ -1,14 +1,11 @@
 // Which program this is, and what it was built with.
 #include "apps/cli/version.h"
 
-#include <fstream>
-
-extern "C" {
-#include <libavformat/version.h>
-#include <libavutil/avutil.h>
-}
+#include "pipeline/sinks/video/video.h"
 
 #include <opencv2/core/version.hpp>
+
+#include <fstream>
 
 namespace eventide::app {
 
@@ -26,7 +23,7 @@ std::string compiler_text() {
 
 std::string version_text() {
     return "eventide " + version() + "\nbuilt with " + compiler_text() + "\nOpenCV " + CV_VERSION +
-           ", FFmpeg " + av_version_info();
+           ", " + video_library();
 }
 
 std::string processor_text() {

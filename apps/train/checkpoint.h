@@ -16,7 +16,7 @@ struct Checkpoint {
     double elapsed_minutes = 0;
     double best_score = 1e9;               ///< of the validations so far
     std::string options;                   ///< OptionTable::record()
-    std::vector<RecurrentState> memories;  ///< of each group's and thread's lanes
+    std::vector<RecurrentState> memories;  ///< of each group's and thread's streams
 };
 
 /// Writes whole or not at all. Throws Error(failed).

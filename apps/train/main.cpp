@@ -34,9 +34,6 @@ void read_options(const std::vector<std::string>& words, OptionTable& table,
     std::istringstream lines{checkpoint_options(checkpoint)};
     for (std::string line; std::getline(lines, line);) {
         const auto space = line.find(' ');
-        // What older checkpoints say of networks that were fed their own frame; none of these is
-        // left.
-        if (line == "--feedback none") continue;
         if (line.starts_with("--") && space != line.npos)
             table.set(line.substr(2, space - 2), line.substr(space + 1));
     }

@@ -119,7 +119,7 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("device", o.device, "cpu or cuda", Use::run);
     add("precision", o.precision, "of activations: f32, bf16 or auto (bf16 where it is quick)");
     add("threads", o.threads, "shares of a step computed at the same time");
-    add("lanes", o.streams, "streams per thread and step");
+    add("streams", o.streams, "streams per thread and step");
     add("groups", o.groups, "of streams, that take turns from step to step");
     add("seed", o.data.seed, "of the data and the first weights");
 
@@ -204,11 +204,9 @@ OptionTable::OptionTable(TrainOptions& o) {
 
 void OptionTable::set(const std::string& name, const std::string& value) {
     // Checkpoints keep the options of their run; the older ones have these names.
-    static const std::map<std::string, std::string> kFormerNames{{"pace", "speed-factor"},
-                                                                 {"tremble", "camera-shake"},
-                                                                 {"pinned", "static-objects"},
-                                                                 {"flat", "textureless"},
-                                                                 {"faint", "low-contrast"}};
+    static const std::map<std::string, std::string> kFormerNames{
+        {"lanes", "streams"},         {"pace", "speed-factor"}, {"tremble", "camera-shake"},
+        {"pinned", "static-objects"}, {"flat", "textureless"},  {"faint", "low-contrast"}};
     const auto former = kFormerNames.find(name);
     const std::string& now = former == kFormerNames.end() ? name : former->second;
     for (const Option& option : options_) {

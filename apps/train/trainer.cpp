@@ -84,7 +84,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
                                          progress_.window);
 }
 
-/// A run may go on with other lanes or another crop: its states then begin empty.
+/// A run may go on with other streams or another crop: its states then begin empty.
 void Trainer::begin_memories() {
     std::vector<RecurrentState>& memories = progress_.memories;
     const int crop = options_.data.crop;

@@ -16,7 +16,9 @@ pkg_check_modules(zstd IMPORTED_TARGET libzstd)
 # Header-only, without a CMake package in Debian 12.
 find_path(CONCURRENTQUEUE_DIR concurrentqueue.h PATH_SUFFIXES concurrentqueue moodycamel)
 eventide_feature(EVENTIDE_IO "recordings, cameras and simulations: libeventide" DEFAULT ON
-  CHECK ZLIB_FOUND BZIP2_FOUND Eigen3_FOUND OpenCV_FOUND lz4_FOUND zstd_FOUND CONCURRENTQUEUE_DIR)
+  CHECK ZLIB_FOUND Eigen3_FOUND OpenCV_FOUND CONCURRENTQUEUE_DIR)
+eventide_feature(EVENTIDE_COMPRESSION "recordings compressed by LZ4, ZSTD and bzip2"
+  CHECK lz4_FOUND zstd_FOUND BZIP2_FOUND EVENTIDE_IO_ENABLED)
 
 # The programs.
 pkg_check_modules(spdlog IMPORTED_TARGET spdlog)
@@ -27,11 +29,14 @@ if(NOT EVENTIDE_IO_ENABLED AND NOT EVENTIDE_PROGRAM STREQUAL "ON")
   set(program AUTO)  # the library of frames alone has none
 endif()
 eventide_feature(EVENTIDE_PROGRAM "the program eventide, which its tests need" DEFAULT ${program}
-  CHECK spdlog_FOUND libav_FOUND CLI11_FOUND EVENTIDE_IO_ENABLED)
+  CHECK spdlog_FOUND CLI11_FOUND EVENTIDE_IO_ENABLED)
+eventide_feature(EVENTIDE_VIDEO "video files (--out x.mp4)" CHECK libav_FOUND EVENTIDE_PROGRAM_ENABLED)
 foreach(other EVENTIDE_TESTS EVENTIDE_BENCH EVENTIDE_FUZZ)
-  if(${other} AND NOT EVENTIDE_PROGRAM_ENABLED)
-    message(FATAL_ERROR "${other}=ON: expected a build with EVENTIDE_PROGRAM, found one without; choose -D${other}=OFF")
-  endif()
+  foreach(part PROGRAM VIDEO COMPRESSION)
+    if(${other} AND NOT EVENTIDE_${part}_ENABLED)
+      message(FATAL_ERROR "${other}=ON: expected a build with EVENTIDE_${part}, found one without; choose -D${other}=OFF")
+    endif()
+  endforeach()
 endforeach()
 
 # The name that whoever links a library would load it by.

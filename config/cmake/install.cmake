@@ -15,6 +15,10 @@ if(EVENTIDE_PROGRAM_ENABLED)
   install(FILES ${PROJECT_BINARY_DIR}/manual/page DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME eventide.1 COMPONENT program)
   install(FILES ${PROJECT_BINARY_DIR}/manual/bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
     RENAME eventide COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/manual/zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+    RENAME _eventide COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/manual/fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
+    RENAME eventide.fish COMPONENT program)
   install(FILES config/udev/65-eventide.rules DESTINATION lib/udev/rules.d COMPONENT program)
   configure_file(config/systemd/eventide@.service.in ${PROJECT_BINARY_DIR}/eventide@.service @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/eventide@.service DESTINATION lib/systemd/system COMPONENT program)

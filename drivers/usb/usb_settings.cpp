@@ -3,6 +3,8 @@
 #include "drivers/settings_file.h"
 
 #include <array>
+#include <string_view>
+#include <utility>
 
 namespace eventide {
 
@@ -29,12 +31,16 @@ void add_region(SettingsFile& file, const char* name, std::optional<SensorRegion
 }
 
 void add_polarity(SettingsFile& file, const char* name, SentPolarity& into) {
-    static constexpr std::array<const char*, 4> kNames{"both", "on", "off", "flat"};
+    static constexpr std::pair<SentPolarity, std::string_view> kWords[]{
+        {SentPolarity::both, "both"},
+        {SentPolarity::on, "on"},
+        {SentPolarity::off, "off"},
+        {SentPolarity::flat, "flat"}};
     file.custom(name, [&file, name, &into](const toml::node& node) {
         const auto text = node.value_exact<std::string>();
-        for (std::size_t i = 0; i < kNames.size(); ++i)
-            if (text && *text == kNames[i]) {
-                into = SentPolarity(i);
+        for (const auto& [polarity, word] : kWords)
+            if (text && *text == word) {
+                into = polarity;
                 return;
             }
         file.refuse(node, std::string{name} + ": expected \"both\", \"on\", \"off\" or \"flat\"");

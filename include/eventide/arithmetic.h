@@ -9,8 +9,7 @@ enum class Precision {
     automatic,  ///< bf16 where the processor has it and it measured faster in this process, else
                 ///< f32
     f32,
-    bf16,           ///< Error(usage) where the processor does not offer it
-    bf16_emulated,  ///< the same numbers on any processor, slowly: for judging bf16 without one
+    bf16,  ///< Error(usage) where the processor does not offer it
 };
 
 /// Whose convolutions the fast engine calls. Which one changes the last bits of the results; each

@@ -38,17 +38,23 @@ public:
     bool empty() const { return values_.empty(); }
     std::span<T> values() { return values_; }
     std::span<const T> values() const { return values_; }
-    std::span<T> row(int y) { return values().subspan(at(y, 0), std::size_t(width_)); }
-    std::span<const T> row(int y) const { return values().subspan(at(y, 0), std::size_t(width_)); }
+    std::span<T> row(int y) { return values().subspan(begin_of(y), std::size_t(width_)); }
+    std::span<const T> row(int y) const {
+        return values().subspan(begin_of(y), std::size_t(width_));
+    }
     T& operator()(int y, int x) { return values_[at(y, x)]; }
     const T& operator()(int y, int x) const { return values_[at(y, x)]; }
 
     friend bool operator==(const Array2&, const Array2&) = default;
 
 private:
+    std::size_t begin_of(int y) const {
+        assert(y >= 0 && y < height_);
+        return std::size_t(y) * std::size_t(width_);
+    }
     std::size_t at(int y, int x) const {
-        assert(y >= 0 && y < height_ && x >= 0 && x <= width_);
-        return std::size_t(y) * std::size_t(width_) + std::size_t(x);
+        assert(x >= 0 && x < width_);
+        return begin_of(y) + std::size_t(x);
     }
     int height_ = 0, width_ = 0;
     std::vector<T, CacheLineAllocator<T>> values_;

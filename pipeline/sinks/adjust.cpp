@@ -59,8 +59,17 @@ AutoRange::Range percentiles(const Array2<float>& intensity) {
 }  // namespace
 
 std::string_view name_of(Flip flip) {
-    constexpr std::array<std::string_view, 4> kNames{"none", "horizontal", "vertical", "both"};
-    return kNames[std::size_t(flip)];
+    switch (flip) {
+        case Flip::horizontal:
+            return "horizontal";
+        case Flip::vertical:
+            return "vertical";
+        case Flip::both:
+            return "both";
+        case Flip::none:
+            break;
+    }
+    return "none";
 }
 
 bool LookSettings::changes_nothing() const {

@@ -96,9 +96,21 @@ void draw_colour_beside_sigma(const Frame& frame, float sigma_white, cv::Mat& im
 }  // namespace
 
 std::string_view name_of(Uncertainty uncertainty) {
-    constexpr std::array<std::string_view, 6> kNames{"auto", "none",  "separate",
-                                                     "side", "alpha", "overlay"};
-    return kNames[std::size_t(uncertainty)];
+    switch (uncertainty) {
+        case Uncertainty::none:
+            return "none";
+        case Uncertainty::separate:
+            return "separate";
+        case Uncertainty::side:
+            return "side";
+        case Uncertainty::alpha:
+            return "alpha";
+        case Uncertainty::overlay:
+            return "overlay";
+        case Uncertainty::automatic:
+            break;
+    }
+    return "auto";
 }
 
 void to_grey8(std::span<const float> values, float white, std::span<std::uint8_t> into) {

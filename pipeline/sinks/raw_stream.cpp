@@ -7,7 +7,6 @@
 #include "src/core/error.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -60,9 +59,19 @@ std::string header_of(const cv::Mat& image, StreamFormat format, double fps) {
 }  // namespace
 
 std::string_view name_of(StreamFormat format) {
-    constexpr std::array<std::string_view, 5> kNames{"y4m", "y4m-mono", "gray8", "gray16",
-                                                     "grayf32"};
-    return kNames[std::size_t(format)];
+    switch (format) {
+        case StreamFormat::y4m_mono:
+            return "y4m-mono";
+        case StreamFormat::gray8:
+            return "gray8";
+        case StreamFormat::gray16:
+            return "gray16";
+        case StreamFormat::grayf32:
+            return "grayf32";
+        case StreamFormat::y4m:
+            break;
+    }
+    return "y4m";
 }
 
 void FrameStamp::write_to(std::span<std::byte> bytes) const {

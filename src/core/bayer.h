@@ -22,12 +22,24 @@ struct BayerSite {
 /// As Frame::colour orders them.
 enum class ColourChannel : std::uint8_t { blue, green, red };
 
-constexpr std::array kColourFilters{ColourFilter::none, ColourFilter::rggb, ColourFilter::grbg,
-                                    ColourFilter::gbrg, ColourFilter::bggr};
+inline constexpr std::array kColourFilters{ColourFilter::none, ColourFilter::rggb,
+                                           ColourFilter::grbg, ColourFilter::gbrg,
+                                           ColourFilter::bggr};
 
-inline std::string_view name_of(ColourFilter filter) {
-    constexpr std::array<std::string_view, 5> kNames{"none", "rggb", "grbg", "gbrg", "bggr"};
-    return kNames[std::size_t(filter)];
+constexpr std::string_view name_of(ColourFilter filter) {
+    switch (filter) {
+        case ColourFilter::rggb:
+            return "rggb";
+        case ColourFilter::grbg:
+            return "grbg";
+        case ColourFilter::gbrg:
+            return "gbrg";
+        case ColourFilter::bggr:
+            return "bggr";
+        case ColourFilter::none:
+            break;
+    }
+    return "none";
 }
 
 /// What libcaer, AEDAT 3 and AEDAT 4 number 0 to 4 (docs/protocols.md, A.4, D.2, D.3): RGBG, GRGB,
@@ -41,16 +53,27 @@ inline std::uint32_t number_of(ColourFilter filter) {
     return std::uint32_t(filter);
 }
 
-/// The filter is not none.
-inline ColourChannel channel_at(ColourFilter filter, int x, int y) {
+/// Where the filter, which is not none, has red; blue lies across from it.
+constexpr BayerSite red_of(ColourFilter filter) {
     assert(filter != ColourFilter::none);
-    constexpr auto kBlue = ColourChannel::blue, kGreen = ColourChannel::green,
-                   kRed = ColourChannel::red;
-    constexpr ColourChannel kPatterns[4][2][2] = {{{kRed, kGreen}, {kGreen, kBlue}},
-                                                  {{kGreen, kRed}, {kBlue, kGreen}},
-                                                  {{kGreen, kBlue}, {kRed, kGreen}},
-                                                  {{kBlue, kGreen}, {kGreen, kRed}}};
-    return kPatterns[std::size_t(filter) - 1][y & 1][x & 1];
+    switch (filter) {
+        case ColourFilter::grbg:
+            return {1, 0};
+        case ColourFilter::gbrg:
+            return {0, 1};
+        case ColourFilter::bggr:
+            return {1, 1};
+        default:
+            return {0, 0};
+    }
+}
+
+/// The filter is not none.
+constexpr ColourChannel channel_at(ColourFilter filter, int x, int y) {
+    const BayerSite red = red_of(filter);
+    const bool column = (x & 1) == red.x, row = (y & 1) == red.y;
+    if (column != row) return ColourChannel::green;
+    return column ? ColourChannel::red : ColourChannel::blue;
 }
 
 /// The filter of a sensor whose pixel (x, y) sees channel(x, y) in its first square; none where no
@@ -69,12 +92,15 @@ ColourFilter filter_with(const Channel& channel) {
 
 /// Where the colour is; of green, the one in red's row. The filter is not none.
 inline BayerSite site_of(ColourFilter filter, ColourChannel channel) {
-    const bool red_above = channel_at(filter, 0, 0) == ColourChannel::red ||
-                           channel_at(filter, 1, 0) == ColourChannel::red;
-    for (const int y : {red_above ? 0 : 1, red_above ? 1 : 0})
-        for (int x = 0; x < 2; ++x)
-            if (channel_at(filter, x, y) == channel) return {x, y};
-    return {};
+    const BayerSite red = red_of(filter);
+    switch (channel) {
+        case ColourChannel::blue:
+            return {1 - red.x, 1 - red.y};
+        case ColourChannel::green:
+            return {1 - red.x, red.y};
+        default:
+            return red;
+    }
 }
 
 /// The pixels of one site as an image of their own, at half the place and size: of a mosaic, or of

@@ -27,10 +27,29 @@ enum class DamageReason : std::uint8_t {
 constexpr std::size_t kDamageReasons = std::size_t(DamageReason::kCount);
 
 constexpr std::string_view name_of(DamageReason reason) {
-    constexpr std::array<std::string_view, kDamageReasons> kNames{
-        "truncated",       "out_of_range", "time_backwards", "unknown_word",  "bad_length",
-        "bad_compression", "bad_record",   "bad_table",      "time_corrected"};
-    return kNames[std::size_t(reason)];
+    switch (reason) {
+        case DamageReason::truncated:
+            return "truncated";
+        case DamageReason::out_of_range:
+            return "out_of_range";
+        case DamageReason::time_backwards:
+            return "time_backwards";
+        case DamageReason::unknown_word:
+            return "unknown_word";
+        case DamageReason::bad_length:
+            return "bad_length";
+        case DamageReason::bad_compression:
+            return "bad_compression";
+        case DamageReason::bad_record:
+            return "bad_record";
+        case DamageReason::bad_table:
+            return "bad_table";
+        case DamageReason::time_corrected:
+            return "time_corrected";
+        case DamageReason::kCount:
+            break;
+    }
+    return "";
 }
 
 /// One counter per reason.

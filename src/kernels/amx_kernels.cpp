@@ -65,7 +65,7 @@ template <int kTile>
 EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
     const DotArea& r = work.area;
     const std::ptrdiff_t at = run.y * r.out_pitch + run.x * r.out_step;
-    if (!r.narrow && !r.relu && r.outputs - first >= kTileOutputs) {
+    if (!r.to_bf16 && !r.relu && r.outputs - first >= kTileOutputs) {
         store_tile<kTile>(static_cast<float*>(r.out) + at + first,
                           r.out_step * std::ptrdiff_t{sizeof(float)});
         return;
@@ -73,10 +73,10 @@ EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
     alignas(64) float sums[kTileRows * kTileOutputs];
     store_tile<kTile>(sums, kTileOutputs * sizeof(float));
     const __m512 floor = _mm512_set1_ps(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
-    const int stored = r.narrow ? (r.outputs + 1) / 2 * 2 : r.outputs;
+    const int stored = r.to_bf16 ? (r.outputs + 1) / 2 * 2 : r.outputs;
     const auto mask =
         __mmask16(stored - first >= kTileOutputs ? 0xffffU : (1U << unsigned(stored - first)) - 1U);
-    if (r.narrow) {
+    if (r.to_bf16) {
         auto* to = static_cast<std::uint16_t*>(r.out) + 2 * at + first;
         for (int p = 0; p < work.pixels; ++p, to += 2 * r.out_step)
             _mm256_mask_storeu_epi16(to, mask,

@@ -5,7 +5,7 @@
 
 #include "src/kernels/bf16_render.h"
 #include "src/kernels/dot_blocks.h"
-#include "src/kernels/narrow_pixels.h"
+#include "src/kernels/pixels_to_bf16.h"
 #include "src/kernels/quad_dots.h"
 
 #include <algorithm>
@@ -148,7 +148,7 @@ EVENTIDE_BF16 void dot_block(const DotArea& r, const std::uint32_t* weight, int 
     }
     const auto floor = Vector::all(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
     const std::ptrdiff_t to = y * r.out_pitch + x * r.out_step;
-    if (r.narrow)
+    if (r.to_bf16)
         sums.store(static_cast<std::uint16_t*>(r.out) + 2 * to + first, 2 * r.out_step,
                    (r.outputs + 1) / 2 * 2 - first, floor);
     else
@@ -188,7 +188,7 @@ EVENTIDE_BF16 void row_to_bf16(const float* in, std::size_t n, std::uint16_t* ou
 }
 
 void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
-    narrow_pixels(row_to_bf16, in, pixels, channels, out);
+    convert_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
 /// 16 bf16 numbers as float32.

@@ -27,8 +27,8 @@ struct DotArea {
     const void* weight = nullptr;  ///< in the order of packed_size()
     const float* bias = nullptr;   ///< [outputs rounded up to whole vectors]
     bool relu = false;
-    bool narrow = false;  ///< outputs as bf16 pairs (bf16 kernels alone), else float32
-    void* out = nullptr;  ///< an odd number of narrow outputs gets a zero beside the last
+    bool to_bf16 = false;  ///< outputs as bf16 pairs (bf16 kernels alone), else float32
+    void* out = nullptr;   ///< an odd number of outputs as bf16 gets a zero beside the last
     std::ptrdiff_t out_step = 0, out_pitch = 0;  ///< between pixels, rows; units of 4 bytes
 };
 

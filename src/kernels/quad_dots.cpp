@@ -20,7 +20,7 @@ namespace eventide::avx512 {
 
 bool takes_quads(const DotArea& r) {
     if ((r.outputs != 8 && r.outputs != 16) || r.width < 4) return false;
-    if (r.out_step != (r.narrow ? r.outputs / 2 : r.outputs)) return false;
+    if (r.out_step != (r.to_bf16 ? r.outputs / 2 : r.outputs)) return false;
     for (int s = 0; s < r.count; ++s)
         if (r.stretches[s].length % 4 != 0 ||
             (r.stretches[s].step == 8 && r.stretches[s].length % 8 != 0))
@@ -137,7 +137,7 @@ EVENTIDE_QUADS_INLINE void by_pixels(__m512 (&v)[4]) {
 }
 EVENTIDE_QUADS_INLINE void store(const DotArea& r, std::ptrdiff_t at, __m512 (&v)[4]) {
     by_pixels(v);
-    if (r.narrow) {
+    if (r.to_bf16) {
         auto* out = static_cast<std::uint16_t*>(r.out) + 2 * at;
         _mm512_storeu_si512(out, (__m512i)_mm512_cvtne2ps_pbh(v[1], v[0]));
         _mm512_storeu_si512(out + 32, (__m512i)_mm512_cvtne2ps_pbh(v[3], v[2]));
@@ -151,7 +151,7 @@ EVENTIDE_QUADS_INLINE void store(const DotArea& r, std::ptrdiff_t at, __m512 (&v
                   high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
     const auto a = (__m512)_mm512_permutex2var_epi64((__m512i)v[0], low, (__m512i)v[1]),
                b = (__m512)_mm512_permutex2var_epi64((__m512i)v[0], high, (__m512i)v[1]);
-    if (r.narrow) {
+    if (r.to_bf16) {
         _mm512_storeu_si512(static_cast<std::uint16_t*>(r.out) + 2 * at,
                             (__m512i)_mm512_cvtne2ps_pbh(b, a));
         return;

@@ -16,6 +16,9 @@ struct EngineOptions {
     Engine engine = Engine::fast;
     Precision precision = Precision::automatic;
     Kernels kernels = Kernels::automatic;
+    /// Products of bf16 numbers on any processor, slowly, whatever `precision` says: for judging
+    /// bf16 without a processor that has it.
+    bool emulate_bf16 = false;
     ParallelFor parallel_for = sequential_for;
     /// Leave out tiles in whose reach nothing happened. The results are the same bit for bit; off
     /// only for tests and measurements.

@@ -16,7 +16,7 @@ Arithmetic arithmetic_of(const EngineOptions& options) {
         throw Error(ErrorKind::usage,
                     "kernels onednn: expected a program built with oneDNN (EVENTIDE_ONEDNN), found "
                     "one without; use own");
-    if (options.precision == Precision::bf16_emulated) return {Products::bf16_emulated, false};
+    if (options.emulate_bf16) return {Products::bf16_emulated, false};
     const Arithmetic best =
         best_arithmetic(options.precision != Precision::f32, options.kernels != Kernels::own);
     Arithmetic chosen = best;

@@ -105,7 +105,7 @@ void ConvGru::keep(const StateMap& state, std::size_t i, const Tile& close, floa
         const bool is_float = state.numbers().bf16() == nullptr;
         kernels.reset_state(open + channels_, 2 * std::ptrdiff_t(channels_), h, is_float ? to : row,
                             channels_, close.width());
-        if (!is_float) state.numbers().narrow(row, width, channels_, to);
+        if (!is_float) state.numbers().from_float(row, width, channels_, to);
     }
 }
 
@@ -138,7 +138,7 @@ void ConvGru::commit(StateMap& state, std::size_t i) noexcept {
     const float* next = next_[i % next_.size()].data();
     for (int y = tile.y0; y < tile.y1; ++y, next += row) {
         if (state.has_both()) std::memcpy(state.exact().at(y, tile.x0), next, row * sizeof(float));
-        state.numbers().narrow(next, width, channels_, state.read().at(y, tile.x0));
+        state.numbers().from_float(next, width, channels_, state.read().at(y, tile.x0));
     }
 }
 

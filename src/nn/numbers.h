@@ -28,13 +28,13 @@ public:
     int units(int channels) const { return bf16_ != nullptr ? (channels + 1) / 2 : channels; }
 
     /// Pixels of so many channels, one after the other, from float32 and back.
-    void narrow(const float* in, std::size_t pixels, int channels, void* out) const noexcept {
+    void from_float(const float* in, std::size_t pixels, int channels, void* out) const noexcept {
         if (bf16_ != nullptr)
             bf16_->pixels_to_bf16(in, pixels, channels, static_cast<std::uint32_t*>(out));
         else
             std::memcpy(out, in, pixels * std::size_t(channels) * sizeof(float));
     }
-    void widen(const void* in, std::size_t pixels, int channels, float* out) const noexcept {
+    void to_float(const void* in, std::size_t pixels, int channels, float* out) const noexcept {
         const auto count = std::size_t(channels), step = 2 * std::size_t(units(channels));
         if (bf16_ == nullptr) {
             std::memcpy(out, in, pixels * count * sizeof(float));

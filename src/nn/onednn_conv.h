@@ -30,7 +30,7 @@ bool onednn_has_bf16();
 bool onednn_has_amx();
 
 /// oneDNN wants dense blocks whose size is known when the primitive is made. So a region's input is
-/// gathered into scratch memory (and narrowed to bf16 on the way), and what comes out is put where
+/// gathered into scratch memory (and made bf16 on the way), and what comes out is put where
 /// it belongs; both are left out where the memory is dense already. Every call makes a few small
 /// allocations inside oneDNN, which keeps its argument lists on the heap.
 class OnednnConv {

@@ -44,8 +44,8 @@ PackedWeights::PackedWeights(std::vector<Shape> stretches, int outputs, const At
             return low | high << 16;
         };
         lanes_ = bf16_lanes(outputs);
-        narrow_.resize(packed_size(1, length, outputs, lanes_));
-        pack(lanes_, pair, narrow_.data());
+        pairs_.resize(packed_size(1, length, outputs, lanes_));
+        pack(lanes_, pair, pairs_.data());
     } else {
         lanes_ = dot_lanes(outputs);
         weight_.resize(packed_size(1, length, outputs, lanes_));
@@ -72,11 +72,11 @@ void PackedWeights::run(DotArea area) const noexcept {
     area.bias = bias_.data();
     area.relu = relu_;
     if (const Bf16Kernels* bf16 = numbers_.bf16()) {
-        area.weight = narrow_.data();
+        area.weight = pairs_.data();
         bf16->dot_area(area);
     } else {
         area.weight = weight_.data();
-        area.narrow = false;
+        area.to_bf16 = false;
         vector_kernels().dot_area(area);
     }
 }
@@ -84,7 +84,7 @@ void PackedWeights::run(DotArea area) const noexcept {
 bool PackedWeights::run(HiddenRows rows) const noexcept {
     const Bf16Kernels* bf16 = numbers_.bf16();
     if (bf16 == nullptr || bf16->hidden_rows == nullptr || !relu_) return false;
-    rows.weight = narrow_.data();
+    rows.weight = pairs_.data();
     rows.bias = bias_.data();
     rows.outputs = outputs_;
     return bf16->hidden_rows(rows);
@@ -197,7 +197,7 @@ void PackedConv::run(const ConvArea& area, float* scratch) const noexcept {
     if (onednn_ != nullptr)
         run_onednn(area, scratch);
     else
-        run_own(area, area.narrow ? numbers().units(outputs_) : outputs_);
+        run_own(area, area.to_bf16 ? numbers().units(outputs_) : outputs_);
 }
 
 void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
@@ -215,15 +215,15 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
         const std::ptrdiff_t pitch = std::ptrdiff_t(columns) * numbers().units(inputs_);
         // Units of two numbers take the room of one float.
         for (int y = 0; y < rows; ++y)
-            numbers().narrow(call.in + y * call.in_pitch, std::size_t(columns), inputs_,
-                             scratch + y * pitch);
+            numbers().from_float(call.in + y * call.in_pitch, std::size_t(columns), inputs_,
+                                 scratch + y * pitch);
         area.in[0] = {scratch, pitch};
     }
     run_own(area, call.out_step);
 }
 
 void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step) const noexcept {
-    const bool is_dense = out_step == (area.narrow ? numbers().units(outputs_) : outputs_);
+    const bool is_dense = out_step == (area.to_bf16 ? numbers().units(outputs_) : outputs_);
     if (pair_.empty() || !is_dense || area.width < 2) {
         run_part(area, out_step, 0, area.width, 1);
         return;
@@ -252,14 +252,14 @@ void PackedConv::run_part(const ConvArea& area, std::ptrdiff_t out_step, int fir
     dots.count = n;
     dots.height = area.height;
     dots.width = count;
-    dots.narrow = area.narrow;
+    dots.to_bf16 = area.to_bf16;
     dots.out = static_cast<float*>(area.out) + first * out_step;
     dots.out_step = at_once * out_step;
     dots.out_pitch = area.out_pitch;
     (at_once == 2 ? pair_ : single_).run(dots);
 }
 
-/// Scratch: the sources joined pixel by pixel, then outputs that are still to be narrowed, then
+/// Scratch: the sources joined pixel by pixel, then outputs that are still to become bf16, then
 /// oneDNN's.
 void PackedConv::run_onednn(const ConvArea& area, float* scratch) const noexcept {
     gather(area, scratch);
@@ -267,16 +267,16 @@ void PackedConv::run_onednn(const ConvArea& area, float* scratch) const noexcept
     float* rest = wide + std::ptrdiff_t(area.height) * area.width * outputs_;
     ConvCall call;
     call.gathered = scratch;
-    call.out = area.narrow ? wide : static_cast<float*>(area.out);
+    call.out = area.to_bf16 ? wide : static_cast<float*>(area.out);
     call.out_step = outputs_;
-    call.out_pitch = area.narrow ? std::ptrdiff_t(area.width) * outputs_ : area.out_pitch;
+    call.out_pitch = area.to_bf16 ? std::ptrdiff_t(area.width) * outputs_ : area.out_pitch;
     call.height = area.height;
     call.width = area.width;
     onednn_->run(call, rest);
-    if (!area.narrow) return;
+    if (!area.to_bf16) return;
     for (int y = 0; y < area.height; ++y)
-        numbers().narrow(wide + y * call.out_pitch, std::size_t(area.width), outputs_,
-                         static_cast<float*>(area.out) + y * area.out_pitch);
+        numbers().from_float(wide + y * call.out_pitch, std::size_t(area.width), outputs_,
+                             static_cast<float*>(area.out) + y * area.out_pitch);
 }
 
 void PackedConv::gather(const ConvArea& area, void* dense) const noexcept {

@@ -56,7 +56,7 @@ private:
     bool relu_ = false;
     Numbers numbers_;
     std::vector<float, CacheLineAllocator<float>> weight_, bias_;
-    std::vector<std::uint32_t, CacheLineAllocator<std::uint32_t>> narrow_;
+    std::vector<std::uint32_t, CacheLineAllocator<std::uint32_t>> pairs_;
 };
 
 /// One of the maps whose channels a convolution reads side by side: numbers of the layer's kind,
@@ -72,7 +72,7 @@ struct ConvArea {
     std::array<ConvSource, kMaxSources> in{};
     void* out = nullptr;           ///< pixels of a row one after the other
     std::ptrdiff_t out_pitch = 0;  ///< units between rows
-    bool narrow = false;           ///< outputs of the kind that layers read, else float32
+    bool to_bf16 = false;          ///< outputs of the kind that layers read, else float32
     int height = 0, width = 0;     ///< outputs
 };
 
@@ -91,7 +91,7 @@ public:
     /// Scratch numbers run() needs for height x width outputs or fewer.
     std::size_t scratch_size(int height, int width) const;
     void run(const ConvArea& area, float* scratch) const noexcept;
-    /// Of one map of float32 numbers, which are narrowed on the way where layers read bf16.
+    /// Of one map of float32 numbers, which are converted on the way where layers read bf16.
     void run(const ConvCall& call, float* scratch) const noexcept;
 
 private:

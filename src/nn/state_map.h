@@ -36,7 +36,7 @@ public:
     void load(const float* from) {
         if (has_both()) exact_.load(from);
         for (int y = 0; y < height(); ++y)
-            numbers_.narrow(from + y * row(), std::size_t(width()), channels_, read_.at(y, 0));
+            numbers_.from_float(from + y * row(), std::size_t(width()), channels_, read_.at(y, 0));
     }
     void save(float* to) const {
         if (has_both()) {
@@ -44,7 +44,7 @@ public:
             return;
         }
         for (int y = 0; y < height(); ++y)
-            numbers_.widen(read_.at(y, 0), std::size_t(width()), channels_, to + y * row());
+            numbers_.to_float(read_.at(y, 0), std::size_t(width()), channels_, to + y * row());
     }
 
 private:

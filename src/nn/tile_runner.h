@@ -16,20 +16,20 @@ public:
     TileRunner(ParallelFor parallel_for, bool skip_quiet)
         : parallel_for_(std::move(parallel_for)), skip_quiet_(skip_quiet) {}
 
-    /// `scratch` numbers for each lane, and no more than `tiles` tiles at a time. Nothing allocates
-    /// after it.
+    /// `scratch` numbers for each worker, and no more than `tiles` tiles at a time. Nothing
+    /// allocates after it.
     void make_room(std::size_t scratch, std::size_t tiles) {
         scratch_.clear();
-        for (int lane = 0; lane < kLanes; ++lane) scratch_.emplace_back(scratch);
+        for (int worker = 0; worker < kWorkers; ++worker) scratch_.emplace_back(scratch);
         active_.reserve(tiles);
     }
 
     /// body(i, tile, scratch) for each tile.
     template <typename Body>
     void over(const std::vector<Tile>& tiles, const Body& body) noexcept {
-        for_each_tile(parallel_for_, int(tiles.size()), [&](int lane, int n) {
+        for_each_tile(parallel_for_, int(tiles.size()), [&](int worker, int n) {
             const auto i = std::size_t(n);
-            body(i, tiles[i], scratch_[std::size_t(lane)].data());
+            body(i, tiles[i], scratch_[std::size_t(worker)].data());
         });
     }
 
@@ -78,15 +78,15 @@ private:
     }
     template <typename Body>
     void run(const std::vector<Tile>& tiles, const Range& range, const Body& body) noexcept {
-        for_each_tile(parallel_for_, int(range.end - range.begin), [&](int lane, int n) {
+        for_each_tile(parallel_for_, int(range.end - range.begin), [&](int worker, int n) {
             const auto i = std::size_t(active_[range.begin + std::size_t(n)]);
-            body(i, tiles[i], scratch_[std::size_t(lane)].data());
+            body(i, tiles[i], scratch_[std::size_t(worker)].data());
         });
     }
 
     ParallelFor parallel_for_;
     bool skip_quiet_;
-    std::vector<UntouchedZeros> scratch_;  // per lane
+    std::vector<UntouchedZeros> scratch_;  // per worker
     std::vector<int> active_;              // numbers of the tiles at work
 };
 

@@ -86,11 +86,11 @@ inline std::vector<Extent> extents_of(const std::vector<Tile>& tiles, int n, int
     return extents;
 }
 
-/// How many threads one step can use: each lane has its own scratch memory.
-constexpr int kLanes = 16;
+/// How many threads one step can use: each worker has its own scratch memory.
+constexpr int kWorkers = 16;
 
-/// Calls body(lane, i) once for each 0 <= i < n. At any time a lane runs on one thread only; which
-/// i falls to which lane is left to chance, so results must not depend on the lane.
+/// Calls body(worker, i) once for each 0 <= i < n. At any time a worker runs on one thread only;
+/// which i falls to which worker is left to chance, so results must not depend on the worker.
 template <typename Body>
 void for_each_tile(const ParallelFor& parallel_for, int n, const Body& body) {
     struct Shared {
@@ -100,8 +100,8 @@ void for_each_tile(const ParallelFor& parallel_for, int n, const Body& body) {
     } shared{{}, n, body};
     if (n == 0) return;
     // One reference is small enough for std::function to hold without allocating.
-    parallel_for(std::min(n, kLanes), [&shared](int lane) {
-        for (int i = shared.next++; i < shared.n; i = shared.next++) shared.body(lane, i);
+    parallel_for(std::min(n, kWorkers), [&shared](int worker) {
+        for (int i = shared.next++; i < shared.n; i = shared.next++) shared.body(worker, i);
     });
 }
 

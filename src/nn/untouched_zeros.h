@@ -9,7 +9,7 @@
 
 namespace eventide {
 
-/// Scratch memory of one lane, whole pages: of a lane that no thread works in there are none.
+/// Scratch memory of one worker, whole pages: of a worker that no thread works in there are none.
 class UntouchedZeros {
 public:
     UntouchedZeros() = default;

@@ -7,6 +7,7 @@
 #include "src/codec/prophesee/evt2.h"
 #include "src/codec/prophesee/evt3.h"
 #include "src/codec/prophesee/evt_header.h"
+#include "tests/bench/parse_bench.h"
 
 #include <benchmark/benchmark.h>
 
@@ -17,14 +18,10 @@
 #include <random>
 #include <string>
 
-namespace eventide {
+namespace eventide::bench {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-constexpr int kWidth = 640, kHeight = 480;
-constexpr std::size_t kEvents = 1'000'000;
-constexpr std::size_t kChunkBytes = std::size_t(128) << 10;
-
 /// Moving edges and noise, read out row by row every 20 us, as sensors with an arbiter do.
 Batch moving_edges() {
     std::mt19937 random(1);
@@ -43,19 +40,6 @@ Batch moving_edges() {
     return batch;
 }
 
-/// Events anywhere: nothing to predict or to pack.
-Batch noise() {
-    std::mt19937 random(2);
-    Batch batch;
-    std::int64_t t = 12'000'000;
-    for (std::size_t i = 0; i < kEvents; ++i) {
-        t += random() % 3;
-        batch.events.push_back({from_us(t), std::uint16_t(random() % kWidth),
-                                std::uint16_t(random() % kHeight), Polarity(random() % 2)});
-    }
-    return batch;
-}
-
 Bytes read_real(const std::string& name) {
     const char* named = std::getenv("EVENTIDE_DATA");
     std::string path = named ? named : "../shared/data";
@@ -64,29 +48,6 @@ Bytes read_real(const std::string& name) {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     const auto* begin = reinterpret_cast<const std::byte*>(text.data());
     return {begin, begin + text.size()};
-}
-
-template <typename MakeParser>
-void parse(benchmark::State& state, std::span<const std::byte> bytes, const MakeParser& make) {
-    if (bytes.empty()) {
-        state.SkipWithError("the recording is not at hand");
-        return;
-    }
-    Batch batch;
-    std::size_t events = 0;
-    for (auto _ : state) {
-        auto parser = make();
-        for (std::size_t begin = 0; begin < bytes.size(); begin += kChunkBytes) {
-            batch.clear();
-            parser->parse(bytes.subspan(begin, std::min(kChunkBytes, bytes.size() - begin)), batch);
-            events += batch.events.size();
-            benchmark::DoNotOptimize(batch.events.data());
-        }
-        parser->finish(batch);
-        if (parser->damaged().total() != 0) state.SkipWithError("damage");
-    }
-    state.SetItemsProcessed(std::int64_t(events));
-    state.SetBytesProcessed(state.iterations() * std::int64_t(bytes.size()));
 }
 
 template <typename Writer>
@@ -115,16 +76,15 @@ void aedat4(benchmark::State& state, const Bytes& file) {
     Aedat4Header header = read_aedat4_header(file);
     for (const auto kind : {Aedat4Kind::image, Aedat4Kind::imu, Aedat4Kind::triggers})
         header.chosen[std::size_t(kind)].reset();
-    parse(state, std::span(file).subspan(header.stream.data_offset), [&] {
-        return std::make_unique<Aedat4Parser>(header, header.stream.width, header.stream.height);
-    });
+    parse(state, std::span(file).subspan(header.stream.data_offset),
+          [&] { return Aedat4Parser(header, header.stream.width, header.stream.height); });
 }
 
 void evt3(benchmark::State& state, const Bytes& file) {
     if (file.empty()) return state.SkipWithError("the recording is not at hand");
     const StreamHeader header = read_evt_header(file).stream;
     parse(state, std::span(file).subspan(header.data_offset),
-          [&] { return std::make_unique<Evt3Parser>(header.width, header.height); });
+          [&] { return Evt3Parser(header.width, header.height); });
 }
 
 Bytes evt2_words(const Batch& batch) {
@@ -208,19 +168,17 @@ void evt2_real(benchmark::State& state) {
     const Bytes file = read_real("evt2_640x480.raw");
     if (file.empty()) return state.SkipWithError("the recording is not at hand");
     parse(state, std::span(file).subspan(read_evt_header(file).stream.data_offset),
-          [] { return std::make_unique<Evt2Parser>(kWidth, kHeight); });
+          [] { return Evt2Parser(kWidth, kHeight); });
 }
 void evt2_noise(benchmark::State& state) {
-    parse(state, evt2_words(noise()), [] { return std::make_unique<Evt2Parser>(kWidth, kHeight); });
+    parse(state, evt2_words(noise()), [] { return Evt2Parser(kWidth, kHeight); });
 }
 void evt21_edges(benchmark::State& state) {
-    parse(state, evt21_words(moving_edges()),
-          [] { return std::make_unique<Evt21Parser>(kWidth, kHeight); });
+    parse(state, evt21_words(moving_edges()), [] { return Evt21Parser(kWidth, kHeight); });
 }
 void dat_noise(benchmark::State& state) {
-    parse(state, dat_words(noise()), [] {
-        return std::make_unique<DatParser>(DatHeader::Record::events_v2, kWidth, kHeight);
-    });
+    parse(state, dat_words(noise()),
+          [] { return DatParser(DatHeader::Record::events_v2, kWidth, kHeight); });
 }
 BENCHMARK(aedat4_lz4_real);
 BENCHMARK(aedat4_lz4_edges);
@@ -236,4 +194,4 @@ BENCHMARK(evt21_edges);
 BENCHMARK(dat_noise);
 
 }  // namespace
-}  // namespace eventide
+}  // namespace eventide::bench

@@ -159,6 +159,25 @@ TEST_F(Installed, PythonGivesTheSameFrames) {
 #endif
 }
 
+TEST_F(Installed, ErrorIsPlottedAgainstSigma) {
+#ifdef EVENTIDE_PYTHON
+    const Result result =
+        run({EVENTIDE_PYTHON, example("error_against_sigma.py"), temp_ / "plot.svg", "0.6"},
+            {.environment = {{"PYTHONPATH", prefix() + "/" EVENTIDE_PYTHON_DIR},
+                             {"EVENTIDE_MODELS", ""}}});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.output.find("frames: "), std::string::npos) << result.output;
+    EXPECT_EQ(result.output.find("nan"), std::string::npos) << result.output;
+    const std::string plot = read_text(temp_ / "plot.svg");
+    std::size_t points = 0;
+    for (std::size_t at = 0; (at = plot.find("<circle", at)) != std::string::npos; ++at) ++points;
+    EXPECT_EQ(points, 12U) << plot;
+    EXPECT_TRUE(plot.ends_with("</svg>\n"));
+#else
+    GTEST_SKIP() << "built without EVENTIDE_PYTHON";
+#endif
+}
+
 /// The first block of a document in this language.
 std::string snippet(const std::string& document, const std::string& language) {
     const std::string page = read_text(EVENTIDE_SOURCE_DIR "/" + document),
@@ -227,7 +246,8 @@ TEST_F(Installed, TreeHasTheModelsTheCamerasAndTheLicence) {
          {"share/eventide/cameras/davis346.toml", "share/eventide/default.toml",
           "share/doc/eventide/LICENSE", "lib/udev/rules.d/65-eventide.rules",
           "lib/systemd/system/eventide@.service", "bin/eventide", "share/man/man1/eventide.1",
-          "share/bash-completion/completions/eventide"})
+          "share/bash-completion/completions/eventide", "share/zsh/vendor-completions/_eventide",
+          "share/fish/vendor_completions.d/eventide.fish"})
         EXPECT_TRUE(fs::exists(prefix() + "/" + file)) << file;
 }
 

@@ -23,8 +23,10 @@ inline std::vector<Backend> backends() {
         options.kernels = kernels;
         return options;
     };
+    EngineOptions emulated;
+    emulated.emulate_bf16 = true;
     std::vector<Backend> all{{"own f32", with(Precision::f32, Kernels::own), false},
-                             {"emulated bf16", with(Precision::bf16_emulated, Kernels::own), true}};
+                             {"emulated bf16", emulated, true}};
     if (onednn_available())
         all.push_back({"oneDNN f32", with(Precision::f32, Kernels::onednn), false});
     if (bf16_available()) all.push_back({"own bf16", with(Precision::bf16, Kernels::own), true});

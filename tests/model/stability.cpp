@@ -236,8 +236,9 @@ int main_of(int argc, char** argv) {
     EngineOptions engine;
     for (const auto& [name, precision] :
          {std::pair{"auto", Precision::automatic}, std::pair{"f32", Precision::f32},
-          std::pair{"bf16", Precision::bf16}, std::pair{"bf16_emulated", Precision::bf16_emulated}})
+          std::pair{"bf16", Precision::bf16}})
         if (options.precision == name) engine.precision = precision;
+    engine.emulate_bf16 = options.precision == "bf16_emulated";
     const Model model = load_model(options.model);
     return Stability{options, model, engine}.run() ? 0 : 1;
 }

@@ -162,8 +162,10 @@ TEST(Renderer, FastAgreesWithPlainForTheDefaultNetwork) {
 TEST(Renderer, Bf16StaysNear) {
     const ModelConfig config;
     const Model model = random_model(config, 3);
-    const double error = compare({model, 70, 40, with(Engine::fast, Precision::bf16_emulated)},
-                                 {model, 70, 40, with(Engine::fast)}, config, 40, 70, {{40, 70}});
+    EngineOptions emulated;
+    emulated.emulate_bf16 = true;
+    const double error = compare({model, 70, 40, emulated}, {model, 70, 40, with(Engine::fast)},
+                                 config, 40, 70, {{40, 70}});
     EXPECT_LE(error, 0.1);
     std::printf("  worst %.2g\n", error);
 }

@@ -217,7 +217,7 @@ TEST(WholeModel, ADifferentBackendIsNoticed) {
     onednn.kernels = Kernels::onednn;
     EXPECT_NE(Encoder(model, 20, 20, own).description(),
               Encoder(model, 20, 20, onednn).description());
-    own.precision = Precision::bf16_emulated;
+    own.emulate_bf16 = true;
     EXPECT_NE(bits_of(model, 20, 20, own), bits_of(model, 20, 20, onednn));
 }
 

@@ -23,7 +23,7 @@ TEST(Bf16, RoundingIsToTheNearestEven) {
     EXPECT_EQ(back(to_bf16(-3.14159F)), -3.140625F);
 }
 
-void expect_narrowed(const Bf16Kernels& kernels) {
+void expect_made_bf16(const Bf16Kernels& kernels) {
     test::Numbers numbers{2};
     for (const int channels : {1, 2, 5, 16, 21, 64}) {
         const auto n = std::size_t(channels), pairs = (n + 1) / 2;
@@ -43,9 +43,9 @@ void expect_narrowed(const Bf16Kernels& kernels) {
     }
 }
 TEST(Bf16, RowsAreNarrowedNumberByNumber) {
-    expect_narrowed(plain::bf16_kernels());
+    expect_made_bf16(plain::bf16_kernels());
     if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
-    expect_narrowed(*bf16_kernels());
+    expect_made_bf16(*bf16_kernels());
 }
 
 /// An area of two stretches of `length` pairs, as a convolution's rows lie: pixels overlap.
@@ -71,8 +71,8 @@ struct Bf16Work {
     }
     /// The outputs, as float32 or as bf16, of each row one behind the other; how many were written
     /// outside of them is to be none.
-    std::vector<float> run(const Bf16Kernels& kernels, bool narrow, bool relu) {
-        const int units = narrow ? (outputs + 1) / 2 : outputs;
+    std::vector<float> run(const Bf16Kernels& kernels, bool to_bf16, bool relu) {
+        const int units = to_bf16 ? (outputs + 1) / 2 : outputs;
         test::Guarded out{std::size_t(kHeight * width * units)};
         DotArea area;
         area.stretches = stretches.data();
@@ -83,7 +83,7 @@ struct Bf16Work {
         area.weight = weight.data();
         area.bias = bias.data();
         area.relu = relu;
-        area.narrow = narrow;
+        area.to_bf16 = to_bf16;
         area.out = out.data();
         area.out_step = units;
         area.out_pitch = width * units;
@@ -95,8 +95,8 @@ struct Bf16Work {
         for (std::size_t p = 0; p < pixels; ++p)
             for (std::size_t o = 0; o < std::size_t(outputs); ++o)
                 wide[p * std::size_t(outputs) + o] =
-                    narrow ? from_bf16(numbers[p * 2 * std::size_t(units) + o])
-                           : out.data()[p * std::size_t(units) + o];
+                    to_bf16 ? from_bf16(numbers[p * 2 * std::size_t(units) + o])
+                            : out.data()[p * std::size_t(units) + o];
         return wide;
     }
 };
@@ -107,13 +107,13 @@ void expect_products(const Bf16Kernels& kernels) {
         for (const int width : {1, 15, 16, 17, 35})
             for (const int length : {5, 12, 16, 33, 40}) {
                 Bf16Work work{width, length, outputs};
-                for (const bool narrow : {false, true})
+                for (const bool to_bf16 : {false, true})
                     for (const bool relu : {false, true}) {
-                        const auto fast = work.run(kernels, narrow, relu);
-                        const auto plain = work.run(plain::bf16_kernels(), narrow, relu);
+                        const auto fast = work.run(kernels, to_bf16, relu);
+                        const auto plain = work.run(plain::bf16_kernels(), to_bf16, relu);
                         // The processor may sum a pair's two products before it adds them: one
                         // rounding elsewhere; and one that ends in another bf16 number.
-                        const double share = narrow ? 1.0 / 128 : 1e-6;
+                        const double share = to_bf16 ? 1.0 / 128 : 1e-6;
                         for (std::size_t i = 0; i < fast.size(); ++i)
                             ASSERT_NEAR(fast[i], plain[i], 1e-5 + share * std::abs(plain[i]))
                                 << outputs << " outputs, width " << width << ", pairs " << length;

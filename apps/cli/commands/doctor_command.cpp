@@ -7,6 +7,7 @@
 #include "drivers/devices.h"
 #include "pipeline/ros2/ros2_sink.h"
 #include "pipeline/sinks/http/listening_socket.h"
+#include "pipeline/sinks/video/video.h"
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
 
@@ -17,10 +18,6 @@
 #include <iostream>
 #include <string>
 #include <vector>
-
-extern "C" {
-#include <libavcodec/avcodec.h>
-}
 
 namespace eventide::app {
 
@@ -60,9 +57,8 @@ Finding network() {
 }
 
 Finding video() {
-    if (avcodec_find_encoder_by_name("libx264") != nullptr)
-        return {"video", State::good, "libx264", ""};
-    return {"video", State::bad, "libavcodec has no libx264",
+    if (encodes_h264()) return {"video", State::good, "libx264", ""};
+    return {"video", State::bad, video_library() + " has no libx264",
             "install Debian's libavcodec, or write frames (--out frames/) or Y4M (--out -)"};
 }
 

@@ -4,17 +4,14 @@
 #include "apps/cli/commands/disorder.h"
 #include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/printable.h"
-#include "apps/cli/run/live_controls.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/run_state.h"
-#include "apps/cli/version.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -106,8 +103,8 @@ Run::Run(Program& program, RunSettings& settings)
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
       filter_{filter_of(settings, network_.config(), sensor_)},
-      watch_{sheet_ ? &references_ : nullptr,
-             settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
+      observers_{sheet_ ? &references_ : nullptr,
+                 settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
       render_{render_stage()} {
     check_recording(settings, span_, slicer_);
     quality_.tell_rate(rate_.is_set() ? nominal_fps(rate_, slicer_, settings.slow) : 0);
@@ -115,7 +112,7 @@ Run::Run(Program& program, RunSettings& settings)
         colour_.emplace(network_, sensor_, colour_filter_,
                         request_of(settings, sensor_, lookahead_, undistortion_),
                         render_.fused() != nullptr, network_.encoder(), render_);
-        watch_.colour(&*colour_);
+        observers_.hand_images_to(*colour_);
     }
     if (state_) resume();
     if (!settings.states_out.empty()) check_stream_state(settings, "--states-out", live());
@@ -128,7 +125,7 @@ Run::Run(Program& program, RunSettings& settings)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
     recorded_ = recorder_of(settings, *opened_.source);
     events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get());
-    watch_.write_to(events_out_.get());
+    observers_.hand_all_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
     if (!settings.states_out.empty()) std::filesystem::create_directories(settings.states_out);
     stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
@@ -172,57 +169,6 @@ Snapshot Run::counters() const {
     return now;
 }
 
-SinkPlan Run::sink_plan() {
-    SinkPlan plan;
-    plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
-    plan.constant_rate = rate_.is_set();
-    plan.speed = speed_ > 0 ? speed_ : 1;
-    plan.sensor = {sensor_.width, sensor_.height};
-    plan.live = live();
-    plan.lookahead = lookahead_;
-    plan.undistortion = undistortion_;
-    plan.references = sheet_ ? &references_ : nullptr;
-    plan.reference_caption = reference_caption(sensor_);
-    plan.questions.stopping = [this] { return program_.signals.stopping(); };
-    plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
-    plan.questions.run_json = [this] { return run_json(); };
-    if (opened_.paced != nullptr)
-        plan.questions.speed_changed = [this](double factor) { opened_.paced->set_speed(factor); };
-    plan.questions.snapshot = [this] { return snapshot(); };
-    plan.questions.stats = [this](double event_rate) {
-        RunProgress now = progress();
-        now.event_rate = event_rate;
-        return stats_json(snapshot(), now, false);
-    };
-    if (page_) plan.controls = controls();
-    return plan;
-}
-
-std::vector<HttpControl> Run::controls() {
-    LiveControlsPlan plan{settings_, changes_, {sensor_.width, sensor_.height}};
-    plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
-    plan.lookahead = lookahead_;
-    plan.speed = speed_;
-    if (opened_.paced != nullptr)
-        plan.set_speed = [this](double factor) { opened_.paced->set_speed(factor); };
-    plan.live = live();
-    plan.slicer = slicer_;
-    auto controls = live_controls(plan);
-    for (HttpControl& control : controls) {
-        if (!control.set || (control.name != "fps" && control.name != "scale")) continue;
-        control.set = [this, set = std::move(control.set)](double wanted) {
-            quality_.take_over(changes_);
-            set(wanted);
-        };
-        if (control.name == "scale")
-            control.get = [this, get = std::move(control.get)] {
-                const QualityState now = quality_.state();
-                return now.chosen && !now.taken_over ? now.level.scale : get();
-            };
-    }
-    return controls;
-}
-
 /// Goes on where another run stopped: the networks, and where it was kept also the stream.
 void Run::resume() {
     restore_state(*std::exchange(state_, std::nullopt), settings_.state_in, network_,
@@ -253,50 +199,6 @@ void Run::keep_state(const StreamMemory& memory) {
     TensorFile file = state_of(network_, nullptr);
     put_stream_state(state, sensor_.width, file);
     write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);
-}
-
-ModelRenderStage Run::render_stage() {
-    const RenderRequest request = request_of(settings_, sensor_, lookahead_, undistortion_);
-    if (settings_.frames == CameraFrames::ignore) return {network_.renderer(), request};
-    return {network_.renderer(), request, sensor_.width, sensor_.height, images_};
-}
-
-PipelineParts Run::parts() {
-    RenderStage& render = colour_ ? colour_->render() : static_cast<RenderStage&>(render_);
-    EncodeStage& encode = colour_ ? colour_->encode() : network_.encoder();
-    EventFilter* last = events_out_ ? events_out_.get() : filter_.get();
-    PipelineParts parts{source(), encode, render, {}, last, &watch_};
-    for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
-    return parts;
-}
-
-PipelineSettings Run::pipeline_settings() {
-    PipelineSettings settings;
-    settings.bins = network_.config().bins;
-    settings.event_windows.slicer = slicer_;
-    settings.rate = rate_;
-    settings.frames_from = span_.frames_from;
-    if (settings_.out.empty()) settings.frames_from = from_us(std::int64_t{1} << 60);  // none
-    if (resumed_) settings.resume = &resumed_->stream;
-    settings.memory_stops = {states_at_,
-                             [this](const StreamMemory& memory) { keep_state(memory); }};
-    settings.lookahead = lookahead_;
-    settings.latency = latency_of(settings_, live());
-    settings.reset_on_gap = settings_.reset_on_gap;
-    settings.allow_silence = settings_.allow_silence;
-    settings.event_preview = settings_.events || sheet_ || page_;
-    settings.changes = page_ || quality_.changes_while_running() ? &changes_ : nullptr;
-    settings.halvings = quality_.halvings();
-    settings.events_per_pixel = render_.fused() != nullptr;
-    // A recording waits: it needs no more than one being filled and one being read, and of the
-    // small packets a few.
-    constexpr int kPacketsOfRecordings = 8;
-    const int usual = live() ? 3 : 2;
-    const int packets = live() ? settings_.buffers_packets
-                               : std::min(settings_.buffers_packets, kPacketsOfRecordings);
-    settings.buffers = {std::size_t(packets), std::size_t(settings_.buffers_grids.value_or(usual)),
-                        std::size_t(settings_.buffers_latents.value_or(usual))};
-    return settings;
 }
 
 RunProgress Run::progress() const {
@@ -373,33 +275,6 @@ void Run::finish_files() {
 CameraCounters Run::camera_counters() const {
     const auto* camera = dynamic_cast<const Camera*>(opened_.source.get());
     return camera == nullptr ? CameraCounters{} : camera->counters();
-}
-
-/// What was asked, with what, and what came out.
-std::string Run::run_json() {
-    const RunProgress now = progress();
-    nlohmann::ordered_json json;
-    json["program"] = "eventide " + version();
-    json["arguments"] = program_.arguments;
-    json["source"] = {{"name", settings_.source}, {"format", sensor_.format},
-                      {"sensor", sensor_.name},   {"serial", sensor_.serial},
-                      {"width", sensor_.width},   {"height", sensor_.height}};
-    json["model"] = {{"file", network_.file().string()},
-                     {"encoder", encoder_identity(network_.model())},
-                     {"engine", network_.encoder().description()},
-                     {"card", network_.config().card}};
-    json["quality"] = quality_json(quality_.state(), true);
-    nlohmann::ordered_json values;
-    for (const Setting& setting : settings_.table().settings) {
-        const auto texts = setting.show();
-        if (setting.kind == ValueKind::list)
-            values[setting.key] = texts;
-        else
-            values[setting.key] = texts.back();
-    }
-    json["settings"] = values;
-    json["counters"] = nlohmann::ordered_json::parse(stats_json(counters(), now, true));
-    return json_text(json);
 }
 
 }  // namespace eventide::app

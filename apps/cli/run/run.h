@@ -3,6 +3,7 @@
 
 #include "apps/cli/command.h"
 #include "apps/cli/run/colour.h"
+#include "apps/cli/run/data_observers.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/loaded_model.h"
 #include "apps/cli/run/open_sinks.h"
@@ -24,33 +25,6 @@
 #include <vector>
 
 namespace eventide::app {
-
-/// Hands reference images on, where somebody wants them (not null). Bin thread.
-class Watch : public DataObserver {
-public:
-    Watch(ReferenceImages* references, ImagesOnTheWay* images, ColourFilter filter)
-        : filter_{filter}, references_{references}, images_{images} {}
-    void write_to(EventsOut* out) { out_ = out; }
-    void colour(ColourNetworks* networks) { networks_ = networks; }
-    void see(const Batch& batch) override {
-        if (out_ != nullptr) out_->see(batch);
-        if (batch.images.empty()) return;
-        Batch shown;
-        for (const ReferenceImage& image : batch.images)
-            shown.images.push_back(demosaiced(image, filter_));
-        if (references_ != nullptr) references_->see(shown);
-        if (images_ == nullptr) return;
-        images_->put(shown.images);
-        if (networks_ != nullptr) networks_->see(batch.images);
-    }
-
-private:
-    ColourFilter filter_;
-    ColourNetworks* networks_ = nullptr;
-    ReferenceImages* references_;
-    ImagesOnTheWay* images_;
-    EventsOut* out_ = nullptr;
-};
 
 /// Inputs are opened before outputs, so that a wrong input leaves nothing behind.
 class Run {
@@ -115,7 +89,7 @@ private:
     std::unique_ptr<EventFilter> filter_;
     std::optional<FilteredSource> filtered_;  // none: without --filter
     std::unique_ptr<EventsOut> events_out_;   // null: not asked for
-    Watch watch_;
+    DataObservers observers_;
     ModelRenderStage render_;
     std::optional<ColourNetworks> colour_;  // none: frames are grey
     LiveChanges changes_;

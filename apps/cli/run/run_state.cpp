@@ -13,8 +13,14 @@ namespace {
 constexpr const char* kFilterKey = "colour_filter";
 
 std::string prefix_of(ColourChannel channel) {
-    constexpr std::array<std::string_view, 3> kNames{"blue", "green", "red"};
-    return std::string(kNames[std::size_t(channel)]) + ".";
+    switch (channel) {
+        case ColourChannel::blue:
+            return "blue.";
+        case ColourChannel::green:
+            return "green.";
+        default:
+            return "red.";
+    }
 }
 
 /// Takes the tensors under the channel's name out of the file; those of half the sensor's size.

@@ -69,17 +69,20 @@ Result instruction_sets(const Bench& bench) {
 Result bf16(const Bench& bench) {
     Result result;
     result.bound = kBf16Bound;
-    const auto note = [&](const char* name, Precision precision, Kernels kernels) {
-        const PipelineOutcome outcome = measured(bench, with(bench, precision, kernels));
+    const auto note = [&](const char* name, const EngineOptions& engine) {
+        const PipelineOutcome outcome = measured(bench, engine);
         const double rms = std::max(outcome.codes.rms(), outcome.frames.rms());
         result.happened += (result.happened.empty() ? "RMS: " : ", ") + std::string{name} + " " +
                            short_number(rms) + outcome.error;
         result.error = std::max(result.error.value_or(0), rms);
         result.passed &= outcome.error.empty() && rms <= kBf16Bound;
     };
-    note("emulated", Precision::bf16_emulated, Kernels::own);
-    if (bf16_available()) note("built-in", Precision::bf16, Kernels::own);
-    if (bf16_available() && onednn_has_bf16()) note("oneDNN", Precision::bf16, Kernels::onednn);
+    EngineOptions emulated = with(bench, Precision::automatic, Kernels::own);
+    emulated.emulate_bf16 = true;
+    note("emulated", emulated);
+    if (bf16_available()) note("built-in", with(bench, Precision::bf16, Kernels::own));
+    if (bf16_available() && onednn_has_bf16())
+        note("oneDNN", with(bench, Precision::bf16, Kernels::onednn));
     return result;
 }
 

@@ -1,4 +1,4 @@
-// Lanes' windows as torch tensors, and a network's pass over one window.
+// Streams' windows as torch tensors, and a network's pass over one window.
 #pragma once
 
 #include "apps/train/data/data_loader.h"
@@ -11,7 +11,7 @@
 
 namespace eventide {
 
-/// What N lanes carry from window to window.
+/// What N streams carry from window to window.
 struct RecurrentState {
     EncoderState state;
     torch::Tensor latent;  ///< of the last event window, [N][D][h][w]
@@ -21,7 +21,7 @@ RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t str
                                      std::int64_t height, std::int64_t width,
                                      torch::TensorOptions options);
 
-/// Lanes with `fresh` begin empty; gradients do not reach into the window before.
+/// Streams with `fresh` begin empty; gradients do not reach into the window before.
 RecurrentState begin_window(const RecurrentState& memory, const std::vector<bool>& fresh);
 
 struct TrainingBatch {

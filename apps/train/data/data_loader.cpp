@@ -151,7 +151,7 @@ SceneStream::SceneStream(const DataSettings& settings,
                          std::shared_ptr<const TextureLibrary> textures, StreamPlace place,
                          std::int64_t first_window)
     : settings_(settings), textures_(std::move(textures)), place_(place) {
-    // Turns of this lane before the run's window `first_window`.
+    // Turns of this stream before the run's window `first_window`.
     const std::int64_t first = (first_window - place.group + place.groups - 1) / place.groups;
     // Scenes that are over are skipped; the one under way is simulated again up to the window.
     start_episode();

@@ -1,4 +1,4 @@
-// Training data, simulated while training goes on: endless lanes of event windows with the truth.
+// Training data, simulated while training goes on: endless streams of event windows with the truth.
 #pragma once
 
 #include "src/core/array.h"
@@ -25,14 +25,14 @@ struct DataSettings {
     int frames = 8;            ///< event windows per window: gradients flow through one window
     int rendered = 4;          ///< of them, consecutive, are compared with the truth
     int patch = 64;            ///< px, side of the images compared
-    Range episode{20, 400};    ///< log-uniform; event windows until a lane starts anew
+    Range episode{20, 400};    ///< log-uniform; event windows until a stream starts anew
     Range frame_s{.01, .1};    ///< log-uniform per episode; width of the event windows
     double frame_jitter = .3;  ///< ln; widths of one episode's frames differ by up to this ...
     double jitter_probability = .5;  ///< ... in this share of the episodes
     double whole_probability = .6;   ///< patches whose points are pixels
     double span_scale_max = 4;       ///< else log-uniform 1..this points per pixel
     double edge_probability = .4;    ///< images at the end of their event window; else anywhere
-    int warm_frames = 4;             ///< frames of a new lane that count nothing
+    int warm_frames = 4;             ///< frames of a new stream that count nothing
     double content_share = 0;        ///< episodes whose windows end by content, too:
     Range content_epp{.2, 1};        ///< log-uniform; at so many events per pixel, never under 1 ms
     bool noise_filter = false;       ///< events are left out as NoiseFilter does
@@ -46,7 +46,7 @@ struct DataSettings {
     static SceneSettings training_scenes();
 };
 
-/// What all lanes of one window share, so that they are computed together.
+/// What all streams of one window share, so that they are computed together.
 struct WindowPlan {
     int first_rendered = 0;           ///< frame of the window
     double y0 = 0, x0 = 0, span = 0;  ///< px, of the patch
@@ -54,7 +54,7 @@ struct WindowPlan {
 };
 WindowPlan window_plan(const DataSettings& settings, std::int64_t window);
 
-/// One lane's part of a window.
+/// One stream's part of a window.
 struct StreamWindow {
     bool fresh = false;                ///< a new scene: the state before it is empty
     std::vector<Array3<float>> grids;  ///< per frame, [y][x][channel]
@@ -63,14 +63,14 @@ struct StreamWindow {
     std::vector<Array2<float>> truth;  ///< per rendered frame, patch x patch
 };
 
-/// Which lane, and how often its turn comes: window w of the run is made of the lanes of group
+/// Which stream, and how often its turn comes: window w of the run is made of the streams of group
 /// w % groups. Neighbouring steps then see other scenes, and scenes may be long all the same.
 struct StreamPlace {
     int stream = 0;
     int group = 0, groups = 1;
 };
 
-/// Windows of one lane, one after the other; the same for the same settings and place.
+/// Windows of one stream, one after the other; the same for the same settings and place.
 class SceneStream {
 public:
     /// Goes on where the run is at `first_window`.
@@ -92,15 +92,15 @@ private:
     std::unique_ptr<Episode> now_;
 };
 
-/// Lanes that simulate ahead on threads of their own, a bounded number of windows.
+/// Streams that simulate ahead on threads of their own, a bounded number of windows.
 class DataLoader {
 public:
-    /// `lanes` in each of `groups`.
+    /// `streams` in each of `groups`.
     DataLoader(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
                int streams, int groups, std::int64_t first_window);
     ~DataLoader();
 
-    /// The next window of the lanes whose turn it is; waits. Rethrows what a lane threw.
+    /// The next window of the streams whose turn it is; waits. Rethrows what a stream threw.
     std::vector<StreamWindow> next();
 
 private:

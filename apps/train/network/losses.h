@@ -28,7 +28,7 @@ struct LossTerms {
 inline constexpr std::array<const char*, 7> kLossNames{"l1",       "dssim", "lpips", "nll",
                                                        "temporal", "mse",   "picp80"};
 
-/// Images of N lanes at consecutive instants: mu, log_sigma, truth [tasks * N][h][w], task by
+/// Images of N streams at consecutive instants: mu, log_sigma, truth [tasks * N][h][w], task by
 /// task; weight [tasks * N] says how much each counts (0 where a state has only just begun).
 struct Images {
     torch::Tensor mu, log_sigma, truth, weight;

@@ -187,7 +187,7 @@ Rendered render(const ModelConfig& config, const Parameters& parameters,
     const torch::Tensor dt = concat(list, &Centre::offset).to(mlp.wide());
     const torch::Tensor weight = concat(list, &Centre::weight).to(mlp.wide());
     const torch::Tensor weighted = blend_space(config, mlp, first, dt, weight, points);
-    // Back from centres to images: each task has one or two centres of N lanes.
+    // Back from centres to images: each task has one or two centres of N streams.
     const std::int64_t streams = tasks.front().f.size(0);
     std::vector<torch::Tensor> images(tasks.size());
     for (std::size_t i = 0; i < list.size(); ++i) {

@@ -16,7 +16,7 @@ struct PatchGrid {
 /// `size` x `size` points over [y0, y0 + span] x [x0, x0 + span], corners included.
 PatchGrid patch_grid(double y0, double x0, double span, int size);
 
-/// One image for each of the N lanes: the codes around event window k and the instant asked for.
+/// One image for each of the N streams: the codes around event window k and the instant asked for.
 struct RenderTask {
     torch::Tensor previous, current, next, after;  ///< z_{k-1} .. z_{k+2}, [N][D][h][w]; undefined
                                                    ///< where not known (or before the first)
@@ -25,7 +25,7 @@ struct RenderTask {
 };
 
 struct Rendered {
-    torch::Tensor mu, log_sigma;  ///< [N * tasks][rows][columns]; of lane n and task i at i N + n
+    torch::Tensor mu, log_sigma;  ///< [N * tasks][rows][columns]; of stream n and task i at i N + n
 };
 
 /// All tasks over the same points, in one go. log_sigma is clamped but not yet scaled.

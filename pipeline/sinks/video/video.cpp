@@ -2,6 +2,7 @@
 #include "pipeline/sinks/video/video.h"
 
 #include "pipeline/sinks/video/video_file.h"
+#include "pipeline/sinks/video/video_kind.h"
 #include "src/core/error.h"
 
 #include <opencv2/core.hpp>
@@ -20,11 +21,6 @@ std::unique_ptr<VideoFile> create(const std::filesystem::path& path,
 }
 
 }  // namespace
-
-std::filesystem::path sigma_path(std::filesystem::path path) {
-    const std::string extension = path.extension().string();
-    return path.replace_extension(".sigma" + extension);
-}
 
 VideoSink::VideoSink(VideoSettings settings) : settings_{std::move(settings)} {
     if (settings_.uncertainty == Uncertainty::alpha)

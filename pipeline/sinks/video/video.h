@@ -27,8 +27,11 @@ struct VideoSettings {
                           ///< grey: ON light, OFF dark
 };
 
-/// Where sigma goes when it has a video of its own: x.mp4 -> x.sigma.mp4.
-std::filesystem::path sigma_path(std::filesystem::path path);
+/// "FFmpeg 5.1.6", which encodes them; "no FFmpeg" in a build without EVENTIDE_VIDEO.
+std::string video_library();
+
+/// Whether that has an encoder for H.264.
+bool encodes_h264();
 
 /// Time stamps are the frames' sensor times minus the first one's, times `slow`, in microseconds
 /// (time base 1/10^6; Matroska rounds them to 1 ms). Should sensor time go back, the frame follows

@@ -1,6 +1,7 @@
 // One stream of video in one file, through libav.
 #include "pipeline/sinks/video/video_file.h"
 
+#include "pipeline/sinks/video/video.h"
 #include "pipeline/sinks/video/yuv.h"
 #include "src/core/error.h"
 
@@ -8,6 +9,7 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
+#include <libavutil/pixdesc.h>
 }
 
 #include <algorithm>
@@ -73,6 +75,14 @@ void refuse_wrong(const EncoderSettings& settings, const VideoKind& kind,
 }
 
 }  // namespace
+
+std::string video_library() {
+    return std::string{"FFmpeg "} + av_version_info();
+}
+
+bool encodes_h264() {
+    return avcodec_find_encoder_by_name("libx264") != nullptr;
+}
 
 void VideoFile::Free::operator()(AVCodecContext* p) const {
     avcodec_free_context(&p);
@@ -170,7 +180,7 @@ void VideoFile::open_encoder(const cv::Mat& image) {
     type_ = image.type();
     width_ = image.cols;
     height_ = image.rows;
-    encoder_->pix_fmt = kind_.pixels;
+    encoder_->pix_fmt = av_get_pix_fmt(kind_.pixels);
     const bool grey = encoder_->pix_fmt == AV_PIX_FMT_GRAY8;
     encoder_->width = grey ? width_ : even(width_);
     encoder_->height = grey ? height_ : even(height_);
@@ -235,7 +245,7 @@ void VideoFile::write(const cv::Mat& image, std::int64_t t_us) {
 }
 
 void VideoFile::fill_frame(const cv::Mat& image) {
-    if (kind_.pixels == AV_PIX_FMT_GRAY8)
+    if (encoder_->pix_fmt == AV_PIX_FMT_GRAY8)
         return image.copyTo(cv::Mat(image.rows, image.cols, CV_8UC1, frame_->data[0],
                                     std::size_t(frame_->linesize[0])));
     to_yuv420(

@@ -10,13 +10,13 @@ namespace eventide {
 
 namespace {
 
-constexpr VideoKind kKinds[]{{".mp4", "libx264", AV_PIX_FMT_YUV420P, false, 1'000'000, 1e6, true},
-                             {".mkv", "libx264", AV_PIX_FMT_YUV420P, false, 1'000'000, 1e6, true},
+constexpr VideoKind kKinds[]{{".mp4", "libx264", "yuv420p", false, 1'000'000, 1e6, true},
+                             {".mkv", "libx264", "yuv420p", false, 1'000'000, 1e6, true},
                              // A Motion JPEG file has one rate and no times.
-                             {".avi", "mjpeg", AV_PIX_FMT_YUVJ420P, true, 0, 1e6, true},
+                             {".avi", "mjpeg", "yuvj420p", true, 0, 1e6, true},
                              // 256 colours: all the greys there are. Players show what is to stand
                              // shorter than 20 ms for 100 ms.
-                             {".gif", "gif", AV_PIX_FMT_GRAY8, true, 100, 50, false}};
+                             {".gif", "gif", "gray", true, 100, 50, false}};
 
 const VideoKind* find(const std::filesystem::path& path) {
     const auto found = std::ranges::find(kKinds, path.extension().string(), &VideoKind::extension);
@@ -33,6 +33,11 @@ const VideoKind& video_kind_of(const std::filesystem::path& path) {
 
 bool names_video(const std::filesystem::path& path) {
     return find(path) != nullptr;
+}
+
+std::filesystem::path sigma_path(std::filesystem::path path) {
+    const std::string extension = path.extension().string();
+    return path.replace_extension(".sigma" + extension);
 }
 
 }  // namespace eventide

@@ -1,9 +1,5 @@
-// The kinds of video file, and what differs between them.
+// The kinds of video file, what differs between them, and their names.
 #pragma once
-
-extern "C" {
-#include <libavutil/pixfmt.h>
-}
 
 #include <filesystem>
 
@@ -12,10 +8,10 @@ namespace eventide {
 struct VideoKind {
     const char* extension;  ///< ".mp4"
     const char* encoder;    ///< libav's name
-    AVPixelFormat pixels;
-    bool full_range;       ///< of the luma
-    int ticks_per_second;  ///< what times are rounded to; 0: each frame is one tick
-    double most_fps;       ///< of its video time
+    const char* pixels;     ///< likewise
+    bool full_range;        ///< of the luma
+    int ticks_per_second;   ///< what times are rounded to; 0: each frame is one tick
+    double most_fps;        ///< of its video time
     bool colour;
 };
 
@@ -24,5 +20,8 @@ const VideoKind& video_kind_of(const std::filesystem::path& path);
 
 /// By extension only.
 bool names_video(const std::filesystem::path& path);
+
+/// Where sigma goes when it has a video of its own: x.mp4 -> x.sigma.mp4.
+std::filesystem::path sigma_path(std::filesystem::path path);
 
 }  // namespace eventide

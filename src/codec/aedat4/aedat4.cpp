@@ -165,13 +165,11 @@ bool Aedat4Parser::take_payload(std::int32_t stream, std::span<const std::byte> 
         damage_.count(DamageReason::bad_record);
         return false;
     }
-    const auto known =
-        std::find(kAedat4Identifiers.begin(), kAedat4Identifiers.end(), root->identifier);
-    if (known == kAedat4Identifiers.end()) return true;
-    const auto kind = Aedat4Kind(known - kAedat4Identifiers.begin());
-    auto& chosen = chosen_[std::size_t(kind)];
+    const auto kind = kind_of(root->identifier);
+    if (!kind) return true;
+    auto& chosen = chosen_[std::size_t(*kind)];
     if (!chosen && all_streams_) chosen = stream;
-    if (chosen == stream) take_root(kind, root->table, into);
+    if (chosen == stream) take_root(*kind, root->table, into);
     return true;
 }
 

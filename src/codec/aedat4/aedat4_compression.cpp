@@ -49,6 +49,10 @@ void pack_zstd(std::span<const std::byte> bytes, int level, std::vector<std::byt
 
 }  // namespace
 
+Aedat4Compression usual_aedat4_compression() {
+    return Aedat4Compression::lz4;
+}
+
 bool is_lz4_frame(std::span<const std::byte> bytes) {
     return begins_with(bytes, kLz4Magic);
 }

@@ -13,6 +13,9 @@ namespace eventide {
 /// Numbered as in the file's header.
 enum class Aedat4Compression : std::int32_t { none, lz4, lz4_high, zstd, zstd_high };
 
+/// What is written where nobody says: LZ4; none in a build without EVENTIDE_COMPRESSION.
+Aedat4Compression usual_aedat4_compression();
+
 /// The largest packet read, packed or not: real ones hold 10 ms or one image. What comes is
 /// unpacked into memory that grows with the data themselves, never with a number in the file.
 constexpr std::size_t kLargestAedat4Packet = std::size_t(256) << 20;  // bytes
@@ -28,7 +31,8 @@ public:
     ~Aedat4Unpacker();
 
     /// The content of an LZ4 or ZSTD frame, or the bytes themselves when they are neither. Borrowed
-    /// until the next call. Empty when the frame is damaged, incomplete, or too large.
+    /// until the next call. Empty when the frame is damaged, incomplete, or too large. Throws Error
+    /// (input) for such a frame in a build without EVENTIDE_COMPRESSION.
     std::optional<std::span<const std::byte>> unpack(std::span<const std::byte> packed);
 
 private:
@@ -41,7 +45,8 @@ private:
     std::vector<std::byte> unpacked_;
 };
 
-/// Appends the packed bytes. Throws Error (failed) when there is no memory for it.
+/// Appends the packed bytes. Throws Error: failed when there is no memory for it, usage in a build
+/// without EVENTIDE_COMPRESSION for all but none.
 void pack_aedat4(std::span<const std::byte> bytes, Aedat4Compression compression,
                  std::vector<std::byte>& out);
 

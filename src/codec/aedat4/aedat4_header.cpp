@@ -71,11 +71,11 @@ private:
 
 void choose_streams(Aedat4Header& header) {
     const auto choose = [&](Aedat4Kind kind, const std::string* source) {
-        const auto found = std::find_if(
-            header.streams.begin(), header.streams.end(), [&](const Aedat4Stream& stream) {
-                return stream.identifier == kAedat4Identifiers[std::size_t(kind)] &&
-                       (!source || stream.source == *source);
-            });
+        const auto found = std::find_if(header.streams.begin(), header.streams.end(),
+                                        [&](const Aedat4Stream& stream) {
+                                            return stream.identifier == identifier_of(kind) &&
+                                                   (!source || stream.source == *source);
+                                        });
         if (found == header.streams.end()) return static_cast<const Aedat4Stream*>(nullptr);
         header.chosen[std::size_t(kind)] = found->id;
         return static_cast<const Aedat4Stream*>(&*found);

@@ -16,9 +16,31 @@ namespace eventide {
 
 constexpr std::string_view kAedat4Magic = "#!AER-DAT4.0\r\n";
 
-/// The kinds of packets read, and their flatbuffer identifiers.
+/// The kinds of packets read.
 enum class Aedat4Kind : std::uint8_t { events, image, imu, triggers };
-constexpr std::array<std::string_view, 4> kAedat4Identifiers{"EVTS", "FRME", "IMUS", "TRIG"};
+
+/// The flatbuffer identifier of their packets.
+constexpr std::string_view identifier_of(Aedat4Kind kind) {
+    switch (kind) {
+        case Aedat4Kind::image:
+            return "FRME";
+        case Aedat4Kind::imu:
+            return "IMUS";
+        case Aedat4Kind::triggers:
+            return "TRIG";
+        case Aedat4Kind::events:
+            break;
+    }
+    return "EVTS";
+}
+
+/// Empty for packets that are not read.
+constexpr std::optional<Aedat4Kind> kind_of(std::string_view identifier) {
+    for (const Aedat4Kind kind :
+         {Aedat4Kind::events, Aedat4Kind::image, Aedat4Kind::imu, Aedat4Kind::triggers})
+        if (identifier == identifier_of(kind)) return kind;
+    return std::nullopt;
+}
 
 struct Aedat4Stream {
     std::int32_t id = 0;

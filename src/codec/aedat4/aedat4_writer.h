@@ -26,7 +26,7 @@ public:
     static constexpr std::size_t kPacketEvents = 16384;
     static constexpr std::size_t kPacketSamples = 1024;
 
-    explicit Aedat4Writer(Aedat4Compression compression = Aedat4Compression::lz4)
+    explicit Aedat4Writer(Aedat4Compression compression = usual_aedat4_compression())
         : compression_(compression) {}
 
     void begin(const StreamHeader& header, std::vector<std::byte>& out) override;

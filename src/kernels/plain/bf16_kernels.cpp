@@ -1,6 +1,6 @@
 // The plain kernels of bf16_kernels.h.
 #include "src/kernels/bf16_kernels.h"
-#include "src/kernels/narrow_pixels.h"
+#include "src/kernels/pixels_to_bf16.h"
 
 #include <algorithm>
 #include <array>
@@ -44,10 +44,10 @@ void dot_pixel(const DotArea& r, int y, int x) {
         Block sums{};
         std::copy_n(r.bias + first, width, sums.begin());
         weight = sum_block(r, y, x, width, weight, sums);
-        const int stored = r.narrow ? (r.outputs + 1) / 2 * 2 : r.outputs;
+        const int stored = r.to_bf16 ? (r.outputs + 1) / 2 * 2 : r.outputs;
         for (int o = 0; o < std::min(width, stored - first); ++o) {
             const float sum = sums[std::size_t(o)], value = r.relu ? std::max(sum, 0.0F) : sum;
-            if (r.narrow)
+            if (r.to_bf16)
                 static_cast<std::uint16_t*>(r.out)[2 * at + first + o] = to_bf16(value);
             else
                 static_cast<float*>(r.out)[at + first + o] = value;
@@ -65,7 +65,7 @@ void row_to_bf16(const float* in, std::size_t n, std::uint16_t* out) {
     std::transform(in, in + n, out, to_bf16);
 }
 void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
-    narrow_pixels(row_to_bf16, in, pixels, channels, out);
+    convert_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
 void double_row(const DoubleRow& r) {

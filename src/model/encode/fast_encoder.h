@@ -1,6 +1,6 @@
-// What both fast encoders have: states that are saved and loaded, scratch memory for each lane, and
-// an account of when which tile of the codes changed, so that a map that was filled before is only
-// renewed. Codes are written where they are handed out; no copy is kept.
+// What both fast encoders have: states that are saved and loaded, scratch memory for each worker,
+// and an account of when which tile of the codes changed, so that a map that was filled before is
+// only renewed. Codes are written where they are handed out; no copy is kept.
 #pragma once
 
 #include "src/model/cores.h"
@@ -23,7 +23,7 @@ public:
 protected:
     FastEncoder(const EngineOptions& options, const Arithmetic& arithmetic);
 
-    /// To be called once, with the size of the latent map, the scratch numbers a lane needs, and
+    /// To be called once, with the size of the latent map, the scratch numbers a worker needs, and
     /// the most tiles any map has.
     void make_room(int height, int width, std::size_t scratch, std::size_t tiles);
     /// Tile i of the map of codes has new values in this step.

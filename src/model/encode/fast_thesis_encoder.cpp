@@ -179,8 +179,9 @@ void FastThesisEncoder::step_full() noexcept {
         full_gru_.step(states_[0], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
             for (int y = region.y0; y < region.y1; ++y)
-                states_[0].numbers().narrow(x0_.at(y, region.x0), std::size_t(region.width()),
-                                            channels_, target.out + (y - region.y0) * target.pitch);
+                states_[0].numbers().from_float(x0_.at(y, region.x0), std::size_t(region.width()),
+                                                channels_,
+                                                target.out + (y - region.y0) * target.pitch);
         });
     });
     runner_.over(tiles_,
@@ -199,8 +200,8 @@ void FastThesisEncoder::step_half() noexcept {
                       wide + region.height() * row);
             vector_kernels().elu(wide, wide, std::size_t(region.height() * row));
             for (int y = 0; y < region.height(); ++y)
-                states_[1].numbers().narrow(wide + y * row, std::size_t(region.width()), channels_,
-                                            target.out + y * target.pitch);
+                states_[1].numbers().from_float(wide + y * row, std::size_t(region.width()),
+                                                channels_, target.out + y * target.pitch);
         });
     });
     runner_.over(half_tiles_,
@@ -227,8 +228,8 @@ void FastThesisEncoder::join_head() noexcept {
             call.in[n] = {from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()};
             if (numbers.bf16() == nullptr) continue;
             for (int y = 0; y < tile.height() + 2; ++y)
-                numbers.narrow(from.at(tile.y0 - 1 + y, tile.x0 - 1), std::size_t(tile.width() + 2),
-                               channels_, rest + y * row);
+                numbers.from_float(from.at(tile.y0 - 1 + y, tile.x0 - 1),
+                                   std::size_t(tile.width() + 2), channels_, rest + y * row);
             call.in[n] = {rest, row};
             rest += area;
         }

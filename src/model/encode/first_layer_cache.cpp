@@ -48,9 +48,9 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
     for (Sums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
-    scratch_.assign(kLanes, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
-                                                  whole_.scratch_size(kLatentSide, kLatentSide),
-                                                  std::size_t(kLatentSide * depth_)})));
+    scratch_.assign(kWorkers, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
+                                                    whole_.scratch_size(kLatentSide, kLatentSide),
+                                                    std::size_t(kLatentSide * depth_)})));
 }
 
 void FirstLayerCache::reset() noexcept {
@@ -66,9 +66,10 @@ void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
     newest_ = k;
     const std::size_t slot = LatentWindow::slot(k);
     const StaleTiles outdated{histories_[slot], latent.history};
-    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int lane, int n) {
+    for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int worker, int n) {
         if (outdated(std::size_t(n)))
-            hold_tile(k, tiles_[std::size_t(n)], latent.values, scratch_[std::size_t(lane)].data());
+            hold_tile(k, tiles_[std::size_t(n)], latent.values,
+                      scratch_[std::size_t(worker)].data());
     });
     histories_[slot] = latent.history;
     note_changes(k, latent.history);
@@ -86,14 +87,15 @@ void FirstLayerCache::hold_tile(std::int64_t k, const Tile& tile, const Array3<f
             std::memcpy(mine.at(y, tile.x0), before->at(y, tile.x0),
                         width * std::size_t(mine.channels()) * sizeof(float));
         else
-            numbers_.narrow(latent.pixel(y, tile.x0).data(), width, depth_, mine.at(y, tile.x0));
+            numbers_.from_float(latent.pixel(y, tile.x0).data(), width, depth_,
+                                mine.at(y, tile.x0));
 }
 
 bool FirstLayerCache::is_still(const PaddedMap& before, const Tile& tile,
                                const Array3<float>& latent, float* row) const noexcept {
     const auto width = std::size_t(tile.width());
     for (int y = tile.y0; y < tile.y1; ++y) {
-        numbers_.widen(before.at(y, tile.x0), width, depth_, row);
+        numbers_.to_float(before.at(y, tile.x0), width, depth_, row);
         if (!vector_kernels().are_near(latent.pixel(y, tile.x0).data(), row,
                                        float(options_.still_codes), width * std::size_t(depth_)))
             return false;
@@ -188,9 +190,9 @@ const FirstLayerCache::Sums& FirstLayerCache::bring(std::int64_t k, bool whole,
         if (!unchanged(to, k, whole, i)) active_.push_back(int(i));
     to.k = k;
     to.whole = whole;
-    for_each_tile(options_.parallel_for, int(active_.size()), [&](int lane, int n) {
+    for_each_tile(options_.parallel_for, int(active_.size()), [&](int worker, int n) {
         compute_tile(to, tiles_[std::size_t(active_[std::size_t(n)])],
-                     scratch_[std::size_t(lane)].data());
+                     scratch_[std::size_t(worker)].data());
     });
     return to;
 }
@@ -207,7 +209,7 @@ void FirstLayerCache::compute_tile(Sums& to, const Tile& tile, float* scratch) n
     }
     call.out = to.values.pixel(tile.y0, tile.x0).data();
     call.out_pitch = std::ptrdiff_t(width_) * to.values.channels();
-    call.narrow = true;
+    call.to_bf16 = true;
     call.height = tile.height();
     call.width = tile.width();
     (to.whole ? whole_ : past_).run(call, scratch);

@@ -78,7 +78,7 @@ private:
     std::int64_t newest_ = 0;
     std::array<Sums, 2> kept_;
     std::vector<int> active_;           // tiles to be computed
-    std::vector<FloatBuffer> scratch_;  // per lane
+    std::vector<FloatBuffer> scratch_;  // per worker
 };
 
 }  // namespace eventide

@@ -73,11 +73,11 @@ void GatedDecoder::write_codes(const std::vector<StateMap>& states, const Tile& 
 }
 
 void GatedDecoder::convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to,
-                            bool narrow, const Tile& tile, float* scratch) noexcept {
+                            bool to_bf16, const Tile& tile, float* scratch) noexcept {
     conv.run(ConvArea{{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
                       to.at(tile.y0, tile.x0),
                       to.pitch(),
-                      narrow,
+                      to_bf16,
                       tile.height(),
                       tile.width()},
              scratch);
@@ -128,12 +128,12 @@ void GatedDecoder::add(const PaddedMap& before, bool is_float, Block& block, con
     for (int y = tile.y0; y < tile.y1; ++y) {
         const float* skip = before.at(y, tile.x0);
         if (!is_float) {
-            numbers_.widen(skip, width, channels, scratch);
+            numbers_.to_float(skip, width, channels, scratch);
             skip = scratch;
         }
         float* sum = block.sum.at(y, tile.x0);
         vector_kernels().add_relu(skip, sum, sum, width * std::size_t(channels));
-        numbers_.narrow(sum, width, channels, block.out.at(y, tile.x0));
+        numbers_.from_float(sum, width, channels, block.out.at(y, tile.x0));
     }
 }
 

@@ -17,7 +17,7 @@ public:
     /// Of the map of codes that run() writes.
     Extent latent_size() const { return latent_size_; }
 
-    /// Numbers run() needs for each lane.
+    /// Numbers run() needs for each worker.
     std::size_t scratch_size() const { return scratch_; }
 
     /// Brings everything before the codes up to the states, where a level's mask says that one has
@@ -42,7 +42,7 @@ private:
         PaddedMap sum;         // d in float32
     };
 
-    static void convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to, bool narrow,
+    static void convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to, bool to_bf16,
                          const Tile& tile, float* scratch) noexcept;
     void add(const PaddedMap& before, bool is_float, Block& block, const Tile& tile,
              float* scratch) const noexcept;

@@ -154,7 +154,7 @@ void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& st
     in_.run(ConvArea{.in = {{{above.at(2 * region.y0 - 1, 2 * region.x0 - 1), above.pitch()}}},
                      .out = target.out,
                      .out_pitch = target.pitch,
-                     .narrow = true,
+                     .to_bf16 = true,
                      .height = region.height(),
                      .width = region.width()},
             scratch);
@@ -193,12 +193,12 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
         if (maps_ > 1)
             numbers.split({compressed, inside.width(), channels, map_channels_, maps_, to, plane});
         else if (compressed != to)
-            numbers.narrow(compressed, pixels, channels, to);
+            numbers.from_float(compressed, pixels, channels, to);
     }
     in_.run(ConvArea{.in = {{{scratch, row}, {scratch + plane, row}, {scratch + 2 * plane, row}}},
                      .out = target.out,
                      .out_pitch = target.pitch,
-                     .narrow = true,
+                     .to_bf16 = true,
                      .height = region.height(),
                      .width = region.width()},
             rest);

@@ -51,9 +51,9 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
             last_bias_ = bias;
         }
     }
-    scratch_.assign(
-        kLanes, FloatBuffer(std::size_t(first_) + std::size_t(kBlock) * 3 * std::size_t(widest_)));
-    row_sums_.resize(kLanes);
+    scratch_.assign(kWorkers, FloatBuffer(std::size_t(first_) +
+                                          std::size_t(kBlock) * 3 * std::size_t(widest_)));
+    row_sums_.resize(kWorkers);
 }
 
 std::string FastRenderer::description() const {
@@ -175,13 +175,13 @@ void FastRenderer::render_spans(const Job& job, const Target& target) noexcept {
     for (const Span& span : spans_)
         pixels_rendered_ += std::uint64_t(layout_.columns.begin[std::size_t(span.last)] -
                                           layout_.columns.begin[std::size_t(span.first)]);
-    for_each_tile(options_.parallel_for, int(spans_.size()), [&](int lane, int i) {
-        render_span(job, spans_[std::size_t(i)], target, std::size_t(lane));
+    for_each_tile(options_.parallel_for, int(spans_.size()), [&](int worker, int i) {
+        render_span(job, spans_[std::size_t(i)], target, std::size_t(worker));
     });
 }
 
 void FastRenderer::render_span(const Job& job, const Span& span, const Target& target,
-                               std::size_t lane) noexcept {
+                               std::size_t worker) noexcept {
     const int width = job.geometry.part_width;
     const auto count = std::size_t(width);
     const auto begin = std::size_t(layout_.columns.begin[std::size_t(span.first)]),
@@ -189,8 +189,8 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
     const AxisSamples y =
         sample_axis(job.geometry.y + span.row, job.geometry.height, job.geometry.sensor_height,
                     config_.latent_stride, config_.blend);
-    float* scratch = scratch_[lane].data();
-    float* blended = row_sums_[lane].data();  // mu, ln sigma, sigma^2 + mu^2
+    float* scratch = scratch_[worker].data();
+    float* blended = row_sums_[worker].data();  // mu, ln sigma, sigma^2 + mu^2
     for (std::size_t n = 0; n < 3; ++n) std::fill_n(blended + n * count + begin, end - begin, 0.0F);
     float* base = scratch;
     for (std::size_t n = 0; n < 4; ++n) {

@@ -65,7 +65,7 @@ private:
                        const CodeChoice& codes) const noexcept;
     void render_spans(const Job& job, const Target& target) noexcept;
     void render_span(const Job& job, const Span& span, const Target& target,
-                     std::size_t lane) noexcept;
+                     std::size_t worker) noexcept;
     /// Adds a member's part to the three sums of every pixel of the span.
     void evaluate(const Member& member, const Span& span, float* blended, int width,
                   float* scratch) const noexcept;
@@ -96,7 +96,7 @@ private:
     std::vector<Span> spans_;
     std::uint64_t pixels_rendered_ = 0;
     bool needs_squares_ = false;
-    std::vector<FloatBuffer> scratch_, row_sums_;  // per lane
+    std::vector<FloatBuffer> scratch_, row_sums_;  // per worker
 };
 
 }  // namespace eventide

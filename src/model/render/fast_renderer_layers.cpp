@@ -96,7 +96,7 @@ const float* FastRenderer::run_layers(const float* activations, int pixels,
         area.count = 1;
         area.height = 1;
         area.width = pixels;
-        area.narrow = !is_last;
+        area.to_bf16 = !is_last;
         area.out = out;
         area.out_step = is_last ? layer.outputs() : numbers_.units(layer.outputs());
         layer.run(area);
@@ -104,7 +104,7 @@ const float* FastRenderer::run_layers(const float* activations, int pixels,
         out = out == room ? room + block : room;
     }
     if (!layers_.empty() || numbers_.bf16() == nullptr) return in;
-    numbers_.widen(activations, std::size_t(pixels), first_, room);
+    numbers_.to_float(activations, std::size_t(pixels), first_, room);
     return room;
 }
 

@@ -56,6 +56,53 @@ std::string offered(const std::string& words) {
     return result.output;
 }
 
+/// What zsh is told to offer: its completion system is stood in for.
+std::string offered_by_zsh(const std::string& words, const std::string& typed) {
+    const test::TempFolder temp;
+    test::write_text(temp / "completion", zsh_completion());
+    const test::Result result = test::run(
+        {"zsh", "-fec",
+         "compadd() { shift; print -- $@ }; _files() { print files }\n"
+         "_describe() { local entry; for entry in ${(P)2}; do print -- ${entry%%:*}; done }\n"
+         "words=(" +
+             words + "); CURRENT=$#words; PREFIX='" + typed + "'; . " + (temp / "completion")});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return result.output;
+}
+
+/// What fish offers, without its descriptions.
+std::string offered_by_fish(const std::string& line) {
+    const test::TempFolder temp;
+    test::write_text(temp / "completion", fish_completion());
+    const test::Result result = test::run({"fish", "-N", "-c",
+                                           "source " + (temp / "completion") + "; complete -C '" +
+                                               line + "' | string replace -r '\\t.*' ''"},
+                                          {.environment = {{"HOME", temp.path().string()}}});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return result.output;
+}
+
+bool is_here(const std::string& shell) {
+    return test::run({"sh", "-c", "command -v " + shell}).exit_code == 0;
+}
+
+TEST(Completion, ZshOffersCommandsFlagsAndWords) {
+    if (!is_here("zsh")) GTEST_SKIP() << "zsh is not installed";
+    EXPECT_TRUE(offered_by_zsh("eventide ''", "").starts_with("run\n"));
+    EXPECT_EQ(offered_by_zsh("eventide run a.raw --precision ''", ""), "auto f32 bf16\n");
+    EXPECT_TRUE(has(offered_by_zsh("eventide run --", "--"), "\n--lookahead\n"));
+    EXPECT_TRUE(has(offered_by_zsh("eventide info --", "--"), "\n--log-level\n"));
+    EXPECT_EQ(offered_by_zsh("eventide run rec", "rec"), "files\n");
+}
+
+TEST(Completion, FishOffersCommandsFlagsAndWords) {
+    if (!is_here("fish")) GTEST_SKIP() << "fish is not installed";
+    EXPECT_EQ(offered_by_fish("eventide con"), "convert\n");
+    EXPECT_EQ(offered_by_fish("eventide run a.raw --precision "), "auto\nbf16\nf32\n");
+    EXPECT_EQ(offered_by_fish("eventide run --looka"), "--lookahead\n");
+    EXPECT_EQ(offered_by_fish("eventide info --log"), "--log-level\n");
+}
+
 TEST(Completion, OffersCommandsFlagsAndWords) {
     EXPECT_EQ(offered("eventide con"), "convert\n");
     EXPECT_EQ(offered("eventide run --looka"), "--lookahead\n");

@@ -57,7 +57,7 @@ TEST(SceneStream, IsTheSameHoweverOftenTheRunStops) {
     for (int i = 0; i < 12; ++i) windows.push_back(whole.next());
     int fresh = 0;
     for (const int at : {0, 1, 5, 9}) {
-        // The lane's window i is the run's window 2 i + 1.
+        // The stream's window i is the run's window 2 i + 1.
         StreamWindow again = SceneStream{settings, few_textures(), place, 2 * at}.next();
         const StreamWindow& expected = windows[std::size_t(at)];
         EXPECT_EQ(again.fresh, expected.fresh);
@@ -70,7 +70,7 @@ TEST(SceneStream, IsTheSameHoweverOftenTheRunStops) {
     EXPECT_LT(fresh, 12) << "scenes last longer than a window";
 }
 
-/// Events per pixel of each event window of a few lanes.
+/// Events per pixel of each event window of a few streams.
 std::vector<double> contents(const DataSettings& settings) {
     std::vector<double> all;
     const auto add = [&](const Array3<float>& grid) {

@@ -30,7 +30,7 @@ TEST(Options, AWrongWordIsRefusedByName) {
     TrainOptions options;
     OptionTable table{options};
     for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"--lanes", "many"}, {"--nonsense", "1"}, {"--rate"}}) {
+         {std::vector<std::string>{"--streams", "many"}, {"--nonsense", "1"}, {"--rate"}}) {
         try {
             table.parse(words);
             ADD_FAILURE() << words[0] << " was taken";
@@ -39,6 +39,13 @@ TEST(Options, AWrongWordIsRefusedByName) {
             EXPECT_NE(std::string{error.what()}.find(words[0]), std::string::npos) << error.what();
         }
     }
+}
+
+TEST(Options, OlderCheckpointsNamesAreRead) {
+    TrainOptions options;
+    OptionTable{options}.parse({"--lanes", "5", "--pace", "2,3"});
+    EXPECT_EQ(options.streams, 5);
+    EXPECT_EQ(options.data.scene.wander.pace.high, 3);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "apps/cli/run/quality/measure_profile.h"
 #include "apps/cli/run/quality/profile_cache.h"
 #include "apps/cli/settings/model_path.h"
+#include "apps/cli/settings/words.h"
 #include "src/core/error.h"
 #include "src/model/model_file.h"
 #include "src/model/model_folders.h"
@@ -21,11 +22,6 @@ namespace eventide::app {
 namespace {
 
 constexpr std::size_t kChangesKept = 100;
-
-std::string name_of(Precision precision) {
-    constexpr const char* kNames[]{"auto", "f32", "bf16", "bf16_emulated"};
-    return kNames[std::size_t(precision)];
-}
 
 /// Of the video; 0: one for each event window.
 double video_rate(const RunSettings& settings) {
@@ -111,7 +107,7 @@ RunQuality::RunQuality(RunSettings& settings, const Place& place,
                        const std::function<bool()>& give_up)
     : sensor_{place.sensor.width, place.sensor.height} {
     state_.model = settings.model;
-    state_.precision = name_of(settings.precision);
+    state_.precision = show_word(settings.precision, kPrecisionWords);
     state_.level = asked_level(settings, place.sensor);
     state_.chosen = place.chooses;
     state_.budget = show_budget(settings.budget);
@@ -119,7 +115,7 @@ RunQuality::RunQuality(RunSettings& settings, const Place& place,
     const Chosen chosen = choose(settings, place, give_up);
     settings.model = state_.model = chosen.model;
     settings.precision = chosen.choice.precision;
-    state_.precision = name_of(settings.precision);
+    state_.precision = show_word(settings.precision, kPrecisionWords);
     state_.level = chosen.choice.level;
     if (scale_is_open(settings)) settings.size.scale = state_.level.scale;
     if (chosen.demand.share && settings.threads == 0) settings.threads = int(chosen.demand.threads);

@@ -1,4 +1,4 @@
-// Pixels of float32 numbers to pairs of bf16 numbers, by a function that narrows a row.
+// Pixels of float32 numbers to pairs of bf16 numbers, by a function that converts a row.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace eventide {
 
-template <typename NarrowRow>
-void narrow_pixels(NarrowRow row_to_bf16, const float* in, std::size_t pixels, int channels,
-                   std::uint32_t* out) {
+template <typename RowToBf16>
+void convert_pixels(RowToBf16 row_to_bf16, const float* in, std::size_t pixels, int channels,
+                    std::uint32_t* out) {
     auto* numbers = reinterpret_cast<std::uint16_t*>(out);
     const auto count = std::size_t(channels);
     if (channels % 2 == 0) {

@@ -1,0 +1,33 @@
+// Videos of a build without libav.
+#include "pipeline/sinks/video/video.h"
+#include "src/core/error.h"
+
+#include <utility>
+
+namespace eventide {
+
+class VideoFile {};
+
+VideoSink::VideoSink(VideoSettings settings) : settings_{std::move(settings)} {
+    throw Error(ErrorKind::usage,
+                settings_.path.string() +
+                    ": this eventide was built without videos; write frames (--out frames/) or Y4M "
+                    "(--out -), or install libavformat-dev, libavcodec-dev and libswscale-dev and "
+                    "build it again with -DEVENTIDE_VIDEO=ON");
+}
+
+VideoSink::~VideoSink() = default;
+
+void VideoSink::write(const Frame&) {}
+
+void VideoSink::close() {}
+
+std::string video_library() {
+    return "no FFmpeg";
+}
+
+bool encodes_h264() {
+    return false;
+}
+
+}  // namespace eventide

@@ -1,0 +1,52 @@
+// AEDAT4 packets of a build without LZ4 and ZSTD: bare ones alone.
+#include "src/codec/aedat4/aedat4_compression.h"
+#include "src/codec/byte_order.h"
+#include "src/core/error.h"
+
+namespace eventide {
+
+namespace {
+
+constexpr const char* kHow =
+    "expected bare ones, as this eventide was built without compression; install liblz4-dev, "
+    "libzstd-dev and libbz2-dev and build it again with -DEVENTIDE_COMPRESSION=ON";
+
+bool begins_with(std::span<const std::byte> bytes, std::uint32_t magic) {
+    return bytes.size() >= 4 && load_little<std::uint32_t>(bytes.data()) == magic;
+}
+
+}  // namespace
+
+struct Aedat4Unpacker::Contexts {};
+
+Aedat4Unpacker::Aedat4Unpacker() = default;
+
+Aedat4Unpacker::~Aedat4Unpacker() = default;
+
+Aedat4Compression usual_aedat4_compression() {
+    return Aedat4Compression::none;
+}
+
+bool is_lz4_frame(std::span<const std::byte> bytes) {
+    return begins_with(bytes, 0x184D2204);
+}
+
+bool is_zstd_frame(std::span<const std::byte> bytes) {
+    return begins_with(bytes, 0xFD2FB528);
+}
+
+std::optional<std::span<const std::byte>> Aedat4Unpacker::unpack(
+    std::span<const std::byte> packed) {
+    if (is_lz4_frame(packed) || is_zstd_frame(packed))
+        throw Error(ErrorKind::input, std::string{"packets compressed by LZ4 or ZSTD: "} + kHow);
+    return packed;
+}
+
+void pack_aedat4(std::span<const std::byte> bytes, Aedat4Compression compression,
+                 std::vector<std::byte>& out) {
+    if (compression != Aedat4Compression::none)
+        throw Error(ErrorKind::usage, std::string{"compressed packets: "} + kHow);
+    out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+}  // namespace eventide

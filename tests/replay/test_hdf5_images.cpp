@@ -1,0 +1,89 @@
+// Images in HDF5 recordings.
+#include "replay/formats.h"
+#include "replay/recording_file.h"
+#include "tests/replay/hdf5_files.h"
+#include "tests/replay/hdf5_layouts.h"
+#include "tests/replay/recording_files.h"
+
+#include <gmock/gmock.h>
+
+namespace eventide {
+namespace {
+
+using test::Hdf5Made;
+
+std::vector<std::uint8_t> picture(int width, int height, int n) {
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < width * height; ++i) pixels.push_back(std::uint8_t(i * 7 + n));
+    return pixels;
+}
+
+void expect_picture(const ReferenceImage& image, int width, int height, int n) {
+    ASSERT_EQ(image.pixels.width(), width);
+    ASSERT_EQ(image.pixels.height(), height);
+    const auto expected = picture(width, height, n);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        ASSERT_EQ(image.pixels.values()[i], 257 * expected[i]);
+}
+
+TEST(Hdf5Images, OfMvsecComeWithTheEvents) {
+    const TestFolder folder;
+    const auto events = some_events(20'000, 1'000'000, 20, 346, 260);
+    test::write_mvsec(folder.path("a.hdf5"), events);
+    {
+        const Hdf5Made file(folder.path("b.hdf5"));
+        std::vector<std::uint8_t> pixels;
+        for (int n = 0; n < 3; ++n)
+            for (const std::uint8_t value : picture(346, 260, n)) pixels.push_back(value);
+        file.array("davis/left/image_raw", {3, 260, 346}, H5T_NATIVE_UINT8, pixels.data(),
+                   H5T_STD_U8LE);
+        file.column("davis/left/image_raw_ts", std::vector<double>{.9, 1.1, 1.15}, H5T_IEEE_F64LE,
+                    0);
+        const hid_t other = H5Fopen(folder.path("a.hdf5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+        H5Ocopy(other, "davis/left/events", file.id(), "davis/left/events", H5P_DEFAULT,
+                H5P_DEFAULT);
+        H5Fclose(other);
+    }
+    const auto recording = open_recording(folder.path("b.hdf5"));
+    const Batch batch = read_everything(*recording);
+    EXPECT_TRUE(batch.events == events);
+    ASSERT_EQ(batch.images.size(), 3U);
+    for (int n = 0; n < 3; ++n) expect_picture(batch.images[std::size_t(n)], 346, 260, n);
+    EXPECT_EQ(batch.images[1].t, from_us(1'100'000));
+    recording->seek(from_us(1'120'000));
+    EXPECT_EQ(read_everything(*recording).images.size(), 1U);
+}
+
+TEST(Hdf5Images, SurviveTheWayThroughDsecsLayout) {
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = 32;
+    header.height = 24;
+    header.sensor_name = "DAVIS346";
+    header.serial = "00000042";
+    Batch batch;
+    batch.events = some_events(5'000, 3'000'000, 20, 32, 24);
+    for (int n = 0; n < 3; ++n) {
+        ReferenceImage image;
+        image.t = image.exposure_begin = image.exposure_end =
+            batch.events[std::size_t(1'000 * n + 500)].t;
+        image.channels = n == 2 ? 3 : 1;
+        image.pixels = Array2<std::uint16_t>(24, 32 * image.channels);
+        for (std::size_t i = 0; i < image.pixels.values().size(); ++i)
+            image.pixels.values()[i] = std::uint16_t(n == 1 ? i * 11 : i % 256 * 257);
+        batch.images.push_back(image);
+    }
+    RecordingFile file(folder.path("a.h5"), false, *find_format("hdf5"), header);
+    file.write(batch);
+    file.finish();
+    EXPECT_EQ(file.bytes_written(), std::filesystem::file_size(folder.path("a.h5")));
+    const auto recording = open_recording(folder.path("a.h5"));
+    EXPECT_EQ(recording->info().name, "DAVIS346");
+    EXPECT_EQ(recording->info().serial, "00000042");
+    const Batch back = read_everything(*recording);
+    EXPECT_TRUE(back.events == batch.events);
+    EXPECT_TRUE(back.images == batch.images);
+}
+
+}  // namespace
+}  // namespace eventide

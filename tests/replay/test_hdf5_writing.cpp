@@ -1,0 +1,77 @@
+// HDF5 recordings that eventide writes.
+#include "replay/formats.h"
+#include "replay/recording_file.h"
+#include "src/core/error.h"
+#include "tests/replay/hdf5_files.h"
+#include "tests/replay/hdf5_layouts.h"
+#include "tests/replay/recording_files.h"
+
+#include <gmock/gmock.h>
+
+namespace eventide {
+namespace {
+
+TEST(Hdf5Writing, KeepsDsecsPromisesOfItsIndex) {
+    const TestFolder folder;
+    const auto events = some_events(200'000, 7'000'123, 300, 640, 480);
+    test::write_hdf5(folder.path("a.h5"), events);
+    const hid_t file = H5Fopen(folder.path("a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const auto read = [&](const char* name) {
+        const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(set);
+        std::vector<std::int64_t> values(std::size_t(H5Sget_simple_extent_npoints(space)));
+        H5Dread(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+        H5Sclose(space);
+        H5Dclose(set);
+        return values;
+    };
+    const auto t = read("events/t"), index = read("ms_to_idx");
+    EXPECT_EQ(read("t_offset"), std::vector<std::int64_t>{to_us(events[0].t)});
+    H5Fclose(file);
+    ASSERT_EQ(t.size(), events.size());
+    ASSERT_EQ(std::int64_t(index.size()), t.back() / 1000 + 1);
+    for (std::size_t ms = 0; ms < index.size(); ++ms) {
+        const auto row = std::size_t(index[ms]);
+        ASSERT_GE(t[row], std::int64_t(ms) * 1000);
+        if (row > 0) {
+            ASSERT_LT(t[row - 1], std::int64_t(ms) * 1000);
+        }
+    }
+}
+
+TEST(Hdf5Writing, LeavesNothingBehindWhereItFails) {
+    const TestFolder folder;
+    const std::string precious = folder.write("a.h5", "precious");
+    StreamHeader header;
+    header.width = header.height = 128;
+    EXPECT_THROW(RecordingFile(precious, false, *find_format("hdf5"), header), Error);
+    EXPECT_EQ(read_text(precious), "precious");
+    {
+        RecordingFile file(precious, true, *find_format("hdf5"), header);
+        Batch batch;
+        batch.events = {{from_us(0), 1, 2, Polarity::on},
+                        {from_us(8LL * 86400 * 1'000'000), 1, 2, Polarity::on}};
+        EXPECT_THROW(file.write(batch), Error);  // beyond what the index may span
+    }
+    EXPECT_EQ(read_text(precious), "precious");
+    EXPECT_EQ(
+        std::distance(
+            std::filesystem::directory_iterator(std::filesystem::path(precious).parent_path()), {}),
+        1);
+    EXPECT_THROW(RecordingFile("/dev/null", true, *find_format("hdf5"), header), Error);
+}
+
+TEST(Hdf5Writing, GrowsUnderItsNameWhereThatIsAskedFor) {
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = header.height = 128;
+    const auto events = some_events(3'000);
+    RecordingFile file(folder.path("a.h5"), false, *find_format("hdf5"), header, Appears::growing);
+    Batch batch;
+    batch.events = events;
+    file.write(batch);
+    file.finish();
+    EXPECT_TRUE(read_everything(*open_recording(folder.path("a.h5"))).events == events);
+}
+
+}  // namespace
+}  // namespace eventide
