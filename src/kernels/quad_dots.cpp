@@ -10,9 +10,10 @@
 #include <limits>
 #include <utility>
 
-#define EVENTIDE_QUADS                                                                         \
-    __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16,prefer-vector-width=" \
-                          "512")))
+#define EVENTIDE_QUADS                                                              \
+    __attribute__((                                                                 \
+        target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16,prefer-vector-width=" \
+               "512")))
 #define EVENTIDE_QUADS_INLINE EVENTIDE_QUADS __attribute__((always_inline)) inline
 #endif
 

@@ -60,8 +60,8 @@ HWY_INLINE Vector exp_within(Vector v) {
     const Vector x = hn::Min(hn::Max(v, hn::Set(d, -40.0F)), hn::Set(d, 40.0F));
     const auto n = hn::NearestInt(hn::Mul(x, hn::Set(d, kLog2E)));
     const Vector whole = hn::ConvertTo(d, n);
-    const Vector f = hn::NegMulAdd(whole, hn::Set(d, kLn2Low),
-                                   hn::NegMulAdd(whole, hn::Set(d, kLn2High), x));
+    const Vector f =
+        hn::NegMulAdd(whole, hn::Set(d, kLn2Low), hn::NegMulAdd(whole, hn::Set(d, kLn2High), x));
     Vector p = hn::Set(d, kP[0]);
     for (std::size_t k = 1; k < 6; ++k) p = hn::MulAdd(p, f, hn::Set(d, kP[k]));
     p = hn::MulAdd(hn::Mul(f, f), p, hn::Add(f, hn::Set(d, 1.0F)));
