@@ -52,7 +52,7 @@ struct Work {
         area.weight = weight.data();
         area.bias = bias.data();
         area.relu = relu;
-        area.narrow = narrow;
+        area.to_bf16 = narrow;
         area.out_step = narrow ? outputs / 2 : outputs;
         area.out_pitch = width * area.out_step;
         return area;
@@ -136,7 +136,7 @@ TEST(Quads, AMapInThreeGivesTheSameBits) {
         std::vector<float> padded(std::size_t(kSide * kSide * kPadded));
         for (std::size_t p = 0; p < std::size_t(kSide * kSide); ++p)
             std::copy_n(in.data() + p * kChannels, kChannels, padded.data() + p * kPadded);
-        Numbers{products}.narrow(padded.data(), kSide * kSide, kPadded, whole.data());
+        Numbers{products}.from_float(padded.data(), kSide * kSide, kPadded, whole.data());
         const auto run = [&](const PackedConv& conv, ConvArea area) {
             std::vector<float> out(49 * kOutputs);
             area.out = out.data();
