@@ -33,8 +33,10 @@ Part made_for(const Model& model, const SensorInfo& sensor, const EngineOptions&
 Network::Network(const RunSettings& settings, const SensorInfo& sensor)
     : file_{find_model(settings.model)},
       model_{load_tried_model(file_)},
-      engine_{settings.engine, settings.precision, settings.kernels,
-              parallel_for_with(settings.threads)},
+      engine_{.engine = settings.engine,
+              .precision = settings.precision,
+              .kernels = settings.kernels,
+              .parallel_for = parallel_for_with(settings.threads)},
       encoder_{made_for<Encoder>(model_, sensor, engine_)},
       renderer_{made_for<Renderer>(model_, sensor, engine_)} {}
 
