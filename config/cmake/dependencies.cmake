@@ -41,9 +41,12 @@ endforeach()
 
 # The name that whoever links a library would load it by.
 function(eventide_soname into name folders)
-  find_library(file ${name} HINTS ${folders} NO_CACHE REQUIRED)
-  execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${file} OUTPUT_VARIABLE headers)
-  string(REGEX MATCH "SONAME +([^ \n]+)" soname "${headers}")
+  unset(soname_file)
+  find_library(soname_file ${name} HINTS ${folders} NO_CACHE REQUIRED)
+  execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${soname_file} OUTPUT_VARIABLE headers)
+  if(NOT headers MATCHES "SONAME +([^ \n]+)")
+    message(FATAL_ERROR "${soname_file}: expected a library with a name (SONAME), found none")
+  endif()
   set(${into} ${CMAKE_MATCH_1} PARENT_SCOPE)
 endfunction()
 
