@@ -84,7 +84,7 @@ TEST(DavisCamera, ACameraInRealTimeLosesNothingAndTellsTheTimeInSilence) {
 
 TEST(DavisCamera, SaysWhatToDoWhenItCannotStart) {
     UsbTestbed bed;
-    EXPECT_THAT(failure_of([] { DavisCamera{DavisOptions{}}; }), HasSubstr("no camera"));
+    EXPECT_THAT(failure_of([] { DavisCamera{DavisOptions{}}; }), HasSubstr("no DAVIS found"));
     const auto with = [&](auto change) {
         DavisModelSettings settings;
         change(settings);
