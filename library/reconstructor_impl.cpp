@@ -3,6 +3,7 @@
 
 #include "library/network_options.h"
 #include "src/core/error.h"
+#include "src/core/frame_stamp.h"
 #include "src/nn/safetensors.h"
 
 #include <algorithm>
@@ -85,7 +86,7 @@ void Reconstructor::Impl::encode() {
 /// Where render() went ahead of next(), the frames of windows that the network cannot show any more
 /// are left out: those of the open window first, then those of the oldest that waits.
 void Reconstructor::Impl::note_window() {
-    seen(encoded_++) = {grid_.window, grid_.events, grid_.gap_before};
+    copy_stamp(grid_, seen(encoded_++));
     const std::uint64_t waiting = encoded_ - opened_;
     if (waiting > FrameOutput::kMaxLookahead) schedule_.skip(schedule_.due());
     if (waiting <= FrameOutput::kMaxLookahead + 1) return;
@@ -138,11 +139,7 @@ void Reconstructor::Impl::render_due(Frame& frame) {
     const DueFrame due = schedule_.next();
     // The stream's first frame may stand at the first window's begin, which is outside it.
     render_request(std::max(due.t, open_.window.begin + SensorDuration{1}), options_.size, frame);
-    frame.t = due.t;
-    frame.index = due.index;
-    frame.window = open_.window;
-    frame.events = open_.events;
-    frame.gap_before = open_.gap_before;
+    stamp_frame(due.t, due.index, open_, frame);
 }
 
 Readiness Reconstructor::Impl::readiness(SensorTime t) {
@@ -163,8 +160,6 @@ void Reconstructor::Impl::render(SensorTime t, const FrameSize& size, Frame& fra
                              ? "that waits for events not pushed yet"
                              : "outside the event windows that the network remembers"));
     render_request(t, size, frame);
-    frame.index = 0;
-    frame.gap_before = gap_before(t);
 }
 
 void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Frame& frame) {
@@ -177,12 +172,6 @@ void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Fr
                 "frame at " + us(t) +
                     ": expected finite numbers of the network, found NaN or infinity: its weights "
                     "or its state are damaged");
-}
-
-bool Reconstructor::Impl::gap_before(SensorTime t) const {
-    return std::ranges::any_of(seen_, [t](const Seen& one) {
-        return one.gap_before && one.window.begin < t && t <= one.window.end;
-    });
 }
 
 /// Throws Error (usage) for an impossible size; rendering cannot fail afterwards.

@@ -33,13 +33,6 @@ public:
     void restore_state(const std::filesystem::path& file);
 
 private:
-    /// What a frame tells of the event window it lies in.
-    struct Seen {
-        Window window;
-        std::uint64_t events = 0;
-        bool gap_before = false;
-    };
-
     bool step();
     void bin(const EventWindow& event_window);
     void encode();
@@ -47,8 +40,7 @@ private:
     void forget_stream();
     void forget_events();
     void open_next();
-    Seen& seen(std::uint64_t k) { return seen_[k % seen_.size()]; }
-    bool gap_before(SensorTime t) const;
+    WindowStamp& seen(std::uint64_t k) { return seen_[k % seen_.size()]; }
     void check_silence();
     void render_due(Frame& frame);
     void render_request(SensorTime t, const FrameSize& size, Frame& frame);
@@ -67,13 +59,14 @@ private:
     std::optional<FrameSize> room_for_;  // the size that was checked last
 
     FrameSchedule schedule_;
-    std::array<Seen, LatentWindow::kLatentsKept> seen_;  // of event window k in k % kLatentsKept
-    std::uint64_t encoded_ = 0;                          // event windows of this stream
-    std::uint64_t opened_ = 0;  // of those, whose frames next() gave or gives
-    Seen open_;                 // whose frames are due
-    std::uint64_t silent_ = 0;  // frames in a row without events
-    bool ended_ = false;        // the renderer was told that no window follows
-    bool new_clock_ = false;    // grid_ begins another stream, which waits for the frames before
+    std::array<WindowStamp, LatentWindow::kLatentsKept>
+        seen_;                   // of event window k in k % kLatentsKept
+    std::uint64_t encoded_ = 0;  // event windows of this stream
+    std::uint64_t opened_ = 0;   // of those, whose frames next() gave or gives
+    WindowStamp open_;           // whose frames are due
+    std::uint64_t silent_ = 0;   // frames in a row without events
+    bool ended_ = false;         // the renderer was told that no window follows
+    bool new_clock_ = false;     // grid_ begins another stream, which waits for the frames before
 };
 
 }  // namespace eventide

@@ -13,11 +13,7 @@ void take_site(const VoxelGrid& grid, const BayerSite& site, VoxelGrid& part) {
     const int height = part.values.height(), width = part.values.width();
     assert(part.values.channels() == grid.values.channels());
     const bool tracked = !grid.touched.empty();
-    part.window = grid.window;
-    part.events = grid.events;
-    part.gap_before = grid.gap_before;
-    part.reset_before = grid.reset_before;
-    part.images = grid.images;
+    copy_stamp(grid, part);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const int from_y = 2 * y + site.y, from_x = 2 * x + site.x;
@@ -121,12 +117,7 @@ void ColourRenderStage::push(const LatentMap& latent) noexcept {
     all_.push(latent);
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         LatentMap& codes = codes_[c];
-        codes.window = latent.window;
-        codes.events = latent.events;
-        codes.arrived = latent.arrived;
-        codes.gap_before = latent.gap_before;
-        codes.reset_before = latent.reset_before;
-        codes.images = latent.images;
+        copy_stamp(latent, codes);
         codes.values = latent.channels[c].values;
         codes.history = latent.channels[c].history;
         if (!latent.events_per_pixel.empty())

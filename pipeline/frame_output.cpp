@@ -2,6 +2,7 @@
 #include "pipeline/frame_output.h"
 
 #include "src/core/error.h"
+#include "src/core/frame_stamp.h"
 
 #include <algorithm>
 #include <chrono>
@@ -47,9 +48,7 @@ void FrameOutput::accept(const Encoded& encoded) {
     renderer_.push(latent);
     arrived_ = latent.arrived;
     Waiting& held = held_[(oldest_ + held_count_++) % held_.size()];
-    held.window = latent.window;
-    held.events = latent.events;
-    held.gap_before = latent.gap_before;
+    copy_stamp(latent, held);
     held.event_preview = encoded.event_preview;
 }
 
@@ -147,11 +146,7 @@ void FrameOutput::check_silence(const Waiting& held) {
 void FrameOutput::present(const DueFrame& due, Waiting& from) {
     const HostTime begun = Clock::now();
     renderer_.render(due.t, from.window, frame_);
-    frame_.t = due.t;
-    frame_.index = due.index;
-    frame_.window = from.window;
-    frame_.events = from.events;
-    frame_.gap_before = from.gap_before;
+    stamp_frame(due.t, due.index, from, frame_);
     frame_.arrived = arrived_;
     std::swap(frame_.event_preview, from.event_preview);
     check_finite();

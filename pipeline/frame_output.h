@@ -70,10 +70,7 @@ public:
 
 private:
     /// An event window whose frames are not rendered yet.
-    struct Waiting {
-        Window window;
-        std::uint64_t events = 0;
-        bool gap_before = false;
+    struct Waiting : WindowStamp {
         Array2<float> event_preview;
     };
     void change();

@@ -14,12 +14,7 @@ public:
     /// grid does of its event window.
     void encode(const VoxelGrid& grid, LatentMap& latent) noexcept {
         step(grid, latent);
-        latent.window = grid.window;
-        latent.events = grid.events;
-        latent.arrived = grid.arrived;
-        latent.gap_before = grid.gap_before;
-        latent.reset_before = grid.reset_before;
-        latent.images = grid.images;
+        copy_stamp(grid, latent);
     }
     virtual void reset() noexcept = 0;  ///< as constructed
 

@@ -24,18 +24,25 @@ struct EventWindow {
     bool reset_before = false;
 };
 
+/// What is known of an event window beside its events, and travels with all that is made of it.
+struct WindowStamp {
+    Window window{};
+    std::uint64_t events = 0;
+    HostTime arrived{};
+    bool gap_before = false, reset_before = false;  ///< as in EventWindow
+    std::uint64_t images = 0;  ///< reference images the stream had given when the window was cut
+};
+
+inline void copy_stamp(const WindowStamp& from, WindowStamp& into) {
+    into = from;
+}
+
 /// One event window as numbers (docs/model.md, "Input").
-struct VoxelGrid {
-    Window window;
+struct VoxelGrid : WindowStamp {
     /// [y][x][channel], channels 4 b + {0 polarity, 1 mean, 2 std, 3 count} for bin b < B, then 4 B
     /// = frames since the pixel's last event, clamped at 8, divided by 8 (0 = has events in this
     /// frame).
     Array3<float> values;
-    std::uint64_t events = 0;
-    bool gap_before = false;
-    HostTime arrived{};
-    bool reset_before = false;  ///< as in EventWindow
-    std::uint64_t images = 0;   ///< reference images the stream had given when the frame was cut
     /// [y][x], 1 where the pixel has events in this frame, else 0; empty where whoever filled the
     /// values did not keep track.
     Array2<std::uint8_t> touched;
@@ -56,14 +63,9 @@ struct LatentCodes {
 };
 
 /// What the encoder knows after one event window, one code per sensor pixel.
-struct LatentMap {
-    Window window;
-    Array3<float> values;  ///< [y][x][D]
-    std::uint64_t events = 0;
-    HostTime arrived{};
-    bool gap_before = false, reset_before = false;  ///< as in EventWindow
-    std::uint64_t images = 0;                       ///< as in VoxelGrid
-    Array2<float> events_per_pixel;                 ///< [y][x]; empty where not asked for
+struct LatentMap : WindowStamp {
+    Array3<float> values;            ///< [y][x][D]
+    Array2<float> events_per_pixel;  ///< [y][x]; empty where not asked for
     LatentHistory history;
     /// Of blue, green and red pixels alone, half as wide and high; empty where not asked for.
     std::vector<LatentCodes> channels;

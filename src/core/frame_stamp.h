@@ -1,6 +1,8 @@
 // What a frame says of itself beside its pixels.
 #pragma once
 
+#include "src/core/frame_data.h"
+
 #include <eventide/frame.h>
 
 namespace eventide {
@@ -13,6 +15,16 @@ inline void copy_stamp(const Frame& from, Frame& into) {
     into.events = from.events;
     into.arrived = from.arrived;
     into.gap_before = from.gap_before;
+}
+
+/// `into` is frame `index` of the clock, at t in that event window. When its events came in is left
+/// as it is: with lookahead those of later windows count.
+inline void stamp_frame(SensorTime t, std::uint64_t index, const WindowStamp& window, Frame& into) {
+    into.t = t;
+    into.index = index;
+    into.window = window.window;
+    into.events = window.events;
+    into.gap_before = window.gap_before;
 }
 
 }  // namespace eventide

@@ -1,8 +1,8 @@
 // Which fast network stands behind Encoder and Renderer, and with which numbers.
 #include "src/core/error.h"
 #include "src/model/cores.h"
-#include "src/model/encode/fast_gated_encoder.h"
-#include "src/model/encode/fast_thesis_encoder.h"
+#include "src/model/encode/gated_encoder.h"
+#include "src/model/encode/thesis_encoder.h"
 #include "src/model/render/fast_renderer.h"
 
 namespace eventide {
@@ -35,8 +35,8 @@ std::unique_ptr<EncoderCore> make_fast_encoder(const Model& model, int height, i
                                                const EngineOptions& options) {
     const Arithmetic arithmetic = arithmetic_of(options);
     if (model.config.encoder == EncoderKind::gated)
-        return std::make_unique<FastGatedEncoder>(model, height, width, options, arithmetic);
-    return std::make_unique<FastThesisEncoder>(model, height, width, options, arithmetic);
+        return std::make_unique<GatedEncoder>(model, height, width, options, arithmetic);
+    return std::make_unique<ThesisEncoder>(model, height, width, options, arithmetic);
 }
 std::unique_ptr<RendererCore> make_fast_renderer(const Model& model, int sensor_width,
                                                  int sensor_height, const EngineOptions& options) {

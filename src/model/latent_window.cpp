@@ -8,7 +8,7 @@ namespace eventide {
 std::int64_t LatentWindow::push(const LatentMap& latent) noexcept {
     ++newest_;
     finished_ = false;
-    stamps_[slot(newest_)] = {newest_, latent.window, latent.events, latent.arrived};
+    copy_stamp(latent, stamps_[slot(newest_)]);
     return newest_;
 }
 

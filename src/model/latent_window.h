@@ -8,14 +8,6 @@
 
 namespace eventide {
 
-/// The times and counts that travel with latent map k.
-struct LatentStamp {
-    std::int64_t k = 0;  ///< number of the event window, from 1; 0: none
-    Window window{};
-    std::uint64_t events = 0;
-    HostTime arrived{};
-};
-
 /// Where a time lies: in event window k, at frame coordinate k - 1 + fraction.
 struct FramePosition {
     std::int64_t k = 0;
@@ -38,7 +30,7 @@ public:
 
     std::int64_t newest() const { return newest_; }
     /// The stamp of event window k, which must be kept.
-    const LatentStamp& stamp(std::int64_t k) const { return stamps_[slot(k)]; }
+    const WindowStamp& stamp(std::int64_t k) const { return stamps_[slot(k)]; }
     static std::size_t slot(std::int64_t k) { return std::size_t(k % kLatentsKept); }
     bool kept(std::int64_t k) const { return k >= 1 && k <= newest_ && k > newest_ - kLatentsKept; }
     /// Whether z_j may be read by a frame in event window k (docs/model.md, "lookahead").
@@ -52,7 +44,7 @@ public:
     Readiness readiness(SensorTime t, int lookahead) const noexcept;
 
 private:
-    std::array<LatentStamp, kLatentsKept> stamps_{};
+    std::array<WindowStamp, kLatentsKept> stamps_{};
     std::int64_t newest_ = 0;
     bool finished_ = false;
 };

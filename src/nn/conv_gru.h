@@ -10,8 +10,6 @@
 
 namespace eventide {
 
-using FloatBuffer = std::vector<float, CacheLineAllocator<float>>;
-
 /// Steps of neighbouring tiles read each other's old state, so a step has two halves: step() of all
 /// tiles writes aside, commit() of all tiles brings it into the map.
 class ConvGru {

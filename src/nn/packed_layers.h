@@ -14,6 +14,8 @@
 
 namespace eventide {
 
+using FloatBuffer = std::vector<float, CacheLineAllocator<float>>;
+
 /// Weights [stretch][position][output], packed for one of our kernels.
 class PackedWeights {
 public:
@@ -55,7 +57,7 @@ private:
     int outputs_ = 0, lanes_ = 0;
     bool relu_ = false;
     Numbers numbers_;
-    std::vector<float, CacheLineAllocator<float>> weight_, bias_;
+    FloatBuffer weight_, bias_;
     std::vector<std::uint32_t, CacheLineAllocator<std::uint32_t>> pairs_;
 };
 

@@ -3,6 +3,9 @@
 
 #include "src/nn/numbers.h"
 #include "src/nn/padded_map.h"
+#include "src/nn/safetensors.h"
+
+#include <vector>
 
 namespace eventide {
 
@@ -53,5 +56,10 @@ private:
     Numbers numbers_;
     PaddedMap read_, exact_;
 };
+
+/// "h.0", "h.1", ...: [height, width, channels] each.
+Tensors tensors_of(const std::vector<StateMap>& states);
+/// `state` has their names and shapes.
+void load(const Tensors& state, std::vector<StateMap>& states);
 
 }  // namespace eventide

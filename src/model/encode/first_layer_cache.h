@@ -4,7 +4,7 @@
 #pragma once
 
 #include "src/model/cores.h"
-#include "src/model/encode/fast_encoder.h"
+#include "src/model/encode/latent_tiles.h"
 #include "src/nn/packed_layers.h"
 #include "src/nn/padded_map.h"
 #include "src/nn/tiling.h"

@@ -2,6 +2,7 @@
 #include "src/model/render/renderer.h"
 
 #include "src/core/error.h"
+#include "src/core/frame_stamp.h"
 #include "src/core/sensor_limits.h"
 #include "src/model/cores.h"
 
@@ -116,9 +117,7 @@ void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
         frame.sigma = {};
     core_->render(codes, geometry, request.sigma_rule.value_or(config_.sigma_rule), frame.intensity,
                   request.want_sigma ? &frame.sigma : nullptr);
-    frame.t = request.t;
-    frame.window = window_.stamp(at.k).window;
-    frame.events = window_.stamp(at.k).events;
+    stamp_frame(request.t, 0, window_.stamp(at.k), frame);
     frame.arrived = window_.stamp(std::min(window_.newest(), at.k + request.lookahead)).arrived;
 }
 

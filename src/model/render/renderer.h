@@ -53,7 +53,7 @@ public:
     /// Error(usage) where the size, region or lookahead is impossible: a request that passes here
     /// is safe in render().
     Frame make_output(const RenderRequest& request) const;
-    /// Only where ready(request.t, request.lookahead). Fills everything but `index`; intensity is
+    /// Only where ready(request.t, request.lookahead). `index` is 0; intensity is
     /// [y][x] of the region. Resizes the frame where it does not fit.
     void render(const RenderRequest& request, Frame& frame) noexcept;
 

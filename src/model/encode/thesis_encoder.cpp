@@ -1,5 +1,5 @@
-// See fast_thesis_encoder.h; docs/model.md has the formulas.
-#include "src/model/encode/fast_thesis_encoder.h"
+// See thesis_encoder.h; docs/model.md has the formulas.
+#include "src/model/encode/thesis_encoder.h"
 
 #include "src/kernels/vector_kernels.h"
 #include "src/nn/upsample2x.h"
@@ -15,22 +15,19 @@ constexpr int kSide = kLatentSide, kHalfSide = 24;
 
 }  // namespace
 
-FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
-                                     const EngineOptions& options, const Arithmetic& arithmetic)
-    : FastEncoder(options, arithmetic),
+ThesisEncoder::ThesisEncoder(const Model& model, int height, int width,
+                             const EngineOptions& options, const Arithmetic& arithmetic)
+    : arithmetic_(arithmetic),
       channels_(model.config.widths[0]),
-      // One way of cutting for all maps of full size: the latent map's.
-      tiles_(latent_tiles(height, width)),
-      half_tiles_(tiles_of((height + 1) / 2, (width + 1) / 2, kHalfSide)) {
+      latent_(height, width),
+      half_tiles_(tiles_of((height + 1) / 2, (width + 1) / 2, kHalfSide)),
+      runner_(options.parallel_for, options.skip_quiet) {
     const Tensors& w = model.weights;
     const Extent full{height, width}, half{(height + 1) / 2, (width + 1) / 2};
     const auto conv = [&](const std::string& name, const std::vector<int>& sources = {}) {
-        return PackedConv{plain::conv_weights<float>(w, "encoder." + name),
-                          1,
-                          false,
-                          arithmetic_,
-                          extents_of(tiles_, 0, height, width),
-                          sources};
+        return PackedConv{
+            plain::conv_weights<float>(w, "encoder." + name), 1,      false, arithmetic_,
+            extents_of(latent_.tiles(), 0, height, width),    sources};
     };
     in_ = conv("in");
     down_ = {plain::conv_weights<float>(w, "encoder.down"), 2, false, arithmetic_,
@@ -41,14 +38,15 @@ FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
                         i == 0 ? std::vector<int>(3, channels_) : std::vector<int>{});
     for (int i = 0; i < 5; ++i)
         norms_.push_back(plain::norm_weights<float>(w, "encoder.norm" + std::to_string(i)));
-    full_gru_ = {plain::gru_weights<float>(w, "encoder.gru.0"), full, tiles_, kSide, arithmetic_};
+    full_gru_ = {plain::gru_weights<float>(w, "encoder.gru.0"), full, latent_.tiles(), kSide,
+                 arithmetic_};
     half_gru_ = {plain::gru_weights<float>(w, "encoder.gru.1"), half, half_tiles_, kHalfSide,
                  arithmetic_};
     states_.emplace_back(height, width, channels_, in_.numbers(), true);
     states_.emplace_back(half.height, half.width, channels_, in_.numbers(), true);
     x0_ = inner_ = x2_ = y0_ = y1_ = {height, width, channels_};
     raw_ = {height, width, channels_};
-    sums_.resize(tiles_.size() * 2 * std::size_t(channels_));
+    sums_.resize(latent_.tiles().size() * 2 * std::size_t(channels_));
     scale_.resize(std::size_t(channels_));
     shift_.resize(std::size_t(channels_));
 
@@ -60,14 +58,17 @@ FastThesisEncoder::FastThesisEncoder(const Model& model, int height, int width,
     constexpr int kWide = kHalfSide + 4;
     const std::size_t down =
         std::size_t(kWide) * kWide * std::size_t(channels_) + down_.scratch_size(kWide, kWide);
-    make_room(
-        height, width,
+    runner_.make_room(
         std::max({joined + convolving, full_gru_.scratch_size(), half_gru_.scratch_size() + down}),
-        std::max(tiles_.size(), half_tiles_.size()));
+        std::max(latent_.tiles().size(), half_tiles_.size()));
 }
 
-void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
-    ++history_.step;
+std::string ThesisEncoder::description() const {
+    return std::string{"fast, "} + name_of(arithmetic_);
+}
+
+void ThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
+    latent_.begin_step();
     feed_in(grid.values);
     normalise(0, nullptr, x0_);
     step_full();
@@ -80,20 +81,19 @@ void FastThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept 
     normalise(3, nullptr, y0_);
     convolve(head_[1], y0_);
     normalise(4, &y0_, y1_);
-    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+    runner_.over(latent_.tiles(), [&](std::size_t i, const Tile& tile, float* scratch) {
         Array3<float>& codes = latent.values;
         head_[2].run(
             {y1_.at(tile.y0 - 1, tile.x0 - 1), y1_.pitch(), codes.pixel(tile.y0, tile.x0).data(),
              std::ptrdiff_t(codes.width()) * codes.channels(), codes.channels(), tile.height(),
              tile.width()},
             scratch);
-        mark_changed(i);
+        latent_.mark_changed(i);
     });
-    latent.history = history_;
+    latent.history = latent_.history();
 }
 
-ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,
-                                     std::ptrdiff_t pitch) noexcept {
+ConvCall ThesisEncoder::into_raw(const Tile& tile, const float* in, std::ptrdiff_t pitch) noexcept {
     return {in,
             pitch,
             raw_.pixel(tile.y0, tile.x0).data(),
@@ -103,8 +103,8 @@ ConvCall FastThesisEncoder::into_raw(const Tile& tile, const float* in,
             tile.width()};
 }
 
-void FastThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
-    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+void ThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
+    runner_.over(latent_.tiles(), [&](std::size_t i, const Tile& tile, float* scratch) {
         const Tile near = tile.grown(1, grid.height(), grid.width());
         const std::ptrdiff_t c = grid.channels(), row = (tile.width() + 2) * c;
         std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
@@ -118,19 +118,19 @@ void FastThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
     });
 }
 
-void FastThesisEncoder::convolve(const PackedConv& conv, const PaddedMap& from) noexcept {
-    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+void ThesisEncoder::convolve(const PackedConv& conv, const PaddedMap& from) noexcept {
+    runner_.over(latent_.tiles(), [&](std::size_t i, const Tile& tile, float* scratch) {
         conv.run(into_raw(tile, from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()), scratch);
         keep_sums(i);
     });
 }
 
-void FastThesisEncoder::keep_sums(std::size_t i) noexcept {
+void ThesisEncoder::keep_sums(std::size_t i) noexcept {
     const auto channels = std::size_t(channels_);
     double* sum = sums_.data() + i * 2 * channels;
     double* squares = sum + channels;
     std::fill_n(sum, 2 * channels, 0.0);
-    const Tile& tile = tiles_[i];
+    const Tile& tile = latent_.tiles()[i];
     for (int y = tile.y0; y < tile.y1; ++y) {
         const float* pixel = raw_.pixel(y, tile.x0).data();
         for (int x = tile.x0; x < tile.x1; ++x, pixel += channels)
@@ -142,13 +142,14 @@ void FastThesisEncoder::keep_sums(std::size_t i) noexcept {
     }
 }
 
-void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, PaddedMap& to) noexcept {
+void ThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, PaddedMap& to) noexcept {
     constexpr double kEpsilon = 1e-5;
     const auto channels = std::size_t(channels_);
     const double pixels = double(raw_.height()) * raw_.width();
     const auto total = [&](std::size_t at) {
         double sum = 0;
-        for (std::size_t i = 0; i < tiles_.size(); ++i) sum += sums_[i * 2 * channels + at];
+        for (std::size_t i = 0; i < latent_.tiles().size(); ++i)
+            sum += sums_[i * 2 * channels + at];
         return sum / pixels;
     };
     double grand = 0, spread = 0;
@@ -165,7 +166,7 @@ void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, Padde
                           weights.gamma[c] * weights.alpha[c] * (mean - grand) /
                               std::sqrt(spread + kEpsilon));
     }
-    runner_.over(tiles_, [&](std::size_t, const Tile& tile, float*) {
+    runner_.over(latent_.tiles(), [&](std::size_t, const Tile& tile, float*) {
         for (int y = tile.y0; y < tile.y1; ++y)
             vector_kernels().norm_elu(raw_.pixel(y, tile.x0).data(), scale_.data(), shift_.data(),
                                       skip != nullptr ? skip->at(y, tile.x0) : nullptr,
@@ -174,8 +175,8 @@ void FastThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, Padde
 }
 
 /// h0 <- gru.0(x0, h0)
-void FastThesisEncoder::step_full() noexcept {
-    runner_.over(tiles_, [&](std::size_t i, const Tile&, float* scratch) {
+void ThesisEncoder::step_full() noexcept {
+    runner_.over(latent_.tiles(), [&](std::size_t i, const Tile&, float* scratch) {
         full_gru_.step(states_[0], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
             for (int y = region.y0; y < region.y1; ++y)
@@ -184,12 +185,12 @@ void FastThesisEncoder::step_full() noexcept {
                                                 target.out + (y - region.y0) * target.pitch);
         });
     });
-    runner_.over(tiles_,
+    runner_.over(latent_.tiles(),
                  [&](std::size_t i, const Tile&, float*) { full_gru_.commit(states_[0], i); });
 }
 
 /// h1 <- gru.1(elu(down x2), h1)
-void FastThesisEncoder::step_half() noexcept {
+void ThesisEncoder::step_half() noexcept {
     runner_.over(half_tiles_, [&](std::size_t i, const Tile&, float* scratch) {
         float* wide = scratch + half_gru_.scratch_size();
         half_gru_.step(states_[1], i, nullptr, scratch, [&](const ConvGru::Target& target) {
@@ -209,11 +210,11 @@ void FastThesisEncoder::step_half() noexcept {
 }
 
 /// raw_ = head.0 of [up2(h1); x2; x0]
-void FastThesisEncoder::join_head() noexcept {
+void ThesisEncoder::join_head() noexcept {
     const PaddedMap& below = states_[1].read();
     const Numbers& numbers = states_[1].numbers();
     const std::ptrdiff_t units = numbers.units(channels_);
-    runner_.over(tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
+    runner_.over(latent_.tiles(), [&](std::size_t i, const Tile& tile, float* scratch) {
         const std::ptrdiff_t row = (tile.width() + 2) * units, area = (tile.height() + 2) * row;
         std::memset(scratch, 0, std::size_t(area) * sizeof(float));
         const Tile near = tile.grown(1, raw_.height(), raw_.width());
@@ -243,7 +244,7 @@ void FastThesisEncoder::join_head() noexcept {
     });
 }
 
-void FastThesisEncoder::reset() noexcept {
+void ThesisEncoder::reset() noexcept {
     for (StateMap& state : states_) state.clear();
 }
 

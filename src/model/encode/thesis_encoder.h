@@ -1,21 +1,29 @@
 // The thesis' encoder in tiles. Its norms look at the whole image, so nothing can be left out.
 #pragma once
 
-#include "src/model/encode/fast_encoder.h"
+#include "src/model/cores.h"
+#include "src/model/encode/latent_tiles.h"
+#include "src/nn/conv_gru.h"
 #include "src/nn/load_weights.h"
 #include "src/nn/packed_layers.h"
+#include "src/nn/padded_map.h"
+#include "src/nn/state_map.h"
+#include "src/nn/tile_runner.h"
 
 #include <vector>
 
 namespace eventide {
 
-class FastThesisEncoder final : public FastEncoder {
+class ThesisEncoder final : public EncoderCore {
 public:
-    FastThesisEncoder(const Model& model, int height, int width, const EngineOptions& options,
-                      const Arithmetic& arithmetic);
+    ThesisEncoder(const Model& model, int height, int width, const EngineOptions& options,
+                  const Arithmetic& arithmetic);
 
+    std::string description() const override;
     void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     void reset() noexcept override;
+    Tensors state() const override { return tensors_of(states_); }
+    void restore(const Tensors& state) override { load(state, states_); }
 
 private:
     /// raw_ = conv of `from`, with each tile's sums for the norm.
@@ -29,8 +37,12 @@ private:
     void join_head() noexcept;
     ConvCall into_raw(const Tile& tile, const float* in, std::ptrdiff_t pitch) noexcept;
 
+    Arithmetic arithmetic_;
     int channels_;
-    std::vector<Tile> tiles_, half_tiles_;
+    LatentTiles latent_;  // one way of cutting for all maps of full size
+    std::vector<Tile> half_tiles_;
+    TileRunner runner_;
+    std::vector<StateMap> states_;  // h0 at full, h1 at half resolution
     PackedConv in_, res_[2], down_, head_[3];
     std::vector<plain::NormWeights<float>> norms_;
     ConvGru full_gru_, half_gru_;

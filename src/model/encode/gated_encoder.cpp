@@ -1,5 +1,5 @@
-// See fast_gated_encoder.h; docs/model.md has the formulas.
-#include "src/model/encode/fast_gated_encoder.h"
+// See gated_encoder.h; docs/model.md has the formulas.
+#include "src/model/encode/gated_encoder.h"
 
 #include "src/model/encode/plain_encoder.h"
 
@@ -19,12 +19,15 @@ std::vector<GatedLevel> levels_of(const Model& model, int height, int width,
 
 }  // namespace
 
-FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
-                                   const EngineOptions& options, const Arithmetic& arithmetic)
-    : FastEncoder(options, arithmetic),
-      config_(model.config),
+GatedEncoder::GatedEncoder(const Model& model, int height, int width, const EngineOptions& options,
+                           const Arithmetic& arithmetic)
+    : config_(model.config),
+      options_(options),
+      arithmetic_(arithmetic),
       levels_(levels_of(model, height, width, arithmetic)),
       decoder_(model, levels_, arithmetic),
+      latent_(decoder_.latent_size().height, decoder_.latent_size().width),
+      runner_(options.parallel_for, options.skip_quiet),
       top_room_(levels_.front().mask()),
       deepest_room_(levels_.back().mask()) {
     std::size_t scratch = decoder_.scratch_size(), tiles = 0;
@@ -35,27 +38,32 @@ FastGatedEncoder::FastGatedEncoder(const Model& model, int height, int width,
         scratch = std::max(scratch, levels_[l].scratch_size());
         tiles = std::max(tiles, levels_[l].tiles().size());
     }
-    const auto [rows, columns] = decoder_.latent_size();
-    make_room(rows, columns, scratch, tiles);
+    runner_.make_room(scratch, std::max(tiles, latent_.tiles().size()));
 }
 
-void FastGatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
-    ++history_.step;
+std::string GatedEncoder::description() const {
+    return std::string{"fast, "} + name_of(arithmetic_);
+}
+
+void GatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
+    latent_.begin_step();
     // Where nothing happens, no state changes, and nothing that follows from them does.
     if (mark_events(grid) || stale_ || !options_.skip_quiet) {
         for (GatedLevel& level : levels_) advance(level, grid.values);
         decoder_.run(levels_, states_, stale_, runner_);
-        for (std::size_t i = 0; i < latent_tiles_.size(); ++i)
-            if (decoder_.changes(latent_tiles_[i]) || !options_.skip_quiet) mark_changed(i);
+        for (std::size_t i = 0; i < latent_.tiles().size(); ++i)
+            if (decoder_.changes(latent_.tiles()[i]) || !options_.skip_quiet)
+                latent_.mark_changed(i);
         stale_ = false;
     }
-    runner_.over(latent_tiles_, [&](std::size_t i, const Tile& tile, float* scratch) {
-        if (is_outdated(i, latent)) decoder_.write_codes(states_, tile, latent.values, scratch);
+    runner_.over(latent_.tiles(), [&](std::size_t i, const Tile& tile, float* scratch) {
+        if (latent_.is_outdated(i, latent))
+            decoder_.write_codes(states_, tile, latent.values, scratch);
     });
-    latent.history = history_;
+    latent.history = latent_.history();
 }
 
-bool FastGatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
+bool GatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
     Mask& top = levels_.front().mask();
     if (!grid.touched.empty())
         std::ranges::copy(grid.touched.values(), top.values().begin());
@@ -77,7 +85,7 @@ bool FastGatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
     return any;
 }
 
-void FastGatedEncoder::advance(GatedLevel& level, const Array3<float>& grid) noexcept {
+void GatedEncoder::advance(GatedLevel& level, const Array3<float>& grid) noexcept {
     const auto advance = [&](std::size_t i, const Tile&, float* scratch) {
         level.advance(grid, states_, i, scratch);
     };
@@ -88,8 +96,13 @@ void FastGatedEncoder::advance(GatedLevel& level, const Array3<float>& grid) noe
         runner_.over(level.tiles(), level.mask(), advance);
 }
 
-void FastGatedEncoder::reset() noexcept {
+void GatedEncoder::reset() noexcept {
     for (StateMap& h : states_) h.clear();
+    stale_ = true;
+}
+
+void GatedEncoder::restore(const Tensors& state) {
+    load(state, states_);
     stale_ = true;
 }
 
