@@ -36,7 +36,7 @@ Snapshot Counters::snapshot() const {
     s.slicing.late_references = bin.late_references.value();
     s.slicing.time_resets = bin.time_resets.value();
     s.event_windows = bin.event_windows.value();
-    s.silent_frames = bin.silent_frames.value();
+    s.silent_windows = bin.silent_windows.value();
     s.merged_windows = bin.merged_windows.value();
     s.begin = from_us(std::int64_t(bin.begin_us.value()));
     s.window = {from_us(std::int64_t(bin.window_begin_us.value())),

@@ -37,7 +37,7 @@ struct Snapshot {
     std::uint64_t filtered_events = 0;                            ///< skipped by the event filter
     Damage damaged;
     SlicerCounters slicing;
-    std::uint64_t event_windows = 0, silent_frames = 0;  ///< silent: of those, without events
+    std::uint64_t event_windows = 0, silent_windows = 0;  ///< silent: of those, without events
     std::uint64_t merged_windows = 0;  ///< became one with the one before, to keep --latency
     SensorTime begin{};                ///< of the first event window; valid where event_windows > 0
     Window window{};                   ///< the newest event window
@@ -68,7 +68,7 @@ struct Counters {
         Counter bytes, gaps, events, images, imu, triggers, filtered_events;
         std::array<Counter, kDamageReasons> damaged;
         Counter before_begin, after_end, too_many, late, late_references, time_resets;
-        Counter event_windows, silent_frames, merged_windows, begin_us, window_begin_us,
+        Counter event_windows, silent_windows, merged_windows, begin_us, window_begin_us,
             window_end_us;
         LatencyHistogram work;
     } bin;

@@ -195,7 +195,7 @@ void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
     if (counters_.bin.event_windows.value() == 0)
         counters_.bin.begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
     counters_.bin.event_windows.add();
-    counters_.bin.silent_frames.add(event_window.events.empty() ? 1 : 0);
+    counters_.bin.silent_windows.add(event_window.events.empty() ? 1 : 0);
     counters_.bin.window_begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
     counters_.bin.window_end_us.set(std::uint64_t(to_us(event_window.window.end)));
     counters_.bin.work.record(Clock::now() - begun);

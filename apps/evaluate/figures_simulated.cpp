@@ -204,7 +204,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
     const int width = what.simulated.width, height = what.simulated.height;
     FigureSettings moving = what;
     moving.simulated.event_windows = what.moving_frames;
-    std::ranges::sort(moving.silent_frames);
+    std::ranges::sort(moving.silent_windows);
     std::vector<std::map<int, double>> moved(std::size_t(what.simulated.sequences));
 
     const auto groups = over_sequences(what, how, [&](int i, Groups& found) {
@@ -229,13 +229,13 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
                 run.push(event_window);
                 return true;
             });
-        for (const int silent : moving.silent_frames) {
+        for (const int silent : moving.silent_windows) {
             Query query = last;
             query.t = stop + silent * what.simulated.frame_width;
             run.ask(std::move(query));
         }
         // Nothing moves any more, and the sensor is without noise: empty event windows.
-        const int most = moving.silent_frames.back();
+        const int most = moving.silent_windows.back();
         for (int s = 0; s < most + how.lookahead; ++s)
             run.push({.window = {stop + s * what.simulated.frame_width,
                                  stop + (s + 1) * what.simulated.frame_width},
@@ -246,7 +246,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
         plots_of(groups, {"silence", "a scene that stops", "event windows without events", true},
                  shared.lpips() ? shared.lpips()->name() : "");
     Series change{"model", {}, {}, {}};
-    for (const int silent : moving.silent_frames) {
+    for (const int silent : moving.silent_windows) {
         double sum = 0;
         for (const auto& one : moved) sum += one.at(silent);
         change.x.push_back(silent);

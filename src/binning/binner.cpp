@@ -49,7 +49,7 @@ Binner::Binner(int bins, int height, int width) : bins_(bins), height_(height), 
     const std::size_t pixels = std::size_t(height) * std::size_t(width);
     moments_.resize(pixels);
     touched_.resize((pixels + 63) / 64);
-    touched_in_frame_.resize(touched_.size());
+    touched_in_window_.resize(touched_.size());
     ages_.assign(pixels, kOldest);
 }
 
@@ -127,7 +127,7 @@ void Binner::write(int bin, double ticks_per_bin, VoxelGrid& grid) noexcept {
     const std::size_t channels = std::size_t(grid.values.channels());
     float* const out = grid.values.values().data() + 4 * bin;
     for (std::size_t word = 0; word < touched_.size(); ++word) {
-        touched_in_frame_[word] |= touched_[word];
+        touched_in_window_[word] |= touched_[word];
         for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
             const std::size_t pixel = 64 * word + std::size_t(std::countr_zero(bits));
             Moments& moments = moments_[pixel];
@@ -150,13 +150,13 @@ void Binner::write_ages(VoxelGrid& grid) noexcept {
     const std::size_t channels = std::size_t(grid.values.channels());
     float* out = grid.values.values().data() + channels - 1;
     for (std::size_t pixel = 0; pixel < ages_.size(); ++pixel, out += channels) {
-        const bool touched = touched_in_frame_[pixel / 64] >> (pixel % 64) & 1;
+        const bool touched = touched_in_window_[pixel / 64] >> (pixel % 64) & 1;
         const int age = touched ? 0 : std::min(ages_[pixel] + 1, int(kOldest));
         ages_[pixel] = std::uint8_t(age);
         grid.touched.values()[pixel] = std::uint8_t(touched);
         *out = float(age) / float(kOldest);
     }
-    std::fill(touched_in_frame_.begin(), touched_in_frame_.end(), 0);
+    std::fill(touched_in_window_.begin(), touched_in_window_.end(), 0);
 }
 
 }  // namespace eventide

@@ -12,11 +12,11 @@ namespace eventide {
 /// how they were split, or on the size of the absolute time; the standard deviation of equal
 /// timestamps is exactly 0.
 ///
-/// A frame of width W us has B bins; in ticks of 1/B us each bin is exactly W ticks wide, so bins
-/// need no rounding for any B: an event dt us after the frame's begin is in bin b = (dt B - 1) / W,
-/// d = dt B - b W ticks (1 to W) after the bin's begin, and f = d / W. Where W > 2^19 us, d loses
-/// its lowest bits so that it stays below 2^19: sums of squares then hold 2^26 events per pixel and
-/// bin, and f is right to 2^-19.
+/// A window of width W us has B bins; in ticks of 1/B us each bin is exactly W ticks wide, so bins
+/// need no rounding for any B: an event dt us after the window's begin is in bin b = (dt B - 1) /
+/// W, d = dt B - b W ticks (1 to W) after the bin's begin, and f = d / W. Where W > 2^19 us, d
+/// loses its lowest bits so that it stays below 2^19: sums of squares then hold 2^26 events per
+/// pixel and bin, and f is right to 2^-19.
 class Binner {
 public:
     /// Throws Error (usage) unless all are at least 1.
@@ -47,7 +47,7 @@ private:
     };
     /// How the ticks of one bin follow from an event's time.
     struct BinTicks {
-        std::int64_t first_dt, last_dt;  ///< us after the frame's begin, inclusive
+        std::int64_t first_dt, last_dt;  ///< us after the window's begin, inclusive
         std::int64_t origin;             ///< b W
         int shift;
     };
@@ -59,9 +59,9 @@ private:
     int bins_, height_, width_;
     // One bin at a time is summed: at sensor size this stays in the second-level cache.
     std::vector<Moments, CacheLineAllocator<Moments>> moments_;  // [y][x]; all zero between bins
-    std::vector<std::uint64_t> touched_;           // a bit per pixel with events in this bin
-    std::vector<std::uint64_t> touched_in_frame_;  // ... in this frame
-    std::vector<std::uint8_t> ages_;  // [y][x], frames since the last event, at most kOldest
+    std::vector<std::uint64_t> touched_;            // a bit per pixel with events in this bin
+    std::vector<std::uint64_t> touched_in_window_;  // ... in this window
+    std::vector<std::uint8_t> ages_;  // [y][x], windows since the last event, at most kOldest
 };
 
 }  // namespace eventide

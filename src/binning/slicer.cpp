@@ -14,7 +14,7 @@ namespace {
 
 constexpr SensorDuration kMicrosecond{1};
 
-std::uint64_t events_per_frame(const SlicerSettings& settings, int width, int height) {
+std::uint64_t events_per_window(const SlicerSettings& settings, int width, int height) {
     if (settings.rule != WindowRule::count) return settings.max_events;
     const double pixels = double(width) * double(height);
     const std::uint64_t wanted =
@@ -42,10 +42,10 @@ Slicer::Slicer(const SlicerSettings& settings, int width, int height)
 void Slicer::adopt(const SlicerSettings& settings) {
     const SensorDuration step =
         settings.rule == WindowRule::duration ? settings.width : settings.max_width;
-    const std::uint64_t most = events_per_frame(settings, width_, height_);
+    const std::uint64_t most = events_per_window(settings, width_, height_);
     check(step >= kMicrosecond, "the (maximum) width in us", step.count());
     check(most >= 1, "the number of events", std::int64_t(most));
-    check(settings.silent_frames >= 1, "silent_frames", settings.silent_frames);
+    check(settings.silent_windows >= 1, "silent_windows", settings.silent_windows);
     if (settings.rule == WindowRule::content)
         activity_ = {settings.events_per_pixel, width_, height_};
     settings_ = settings;
@@ -106,7 +106,7 @@ void Slicer::restore(const Memory& memory) {
     newest_ = memory.newest;
     newest_event_ = memory.newest_event;
     same_time_ = memory.same_time;
-    silent_ = std::min(memory.silent, settings_.silent_frames);
+    silent_ = std::min(memory.silent, settings_.silent_windows);
     gap_ = memory.gap;
     pending_ = memory.events;
 }
@@ -211,7 +211,7 @@ std::optional<SensorTime> Slicer::next_reference() {
     return references_.front();
 }
 
-/// Rule content: the time at which the open frame has seen enough, where it is known.
+/// Rule content: the time at which the open window has seen enough, where it is known.
 std::optional<SensorTime> Slicer::busy_at() {
     for (const std::size_t end = segment_end(); !busy_ && head_ + scanned_ < end; ++scanned_)
         if (const Event& event = pending_[head_ + scanned_]; activity_.add(event)) busy_ = event.t;
@@ -219,7 +219,7 @@ std::optional<SensorTime> Slicer::busy_at() {
     return std::max(*busy_, *begin_ + settings_.min_width);
 }
 
-/// Another frame is open: what was counted was of the one before.
+/// Another window is open: what was counted was of the one before.
 void Slicer::look_again() {
     activity_.reset();
     scanned_ = 0;
@@ -231,17 +231,17 @@ SensorTime Slicer::natural_edge() const {
     return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
 }
 
-/// Whole empty frames in a long silence become one (SlicerSettings::silent_frames). Where the
+/// Whole empty windows in a long silence become one (SlicerSettings::silent_windows). Where the
 /// silence has ended in an event, that alone says how far, whatever else is known by now.
 SensorTime Slicer::stretched(SensorTime edge, SensorTime passed, SensorTime limit) const {
-    if (silent_ < settings_.silent_frames) return edge;
+    if (silent_ < settings_.silent_windows) return edge;
     const SensorTime silent_upto =
         head_ < segment_end() ? pending_[head_].t - kMicrosecond : passed;
     const SensorTime upto = std::min(silent_upto, limit);
     return upto > edge ? edge + (upto - edge) / step_ * step_ : edge;
 }
 
-/// The end of the open frame, where it is known.
+/// The end of the open window, where it is known.
 std::optional<SensorTime> Slicer::cut() {
     const SensorTime passed = this->passed();
     SensorTime edge = natural_edge(), limit = SensorTime::max();
@@ -277,7 +277,7 @@ void Slicer::emit(SensorTime end, EventWindow& event_window) {
     event_window.gap_before = std::exchange(gap_, false);
     event_window.reset_before = std::exchange(reset_, false);
     event_window.arrived = arrived_;
-    silent_ = event_window.events.empty() ? std::min(silent_ + 1, settings_.silent_frames) : 0;
+    silent_ = event_window.events.empty() ? std::min(silent_ + 1, settings_.silent_windows) : 0;
     head_ += event_window.events.size();
     begin_ = end;
     look_again();

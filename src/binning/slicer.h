@@ -18,8 +18,8 @@ struct SlicerCounters {
     std::uint64_t before_begin = 0;     ///< left out: before SlicerSettings::begin
     std::uint64_t after_end = 0;        ///< left out: after SlicerSettings::end
     std::uint64_t too_many = 0;         ///< left out: more than max_events in one microsecond
-    std::uint64_t late = 0;             ///< moved to the open frame's first microsecond
-    std::uint64_t late_references = 0;  ///< images before the open frame: no edge was cut there
+    std::uint64_t late = 0;             ///< moved to the open window's first microsecond
+    std::uint64_t late_references = 0;  ///< images before the open window: no edge was cut there
     std::uint64_t time_resets = 0;      ///< time went back: a new stream began
 };
 
@@ -28,10 +28,10 @@ struct SlicerCounters {
 ///     slicer.push(events);
 ///     for (EventWindow event window; slicer.next(event window);) ...
 ///
-/// A frame is cut at T when the stream is past T. However the stream is split into calls, the
-/// event windows are the same (with the exception that SlicerSettings::silent_frames states).
+/// A window is cut at T when the stream is past T. However the stream is split into calls, the
+/// event windows are the same (with the exception that SlicerSettings::silent_windows states).
 ///
-/// Time that goes back (events are in order, so the camera's clock was reset) ends the open frame
+/// Time that goes back (events are in order, so the camera's clock was reset) ends the open window
 /// and begins anew; that event window carries reset_before.
 class Slicer {
 public:
@@ -111,10 +111,10 @@ private:
 
     int width_, height_;  // px
     SlicerSettings settings_;
-    SensorDuration step_;        // width of a frame without events
-    std::uint64_t most_events_;  // per frame
+    SensorDuration step_;        // width of a window without events
+    std::uint64_t most_events_;  // per window
 
-    TileActivity activity_;  // rule content: of the open frame's first scanned_ events
+    TileActivity activity_;  // rule content: of the open window's first scanned_ events
     std::size_t scanned_ = 0;
     std::optional<SensorTime> busy_;  // rule content: when the tiles had seen enough
 
@@ -122,11 +122,11 @@ private:
     std::size_t head_ = 0;
     std::vector<Seam> seams_;
     std::vector<SensorTime> references_;  // ascending
-    std::optional<SensorTime> begin_;     // of the open frame
+    std::optional<SensorTime> begin_;     // of the open window
     SensorTime origin_{};                 // rule duration: edges are at origin_ + k width
     SensorTime newest_ = SensorTime::min(), newest_event_ = SensorTime::min();
     std::uint64_t same_time_ = 0;  // events at newest_event_
-    int silent_ = 0;               // empty frames in a row
+    int silent_ = 0;               // empty windows in a row
     HostTime arrived_{};
     bool gap_ = false, reset_ = false, finished_ = false, past_end_ = false;
     bool first_stream_ = true;  // settings_.begin and end are times of the first stream only

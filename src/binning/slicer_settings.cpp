@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUsPerDay = 24.0 * 3600.0 * 1e6;
 constexpr double kMaxEvents = 1e9;
-/// Images come 5 to 50 times a second; a frame between two of them must not be cut in two.
+/// Images come 5 to 50 times a second; a window between two of them must not be cut in two.
 constexpr SensorDuration kReferenceMaxWidth{1'000'000};
 /// Rule content (docs/accuracy.md, "Windows by content").
 constexpr SensorDuration kContentMaxWidth{50'000};

@@ -19,39 +19,39 @@ enum class WindowRule : std::uint8_t {
 
 struct SlicerSettings {
     WindowRule rule = WindowRule::duration;
-    SensorDuration width{50'000};   ///< of each frame, rule duration; >= 1 us
-    std::uint64_t events = 20'000;  ///< per frame, rule count; >= 1
+    SensorDuration width{50'000};   ///< of each window, rule duration; >= 1 us
+    std::uint64_t events = 20'000;  ///< per window, rule count; >= 1
     /// Rule count: where > 0, `events` is this times the pixels. Rule content: of the busiest
     /// tiles.
     double events_per_pixel = 0;
-    SensorDuration min_width{1'000};  ///< rule content: no event ends a frame before
+    SensorDuration min_width{1'000};  ///< rule content: no event ends a window before
 
-    /// Rules count, content and reference: no frame is wider, so that a still scene ends its frames
-    /// too.
+    /// Rules count, content and reference: no window is wider, so that a still scene ends its
+    /// windows too.
     SensorDuration max_width{100'000};
 
-    /// Rule reference: where no image is known, a frame ends at max_width only when the stream is
+    /// Rule reference: where no image is known, a window ends at max_width only when the stream is
     /// this much further, because images come after the events around their time (a DAVIS sends
     /// one when it is read out, files store it in a later packet).
     SensorDuration reference_wait{1'000'000};
 
-    /// All rules: a frame ends early after so many events, which bounds memory (16 bytes each).
+    /// All rules: a window ends early after so many events, which bounds memory (16 bytes each).
     /// Events of the same microsecond stay together; past so many of one microsecond the rest are
     /// left out and counted.
     std::uint64_t max_events = std::uint64_t{1} << 24;
 
-    /// After so many empty frames in a row, the rest of a silence that is known to be over (or has
-    /// passed at one step) comes as one wide empty frame: a jump of hours gives a handful of
-    /// frames. By then every input of the network has stopped changing.
-    int silent_frames = 16;
+    /// After so many empty windows in a row, the rest of a silence that is known to be over (or has
+    /// passed at one step) comes as one wide empty window: a jump of hours gives a handful of
+    /// windows. By then every input of the network has stopped changing.
+    int silent_windows = 16;
 
-    /// The first frame's begin: earlier events are left out. Empty: 1 us before the first event or
+    /// The first window's begin: earlier events are left out. Empty: 1 us before the first event or
     /// clock, so that the first event is inside.
     std::optional<SensorTime> begin;
-    /// Later events are left out and the last frame ends here. Empty: at the stream's end.
+    /// Later events are left out and the last window ends here. Empty: at the stream's end.
     std::optional<SensorTime> end;
     /// Where a live stream's times are not known before: the end is this long after the first
-    /// frame's begin, in silence too.
+    /// window's begin, in silence too.
     std::optional<SensorDuration> duration;
 };
 

@@ -40,10 +40,10 @@ inline void copy_stamp(const WindowStamp& from, WindowStamp& into) {
 /// One event window as numbers (docs/model.md, "Input").
 struct VoxelGrid : WindowStamp {
     /// [y][x][channel], channels 4 b + {0 polarity, 1 mean, 2 std, 3 count} for bin b < B, then 4 B
-    /// = frames since the pixel's last event, clamped at 8, divided by 8 (0 = has events in this
-    /// frame).
+    /// = windows since the pixel's last event, clamped at 8, divided by 8 (0 = has events in this
+    /// window).
     Array3<float> values;
-    /// [y][x], 1 where the pixel has events in this frame, else 0; empty where whoever filled the
+    /// [y][x], 1 where the pixel has events in this window, else 0; empty where whoever filled the
     /// values did not keep track.
     Array2<std::uint8_t> touched;
 };

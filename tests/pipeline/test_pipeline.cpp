@@ -171,7 +171,9 @@ TEST(Pipeline, CutsAsItIsAskedWhileItRuns) {
         settings.changes = &changes;
         PipelineUnderTest line{one_frame_per_packet(6), settings};
         line.source.before_read = [&](std::size_t packet) {
-            if (packet == 3) changes.set_window({.width = SensorDuration{500}});
+            SlicerSettings narrow;
+            narrow.width = SensorDuration{500};
+            if (packet == 3) changes.set_window(narrow);
         };
         threaded ? line.run() : line.run_sequential();
         EXPECT_TRUE(has_width(line.sink, 500));

@@ -78,7 +78,7 @@ FigureSettings small_figures() {
     what.scales = {1, 2};
     what.phases_max = 3;
     what.moving_frames = 4;
-    what.silent_frames = {0, 1, 5};
+    what.silent_windows = {0, 1, 5};
     return what;
 }
 

@@ -234,7 +234,9 @@ TEST(ResamplingMap, TakesPlanesAtOtherPlaces) {
         map.apply(from, to, how, -99);
         EXPECT_NEAR(to(0, 0), 2 * 5 - 3 * 7, 1e-4);
         EXPECT_NEAR(to(0, 1), 2 * 5.5 - 3 * 7.25, how == Resampling::linear ? 1e-4 : .2);
-        if (how == Resampling::linear) EXPECT_NEAR(to(0, 2), 2 * 38.75 - 3 * 28, 1e-4);
+        if (how == Resampling::linear) {
+            EXPECT_NEAR(to(0, 2), 2 * 38.75 - 3 * 28, 1e-4);
+        }
         EXPECT_NEAR(to(0, 3), 0, 1e-4);
         EXPECT_NEAR(to(0, 4), 2 * 39 - 3 * 29, 1e-4);
         EXPECT_EQ(to(0, 6), -99) << "more than half a pixel outside";

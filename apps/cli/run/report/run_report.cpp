@@ -124,7 +124,7 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
                        {"late_references", now.slicing.late_references},
                        {"time_resets", now.slicing.time_resets}};
     json["event_windows"] = now.event_windows;
-    json["silent_windows"] = now.silent_frames;
+    json["silent_windows"] = now.silent_windows;
     json["merged_windows"] = now.merged_windows;
     json["window_begin_us"] = to_us(now.window.begin);
     json["window_end_us"] = to_us(now.window.end);
