@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <sstream>
@@ -15,13 +16,36 @@ namespace eventide {
 
 namespace {
 
-constexpr std::size_t kMaxBiases = 1000;
+constexpr std::size_t kMaxBiases = 1000, kMaxBytes = std::size_t{1} << 20, kMaxName = 100;
+constexpr int kMaxDepth = 16;  // of JSON, which is printed recursively
 
 [[noreturn]] void refuse(const std::string& place, const std::string& what) {
     throw Error(ErrorKind::usage, place + ": " + what);
 }
 
+/// What a message shows of what it found.
+std::string piece_of(const std::string& text) {
+    constexpr std::size_t kMost = 160;
+    return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
+std::string text_in(const std::filesystem::path& file) {
+    std::ifstream stream = open_to_read(file, ErrorKind::usage);
+    std::string text;
+    std::array<char, 4096> part;
+    while (stream && text.size() <= kMaxBytes) {
+        stream.read(part.data(), part.size());
+        text.append(part.data(), std::size_t(stream.gcount()));
+    }
+    if (text.size() > kMaxBytes)
+        refuse(file.string(), "expected at most 1 MiB of biases, found more");
+    return text;
+}
+
 void add(const Bias& bias, std::vector<Bias>& to) {
+    if (bias.name.size() > kMaxName)
+        refuse(bias.place,
+               "expected a name of at most 100 characters, found '" + piece_of(bias.name) + "'");
     const auto before = std::ranges::find(to, bias.name, &Bias::name);
     if (before == to.end())
         to.push_back(bias);
@@ -56,12 +80,13 @@ Bias bias_of(const std::string& place, const std::string& text) {
     const auto number = number_of(value);
     if (!number || !more.empty() || separator != "%" || name.empty() ||
         (!rest.empty() && rest != "%"))
-        refuse(place, "expected VALUE % NAME, such as 299 % bias_diff_on, found '" + text + "'");
+        refuse(place,
+               "expected VALUE % NAME, such as 299 % bias_diff_on, found '" + piece_of(text) + "'");
     return {name, *number, place};
 }
 
 std::vector<Bias> read_lines(const std::filesystem::path& file) {
-    std::ifstream stream = open_to_read(file, ErrorKind::usage);
+    std::istringstream stream{text_in(file)};
     std::vector<Bias> biases;
     std::size_t line = 0;
     for (std::string text; std::getline(stream, text);) {
@@ -87,18 +112,25 @@ Bias bias_of(const Json& each, const std::string& place) {
                        value.get<std::int64_t>() >= INT32_MIN;
     if (!named || !whole)
         refuse(place, R"(expected {"name": "bias_fo", "value": 0} with a whole number, found )" +
-                          each.dump());
+                          piece_of(each.dump()));
     return {each["name"].get<std::string>(), value.get<std::int64_t>(), place};
 }
 
-std::vector<Bias> read_json(const std::filesystem::path& file) {
-    std::ifstream stream = open_to_read(file, ErrorKind::usage);
-    Json root;
+Json json_in(const std::filesystem::path& file) {
+    const auto watch = [&](int depth, Json::parse_event_t, Json&) {
+        if (depth > kMaxDepth)
+            refuse(file.string(), "expected JSON of at most 16 levels, found more");
+        return true;
+    };
     try {
-        root = Json::parse(stream);
-    } catch (const Json::parse_error& error) {
-        refuse(file.string(), std::string("expected JSON: ") + error.what());
+        return Json::parse(text_in(file), watch);
+    } catch (const Json::exception& error) {
+        refuse(file.string(), "expected JSON: " + piece_of(error.what()));
     }
+}
+
+std::vector<Bias> read_json(const std::filesystem::path& file) {
+    const Json root = json_in(file);
     const Json* state =
         root.is_object() && root.contains("ll_biases_state") ? &root["ll_biases_state"] : nullptr;
     if (state == nullptr || !state->is_object() || !state->contains("bias") ||

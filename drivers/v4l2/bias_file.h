@@ -21,7 +21,8 @@ bool names_bias_file(const std::filesystem::path& file);
 /// another % is passed over, as are empty lines and header lines, which begin with %. A .json file:
 /// camera settings as Metavision 4 and later save them (OpenEB's device_state.proto), of which
 /// ll_biases_state.bias, [{"name": ..., "value": ...}], is read. Throws Error (usage) with file and
-/// place for anything else, for a name with two values, and for a file without a bias.
+/// place for anything else, for a name with two values, for a file without a bias, and for one of
+/// more than 1 MiB, 1000 biases or 16 levels.
 std::vector<Bias> read_bias_file(const std::filesystem::path& file);
 
 }  // namespace eventide

@@ -1,4 +1,5 @@
-# What the scripts of this folder share.
+# What the scripts of this folder share; they source it.
+# shellcheck shell=bash
 EVENTIDE=${EVENTIDE:-eventide}
 
 refuse() {
@@ -30,6 +31,24 @@ state_file() {
   local name
   name=$(sed -n "$(($2 + 1))p" "$1/plan.tsv" | cut -f 2)
   printf '%s/states/%s/state_%06d.safetensors' "$1" "$name" "$(head -n "$2" "$1/plan.tsv" | awk -F '\t' -v name="$name" '$2 == name && $6 != "-"' | wc -l)"
+}
+
+# SCRIPT OUT [NUMBER]: what a job of an array begins with. Sets `out`, `number`, and `options`, those of the run.
+take_job() {
+  expect_plan "$1" "${2:-}"
+  out=$2
+  number=${3:-${SLURM_ARRAY_TASK_ID:-}}
+  [[ $number =~ ^[0-9]{1,9}$ ]] || refuse "$1: expected a whole number or SLURM_ARRAY_TASK_ID, found '$number'"
+  number=$((10#$number))
+  options=()
+  local option
+  while IFS= read -r -d '' option; do options+=("$option"); done < "$out/options"
+}
+
+# SCRIPT OUT
+expect_plan() {
+  [ -n "$2" ] || refuse "$1: expected OUT, the folder of a plan"
+  [ -e "$2/plan.tsv" ] || refuse "$1: $2: expected plan.tsv (submit.sh --plan makes it), found none"
 }
 
 part_name() {

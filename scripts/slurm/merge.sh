@@ -3,8 +3,8 @@
 # links). Nothing is joined before every part is there, and what was joined before is left as it is.
 set -euo pipefail
 . "$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/common.sh"
-out=${1:?merge.sh: expected OUT, the folder of a plan}
-[ -e "$out/plan.tsv" ] || refuse "merge.sh: $out: expected plan.tsv (submit.sh makes it), found none"
+expect_plan merge.sh "${1:-}"
+out=$1
 
 missing=()
 number=0
@@ -50,7 +50,7 @@ cut -f 2 "$out/plan.tsv" | uniq | while read -r whole; do
     continue
   fi
   work=$out/$whole.$$.work
-  rm -rf "$out/$whole".*.work
+  rm -rf "$out/$whole".[0-9]*.work
   mkdir -p "$work/frames"
   number=0 count=0 last_index=-1
   while IFS=$'\t' read -r _ name _ to _; do

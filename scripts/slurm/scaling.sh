@@ -5,8 +5,8 @@
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$here/common.sh"
-out=${1:?scaling.sh: expected OUT, the folder of a plan}
-[ -e "$out/plan.tsv" ] || refuse "scaling.sh: $out: expected plan.tsv (submit.sh --plan makes it), found none"
+expect_plan scaling.sh "${1:-}"
+out=$1
 shift
 nodes=("$@")
 [ $# -gt 0 ] || nodes=(1 2 4 8 16 32)

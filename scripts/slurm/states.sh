@@ -3,10 +3,7 @@
 # recording's events once and renders nothing. What is done already is left as it is, as task.sh does it.
 set -euo pipefail
 . "$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/common.sh"
-out=${1:?states.sh: expected OUT, the folder of a plan}
-number=${2:-${SLURM_ARRAY_TASK_ID:-}}
-[[ $number =~ ^[0-9]+$ ]] || refuse "states.sh: expected a recording's number or SLURM_ARRAY_TASK_ID, found '$number'"
-[ -e "$out/plan.tsv" ] || refuse "states.sh: $out: expected plan.tsv (submit.sh makes it), found none"
+take_job states.sh "$@"
 name=$(cut -f 2 "$out/plan.tsv" | uniq | sed -n "$((number + 1))p")
 [ -n "$name" ] || refuse "states.sh: $out/plan.tsv: expected recording $number, found $(cut -f 2 "$out/plan.tsv" | uniq | wc -l)"
 recording= times=()
@@ -21,9 +18,8 @@ if [ ${#times[@]} -eq 0 ] || [ -d "$states" ]; then
   exit 0
 fi
 
-options=()
-while IFS= read -r -d '' option; do options+=("$option"); done < "$out/options"
-work=$states.$(hostname).$$.work
-rm -rf "$states".*.work
+# By number: the name of another recording may begin as this one's does.
+work=$out/states/$number.$(hostname).$$.work
+rm -rf "$out/states/$number".*.work
 "$EVENTIDE" run "$recording" "${options[@]}" --states-out "$work/" "${times[@]}"
 mv -T "$work" "$states"

@@ -79,12 +79,13 @@ $plan_only && exit 0
 
 out=$(realpath "$out")
 # Slurm runs a copy of a script, which would not find the others: what it runs is one line that calls ours.
+# What waits for a job that failed ends with it, as it would wait for ever.
 # SCRIPT SBATCH-OPTION...
 submit() {
   local line
   printf -v line 'exec %q %q' "$here/$1" "$out"
   # shellcheck disable=SC2086  # options of sbatch are words
-  sbatch --parsable --job-name="eventide-$1" --open-mode=append $sbatch_options "${@:2}" --wrap "$line"
+  sbatch --parsable --job-name="eventide-$1" --open-mode=append --kill-on-invalid-dep=yes $sbatch_options "${@:2}" --wrap "$line"
 }
 after=()
 if $states; then

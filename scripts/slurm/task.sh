@@ -3,10 +3,7 @@
 # task left is made anew, beside its place, and renamed when it is whole.
 set -euo pipefail
 . "$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/common.sh"
-out=${1:?task.sh: expected OUT, the folder of a plan}
-number=${2:-${SLURM_ARRAY_TASK_ID:-}}
-[[ $number =~ ^[0-9]+$ ]] || refuse "task.sh: expected a task's number or SLURM_ARRAY_TASK_ID, found '$number'"
-[ -e "$out/plan.tsv" ] || refuse "task.sh: $out: expected plan.tsv (submit.sh makes it), found none"
+take_job task.sh "$@"
 IFS=$'\t' read -r recording name from to before state < <(sed -n "$((number + 1))p" "$out/plan.tsv") ||
   refuse "task.sh: $out/plan.tsv: expected task $number, found $(wc -l < "$out/plan.tsv") tasks"
 part=$out/parts/$(part_name "$name" "$number")
@@ -15,8 +12,6 @@ if is_finished "$part"; then
   exit 0
 fi
 
-options=()
-while IFS= read -r -d '' option; do options+=("$option"); done < "$out/options"
 # Frames wait for event windows behind their own: a second more, of which merge.sh keeps nothing.
 if [ "$state" != - ]; then
   state=$(state_file "$out" "$number")

@@ -122,6 +122,30 @@ TEST_F(BiasFile, IsReadFromMetavisionsCameraSettings) {
     EXPECT_THAT(failure_of([&] { settings_of("[1]"); }), HasSubstr("ll_biases_state.bias"));
 }
 
+TEST_F(BiasFile, WhatNoToolWritesIsRefusedInFewWords) {
+    const auto refusal = [&](const std::string& text, const char* name) {
+        const auto file = write(text, name);
+        std::string words = failure_of([&] { load_v4l2_settings(file); });
+        EXPECT_THAT(words, HasSubstr(name));
+        EXPECT_LT(words.size(), file.string().size() + 300) << "a piece of what was found";
+        return words;
+    };
+    const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+    EXPECT_THAT(refusal(R"({"ll_biases_state": {"bias": [)" + deep + "]}}", "deep.json"),
+                HasSubstr("expected JSON of at most 16 levels, found more"));
+    EXPECT_THAT(refusal(R"({"ll_biases_state": {"bias": [")" + std::string(10'000, 'x') + "\"]}}",
+                        "long.json"),
+                HasSubstr("expected {\"name\""));
+    EXPECT_THAT(refusal("[1e999]", "number.json"), HasSubstr("expected JSON: "));
+    EXPECT_THAT(refusal(std::string(10'000, '7'), "line.bias"), HasSubstr(":1: expected VALUE"));
+    EXPECT_THAT(refusal("1 % " + std::string(10'000, 'x') + "\n2 % " + std::string(10'000, 'x'),
+                        "name.bias"),
+                HasSubstr(":1: expected a name of at most 100 characters"));
+    for (const char* name : {"large.bias", "large.json"})
+        EXPECT_THAT(refusal(std::string((1 << 20) + 1, ' '), name),
+                    HasSubstr("expected at most 1 MiB of biases, found more"));
+}
+
 TEST_F(BiasFile, StandsBesideOtherSettings) {
     write("5 % bias_fo\n");
     const auto both = write(

@@ -97,8 +97,13 @@ TEST_F(Slurm, StatesGiveTheSegmentsWhatOneRunRemembered) {
     const Result planned = script("submit.sh", words);
     ASSERT_EQ(planned.exit_code, 0) << planned.error;
     EXPECT_THAT(script("task.sh", {"out", "1"}).error, HasSubstr("states.sh out makes it"));
+    // Another recording's, whose job runs beside this one.
+    fs::create_directories(temp_ / "out/states/long.more.host.1.work");
+    fs::create_directories(temp_ / "out/states/0.host.1.work");  // and what a killed one left
     const Result states = script("states.sh", {"out"}, {{"SLURM_ARRAY_TASK_ID", "0"}});
     ASSERT_EQ(states.exit_code, 0) << states.error;
+    EXPECT_TRUE(fs::exists(temp_ / "out/states/long.more.host.1.work"));
+    EXPECT_FALSE(fs::exists(temp_ / "out/states/0.host.1.work"));
     EXPECT_THAT(script("states.sh", {"out", "0"}).error, HasSubstr("nothing to do"));
     for (const char* task : {"2", "0", "1"}) {
         const Result done = script("task.sh", {"out", task});
@@ -139,6 +144,12 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
                 HasSubstr("out: holds another plan"));
     EXPECT_THAT(script("task.sh", {"out", "7"}).error, HasSubstr("expected task 7, found 1 tasks"));
     EXPECT_THAT(script("task.sh", {"out"}).error, HasSubstr("SLURM_ARRAY_TASK_ID"));
+    EXPECT_THAT(script("task.sh", {"out", "x"}).error, HasSubstr("a whole number"));
+    for (const char* name : {"task.sh", "states.sh", "merge.sh", "scaling.sh"}) {
+        const Result nothing = script(name, {});
+        EXPECT_EQ(nothing.exit_code, 2);
+        EXPECT_EQ(nothing.error, std::string{name} + ": expected OUT, the folder of a plan\n");
+    }
     EXPECT_THAT(script("merge.sh", {"."}).error, HasSubstr("expected plan.tsv"));
 }
 
