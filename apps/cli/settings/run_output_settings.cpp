@@ -1,7 +1,7 @@
 // The part of `eventide run`'s table that says where frames go and how they look.
-#include "apps/cli/settings/open_setting.h"
 #include "apps/cli/settings/run_settings.h"
 #include "src/binning/noise_filter.h"
+#include "src/settings/setting.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // The table behind `eventide run`: its groups, and those that say which frames, and how fast.
 #include "apps/cli/settings/run_settings.h"
 
-#include "apps/cli/settings/open_setting.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/sensor_limits.h"
+#include "src/settings/setting.h"
 
 #include <cmath>
 

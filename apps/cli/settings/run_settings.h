@@ -3,7 +3,6 @@
 
 #include "apps/cli/settings/budget.h"
 #include "apps/cli/settings/input_settings.h"
-#include "apps/cli/settings/setting.h"
 #include "apps/cli/settings/time_point.h"
 #include "pipeline/frame_clock.h"
 #include "pipeline/sinks/adjust.h"
@@ -12,6 +11,7 @@
 #include "src/core/bayer.h"
 #include "src/model/engine.h"
 #include "src/model/render/renderer.h"
+#include "src/settings/setting.h"
 
 #include <optional>
 #include <string>
