@@ -91,7 +91,7 @@ SettingTable RunSettings::table() {
     table.group_rest("Frames");
     add_outputs(table);
     table.group_rest("Output");
-    add_look(table);
+    add_adjustments(table);
     table.group_rest("Post-processing");
     add_quality(table);
     table.group_rest("Quality");

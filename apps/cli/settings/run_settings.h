@@ -106,7 +106,7 @@ struct RunSettings {
     // look
     std::string undistort;         ///< calibration file; empty: frames stay as the lens makes them
     std::string undistort_camera;  ///< of a Kalibr file; empty: the first
-    LookSettings look;
+    AdjustSettings adjust;
     double unsharp = 0;
     std::string video_preset = "veryfast";
     int video_crf = 18;
@@ -132,7 +132,7 @@ private:
     void add_quality(SettingTable& table);
     void add_network(SettingTable& table);
     void add_outputs(SettingTable& table);
-    void add_look(SettingTable& table);
+    void add_adjustments(SettingTable& table);
     void add_machinery(SettingTable& table);
 };
 
