@@ -46,12 +46,12 @@ const std::vector<Weighing>& weighings() {
     return all;
 }
 
-cv::Mat as_picture(const Frame& frame) {
+cv::Mat as_image(const Frame& frame) {
     const cv::Mat values(frame.intensity.height(), frame.intensity.width(), CV_32FC1,
                          const_cast<float*>(frame.intensity.values().data()));
-    cv::Mat picture;
-    values.convertTo(picture, CV_8UC1, 255);
-    return picture;
+    cv::Mat image;
+    values.convertTo(image, CV_8UC1, 255);
+    return image;
 }
 
 constexpr int kReach = 7;  // px, of the tracker's window and of what sigma is averaged over
@@ -206,13 +206,13 @@ std::vector<long long> times_of(const std::string& folder) {
     return times;
 }
 
-cv::Mat truth_picture(const std::string& folder, std::size_t number) {
+cv::Mat truth_image(const std::string& folder, std::size_t number) {
     char name[32];
     std::snprintf(name, sizeof name, "/frames/frame_%010zu.png", number);
-    cv::Mat picture = cv::imread(folder + name, cv::IMREAD_GRAYSCALE);
-    if (picture.empty())
+    cv::Mat image = cv::imread(folder + name, cv::IMREAD_GRAYSCALE);
+    if (image.empty())
         throw eventide::Error(eventide::ErrorKind::input, folder + name + ": cannot be read");
-    return picture;
+    return image;
 }
 
 /// Two frames in a row.
@@ -221,19 +221,19 @@ public:
     explicit Tracker(std::string truth_folder) : truth_folder_(std::move(truth_folder)) {}
 
     void take(const Frame& frame, std::size_t number) {
-        const cv::Mat picture = as_picture(frame);
+        const cv::Mat image = as_image(frame);
         if (!before_.empty()) {
-            std::vector<Track> tracks = follow(before_, picture);
+            std::vector<Track> tracks = follow(before_, image);
             for (Track& track : tracks)
                 track.sigma = std::max(sigma_around(frame_before_, track.from),
                                        sigma_around(frame, track.to));
             if (truth_folder_.empty())
                 print(frame, tracks);
             else
-                comparison_.add(tracks, truth_picture(truth_folder_, number - 1),
-                                truth_picture(truth_folder_, number));
+                comparison_.add(tracks, truth_image(truth_folder_, number - 1),
+                                truth_image(truth_folder_, number));
         }
-        before_ = picture;
+        before_ = image;
         frame_before_ = frame;
     }
     void end() {

@@ -7,6 +7,7 @@
 #include <eventide/reconstructor.h>
 #include <eventide/writer.h>
 
+#include <cstddef>
 #include <variant>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct eventide_reconstructor {
     eventide::Reconstructor it;
     eventide::Frame frame{};
     std::vector<eventide::Event> events{};
+    std::vector<std::byte> state{};
 };
 
 struct eventide_source {

@@ -192,6 +192,27 @@ eventide_status eventide_reset(eventide_reconstructor* reconstructor) {
     });
 }
 
+eventide_status eventide_state(eventide_reconstructor* reconstructor, const void** bytes,
+                               size_t* size) {
+    return c_call([&] {
+        std::vector<std::byte>& state = given(reconstructor, "a reconstructor").state;
+        const void*& at = given(bytes, "a place for the state");
+        given(size, "a place for the number of bytes") = 0;
+        state = reconstructor->it.state();
+        at = state.data();
+        *size = state.size();
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_restore(eventide_reconstructor* reconstructor, const void* bytes,
+                                 size_t size) {
+    return c_call([&] {
+        it(reconstructor).restore({&given(static_cast<const std::byte*>(bytes), "a state"), size});
+        return EVENTIDE_OK;
+    });
+}
+
 eventide_status eventide_save_state(eventide_reconstructor* reconstructor, const char* file,
                                     int overwrite) {
     return c_call([&] {

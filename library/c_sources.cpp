@@ -57,6 +57,18 @@ int eventide_source_height(const eventide_source* source) {
     return std::visit([](const auto& it) { return it.height(); }, source->it);
 }
 
+eventide_status eventide_reconstructor_open_for(const eventide_source* source, const char* model,
+                                                const eventide_options* options,
+                                                eventide_reconstructor** opened) {
+    const eventide_status found = c_call([&] {
+        given(source, "a source");
+        return EVENTIDE_OK;
+    });
+    if (found != EVENTIDE_OK) return found;
+    return eventide_reconstructor_open(model, eventide_source_width(source),
+                                       eventide_source_height(source), options, opened);
+}
+
 eventide_status eventide_read(eventide_source* source, const eventide_event** events,
                               size_t* count) {
     return c_call([&] {
@@ -84,6 +96,22 @@ eventide_status eventide_read_into(eventide_source* source, eventide_reconstruct
         if (const auto clock = clock_of(from); camera != nullptr && clock) into.advance(*clock);
         return EVENTIDE_OK;
     });
+}
+
+eventide_status eventide_read_frame(eventide_source* source, eventide_reconstructor* reconstructor,
+                                    eventide_frame* frame) {
+    for (;;) {
+        if (const auto found = eventide_next(reconstructor, frame); found != EVENTIDE_NONE)
+            return found;
+        const eventide_status read = eventide_read_into(source, reconstructor);
+        if (read != EVENTIDE_OK && read != EVENTIDE_NONE) return read;
+        if (read == EVENTIDE_OK) continue;
+        const eventide_status finished = c_call([&] {
+            reconstructor->it.finish(clock_of(*source));
+            return EVENTIDE_OK;
+        });
+        return finished == EVENTIDE_OK ? eventide_next(reconstructor, frame) : finished;
+    }
 }
 
 eventide_status eventide_source_clock(const eventide_source* source, int64_t* t) {

@@ -65,7 +65,13 @@ void Reconstructor::save_state(const std::filesystem::path& file, bool overwrite
     write_safetensors(file, impl_->encoder().state(), overwrite);
 }
 void Reconstructor::restore_state(const std::filesystem::path& file) {
-    impl_->restore_state(file);
+    impl_->restore(read_safetensors(file), file.string());
+}
+std::vector<std::byte> Reconstructor::state() const {
+    return format_safetensors(impl_->encoder().state());
+}
+void Reconstructor::restore(std::span<const std::byte> state) {
+    impl_->restore(parse_safetensors(state, "state"), "state");
 }
 ReconstructorCounters Reconstructor::counters() const noexcept {
     return impl_->counters();

@@ -4,7 +4,6 @@
 #include "library/network_options.h"
 #include "src/core/error.h"
 #include "src/core/frame_stamp.h"
-#include "src/nn/safetensors.h"
 
 #include <algorithm>
 #include <string>
@@ -209,8 +208,8 @@ void Reconstructor::Impl::reset() {
     encoder_.reset();
 }
 
-void Reconstructor::Impl::restore_state(const std::filesystem::path& file) {
-    encoder_.restore(read_safetensors(file), file.string());
+void Reconstructor::Impl::restore(const TensorFile& state, const std::string& name) {
+    encoder_.restore(state, name);
     forget_events();
 }
 

@@ -8,10 +8,11 @@
 #include "src/binning/binner.h"
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
+#include "src/nn/safetensors.h"
 
 #include <array>
-#include <filesystem>
 #include <optional>
+#include <string>
 
 namespace eventide {
 
@@ -30,7 +31,8 @@ public:
     void render(SensorTime t, Frame& frame) { render(t, options_.size, frame); }
     std::optional<SensorTime> newest();
     void reset();
-    void restore_state(const std::filesystem::path& file);
+    /// `name` stands for the state in messages.
+    void restore(const TensorFile& state, const std::string& name);
 
 private:
     bool step();

@@ -10,7 +10,9 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace eventide::python {
 
@@ -170,18 +172,31 @@ void add_events_in(Class& it) {
             [](SizedReconstructor& self) { self.with([](Reconstructor& r) { r.reset(); }); },
             "As constructed: a new stream begins.")
         .def(
+            "state",
+            [](SizedReconstructor& self) {
+                const auto state = self.with([](Reconstructor& r) { return r.state(); });
+                return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
+            },
+            "What the network remembers of the scene, as bytes for restore().")
+        .def(
+            "restore",
+            [](SizedReconstructor& self, std::string_view state) {
+                self.with([&](Reconstructor& r) { r.restore(std::as_bytes(std::span{state})); });
+            },
+            py::arg("state"),
+            "A new stream begins with what state() told, of the same model and sensor size.")
+        .def(
             "save_state",
             [](SizedReconstructor& self, const std::filesystem::path& file, bool overwrite) {
                 self.with([&](Reconstructor& r) { r.save_state(file, overwrite); });
             },
-            py::arg("file"), py::arg("overwrite") = false,
-            "What the network remembers of the scene, as a file.")
+            py::arg("file"), py::arg("overwrite") = false, "state() as a file.")
         .def(
             "restore_state",
             [](SizedReconstructor& self, const std::filesystem::path& file) {
                 self.with([&](Reconstructor& r) { r.restore_state(file); });
             },
-            py::arg("file"), "A new stream begins with what was saved.");
+            py::arg("file"), "restore() from a file.");
 }
 
 template <typename Class>

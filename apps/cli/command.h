@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/cli/named_files.h"
-#include "apps/cli/settings/setting.h"
 #include "apps/cli/signals.h"
+#include "src/settings/setting.h"
 
 #include <string>
 #include <vector>
@@ -38,7 +38,7 @@ public:
     virtual std::vector<Positional> positionals() { return {}; }
     virtual SettingTable settings() = 0;
 
-    /// Returns an exit code. Throws Error. Data go to standard output, talk to standard error.
+    /// Returns an exit code. Throws Error. Data go to standard output, messages to standard error.
     virtual int run(Program& program) = 0;
 };
 

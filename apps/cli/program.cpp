@@ -28,12 +28,12 @@ namespace {
 
 /// What all commands share.
 struct CommonSettings {
-    TalkSettings talk;
+    LogSettings log;
 
     SettingTable table() {
         SettingTable common{"", "What all commands share.", {}};
         common.settings.push_back(parsed_setting<std::string>(
-            "log_level", talk.log_level, "LEVEL",
+            "log_level", log.log_level, "LEVEL",
             "Level of the log on standard error: trace, debug, info, warning, error or off.",
             [](const std::string& text) {
                 parse_choice(text, {"trace", "debug", "info", "warning", "error", "off"});
@@ -41,7 +41,7 @@ struct CommonSettings {
             },
             [](const std::string& text) { return text; }));
         common.settings.push_back(flag_setting(
-            "quiet", talk.quiet, "No progress and no summaries; warnings and errors stay."));
+            "quiet", log.quiet, "No progress and no summaries; warnings and errors stay."));
         return common;
     }
 };
@@ -70,7 +70,7 @@ std::pair<SettingTable, SettingTable> resolve(Invocation& invocation, CommonSett
     SettingTable own;
     if (invocation.command) own = invocation.command->settings();
     resolve_settings(own, file, invocation.command_flags);
-    start_talk(common.talk);
+    start_log(common.log);
     for (const std::string& name : unknown_variables(environ, tables))
         spdlog::warn("unknown variable {} in the environment{}", name,
                      suggestion(name, variables_of(tables)));
@@ -91,7 +91,7 @@ int run_parsed(Signals& signals, std::vector<std::string> arguments) {
             throw Error(ErrorKind::usage, invocation->command->name() + ": expected " +
                                               positional.name +
                                               help_hint(invocation->command->name()));
-    Program program{signals, std::move(arguments), common.talk.quiet};
+    Program program{signals, std::move(arguments), common.log.quiet};
     program.files.reads("--config", invocation->config_file);
     return invocation->command->run(program);
 }
@@ -150,7 +150,7 @@ std::string fish_completion() {
 }
 
 int run_program(Signals& signals, std::vector<std::string> arguments) {
-    start_talk({});
+    start_log({});
     try {
         const int result = run_parsed(signals, std::move(arguments));
         finish_standard_output();

@@ -56,7 +56,7 @@ public:
 
 }  // namespace
 
-void start_talk(const TalkSettings& settings) {
+void start_log(const LogSettings& settings) {
     auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>(
         colour_allowed() ? spdlog::color_mode::always : spdlog::color_mode::never);
     auto logger = std::make_shared<spdlog::logger>("eventide", std::move(sink));

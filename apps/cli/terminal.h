@@ -8,13 +8,13 @@
 
 namespace eventide::app {
 
-struct TalkSettings {
+struct LogSettings {
     std::string log_level = "info";  ///< trace, debug, info, warning, error or off
     bool quiet = false;              ///< no progress and no summaries; warnings and errors stay
 };
 
 /// Sets spdlog's default logger; once, before anything is logged.
-void start_talk(const TalkSettings& settings);
+void start_log(const LogSettings& settings);
 
 /// Standard error is a terminal.
 bool on_terminal();

@@ -1,98 +1,86 @@
 #include "apps/train/options.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
-#include <array>
 #include <sstream>
+#include <type_traits>
 
 namespace eventide {
 namespace {
 
-void read_value(const std::string& text, std::string& value) {
-    value = text;
+/// What `part` of the text that was given says.
+template <typename T>
+T item(const std::string& part, const std::string& given) {
+    if constexpr (std::is_same_v<T, std::string>) {
+        return part;
+    } else if constexpr (std::is_same_v<T, bool>) {
+        if (part != "0" && part != "1") throw_usage("a number", given);
+        return part == "1";
+    } else {
+        const auto found = number_in<T>(part);
+        if (!found) throw_usage("a number", given);
+        return *found;
+    }
 }
 template <typename T>
-void read_value(const std::string& text, T& value) {
-    std::istringstream in{text};
-    if (!(in >> value) || !(in >> std::ws).eof()) throw std::invalid_argument{"a number"};
-}
-void read_value(const std::string& text, std::vector<int>& value) {
-    value.clear();
-    std::istringstream in{text};
-    for (std::string part; std::getline(in, part, ',');) read_value(part, value.emplace_back());
-}
-void read_value(const std::string& text, std::vector<std::string>& value) {
-    value.clear();
-    std::istringstream in{text};
-    for (std::string part; std::getline(in, part, ',');) value.push_back(part);
-}
-void read_value(const std::string& text, Range& value) {
-    const auto comma = text.find(',');
-    if (comma == text.npos) throw std::invalid_argument{"LOW,HIGH"};
-    read_value(text.substr(0, comma), value.low);
-    read_value(text.substr(comma + 1), value.high);
-}
-void read_value(const std::string& text, EncoderKind& value) {
-    if (text != "gated" && text != "thesis") throw std::invalid_argument{"gated or thesis"};
-    value = text == "gated" ? EncoderKind::gated : EncoderKind::thesis;
-}
-void read_value(const std::string& text, SigmaRule& value) {
-    if (text != "log_blend" && text != "mixture")
-        throw std::invalid_argument{"log_blend or mixture"};
-    value = text == "mixture" ? SigmaRule::mixture : SigmaRule::log_blend;
-}
-void read_value(const std::string& text, Blend& value) {
-    if (text != "linear" && text != "smooth") throw std::invalid_argument{"linear or smooth"};
-    value = text == "smooth" ? Blend::smooth : Blend::linear;
+std::string shown(const T& value) {
+    if constexpr (std::is_same_v<T, std::string>)
+        return value;
+    else if constexpr (std::is_same_v<T, double>)
+        return show_number(value);
+    else
+        return std::to_string(value);
 }
 
 template <typename T>
-std::string write_value(const T& value) {
-    std::ostringstream out;
-    out << value;
-    return out.str();
+Setting setting_of(const std::string& key, T& value, const std::string& help) {
+    return parsed_setting<T>(
+        key, value, "", help, [](const std::string& text) { return item<T>(text, text); },
+        shown<T>);
 }
-std::string write_value(const std::vector<int>& value) {
-    std::string text;
-    for (const int v : value) text += (text.empty() ? "" : ",") + std::to_string(v);
-    return text;
+template <typename T>
+Setting setting_of(const std::string& key, std::vector<T>& value, const std::string& help) {
+    return parsed_setting<std::vector<T>>(
+        key, value, "", help,
+        [](const std::string& text) {
+            std::vector<T> items;
+            std::istringstream parts{text};
+            for (std::string part; std::getline(parts, part, ',');)
+                items.push_back(item<T>(part, text));
+            return items;
+        },
+        [](const std::vector<T>& items) {
+            std::string text;
+            for (const T& one : items) text += (text.empty() ? "" : ",") + shown(one);
+            return text;
+        });
 }
-std::string write_value(const std::vector<std::string>& value) {
-    std::string text;
-    for (const std::string& v : value) text += (text.empty() ? "" : ",") + v;
-    return text;
-}
-std::string write_value(const Range& value) {
-    return write_value(value.low) + "," + write_value(value.high);
-}
-std::string write_value(const EncoderKind& value) {
-    return value == EncoderKind::gated ? "gated" : "thesis";
-}
-std::string write_value(const SigmaRule& value) {
-    return value == SigmaRule::mixture ? "mixture" : "log_blend";
-}
-std::string write_value(const Blend& value) {
-    return value == Blend::smooth ? "smooth" : "linear";
-}
-void read_value(const std::string& text, LiveEdge& value) {
-    if (text != "jump" && text != "fade") throw std::invalid_argument{"jump or fade"};
-    value = text == "fade" ? LiveEdge::fade : LiveEdge::jump;
-}
-std::string write_value(const LiveEdge& value) {
-    return value == LiveEdge::fade ? "fade" : "jump";
+Setting setting_of(const std::string& key, Range& value, const std::string& help) {
+    return parsed_setting<Range>(
+        key, value, "", help,
+        [](const std::string& text) {
+            const auto comma = text.find(',');
+            if (comma == text.npos) throw_usage("LOW,HIGH", text);
+            return Range{item<double>(text.substr(0, comma), text),
+                         item<double>(text.substr(comma + 1), text)};
+        },
+        [](const Range& v) { return shown(v.low) + "," + shown(v.high); });
 }
 
 }  // namespace
 
-template <typename T>
-void OptionTable::add(const std::string& name, T& target, const std::string& help, Use use) {
-    options_.push_back({name, help, use,
-                        [&target](const std::string& text) { read_value(text, target); },
-                        [&target] { return write_value(target); }});
-}
-
 OptionTable::OptionTable(TrainOptions& o) {
+    const auto add = [this](const std::string& name, auto& target, const std::string& help,
+                            Use use = Use::learning) {
+        options_.push_back({setting_of(name, target, help), use});
+    };
+    const auto add_choice = [this]<typename Enum>(const std::string& name, Enum& target,
+                                                  const std::string& help,
+                                                  const std::vector<Word<Enum>>& words) {
+        options_.push_back({choice_setting(name, target, help, words), Use::learning});
+    };
     add("out", o.out, "folder for the checkpoint, the logs and the images", Use::run);
     add("textures", o.textures, "pack of photographs to learn from; none: procedural textures",
         Use::run);
@@ -123,7 +111,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("groups", o.groups, "of streams, that take turns from step to step");
     add("seed", o.data.seed, "of the data and the first weights");
 
-    add("encoder", o.model.encoder, "gated or thesis");
+    add_choice("encoder", o.model.encoder, "gated or thesis",
+               {{EncoderKind::gated, "gated"}, {EncoderKind::thesis, "thesis"}});
     add("bins", o.model.bins, "B of the voxel grid");
     add("inputs", o.inputs,
         "channels of the voxel grid that may be used: polarity,mean,std,count,since");
@@ -136,10 +125,13 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("latent", o.model.latent, "D");
     add("latent-stride", o.model.latent_stride, "1 or 2");
     add("unfold", o.model.unfold, "codes in y and x that the renderer reads: 3 (3 x 3) or 1");
-    add("live-edge", o.model.live_edge, "inside the newest event window: jump or fade");
+    add_choice("live-edge", o.model.live_edge, "inside the newest event window: jump or fade",
+               {{LiveEdge::jump, "jump"}, {LiveEdge::fade, "fade"}});
     add("mlp", o.model.mlp, "hidden widths of the renderer");
-    add("sigma-rule", o.model.sigma_rule, "log_blend or mixture");
-    add("blend", o.model.blend, "weights of latent samples in space: linear or smooth");
+    add_choice("sigma-rule", o.model.sigma_rule, "log_blend or mixture",
+               {{SigmaRule::log_blend, "log_blend"}, {SigmaRule::mixture, "mixture"}});
+    add_choice("blend", o.model.blend, "weights of latent samples in space: linear or smooth",
+               {{Blend::linear, "linear"}, {Blend::smooth, "smooth"}});
 
     add("crop", o.data.crop, "px, side of the part of a sensor that is simulated");
     add("sensor-width", o.data.sensor_width,
@@ -209,16 +201,8 @@ void OptionTable::set(const std::string& name, const std::string& value) {
         {"pinned", "static-objects"}, {"flat", "textureless"},  {"faint", "low-contrast"}};
     const auto former = kFormerNames.find(name);
     const std::string& now = former == kFormerNames.end() ? name : former->second;
-    for (const Option& option : options_) {
-        if (option.name != now) continue;
-        try {
-            option.read(value);
-        } catch (const std::invalid_argument& expected) {
-            throw Error(ErrorKind::usage,
-                        "--" + name + ": expected " + expected.what() + ", found '" + value + "'");
-        }
-        return;
-    }
+    for (const Option& option : options_)
+        if (option.setting.key == now) return set_from("--" + name, option.setting, value);
     throw Error(ErrorKind::usage, "expected one of the options of --help, found '--" + name + "'");
 }
 
@@ -235,9 +219,9 @@ void OptionTable::parse(const std::vector<std::string>& words) {
 std::string OptionTable::help() const {
     std::string text = "eventide-train [--NAME VALUE]...\n";
     for (const Option& option : options_) {
-        std::string line = "  --" + option.name + " ";
+        std::string line = "  " + flag_of(option.setting) + " ";
         line.resize(std::max<std::size_t>(line.size(), 24), ' ');
-        text += line + option.help + " (" + option.write() + ")\n";
+        text += line + option.setting.help + " (" + option.value() + ")\n";
     }
     return text;
 }
@@ -245,16 +229,16 @@ std::string OptionTable::help() const {
 std::string OptionTable::record() const {
     std::string text;
     for (const Option& option : options_)
-        if (option.use != Use::once && !option.write().empty())
-            text += "--" + option.name + " " + option.write() + "\n";
+        if (option.use != Use::once && !option.value().empty())
+            text += flag_of(option.setting) + " " + option.value() + "\n";
     return text;
 }
 
 std::string OptionTable::settings() const {
     std::string text;
     for (const Option& option : options_)
-        if (option.use == Use::learning && !option.write().empty())
-            text += (text.empty() ? "--" : " --") + option.name + " " + option.write();
+        if (option.use == Use::learning && !option.value().empty())
+            text += (text.empty() ? "" : " ") + flag_of(option.setting) + " " + option.value();
     return text;
 }
 

@@ -6,8 +6,8 @@
 #include "apps/train/network/parameters.h"
 #include "apps/train/optimiser.h"
 #include "src/model/model_config.h"
+#include "src/settings/setting.h"
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -56,13 +56,10 @@ private:
     /// What a value decides: what is learned; where things lie and for how long; one call only.
     enum class Use { learning, run, once };
     struct Option {
-        std::string name, help;
+        Setting setting;
         Use use;
-        std::function<void(const std::string&)> read;
-        std::function<std::string()> write;
+        std::string value() const { return setting.show().front(); }
     };
-    template <typename T>
-    void add(const std::string& name, T& target, const std::string& help, Use use = Use::learning);
 
     std::vector<Option> options_;
 };

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kReadPatience = 20ms;
+constexpr auto kReadTimeout = 20ms;
 constexpr int kLargestSide = 4096;               // px
 constexpr std::size_t kEnoughBytes = 256 << 10;  // of messages at once
 
@@ -48,10 +48,10 @@ void Ros2Source::wait_for_first(const std::function<bool()>& give_up) {
     while (true) {
         if (give_up && give_up())
             throw Error(ErrorKind::failed, label() + ": stopped before the first message");
-        if (topic_.find_publisher(kReadPatience)) {
+        if (topic_.find_publisher(kReadTimeout)) {
             heard_of_one = true;
             if (const auto message = topic_.take()) return begin(*message);
-            topic_.wait(kReadPatience);
+            topic_.wait(kReadTimeout);
         }
         if (Clock::now() < until || reconnect_) continue;
         if (heard_of_one)
@@ -103,7 +103,7 @@ ReadStatus Ros2Source::read(RawPacket& into) {
     }
     take_messages(into);
     if (into.bytes.empty()) {
-        topic_.wait(kReadPatience);
+        topic_.wait(kReadTimeout);
         take_messages(into);
     }
     if (into.bytes.empty() && topic_.publishers() == 0) {

@@ -52,13 +52,11 @@ std::vector<std::byte> bias_bytes(const Dvs128Settings& settings) {
 }
 
 Dvs128Settings load_dvs128_settings(const std::filesystem::path& file) {
-    constexpr std::uint32_t kMost24Bits = 0xFFFFFF;
+    constexpr std::uint32_t kMax24Bits = 0xFFFFFF;
     Dvs128Settings settings;
-    SettingsFile reader{file};
-    add_biases(reader, settings.biases, kMost24Bits);
-    reader.flag("master", settings.master);
-    add_transfers(reader, settings.transfers);
-    reader.read();
+    read_camera_settings(
+        file, {biases_setting(settings.biases, kMax24Bits), flag_setting("master", settings.master),
+               transfers_setting(settings.transfers), transfer_size_setting(settings.transfers)});
     return settings;
 }
 

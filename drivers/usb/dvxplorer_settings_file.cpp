@@ -5,26 +5,25 @@
 namespace eventide {
 
 DvxplorerSettings load_dvxplorer_settings(const std::filesystem::path& file) {
-    constexpr int kMaxThreshold = 17, kMost16Bits = 65535;
+    constexpr int kMaxThreshold = 17, kMax16Bits = 65535;
     DvxplorerSettings settings;
-    SettingsFile reader{file};
-    reader.number("contrast_on", settings.contrast_on, 0, kMaxThreshold);
-    reader.number("contrast_off", settings.contrast_off, 0, kMaxThreshold);
-    add_region(reader, "roi", settings.roi);
-    add_polarity(reader, "polarity", settings.polarity);
-    reader.choice("subsample", settings.subsample, {1, 2, 4, 8});
-    reader.flag("activity_decision", settings.activity_decision);
-    reader.number("activity_positive", settings.activity_positive, 0, kMost16Bits);
-    reader.number("activity_negative", settings.activity_negative, 0, kMost16Bits);
-    reader.flag("imu", settings.imu);
-    reader.choice("accel_range_g", settings.accel_range_g, {2, 4, 8, 16});
-    reader.choice("gyro_range_dps", settings.gyro_range_dps, {125, 250, 500, 1000, 2000});
-    reader.flag("detect_pulses", settings.detect_pulses);
-    reader.flag("detect_edges", settings.detect_edges);
-    add_transfers(reader, settings.transfers);
-    reader.number("early_packet_delay_us", settings.early_packet_delay_us, 125, 100000);
-    reader.flag("verify", settings.verify);
-    reader.read();
+    read_camera_settings(
+        file,
+        {whole_setting("contrast_on", settings.contrast_on, 0, kMaxThreshold),
+         whole_setting("contrast_off", settings.contrast_off, 0, kMaxThreshold),
+         region_setting("roi", settings.roi), polarity_setting(settings.polarity),
+         one_of_setting("subsample", settings.subsample, {1, 2, 4, 8}),
+         flag_setting("activity_decision", settings.activity_decision),
+         whole_setting("activity_positive", settings.activity_positive, 0, kMax16Bits),
+         whole_setting("activity_negative", settings.activity_negative, 0, kMax16Bits),
+         flag_setting("imu", settings.imu),
+         one_of_setting("accel_range_g", settings.accel_range_g, {2, 4, 8, 16}),
+         one_of_setting("gyro_range_dps", settings.gyro_range_dps, {125, 250, 500, 1000, 2000}),
+         flag_setting("detect_pulses", settings.detect_pulses),
+         flag_setting("detect_edges", settings.detect_edges), transfers_setting(settings.transfers),
+         transfer_size_setting(settings.transfers),
+         whole_setting("early_packet_delay_us", settings.early_packet_delay_us, 125, 100000),
+         flag_setting("verify", settings.verify)});
     return settings;
 }
 

@@ -12,8 +12,8 @@ using namespace std::chrono_literals;
 
 constexpr std::uint32_t kLogicWanted = 18;
 constexpr std::uint8_t kSecondGenerationBoard = 5;
-constexpr auto kReadPatience = 20ms;
-constexpr auto kBeginPatience = 1000ms;
+constexpr auto kReadTimeout = 20ms;
+constexpr auto kBeginTimeout = 1000ms;
 
 }  // namespace
 
@@ -80,10 +80,10 @@ void UsbCamera::start() {
 /// Words from after the reset prove that data really flow; what came before is from another time
 /// and is left out.
 bool UsbCamera::wait_for_begin() {
-    const auto deadline = std::chrono::steady_clock::now() + kBeginPatience;
+    const auto deadline = std::chrono::steady_clock::now() + kBeginTimeout;
     std::vector<std::byte> bytes;
     while (!stopped_ && std::chrono::steady_clock::now() < deadline) {
-        const UsbStream::Status status = stream_->read(bytes, kReadPatience);
+        const UsbStream::Status status = stream_->read(bytes, kReadTimeout);
         if (status == UsbStream::Status::lost)
             throw UsbDisconnected("USB: the camera was unplugged");
         if (const auto halts = stream_->take_halts(); halts > 0) {
@@ -121,7 +121,7 @@ ReadStatus UsbCamera::read_stream(RawPacket& into) {
         into.bytes.swap(*first_);
         first_.reset();
     } else {
-        switch (stream_->read(into.bytes, kReadPatience)) {
+        switch (stream_->read(into.bytes, kReadTimeout)) {
             case UsbStream::Status::lost:
                 throw UsbDisconnected("USB: the camera was unplugged");
             case UsbStream::Status::timeout:
@@ -169,7 +169,7 @@ ReadStatus UsbCamera::wait_for_return() {
         gap_ = true;
     } catch (const Error&) {  // not there yet, or not yet ready: the next look will tell
         close();
-        std::this_thread::sleep_for(kReadPatience);
+        std::this_thread::sleep_for(kReadTimeout);
     }
     return ReadStatus::timeout;
 }
@@ -180,7 +180,7 @@ void UsbCamera::close() {
     device_.reset();
 }
 
-/// A waiting read() looks at this within kReadPatience.
+/// A waiting read() looks at this within kReadTimeout.
 void UsbCamera::stop() noexcept {
     stopped_ = true;
 }

@@ -35,12 +35,6 @@ Context make_context() {
     return Context{context};
 }
 
-std::string hex(unsigned value) {
-    std::array<char, 8> text{};
-    std::snprintf(text.data(), text.size(), "%04x", value);
-    return text.data();
-}
-
 UsbIdentity identity_of(libusb_device* device, const libusb_device_descriptor& descriptor) {
     UsbIdentity identity;
     identity.vendor = descriptor.idVendor;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/usb/usb_stream.h"
+#include "src/settings/setting.h"
 
 #include <cstdint>
 #include <map>
@@ -9,8 +10,6 @@
 #include <string>
 
 namespace eventide {
-
-class SettingsFile;
 
 /// Part of a sensor, px, as a person sees the frame.
 struct SensorRegion {
@@ -24,11 +23,12 @@ enum class SentPolarity : std::uint8_t { both, on, off, flat };
 /// Throws Error (usage) unless the region lies in a sensor of this size; `name` is the setting's.
 void require_inside(const SensorRegion& region, const char* name, int width, int height);
 
-// Keys for a SettingsFile.
-void add_region(SettingsFile& file, const char* name, std::optional<SensorRegion>& into);
-void add_polarity(SettingsFile& file, const char* name, SentPolarity& into);
-void add_transfers(SettingsFile& file, UsbStreamSettings& into);
+// Of read_camera_settings().
+Setting region_setting(const char* key, std::optional<SensorRegion>& into);
+Setting polarity_setting(SentPolarity& into);
+Setting transfers_setting(UsbStreamSettings& into);
+Setting transfer_size_setting(UsbStreamSettings& into);
 /// A table of names and whole numbers up to `most`.
-void add_biases(SettingsFile& file, std::map<std::string, std::uint32_t>& into, std::uint32_t most);
+Setting biases_setting(std::map<std::string, std::uint32_t>& into, std::uint32_t most);
 
 }  // namespace eventide

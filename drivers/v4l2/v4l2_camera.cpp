@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Users of such boards report poll() that never returns: nothing here waits longer.
-constexpr auto kReadPatience = 20ms;
+constexpr auto kReadTimeout = 20ms;
 constexpr int kLargestSide = 4096;
 
 struct Coding {
@@ -114,7 +114,7 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
     if (stopped_) return ReadStatus::end;
     if (!device_) return lost();
     V4l2Device::Filled filled;
-    switch (device_->read(filled, kReadPatience)) {
+    switch (device_->read(filled, kReadTimeout)) {
         case V4l2Device::Status::lost:
             return lost();
         case V4l2Device::Status::timeout:
@@ -154,7 +154,7 @@ ReadStatus V4l2Camera::lost() {
         gap_ = true;
     } catch (const Error&) {  // not there yet: the next look will tell
         device_.reset();
-        std::this_thread::sleep_for(kReadPatience);
+        std::this_thread::sleep_for(kReadTimeout);
     }
     return stopped_ ? ReadStatus::end : ReadStatus::timeout;
 }

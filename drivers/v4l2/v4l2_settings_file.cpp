@@ -2,6 +2,8 @@
 #include "drivers/settings_file.h"
 #include "drivers/v4l2/bias_file.h"
 #include "drivers/v4l2/v4l2_camera.h"
+#include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <string>
 
@@ -20,6 +22,48 @@ void add_biases(const std::filesystem::path& file, V4l2Settings& settings) {
     }
 }
 
+Setting encoding_setting(V4l2Settings& settings) {
+    return choice_setting("encoding", settings.encoding, "",
+                          {{EvtEncoding::evt2, "evt2"},
+                           {EvtEncoding::evt21, "evt21"},
+                           {EvtEncoding::evt21_swapped, "evt21_swapped"},
+                           {EvtEncoding::evt3, "evt3"}});
+}
+
+Setting size_setting(V4l2Settings& settings) {
+    return file_setting("size", [&settings](const SettingValue& value) {
+        if (value.kind != ValueKind::list || value.items.size() != 2)
+            value.refuse("[width, height]");
+        settings.width = int(whole_of(value.items[0], 1, kLargestSensorSide));
+        settings.height = int(whole_of(value.items[1], 1, kLargestSensorSide));
+    });
+}
+
+Setting subdevice_setting(V4l2Settings& settings) {
+    return file_setting("subdevice", [&settings](const SettingValue& value) {
+        if (value.kind != ValueKind::text) value.refuse("a path such as \"/dev/v4l-subdev0\"");
+        settings.subdevice = value.text;
+    });
+}
+
+Setting controls_setting(V4l2Settings& settings) {
+    return file_setting("controls", [&settings](const SettingValue& value) {
+        if (value.kind != ValueKind::table) value.refuse("a table of names and whole numbers");
+        for (const SettingValue& control : value.items) {
+            settings.controls[control.key] = whole_of(control, INT32_MIN, INT32_MAX);
+            settings.control_places[control.key] = control.place;
+        }
+    });
+}
+
+Setting biases_setting(const std::filesystem::path& file, std::filesystem::path& biases) {
+    return file_setting("biases", [&file, &biases](const SettingValue& value) {
+        if (value.kind != ValueKind::text || !names_bias_file(value.text))
+            value.refuse("a file such as \"imx636.bias\" or \"settings.json\"");
+        biases = file.parent_path() / value.text;
+    });
+}
+
 }  // namespace
 
 V4l2Settings load_v4l2_settings(const std::filesystem::path& file) {
@@ -29,54 +73,10 @@ V4l2Settings load_v4l2_settings(const std::filesystem::path& file) {
         return settings;
     }
     std::filesystem::path biases;
-    SettingsFile reader{file};
-    reader.custom("encoding", [&](const toml::node& node) {
-        const std::string name = node.value_or(std::string{});
-        if (name == "evt2")
-            settings.encoding = EvtEncoding::evt2;
-        else if (name == "evt21")
-            settings.encoding = EvtEncoding::evt21;
-        else if (name == "evt21_swapped")
-            settings.encoding = EvtEncoding::evt21_swapped;
-        else if (name == "evt3")
-            settings.encoding = EvtEncoding::evt3;
-        else
-            reader.refuse(node,
-                          "encoding: expected \"evt2\", \"evt21\", \"evt21_swapped\" or \"evt3\"");
-    });
-    reader.custom("size", [&](const toml::node& node) {
-        const toml::array* numbers = node.as_array();
-        if (numbers == nullptr || numbers->size() != 2)
-            reader.refuse(node, "size: expected [width, height]");
-        settings.width = int(reader.checked(*numbers->get(0), "size", 1, 4096));
-        settings.height = int(reader.checked(*numbers->get(1), "size", 1, 4096));
-    });
-    reader.custom("subdevice", [&](const toml::node& node) {
-        const auto path = node.value_exact<std::string>();
-        if (!path) reader.refuse(node, "subdevice: expected a path such as \"/dev/v4l-subdev0\"");
-        settings.subdevice = *path;
-    });
-    reader.custom("controls", [&](const toml::node& node) {
-        const toml::table* controls = node.as_table();
-        if (controls == nullptr)
-            reader.refuse(node, "controls: expected a table of names and whole numbers");
-        for (const auto& [key, value] : *controls) {
-            const std::string name{key.str()};
-            settings.controls[name] =
-                reader.checked(value, "controls." + name, INT32_MIN, INT32_MAX);
-            settings.control_places[name] =
-                file.string() + ":" + std::to_string(value.source().begin.line);
-        }
-    });
-    reader.custom("biases", [&](const toml::node& node) {
-        const auto path = node.value_exact<std::string>();
-        if (!path || !names_bias_file(*path))
-            reader.refuse(node,
-                          "biases: expected a file such as \"imx636.bias\" or \"settings.json\"");
-        biases = file.parent_path() / *path;
-    });
-    reader.number("buffers", settings.buffers, 2, 256);
-    reader.read();
+    read_camera_settings(
+        file, {encoding_setting(settings), size_setting(settings), subdevice_setting(settings),
+               controls_setting(settings), biases_setting(file, biases),
+               whole_setting("buffers", settings.buffers, 2, 256)});
     if (!biases.empty()) add_biases(biases, settings);
     return settings;
 }

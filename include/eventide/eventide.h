@@ -130,7 +130,14 @@ EVENTIDE_API eventide_status eventide_render(eventide_reconstructor* reconstruct
 /* As opened: a new stream begins. */
 EVENTIDE_API eventide_status eventide_reset(eventide_reconstructor* reconstructor);
 
-/* What the network remembers of the scene, as a file. */
+/* What the network remembers of the scene: bytes, valid until the next call with the same
+ * reconstructor, for eventide_restore() of any with the same model and sensor size. */
+EVENTIDE_API eventide_status eventide_state(eventide_reconstructor* reconstructor,
+                                            const void** bytes, size_t* size);
+EVENTIDE_API eventide_status eventide_restore(eventide_reconstructor* reconstructor,
+                                              const void* bytes, size_t size);
+
+/* The same as a file. */
 EVENTIDE_API eventide_status eventide_save_state(eventide_reconstructor* reconstructor,
                                                  const char* file, int overwrite);
 EVENTIDE_API eventide_status eventide_restore_state(eventide_reconstructor* reconstructor,
@@ -164,6 +171,12 @@ EVENTIDE_API void eventide_source_close(eventide_source* source);
 EVENTIDE_API int eventide_source_width(const eventide_source* source);
 EVENTIDE_API int eventide_source_height(const eventide_source* source);
 
+/* eventide_reconstructor_open() for the sensor of this source. */
+EVENTIDE_API eventide_status eventide_reconstructor_open_for(const eventide_source* source,
+                                                             const char* model,
+                                                             const eventide_options* options,
+                                                             eventide_reconstructor** opened);
+
 /* The next events, valid until the next call with the same source; EVENTIDE_NONE at the end. No
  * events and EVENTIDE_OK: go on. */
 EVENTIDE_API eventide_status eventide_read(eventide_source* source, const eventide_event** events,
@@ -173,6 +186,12 @@ EVENTIDE_API eventide_status eventide_read(eventide_source* source, const eventi
  * EVENTIDE_NONE at the end, which eventide_finish() is told with the recording's last time. */
 EVENTIDE_API eventide_status eventide_read_into(eventide_source* source,
                                                 eventide_reconstructor* reconstructor);
+
+/* The next frame of a source at the rate of the options: reads on until there is one.
+ * EVENTIDE_NONE where the source has ended and all its frames were given. */
+EVENTIDE_API eventide_status eventide_read_frame(eventide_source* source,
+                                                 eventide_reconstructor* reconstructor,
+                                                 eventide_frame* frame);
 
 /* The newest time the source told so far; EVENTIDE_NONE before the first. */
 EVENTIDE_API eventide_status eventide_source_clock(const eventide_source* source, int64_t* t);

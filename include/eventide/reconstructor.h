@@ -6,12 +6,14 @@
 #include <eventide/frame.h>
 #include <eventide/version.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace eventide {
 
@@ -133,13 +135,19 @@ public:
     /// As constructed: a new stream begins. Counters and the hot pixels that were learned stay.
     void reset();
 
-    /// What the network remembers of the scene, after the event windows so far, as a file that
-    /// restore_state() and `eventide run --state-in` read. Throws Error: failed where it cannot be
-    /// written, usage for a file that exists without `overwrite`.
+    /// What the network remembers of the scene, after the event windows so far: bytes for restore()
+    /// of any Reconstructor of the same model and sensor size.
+    std::vector<std::byte> state() const;
+
+    /// reset(), and the network remembers what state() told. Throws Error (input) where these are
+    /// no state, or one of another model or sensor size: then nothing has changed.
+    void restore(std::span<const std::byte> state);
+
+    /// state() as a file, which restore_state() and `eventide run --state-in` read. Throws Error:
+    /// failed where it cannot be written, usage for a file that exists without `overwrite`.
     void save_state(const std::filesystem::path& file, bool overwrite = false) const;
 
-    /// reset(), and the network remembers what was saved. Throws Error (input) where the file is no
-    /// state, or one of another model or sensor size: then nothing has changed.
+    /// restore() from a file.
     void restore_state(const std::filesystem::path& file);
 
     ReconstructorCounters counters() const noexcept;

@@ -121,25 +121,27 @@ Made make_transpose(const Arguments& arguments, const SensorPixels& size) {
     return std::make_unique<TransposeFilter>(size);
 }
 
-std::optional<TimeFilter::Moment> moment_of(std::string_view text, const Arguments& arguments) {
+std::optional<TimeFilter::TimePoint> time_point_of(std::string_view text,
+                                                   const Arguments& arguments) {
     constexpr const char* kExpected =
         "times such as 1s..2.5s after the first event, or @US..@US of the sensor";
     if (text.empty()) return {};
     if (!text.starts_with('@')) {
         const auto time = read_duration(text);
         if (!time || time->count() < 0) arguments.refuse(kExpected);
-        return TimeFilter::Moment{false, *time};
+        return TimeFilter::TimePoint{false, *time};
     }
     const auto us = number_in<std::int64_t>(text.substr(1));
     if (!us) arguments.refuse(kExpected);
-    return TimeFilter::Moment{true, SensorDuration{*us}};
+    return TimeFilter::TimePoint{true, SensorDuration{*us}};
 }
 
 Made make_time(const Arguments& arguments, const SensorPixels& size) {
     const auto [from, to] = split(arguments.text, "..");
     if (arguments.text.find("..") == arguments.text.npos)
         arguments.refuse("FROM..TO, such as 1s..2.5s");
-    return std::make_unique<TimeFilter>(size, moment_of(from, arguments), moment_of(to, arguments));
+    return std::make_unique<TimeFilter>(size, time_point_of(from, arguments),
+                                        time_point_of(to, arguments));
 }
 
 struct KnownFilter {

@@ -20,8 +20,8 @@ void EveryNthFilter::process(Batch& batch) {
 /// Before the first event there is nothing to count from: images and others of that time go where
 /// a beginning was asked for.
 bool TimeFilter::is_inside(SensorTime t) const {
-    const auto time_of = [this](const Moment& moment) {
-        return moment.absolute ? SensorTime{moment.value} : *first_ + moment.value;
+    const auto time_of = [this](const TimePoint& point) {
+        return point.absolute ? SensorTime{point.value} : *first_ + point.value;
     };
     const bool known = first_.has_value();
     if (from_ && (from_->absolute || known) && t < time_of(*from_)) return false;

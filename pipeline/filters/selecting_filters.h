@@ -46,12 +46,12 @@ private:
 /// Also of images, IMU samples and triggers.
 class TimeFilter final : public DataFilter {
 public:
-    struct Moment {
+    struct TimePoint {
         bool absolute = false;  ///< else after the first event
         SensorDuration value{};
     };
     /// Both ends included; empty: open.
-    TimeFilter(const SensorPixels& size, std::optional<Moment> from, std::optional<Moment> to)
+    TimeFilter(const SensorPixels& size, std::optional<TimePoint> from, std::optional<TimePoint> to)
         : size_(size), from_(from), to_(to) {}
     void process(Batch& batch) override;
     void count_from(SensorTime first) override { first_ = first; }
@@ -60,7 +60,7 @@ public:
 private:
     bool is_inside(SensorTime t) const;
     SensorPixels size_;
-    std::optional<Moment> from_, to_;
+    std::optional<TimePoint> from_, to_;
     std::optional<SensorTime> first_;
 };
 

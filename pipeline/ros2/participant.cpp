@@ -114,7 +114,7 @@ Ros2Writer::Ros2Writer(std::shared_ptr<Participant> participant, const MessageTy
                                     dds_topic_name(ros_name).c_str(), nullptr, nullptr),
              "create the topic " + ros_name} {
     const DdsQos qos = make_dds_qos();
-    dds().dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, dds_duration(kPatience));
+    dds().dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, dds_duration(kTimeout));
     dds().dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kDepth);
     dds().dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     dds().dds_qset_writer_data_lifecycle(qos.get(), false);

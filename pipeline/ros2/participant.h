@@ -67,7 +67,7 @@ class Ros2Writer {
 public:
     static constexpr int kDepth = 5;
     /// How long write() may wait for readers that are behind.
-    static constexpr std::chrono::milliseconds kPatience{20};
+    static constexpr std::chrono::milliseconds kTimeout{20};
 
     /// Throws Error (failed).
     Ros2Writer(std::shared_ptr<Participant> participant, const MessageType& type,
@@ -79,7 +79,7 @@ public:
     /// false when it says so.
     bool wait_for_readers(int n, const std::function<bool()>& give_up);
     /// `message` is of the type's C struct and stays the caller's. False when readers are so far
-    /// behind that it could not be sent within kPatience. Throws Error (failed).
+    /// behind that it could not be sent within kTimeout. Throws Error (failed).
     bool write(const void* message);
     /// Waits until all readers have all there is, at most so long.
     void wait_for_readers_to_take_all(std::chrono::milliseconds at_most);

@@ -3,19 +3,24 @@
 
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/settings/words.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 
 namespace eventide {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kEncodings{"mono8", "mono16", "32FC1"};
-constexpr std::array<std::string_view, 3> kCompressions{"none", "jpeg", "png"};
-constexpr std::array<std::string_view, 3> kStampRules{"auto", "sensor", "arrival"};
-constexpr std::array<std::string_view, 2> kAnswers{"no", "yes"};
+const std::vector<Word<ImageEncoding>> kEncodings{{ImageEncoding::mono8, "mono8"},
+                                                  {ImageEncoding::mono16, "mono16"},
+                                                  {ImageEncoding::float32, "32FC1"}};
+const std::vector<Word<ImageCompression>> kCompressions{{ImageCompression::none, "none"},
+                                                        {ImageCompression::jpeg, "jpeg"},
+                                                        {ImageCompression::png, "png"}};
+const std::vector<Word<StampRule>> kStampRules{
+    {StampRule::automatic, "auto"}, {StampRule::sensor, "sensor"}, {StampRule::arrival, "arrival"}};
+const std::vector<Word<bool>> kAnswers{{false, "no"}, {true, "yes"}};
 constexpr int kMaxSubscribers = 1000;
 
 [[noreturn]] void refuse(const std::string& key, const std::string& expected,
@@ -24,15 +29,11 @@ constexpr int kMaxSubscribers = 1000;
                 "ros2: " + key + ": expected " + expected + ", found '" + found + "'");
 }
 
-template <std::size_t kSize>
-std::size_t choose(const std::string& key, const std::array<std::string_view, kSize>& names,
-                   const std::string& text) {
-    const auto found = std::ranges::find(names, text);
-    if (found != names.end()) return std::size_t(found - names.begin());
-    std::string expected{names[0]};
-    for (std::size_t i = 1; i < kSize; ++i)
-        expected += (i + 1 == kSize ? " or " : ", ") + std::string{names[i]};
-    refuse(key, expected, text);
+template <typename Enum>
+Enum choose(const std::string& key, const std::vector<Word<Enum>>& words, const std::string& text) {
+    for (const Word<Enum>& word : words)
+        if (word.text == text) return word.value;
+    refuse(key, alternatives(texts_of(words)), text);
 }
 
 int subscribers(const std::string& text) {
@@ -49,11 +50,11 @@ const std::string& filled(const std::string& key, const std::string& text) {
 
 void set(Ros2SinkName& name, const std::string& key, const std::string& value) {
     if (key == "encoding")
-        name.encoding = ImageEncoding(choose(key, kEncodings, value));
+        name.encoding = choose(key, kEncodings, value);
     else if (key == "uncertainty")
-        name.uncertainty = ImageEncoding(choose(key, kEncodings, value));
+        name.uncertainty = choose(key, kEncodings, value);
     else if (key == "compressed")
-        name.compressed = ImageCompression(choose(key, kCompressions, value));
+        name.compressed = choose(key, kCompressions, value);
     else if (key == "calibration")
         name.calibration = filled(key, value);
     else if (key == "calibration_camera")
@@ -61,11 +62,11 @@ void set(Ros2SinkName& name, const std::string& key, const std::string& value) {
     else if (key == "frame_id")
         name.frame_id = filled(key, value);
     else if (key == "lazy")
-        name.lazy = choose(key, kAnswers, value) == 1;
+        name.lazy = choose(key, kAnswers, value);
     else if (key == "subscribers")
         name.subscribers = subscribers(value);
     else if (key == "stamp")
-        name.stamp = StampRule(choose(key, kStampRules, value));
+        name.stamp = choose(key, kStampRules, value);
     else
         refuse("key",
                "encoding, uncertainty, compressed, calibration, calibration_camera, frame_id, "
@@ -81,8 +82,7 @@ void check_compression(const Ros2SinkName& name) {
         refuse("compressed",
                "jpeg of mono8, or png of mono8 or mono16, as nothing else can be "
                "compressed",
-               std::string{kCompressions[std::size_t(name.compressed)]} + " of " +
-                   std::string{name_of(name.encoding)});
+               show_word(name.compressed, kCompressions) + " of " + name_of(name.encoding));
 }
 
 bool is_letter(char c) {
@@ -94,8 +94,8 @@ bool is_digit(char c) {
 
 }  // namespace
 
-std::string_view name_of(ImageEncoding encoding) {
-    return kEncodings[std::size_t(encoding)];
+std::string name_of(ImageEncoding encoding) {
+    return show_word(encoding, kEncodings);
 }
 
 KeyedName split_keys(const std::string& name) {

@@ -15,7 +15,7 @@ enum class ImageEncoding {
     float32  ///< 32FC1: 1 white, not clamped
 };
 
-std::string_view name_of(ImageEncoding encoding);
+std::string name_of(ImageEncoding encoding);
 
 /// Of image_raw/compressed.
 enum class ImageCompression { none, jpeg, png };

@@ -23,8 +23,15 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 std::size_t pixel_bytes(ImageEncoding encoding) {
-    constexpr std::size_t kBytes[]{1, 2, 4};
-    return kBytes[std::size_t(encoding)];
+    switch (encoding) {
+        case ImageEncoding::mono8:
+            return 1;
+        case ImageEncoding::mono16:
+            return 2;
+        case ImageEncoding::float32:
+            return 4;
+    }
+    return 0;
 }
 
 /// [y][x] as the encoding has it; `white` only matters for whole numbers, which are clamped.
@@ -88,10 +95,10 @@ public:
 
     bool write(const Array2<float>& image, const std_msgs_msg_dds__Header_& header) {
         encode(image, encoding_, pixels_);
-        const cv::Mat picture(image.height(), image.width(),
-                              encoding_ == ImageEncoding::mono8 ? CV_8UC1 : CV_16UC1,
-                              pixels_.data());
-        if (!encode_image(extension_, picture, bytes_))
+        const cv::Mat pixels(image.height(), image.width(),
+                             encoding_ == ImageEncoding::mono8 ? CV_8UC1 : CV_16UC1,
+                             pixels_.data());
+        if (!encode_image(extension_, pixels, bytes_))
             throw Error(ErrorKind::failed, "ros2: OpenCV cannot write " + extension_);
         sensor_msgs_msg_dds__CompressedImage_ message{};
         message.header = header;
@@ -187,7 +194,7 @@ public:
         // Subscribers that were waited for may still be on their way to finding us: the first frame
         // is kept for them until they have it.
         if (first && settings_.name.subscribers > 0)
-            image_.writer.wait_for_readers_to_take_all(kLastPatience);
+            image_.writer.wait_for_readers_to_take_all(kLastTimeout);
     }
 
     bool is_watched() const override {
@@ -199,7 +206,7 @@ public:
     }
 
     void close() override {
-        const auto until = std::chrono::steady_clock::now() + kLastPatience;  // for all together
+        const auto until = std::chrono::steady_clock::now() + kLastTimeout;  // for all together
         for (Ros2Writer* writer : writers())
             writer->wait_for_readers_to_take_all(
                 std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -212,7 +219,7 @@ public:
     }
 
 private:
-    static constexpr std::chrono::milliseconds kLastPatience{1000};
+    static constexpr std::chrono::milliseconds kLastTimeout{1000};
 
     std::string topic(const char* name) const { return settings_.name.name_space + name; }
 

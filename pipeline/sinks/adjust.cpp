@@ -72,7 +72,7 @@ std::string_view name_of(Flip flip) {
     return "none";
 }
 
-bool LookSettings::changes_nothing() const {
+bool AdjustSettings::changes_nothing() const {
     return !auto_hdr && unsharp == 0 && flip == Flip::none && crop_px == 0;
 }
 
@@ -90,7 +90,7 @@ AutoRange::Range AutoRange::update(SensorTime t, const Array2<float>& intensity)
     return {middle - half, middle + half};
 }
 
-const Frame& Look::apply(const Frame& frame) {
+const Frame& Adjustment::apply(const Frame& frame) {
     if (2 * settings_.crop_px >= std::min(frame.intensity.height(), frame.intensity.width()))
         throw Error(ErrorKind::usage, "--crop " + std::to_string(settings_.crop_px) +
                                           ": nothing is left of a frame of " +
@@ -116,7 +116,7 @@ const Frame& Look::apply(const Frame& frame) {
     return shown_;
 }
 
-void Look::stretch() {
+void Adjustment::stretch() {
     const AutoRange::Range range = range_.update(shown_.t, shown_.intensity);
     const float gain = 1 / (range.high - range.low);
     for (float& v : shown_.intensity.values()) v = (v - range.low) * gain;
@@ -125,7 +125,7 @@ void Look::stretch() {
     for (float& v : shown_.sigma.values()) v *= gain;
 }
 
-void Look::sharpen() {
+void Adjustment::sharpen() {
     const auto sharpen = [&](Array2<float>& plane) {
         cv::Mat image(plane.height(), plane.width(), CV_32FC1, plane.values().data());
         cv::Mat blurred;
@@ -138,7 +138,7 @@ void Look::sharpen() {
         if (!plane.empty()) sharpen(plane);
 }
 
-LookSink::LookSink(LookSettings settings, std::vector<std::unique_ptr<Sink>> behind)
-    : look_{settings}, behind_{std::move(behind)} {}
+AdjustSink::AdjustSink(AdjustSettings settings, std::vector<std::unique_ptr<Sink>> behind)
+    : adjust_{settings}, behind_{std::move(behind)} {}
 
 }  // namespace eventide

@@ -14,7 +14,7 @@ enum class Flip { none, horizontal, vertical, both };
 std::string_view name_of(Flip flip);
 
 /// Off by default, because each of them changes the numbers.
-struct LookSettings {
+struct AdjustSettings {
     bool auto_hdr = false;  ///< stretch the range the image uses to black..white
     float unsharp = 0;      ///< 0 off; 0.3 is E2VID's. How much of the fine detail is added again
     Flip flip = Flip::none;
@@ -48,9 +48,9 @@ private:
 /// Applies the settings in this order: crop, flip, auto HDR, unsharp. sigma is cropped, flipped and
 /// scaled with intensity, so that it stays in its units; unsharp leaves it alone. An event preview
 /// is flipped.
-class Look {
+class Adjustment {
 public:
-    explicit Look(LookSettings settings) : settings_{settings} {}
+    explicit Adjustment(AdjustSettings settings) : settings_{settings} {}
 
     /// The changed frame, borrowed until the next call. Throws Error (usage) when the crop leaves
     /// nothing.
@@ -60,23 +60,23 @@ private:
     void stretch();
     void sharpen();
 
-    LookSettings settings_;
+    AdjustSettings settings_;
     AutoRange range_;
     Frame shown_;
 };
 
 /// Changes each frame once and hands it to all the sinks behind it.
-class LookSink : public Sink {
+class AdjustSink : public Sink {
 public:
-    LookSink(LookSettings settings, std::vector<std::unique_ptr<Sink>> behind);
+    AdjustSink(AdjustSettings settings, std::vector<std::unique_ptr<Sink>> behind);
 
-    void write(const Frame& frame) override { behind_.write(look_.apply(frame)); }
+    void write(const Frame& frame) override { behind_.write(adjust_.apply(frame)); }
     void close() override { behind_.close(); }
     bool wants_more() const override { return behind_.wants_more(); }
     bool is_watched() const override { return behind_.is_watched(); }
 
 private:
-    Look look_;
+    Adjustment adjust_;
     FanOut behind_;
 };
 

@@ -10,14 +10,28 @@ namespace eventide {
 
 namespace {
 
+double us_per(TextTimeUnit unit) {
+    switch (unit) {
+        case TextTimeUnit::seconds:
+            return 1e6;
+        case TextTimeUnit::milliseconds:
+            return 1e3;
+        case TextTimeUnit::automatic:
+        case TextTimeUnit::microseconds:
+            return 1;
+        case TextTimeUnit::nanoseconds:
+            return 1e-3;
+    }
+    return 1;
+}
+
 class NumpyTable final : public EventTable {
 public:
     NumpyTable(NumpyEvents found, const TextLayout& layout) : rows_(std::move(found.rows)) {
         count_ = found.count;
         for (std::size_t i = 0; i < found.columns.size(); ++i)
             columns_[std::size_t(layout.columns[i])] = std::move(found.columns[i]);
-        constexpr std::array<double, 5> kUs{1, 1e6, 1e3, 1, 1e-3};  // as TextTimeUnit
-        us_ = kUs[std::size_t(layout.unit)];
+        us_ = us_per(layout.unit);
     }
 
     std::uint64_t rows() const override { return count_; }

@@ -185,7 +185,7 @@ EVENTIDE_QUADS void dot_block(const DotArea& r, int y, int x, int back) {
 }
 
 /// What registers hold: sums, a quad of each group, weights and the unit that is spread.
-constexpr int kMostOfTwo = 8, kMostOfFour = 5;
+constexpr int kMaxOfTwo = 8, kMaxOfFour = 5;
 using Dot = void (*)(const DotArea&, int, int, int);
 template <class Number, int kQuads, int... kGroups>
 constexpr std::array<Dot, sizeof...(kGroups)> dots(std::integer_sequence<int, kGroups...>) {
@@ -193,10 +193,10 @@ constexpr std::array<Dot, sizeof...(kGroups)> dots(std::integer_sequence<int, kG
 }
 
 /// The last group of a row overlaps the one before, where pixels do not come in fours.
-template <class Number, int kQuads, int kMost>
+template <class Number, int kQuads, int kMax>
 void dot_rows(const DotArea& r) {
-    static constexpr auto kDots = dots<Number, kQuads>(std::make_integer_sequence<int, kMost>{});
-    const int groups = (r.width + 3) / 4, parts = (groups + kMost - 1) / kMost;
+    static constexpr auto kDots = dots<Number, kQuads>(std::make_integer_sequence<int, kMax>{});
+    const int groups = (r.width + 3) / 4, parts = (groups + kMax - 1) / kMax;
     for (int y = 0; y < r.height; ++y)
         for (int part = 0; part < parts; ++part) {
             const int first = groups * part / parts, end = groups * (part + 1) / parts;
@@ -207,7 +207,7 @@ void dot_rows(const DotArea& r) {
 
 template <class Number>
 void dot_quads(const DotArea& r) {
-    r.outputs == 8 ? dot_rows<Number, 2, kMostOfTwo>(r) : dot_rows<Number, 4, kMostOfFour>(r);
+    r.outputs == 8 ? dot_rows<Number, 2, kMaxOfTwo>(r) : dot_rows<Number, 4, kMaxOfFour>(r);
 }
 
 }  // namespace

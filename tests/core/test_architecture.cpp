@@ -69,6 +69,8 @@ const std::vector<Rule> kRules{
     {"apps/train/", {"apps/train/"}},
     {"apps/bench/", {"apps/bench/", "apps/cli/"}},
     {"apps/evaluate/", {"apps/evaluate/", "apps/cli/"}},
+    {"toml++/", {"src/settings/"}},
+    {"src/settings/", {"src/settings/", "apps/", "drivers/", "pipeline/ros2/"}},
     {"src/simulate/", {"src/simulate/", "apps/", "drivers/simulated/", "library/"}},
     {"src/metrics/", {"src/metrics/", "apps/", "library/"}},
     {"src/model/", {"src/model/", "apps/", "pipeline/", "library/"}},

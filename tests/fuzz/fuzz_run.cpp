@@ -30,7 +30,7 @@ std::map<std::string, std::vector<std::string>> flags(bool threads) {
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
-    start_talk({.log_level = "off", .quiet = true});
+    start_log({.log_level = "off", .quiet = true});
     return 0;
 }
 

@@ -72,6 +72,50 @@ TEST_F(CInterface, GivesTheFramesOfTheOneInCpp) {
     EXPECT_EQ(counters.off_sensor + counters.time_backwards + counters.bad_time, 0U);
 }
 
+TEST_F(CInterface, ReadsTheFramesOfASourceOneByOne) {
+    eventide_source* source = nullptr;
+    ASSERT_EQ(eventide_recording_open(recording().c_str(), nullptr, 0, 0, &source), EVENTIDE_OK);
+    const eventide_options options = repeatable_options();
+    ASSERT_EQ(eventide_reconstructor_open_for(source, model().c_str(), &options, &reconstructor_),
+              EVENTIDE_OK)
+        << eventide_error_message();
+    eventide_frame f;
+    std::string frames;
+    while (eventide_read_frame(source, reconstructor_, &f) == EVENTIDE_OK) {
+        const auto bytes = std::size_t(f.width) * std::size_t(f.height) * sizeof(float);
+        frames.append(reinterpret_cast<const char*>(f.intensity), bytes);
+        frames.append(reinterpret_cast<const char*>(f.sigma), bytes);
+    }
+    EXPECT_EQ(eventide_read_frame(source, reconstructor_, &f), EVENTIDE_NONE) << "for good";
+    EXPECT_TRUE(frames == frames_of_run(repeatable_arguments("7ms", 1)));
+    EXPECT_EQ(eventide_read_frame(nullptr, reconstructor_, &f), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("expected a source, found NULL"));
+    EXPECT_EQ(eventide_read_frame(source, nullptr, &f), EVENTIDE_USAGE);
+    eventide_source_close(source);
+    EXPECT_EQ(eventide_reconstructor_open_for(nullptr, model().c_str(), &options, nullptr),
+              EVENTIDE_USAGE);
+    EXPECT_TRUE(said("expected a source, found NULL"));
+}
+
+TEST_F(CInterface, KeepsAStateInMemory) {
+    open();
+    const eventide_event events[]{{1000, 3, 4, 1}, {9000, 5, 6, 0}, {40'000, 63, 47, 255}};
+    ASSERT_EQ(eventide_push(reconstructor_, events, 3), EVENTIDE_OK);
+    std::int64_t t = 0;
+    ASSERT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_OK);
+    const void* bytes = nullptr;
+    std::size_t size = 0;
+    ASSERT_EQ(eventide_state(reconstructor_, &bytes, &size), EVENTIDE_OK);
+    const std::string state(static_cast<const char*>(bytes), size);
+    ASSERT_EQ(eventide_reset(reconstructor_), EVENTIDE_OK);
+    ASSERT_EQ(eventide_restore(reconstructor_, state.data(), state.size()), EVENTIDE_OK);
+    ASSERT_EQ(eventide_state(reconstructor_, &bytes, &size), EVENTIDE_OK);
+    EXPECT_EQ(state, std::string(static_cast<const char*>(bytes), size));
+    EXPECT_EQ(eventide_restore(reconstructor_, state.data(), 5), EVENTIDE_INPUT);
+    EXPECT_EQ(eventide_restore(reconstructor_, nullptr, 5), EVENTIDE_USAGE);
+    EXPECT_EQ(eventide_state(reconstructor_, nullptr, &size), EVENTIDE_USAGE);
+}
+
 TEST_F(CInterface, RendersAnyReadyTimeInAnySize) {
     open();
     std::int64_t t = 0;

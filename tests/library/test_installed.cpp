@@ -150,6 +150,21 @@ TEST_F(Installed, PkgConfigGivesAProgramInCTheSameFrames) {
                          {.environment = {{"LD_LIBRARY_PATH", library_folder()}}});
 }
 
+/// Lines that are neither empty nor comments.
+int lines_of_code(const std::string& file) {
+    std::istringstream lines{read_text(file)};
+    int count = 0;
+    for (std::string line; std::getline(lines, line);)
+        if (const auto at = line.find_first_not_of(' '); at != line.npos)
+            count += line.compare(at, 2, "/*") != 0;
+    return count;
+}
+
+TEST_F(Installed, ConsumersInCAndPythonAreTwentyLines) {
+    for (const char* const name : {"reconstruct.c", "reconstruct.py"})
+        EXPECT_LE(lines_of_code(example(name)), 20) << name;
+}
+
 TEST_F(Installed, PythonGivesTheSameFrames) {
 #ifdef EVENTIDE_PYTHON
     expect_frames_of_run({EVENTIDE_PYTHON, example("reconstruct.py")},

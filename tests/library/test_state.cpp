@@ -34,6 +34,34 @@ TEST_F(SavedState, IsThatOfTheProgramAndGoesOnThere) {
     EXPECT_FALSE(again == fresh) << "what was remembered shows";
 }
 
+TEST_F(SavedState, InMemoryIsThatOfTheFile) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 1));
+    const std::string fresh = frames_with(reconstructor);
+    const std::vector<std::byte> state = reconstructor.state();
+    reconstructor.save_state(temp_ / "file");
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(state.data()), state.size()),
+              read_text(temp_ / "file"));
+
+    Reconstructor other = this->reconstructor(repeatable("7ms", 1));
+    other.restore(state);
+    const std::string again = frames_with(other);
+    reconstructor.restore_state(temp_ / "file");
+    EXPECT_TRUE(again == frames_with(reconstructor));
+    EXPECT_FALSE(again == fresh) << "what was remembered shows";
+}
+
+TEST_F(SavedState, CutShortInMemoryIsRefusedAndNothingChanges) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 1));
+    frames_with(reconstructor);
+    const std::vector<std::byte> state = reconstructor.state();
+    for (const std::size_t size : {std::size_t{0}, std::size_t{100}, state.size() - 1})
+        EXPECT_NE(
+            error_of([&] { reconstructor.restore(std::span{state}.first(size)); }, ErrorKind::input)
+                .find("state: "),
+            std::string::npos);
+    EXPECT_EQ(reconstructor.state(), state);
+}
+
 TEST_F(SavedState, OfAnotherSensorIsRefusedAndNothingChanges) {
     ReconstructorOptions options = repeatable("7ms", 0);
     Reconstructor other{model(), 32, 24, options};

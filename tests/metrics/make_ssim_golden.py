@@ -3,7 +3,7 @@ import numpy as np
 from skimage.metrics import structural_similarity
 
 
-def picture(height, width, seed):
+def image(height, width, seed):
     y, x = np.mgrid[0:height, 0:width].astype(np.int64)
     n = x * 7919 + y * 104729 + seed * 1299709
     n = n * (n % 1009 + 31) % 65536
@@ -12,7 +12,7 @@ def picture(height, width, seed):
 
 
 for height, width in [(48, 64), (11, 11), (37, 29)]:
-    a, b = picture(height, width, 1), picture(height, width, 2)
+    a, b = image(height, width, 1), image(height, width, 2)
     for name, other in [("unlike", b), ("gain", np.clip(0.8 * a + 0.15, 0, 1)),
                         ("noise", np.clip(a + 0.1 * (b - 0.5), 0, 1))]:
         print(height, width, name, structural_similarity(

@@ -219,7 +219,7 @@ int main_of(int argc, char** argv) {
     Options options;
     CLI::App app{"Numerical stability of a model's encoder over a long run of simulated scenes"};
     app.add_option("--model", options.model, "safetensors file")->capture_default_str();
-    app.add_option("--steps", options.steps, "event frames of 50 ms")->capture_default_str();
+    app.add_option("--steps", options.steps, "event windows of 50 ms")->capture_default_str();
     app.add_option("--interval", options.interval, "steps between two lines")
         ->capture_default_str();
     app.add_option("--segment", options.segment, "steps in double precision per line")

@@ -103,7 +103,7 @@ TEST(LatentHistory, TheRendererRendersAsWithoutIt) {
         Frame a = with.make_output(request), b = without.make_output(request);
         with.render(request, a);
         without.render(request, b);
-        ASSERT_EQ(a.intensity, b.intensity) << "event frame " << k;
+        ASSERT_EQ(a.intensity, b.intensity) << "event window " << k;
         ASSERT_EQ(a.sigma, b.sigma);
     }
 }

@@ -204,7 +204,7 @@ void expect_carrying_over_changes_no_bit(const ModelConfig& config) {
         Frame fa = a.make_output(request), fb = b.make_output(request);
         a.render(request, fa);
         b.render(request, fb);
-        ASSERT_EQ(fa.intensity, fb.intensity) << "event frame " << k;
+        ASSERT_EQ(fa.intensity, fb.intensity) << "event window " << k;
         ASSERT_EQ(fa.sigma, fb.sigma);
     }
 }

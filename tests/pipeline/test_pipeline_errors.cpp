@@ -68,7 +68,8 @@ TEST(Pipeline, WritesWhatWasReadBeforeTheSourceFailed) {
             if (packet == 100) throw Error(ErrorKind::device, "unplugged");
         };
         EXPECT_THROW(threaded ? line.run() : line.run_sequential(), Error);
-        EXPECT_EQ(line.sink.seen.back().t_us, 99'000) << "the last of the event frames up to 99001";
+        EXPECT_EQ(line.sink.seen.back().t_us, 99'000)
+            << "the last of the event windows up to 99001";
     }
 }
 

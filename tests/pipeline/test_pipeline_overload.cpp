@@ -65,7 +65,7 @@ TEST(Pipeline, ALiveSourceLosesWhatASlowModelCannotTakeAndSaysSo) {
     const auto marked = std::count_if(line.sink.seen.begin(), line.sink.seen.end(),
                                       [](const auto& seen) { return seen.gap; });
     EXPECT_GE(marked, 1);
-    EXPECT_LE(std::uint64_t(marked), s.gaps) << "two gaps may fall into one event frame";
+    EXPECT_LE(std::uint64_t(marked), s.gaps) << "two gaps may fall into one event window";
     EXPECT_EQ(line.encoder.resets, 0) << "state is kept over a gap by default";
 }
 

@@ -82,6 +82,28 @@ class Frames(RecordedTest):
         with self.assertRaisesRegex(eventide.InputError, "none"):
             reconstructor.restore_state(self.folder / "none")
 
+    def test_with_a_state_in_memory_go_on_as_with_one_in_a_file(self):
+        reconstructor = self.reconstructor()
+        reconstructor.push(self.events())
+        reconstructor.newest()
+        state = reconstructor.state()
+        file = self.folder / "in_a_file.safetensors"
+        reconstructor.save_state(file)
+        self.assertEqual(state, file.read_bytes())
+
+        def frames(restore):
+            it = self.reconstructor()
+            restore(it)
+            it.push(self.events())
+            return [f.intensity for f in it.frames()]
+
+        from_memory = frames(lambda it: it.restore(state))
+        np.testing.assert_array_equal(from_memory, frames(lambda it: it.restore_state(file)))
+        self.assertFalse(np.array_equal(from_memory, frames(lambda it: None)))
+        with self.assertRaisesRegex(eventide.InputError, "state: "):
+            reconstructor.restore(state[:-1])
+        self.assertEqual(reconstructor.state(), state)
+
     def test_errors_have_the_library_s_words(self):
         for options, words in [
             ({"window": "5 bananas"}, "5 bananas"),

@@ -12,16 +12,16 @@ namespace {
 
 using test::Hdf5Made;
 
-std::vector<std::uint8_t> picture(int width, int height, int n) {
+std::vector<std::uint8_t> pixels_of(int width, int height, int n) {
     std::vector<std::uint8_t> pixels;
     for (int i = 0; i < width * height; ++i) pixels.push_back(std::uint8_t(i * 7 + n));
     return pixels;
 }
 
-void expect_picture(const ReferenceImage& image, int width, int height, int n) {
+void expect_pixels(const ReferenceImage& image, int width, int height, int n) {
     ASSERT_EQ(image.pixels.width(), width);
     ASSERT_EQ(image.pixels.height(), height);
-    const auto expected = picture(width, height, n);
+    const auto expected = pixels_of(width, height, n);
     for (std::size_t i = 0; i < expected.size(); ++i)
         ASSERT_EQ(image.pixels.values()[i], 257 * expected[i]);
 }
@@ -34,7 +34,7 @@ TEST(Hdf5Images, OfMvsecComeWithTheEvents) {
         const Hdf5Made file(folder.path("b.hdf5"));
         std::vector<std::uint8_t> pixels;
         for (int n = 0; n < 3; ++n)
-            for (const std::uint8_t value : picture(346, 260, n)) pixels.push_back(value);
+            for (const std::uint8_t value : pixels_of(346, 260, n)) pixels.push_back(value);
         file.array("davis/left/image_raw", {3, 260, 346}, H5T_NATIVE_UINT8, pixels.data(),
                    H5T_STD_U8LE);
         file.column("davis/left/image_raw_ts", std::vector<double>{.9, 1.1, 1.15}, H5T_IEEE_F64LE,
@@ -48,7 +48,7 @@ TEST(Hdf5Images, OfMvsecComeWithTheEvents) {
     const Batch batch = read_everything(*recording);
     EXPECT_TRUE(batch.events == events);
     ASSERT_EQ(batch.images.size(), 3U);
-    for (int n = 0; n < 3; ++n) expect_picture(batch.images[std::size_t(n)], 346, 260, n);
+    for (int n = 0; n < 3; ++n) expect_pixels(batch.images[std::size_t(n)], 346, 260, n);
     EXPECT_EQ(batch.images[1].t, from_us(1'100'000));
     recording->seek(from_us(1'120'000));
     EXPECT_EQ(read_everything(*recording).images.size(), 1U);

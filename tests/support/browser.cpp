@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kTimeout{60};
 
 /// In the child: descriptors 3 and 4 are the pipe's ends, as --remote-debugging-pipe wants them.
 [[noreturn]] void become(const std::vector<std::string>& arguments, int reads, int writes) {
@@ -92,7 +92,7 @@ Browser::~Browser() {
 }
 
 Json Browser::next_message() {
-    const auto until = Clock::now() + kPatience;
+    const auto until = Clock::now() + kTimeout;
     for (;;) {
         if (const std::size_t end = received_.find('\0'); end != received_.npos) {
             Json message = Json::parse(received_.substr(0, end));

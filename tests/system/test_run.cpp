@@ -34,7 +34,7 @@ TEST_F(Run, WritesAFolderAVideoAndASheetInOneGo) {
                                     "video.mp4", "--out", "contact-sheet:sheet.png",
                                     "--uncertainty", "side", "--stats", "stats.jsonl"});
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_EQ(result.output, "") << "data go where they were sent, and talk to standard error";
+    EXPECT_EQ(result.output, "") << "data go where they were sent, and messages to standard error";
     EXPECT_NE(result.error.find("frames"), std::string::npos);
 
     const auto times = column(temp_ / "frames/timestamps.csv", 2);

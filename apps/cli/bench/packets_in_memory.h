@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/cli/commands/recording_in_memory.h"
-#include "apps/cli/settings/values.h"
+#include "src/settings/values.h"
 #include "src/simulate/sim_recording.h"
 
 #include <memory>

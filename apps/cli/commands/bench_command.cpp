@@ -6,6 +6,7 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
+#include "apps/cli/settings/words.h"
 #include "apps/cli/version.h"
 #include "apps/evaluate/plot.h"
 #include "src/core/error.h"
@@ -117,7 +118,7 @@ SettingTable BenchCommand::settings() {
                        0.1, 16));
     add(whole_setting("lookahead", settings_.lookahead, "0|1|2", "As in eventide run.", 0,
                       kMaxLookahead));
-    add(whole_setting("threads", settings_.threads, "N", "As in eventide run.", 0, 1024));
+    add(whole_setting("threads", settings_.threads, "N", "As in eventide run.", 0, kMaxThreads));
     add(flag_setting("stages", stages_, "The stages alone, without the pipeline after them."));
     add(flag_setting("activity", activity_,
                      "Cost and error when 0, 1, 5, 25 and 100 % of the scene moves, without the "

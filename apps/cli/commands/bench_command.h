@@ -7,8 +7,8 @@
 #include "apps/cli/command.h"
 #include "apps/cli/commands/recording_in_memory.h"
 #include "apps/cli/settings/run_settings.h"
-#include "apps/cli/settings/values.h"
 #include "src/model/instructions.h"
+#include "src/settings/values.h"
 
 #include <memory>
 #include <string>

@@ -133,10 +133,10 @@ int ConvertCommand::run(Program& program) {
     else if (!to_udp)
         name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
     const auto recording = open_input(from_file_, input_);
-    const TimePointReader moments{from_file_, options};
+    const TimePointReader times{from_file_, options};
     ConvertOptions how;
-    if (from_) how.from = moments.time_of(*from_);
-    if (to_) how.to = moments.time_of(*to_);
+    if (from_) how.from = times.time_of(*from_);
+    if (to_) how.to = times.time_of(*to_);
     StreamHeader header = header_of(*recording);
     FilterChain filters{filter_, {header.width, header.height}};
     header.width = filters.size().width;
@@ -145,7 +145,7 @@ int ConvertCommand::run(Program& program) {
     if (format != nullptr && format->name == "aedat4" && recording->info().format == "aedat3")
         header.colour_filter = filter_of_images(from_file_, options);
     header.colour_filter = filters.pattern(header.colour_filter);
-    if (!filters.empty() && how.from && from_file_ != "-") filters.count_from(moments.time_of({}));
+    if (!filters.empty() && how.from && from_file_ != "-") filters.count_from(times.time_of({}));
     if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
     std::unique_ptr<ConvertTarget> target;
     if (to_udp)

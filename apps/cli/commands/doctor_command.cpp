@@ -35,7 +35,17 @@ struct Finding {
 };
 using State = Finding::State;
 
-constexpr const char* kStates[]{"ok", "absent", "bad"};
+std::string name_of(State state) {
+    switch (state) {
+        case State::good:
+            return "ok";
+        case State::absent:
+            return "absent";
+        case State::bad:
+            return "bad";
+    }
+    return {};
+}
 
 Finding processor() {
     const std::string found = processor_text();
@@ -107,7 +117,7 @@ std::vector<Finding> cameras() {
 }
 
 void print(const Finding& finding) {
-    const std::string state = kStates[std::size_t(finding.state)];
+    const std::string state = name_of(finding.state);
     std::cout << state << std::string(8 - state.size(), ' ')
               << printable(finding.subject + ": " + finding.found) << '\n';
     if (!finding.advice.empty()) std::cout << "        " << printable(finding.advice) << '\n';
@@ -129,7 +139,7 @@ int DoctorCommand::run(Program&) {
     for (const Finding& finding : findings) {
         bad |= finding.state == State::bad;
         list.push_back({{"subject", finding.subject},
-                        {"state", kStates[std::size_t(finding.state)]},
+                        {"state", name_of(finding.state)},
                         {"found", finding.found},
                         {"advice", finding.advice}});
         if (!json_) print(finding);

@@ -5,6 +5,7 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
+#include "apps/cli/settings/words.h"
 #include "pipeline/parallel_tbb.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
@@ -109,7 +110,7 @@ SettingTable EvaluateCommand::settings() {
     add(text_setting("noise_filter", noise_filter_, "model|auto|off|TIME", "As in eventide run."));
     add(choice_setting("precision", precision_, "As in eventide run.", kPrecisionWords));
     add(choice_setting("engine", engine_, "As in eventide run.", kEngineWords));
-    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
 
     add(text_setting("images", images_, "FOLDER",
                      "simulated: photographs to draw scenes from; empty: procedural textures."));

@@ -3,9 +3,9 @@
 
 #include "apps/cli/command.h"
 #include "apps/cli/settings/run_settings.h"
-#include "apps/cli/settings/values.h"
 #include "apps/evaluate/evaluate.h"
 #include "apps/evaluate/figures.h"
+#include "src/settings/values.h"
 
 namespace eventide::app {
 

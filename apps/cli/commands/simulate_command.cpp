@@ -4,6 +4,7 @@
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
+#include "apps/cli/settings/words.h"
 #include "pipeline/sinks/folder.h"
 #include "replay/formats.h"
 #include "src/core/error.h"

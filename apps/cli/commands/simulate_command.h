@@ -2,8 +2,8 @@
 #pragma once
 
 #include "apps/cli/command.h"
-#include "apps/cli/settings/values.h"
 #include "src/core/frame_data.h"
+#include "src/settings/values.h"
 #include "src/simulate/colour_recording.h"
 
 #include <functional>

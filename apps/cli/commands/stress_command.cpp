@@ -4,6 +4,7 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
+#include "apps/cli/settings/words.h"
 #include "apps/cli/stress/soak.h"
 #include "apps/cli/version.h"
 #include "apps/evaluate/plot.h"
@@ -142,7 +143,7 @@ SettingTable StressCommand::settings() {
                        "with pauses and bursts.",
                        0, 1e4));
     add(choice_setting("instructions", instructions_, "As in eventide bench.", kInstructionWords));
-    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, 1024));
+    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER",
                      "Of --soak: memory, latency and states, SVG and "

@@ -52,14 +52,14 @@ void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourF
 }  // namespace
 
 ColourFilter filter_of_images(const std::string& source, const OpenOptions& options) {
-    constexpr std::uint64_t kMostBytes = 256 << 20;
+    constexpr std::uint64_t kMaxBytes = 256 << 20;
     std::error_code none;
     if (source == "-" || std::filesystem::is_other(source, none)) return ColourFilter::none;
     const auto recording = open_recording(source, options);
     const auto parser = recording->make_parser();
     RawPacket packet;
     Batch batch;
-    for (std::uint64_t bytes = 0; bytes < kMostBytes; bytes += packet.bytes.size()) {
+    for (std::uint64_t bytes = 0; bytes < kMaxBytes; bytes += packet.bytes.size()) {
         if (recording->read(packet) == ReadStatus::end) break;
         batch.clear();
         parser->parse(packet.bytes, batch);

@@ -122,9 +122,9 @@ ImageGeometry geometry_of(const RunSettings& settings, const SinkPlan& plan) {
         geometry.left = settings.region->x;
         geometry.top = settings.region->y;
     }
-    geometry.left += settings.look.crop_px;
-    geometry.top += settings.look.crop_px;
-    geometry.flip = settings.look.flip;
+    geometry.left += settings.adjust.crop_px;
+    geometry.top += settings.adjust.crop_px;
+    geometry.flip = settings.adjust.flip;
     return geometry;
 }
 
@@ -248,13 +248,13 @@ bool is_http(const std::string& sink) {
 
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {
     std::vector<std::unique_ptr<Sink>> plain, changed;
-    LookSettings look = settings.look;
-    look.unsharp = float(settings.unsharp);
+    AdjustSettings adjust = settings.adjust;
+    adjust.unsharp = float(settings.unsharp);
     for (const std::string& sink : settings.out)
         (is_contact_sheet(sink) ? plain : changed).push_back(open_sink(sink, settings, plan));
     if (changed.empty()) return plain;
-    if (!look.changes_nothing())
-        changed = one(std::make_unique<LookSink>(look, std::move(changed)));
+    if (!adjust.changes_nothing())
+        changed = one(std::make_unique<AdjustSink>(adjust, std::move(changed)));
     if (plan.undistortion)
         changed = one(std::make_unique<UndistortionSink>(*plan.undistortion, std::move(changed)));
     std::ranges::move(changed, std::back_inserter(plain));

@@ -20,15 +20,15 @@ constexpr SensorDuration kWarmup{1'000'000};
 
 /// As long before the first frame as was asked for, and no earlier than the first event: silence
 /// teaches nothing. Standard input cannot be asked for its first event.
-SensorTime warm_up_from(const RunSettings& settings, const TimePointReader& moments,
+SensorTime warm_up_from(const RunSettings& settings, const TimePointReader& times,
                         SensorTime frames_from) {
     const SensorDuration usual = settings.state_in.empty() ? kWarmup : SensorDuration{0};
     const SensorTime begin = frames_from - settings.warmup.value_or(usual);
     if (settings.source == "-" || begin == frames_from) return begin;
-    return std::min(std::max(begin, moments.time_of({})), frames_from);
+    return std::min(std::max(begin, times.time_of({})), frames_from);
 }
 
-TimePointReader moments_of(const RunSettings& settings) {
+TimePointReader times_of(const RunSettings& settings) {
     if (names_simulation(settings.source)) return TimePointReader{SimRecordingSettings{}.begin};
     return TimePointReader{settings.source, settings.input.options()};
 }
@@ -37,7 +37,7 @@ TimePointReader moments_of(const RunSettings& settings) {
 
 std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live) {
     if (live || settings.source == "-" || names_simulation(settings.source)) return {};
-    return moments_of(settings).time_of({});
+    return times_of(settings).time_of({});
 }
 
 Span span_of(const RunSettings& settings, bool live) {
@@ -49,14 +49,14 @@ Span span_of(const RunSettings& settings, bool live) {
         span.duration = settings.duration;
         return span;
     }
-    const TimePointReader moments = moments_of(settings);
+    const TimePointReader times = times_of(settings);
     if (settings.from) {
-        span.frames_from = moments.time_of(*settings.from);
-        span.begin = warm_up_from(settings, moments, *span.frames_from);
+        span.frames_from = times.time_of(*settings.from);
+        span.begin = warm_up_from(settings, times, *span.frames_from);
     }
-    if (settings.to) span.end = moments.time_of(*settings.to);
+    if (settings.to) span.end = times.time_of(*settings.to);
     if (settings.duration) {
-        const SensorTime begin = span.frames_from ? *span.frames_from : moments.time_of({});
+        const SensorTime begin = span.frames_from ? *span.frames_from : times.time_of({});
         const SensorTime end = begin + *settings.duration;
         span.end = span.end ? std::min(*span.end, end) : end;
     }
@@ -82,10 +82,10 @@ Span resumed_span(const RunSettings& settings, Span span, SensorTime t) {
 std::vector<SensorTime> state_times_of(const RunSettings& settings) {
     if (settings.states_at.empty() != settings.states_out.empty())
         throw Error(ErrorKind::usage, "--states-out and --states-at: expected both, found one");
-    const TimePointReader moments = moments_of(settings);
+    const TimePointReader reader = times_of(settings);
     std::vector<SensorTime> times;
     for (const std::string& text : settings.states_at) {
-        const SensorTime t = moments.time_of(parse_time_point(text));
+        const SensorTime t = reader.time_of(parse_time_point(text));
         if (!times.empty() && t <= times.back())
             throw Error(ErrorKind::usage,
                         "--states-at " + text + ": expected times that ascend, found one before");

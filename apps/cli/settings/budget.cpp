@@ -1,8 +1,8 @@
 // --budget: what the network may take of the processor.
 #include "apps/cli/settings/budget.h"
 
-#include "apps/cli/settings/values.h"
 #include "src/core/error.h"
+#include "src/settings/values.h"
 
 namespace eventide::app {
 

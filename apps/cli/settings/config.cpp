@@ -10,6 +10,7 @@
 #include <ostream>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace eventide::app {
 
@@ -69,12 +70,8 @@ void print_comment(std::ostream& out, const std::string& text) {
     out << line << '\n';
 }
 
-void set(Setting& setting, const std::vector<std::string>& texts, const std::string& origin) {
-    try {
-        setting.set(texts);
-    } catch (const Error& error) {
-        throw Error(error.kind(), origin + ": " + error.what());
-    }
+void set(Setting& setting, const SettingValue& value, const std::string& origin) {
+    set_from(origin, setting, value);
     setting.origin = origin;
 }
 
@@ -85,29 +82,16 @@ bool fits(ValueKind wanted, ValueKind found) {
     return found == ValueKind::text || found == ValueKind::number;
 }
 
-std::string name_of(ValueKind kind) {
-    switch (kind) {
-        case ValueKind::text:
-            return "text";
-        case ValueKind::number:
-            return "a number";
-        case ValueKind::flag:
-            return "true or false";
-        case ValueKind::list:
-            return "a list of texts";
-    }
-    return {};
-}
-
-void set_from_file(Setting& setting, const std::string& path, const ConfigValue& value) {
-    const std::string origin = "file " + value.place;
+void set_from_file(Setting& setting, SettingValue value) {
     if (!fits(setting.kind, value.kind))
-        throw Error(ErrorKind::usage, value.place + ": " + path + ": expected " +
+        throw Error(ErrorKind::usage, value.place + ": " + value.name + ": expected " +
                                           name_of(setting.kind) + ", found " + name_of(value.kind));
+    // What it says is taken as words are, which other places give.
+    const std::string origin = "file " + std::exchange(value.place, {});
     try {
-        set(setting, value.texts, origin);
+        set(setting, value, origin);
     } catch (const Error& error) {
-        throw Error(error.kind(), path + ": " + error.what());
+        throw Error(error.kind(), value.name + ": " + error.what());
     }
 }
 
@@ -149,11 +133,11 @@ void resolve_settings(SettingTable& table, const ConfigFile& file,
             set(setting, flag->second, "flag " + flag_of(setting));
         } else if (from_environment != nullptr && *from_environment != '\0') {
             set(setting,
-                setting.kind == ValueKind::list ? split(from_environment, ';')
-                                                : std::vector<std::string>{from_environment},
+                setting.kind == ValueKind::list ? SettingValue{split(from_environment, ';')}
+                                                : SettingValue{from_environment},
                 "environment " + variable);
         } else if (const auto entry = file.find(path); entry != file.end()) {
-            set_from_file(setting, path, entry->second);
+            set_from_file(setting, entry->second);
         }
     }
 }

@@ -1,7 +1,7 @@
 // Where values come from: flags over environment over configuration file over defaults.
 #pragma once
 
-#include "apps/cli/settings/setting.h"
+#include "src/settings/setting.h"
 
 #include <iosfwd>
 #include <map>
@@ -10,16 +10,11 @@
 
 namespace eventide::app {
 
-/// What a TOML file says, by "section.key" or "key", with the place for complaints.
-struct ConfigValue {
-    std::vector<std::string> texts;
-    ValueKind kind = ValueKind::text;  ///< text, number, flag or list, as it is written
-    std::string place;                 ///< "eventide.toml:3"
-};
-using ConfigFile = std::map<std::string, ConfigValue>;
+/// What a TOML file says, by "section.key" or "key".
+using ConfigFile = std::map<std::string, SettingValue>;
 
-/// Throws Error (usage) with file and line for what is not TOML, nests too deep, or holds something
-/// else than text, numbers, true, false and lists of them; and when the file cannot be read.
+/// Throws Error (usage): as read_settings_file(), and with file and line for what nests too deep or
+/// is something else than text, numbers, true, false and lists of them.
 ConfigFile read_config_file(const std::string& path);
 
 /// Throws Error (usage) naming file and line of the first key that no table has.

@@ -1,10 +1,10 @@
 // What the user may say about an input, the same for every command that reads one.
 #pragma once
 
-#include "apps/cli/settings/setting.h"
-#include "apps/cli/settings/values.h"
 #include "replay/open_options.h"
 #include "replay/recording.h"
+#include "src/settings/setting.h"
+#include "src/settings/values.h"
 
 #include <memory>
 #include <optional>

@@ -1,6 +1,7 @@
 // The part of `eventide run`'s table that says with which network, and which buffers around it.
-#include "apps/cli/settings/open_setting.h"
 #include "apps/cli/settings/run_settings.h"
+#include "apps/cli/settings/words.h"
+#include "src/settings/setting.h"
 
 namespace eventide::app {
 
@@ -40,12 +41,12 @@ void RunSettings::add_network(SettingTable& table) {
         "kernels", kernels,
         "Whose convolutions the fast engine calls: auto takes what pays best on this "
         "processor; own (built-in kernels) or onednn give bit-identical results.",
-        {{Kernels::automatic, "auto"}, {Kernels::own, "own"}, {Kernels::onednn, "onednn"}}));
+        kKernelWords));
     add(choice_setting("engine", engine, "plain is the readable reference, fast the usual one.",
                        kEngineWords));
     add(whole_setting("threads", threads, "N",
                       "Threads the network may use; 0: as many as this process may run on.", 0,
-                      1024));
+                      kMaxThreads));
     add(text_setting("state_in", state_in, "FILE",
                      "Go on from the state that an earlier run saved: the network's "
                      "(--state-out), or all of it (--states-out)."));

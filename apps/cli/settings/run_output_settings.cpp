@@ -1,7 +1,7 @@
 // The part of `eventide run`'s table that says where frames go and how they look.
-#include "apps/cli/settings/open_setting.h"
 #include "apps/cli/settings/run_settings.h"
 #include "src/binning/noise_filter.h"
+#include "src/settings/setting.h"
 
 #include <algorithm>
 
@@ -103,7 +103,7 @@ void RunSettings::add_outputs(SettingTable& table) {
 }
 
 /// How it is to look.
-void RunSettings::add_look(SettingTable& table) {
+void RunSettings::add_adjustments(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(filter_setting(filter));
     add(parsed_setting<std::string>(
@@ -123,12 +123,12 @@ void RunSettings::add_look(SettingTable& table) {
         "the whole sensor. The contact sheet stays as the camera sees it."));
     add(text_setting("undistort_camera", undistort_camera, "NAME",
                      "Of a Kalibr file with several cameras: cam1; without it, the first."));
-    add(flag_setting("auto_hdr", look.auto_hdr,
+    add(flag_setting("auto_hdr", adjust.auto_hdr,
                      "Stretch the range the frame uses to black and white, smoothed in time; "
                      "sigma is scaled with it."));
     add(number_setting("unsharp", unsharp, "AMOUNT", "Sharpen: 0 is off, 0.3 is moderate.", 0, 10));
-    add(choice_setting("flip", look.flip, "Mirror the frame.", flip_words()));
-    add(whole_setting("crop", look.crop_px, "PIXELS", "Crop this many pixels at each side.", 0,
+    add(choice_setting("flip", adjust.flip, "Mirror the frame.", flip_words()));
+    add(whole_setting("crop", adjust.crop_px, "PIXELS", "Crop this many pixels at each side.", 0,
                       kLargestFrameSide));
     add(text_setting("video_preset", video_preset, "PRESET",
                      "x264's preset: ultrafast to veryslow; slower is smaller."));

@@ -1,9 +1,9 @@
 // The table behind `eventide run`: its groups, and those that say which frames, and how fast.
 #include "apps/cli/settings/run_settings.h"
 
-#include "apps/cli/settings/open_setting.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/sensor_limits.h"
+#include "src/settings/setting.h"
 
 #include <cmath>
 
@@ -91,7 +91,7 @@ SettingTable RunSettings::table() {
     table.group_rest("Frames");
     add_outputs(table);
     table.group_rest("Output");
-    add_look(table);
+    add_adjustments(table);
     table.group_rest("Post-processing");
     add_quality(table);
     table.group_rest("Quality");

@@ -3,7 +3,6 @@
 
 #include "apps/cli/settings/budget.h"
 #include "apps/cli/settings/input_settings.h"
-#include "apps/cli/settings/setting.h"
 #include "apps/cli/settings/time_point.h"
 #include "pipeline/frame_clock.h"
 #include "pipeline/sinks/adjust.h"
@@ -12,6 +11,7 @@
 #include "src/core/bayer.h"
 #include "src/model/engine.h"
 #include "src/model/render/renderer.h"
+#include "src/settings/setting.h"
 
 #include <optional>
 #include <string>
@@ -106,7 +106,7 @@ struct RunSettings {
     // look
     std::string undistort;         ///< calibration file; empty: frames stay as the lens makes them
     std::string undistort_camera;  ///< of a Kalibr file; empty: the first
-    LookSettings look;
+    AdjustSettings adjust;
     double unsharp = 0;
     std::string video_preset = "veryfast";
     int video_crf = 18;
@@ -132,7 +132,7 @@ private:
     void add_quality(SettingTable& table);
     void add_network(SettingTable& table);
     void add_outputs(SettingTable& table);
-    void add_look(SettingTable& table);
+    void add_adjustments(SettingTable& table);
     void add_machinery(SettingTable& table);
 };
 

@@ -1,4 +1,4 @@
-// Moments of a recording, as users say them.
+// Times of a recording, as users say them.
 #include "apps/cli/settings/time_point.h"
 
 #include "replay/formats.h"
@@ -14,9 +14,8 @@ TimePoint parse_time_point(const std::string& text) {
     return {true, SensorDuration{*us}};
 }
 
-std::string show_time_point(const TimePoint& moment) {
-    return moment.absolute ? "@" + std::to_string(moment.value.count())
-                           : show_duration(moment.value);
+std::string show_time_point(const TimePoint& point) {
+    return point.absolute ? "@" + std::to_string(point.value.count()) : show_duration(point.value);
 }
 
 Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std::string word,
@@ -26,15 +25,15 @@ Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std
         [word](const std::string& text) {
             return text == word ? std::nullopt : std::optional{parse_time_point(text)};
         },
-        [word](const std::optional<TimePoint>& moment) {
-            return moment ? show_time_point(*moment) : word;
+        [word](const std::optional<TimePoint>& point) {
+            return point ? show_time_point(*point) : word;
         });
 }
 
-SensorTime TimePointReader::time_of(const TimePoint& moment) const {
-    if (moment.absolute) return SensorTime{moment.value};
+SensorTime TimePointReader::time_of(const TimePoint& point) const {
+    if (point.absolute) return SensorTime{point.value};
     if (!first_) first_ = first_time();
-    return *first_ + moment.value;
+    return *first_ + point.value;
 }
 
 SensorTime TimePointReader::first_time() const {

@@ -1,9 +1,9 @@
-// Moments of a recording, as users say them: after its first event, or in the sensor's own time.
+// Times of a recording, as users say them: after its first event, or in the sensor's own time.
 #pragma once
 
-#include "apps/cli/settings/setting.h"
 #include "replay/open_options.h"
 #include "src/core/sensor_time.h"
+#include "src/settings/setting.h"
 
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ struct TimePoint {
 
 /// Throws Error (usage).
 TimePoint parse_time_point(const std::string& text);
-std::string show_time_point(const TimePoint& moment);
+std::string show_time_point(const TimePoint& point);
 
 /// `word` stands for an empty value.
 Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std::string word,
@@ -33,9 +33,9 @@ public:
     explicit TimePointReader(SensorTime first) : first_{first} {}
 
     /// Reads the beginning of the recording, through an opening of its own, for the first relative
-    /// moment. Throws Error: usage for a relative moment of standard input, input where there is no
+    /// point. Throws Error: usage for a relative point of standard input, input where there is no
     /// event.
-    SensorTime time_of(const TimePoint& moment) const;
+    SensorTime time_of(const TimePoint& point) const;
 
 private:
     SensorTime first_time() const;

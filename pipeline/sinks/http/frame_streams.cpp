@@ -12,7 +12,7 @@ namespace eventide {
 namespace {
 
 using Clock = NewestFrame::Clock;
-constexpr std::chrono::seconds kPatience{1};  // between looks whether the viewer is still there
+constexpr std::chrono::seconds kTimeout{1};  // between looks whether the viewer is still there
 
 /// One viewer's frames, one for each call.
 class Frames {
@@ -26,7 +26,7 @@ public:
     /// Null where none came for a while, or it is over.
     std::shared_ptr<const ShownFrame> next() {
         if (!newest_.sleep(next_at_)) return nullptr;
-        auto shown = newest_.next(seen_, Clock::now() + kPatience);
+        auto shown = newest_.next(seen_, Clock::now() + kTimeout);
         if (!shown) return nullptr;
         // Steps are kept where the frames' rate is a little lower, too.
         next_at_ = std::max(next_at_ + step_, Clock::now() - step_);

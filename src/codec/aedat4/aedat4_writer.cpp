@@ -14,7 +14,21 @@ namespace eventide {
 
 namespace {
 
-constexpr std::string_view kCompressionNames[] = {"NONE", "LZ4", "LZ4_HIGH", "ZSTD", "ZSTD_HIGH"};
+std::string name_of(Aedat4Compression compression) {
+    switch (compression) {
+        case Aedat4Compression::none:
+            return "NONE";
+        case Aedat4Compression::lz4:
+            return "LZ4";
+        case Aedat4Compression::lz4_high:
+            return "LZ4_HIGH";
+        case Aedat4Compression::zstd:
+            return "ZSTD";
+        case Aedat4Compression::zstd_high:
+            return "ZSTD_HIGH";
+    }
+    return {};
+}
 
 struct StreamText {
     std::string_view identifier, name, description;
@@ -53,8 +67,7 @@ std::string info_node(const StreamHeader& header, Aedat4Compression compression)
         const StreamText& stream = kStreams[id];
         const std::string number = std::to_string(id), path = base + number + "/";
         xml += "<node name=\"" + number + "\" path=\"" + path + "\">\n";
-        xml +=
-            attr("compression", "string", std::string(kCompressionNames[std::size_t(compression)]));
+        xml += attr("compression", "string", name_of(compression));
         xml += attr("originalModuleName", "string", "capture");
         xml += attr("originalOutputName", "string", std::string(stream.name));
         xml += attr("typeDescription", "string", std::string(stream.description));

@@ -1,7 +1,7 @@
 // Flags win over the environment, that over the file, that over the defaults; mistakes are named.
 #include "apps/cli/settings/config.h"
 #include "src/core/error.h"
-#include "src/io/toml_text.h"
+#include "src/settings/toml_text.h"
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>

@@ -26,6 +26,20 @@ TEST(Options, WhatIsRecordedCanBeReadBack) {
     EXPECT_EQ(second.model.encoder, EncoderKind::thesis);
 }
 
+/// Who goes on from a checkpoint has the numbers that it began with.
+TEST(Options, NumbersAreRecordedToTheirLastDigit) {
+    TrainOptions first, second;
+    OptionTable table{first};
+    table.parse({"--rate", "0.00123456789012", "--turn", "0,3.141592653589793"});
+    std::istringstream lines{table.record()};
+    for (std::string line; std::getline(lines, line);) {
+        const auto space = line.find(' ');
+        OptionTable{second}.parse({line.substr(0, space), line.substr(space + 1)});
+    }
+    EXPECT_EQ(second.learning_rate, first.learning_rate);
+    EXPECT_EQ(second.data.scene.wander.turn.high, first.data.scene.wander.turn.high);
+}
+
 TEST(Options, AWrongWordIsRefusedByName) {
     TrainOptions options;
     OptionTable table{options};

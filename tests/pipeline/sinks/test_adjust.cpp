@@ -1,4 +1,4 @@
-// The look controls: each does one thing, and sigma stays in the units of intensity.
+// Adjustments of frames: each does one thing, and sigma stays in the units of intensity.
 #include "pipeline/sinks/adjust.h"
 #include "src/core/error.h"
 #include "tests/pipeline/sinks/frames.h"
@@ -10,21 +10,21 @@
 namespace eventide {
 namespace {
 
-TEST(Look, OffLeavesEveryNumberAlone) {
+TEST(Adjustment, OffLeavesEveryNumberAlone) {
     const Frame frame = test::ramp_frame(9, 7, 2, test::odd_time(1));
-    Look look{{}};
-    const Frame& shown = look.apply(frame);
+    Adjustment adjust{{}};
+    const Frame& shown = adjust.apply(frame);
     EXPECT_EQ(shown.intensity, frame.intensity);
     EXPECT_EQ(shown.sigma, frame.sigma);
     EXPECT_EQ(shown.t, frame.t);
     EXPECT_EQ(shown.index, frame.index);
-    EXPECT_TRUE(LookSettings{}.changes_nothing());
+    EXPECT_TRUE(AdjustSettings{}.changes_nothing());
 }
 
-TEST(Look, FlippingTwiceIsNothing) {
+TEST(Adjustment, FlippingTwiceIsNothing) {
     const Frame frame = test::ramp_frame(9, 7, 2, from_us(0));
     for (const Flip flip : {Flip::horizontal, Flip::vertical, Flip::both}) {
-        Look there{{.flip = flip}}, back{{.flip = flip}};
+        Adjustment there{{.flip = flip}}, back{{.flip = flip}};
         const Frame& once = there.apply(frame);
         EXPECT_NE(once.intensity, frame.intensity);
         EXPECT_EQ(back.apply(once).intensity, frame.intensity);
@@ -32,45 +32,45 @@ TEST(Look, FlippingTwiceIsNothing) {
     }
 }
 
-TEST(Look, FlipHorizontalMirrorsLeftAndRight) {
+TEST(Adjustment, FlipHorizontalMirrorsLeftAndRight) {
     const Frame frame = test::ramp_frame(9, 7, 2, from_us(0));
-    Look look{{.flip = Flip::horizontal}};
-    EXPECT_EQ(look.apply(frame).intensity(3, 0), frame.intensity(3, 8));
+    Adjustment adjust{{.flip = Flip::horizontal}};
+    EXPECT_EQ(adjust.apply(frame).intensity(3, 0), frame.intensity(3, 8));
 }
 
-TEST(Look, CropsTheBorderOrSaysThatNothingIsLeft) {
+TEST(Adjustment, CropsTheBorderOrSaysThatNothingIsLeft) {
     const Frame frame = test::ramp_frame(9, 7, 2, from_us(0));
-    Look look{{.crop_px = 2}};
-    const Frame& shown = look.apply(frame);
+    Adjustment adjust{{.crop_px = 2}};
+    const Frame& shown = adjust.apply(frame);
     EXPECT_EQ(shown.intensity.width(), 5);
     EXPECT_EQ(shown.intensity.height(), 3);
     EXPECT_EQ(shown.sigma(0, 0), frame.sigma(2, 2));
-    Look too_much{{.crop_px = 4}};
+    Adjustment too_much{{.crop_px = 4}};
     EXPECT_THROW(too_much.apply(frame), Error);
 }
 
-TEST(Look, AutoHdrFillsTheRangeAndScalesSigmaAlike) {
+TEST(Adjustment, AutoHdrFillsTheRangeAndScalesSigmaAlike) {
     Frame frame = test::ramp_frame(100, 100, 0, from_us(0));
     for (int y = 0; y < 100; ++y)
         for (int x = 0; x < 100; ++x) {
             frame.intensity(y, x) = 0.4f + 0.002f * float(x);
             frame.sigma(y, x) = 0.01f;
         }
-    Look look{{.auto_hdr = true}};
-    const Frame& shown = look.apply(frame);
+    Adjustment adjust{{.auto_hdr = true}};
+    const Frame& shown = adjust.apply(frame);
     EXPECT_NEAR(shown.intensity(50, 1), 0, 0.02);
     EXPECT_NEAR(shown.intensity(50, 98), 1, 0.02);
     EXPECT_NEAR(shown.sigma(0, 0), 0.01 / 0.196, 0.002);
 }
 
-TEST(Look, AutoHdrDoesNotBlowUpAFlatImage) {
+TEST(Adjustment, AutoHdrDoesNotBlowUpAFlatImage) {
     Frame frame = test::ramp_frame(10, 10, 0, from_us(0));
     for (float& v : frame.intensity.values()) v = 0.5f;
-    Look look{{.auto_hdr = true}};
-    for (const float v : look.apply(frame).intensity.values()) EXPECT_NEAR(v, 0.5f, 0.01f);
+    Adjustment adjust{{.auto_hdr = true}};
+    for (const float v : adjust.apply(frame).intensity.values()) EXPECT_NEAR(v, 0.5f, 0.01f);
 }
 
-TEST(Look, AutoHdrForgetsBySensorTimeWhateverTheFrameRate) {
+TEST(Adjustment, AutoHdrForgetsBySensorTimeWhateverTheFrameRate) {
     Array2<float> dark{10, 10}, bright{10, 10};
     for (int i = 0; i < 100; ++i) {
         dark.values()[std::size_t(i)] = float(i % 10) / 20;
@@ -88,12 +88,12 @@ TEST(Look, AutoHdrForgetsBySensorTimeWhateverTheFrameRate) {
     EXPECT_GT(after_a_second(10).low, 0.4);
 }
 
-TEST(Look, UnsharpLeavesFlatPartsAndLiftsEdges) {
+TEST(Adjustment, UnsharpLeavesFlatPartsAndLiftsEdges) {
     Frame frame = test::ramp_frame(40, 40, 0, from_us(0));
     for (int y = 0; y < 40; ++y)
         for (int x = 0; x < 40; ++x) frame.intensity(y, x) = x < 20 ? 0.3f : 0.6f;
-    Look look{{.unsharp = 0.5f}};
-    const Frame& shown = look.apply(frame);
+    Adjustment adjust{{.unsharp = 0.5f}};
+    const Frame& shown = adjust.apply(frame);
     EXPECT_NEAR(shown.intensity(20, 5), 0.3, 1e-5);
     EXPECT_GT(shown.intensity(20, 20), 0.63);
     EXPECT_LT(shown.intensity(20, 19), 0.27);
@@ -107,13 +107,13 @@ struct Spy : Sink {
     bool wants_more() const override { return wants; }
 };
 
-TEST(LookSink, HandsEachFrameToAllAndEndsWithTheFirstThatHasEnough) {
+TEST(AdjustSink, HandsEachFrameToAllAndEndsWithTheFirstThatHasEnough) {
     auto first = std::make_unique<Spy>(), second = std::make_unique<Spy>();
     Spy &a = *first, &b = *second;
     std::vector<std::unique_ptr<Sink>> behind;
     behind.push_back(std::move(first));
     behind.push_back(std::move(second));
-    LookSink sink{{.flip = Flip::both}, std::move(behind)};
+    AdjustSink sink{{.flip = Flip::both}, std::move(behind)};
     sink.write(test::ramp_frame(4, 4, 0, from_us(0)));
     EXPECT_EQ(a.frames + b.frames, 2);
     EXPECT_TRUE(sink.wants_more());

@@ -2,6 +2,7 @@
 #include "apps/cli/run/quality/measure_profile.h"
 
 #include "apps/bench/timing.h"
+#include "apps/cli/settings/words.h"
 #include "apps/cli/version.h"
 #include "src/binning/binner.h"
 #include "src/core/error.h"
@@ -146,10 +147,9 @@ ProfileKey profile_key(const std::string& name, const Model& model, int width, i
                        Kernels kernels) {
     std::string instructions = name_of(Arithmetic{});
     if (bf16_available()) instructions += std::string{", "} + name_of(Arithmetic{Products::bf16});
-    constexpr const char* kKernels[]{"auto", "own", "onednn"};
     return {processor_text(),
             instructions,
-            kKernels[std::size_t(kernels)],
+            show_word(kernels, kKernelWords),
             version(),
             name,
             model_identity(model),

@@ -44,7 +44,7 @@ bool rate_is_open(const RunSettings& settings) {
 
 /// --roi and --crop count pixels of the frame.
 bool scale_is_open(const RunSettings& settings) {
-    return !settings.size_given && !settings.region && settings.look.crop_px == 0;
+    return !settings.size_given && !settings.region && settings.adjust.crop_px == 0;
 }
 
 double usable_threads(const RunSettings& settings) {

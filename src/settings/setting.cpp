@@ -1,10 +1,12 @@
 // Names of settings, and the kinds most of them are.
-#include "apps/cli/settings/setting.h"
+#include "src/settings/setting.h"
+
+#include "src/core/error.h"
 
 #include <algorithm>
 #include <cctype>
 
-namespace eventide::app {
+namespace eventide {
 
 std::string help_with_default(const Setting& setting) {
     std::string value;
@@ -32,17 +34,42 @@ void SettingTable::group_rest(const std::string& heading) {
         if (setting.group.empty()) setting.group = heading;
 }
 
+void set_from(const std::string& origin, const Setting& setting, const SettingValue& value) {
+    try {
+        setting.set(value);
+    } catch (const Error& error) {
+        throw Error(error.kind(), origin + ": " + error.what());
+    }
+}
+
+Setting noted(Setting setting, bool& given) {
+    setting.set = [set = std::move(setting.set), &given](const SettingValue& value) {
+        set(value);
+        given = true;
+    };
+    return setting;
+}
+
+std::string same_text(const std::string& text) {
+    return text;
+}
+
 Setting text_setting(std::string key, std::string& value, std::string value_name,
                      std::string help) {
-    return parsed_setting<std::string>(
-        std::move(key), value, std::move(value_name), std::move(help),
-        [](const std::string& text) { return text; }, [](const std::string& text) { return text; });
+    return parsed_setting<std::string>(std::move(key), value, std::move(value_name),
+                                       std::move(help), same_text, same_text);
+}
+
+Setting file_setting(std::string key, std::function<void(const SettingValue&)> set) {
+    return {std::move(key), {}, {}, {}, {}, {}, std::move(set), {}};
 }
 
 Setting flag_setting(std::string key, bool& value, std::string help) {
     Setting setting{std::move(key), ValueKind::flag, "", std::move(help), {}, {}, {}, {}};
-    setting.set = [&value](const std::vector<std::string>& texts) {
-        value = parse_choice(texts.back(), {"false", "true"}) == 1;
+    setting.set = [&value](const SettingValue& given) {
+        if (!given.may_be(ValueKind::flag) || (given.text != "true" && given.text != "false"))
+            given.refuse("true or false");
+        value = given.text == "true";
     };
     setting.show = [&value] { return std::vector<std::string>{value ? "true" : "false"}; };
     return setting;
@@ -52,19 +79,24 @@ Setting list_setting(std::string key, std::vector<std::string>& value, std::stri
                      std::string help) {
     Setting setting{
         std::move(key), ValueKind::list, std::move(value_name), std::move(help), {}, {}, {}, {}};
-    setting.set = [&value](const std::vector<std::string>& texts) { value = texts; };
+    setting.set = [&value](const SettingValue& given) { value = given.texts(); };
     setting.show = [&value] { return value; };
     return setting;
 }
 
 Setting whole_setting(std::string key, int& value, std::string value_name, std::string help,
                       int least, int most) {
-    Setting setting = parsed_setting<int>(
-        std::move(key), value, std::move(value_name), std::move(help),
-        [least, most](const std::string& text) { return parse_whole(text, least, most); },
-        [](const int& v) { return std::to_string(v); });
-    setting.kind = ValueKind::number;
+    Setting setting{
+        std::move(key), ValueKind::number, std::move(value_name), std::move(help), {}, {}, {}, {}};
+    setting.set = [&value, least, most](const SettingValue& given) {
+        value = int(whole_of(given, least, most));
+    };
+    setting.show = [&value] { return std::vector{std::to_string(value)}; };
     return setting;
+}
+
+Setting whole_setting(std::string key, int& value, int least, int most) {
+    return whole_setting(std::move(key), value, {}, {}, least, most);
 }
 
 Setting number_setting(std::string key, double& value, std::string value_name, std::string help,
@@ -77,4 +109,4 @@ Setting number_setting(std::string key, double& value, std::string value_name, s
     return setting;
 }
 
-}  // namespace eventide::app
+}  // namespace eventide

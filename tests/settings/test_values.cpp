@@ -1,10 +1,10 @@
 // Text into values, and what is said when it is none.
-#include "apps/cli/settings/values.h"
 #include "src/core/error.h"
+#include "src/settings/values.h"
 
 #include <gtest/gtest.h>
 
-namespace eventide::app {
+namespace eventide {
 namespace {
 
 TEST(Values, TimesAreExactToTheMicrosecond) {
@@ -69,4 +69,4 @@ TEST(Values, SayWhatWasExpectedAndFound) {
 }
 
 }  // namespace
-}  // namespace eventide::app
+}  // namespace eventide

@@ -1,9 +1,10 @@
 // Text into values.
-#include "apps/cli/settings/values.h"
+#include "src/settings/values.h"
 
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/settings/setting_value.h"
 
 #include <eventide/frame.h>
 
@@ -11,25 +12,17 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <string_view>
 #include <system_error>
 
-namespace eventide::app {
+namespace eventide {
 
 void throw_usage(const std::string& expected, const std::string& found) {
     throw Error(ErrorKind::usage, "expected " + expected + ", found '" + found + "'");
 }
 
 int parse_whole(const std::string& text, int least, int most) {
-    const auto value = number_in<int>(text);
-    if (!value || *value < least || *value > most)
-        throw_usage("a whole number" +
-                        (most == std::numeric_limits<int>::max()
-                             ? " from " + std::to_string(least) + " up"
-                             : " from " + std::to_string(least) + " to " + std::to_string(most)),
-                    text);
-    return *value;
+    return int(whole_of(text, least, most));
 }
 
 double parse_number(const std::string& text, double least, double most) {
@@ -45,13 +38,16 @@ std::string show_number(double value) {
     return error == std::errc{} ? std::string{text.data(), end} : "?";
 }
 
-std::size_t parse_choice(const std::string& text, const std::vector<std::string>& names) {
-    const auto found = std::ranges::find(names, text);
-    if (found != names.end()) return std::size_t(found - names.begin());
-    std::string expected;
+std::string alternatives(const std::vector<std::string>& names, const std::string& quotes) {
+    std::string text;
     for (std::size_t i = 0; i < names.size(); ++i)
-        expected += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-    throw_usage(expected, text);
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + quotes + names[i] + quotes;
+    return text;
+}
+
+const std::string& parse_choice(const std::string& text, const std::vector<std::string>& names) {
+    if (std::ranges::find(names, text) == names.end()) throw_usage(alternatives(names), text);
+    return text;
 }
 
 SensorDuration parse_duration(const std::string& text, bool negative) {
@@ -79,4 +75,4 @@ std::string show_size(const Size& size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
-}  // namespace eventide::app
+}  // namespace eventide

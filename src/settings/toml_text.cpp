@@ -1,5 +1,5 @@
 // See toml_text.h.
-#include "src/io/toml_text.h"
+#include "src/settings/toml_text.h"
 
 #include "src/core/error.h"
 #include "src/io/input_file.h"

@@ -3,11 +3,10 @@
 
 #include "src/core/sensor_time.h"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
-namespace eventide::app {
+namespace eventide {
 
 // All throw Error (usage): "expected ..., found '...'".
 
@@ -17,8 +16,10 @@ double parse_number(const std::string& text, double least, double most);
 /// The shortest text that reads back as the same number.
 std::string show_number(double value);
 
-/// The index of `text` in `names`.
-std::size_t parse_choice(const std::string& text, const std::vector<std::string>& names);
+/// "a, b or c", each between `quotes`.
+std::string alternatives(const std::vector<std::string>& names, const std::string& quotes = {});
+/// `text`, which is one of `names`.
+const std::string& parse_choice(const std::string& text, const std::vector<std::string>& names);
 
 /// "250us", "20ms" or "1.5s", exact to the microsecond. A number without a unit is refused: to some
 /// it means seconds, to others microseconds. Negative ones pass where `negative` says so.
@@ -36,4 +37,4 @@ std::string show_size(const Size& size);
 
 [[noreturn]] void throw_usage(const std::string& expected, const std::string& found);
 
-}  // namespace eventide::app
+}  // namespace eventide

@@ -1,10 +1,11 @@
-// One thing a user can set, said once: flags, environment, configuration file, --print-config and
-// config/default.toml all come from tables of these.
+// One thing that can be set, said once. Flags, environment, configuration files, --print-config,
+// config/default.toml, the cameras' files and the options of training all come from tables of
+// these.
 #pragma once
 
-#include "apps/cli/settings/values.h"
-#include "apps/cli/settings/words.h"
-#include "src/core/error.h"
+#include "src/settings/setting_value.h"
+#include "src/settings/values.h"
+#include "src/settings/words.h"
 
 #include <functional>
 #include <optional>
@@ -12,14 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace eventide::app {
-
-enum class ValueKind {
-    text,    ///< one value
-    number,  ///< one value, written without quotes in TOML
-    flag,    ///< true or false; on the command line --x or --no-x
-    list     ///< any number of values
-};
+namespace eventide {
 
 struct Setting {
     std::string key;  ///< "sigma_white"; the flag is --sigma-white
@@ -29,12 +23,11 @@ struct Setting {
     std::string short_flag;  ///< "-o", or empty
     std::string group{};     ///< heading in --help; empty: "Options"
 
-    /// Reads the value from text. Throws Error (usage): "expected ..., found ...".
-    std::function<void(const std::vector<std::string>&)> set;
-    /// The value as text that set() reads back.
+    /// Takes the value. Throws Error (usage): "expected ..., found ...".
+    std::function<void(const SettingValue&)> set;
+    /// The value as words that set() takes.
     std::function<std::vector<std::string>()> show;
 
-    // Filled by resolve_settings().
     std::string origin = "default";  ///< "default", "file eventide.toml:3", "environment
                                      ///< EVENTIDE_RUN_FPS", "flag --fps"
 };
@@ -55,16 +48,22 @@ std::string flag_of(const Setting& setting);
 std::string help_with_default(const Setting& setting);
 /// "EVENTIDE_RUN_FPS"; without a section "EVENTIDE_QUIET".
 std::string environment_of(const SettingTable& table, const Setting& setting);
+/// set(), whose errors then begin with where the value is from: "flag --fps: expected ...".
+void set_from(const std::string& origin, const Setting& setting, const SettingValue& value);
 
 Setting text_setting(std::string key, std::string& value, std::string value_name, std::string help);
-Setting flag_setting(std::string key, bool& value, std::string help);
+Setting flag_setting(std::string key, bool& value, std::string help = {});
 Setting list_setting(std::string key, std::vector<std::string>& value, std::string value_name,
                      std::string help);
-/// A whole number from `least` to `most`.
+/// A whole number from `least` to `most`; without words about it where a file's comments have them.
+Setting whole_setting(std::string key, int& value, int least, int most);
 Setting whole_setting(std::string key, int& value, std::string value_name, std::string help,
                       int least, int most);
 Setting number_setting(std::string key, double& value, std::string value_name, std::string help,
                        double least, double most);
+
+/// Of a file alone: what takes a value in a way of its own.
+Setting file_setting(std::string key, std::function<void(const SettingValue&)> set);
 
 /// A value with its own way of being written. `parse` throws Error (usage).
 template <typename T>
@@ -73,8 +72,8 @@ Setting parsed_setting(std::string key, T& value, std::string value_name, std::s
                        std::function<std::string(const T&)> show) {
     Setting setting{
         std::move(key), ValueKind::text, std::move(value_name), std::move(help), {}, {}, {}, {}};
-    setting.set = [&value, parse = std::move(parse)](const std::vector<std::string>& texts) {
-        value = parse(texts.back());
+    setting.set = [&value, parse = std::move(parse)](const SettingValue& given) {
+        value = parse(given.text);
     };
     setting.show = [&value, show = std::move(show)] {
         return std::vector<std::string>{show(value)};
@@ -82,17 +81,43 @@ Setting parsed_setting(std::string key, T& value, std::string value_name, std::s
     return setting;
 }
 
-/// One of a few words.
+/// One of a few words, in quotes where a file has them.
 template <typename Enum>
 Setting choice_setting(std::string key, Enum& value, std::string help,
                        const std::vector<Word<Enum>>& words) {
     std::string value_name;
     for (const Word<Enum>& word : words)
         value_name += (value_name.empty() ? "" : "|") + std::string{word.text};
-    return parsed_setting<Enum>(
-        std::move(key), value, value_name, std::move(help),
-        [words](const std::string& text) { return parse_word(text, words); },
-        [words](const Enum& v) { return show_word(v, words); });
+    Setting setting = parsed_setting<Enum>(std::move(key), value, value_name, std::move(help), {},
+                                           [words](const Enum& v) { return show_word(v, words); });
+    setting.set = [words, &value](const SettingValue& given) {
+        for (const Word<Enum>& word : words)
+            if (given.text == word.text && given.may_be(ValueKind::text)) {
+                value = word.value;
+                return;
+            }
+        given.refuse(alternatives(texts_of(words), given.place.empty() ? "" : "\""));
+    };
+    return setting;
 }
 
-}  // namespace eventide::app
+/// A setting that may be left open, written as `word`.
+template <typename T>
+Setting open_setting(std::string key, std::optional<T>& value, std::string value_name,
+                     std::string help, std::string word, T (*parse)(const std::string&),
+                     std::string (*show)(const T&)) {
+    return parsed_setting<std::optional<T>>(
+        std::move(key), value, std::move(value_name), std::move(help),
+        [word, parse](const std::string& text) {
+            return text == word ? std::nullopt : std::optional<T>{parse(text)};
+        },
+        [word, show](const std::optional<T>& v) { return v ? show(*v) : word; });
+}
+
+/// The same setting, which notes that somebody gave the value.
+Setting noted(Setting setting, bool& given);
+
+/// A text as it was given.
+std::string same_text(const std::string& text);
+
+}  // namespace eventide
