@@ -8,6 +8,7 @@
 #include "pipeline/sinks/folder.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/simulate/colour_recording.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/scene/textures_folder.h"
@@ -142,7 +143,7 @@ SimRecordingSettings SimulateCommand::plan() const {
     plan.sensor = preset.sensor;
     plan.width = size_.width;
     plan.height = size_.height;
-    plan.seed = seed_ == "auto" ? preset.seed : std::uint64_t(std::stoull(seed_));
+    plan.seed = seed_ == "auto" ? preset.seed : number_in<std::uint64_t>(seed_).value();
     plan.seconds = seconds_;
     plan.images_per_second = images_per_second_;
     plan.truths_per_second = truth_.empty() ? 0 : truths_per_second_;

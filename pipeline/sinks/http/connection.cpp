@@ -1,5 +1,7 @@
 #include "pipeline/sinks/http/connection.h"
 
+#include "src/core/number_text.h"
+
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -31,7 +33,7 @@ void describe(const sockaddr_storage& address, socklen_t size, std::string& ip, 
                     sizeof service, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
         return;
     ip = host;
-    port = std::atoi(service);
+    port = number_in<int>(service).value_or(0);
 }
 
 }  // namespace

@@ -1,0 +1,75 @@
+"""Ctrl-C ends what would go on for ever, inside of the library too, and what was interrupted goes on."""
+
+import collections
+import functools
+import signal
+import threading
+import unittest
+
+import eventide
+import numpy as np
+from recorded import DTYPE, RecordedTest
+
+ENDLESS_CAMERA = "sim:demo?size=64x48&speed=max"
+
+
+def consume(iterator):
+    """No line of Python runs between two items, in which the interpreter could see the signal."""
+    collections.deque(iterator, maxlen=0)
+
+
+class Interrupts(RecordedTest):
+    def interrupt(self, loop, has_begun):
+        """loop() has no end; the signal comes from another thread once has_begun()."""
+        ended = threading.Event()
+
+        def send():
+            while not has_begun():
+                if ended.is_set():
+                    return
+            signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+
+        sender = threading.Thread(target=send)
+        sender.start()
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                loop()
+        finally:
+            ended.set()
+            sender.join()
+
+    def test_frames_end(self):
+        reconstructor = self.reconstructor(allow_silence=True)
+        far_apart = np.zeros(2, DTYPE)
+        far_apart["t"] = 0, 10**12  # 100 million frames
+        reconstructor.push(far_apart)
+        reconstructor.finish()
+        self.interrupt(lambda: consume(reconstructor.frames()), lambda: reconstructor.counters["frames"] > 100)
+        self.assertIsNotNone(reconstructor.next(), "the next frame comes after an interruption")
+
+    def test_a_camera_ends(self):
+        camera = eventide.open_camera(ENDLESS_CAMERA)
+        self.interrupt(lambda: consume(camera), lambda: camera.clock is not None)
+        self.assertGreater(len(next(camera)), 0)
+
+    def test_a_camera_that_is_read_into_a_reconstructor_ends(self):
+        camera, reconstructor = eventide.open_camera(ENDLESS_CAMERA), self.reconstructor()
+        reads = iter(functools.partial(camera.read_into, reconstructor), False)
+        self.interrupt(lambda: consume(reads), lambda: reconstructor.counters["events"] > 1000)
+        self.assertTrue(camera.read_into(reconstructor))
+
+    def test_a_simulation_ends(self):
+        simulation = eventide.simulate("demo", size=(32, 24), seconds=1e6)
+        self.interrupt(lambda: consume(simulation), lambda: simulation.clock > 100_000)
+        events, _ = next(simulation)
+        self.assertEqual(events.dtype.names, DTYPE.names)
+
+    def test_a_pipeline_ends(self):
+        for sequential in (False, True):
+            camera = eventide.open_camera(ENDLESS_CAMERA)
+            pipeline = eventide.Pipeline(camera, lambda frame: None, "small", window="10ms", sequential=sequential)
+            self.interrupt(pipeline.run, lambda: pipeline.counters["frames"] > 3)
+
+
+if __name__ == "__main__":
+    unittest.main()
