@@ -18,23 +18,37 @@ processor_s() {
 }
 tasks=$(wc -l < "$out/plan.tsv")
 : > "$out/scaling.tsv"
+# Those of --states, for which the tasks wait: a line each of `states SECONDS`, then of `task SECONDS`.
+if cut -f 6 "$out/plan.tsv" | grep -qv '^-$'; then
+  recordings=$(cut -f 2 "$out/plan.tsv" | uniq | wc -l)
+  for ((i = 0; i < recordings; ++i)); do
+    seconds=$(processor_s "$here/states.sh" "$out" "$i")
+    echo "states $seconds" >> "$out/scaling.tsv"
+  done
+fi
 for ((i = 0; i < tasks; ++i)); do
   name=$(sed -n "$((i + 1))p" "$out/plan.tsv" | cut -f 2)
   ! is_finished "$out/parts/$(part_name "$name" $i)" || refuse "scaling.sh: $out: task $i is done already; expected a new plan"
-  processor_s "$here/task.sh" "$out" "$i" >> "$out/scaling.tsv"
-  echo >> "$out/scaling.tsv"
+  seconds=$(processor_s "$here/task.sh" "$out" "$i")
+  echo "task $seconds" >> "$out/scaling.tsv"
 done
 merge=$(processor_s "$here/merge.sh" "$out")
 frames=$(cut -f 2 "$out/plan.tsv" | uniq | while read -r name; do tail -n +2 "$out/$name/timestamps.csv"; done | wc -l)
 awk -v nodes="${nodes[*]}" -v merge="$merge" -v frames="$frames" '
-  { time[NR] = $1; sum += $1 }
+  { kind[NR] = $1; time[NR] = $2; sum += $2; count[$1]++ }
   END {
-    printf "%d tasks, %.1f s of a processor, %d frames; joined in %.1f s\n", NR, sum, frames, merge
+    if (count["states"]) printf "%d jobs of states before them, ", count["states"]
+    printf "%d tasks, %.1f s of a processor, %d frames; joined in %.1f s\n", count["task"], sum, frames, merge
     printf "%6s %10s %10s %9s\n", "nodes", "seconds", "frames/s", "speed-up"
     n = split(nodes, wanted, " ")
     for (k = 1; k <= n; ++k) {
       split("", busy)
       for (i = 1; i <= NR; ++i) {
+        if (i > 1 && kind[i] != kind[i - 1]) {
+          done = 0
+          for (j in busy) if (busy[j] > done) done = busy[j]
+          for (j = 1; j <= wanted[k]; ++j) busy[j] = done
+        }
         least = 1
         for (j = 2; j <= wanted[k]; ++j) if (busy[j] + 0 < busy[least] + 0) least = j
         busy[least] += time[i]

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <regex>
 #include <sstream>
 
 namespace eventide::test {
@@ -264,6 +265,28 @@ TEST_F(Installed, TreeHasTheModelsTheCamerasAndTheLicence) {
           "share/bash-completion/completions/eventide", "share/zsh/vendor-completions/_eventide",
           "share/fish/vendor_completions.d/eventide.fish"})
         EXPECT_TRUE(fs::exists(prefix() + "/" + file)) << file;
+}
+
+TEST_F(Installed, SystemdHasNothingToSayOfTheService) {
+    if (run({"sh", "-c", "command -v systemd-analyze"}).exit_code != 0)
+        GTEST_SKIP() << "systemd-analyze is not installed (Debian's systemd)";
+    const auto complaints = [&](const std::string& unit) {
+        write_text(temp_ / "eventide@front.service", unit);
+        // Also of units of this machine's, which are none of ours.
+        const Result said =
+            run({"systemd-analyze", "verify", "--man=no", "./eventide@front.service"},
+                {.folder = temp_.path().string()});
+        std::string ours;
+        std::istringstream lines{said.error};
+        for (std::string line; std::getline(lines, line);)
+            if (line.find("eventide@front") != line.npos) ours += line + "\n";
+        return ours;
+    };
+    const std::string unit = std::regex_replace(
+        read_text(prefix() + "/lib/systemd/system/eventide@.service"),
+        std::regex{"ExecStart=[^ ]*"}, "ExecStart=" + prefix() + "/bin/eventide");
+    EXPECT_EQ(complaints(unit), "");
+    EXPECT_NE(complaints(unit + "NoSuchKey=1\n"), "") << "the check checks";
 }
 
 /// What dpkg says of a package: one field.
