@@ -185,7 +185,9 @@ TEST(LibcaerSession, ADvxplorerStreamsWithoutATimestampResetWithEachBoard) {
         }
         EXPECT_EQ(got.events, seen.events) << "mini " << settings.mini;
         EXPECT_EQ(parser->damaged().total(), 0U);
-        if (!settings.mini) EXPECT_EQ(got.triggers, seen.triggers);
+        if (!settings.mini) {
+            EXPECT_EQ(got.triggers, seen.triggers);
+        }
     }
 }
 
