@@ -2,6 +2,7 @@
 #include "apps/cli/settings/run_settings.h"
 
 #include "src/binning/slicer_settings.h"
+#include "src/core/error.h"
 #include "src/core/sensor_limits.h"
 #include "src/settings/setting.h"
 
