@@ -1,6 +1,7 @@
 // Any lines as arguments: refused with an Error, answered, or a command with its settings.
 #include "apps/cli/command_line.h"
 #include "apps/cli/settings/config.h"
+#include "src/core/error.h"
 #include "tests/fuzz/fuzz_file.h"
 
 #include <iostream>

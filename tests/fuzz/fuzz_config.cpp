@@ -2,6 +2,7 @@
 // means the same.
 #include "apps/cli/commands/run_command.h"
 #include "apps/cli/settings/config.h"
+#include "src/core/error.h"
 #include "tests/fuzz/fuzz_file.h"
 
 #include <sstream>
