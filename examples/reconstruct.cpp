@@ -11,16 +11,10 @@ int main(int argc, char** argv) try {
         "default", reader.width(), reader.height(),
         {.window = "auto", .lookahead = 2, .precision = eventide::Precision::f32});
     std::ofstream out(argv[2], std::ios::binary);
-    eventide::Batch batch;
-    for (bool more = true; more;) {
-        more = reader.read(batch);
-        reconstructor.push(batch);
-        if (!more) reconstructor.finish(reader.clock());
-        for (eventide::Frame frame; reconstructor.next(frame);)
-            for (const auto* plane : {&frame.intensity, &frame.sigma})
-                out.write(reinterpret_cast<const char*>(plane->values().data()),
-                          std::streamsize(plane->values().size_bytes()));
-    }
+    for (eventide::Frame frame; eventide::read_frame(reader, reconstructor, frame);)
+        for (const auto* plane : {&frame.intensity, &frame.sigma})
+            out.write(reinterpret_cast<const char*>(plane->values().data()),
+                      std::streamsize(plane->values().size_bytes()));
 } catch (const eventide::Error& error) {
     std::cerr << error.what() << '\n';
     return 1;

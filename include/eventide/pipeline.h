@@ -49,6 +49,11 @@ protected:
     EventSource& operator=(const EventSource&) = default;
 };
 
+/// The next frame of a source: reads on until it is there, and passes on what lies between: events,
+/// gaps, a live source's clock, and that the source has ended. False after the last frame. Throws
+/// what `source` throws, and Reconstructor::push() and next().
+EVENTIDE_API bool read_frame(EventSource& source, Reconstructor& reconstructor, Frame& frame);
+
 /// Where frames go: one of your own. Thread: the one that run() was called on.
 class EVENTIDE_API FrameSink {
 public:

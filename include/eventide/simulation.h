@@ -26,7 +26,7 @@ struct SimulationOptions {
     double truth_scale = 1;  ///< truth has (width - 1) scale + 1 columns: corners stay corners
     /// Folder of images that things look like, or a pack of them (eventide-pack-pictures); empty:
     /// made-up ones.
-    std::filesystem::path textures;
+    std::filesystem::path textures{};
 };
 
 /// What an ideal camera would show at one instant: [y][x], 0 black to 1 white.

@@ -1,5 +1,5 @@
 // Any bytes as what a run remembers: refused with an Error, or what is made of it does not fail.
-#include "apps/cli/run/stream_state.h"
+#include "apps/cli/run/state/stream_state.h"
 #include "src/binning/binner.h"
 #include "src/core/error.h"
 

@@ -157,6 +157,16 @@ TEST_F(Frames, GoOnInSilenceAsFarAsTheClockIsKnown) {
     EXPECT_EQ(reconstructor.newest(), from_us(1'479'999 + 20'000));
 }
 
+TEST_F(Frames, AreReadFromASourceOneByOne) {
+    EventReader reader{recording()};
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 1));
+    Frame frame;
+    std::string frames;
+    while (read_frame(reader, reconstructor, frame)) append_frame(frame, frames);
+    EXPECT_FALSE(read_frame(reader, reconstructor, frame)) << "for good";
+    EXPECT_TRUE(frames == frames_of_run(repeatable_arguments("7ms", 1)));
+}
+
 TEST_F(Frames, CarryTheMarkOfLostData) {
     Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
     const auto events = events_of(recording());

@@ -1,4 +1,4 @@
-// The implicit decoder: unfolded against hoisted against fast, and its geometry.
+// The implicit decoder: unfolded against layer 1 computed once against fast, and its geometry.
 #include "src/core/error.h"
 #include "src/model/render/plain_renderer.h"
 #include "src/model/render/renderer.h"
@@ -66,7 +66,7 @@ FrameGeometry frame_geometry_of(int height, int width, int out_height, int out_w
 const std::vector<std::pair<int, int>> kOutputs{{1, 1},   {9, 13}, {17, 25}, {18, 26},
                                                 {23, 31}, {5, 40}, {9, 1},   {1, 13}};
 
-TEST(Renderer, HoistingChangesNothing) {
+TEST(Renderer, LayerOneOncePerSampleChangesNothing) {
     for (const ModelConfig& config : every_kind()) {
         const plain::MlpRenderer<double> network{random_model(config, 3)};
         std::vector<Array3<double>> z;

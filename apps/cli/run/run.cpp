@@ -6,7 +6,7 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
-#include "apps/cli/run/run_state.h"
+#include "apps/cli/run/state/run_state.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"

@@ -13,7 +13,7 @@
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run_plan.h"
-#include "apps/cli/run/stream_state.h"
+#include "apps/cli/run/state/stream_state.h"
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"

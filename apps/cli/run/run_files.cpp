@@ -5,7 +5,7 @@
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/quality/run_quality.h"
-#include "apps/cli/run/stream_state.h"
+#include "apps/cli/run/state/stream_state.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/sink_name.h"
 #include "drivers/devices.h"

@@ -10,7 +10,7 @@ namespace eventide {
 namespace {
 
 /// Layer 1 as a convolution over the first `codes` of the three codes, joined per pixel.
-plain::ConvWeights<float> hoisted_weights(const Model& model, int codes) {
+plain::ConvWeights<float> first_layer_weights(const Model& model, int codes) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const int outputs = int(first.shape[0]), inputs = int(first.shape[1]);
     const int depth = model.config.latent, side = model.config.unfold, taps = side * side;
@@ -39,8 +39,9 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
       tile_columns_(int(std::ranges::count(tiles_, 0, &Tile::y0))),
       numbers_(arithmetic.products) {
     const auto extents = extents_of(tiles_, 0, height, width);
-    past_ = {hoisted_weights(model, 2), 1, false, arithmetic, extents, std::vector<int>(2, depth_)};
-    whole_ = {hoisted_weights(model, 3),  1, false, arithmetic, extents,
+    past_ = {first_layer_weights(model, 2), 1, false, arithmetic, extents,
+             std::vector<int>(2, depth_)};
+    whole_ = {first_layer_weights(model, 3), 1, false, arithmetic, extents,
               std::vector<int>(3, depth_)};
     for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_)};
     zeros_ = {1, kLatentSide, numbers_.units(depth_)};

@@ -30,7 +30,7 @@ struct InputMaps {
     int count = 1, size = 0;
 };
 InputMaps input_maps(int channels, const Arithmetic& arithmetic) {
-    constexpr double kMostAdded = 1.34;  // pixels in pairs, the other way, cost as much
+    constexpr double kMaxAdded = 1.34;  // pixels in pairs, the other way, cost as much
     const Numbers numbers{arithmetic.products};
     const bool is_bf16 = numbers.bf16() != nullptr;
     InputMaps best{1, channels};
@@ -38,7 +38,7 @@ InputMaps input_maps(int channels, const Arithmetic& arithmetic) {
     for (const int size : {4, 8}) {
         const int count = (channels + size - 1) / size;
         if ((is_bf16 && size == 4) || count > ConvArea::kMaxSources) continue;
-        if (count * size > kMostAdded * channels) continue;
+        if (count * size > kMaxAdded * channels) continue;
         best = {count, size};
         break;
     }

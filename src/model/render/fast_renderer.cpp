@@ -32,8 +32,8 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
       numbers_(arithmetic.products),
       first_(config_.mlp[0]),
       widest_(*std::ranges::max_element(config_.mlp)),
-      hoisted_(model, latent_samples(sensor_height, config_.latent_stride),
-               latent_samples(sensor_width, config_.latent_stride), options, arithmetic) {
+      first_layer_(model, latent_samples(sensor_height, config_.latent_stride),
+                   latent_samples(sensor_width, config_.latent_stride), options, arithmetic) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const auto inputs = std::size_t(first.shape[1]);
     for (std::size_t o = 0; o < std::size_t(first_); ++o)
@@ -61,19 +61,19 @@ std::string FastRenderer::description() const {
 }
 
 void FastRenderer::reset() noexcept {
-    hoisted_.reset();
+    first_layer_.reset();
     kept_.reset();
 }
 
 void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
-    hoisted_.push(k, latent);
+    first_layer_.push(k, latent);
 }
 
 void FastRenderer::lay_out(const FrameGeometry& geometry) {
     if (geometry == laid_out_) return;
     laid_out_ = {};  // until all is there
-    layout_.make(geometry, config_.latent_stride, config_.blend, hoisted_.row_edges(),
-                 hoisted_.column_edges());
+    layout_.make(geometry, config_.latent_stride, config_.blend, first_layer_.row_edges(),
+                 first_layer_.column_edges());
     kept_.make_room(geometry, layout_.tiles());
     spans_.reserve(std::size_t(geometry.part_height) *
                    std::size_t(layout_.columns.count() / 2 + 1));
@@ -92,9 +92,9 @@ std::array<const FirstLayerCache::Sums*, 2> FastRenderer::bring_sums(
     const std::int64_t k = codes.k + t.index;
     // What a fading live edge shows of the event window before was made without z_k.
     const bool whole = t.index == 0 && codes.next[0], next_whole = t.index == 0 && codes.next[1];
-    if (t.weight[1] == 0) return {&hoisted_.at(k, whole), nullptr};
-    if (t.weight[0] == 0) return {nullptr, &hoisted_.at(k + 1, next_whole)};
-    return hoisted_.pair(k, whole, next_whole);
+    if (t.weight[1] == 0) return {&first_layer_.at(k, whole), nullptr};
+    if (t.weight[0] == 0) return {nullptr, &first_layer_.at(k + 1, next_whole)};
+    return first_layer_.pair(k, whole, next_whole);
 }
 
 void FastRenderer::render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
@@ -138,8 +138,8 @@ bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
     if (std::abs(stamp.fraction - codes.fraction) > options_.still_time) return false;
     for (std::size_t y = r; y <= r + layout_.rows.reads_next[r]; ++y)
         for (std::size_t x = c; x <= c + layout_.columns.reads_next[c]; ++x)
-            if (!hoisted_.still(y * columns + x, stamp.k + kept.kind.oldest,
-                                codes.k + kept.kind.newest))
+            if (!first_layer_.still(y * columns + x, stamp.k + kept.kind.oldest,
+                                    codes.k + kept.kind.newest))
                 return false;
     return true;
 }
@@ -200,7 +200,7 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
         for (std::size_t o = 0; o < std::size_t(first_); ++o)
             base[o] = slope_[0][o] * float(job.t.offset[a]) + slope_[2][o] * float(y.offset[b]);
         const int sample = y.index + int(b);
-        const Array3<float>& sums = job.hoisted[a]->values;
+        const Array3<float>& sums = job.sums[a]->values;
         const std::ptrdiff_t ahead =
             sample + 1 < sums.height() ? std::ptrdiff_t(sums.width()) * sums.channels() : 0;
         for (std::size_t side = 0; side < 2; ++side)

@@ -43,7 +43,7 @@ private:
         const FrameGeometry& geometry;
         SigmaRule rule;
         AxisSamples t;
-        std::array<const FirstLayerCache::Sums*, 2> hoisted;  ///< of the samples with a weight
+        std::array<const FirstLayerCache::Sums*, 2> sums;  ///< of the samples with a weight
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
     struct Member {
@@ -85,7 +85,7 @@ private:
     Arithmetic arithmetic_;
     Numbers numbers_;
     int first_ = 0, widest_ = 0;  // outputs of layer 1, of the widest layer
-    FirstLayerCache hoisted_;
+    FirstLayerCache first_layer_;
     std::vector<PackedWeights> layers_;           // hidden layers behind the first
     std::array<std::vector<float>, 3> slope_;     // layer 1's columns for t, x, y
     std::vector<float> last_weight_, last_bias_;  // [2][H], [2]

@@ -1,5 +1,5 @@
 // The implicit decoder in two ways, for float and double: as the formula stands (27 D inputs), and
-// with layer 1 hoisted out of the query.
+// with layer 1 computed once a latent sample, not once a query.
 #pragma once
 
 #include "src/model/model_file.h"
@@ -54,13 +54,14 @@ public:
     RenderedFrame<T> render(const Codes<T>& codes, double fraction, const FrameGeometry& geometry,
                             SigmaRule rule) const {
         const AxisSamples t = time_samples(codes, fraction);
-        std::array<Array3<T>, 2> hoisted;
+        std::array<Array3<T>, 2> first_layer;
         for (int n = 0; n < 2; ++n)
-            if (t.weight[std::size_t(n)] != 0) hoisted[std::size_t(n)] = hoist(codes, t.index + n);
+            if (t.weight[std::size_t(n)] != 0)
+                first_layer[std::size_t(n)] = first_layer_of(codes, t.index + n);
         const Layer& first = layers_[0];
         return blend(codes, fraction, geometry, rule,
                      [&](int dk, int j, int i, const std::array<double, 3>& offset) {
-                         const auto pixel = hoisted[std::size_t(dk - t.index)].pixel(j, i);
+                         const auto pixel = first_layer[std::size_t(dk - t.index)].pixel(j, i);
                          std::vector<T> sum(pixel.begin(), pixel.end());
                          for (std::size_t o = 0; o < sum.size(); ++o)
                              for (std::size_t d = 0; d < 3; ++d)
@@ -120,7 +121,7 @@ private:
     }
 
     /// Layer 1 without its offset part at every sample of event window k + dk.
-    Array3<T> hoist(const Codes<T>& codes, int dk) const {
+    Array3<T> first_layer_of(const Codes<T>& codes, int dk) const {
         const Layer& first = layers_[0];
         const int side = config_.unfold, area = side * side;
         Array3<T> sums{codes[2]->height(), codes[2]->width(), first.out};

@@ -1,6 +1,6 @@
 // What a run remembers beside its networks, as a file: what comes back, and what is refused and
 // why.
-#include "apps/cli/run/stream_state.h"
+#include "apps/cli/run/state/stream_state.h"
 #include "src/core/error.h"
 
 #include <gmock/gmock.h>

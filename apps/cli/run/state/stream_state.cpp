@@ -1,6 +1,6 @@
 // Whole numbers and doubles as tensors of float, which a state file holds: in parts that float has
 // exactly.
-#include "apps/cli/run/stream_state.h"
+#include "apps/cli/run/state/stream_state.h"
 
 #include "src/core/error.h"
 #include "src/core/number_text.h"

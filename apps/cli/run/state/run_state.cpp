@@ -1,5 +1,5 @@
 // What the networks of a run remember, as one file.
-#include "apps/cli/run/run_state.h"
+#include "apps/cli/run/state/run_state.h"
 
 #include "src/core/error.h"
 
