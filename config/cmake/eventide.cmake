@@ -3,12 +3,33 @@
 set(EVENTIDE_SANITIZE "" CACHE STRING "Sanitizers, joined by '+': address+undefined, thread")
 set(EVENTIDE_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor)
 
+# GoogleTest and libtorch are compiled once for all files that read them. ccache takes part when it is told not to mind
+# the macros of such a header.
+option(EVENTIDE_PRECOMPILED_HEADERS "Compile GoogleTest's and libtorch's headers once" ON)
+if(EVENTIDE_CCACHE AND EVENTIDE_PRECOMPILED_HEADERS)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${EVENTIDE_CCACHE})
+endif()
+
+# eventide_precompile(target owner <a.h> <b.h>): target reads what owner, a target with the same options, has compiled.
+function(eventide_precompile target owner)
+  if(NOT EVENTIDE_PRECOMPILED_HEADERS OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    return()
+  endif()
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
+  if(target STREQUAL owner)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
+endfunction()
+
 function(eventide_compile target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE ${EVENTIDE_WARNINGS})
   if(EVENTIDE_SANITIZE)
     string(REPLACE "+" "," sanitizers ${EVENTIDE_SANITIZE})
-    target_compile_options(${target} PRIVATE -fsanitize=${sanitizers} -fno-omit-frame-pointer)
+    # -O1 takes half of the time to compile that -O2 takes; fuzzing wants speed more.
+    target_compile_options(${target} PRIVATE -fsanitize=${sanitizers} -fno-omit-frame-pointer $<IF:$<BOOL:${EVENTIDE_FUZZ}>,-O2,-O1>)
     target_link_options(${target} PUBLIC -fsanitize=${sanitizers})
   endif()
   if(EVENTIDE_FUZZ)
@@ -22,13 +43,16 @@ function(eventide_hide_symbols target)
 endfunction()
 
 # eventide_library(name SOURCES a.cpp b.cpp USES lib... PRIVATELY lib...): made as eventide::name.
-# PRIVATELY is for libraries that must not show in our headers.
+# PRIVATELY is for libraries that must not show in our headers, HEADERS for large ones that most of its files read.
 function(eventide_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;USES;PRIVATELY" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;USES;PRIVATELY;HEADERS" ${ARGN})
   add_library(eventide_${name} STATIC ${arg_SOURCES})
   add_library(eventide::${name} ALIAS eventide_${name})
   eventide_compile(eventide_${name})
   eventide_hide_symbols(eventide_${name})
+  if(arg_HEADERS)
+    eventide_precompile(eventide_${name} eventide_${name} ${arg_HEADERS})
+  endif()
   target_include_directories(eventide_${name} PUBLIC ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/include)
   target_link_libraries(eventide_${name} PUBLIC ${arg_USES} PRIVATE ${arg_PRIVATELY})
 endfunction()
@@ -48,10 +72,19 @@ function(eventide_program name)
   target_link_libraries(${name} PRIVATE ${arg_USES})
 endfunction()
 
+# Owns the headers that every test reads.
+if(EVENTIDE_TESTS)
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/test_headers.cpp CONTENT "int main() {}\n")
+  add_executable(eventide_test_headers EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/test_headers.cpp)
+  eventide_compile(eventide_test_headers)
+  target_link_libraries(eventide_test_headers PRIVATE GTest::gtest GTest::gmock)
+  eventide_precompile(eventide_test_headers eventide_test_headers <gtest/gtest.h> <gmock/gmock.h>)
+endif()
+
 # eventide_test(name SOURCES test_a.cpp USES eventide::x LABELS unit): one GoogleTest program, run by ctest
-# test by test. Labels: unit kernels threads realtime system slow.
+# test by test (with a sanitizer in one go). Labels: unit kernels threads realtime system slow.
 function(eventide_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;USES;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;USES;LABELS;HEADERS" ${ARGN})
   if(NOT EVENTIDE_TESTS)
     return()
   endif()
@@ -60,13 +93,25 @@ function(eventide_test name)
   endif()
   add_executable(test_${name} ${arg_SOURCES} ${eventide_test_sources} ${eventide_sanitizer_sources})
   eventide_compile(test_${name})
+  if(arg_HEADERS)
+    eventide_precompile(test_${name} test_${name} ${arg_HEADERS} <gtest/gtest.h> <gmock/gmock.h>)
+  else()
+    eventide_precompile(test_${name} eventide_test_headers)
+  endif()
   target_link_libraries(test_${name} PRIVATE ${arg_USES} GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_definitions(test_${name} PRIVATE EVENTIDE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # One label that `ctest -L` finds each of them in: a list would come apart on its way into the discovered tests'
   # properties ("LABELS a b c" labels with a alone, and sets a property b to c).
   list(JOIN arg_LABELS "," labels)
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS "${labels}" TIMEOUT ${arg_TIMEOUT})
+  if(EVENTIDE_SANITIZE)
+    # A sanitizer's start takes a second, which is more than most tests take: one process runs all of them.
+    math(EXPR seconds "4 * ${arg_TIMEOUT}")
+    add_test(NAME test_${name} COMMAND test_${name} --gtest_brief=1)
+    set_tests_properties(test_${name} PROPERTIES LABELS "${labels}" TIMEOUT ${seconds})
+  else()
+    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60
+      PROPERTIES LABELS "${labels}" TIMEOUT ${arg_TIMEOUT})
+  endif()
 endfunction()
 
 # eventide_bench(name SOURCES bench_a.cpp USES ...): one Google Benchmark program.
