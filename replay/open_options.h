@@ -3,6 +3,7 @@
 
 #include "src/codec/text/text_layout.h"
 
+#include <functional>
 #include <string>
 
 namespace eventide {
@@ -14,6 +15,8 @@ struct OpenOptions {
     /// Documents disagree on bit 0 of DVS128 addresses: jAER, which wrote most files, reads 0 as
     /// on; the vendor's text says 1. Used by AEDAT 1.0 and 2.0.
     bool dvs128_one_is_on = false;
+    /// Asked every 20 ms while a pipe has no bytes yet: true ends the opening with Error (failed).
+    std::function<bool()> give_up{};
 };
 
 }  // namespace eventide

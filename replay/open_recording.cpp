@@ -18,7 +18,7 @@ namespace {
 constexpr std::ptrdiff_t kRowsOfStreamToSee = 3;
 
 /// The beginning of the file. Of a pipe only as much as it takes to know the format.
-std::vector<std::byte> read_head(ByteFile& file) {
+std::vector<std::byte> read_head(ByteFile& file, const OpenOptions& options) {
     std::vector<std::byte> head;
     if (file.is_seekable()) {
         head.resize(std::size_t(std::min<std::uint64_t>(kHeadBytes, file.size())));
@@ -28,7 +28,7 @@ std::vector<std::byte> read_head(ByteFile& file) {
     head.resize(kHeadBytes);
     std::size_t size = 0;
     while (size < head.size()) {
-        const std::size_t n = file.read_some(std::span(head).subspan(size));
+        const std::size_t n = file.read_some(std::span(head).subspan(size), options.give_up);
         if (n == 0) break;
         size += n;
         const auto read = std::span(head).first(size);
@@ -124,7 +124,7 @@ std::unique_ptr<FileRecording> open_as_stream(ByteFile file, std::vector<std::by
 
 std::unique_ptr<Recording> open_file(const std::string& path, const OpenOptions& options) {
     ByteFile file(path);
-    std::vector<std::byte> head = read_head(file);
+    std::vector<std::byte> head = read_head(file, options);
     const Format& format = choose_format(file, head, options);
     if (format.open_path != nullptr) return open_by_path(file, format, options);
     return open_as_stream(std::move(file), std::move(head), format, options);
@@ -133,7 +133,7 @@ std::unique_ptr<Recording> open_file(const std::string& path, const OpenOptions&
 std::unique_ptr<FileRecording> open_events_of(const std::string& folder,
                                               const OpenOptions& options) {
     ByteFile file((std::filesystem::path(folder) / "events.txt").string());
-    std::vector<std::byte> head = read_head(file);
+    std::vector<std::byte> head = read_head(file, options);
     const Format& format = choose_format(file, head, options);
     return open_as_stream(std::move(file), std::move(head), format, options);
 }

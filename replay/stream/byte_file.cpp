@@ -27,7 +27,8 @@ namespace {
 
 ByteFile::ByteFile(const std::string& path) : path_(path == "-" ? "standard input" : path) {
     owned_ = path != "-";
-    fd_ = owned_ ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC) : STDIN_FILENO;
+    // Not blocking: a named pipe would hold the call until someone writes to it.
+    fd_ = owned_ ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) : STDIN_FILENO;
     if (fd_ < 0) fail(path_, "open");
     struct stat facts {};
     if (::fstat(fd_, &facts) != 0) fail(path_, "examine");
@@ -56,8 +57,10 @@ ByteFile::ByteFile(ByteFile&& other) noexcept
       position_(other.position_),
       stopped_(other.stopped_.load()) {}
 
-bool ByteFile::wait_for_bytes() const {
+bool ByteFile::wait_for_bytes(const std::function<bool()>& give_up) const {
     while (!stopped_) {
+        if (give_up && give_up())
+            throw Error(ErrorKind::failed, path_ + ": stopped while waiting for the first bytes");
         pollfd watched{fd_, POLLIN, 0};
         const int ready = ::poll(&watched, 1, 20);  // ms: how late stop() may be heard
         if (ready > 0) return true;
@@ -66,14 +69,14 @@ bool ByteFile::wait_for_bytes() const {
     return false;
 }
 
-std::size_t ByteFile::read_some(std::span<std::byte> into) {
+std::size_t ByteFile::read_some(std::span<std::byte> into, const std::function<bool()>& give_up) {
     if (stopped_) return 0;
     if (seekable_) {
         const std::size_t n = read_at(position_, into);
         position_ += n;
         return n;
     }
-    while (wait_for_bytes()) {
+    while (wait_for_bytes(give_up)) {
         const ssize_t n = ::read(fd_, into.data(), into.size());
         if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
         if (n < 0) fail(path_, "read");

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace eventide {
 class ByteFile {
 public:
     /// `path` "-" is standard input. Throws Error (input) naming the path when it cannot be opened
-    /// or is a directory.
+    /// or is a directory. A pipe without writer opens at once: its first bytes are waited for.
     explicit ByteFile(const std::string& path);
     ~ByteFile();
     ByteFile(ByteFile&& other) noexcept;
@@ -28,8 +29,9 @@ public:
     std::uint64_t position() const { return position_; }
 
     /// Reads what is there, at least one byte unless the end is reached or stop() was called.
-    /// Returns the number of bytes, 0 at the end.
-    std::size_t read_some(std::span<std::byte> into);
+    /// Returns the number of bytes, 0 at the end. `give_up`, where there is one, is asked every
+    /// 20 ms that there are none: true throws Error (failed).
+    std::size_t read_some(std::span<std::byte> into, const std::function<bool()>& give_up = {});
 
     /// Reads until `into` is full or the end.
     std::size_t read_all(std::span<std::byte> into);
@@ -43,7 +45,7 @@ public:
     bool stopped() const noexcept { return stopped_; }
 
 private:
-    bool wait_for_bytes() const;
+    bool wait_for_bytes(const std::function<bool()>& give_up) const;
 
     std::string path_;
     int fd_ = -1;

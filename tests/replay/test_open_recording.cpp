@@ -5,6 +5,7 @@
 #include "tests/replay/made_formats.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -187,6 +188,40 @@ TEST(OpenRecording, StopEndsAReadThatWaits) {
     ASSERT_EQ(recording->read(packet), ReadStatus::data);
     std::jthread stopper([&] { recording->stop(); });
     EXPECT_EQ(recording->read(packet), ReadStatus::end);  // the pipe is open and empty
+}
+
+TEST(OpenRecording, APipeWithoutWriterOrBytesIsGivenUpOnRequest) {
+    const TestFolder folder;
+    const std::string named = folder.path("pipe");
+    ASSERT_EQ(::mkfifo(named.c_str(), 0600), 0);
+    const Pipe silent;
+    for (const std::string& path : {named, silent.path()}) {
+        int asked = 0;
+        OpenOptions options;
+        options.give_up = [&] { return ++asked == 3; };
+        try {
+            open_recording(path, options);
+            ADD_FAILURE() << path;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::failed);
+            EXPECT_THAT(error.what(), HasSubstr(path + ": stopped while waiting"));
+        }
+        EXPECT_EQ(asked, 3);
+    }
+}
+
+TEST(OpenRecording, ANamedPipeWaitsForItsWriter) {
+    const TestFolder folder;
+    const std::string named = folder.path("pipe");
+    ASSERT_EQ(::mkfifo(named.c_str(), 0600), 0);
+    OpenOptions options;
+    std::jthread writer;
+    options.give_up = [&] {  // asked once nobody has written: now someone does
+        if (!writer.joinable())
+            writer = std::jthread{[&] { folder.write("pipe", "240 180\n0.1 1 2 1\n0.2 3 4 0\n"); }};
+        return false;
+    };
+    EXPECT_EQ(read_everything(*open_recording(named, options)).events.size(), 2U);
 }
 
 TEST(OpenRecording, ChunksAreOfBoundedSize) {

@@ -3,9 +3,13 @@
 
 #include <gmock/gmock.h>
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <vector>
 
 namespace eventide::test {
 namespace {
@@ -44,6 +48,27 @@ TEST_F(Signals, ASecondSignalQuitsAtOnce) {
     while (process.running()) process.signal(SIGTERM);
     // Any thread may take a signal: which of the two is the second is not told.
     EXPECT_THAT(process.wait().exit_code, testing::AnyOf(128 + SIGINT, 128 + SIGTERM));
+}
+
+TEST_F(Signals, APipeThatSaysNothingIsLeftAtTheFirstSignal) {
+    const std::string pipe = temp_ / "events";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"run", pipe, "--out", "frames/"},
+          {"info", pipe},
+          {"convert", pipe, "out.csv"}}) {
+        Process process = start(command);
+        const int writer = ::open(pipe.c_str(), O_WRONLY | O_CLOEXEC);  // returns when it reads
+        process.signal(SIGTERM);
+        const Result result = process.wait();
+        ::close(writer);
+        EXPECT_EQ(result.exit_code, 1) << command[0];
+        EXPECT_NE(result.error.find(pipe + ": stopped while waiting for the first bytes"),
+                  std::string::npos)
+            << result.error;
+    }
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "frames"));
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "out.csv"));
 }
 
 TEST_F(Signals, AClosedTerminalEndsLikeSigtermHoweverOftenItHangsUp) {

@@ -132,7 +132,8 @@ int ConvertCommand::run(Program& program) {
         program.files.writes("TO", to_file_);
     else if (!to_udp)
         name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
-    const auto recording = open_input(from_file_, input_);
+    const auto recording =
+        open_input(from_file_, input_, [&program] { return program.signals.stopping(); });
     const TimePointReader times{from_file_, options};
     ConvertOptions how;
     if (from_) how.from = times.time_of(*from_);

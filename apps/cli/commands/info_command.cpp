@@ -94,7 +94,8 @@ SettingTable InfoCommand::settings() {
 
 int InfoCommand::run(Program& program) {
     if (file_.ends_with(".safetensors")) return describe_model();
-    const auto recording = open_input(file_, input_);
+    const auto recording =
+        open_input(file_, input_, [&program] { return program.signals.stopping(); });
     Progress progress{program.quiet};
     const Summary summary = summarize(*recording, [&] {
         if (recording->size_bytes() > 0)

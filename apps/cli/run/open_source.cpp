@@ -29,9 +29,10 @@ void refuse_unknown_prefix(const std::string& source) {
                     "input");
 }
 
-OpenedSource open_file(const RunSettings& settings, double speed) {
+OpenedSource open_file(const RunSettings& settings, double speed,
+                       const std::function<bool()>& give_up) {
     refuse_unknown_prefix(settings.source);
-    auto recording = open_input(settings.source, settings.input);
+    auto recording = open_input(settings.source, settings.input, give_up);
     OpenedSource opened;
     if (speed > 0) {
         auto paced = std::make_unique<RealTimePlayback>(std::move(recording), speed);
@@ -73,7 +74,7 @@ OpenedSource open_source(const RunSettings& settings, double speed,
         opened.source =
             open_camera(settings.source, {settings.camera, settings.reconnect, give_up});
     else
-        opened = open_file(settings, speed);
+        opened = open_file(settings, speed, give_up);
     check_size(*opened.source, settings.source);
     return opened;
 }

@@ -6,6 +6,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 namespace eventide::app {
 
 void InputSettings::add_to(SettingTable& table) {
@@ -71,8 +73,11 @@ Setting filter_setting(std::vector<std::string>& filters) {
         "Filter the events, any number of times, in this order: " + data_filter_names() + ".");
 }
 
-std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input) {
-    auto recording = open_recording(path, input.options());
+std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input,
+                                      std::function<bool()> give_up) {
+    OpenOptions options = input.options();
+    options.give_up = std::move(give_up);
+    auto recording = open_recording(path, options);
     for (const std::string& remark : recording->remarks()) spdlog::warn("{}: {}", path, remark);
     return recording;
 }

@@ -6,6 +6,7 @@
 #include "src/settings/setting.h"
 #include "src/settings/values.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +25,8 @@ struct InputSettings {
 /// --filter, for every command that hands events on.
 Setting filter_setting(std::vector<std::string>& filters);
 
-/// open_recording(), and its remarks as warnings.
-std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input);
+/// open_recording(), and its remarks as warnings. `give_up` as in OpenOptions.
+std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input,
+                                      std::function<bool()> give_up);
 
 }  // namespace eventide::app
