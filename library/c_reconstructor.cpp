@@ -76,20 +76,6 @@ Reconstructor& it(eventide_reconstructor* reconstructor) {
     return given(reconstructor, "a reconstructor").it;
 }
 
-eventide_status show(const Frame& from, eventide_frame& frame) {
-    frame.t = to_us(from.t);
-    frame.window_begin = to_us(from.window.begin);
-    frame.window_end = to_us(from.window.end);
-    frame.index = from.index;
-    frame.events = from.events;
-    frame.width = from.intensity.width();
-    frame.height = from.intensity.height();
-    frame.intensity = from.intensity.values().data();
-    frame.sigma = from.sigma.empty() ? nullptr : from.sigma.values().data();
-    frame.gap_before = from.gap_before ? 1 : 0;
-    return EVENTIDE_OK;
-}
-
 }  // namespace
 
 extern "C" {
@@ -153,7 +139,7 @@ eventide_status eventide_next(eventide_reconstructor* reconstructor, eventide_fr
         Reconstructor& from = it(reconstructor);
         eventide_frame& into = given(frame, "a frame");
         if (!from.next(reconstructor->frame)) return EVENTIDE_NONE;
-        return show(reconstructor->frame, into);
+        return show_frame(*reconstructor, into);
     });
 }
 
@@ -181,7 +167,7 @@ eventide_status eventide_render(eventide_reconstructor* reconstructor, int64_t t
             from.render(from_us(t), reconstructor->frame);
         else
             from.render(from_us(t), size_of(*size), reconstructor->frame);
-        return show(reconstructor->frame, into);
+        return show_frame(*reconstructor, into);
     });
 }
 

@@ -2,25 +2,20 @@
 #include "library/c_call.h"
 #include "library/c_handles.h"
 
+#include <eventide/camera.h>
+#include <eventide/reader.h>
+
 #include <memory>
 
 using namespace eventide;
 
 namespace {
 
-template <typename... Arguments>
+template <typename Opened, typename... Arguments>
 eventide_status open_source(eventide_source** opened, Arguments&&... arguments) {
     given(opened, "a place for the source") = nullptr;
-    *opened = new eventide_source{{std::forward<Arguments>(arguments)...}};
+    *opened = new eventide_source{std::make_unique<Opened>(std::forward<Arguments>(arguments)...)};
     return EVENTIDE_OK;
-}
-
-bool read_on(eventide_source& source) {
-    return std::visit([&](auto& it) { return it.read(source.batch); }, source.it);
-}
-
-std::optional<SensorTime> clock_of(const eventide_source& source) {
-    return std::visit([](const auto& it) { return it.clock(); }, source.it);
 }
 
 }  // namespace
@@ -31,7 +26,7 @@ eventide_status eventide_recording_open(const char* path, const char* format, in
                                         eventide_source** opened) {
     return c_call([&] {
         const ReaderOptions options{format == nullptr ? "" : format, width, height};
-        return open_source(opened, EventReader{&given(path, "a recording"), options});
+        return open_source<EventReader>(opened, &given(path, "a recording"), options);
     });
 }
 
@@ -39,7 +34,7 @@ eventide_status eventide_camera_open(const char* name, const char* settings,
                                      eventide_source** opened) {
     return c_call([&] {
         const CameraSettings chosen{settings == nullptr ? "" : settings, false};
-        return open_source(opened, EventCamera{&given(name, "a camera"), chosen});
+        return open_source<EventCamera>(opened, &given(name, "a camera"), chosen);
     });
 }
 
@@ -48,13 +43,11 @@ void eventide_source_close(eventide_source* source) {
 }
 
 int eventide_source_width(const eventide_source* source) {
-    if (source == nullptr) return 0;
-    return std::visit([](const auto& it) { return it.width(); }, source->it);
+    return source == nullptr ? 0 : source->it->info().width;
 }
 
 int eventide_source_height(const eventide_source* source) {
-    if (source == nullptr) return 0;
-    return std::visit([](const auto& it) { return it.height(); }, source->it);
+    return source == nullptr ? 0 : source->it->info().height;
 }
 
 eventide_status eventide_reconstructor_open_for(const eventide_source* source, const char* model,
@@ -75,7 +68,7 @@ eventide_status eventide_read(eventide_source* source, const eventide_event** ev
         eventide_source& from = given(source, "a source");
         given(events, "a place for events") = nullptr;
         given(count, "a place for the number of events") = 0;
-        if (!read_on(from)) return EVENTIDE_NONE;
+        if (!from.it->read(from.batch)) return EVENTIDE_NONE;
         from.events.clear();
         for (const Event& e : from.batch.events)
             from.events.push_back({to_us(e.t), e.x, e.y, std::uint8_t(e.polarity)});
@@ -89,34 +82,26 @@ eventide_status eventide_read_into(eventide_source* source, eventide_reconstruct
     return c_call([&] {
         eventide_source& from = given(source, "a source");
         Reconstructor& into = given(reconstructor, "a reconstructor").it;
-        if (!read_on(from)) return EVENTIDE_NONE;
-        const auto* camera = std::get_if<EventCamera>(&from.it);
-        if (camera != nullptr && camera->gap_before()) into.mark_gap();
-        into.push(from.batch);
-        if (const auto clock = clock_of(from); camera != nullptr && clock) into.advance(*clock);
+        if (!from.it->read(from.batch)) return EVENTIDE_NONE;
+        push_from(*from.it, from.batch, into);
         return EVENTIDE_OK;
     });
 }
 
 eventide_status eventide_read_frame(eventide_source* source, eventide_reconstructor* reconstructor,
                                     eventide_frame* frame) {
-    for (;;) {
-        if (const auto found = eventide_next(reconstructor, frame); found != EVENTIDE_NONE)
-            return found;
-        const eventide_status read = eventide_read_into(source, reconstructor);
-        if (read != EVENTIDE_OK && read != EVENTIDE_NONE) return read;
-        if (read == EVENTIDE_OK) continue;
-        const eventide_status finished = c_call([&] {
-            reconstructor->it.finish(clock_of(*source));
-            return EVENTIDE_OK;
-        });
-        return finished == EVENTIDE_OK ? eventide_next(reconstructor, frame) : finished;
-    }
+    return c_call([&] {
+        EventSource& from = *given(source, "a source").it;
+        eventide_reconstructor& with = given(reconstructor, "a reconstructor");
+        eventide_frame& into = given(frame, "a frame");
+        if (!read_frame(from, with.it, with.frame)) return EVENTIDE_NONE;
+        return show_frame(with, into);
+    });
 }
 
 eventide_status eventide_source_clock(const eventide_source* source, int64_t* t) {
     return c_call([&] {
-        const auto clock = clock_of(given(source, "a source"));
+        const auto clock = given(source, "a source").it->clock();
         int64_t& into = given(t, "a place for the time");
         if (!clock) return EVENTIDE_NONE;
         into = to_us(*clock);
@@ -126,7 +111,7 @@ eventide_status eventide_source_clock(const eventide_source* source, int64_t* t)
 
 eventide_status eventide_seek(eventide_source* source, int64_t t) {
     return c_call([&] {
-        auto* reader = std::get_if<EventReader>(&given(source, "a source").it);
+        auto* reader = dynamic_cast<EventReader*>(given(source, "a source").it.get());
         if (reader == nullptr)
             throw Error(ErrorKind::usage, "seek: expected a recording, found a camera");
         reader->seek(from_us(t));

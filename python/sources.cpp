@@ -3,6 +3,7 @@
 #include "python/parts.h"
 
 #include <eventide/camera.h>
+#include <eventide/pipeline.h>
 #include <eventide/reader.h>
 #include <eventide/writer.h>
 
@@ -43,23 +44,13 @@ py::array next(Source<T>& source) {
     }
 }
 
-void push(const EventReader&, const Batch& batch, Reconstructor& into) {
-    into.push(batch);
-}
-
-void push(const EventCamera& camera, const Batch& batch, Reconstructor& into) {
-    if (camera.gap_before()) into.mark_gap();
-    into.push(batch);
-    if (const auto clock = camera.clock()) into.advance(*clock);
-}
-
 template <typename T>
 bool read_into(Source<T>& source, GuardedReconstructor& reconstructor) {
     check_signals();
     return source.with([&](T& it) {
         if (!it.read(source.batch)) return false;
         const std::lock_guard lock{reconstructor.mutex};
-        push(it, source.batch, reconstructor.it);
+        push_from(it, source.batch, reconstructor.it);
         return true;
     });
 }

@@ -49,8 +49,13 @@ protected:
     EventSource& operator=(const EventSource&) = default;
 };
 
-/// The next frame of a source: reads on until it is there, and passes on what lies between: events,
-/// gaps, a live source's clock, and that the source has ended. False after the last frame. Throws
+/// Pushes what `source` has just read into `batch`: the gap before it, where data were lost, its
+/// events and times of images, and a live source's clock. Throws what Reconstructor::push() throws.
+EVENTIDE_API void push_from(const EventSource& source, const Batch& batch,
+                            Reconstructor& reconstructor);
+
+/// The next frame of a source: reads on until it is there, with push_from() for each batch, and
+/// finishes where the source has ended. False after the last frame. Throws
 /// what `source` throws, and Reconstructor::push() and next().
 EVENTIDE_API bool read_frame(EventSource& source, Reconstructor& reconstructor, Frame& frame);
 
