@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures a model: docs/accuracy/tables.md, figures beside it as SVG and CSV, and the targets in docs/accuracy.md.
+# Measures a model: docs/accuracy/tables.md, figures beside it (their numbers in csv/), and the targets in docs/accuracy.md.
 #   scripts/accuracy.sh DATA [MODEL [SECTION...]]
 # DATA holds recordings/, images/bsds500/ and perceptual/lpips_squeeze_v0.1.npz; MODEL is a name or a file (default).
 # SECTION: real calibration simulated sigma super-resolution silence; without: all of them.
@@ -171,6 +171,8 @@ awk -v text="$kept/targets.md" '
   /<!-- targets end -->/ { skip = 0 }
   !skip' docs/accuracy.md > "$kept/page.md"
 cat "$kept/page.md" > docs/accuracy.md
+mkdir -p "$out/csv"
+for numbers in "$out"/*.csv; do [ ! -e "$numbers" ] || mv "$numbers" "$out/csv"; done
 echo "accuracy: $out/tables.md" >&2
 times > "$kept/times" # of this shell, then of what it ran: user, system
 awk 'NR == 2 { print "accuracy: " $1 " + " $2 " of processor time" }' "$kept/times" >&2

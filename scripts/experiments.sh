@@ -2,21 +2,21 @@
 # Small networks trained at equal budgets and scored alike: the tables of research/experiments.md, "Experiments".
 #   scripts/experiments.sh DATA [EXPERIMENT...]     without EXPERIMENT: all of them
 #   scripts/experiments.sh --tables                 only writes the tables again
-# A finished run (a file in research/experiments/) is not repeated, so the script may be stopped at any time. A
+# A finished run (a line of research/experiments.csv) is not repeated, so the script may be stopped at any time. A
 # run's budget is MINUTES of processor time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK,
 # EVENTIDE name the programs, OUT the folder of the runs (out/experiments).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-build=build/release/src
+build=build/release/apps
 train=${TRAIN:-$build/train/eventide-train}
 pack=${PACK:-$build/train/eventide-pack-pictures}
-program=${EVENTIDE:-$build/app/eventide}
+program=${EVENTIDE:-$build/cli/eventide}
 minutes=${MINUTES:-5}
 out=${OUT:-out/experiments}
-results=research/experiments
+results=research/experiments.csv
 page=research/experiments.md
 export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-# An allocator that keeps memory between steps, where there is one (docs/training.md).
+# An allocator that keeps memory between steps, where there is one.
 jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { path = $NF } END { print path }')
 keep_memory=(env ${jemalloc:+LD_PRELOAD=$jemalloc
   MALLOC_CONF=dirty_decay_ms:-1,muzzy_decay_ms:-1,narenas:4,oversize_threshold:0,thp:always})
@@ -77,9 +77,14 @@ experiment combined   "base narrow full-only cheap levels5 cheap5" "The best of 
 # One line of scores from a file that eventide evaluate wrote: MSE, SSIM, LPIPS, PICP80 over everything.
 scores() { awk -F, 'END { printf "%.4f,%.3f,%.3f,%.3f", $3, $4, $5, $10 }' "$1"; }
 
+# The line of a run at a budget, where it has one.
+result_of() { # RUN MINUTES
+  [ ! -e "$results" ] || awk -F, -v run="$1" -v minutes="$2" '$1 == minutes && $2 == run' "$results"
+}
+
 train_and_score() {
-  local name=$1 folder=$out/$1-$minutes result=$results/$1-$minutes.csv
-  [ -e "$result" ] && return
+  local name=$1 folder=$out/$1-$minutes
+  [ -z "$(result_of "$name" "$minutes")" ] || return 0
   echo "experiments: $name: ${options[$name]}" >&2
   rm -rf "$folder"
   mkdir -p "$folder"
@@ -107,40 +112,40 @@ train_and_score() {
   write_result "$row,$(scores "$folder/simulated0.csv"),$(scores "$folder/simulated2.csv"),$(scores "$folder/real.csv")"
 }
 
-header="run,options,steps"
+header="minutes,run,options,steps"
 for where in held_out simulated simulated_lookahead2 real; do
   header+=,${where}_mse,${where}_$([ $where = held_out ] && echo dssim || echo ssim),${where}_lpips,${where}_picp80
 done
 
-# `result` is the file of the run at hand, whole or not there.
+# Adds the line of the run at hand: whole, or not there.
 write_result() {
-  mkdir -p "$results"
-  printf '%s\n%s\n' "$header" "$1" > "$result.part"
-  mv "$result.part" "$result"
+  { if [ -e "$results" ]; then cat "$results"; else echo "$header"; fi; echo "$minutes,$1"; } > "$results.part"
+  mv "$results.part" "$results"
 }
 
 # One table: the runs of an experiment that have results at a budget, where there are two or more.
 write_table() { # EXPERIMENT MINUTES
-  local one rows=() how="scripts/experiments.sh DATA $1"
+  local one row rows=() how="scripts/experiments.sh DATA $1"
   for one in ${experiments[$1]}; do
-    [ -e "$results/$one-$2.csv" ] && rows+=("$results/$one-$2.csv")
+    row=$(result_of "$one" "$2")
+    [ -z "$row" ] || rows+=("$row")
   done
   [ ${#rows[@]} -ge 2 ] || return 0
   [ "$2" = 5 ] || how="MINUTES=$2 $how"
   printf '\n**%s**, %s minutes a run (`%s`)\n\n' "${title[$1]}" "$2" "$how"
   printf '| run | options | steps | held-out scenes | simulated | lookahead 2 | real |\n|---|---|---|---|---|---|---|\n'
-  awk -F, 'FNR > 1 {
-    gsub(";", ",", $2) # the commas of options
-    printf "| %s | %s | %s |", $1, $2 == "" ? "" : "`" $2 "`", $3
-    for (i = 4; i < 20; i += 4) if ($i == "-") printf " - |"; else printf " %s %s %s (%s) |", $i, $(i+1), $(i+2), $(i+3)
+  printf '%s\n' "${rows[@]}" | awk -F, '{
+    gsub(";", ",", $3) # the commas of options
+    printf "| %s | %s | %s |", $2, $3 == "" ? "" : "`" $3 "`", $4
+    for (i = 5; i < 21; i += 4) if ($i == "-") printf " - |"; else printf " %s %s %s (%s) |", $i, $(i+1), $(i+2), $(i+3)
     print ""
-  }' "${rows[@]}"
+  }'
 }
 
 # The part of the page between its two marks, from the results; the longest runs of an experiment first.
 write_tables() {
   local text=$out/tables.md name budgets budget
-  budgets=$(for name in "$results"/*.csv; do name=${name%.csv}; echo "${name##*-}"; done | sort -rnu)
+  budgets=$(awk -F, 'NR > 1 { print $1 }' "$results" | sort -rnu)
   for name in "${order[@]}"; do
     for budget in $budgets; do write_table "$name" "$budget"; done
   done > "$text"
