@@ -61,6 +61,7 @@ std::pair<SettingTable, SettingTable> resolve(Invocation& invocation, CommonSett
     for (const auto& command : all_commands()) defaults.push_back(command->settings());
     SettingTable shared = common.table();
     std::vector<const SettingTable*> tables{&shared};
+    tables.reserve(1 + defaults.size());
     for (const SettingTable& table : defaults) tables.push_back(&table);
 
     ConfigFile file;
@@ -116,9 +117,11 @@ std::string default_config() {
     CommonSettings common;
     const auto commands = all_commands();
     std::vector<SettingTable> defaults;
+    defaults.reserve(commands.size());
     for (const auto& command : commands) defaults.push_back(command->settings());
     const SettingTable shared = common.table();
     std::vector<const SettingTable*> tables{&shared};
+    tables.reserve(1 + defaults.size());
     for (const SettingTable& table : defaults) tables.push_back(&table);
     std::ostringstream text;
     text << "# Every key, with its default. Use a copy of what you change: eventide --config "

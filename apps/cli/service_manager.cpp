@@ -2,6 +2,7 @@
 #include "apps/cli/service_manager.h"
 
 #include "apps/cli/printable.h"
+#include "src/core/environment.h"
 #include "src/core/number_text.h"
 
 #include <sys/socket.h>
@@ -10,7 +11,6 @@
 #include <unistd.h>
 
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
 
 namespace eventide::app {
@@ -18,7 +18,7 @@ namespace eventide::app {
 namespace {
 
 std::string variable(const char* name) {
-    const char* value = std::getenv(name);
+    const char* value = environment_value(name);
     return value == nullptr ? "" : value;
 }
 

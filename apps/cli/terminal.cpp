@@ -3,6 +3,7 @@
 
 #include "apps/cli/printable.h"
 #include "apps/cli/service_manager.h"
+#include "src/core/environment.h"
 #include "src/core/error.h"
 
 #include <spdlog/pattern_formatter.h>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <utility>
@@ -83,8 +83,8 @@ void refuse_terminal(const std::string& option, bool force) {
 }
 
 bool colour_allowed() {
-    const char* refused = std::getenv("NO_COLOR");
-    const char* terminal = std::getenv("TERM");
+    const char* refused = environment_value("NO_COLOR");
+    const char* terminal = environment_value("TERM");
     return on_terminal() && (refused == nullptr || *refused == '\0') &&
            (terminal == nullptr || std::string_view{terminal} != "dumb");
 }

@@ -13,9 +13,10 @@ struct Ros2Environment {
     std::string config;
 };
 
-/// `variable` gives a variable's value, or null; std::getenv in the program. Reads ROS_DOMAIN_ID,
-/// ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and CYCLONEDDS_URI, as
-/// rmw_cyclonedds_cpp does. Throws Error (usage) for a value that makes no sense.
+/// `variable` gives a variable's value, or null: environment_value() in programs. Reads
+/// ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and
+/// CYCLONEDDS_URI, as rmw_cyclonedds_cpp does. Throws Error (usage) for a value that makes no
+/// sense.
 Ros2Environment ros2_environment(const std::function<const char*(const char*)>& variable);
 
 }  // namespace eventide

@@ -1,11 +1,11 @@
 // Our place in a DDS domain.
 #include "pipeline/ros2/participant.h"
 
+#include "src/core/environment.h"
 #include "src/core/error.h"
 
 #include <dds/ddsrt/log.h>
 
-#include <cstdlib>
 #include <mutex>
 #include <utility>
 
@@ -80,8 +80,7 @@ std::shared_ptr<Participant> Participant::join() {
     const std::lock_guard lock{mutex};
     std::shared_ptr<Participant> participant = joined.lock();
     if (!participant) {
-        participant = std::make_shared<Participant>(
-            ros2_environment([](const char* name) { return std::getenv(name); }));
+        participant = std::make_shared<Participant>(ros2_environment(environment_value));
         joined = participant;
     }
     return participant;

@@ -2,12 +2,12 @@
 #include "pipeline/ros2/participant.h"
 #include "pipeline/ros2/ros2_sink.h"
 #include "pipeline/ros2/socket_buffer.h"
+#include "src/core/environment.h"
 #include "src/core/error.h"
 
 #include <dds/ddsrt/log.h>
 #include <dds/version.h>
 
-#include <cstdlib>
 #include <mutex>
 #include <string_view>
 
@@ -63,7 +63,7 @@ Ros2State look_at_ros2() {
     constexpr std::size_t kLargeImage = std::size_t{1280} * 720;
     const std::size_t most = largest_socket_buffer();
     try {
-        auto environment = ros2_environment([](const char* name) { return std::getenv(name); });
+        auto environment = ros2_environment(environment_value);
         environment.config += kTellChoices;
         HeardChoice choice;
         const Participant participant{std::move(environment)};

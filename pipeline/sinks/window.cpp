@@ -2,12 +2,12 @@
 #include "pipeline/sinks/window.h"
 
 #include "pipeline/sinks/highgui.h"
+#include "src/core/environment.h"
 #include "src/core/error.h"
 
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string_view>
 #include <utility>
 
@@ -16,7 +16,7 @@ namespace eventide {
 namespace {
 
 std::string_view environment(const char* name) {
-    const char* value = std::getenv(name);
+    const char* value = environment_value(name);
     return value == nullptr ? std::string_view{} : std::string_view{value};
 }
 

@@ -47,12 +47,12 @@ struct SlicerSettings {
 
     /// The first window's begin: earlier events are left out. Empty: 1 us before the first event or
     /// clock, so that the first event is inside.
-    std::optional<SensorTime> begin;
+    std::optional<SensorTime> begin{};
     /// Later events are left out and the last window ends here. Empty: at the stream's end.
-    std::optional<SensorTime> end;
+    std::optional<SensorTime> end{};
     /// Where a live stream's times are not known before: the end is this long after the first
     /// window's begin, in silence too.
-    std::optional<SensorDuration> duration;
+    std::optional<SensorDuration> duration{};
 };
 
 /// "50ms", "20000ev", "0.35epp" (events per pixel) or "aps" (reference images); durations in us,

@@ -72,6 +72,10 @@ const char* name_of(const Arithmetic& arithmetic) {
     return onednn_has_amx() ? "bf16 (oneDNN, AMX)" : "bf16 (oneDNN)";
 }
 
+std::string engine_name(const Arithmetic& arithmetic) {
+    return std::string{"fast, "} + name_of(arithmetic);
+}
+
 bool bf16_available() {
     return bf16_kernels() != nullptr;
 }

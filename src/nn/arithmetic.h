@@ -1,6 +1,8 @@
 // With which numbers and by whom the fast layers make their products.
 #pragma once
 
+#include <string>
+
 namespace eventide {
 
 enum class Products {
@@ -20,6 +22,8 @@ struct Arithmetic {
 
 /// "AVX2", "bf16 (AVX512_BF16)", "bf16 (AMX)", "bf16 (oneDNN, AMX)", ...
 const char* name_of(const Arithmetic& arithmetic);
+/// What encoders and renderers of the optimized kernels are called: "fast, AVX2", ...
+std::string engine_name(const Arithmetic& arithmetic);
 
 /// Whether this processor has bf16 products, and our kernels use them.
 bool bf16_available();

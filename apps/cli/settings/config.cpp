@@ -2,11 +2,11 @@
 #include "apps/cli/settings/config.h"
 
 #include "apps/cli/printable.h"
+#include "src/core/environment.h"
 #include "src/core/error.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <ostream>
 #include <sstream>
 #include <string_view>
@@ -127,7 +127,7 @@ void resolve_settings(SettingTable& table, const ConfigFile& file,
                       const std::map<std::string, std::vector<std::string>>& flags) {
     for (Setting& setting : table.settings) {
         const std::string variable = environment_of(table, setting);
-        const char* const from_environment = std::getenv(variable.c_str());
+        const char* const from_environment = environment_value(variable.c_str());
         const std::string path = path_of(table, setting);
         if (const auto flag = flags.find(setting.key); flag != flags.end()) {
             set(setting, flag->second, "flag " + flag_of(setting));

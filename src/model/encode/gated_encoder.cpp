@@ -42,7 +42,7 @@ GatedEncoder::GatedEncoder(const Model& model, int height, int width, const Engi
 }
 
 std::string GatedEncoder::description() const {
-    return std::string{"fast, "} + name_of(arithmetic_);
+    return engine_name(arithmetic_);
 }
 
 void GatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {

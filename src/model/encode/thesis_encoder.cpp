@@ -64,7 +64,7 @@ ThesisEncoder::ThesisEncoder(const Model& model, int height, int width,
 }
 
 std::string ThesisEncoder::description() const {
-    return std::string{"fast, "} + name_of(arithmetic_);
+    return engine_name(arithmetic_);
 }
 
 void ThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {

@@ -57,7 +57,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
 }
 
 std::string FastRenderer::description() const {
-    return std::string{"fast, "} + name_of(arithmetic_);
+    return engine_name(arithmetic_);
 }
 
 void FastRenderer::reset() noexcept {

@@ -2,12 +2,12 @@
 #include "apps/cli/run/quality/profile_cache.h"
 
 #include "apps/cli/printable.h"
+#include "src/core/environment.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -20,7 +20,7 @@ namespace {
 
 /// The standard has relative ones ignored.
 fs::path absolute_folder(const char* variable) {
-    const char* const value = std::getenv(variable);
+    const char* const value = environment_value(variable);
     const fs::path path = value == nullptr ? "" : value;
     return path.is_absolute() ? path : fs::path{};
 }

@@ -11,7 +11,7 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds kLook{0.5};              // shorter spans jump
-constexpr Seconds kCalm{5}, kMaxCalm{80};  // before a step up
+constexpr Seconds kRaiseWait{5}, kMaxRaiseWait{80};  // before a step up
 constexpr Seconds kTakenBack{15}, kForgotten{60};
 constexpr unsigned kStrainedLooks = 3;
 constexpr double kHolds = 0.9, kComfortable = 0.75, kEasy = 0.6;
@@ -27,7 +27,7 @@ QualityControl::QualityControl(PrecisionCost profile, std::vector<QualityLevel> 
       demand_{demand},
       encode_factor_{1 / std::max(demand.threads, 1.0)},
       frame_factor_{encode_factor_},
-      calm_{kCalm} {}
+      raise_wait_{kRaiseWait} {}
 
 NetworkLoad QualityControl::load_at(std::size_t level) const {
     const NetworkLoad load = load_of(profile_, levels_[level], demand_);
@@ -88,7 +88,7 @@ bool QualityControl::lower(Seconds now) {
         while (to + 1 < levels_.size() && !holds(to, kComfortable)) ++to;
     }
     if (to >= levels_.size()) return false;
-    if (now - raised_ < kTakenBack) calm_ = std::min(2 * calm_, kMaxCalm);
+    if (now - raised_ < kTakenBack) raise_wait_ = std::min(2 * raise_wait_, kMaxRaiseWait);
     return move(to, now);
 }
 
@@ -97,14 +97,14 @@ bool QualityControl::raise(Seconds now) {
     std::size_t to = 0;
     while (to < at_ && !holds(to, kEasy)) ++to;
     if (to == at_) calm_since_ = now;
-    if (now - calm_since_ < calm_) return false;
+    if (now - calm_since_ < raise_wait_) return false;
     raised_ = now;
     return move(to, now);
 }
 
 void QualityControl::forget(Seconds now) {
     if (now - settled_ < kForgotten) return;
-    calm_ = std::max(calm_ / 2, kCalm);
+    raise_wait_ = std::max(raise_wait_ / 2, kRaiseWait);
     settled_ = now;
 }
 

@@ -65,7 +65,7 @@ private:
     bool merging_ = false;
     QualityMeasure before_;
     unsigned strained_ = 0;  // looks in a row
-    Seconds calm_since_{0}, raised_{-1e9}, settled_{0}, calm_;
+    Seconds calm_since_{0}, raised_{-1e9}, settled_{0}, raise_wait_;
 };
 
 }  // namespace eventide::app
