@@ -109,8 +109,8 @@ void EventWindows::stop_at(std::vector<SensorTime> times, std::function<void(Sen
     at_stop_ = std::move(at);
 }
 
-void EventWindows::resume(SensorTime t, const Slicer::Memory& memory) {
-    slicer_.restore(memory);
+void EventWindows::resume(SensorTime t, const Slicer::State& state) {
+    slicer_.restore(state);
     resumed_at_ = t;
 }
 

@@ -40,11 +40,11 @@ public:
     /// At each of the times (ascending), once all events up to it were cut and before any other is:
     /// `at` takes the event windows that there are. Of recordings.
     void stop_at(std::vector<SensorTime> times, std::function<void(SensorTime)> at);
-    /// Slicer::memory().
-    std::optional<Slicer::Memory> memory() const { return slicer_.memory(); }
+    /// Slicer::state().
+    std::optional<Slicer::State> state() const { return slicer_.state(); }
     /// Goes on from such a stop at t: events up to then are left out, whatever the source gives.
     /// Throws as Slicer::restore().
-    void resume(SensorTime t, const Slicer::Memory& memory);
+    void resume(SensorTime t, const Slicer::State& memory);
     /// After the last packet. Where the end was asked for, half a record in hand is no damage.
     enum class End { of_source, asked_for };
     void finish(End end);

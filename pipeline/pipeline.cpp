@@ -177,13 +177,13 @@ void Pipeline::cut(const RawPacket& packet) {
     event_windows_.take(packet);
 }
 
-void Pipeline::keep_memory(SensorTime t) {
-    const auto slicer = event_windows_.memory();
+void Pipeline::keep_state(SensorTime t) {
+    const auto slicer = event_windows_.state();
     if (!slicer)
         throw Error(ErrorKind::input, "the state at " + std::to_string(to_us(t)) +
                                           " us: expected events before, windows that images do "
                                           "not cut, and a clock that did not begin anew");
-    settings_.memory_stops.keep({t, *slicer, binner_.ages()});
+    settings_.state_stops.keep({t, *slicer, binner_.ages()});
 }
 
 void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
@@ -234,7 +234,7 @@ Encoded Pipeline::make_encoded() const {
 // ---- starting, ending, failing ---------------------------------------------------------------
 
 void Pipeline::run() {
-    if (!settings_.memory_stops.times.empty())
+    if (!settings_.state_stops.times.empty())
         throw Error(ErrorKind::usage, "states on the way: expected a sequential run");
     {
         std::jthread reading, binning, encoding;
@@ -256,9 +256,9 @@ void Pipeline::run_sequential() {
         encode_one(grid, encoded);
         presenting = presenting && guarded([&] { present_one(encoded); });
     };
-    event_windows_.stop_at(settings_.memory_stops.times, [&](SensorTime t) {
+    event_windows_.stop_at(settings_.state_stops.times, [&](SensorTime t) {
         for_each_event_window(hand_on);
-        keep_memory(t);
+        keep_state(t);
     });
     const auto reads = [&] {
         bool more = false;

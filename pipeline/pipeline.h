@@ -8,12 +8,12 @@
 #include "pipeline/frame_output.h"
 #include "pipeline/link.h"
 #include "pipeline/pace/latency_keeper.h"
+#include "pipeline/pipeline_state.h"
 #include "pipeline/pool.h"
 #include "pipeline/sink.h"
 #include "pipeline/source.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"
-#include "pipeline/stream_memory.h"
 #include "src/binning/binner.h"
 
 #include <cstddef>
@@ -43,10 +43,11 @@ struct PipelineSettings {
     bool event_preview = false;     ///< fill Frame::event_preview
     bool events_per_pixel = false;  ///< fill LatentMap::events_per_pixel
     PipelineBuffers buffers;
-    LiveChanges* changes = nullptr;        ///< borrowed; null: nothing is changed while it runs
-    const StreamMemory* resume = nullptr;  ///< borrowed until it is constructed; null: from nothing
-    MemoryStops memory_stops;              ///< of run_sequential() alone
-    unsigned halvings = 0;  ///< every 2^n-th frame is rendered, until that is changed
+    LiveChanges* changes = nullptr;  ///< borrowed; null: nothing is changed while it runs
+    const PipelineState* resume =
+        nullptr;             ///< borrowed until it is constructed; null: from nothing
+    StateStops state_stops;  ///< of run_sequential() alone
+    unsigned halvings = 0;   ///< every 2^n-th frame is rendered, until that is changed
 };
 
 /// All borrowed for the pipeline's life; filter and observer may be null.
@@ -92,7 +93,7 @@ private:
     Pool<RawPacket>::Handle packet_to_fill();
     void hand_on(const EventWindow& event_window);
     void cut(const RawPacket& packet);
-    void keep_memory(SensorTime t);
+    void keep_state(SensorTime t);
     void bin_one(const EventWindow& event_window, VoxelGrid& grid);
     void encode_one(const VoxelGrid& grid, Encoded& encoded);
     void present_one(const Encoded& encoded);

@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 build=build/release/apps
 train=${TRAIN:-$build/train/eventide-train}
-pack=${PACK:-$build/train/eventide-pack-pictures}
+pack=${PACK:-$build/train/eventide-pack-images}
 program=${EVENTIDE:-$build/cli/eventide}
 minutes=${MINUTES:-5}
 out=${OUT:-out/experiments}

@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 [ $# -ge 2 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 build=build/release/apps/train
 train=${TRAIN:-$build/eventide-train}
-pack=${PACK:-$build/eventide-pack-pictures}
+pack=${PACK:-$build/eventide-pack-images}
 out=${OUT:-out/${MODEL:-train}}
 packs=${PACKS:-out/train}
 checkpoint=config/models/checkpoints/${MODEL:-default}.safetensors

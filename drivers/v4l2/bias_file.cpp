@@ -25,8 +25,8 @@ constexpr int kMaxDepth = 16;  // of JSON, which is printed recursively
 
 /// What a message shows of what it found.
 std::string piece_of(const std::string& text) {
-    constexpr std::size_t kMost = 160;
-    return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+    constexpr std::size_t kMaxShown = 160;
+    return text.size() <= kMaxShown ? text : text.substr(0, kMost) + "...";
 }
 
 std::string text_in(const std::filesystem::path& file) {

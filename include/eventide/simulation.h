@@ -24,7 +24,7 @@ struct SimulationOptions {
     double images_per_second = 0;   ///< images of the camera in Batch::images; 0: none
     double truths_per_second = 25;  ///< 0: none
     double truth_scale = 1;  ///< truth has (width - 1) scale + 1 columns: corners stay corners
-    /// Folder of images that things look like, or a pack of them (eventide-pack-pictures); empty:
+    /// Folder of images that things look like, or a pack of them (eventide-pack-images); empty:
     /// made-up ones.
     std::filesystem::path textures{};
 };

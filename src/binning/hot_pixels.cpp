@@ -21,26 +21,26 @@ std::size_t HotPixels::count() const {
         std::ranges::count_if(pixels_, [](const Pixel& pixel) { return pixel.hot; }));
 }
 
-HotPixels::Memory HotPixels::memory() const {
-    Memory memory{{}, {}, interval_end_};
+HotPixels::State HotPixels::state() const {
+    State state{{}, {}, interval_end_};
     for (const Pixel& pixel : pixels_) {
-        memory.events.push_back(pixel.events);
-        memory.hot.push_back(pixel.hot ? 1 : 0);
+        state.events.push_back(pixel.events);
+        state.hot.push_back(pixel.hot ? 1 : 0);
     }
-    return memory;
+    return state;
 }
 
-void HotPixels::restore(const Memory& memory) {
-    if (memory.events.size() != pixels_.size() || memory.hot.size() != pixels_.size())
-        throw Error(ErrorKind::input, "hot pixels: expected a memory of " +
+void HotPixels::restore(const State& state) {
+    if (state.events.size() != pixels_.size() || state.hot.size() != pixels_.size())
+        throw Error(ErrorKind::input, "hot pixels: expected the state of " +
                                           std::to_string(pixels_.size()) + " pixels, found " +
-                                          std::to_string(memory.events.size()) + " and " +
-                                          std::to_string(memory.hot.size()));
+                                          std::to_string(state.events.size()) + " and " +
+                                          std::to_string(state.hot.size()));
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
-        pixels_[i].events = memory.events[i] & 0x7FFF'FFFF;
-        pixels_[i].hot = memory.hot[i] != 0;
+        pixels_[i].events = state.events[i] & 0x7FFF'FFFF;
+        pixels_[i].hot = state.hot[i] != 0;
     }
-    interval_end_ = memory.interval_end;
+    interval_end_ = state.interval_end;
 }
 
 void HotPixels::renew(SensorTime t) noexcept {

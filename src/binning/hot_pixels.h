@@ -34,15 +34,15 @@ public:
     std::size_t count() const;
 
     /// All that it has learned, to go on from elsewhere.
-    struct Memory {
+    struct State {
         std::vector<std::uint32_t> events;  ///< [y][x], of the open interval
         std::vector<std::uint8_t> hot;      ///< [y][x], 0 or 1
         std::optional<SensorTime> interval_end;
-        friend bool operator==(const Memory&, const Memory&) = default;
+        friend bool operator==(const State&, const State&) = default;
     };
-    Memory memory() const;
-    /// Throws Error (input) for a memory of another sensor, and is then as it was.
-    void restore(const Memory& memory);
+    State state() const;
+    /// Throws Error (input) for the state of another sensor, and is then as it was.
+    void restore(const State& state);
 
 private:
     struct Pixel {

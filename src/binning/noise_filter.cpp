@@ -176,27 +176,27 @@ NoiseFilter::Support NoiseFilter::support_of(std::size_t own, const Event& event
     return found;
 }
 
-NoiseFilter::Memory NoiseFilter::memory() const {
+NoiseFilter::State NoiseFilter::state() const {
     return {newest_, polarity_, tiles_,    interval_,
-            last_,   noise_hz_, measured_, hot_pixels_.memory()};
+            last_,   noise_hz_, measured_, hot_pixels_.state()};
 }
 
-void NoiseFilter::restore(const Memory& memory) {
-    if (memory.newest.size() != newest_.size() || memory.polarity.size() != polarity_.size() ||
-        memory.tiles.size() != tiles_.size())
-        throw Error(ErrorKind::input, "noise filter: expected a memory of " +
+void NoiseFilter::restore(const State& state) {
+    if (state.newest.size() != newest_.size() || state.polarity.size() != polarity_.size() ||
+        state.tiles.size() != tiles_.size())
+        throw Error(ErrorKind::input, "noise filter: expected the state of " +
                                           std::to_string(newest_.size()) + " pixels and " +
                                           std::to_string(tiles_.size()) + " tiles, found " +
-                                          std::to_string(memory.newest.size()) + " and " +
-                                          std::to_string(memory.tiles.size()));
-    hot_pixels_.restore(memory.hot_pixels);
-    newest_ = memory.newest;
-    polarity_ = memory.polarity;
-    tiles_ = memory.tiles;
-    interval_ = memory.interval;
-    last_ = memory.last;
-    measured_ = memory.measured;
-    set_noise(memory.noise_hz);
+                                          std::to_string(state.newest.size()) + " and " +
+                                          std::to_string(state.tiles.size()));
+    hot_pixels_.restore(state.hot_pixels);
+    newest_ = state.newest;
+    polarity_ = state.polarity;
+    tiles_ = state.tiles;
+    interval_ = state.interval;
+    last_ = state.last;
+    measured_ = state.measured;
+    set_noise(state.noise_hz);
 }
 
 std::string noise_filter_text(const NoiseFilterSettings& settings) {

@@ -67,7 +67,7 @@ public:
     };
     /// All that it has learned, to go on from elsewhere: with the same settings it leaves out what
     /// this one would have.
-    struct Memory {
+    struct State {
         /// [y + 1][x + 1], with a rim of one pixel; of each pixel's newest event, SensorTime::min()
         /// where there was none
         std::vector<SensorTime> newest;
@@ -76,12 +76,12 @@ public:
         std::optional<SensorTime> interval, last;
         double noise_hz = 0;
         bool measured = false;
-        HotPixels::Memory hot_pixels;
-        friend bool operator==(const Memory&, const Memory&) = default;
+        HotPixels::State hot_pixels;
+        friend bool operator==(const State&, const State&) = default;
     };
-    Memory memory() const;
-    /// Throws Error (input) for a memory of another sensor, and is then as it was.
-    void restore(const Memory& memory);
+    State state() const;
+    /// Throws Error (input) for the state of another sensor, and is then as it was.
+    void restore(const State& state);
 
 private:
     static constexpr int kTile = 8;

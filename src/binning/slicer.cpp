@@ -81,34 +81,34 @@ void Slicer::reset() {
     if (settings_.begin) begin_at(*settings_.begin);
 }
 
-std::optional<Slicer::Memory> Slicer::memory() const {
+std::optional<Slicer::State> Slicer::state() const {
     if (!begin_ || newest_event_ == SensorTime::min() || !first_stream_ ||
         settings_.rule == WindowRule::reference)
         return std::nullopt;
-    return Memory{
+    return State{
         *begin_,    origin_, newest_, newest_event_,
         same_time_, silent_, gap_,    {pending_.begin() + std::ptrdiff_t(head_), pending_.end()}};
 }
 
-void Slicer::restore(const Memory& memory) {
+void Slicer::restore(const State& state) {
     constexpr SensorTime kFarthest{SensorDuration{std::int64_t{1} << 60}};  // sums of times fit
     const auto in_order = [](const Event& a, const Event& b) { return a.t < b.t; };
-    if (memory.origin < SensorTime{-kFarthest.time_since_epoch()} || memory.newest > kFarthest ||
-        memory.origin > memory.begin || memory.begin > memory.newest || memory.silent < 0 ||
-        memory.newest_event > memory.newest || !std::ranges::is_sorted(memory.events, in_order) ||
-        (!memory.events.empty() &&
-         (memory.events.front().t <= memory.begin || memory.events.back().t > memory.newest_event)))
+    if (state.origin < SensorTime{-kFarthest.time_since_epoch()} || state.newest > kFarthest ||
+        state.origin > state.begin || state.begin > state.newest || state.silent < 0 ||
+        state.newest_event > state.newest || !std::ranges::is_sorted(state.events, in_order) ||
+        (!state.events.empty() &&
+         (state.events.front().t <= state.begin || state.events.back().t > state.newest_event)))
         throw Error(ErrorKind::input,
                     "event windows: expected events in order within the open window, found others");
     reset();
-    begin_ = memory.begin;
-    origin_ = memory.origin;
-    newest_ = memory.newest;
-    newest_event_ = memory.newest_event;
-    same_time_ = memory.same_time;
-    silent_ = std::min(memory.silent, settings_.silent_windows);
-    gap_ = memory.gap;
-    pending_ = memory.events;
+    begin_ = state.begin;
+    origin_ = state.origin;
+    newest_ = state.newest;
+    newest_event_ = state.newest_event;
+    same_time_ = state.same_time;
+    silent_ = std::min(state.silent, settings_.silent_windows);
+    gap_ = state.gap;
+    pending_ = state.events;
 }
 
 void Slicer::begin_at(SensorTime begin) {

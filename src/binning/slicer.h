@@ -69,22 +69,22 @@ public:
     void reset();
 
     /// What is open, to go on from elsewhere. Of a stream whose clock was not reset.
-    struct Memory {
+    struct State {
         SensorTime begin{}, origin{};  ///< of the open window; of the edges of rule duration
         SensorTime newest{}, newest_event{};
         std::uint64_t same_time = 0;
         int silent = 0;
         bool gap = false;
         std::vector<Event> events;  ///< of the open window, in order
-        friend bool operator==(const Memory&, const Memory&) = default;
+        friend bool operator==(const State&, const State&) = default;
     };
     /// Once next() gave no more event window. Empty before anything came, after a reset of the
     /// clock, and with rule reference, which remembers images.
-    std::optional<Memory> memory() const;
+    std::optional<State> state() const;
     /// Of a slicer of the same settings that has seen nothing; `begin` and `end` of the settings
-    /// hold for what comes. Throws Error (input) for a memory that holds no truth, and is then as
+    /// hold for what comes. Throws Error (input) for a state that holds no truth, and is then as
     /// it was.
-    void restore(const Memory& memory);
+    void restore(const State& state);
 
 private:
     /// Where time went back: events from `index` on are a new stream; the old one ends at `final`.

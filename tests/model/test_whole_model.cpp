@@ -119,7 +119,7 @@ void compare(const Model& model, int height, int width, int steps, int render_ev
         }
     }
     for (const Run& run : runs) {
-        std::printf("  %-14s codes: worst %.2g, rms %.2g %%; pictures: worst %.2g, rms %.2g %%\n",
+        std::printf("  %-14s codes: worst %.2g, rms %.2g %%; frames: worst %.2g, rms %.2g %%\n",
                     run.name.c_str(), run.codes.most, 100 * run.codes.share(), run.frames.most,
                     100 * run.frames.share());
         EXPECT_LE(run.codes.share(), run.bf16 ? kBf16Share : kFloatTolerance) << run.name;

@@ -40,7 +40,7 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"run", recording(), "--window", "soon", "--out", "null"}, "--window");
     expect(2, {"run", recording(), "--size", "big", "--out", "null"}, "--size");
     expect(2, {"run", recording(), "--roi", "60,0,30x10", "--out", "null"}, "");
-    expect(2, {"run", recording(), "--out", "picture.bmp"}, "picture.bmp");
+    expect(2, {"run", recording(), "--out", "frame.bmp"}, "frame.bmp");
     expect(2, {"run", recording(), "--out", "-", "--out", "gray8:-"}, "standard output");
     expect(2, {"run", recording(), "--out", "a.mp4", "--uncertainty", "alpha"}, "alpha");
     expect(2, {"run", recording(), "--out", "a.mp4", "--video-preset", "quick"}, "quick");

@@ -191,11 +191,11 @@ void Run::resume() {
     if (noise != nullptr) noise->restore(*resumed_->noise);
 }
 
-void Run::keep_state(const StreamMemory& memory) {
+void Run::keep_state(const PipelineState& memory) {
     StreamState state{memory, std::nullopt, window_text(slicer_),
                       noise_filter_of(settings_, network_.config())};
     if (const NoiseFilter* const noise = noise_filter_in(filter_.get()))
-        state.noise = noise->memory();
+        state.noise = noise->state();
     TensorFile file = state_of(network_, nullptr);
     put_stream_state(state, sensor_.width, file);
     write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);

@@ -51,7 +51,7 @@ private:
     PipelineParts parts();
     PipelineSettings pipeline_settings();
     void resume();
-    void keep_state(const StreamMemory& memory);
+    void keep_state(const PipelineState& memory);
     void run_pipeline();
     CameraCounters camera_counters() const;
     RunProgress progress() const;

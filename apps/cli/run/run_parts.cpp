@@ -83,8 +83,8 @@ PipelineSettings Run::pipeline_settings() {
     settings.frames_from = span_.frames_from;
     if (settings_.out.empty()) settings.frames_from = from_us(std::int64_t{1} << 60);  // none
     if (resumed_) settings.resume = &resumed_->stream;
-    settings.memory_stops = {states_at_,
-                             [this](const StreamMemory& memory) { keep_state(memory); }};
+    settings.state_stops = {states_at_,
+                            [this](const PipelineState& memory) { keep_state(memory); }};
     settings.lookahead = lookahead_;
     settings.latency = latency_of(settings_, live());
     settings.reset_on_gap = settings_.reset_on_gap;

@@ -79,7 +79,7 @@ private:
     // How much a packet may seem too early, and how much all of them too late, without a wrap being
     // wrong: a reference from packets that were all late is that much off, too.
     static constexpr std::int64_t kEarlySlackUs = kWrapUs / 2, kLateSlackUs = kWrapUs / 3;
-    static constexpr std::int64_t kPatienceUs = 300'000;  ///< until a guess is believed
+    static constexpr std::int64_t kGuessTimeoutUs = 300'000;  ///< until a guess is believed
     static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
     /// Since a loss: what was guessed, and what packets since then showed.
@@ -147,10 +147,10 @@ private:
             return shift(-std::min(impossible, doubt_->guessed), damage);
         }
         doubt_->least_late = std::min(doubt_->least_late, late);
-        if (*arrived_ - doubt_->window_began < kPatienceUs) return;
+        if (*arrived_ - doubt_->window_began < kGuessTimeoutUs) return;
         const std::int64_t missing = (doubt_->least_late + kLateSlackUs) / kWrapUs;
         if (missing > 0) return shift(missing, damage);
-        if (*arrived_ - doubt_->lost_at >= kPatienceUs) return doubt_.reset();
+        if (*arrived_ - doubt_->lost_at >= kGuessTimeoutUs) return doubt_.reset();
         *doubt_ = Doubt{.lost_at = doubt_->lost_at, .window_began = *arrived_};
     }
 

@@ -28,7 +28,7 @@ StreamState made_state() {
     StreamState state;
     state.window = "50ms";
     state.noise_filter = "auto";
-    state.noise = filter.memory();
+    state.noise = filter.state();
     state.stream.t = last.t + SensorDuration{7};
     state.stream.slicer = {last.t - SensorDuration{90'000'000'000},
                            last.t - SensorDuration{90'000'000'003},

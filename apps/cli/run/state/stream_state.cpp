@@ -38,8 +38,8 @@ Tensor made(std::vector<std::int64_t> shape, std::vector<float> values) {
     return {std::move(shape), std::move(values)};
 }
 
-void put_slicer(const StreamMemory& stream, TensorFile& file) {
-    const Slicer::Memory& slicer = stream.slicer;
+void put_slicer(const PipelineState& stream, TensorFile& file) {
+    const Slicer::State& slicer = stream.slicer;
     auto& words = file.metadata;
     words["stream.t_us"] = text_of(stream.t);
     words["stream.begin_us"] = text_of(slicer.begin);
@@ -59,7 +59,7 @@ void put_slicer(const StreamMemory& stream, TensorFile& file) {
         made({std::int64_t(slicer.events.size()), kEventValues}, std::move(events));
 }
 
-void put_noise(const NoiseFilter::Memory& noise, SensorTime t, std::int64_t width,
+void put_noise(const NoiseFilter::State& noise, SensorTime t, std::int64_t width,
                TensorFile& file) {
     auto& words = file.metadata;
     words["stream.noise_interval_us"] = text_of(noise.interval);
@@ -83,7 +83,7 @@ void put_noise(const NoiseFilter::Memory& noise, SensorTime t, std::int64_t widt
     file.tensors["stream.noise_on"] = made({high, wide}, std::move(on));
     file.tensors["stream.noise_tiles"] =
         made({std::int64_t(noise.tiles.size()), kTileValues}, std::move(tiles));
-    const HotPixels::Memory& hot = noise.hot_pixels;
+    const HotPixels::State& hot = noise.hot_pixels;
     file.tensors["stream.hot_events"] =
         made({high - 2, width}, {hot.events.begin(), hot.events.end()});
     file.tensors["stream.hot"] = made({high - 2, width}, {hot.hot.begin(), hot.hot.end()});
@@ -153,10 +153,10 @@ double bits_at(const std::vector<float>& values, std::size_t at) {
     return std::bit_cast<double>(bits);
 }
 
-StreamMemory stream_of(const Kept& kept, int width, int height) {
-    StreamMemory stream;
+PipelineState stream_of(const Kept& kept, int width, int height) {
+    PipelineState stream;
     stream.t = kept.time("stream.t_us");
-    Slicer::Memory& slicer = stream.slicer;
+    Slicer::State& slicer = stream.slicer;
     slicer.begin = kept.time("stream.begin_us");
     slicer.origin = kept.time("stream.origin_us");
     slicer.newest = kept.time("stream.newest_us");
@@ -181,8 +181,8 @@ StreamMemory stream_of(const Kept& kept, int width, int height) {
     return stream;
 }
 
-NoiseFilter::Memory noise_of(const Kept& kept, SensorTime t, int width, int height) {
-    NoiseFilter::Memory noise;
+NoiseFilter::State noise_of(const Kept& kept, SensorTime t, int width, int height) {
+    NoiseFilter::State noise;
     noise.interval = kept.time_or_none("stream.noise_interval_us");
     noise.last = kept.time_or_none("stream.noise_last_us");
     noise.measured = kept.number("stream.noise_measured") != 0;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "apps/cli/settings/run_settings.h"
-#include "pipeline/stream_memory.h"
+#include "pipeline/pipeline_state.h"
 #include "src/binning/noise_filter.h"
 #include "src/model/model_config.h"
 #include "src/nn/safetensors.h"
@@ -16,8 +16,8 @@
 namespace eventide::app {
 
 struct StreamState {
-    StreamMemory stream;
-    std::optional<NoiseFilter::Memory> noise;
+    PipelineState stream;
+    std::optional<NoiseFilter::State> noise;
     /// How events were cut and filtered: window_text(), noise_filter_text() or "off".
     std::string window, noise_filter;
 };

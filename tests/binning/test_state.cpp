@@ -36,7 +36,7 @@ std::vector<SlicerSettings> rules() {
     return {by_duration(7000), by_count(300, 20'000), by_content(.01)};
 }
 
-TEST(SlicerMemory, AnotherGoesOnWithTheSameWindows) {
+TEST(SlicerState, AnotherGoesOnWithTheSameWindows) {
     const std::vector<Event> events = lively(5000, 3);
     for (const SlicerSettings& settings : rules())
         for (const std::size_t stop : {1U, 700U, 2500U, 4999U}) {
@@ -44,10 +44,10 @@ TEST(SlicerMemory, AnotherGoesOnWithTheSameWindows) {
             std::vector<Kept> ours, theirs;
             first.push(part(events, 0, stop));
             take(first, ours);
-            const auto memory = first.memory();
-            ASSERT_TRUE(memory);
-            second.restore(*memory);
-            EXPECT_EQ(second.memory(), memory);
+            const auto state = first.state();
+            ASSERT_TRUE(state);
+            second.restore(*state);
+            EXPECT_EQ(second.state(), state);
             ours.clear();
             for (Slicer* slicer : {&first, &second}) {
                 std::vector<Kept>& into = slicer == &first ? ours : theirs;
@@ -61,28 +61,28 @@ TEST(SlicerMemory, AnotherGoesOnWithTheSameWindows) {
         }
 }
 
-TEST(SlicerMemory, ThereIsNoneOfWhatCannotGoOn) {
+TEST(SlicerState, ThereIsNoneOfWhatCannotGoOn) {
     Slicer empty{by_duration(1000), 240, 180}, images{by_reference(1000), 240, 180},
         reset{by_duration(1000), 240, 180};
-    EXPECT_FALSE(empty.memory());
+    EXPECT_FALSE(empty.state());
     images.push(std::vector{at(5)});
-    EXPECT_FALSE(images.memory());
+    EXPECT_FALSE(images.state());
     reset.push(std::vector{at(5000), at(7)});
     std::vector<Kept> kept;
     take(reset, kept);
-    EXPECT_FALSE(reset.memory()) << "its clock began anew";
+    EXPECT_FALSE(reset.state()) << "its clock began anew";
 }
 
-TEST(SlicerMemory, WhatHoldsNoTruthIsRefused) {
+TEST(SlicerState, WhatHoldsNoTruthIsRefused) {
     Slicer slicer{by_duration(1000), 240, 180};
-    Slicer::Memory good{from_us(1000), from_us(0),          from_us(1500), from_us(1500), 1, 0,
-                        false,         {at(1200), at(1500)}};
+    Slicer::State good{from_us(1000), from_us(0),          from_us(1500), from_us(1500), 1, 0,
+                       false,         {at(1200), at(1500)}};
     slicer.restore(good);
     const auto refused = [&](auto spoil) {
-        Slicer::Memory bad = good;
+        Slicer::State bad = good;
         spoil(bad);
         EXPECT_THROW(slicer.restore(bad), Error);
-        EXPECT_EQ(slicer.memory(), good) << "as it was";
+        EXPECT_EQ(slicer.state(), good) << "as it was";
     };
     refused([](auto& m) { m.origin = from_us(2000); });
     refused([](auto& m) { m.newest = from_us(900); });
@@ -94,15 +94,15 @@ TEST(SlicerMemory, WhatHoldsNoTruthIsRefused) {
     refused([](auto& m) { std::ranges::reverse(m.events); });
 }
 
-TEST(NoiseFilterMemory, AnotherLeavesOutTheSame) {
+TEST(NoiseFilterState, AnotherLeavesOutTheSame) {
     const std::vector<Event> events = lively(40'000, 4);
     for (const std::size_t stop : {1U, 12'345U, 39'000U}) {
         NoiseFilter first{240, 180, {}}, second{240, 180, {}};
         std::vector<Event> before = part(events, 0, stop);
         first.process(before);
-        const NoiseFilter::Memory memory = first.memory();
-        second.restore(memory);
-        EXPECT_EQ(second.memory(), memory);
+        const NoiseFilter::State state = first.state();
+        second.restore(state);
+        EXPECT_EQ(second.state(), state);
         EXPECT_EQ(second.within(), first.within());
         std::vector<Event> ours = part(events, stop, events.size()), theirs = ours;
         NoiseFilter fresh{240, 180, {}};
@@ -117,15 +117,15 @@ TEST(NoiseFilterMemory, AnotherLeavesOutTheSame) {
     }
 }
 
-TEST(NoiseFilterMemory, OfAnotherSensorIsRefused) {
+TEST(NoiseFilterState, OfAnotherSensorIsRefused) {
     NoiseFilter filter{240, 180, {}};
-    EXPECT_THROW(filter.restore(NoiseFilter{180, 200, {}}.memory()), Error);
-    NoiseFilter::Memory hot = filter.memory();
+    EXPECT_THROW(filter.restore(NoiseFilter{180, 200, {}}.state()), Error);
+    NoiseFilter::State hot = filter.state();
     hot.hot_pixels.hot.pop_back();
     EXPECT_THROW(filter.restore(hot), Error);
 }
 
-TEST(BinnerMemory, AnotherKnowsTheAges) {
+TEST(BinnerState, AnotherKnowsTheAges) {
     Binner first{3, 180, 240}, second{3, 180, 240}, fresh{3, 180, 240};
     VoxelGrid ours = first.make_output(), theirs = second.make_output(),
               without = fresh.make_output();

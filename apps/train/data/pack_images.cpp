@@ -1,4 +1,4 @@
-// eventide-pack-pictures: photographs into the one file that eventide-train reads.
+// eventide-pack-images: photographs into the one file that eventide-train reads.
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/io/output_file.h"
@@ -15,7 +15,7 @@ namespace {
 using namespace eventide;
 
 constexpr const char* kUsage =
-    "eventide-pack-pictures OUT LONGEST (FOLDER FIRST COUNT)...\n"
+    "eventide-pack-images OUT LONGEST (FOLDER FIRST COUNT)...\n"
     "Images FIRST .. FIRST + COUNT - 1 of each folder, by name (COUNT 0: all from FIRST on),\n"
     "as grey images of at most LONGEST px.\n";
 
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
         write_texture_pack(words[0], images);
         std::cout << images.size() << " images\n";
     } catch (const Error& error) {
-        std::cerr << "eventide-pack-pictures: " << error.what() << "\n";
+        std::cerr << "eventide-pack-images: " << error.what() << "\n";
         return int(error.kind());
     }
     return 0;

@@ -11,17 +11,17 @@ namespace eventide {
 
 /// Once all events up to `t` have come and none after it. With the encoder's state and the filter's
 /// at that moment, another run goes on where this one was.
-struct StreamMemory {
+struct PipelineState {
     SensorTime t{};
-    Slicer::Memory slicer;
+    Slicer::State slicer;
     std::vector<std::uint8_t> ages;  ///< Binner::ages()
 };
 
 /// Moments at which somebody keeps it.
-struct MemoryStops {
+struct StateStops {
     std::vector<SensorTime> times;  ///< ascending
     /// Every event window up to there has been encoded. May throw.
-    std::function<void(const StreamMemory&)> keep;
+    std::function<void(const PipelineState&)> keep;
 };
 
 }  // namespace eventide
