@@ -26,7 +26,7 @@ constexpr int kMaxDepth = 16;  // of JSON, which is printed recursively
 /// What a message shows of what it found.
 std::string piece_of(const std::string& text) {
     constexpr std::size_t kMaxShown = 160;
-    return text.size() <= kMaxShown ? text : text.substr(0, kMost) + "...";
+    return text.size() <= kMaxShown ? text : text.substr(0, kMaxShown) + "...";
 }
 
 std::string text_in(const std::filesystem::path& file) {

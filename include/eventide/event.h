@@ -46,7 +46,8 @@ struct ReferenceImage {
     int x0 = 0, y0 = 0;                        ///< px, top left corner of the image in the sensor
     int channels = 1;                          ///< 1 grey, 3 BGR, 4 BGRA; interleaved in `pixels`
     ColourFilter filter = ColourFilter::none;  ///< of a mosaic that says so: channels is 1
-    Array2<std::uint16_t> pixels{};  ///< [y][x * channels], 0 to 65535; 8-bit data are scaled by 257
+    Array2<std::uint16_t>
+        pixels{};  ///< [y][x * channels], 0 to 65535; 8-bit data are scaled by 257
 
     friend bool operator==(const ReferenceImage&, const ReferenceImage&) = default;
 };

@@ -42,7 +42,8 @@ void add_places_above(const fs::path& binary, std::vector<fs::path>& places) {
 
 std::vector<fs::path> folders() {
     std::vector<fs::path> places;
-    if (const char* chosen = environment_value("EVENTIDE_MODELS"); chosen != nullptr && *chosen != '\0')
+    if (const char* chosen = environment_value("EVENTIDE_MODELS");
+        chosen != nullptr && *chosen != '\0')
         places.emplace_back(chosen);
     std::error_code none;
     add_places_above(own_file(), places);

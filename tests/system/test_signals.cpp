@@ -56,7 +56,7 @@ TEST_F(Signals, APipeThatSaysNothingIsLeftAtTheFirstSignal) {
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"run", pipe, "--out", "frames/"},
           {"info", pipe},
-          {"convert", pipe, "out.csv"}}) {
+          {"convert", pipe, "out.txt"}}) {
         Process process = start(command);
         const int writer = ::open(pipe.c_str(), O_WRONLY | O_CLOEXEC);  // returns when it reads
         process.signal(SIGTERM);
@@ -68,7 +68,7 @@ TEST_F(Signals, APipeThatSaysNothingIsLeftAtTheFirstSignal) {
             << result.error;
     }
     EXPECT_FALSE(std::filesystem::exists(temp_ / "frames"));
-    EXPECT_FALSE(std::filesystem::exists(temp_ / "out.csv"));
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "out.txt"));
 }
 
 TEST_F(Signals, AClosedTerminalEndsLikeSigtermHoweverOftenItHangsUp) {

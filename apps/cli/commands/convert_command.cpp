@@ -125,7 +125,8 @@ int ConvertCommand::run(Program& program) {
                                           "; datagrams have ?format=t64, t32 or spif");
     const Format* format = to_udp ? nullptr : target_format(to_file_, to_format_);
     const OpenOptions options = input_.options();
-    if (to_file_ == "-" && format != nullptr && format->name != "text") refuse_terminal("TO -", force_);
+    if (to_file_ == "-" && format != nullptr && format->name != "text")
+        refuse_terminal("TO -", force_);
     program.files.may_replace(overwrite_);
     name_recording("FROM", from_file_, program.files);
     if (format != nullptr)

@@ -10,7 +10,7 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kLook{0.5};              // shorter spans jump
+constexpr Seconds kLook{0.5};                        // shorter spans jump
 constexpr Seconds kRaiseWait{5}, kMaxRaiseWait{80};  // before a step up
 constexpr Seconds kTakenBack{15}, kForgotten{60};
 constexpr unsigned kStrainedLooks = 3;
