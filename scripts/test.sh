@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to the result of every test: installs what is missing, builds, runs ctest.
-#   scripts/test.sh [preset] [ctest arguments]      presets: dev (default), asan, tsan; parsers: of asan, what reads bytes and words from outside
+#   scripts/test.sh [preset] [ctest arguments]      presets: dev (default), asan, tsan; parsers: of asan, what reads files, streams and settings
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=dev

@@ -119,15 +119,20 @@ TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
     // However busy the machine is, the only gap is the cable's.
     arguments.insert(arguments.end(), {"--buffers-packets", "10000", "--latency", "none"});
     if (reset) arguments.push_back("--reset-on-gap");
+    const SensorTime began = host_time();
     Process process = start(arguments, {.output_to_pipe = true});
     read_frames(process, 8);
     bed_.unplug();
     read_frames(process, 5);  // the frame stays, and time goes on
     const auto again = plug_in(seen, true);
-    for (bool over = false; !over;) {
+    std::size_t frames = 13;
+    for (bool over = false; !over; ++frames) {
         read_frames(process, 1);
         bed_.look([&] { over = again->is_scene_over() && again->bytes_sent() > 0; });
     }
+    // What was fetched last is in the recording once a frame of a later time has come.
+    const SensorDuration scene_over = host_time() - began;
+    for (; SensorDuration{20'000} * frames < scene_over; ++frames) read_frames(process, 1);
     process.signal(SIGINT);
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;

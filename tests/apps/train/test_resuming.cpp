@@ -1,6 +1,8 @@
 // Runs that stop and go on, and networks that begin with what another has learned.
 #include "src/core/error.h"
+#include "src/model/encode/encoder.h"
 #include "tests/apps/train/tiny_run.h"
+#include "tests/model/streams.h"
 
 #include <gtest/gtest.h>
 
@@ -72,6 +74,37 @@ TEST(Training, ADeeperNetworkBeginsWithWhatAShallowerOneHasLearned) {
         EXPECT_EQ(deep->steps(), 0);
         train(*deep);
     }
+}
+
+TEST(Training, AWiderEncoderBeginsWithWhatTheNarrowOneComputes) {
+    const fs::path out = empty_folder("widens");
+    TrainOptions options = tiny_options(out / "narrow");
+    options.steps = 3;
+    const auto narrow = trainer(options);
+    train(*narrow);
+    save_model(out / "narrow.safetensors", narrow->finished_model());
+
+    options.out = (out / "wide").string();
+    options.initial = (out / "narrow.safetensors").string();
+    options.model.widths = {12, 16};
+    const auto wide = trainer(options);
+    const Model models[] = {narrow->finished_model(), wide->finished_model()};
+    ASSERT_GT(models[1].weights.at("encoder.gru.0.gates.weight").values.size(),
+              models[0].weights.at("encoder.gru.0.gates.weight").values.size());
+    constexpr int kWidth = 33, kHeight = 22;
+    test::GridStream stream{models[0].config, kHeight, kWidth, 5};
+    Encoder encoders[] = {{models[0], kWidth, kHeight, {.engine = Engine::plain}},
+                          {models[1], kWidth, kHeight, {.engine = Engine::plain}}};
+    for (int k = 0; k < 4; ++k) {
+        const VoxelGrid grid = stream.next(test::GridStream::Kind::patch);
+        LatentMap expected = encoders[0].make_output(), found = encoders[1].make_output();
+        encoders[0].encode(grid, expected);
+        encoders[1].encode(grid, found);
+        const auto e = expected.values.values(), f = found.values.values();
+        ASSERT_EQ(e.size(), f.size());
+        for (std::size_t i = 0; i < e.size(); ++i) ASSERT_NEAR(f[i], e[i], 1e-5F) << k << " " << i;
+    }
+    train(*wide);
 }
 
 TEST(Training, WeightsOfAnotherNetworkAreRefused) {
