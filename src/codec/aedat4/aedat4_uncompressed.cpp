@@ -19,7 +19,7 @@ bool begins_with(std::span<const std::byte> bytes, std::uint32_t magic) {
 
 struct Aedat4Unpacker::Contexts {};
 
-Aedat4Unpacker::Aedat4Unpacker() = default;
+Aedat4Unpacker::Aedat4Unpacker(std::size_t largest) : largest_(largest) {}
 
 Aedat4Unpacker::~Aedat4Unpacker() = default;
 
