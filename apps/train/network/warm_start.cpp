@@ -87,7 +87,7 @@ std::vector<std::string> warm_start(const std::filesystem::path& path, Parameter
             values.copy_(to_torch(found->second, values.device()));
             related |= name.ends_with(".weight");
         } else if (widens && name.starts_with("encoder.")) {
-            widen(name, to_torch(found->second, torch::kCPU).to(values.device()), values);
+            widen(name, to_torch(found->second, values.device()), values);
         } else {
             if (is_join(name)) let_through(values);
             left.push_back(name);

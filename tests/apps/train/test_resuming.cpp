@@ -9,6 +9,13 @@
 namespace eventide {
 namespace {
 
+auto train_and_save(const TrainOptions& options, const fs::path& model) {
+    auto trained = trainer(options);
+    train(*trained);
+    save_model(model, trained->finished_model());
+    return trained;
+}
+
 TEST(Training, ARunThatStoppedGoesOnAsIfItHadNot) {
     TrainOptions options = tiny_options(empty_folder("whole"));
     options.steps = 12;
@@ -53,9 +60,7 @@ TEST(Training, ADeeperNetworkBeginsWithWhatAShallowerOneHasLearned) {
     const fs::path out = empty_folder("inherits");
     TrainOptions options = tiny_options(out / "shallow");
     options.steps = 3;
-    const auto shallow = trainer(options);
-    train(*shallow);
-    save_model(out / "shallow.safetensors", shallow->finished_model());
+    const auto shallow = train_and_save(options, out / "shallow.safetensors");
 
     options.model.widths = {8, 8, 8};
     options.model.recurrent = {1, 1, 1};
@@ -80,9 +85,7 @@ TEST(Training, AWiderEncoderBeginsWithWhatTheNarrowOneComputes) {
     const fs::path out = empty_folder("widens");
     TrainOptions options = tiny_options(out / "narrow");
     options.steps = 3;
-    const auto narrow = trainer(options);
-    train(*narrow);
-    save_model(out / "narrow.safetensors", narrow->finished_model());
+    const auto narrow = train_and_save(options, out / "narrow.safetensors");
 
     options.out = (out / "wide").string();
     options.initial = (out / "narrow.safetensors").string();
