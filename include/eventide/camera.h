@@ -1,4 +1,5 @@
-// Live sources: event cameras, real or simulated.
+/// @file
+/// Live sources: event cameras, real or simulated.
 #pragma once
 
 #include <eventide/event.h>
@@ -14,6 +15,7 @@
 
 namespace eventide {
 
+/// How a camera is opened.
 struct CameraSettings {
     std::filesystem::path file;  ///< of settings, as in share/eventide/cameras; empty: the defaults
     bool reconnect = false;      ///< wait for an unplugged camera to come back
@@ -24,12 +26,13 @@ class EVENTIDE_API EventCamera final : public EventSource {
 public:
     /// "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
     /// "v4l2:/dev/video0"; "ros2:/TOPIC", event packets of a ROS 2 driver;
-    /// "sim:SCENE" is one in software. Throws Error: usage for a name that
-    /// makes no sense, device for a camera that is missing or cannot be used, with what to do.
+    /// "udp://HOST:PORT?size=640x480", events that another program sends to this address of this
+    /// machine; "sim:SCENE" is one in software. Throws Error: usage for a name that makes no sense,
+    /// device for a camera that is missing or cannot be used, with what to do.
     explicit EventCamera(const std::string& name, const CameraSettings& settings = {});
     ~EventCamera() override;
-    EventCamera(EventCamera&&) noexcept;
-    EventCamera& operator=(EventCamera&&) noexcept;
+    EventCamera(EventCamera&&) noexcept;             ///< leaves the other empty
+    EventCamera& operator=(EventCamera&&) noexcept;  ///< leaves the other empty
 
     const SensorInfo& info() const noexcept override;
     int width() const noexcept;   ///< px

@@ -1,4 +1,5 @@
-// The one exception of the library: something cannot start, or a device went away.
+/// @file
+/// The one exception of the library: something cannot start, or a device went away.
 #pragma once
 
 #include <eventide/version.h>
@@ -20,8 +21,9 @@ enum class ErrorKind {
 /// do.
 class EVENTIDE_API Error : public std::runtime_error {
 public:
+    /// `message` is what what() says.
     Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
-    ErrorKind kind() const noexcept { return kind_; }
+    ErrorKind kind() const noexcept { return kind_; }  ///< of thing that went wrong
 
 private:
     ErrorKind kind_;

@@ -1,4 +1,5 @@
-/* The library for C and for whatever can call C. Times are microseconds of the sensor's clock,
+/** @file
+ * The library for C and for whatever can call C. Times are microseconds of the sensor's clock,
  * sizes and coordinates are pixels with the origin at the top left.
  *
  * Functions that can fail return an eventide_status; eventide_error_message() then says what was
@@ -18,197 +19,229 @@
 extern "C" {
 #endif
 
+/** What a function that can fail returns. */
 typedef enum eventide_status {
-    EVENTIDE_OK = 0,
-    EVENTIDE_FAILED = 1, /* something went wrong while running: a full disk, too little memory */
-    EVENTIDE_USAGE = 2,  /* an argument or option: the caller's to change */
-    EVENTIDE_INPUT = 3,  /* a recording or model that cannot be read or is not what it says */
-    EVENTIDE_DEVICE = 4, /* a camera that is missing, cannot be used, or was lost */
-    EVENTIDE_NONE = 5    /* no error: no frame yet, or the end of a recording */
+    EVENTIDE_OK = 0,     /**< it was done */
+    EVENTIDE_FAILED = 1, /**< something went wrong while running: a full disk, too little memory */
+    EVENTIDE_USAGE = 2,  /**< an argument or option: the caller's to change */
+    EVENTIDE_INPUT = 3,  /**< a recording or model that cannot be read or is not what it says */
+    EVENTIDE_DEVICE = 4, /**< a camera that is missing, cannot be used, or was lost */
+    EVENTIDE_NONE = 5    /**< no error: no frame yet, or the end of a recording */
 } eventide_status;
 
-/* "1.0.0", of the library that is loaded. */
+/** "1.0.0", of the library that is loaded. */
 EVENTIDE_API const char* eventide_version(void);
 
-/* What the last call on this thread that failed said; empty before the first. Valid until the next
+/** What the last call on this thread that failed said; empty before the first. Valid until the next
  * failure on this thread. */
 EVENTIDE_API const char* eventide_error_message(void);
 
+/** One change of brightness at one pixel. */
 typedef struct eventide_event {
-    int64_t t; /* us */
-    uint16_t x, y;
-    uint8_t on; /* 0: darker; anything else: brighter */
+    int64_t t;  /**< us */
+    uint16_t x; /**< px, from the left */
+    uint16_t y; /**< px, from the top */
+    uint8_t on; /**< 0: darker; anything else: brighter */
 } eventide_event;
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* A part of a frame; width or height 0: to the frame's edge. */
+/** A part of a frame. */
 typedef struct eventide_region {
-    int x, y, width, height;
+    int x;      /**< px, its left edge */
+    int y;      /**< px, its top edge */
+    int width;  /**< px; 0: to the frame's right edge */
+    int height; /**< px; 0: to the frame's bottom edge */
 } eventide_region;
 
-/* How large a frame is to be (1 to 16384 each way, 0: the sensor's), and which part is wanted. */
+/** How large a frame is to be, and which part is wanted. */
 typedef struct eventide_frame_size {
-    int width, height;
-    eventide_region region;
+    int width;              /**< px, of the whole frame, 1 to 16384; 0: the sensor's */
+    int height;             /**< px, likewise */
+    eventide_region region; /**< all 0: the whole frame */
 } eventide_frame_size;
 
-/* Fill it by eventide_options_init(), then change what is to differ. Texts are copied. */
+/** Fill it by eventide_options_init(), then change what is to differ. Texts are copied. */
 typedef struct eventide_options {
-    size_t struct_size; /* set by eventide_options_init() */
-    const char* window; /* "model", "auto", "50ms", "20000ev", "0.35epp", "aps" */
-    int lookahead;      /* 0, 1 or 2: event windows a frame waits for */
-    const char* fps;    /* of eventide_next(): "30", "30000/1001", "frame" */
-    eventide_frame_size size;
-    int sigma;                /* 0: frames have none, and are rendered faster */
-    const char* hot_pixels;   /* "off", "learn", or a file that lists pixels */
-    const char* precision;    /* "auto", "f32", "bf16" */
-    const char* kernels;      /* "auto", "own", "onednn" */
-    int threads;              /* 0: as many as the process may run on */
-    int reset_on_gap;         /* forget the scene where data were lost */
-    int allow_silence;        /* any number of frames in a row without events */
-    const char* noise_filter; /* "model", "auto", "off", or a time such as "10ms" */
+    size_t struct_size;       /**< set by eventide_options_init() */
+    const char* window;       /**< "model", "auto", "50ms", "20000ev", "0.35epp", "aps" */
+    int lookahead;            /**< 0, 1 or 2: event windows a frame waits for */
+    const char* fps;          /**< of eventide_next(): "30", "30000/1001", "frame" */
+    eventide_frame_size size; /**< of the frames */
+    int sigma;                /**< 0: frames have none, and are rendered faster */
+    const char* hot_pixels;   /**< "off", "learn", or a file that lists pixels */
+    const char* precision;    /**< "auto", "f32", "bf16" */
+    const char* kernels;      /**< "auto", "own", "onednn" */
+    int threads;              /**< 0: as many as the process may run on */
+    int reset_on_gap;         /**< forget the scene where data were lost */
+    int allow_silence;        /**< any number of frames in a row without events */
+    const char* noise_filter; /**< "model", "auto", "off", or a time such as "10ms" */
 } eventide_options;
 
-/* The defaults, which are those of ReconstructorOptions. `struct_size` is sizeof(eventide_options).
- */
+/** The defaults, those of ReconstructorOptions. `struct_size` is sizeof(eventide_options). */
 EVENTIDE_API void eventide_options_init(eventide_options* options, size_t struct_size);
 
-/* A rendered frame. The pixels are rows of `width` floats without gaps, valid until the next call
+/** A rendered frame. The pixels are rows of `width` floats without gaps, valid until the next call
  * with the same reconstructor. */
 typedef struct eventide_frame {
-    int64_t t;
-    int64_t window_begin, window_end; /* of the event window t lies in, (begin, end] */
-    uint64_t index;                   /* number on the frame clock */
-    uint64_t events;                  /* in that event window */
-    int width, height;
-    const float* intensity; /* 0 black to 1 white; may lie a little outside */
-    const float* sigma;     /* standard deviation of intensity; NULL where not asked for */
-    int gap_before;         /* data were lost before */
+    int64_t t;              /**< us, the instant it shows */
+    int64_t window_begin;   /**< us; the event window t lies in is (begin, end] */
+    int64_t window_end;     /**< us */
+    uint64_t index;         /**< number on the frame clock */
+    uint64_t events;        /**< in that event window */
+    int width;              /**< px */
+    int height;             /**< px */
+    const float* intensity; /**< 0 black to 1 white; may lie a little outside */
+    const float* sigma;     /**< standard deviation of intensity; NULL where not asked for */
+    int gap_before;         /**< data were lost before */
 } eventide_frame;
 
+/** A network at work on the stream of one sensor. */
 typedef struct eventide_reconstructor eventide_reconstructor;
 
-/* `model`: a name ("default", "small", "thesis") or a safetensors file; names are looked for in
+/** `model`: a name ("default", "small", "thesis") or a safetensors file; names are looked for in
  * $EVENTIDE_MODELS, then where the library is installed. The sensor is 1 to 4096 px each way.
  * `options` may be NULL: the defaults. `*opened` is set where EVENTIDE_OK is returned. */
 EVENTIDE_API eventide_status eventide_reconstructor_open(const char* model, int width, int height,
                                                          const eventide_options* options,
                                                          eventide_reconstructor** opened);
+/** Frees it; NULL may be closed. */
 EVENTIDE_API void eventide_reconstructor_close(eventide_reconstructor* reconstructor);
 
-/* Events in order of time. One that is earlier than the one before, or outside the sensor, is left
+/** Events in order of time. One that is earlier than the one before, or outside the sensor, is left
  * out and counted. */
 EVENTIDE_API eventide_status eventide_push(eventide_reconstructor* reconstructor,
                                            const eventide_event* events, size_t count);
 
-/* Every event before `now` has been pushed: time goes on where nothing moves. */
+/** Every event before `now` has been pushed: time goes on where nothing moves. */
 EVENTIDE_API eventide_status eventide_advance(eventide_reconstructor* reconstructor, int64_t now);
 
-/* Data were lost here. */
+/** Data were lost here. */
 EVENTIDE_API eventide_status eventide_mark_gap(eventide_reconstructor* reconstructor);
 
-/* The stream has ended; `end` may be NULL, or the time until which its clock went on. */
+/** The stream has ended; `end` may be NULL, or the time until which its clock went on. */
 EVENTIDE_API eventide_status eventide_finish(eventide_reconstructor* reconstructor,
                                              const int64_t* end);
 
-/* The next frame at the rate of the options; EVENTIDE_NONE where it has to wait for events. */
+/** The next frame at the rate of the options; EVENTIDE_NONE where it has to wait for events. */
 EVENTIDE_API eventide_status eventide_next(eventide_reconstructor* reconstructor,
                                            eventide_frame* frame);
 
-/* EVENTIDE_OK where a frame of this time can be rendered, else EVENTIDE_NONE. */
+/** EVENTIDE_OK where a frame of this time can be rendered, else EVENTIDE_NONE. */
 EVENTIDE_API eventide_status eventide_ready(eventide_reconstructor* reconstructor, int64_t t);
 
-/* The newest time that can be rendered; EVENTIDE_NONE where there is none. */
+/** The newest time that can be rendered; EVENTIDE_NONE where there is none. */
 EVENTIDE_API eventide_status eventide_newest(eventide_reconstructor* reconstructor, int64_t* t);
 
-/* The frame of one instant that is ready. `size` may be NULL: that of the options. */
+/** The frame of one instant that is ready. `size` may be NULL: that of the options. */
 EVENTIDE_API eventide_status eventide_render(eventide_reconstructor* reconstructor, int64_t t,
                                              const eventide_frame_size* size,
                                              eventide_frame* frame);
 
-/* As opened: a new stream begins. */
+/** As opened: a new stream begins. */
 EVENTIDE_API eventide_status eventide_reset(eventide_reconstructor* reconstructor);
 
-/* What the network remembers of the scene: bytes, valid until the next call with the same
+/** What the network remembers of the scene: bytes, valid until the next call with the same
  * reconstructor, for eventide_restore() of any with the same model and sensor size. */
 EVENTIDE_API eventide_status eventide_state(eventide_reconstructor* reconstructor,
                                             const void** bytes, size_t* size);
+/** A new stream, with what eventide_state() told. EVENTIDE_INPUT where it is none, or that of
+ * another model or sensor size: then nothing has changed. */
 EVENTIDE_API eventide_status eventide_restore(eventide_reconstructor* reconstructor,
                                               const void* bytes, size_t size);
 
-/* The same as a file. */
+/** eventide_state() as a file. EVENTIDE_USAGE for one that exists without `overwrite`,
+ * EVENTIDE_FAILED where it cannot be written. */
 EVENTIDE_API eventide_status eventide_save_state(eventide_reconstructor* reconstructor,
                                                  const char* file, int overwrite);
+/** eventide_restore() from such a file. */
 EVENTIDE_API eventide_status eventide_restore_state(eventide_reconstructor* reconstructor,
                                                     const char* file);
 
-/* What became of what was pushed: ReconstructorCounters says what each means. */
+/** What became of what was pushed, since the reconstructor was opened. */
 typedef struct eventide_counters {
-    uint64_t events, off_sensor, time_backwards, bad_time, filtered, late, left_out, time_resets;
-    uint64_t event_windows, frames;
+    uint64_t events;         /**< pushed */
+    uint64_t off_sensor;     /**< left out: x or y outside the sensor */
+    uint64_t time_backwards; /**< left out: earlier than the event before */
+    uint64_t bad_time;       /**< left out: further than 2^60 us from zero */
+    uint64_t filtered;       /**< left out: of hot pixels, or noise */
+    uint64_t late;        /**< moved later: eventide_advance() had promised that none would come */
+    uint64_t left_out;    /**< more in one microsecond than memory is meant to hold */
+    uint64_t time_resets; /**< the sensor's clock began anew */
+    uint64_t event_windows; /**< steps of the network */
+    uint64_t frames;        /**< rendered */
 } eventide_counters;
+
+/** The counters so far. */
 EVENTIDE_API eventide_status eventide_count(const eventide_reconstructor* reconstructor,
                                             eventide_counters* counters);
 
 /* ---- recordings and cameras ------------------------------------------------------------------ */
 
+/** A recording or a camera. */
 typedef struct eventide_source eventide_source;
 
-/* Any format that eventide reads. `format` may be NULL (found from the content), width and height 0
- * (what the recording says). */
+/** Any format that eventide reads. `format` may be NULL (found from the content), width and height
+ * 0 (what the recording says). */
 EVENTIDE_API eventide_status eventide_recording_open(const char* path, const char* format,
                                                      int width, int height,
                                                      eventide_source** opened);
 
-/* "davis:", "dvxplorer:", "dvs128:", "v4l2:/dev/video0", "sim:demo"; `settings` may be NULL, or a
- * file of settings. */
+/** "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL", "v4l2:/dev/video0",
+ * "ros2:/TOPIC", "udp://HOST:PORT?size=640x480", "sim:demo"; `settings` may be NULL, or a file of
+ * settings. */
 EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
                                                   eventide_source** opened);
+/** Frees it; NULL may be closed. */
 EVENTIDE_API void eventide_source_close(eventide_source* source);
 
-/* Of the sensor; 0 where a recording does not say. */
+/** px, of the sensor; 0 where a recording does not say. */
 EVENTIDE_API int eventide_source_width(const eventide_source* source);
+/** px, of the sensor; 0 where a recording does not say. */
 EVENTIDE_API int eventide_source_height(const eventide_source* source);
 
-/* eventide_reconstructor_open() for the sensor of this source. */
+/** eventide_reconstructor_open() for the sensor of this source. */
 EVENTIDE_API eventide_status eventide_reconstructor_open_for(const eventide_source* source,
                                                              const char* model,
                                                              const eventide_options* options,
                                                              eventide_reconstructor** opened);
 
-/* The next events, valid until the next call with the same source; EVENTIDE_NONE at the end. No
+/** The next events, valid until the next call with the same source; EVENTIDE_NONE at the end. No
  * events and EVENTIDE_OK: go on. */
 EVENTIDE_API eventide_status eventide_read(eventide_source* source, const eventide_event** events,
                                            size_t* count);
 
-/* Reads on and pushes what came: events, times of images, marks of lost data, and a camera's clock.
+/** Reads on and pushes what came: events, times of images, marks of lost data, a camera's clock.
  * EVENTIDE_NONE at the end, which eventide_finish() is told with the recording's last time. */
 EVENTIDE_API eventide_status eventide_read_into(eventide_source* source,
                                                 eventide_reconstructor* reconstructor);
 
-/* The next frame of a source at the rate of the options: reads on until there is one.
+/** The next frame of a source at the rate of the options: reads on until there is one.
  * EVENTIDE_NONE where the source has ended and all its frames were given. */
 EVENTIDE_API eventide_status eventide_read_frame(eventide_source* source,
                                                  eventide_reconstructor* reconstructor,
                                                  eventide_frame* frame);
 
-/* The newest time the source told so far; EVENTIDE_NONE before the first. */
+/** The newest time the source told so far; EVENTIDE_NONE before the first. */
 EVENTIDE_API eventide_status eventide_source_clock(const eventide_source* source, int64_t* t);
 
-/* Of a recording: goes on from `t`. EVENTIDE_USAGE for a camera. */
+/** Of a recording: goes on from `t`. EVENTIDE_USAGE for a camera. */
 EVENTIDE_API eventide_status eventide_seek(eventide_source* source, int64_t t);
 
+/** A recording being written. */
 typedef struct eventide_writer eventide_writer;
 
-/* The file appears whole, with eventide_writer_finish(). `format` may be NULL: by the extension. */
+/** The file appears whole, with eventide_writer_finish(); `format` NULL: by the extension. */
 EVENTIDE_API eventide_status eventide_writer_open(const char* path, const char* format, int width,
                                                   int height, int overwrite,
                                                   eventide_writer** opened);
+/** Must follow what was written before in time. EVENTIDE_USAGE for what the format cannot hold,
+ * EVENTIDE_FAILED where the disk is full. */
 EVENTIDE_API eventide_status eventide_write(eventide_writer* writer, const eventide_event* events,
                                             size_t count);
+/** Ends the stream and shows the file; nothing can be written after it. */
 EVENTIDE_API eventide_status eventide_writer_finish(eventide_writer* writer);
-/* Without eventide_writer_finish() nothing is left behind. */
+/** Frees it; NULL may be closed. Without eventide_writer_finish() nothing is left behind. */
 EVENTIDE_API void eventide_writer_close(eventide_writer* writer);
 
 #ifdef __cplusplus

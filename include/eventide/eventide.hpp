@@ -1,4 +1,5 @@
-// All of the C++ interface.
+/// @file
+/// All of the C++ interface.
 #pragma once
 
 #include <eventide/camera.h>

@@ -1,4 +1,5 @@
-// A rendered frame, and how one is asked for.
+/// @file
+/// A rendered frame, and how one is asked for.
 #pragma once
 
 #include <eventide/array.h>
@@ -30,8 +31,10 @@ struct Frame {
 
 /// A part of a frame.
 struct Region {
-    int x = 0, y = 0;           ///< px, top left corner
-    int width = 0, height = 0;  ///< px; 0: to the frame's edge
+    int x = 0;       ///< px, its left edge
+    int y = 0;       ///< px, its top edge
+    int width = 0;   ///< px; 0: to the frame's right edge
+    int height = 0;  ///< px; 0: to the frame's bottom edge
 };
 
 /// px each way: no frame is larger.
@@ -39,13 +42,14 @@ constexpr int kLargestFrameSide = 16384;
 
 /// How large a frame is to be, and which part of it is wanted.
 struct FrameSize {
-    int width = 0, height = 0;  ///< px, of the whole frame, 1 to kLargestFrameSide; 0: the sensor's
-    Region region{};            ///< the part of it that is wanted; the default is all of it
+    int width = 0;    ///< px, of the whole frame, 1 to kLargestFrameSide; 0: the sensor's
+    int height = 0;   ///< px, likewise
+    Region region{};  ///< the part of it that is wanted; the default is all of it
 };
 
 /// Whether a frame of some time can be rendered.
 enum class Readiness {
-    ready,
+    ready,  ///< it can
     later,  ///< events it needs have yet to come
     gone,   ///< before the first event window, or too long ago: its memory is no longer kept
 };

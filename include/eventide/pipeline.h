@@ -1,5 +1,6 @@
-// A source, a network and sinks in a run: what `eventide run` does, with sources and sinks of
-// yours.
+/// @file
+/// A source, a network and sinks in a run: what `eventide run` does, with sources and sinks of
+/// yours.
 #pragma once
 
 #include <eventide/event.h>
@@ -45,8 +46,8 @@ public:
 
 protected:
     EventSource() = default;
-    EventSource(const EventSource&) = default;
-    EventSource& operator=(const EventSource&) = default;
+    EventSource(const EventSource&) = default;             ///< yours may be copied
+    EventSource& operator=(const EventSource&) = default;  ///< yours may be copied
 };
 
 /// Pushes what `source` has just read into `batch`: the gap before it, where data were lost, its
@@ -73,10 +74,11 @@ public:
 
 protected:
     FrameSink() = default;
-    FrameSink(const FrameSink&) = default;
-    FrameSink& operator=(const FrameSink&) = default;
+    FrameSink(const FrameSink&) = default;             ///< yours may be copied
+    FrameSink& operator=(const FrameSink&) = default;  ///< yours may be copied
 };
 
+/// Which frames a run makes, how late they may be, and on how many threads.
 struct PipelineOptions {
     /// As in Reconstructor. `threads` are the network's; the pipeline has four of its own.
     ReconstructorOptions frames{};
@@ -88,16 +90,18 @@ struct PipelineOptions {
 
 /// So far.
 struct PipelineCounters {
-    std::uint64_t batches = 0, lost_batches = 0;  ///< read; of those, lost as no buffer was free
-    std::uint64_t gaps = 0;                       ///< places where data are missing
-    std::uint64_t events = 0;                     ///< taken, before filters
-    std::uint64_t filtered = 0;                   ///< of hot pixels, or noise
+    std::uint64_t batches = 0;       ///< read
+    std::uint64_t lost_batches = 0;  ///< of those, lost as no buffer was free
+    std::uint64_t gaps = 0;          ///< places where data are missing
+    std::uint64_t events = 0;        ///< taken, before filters
+    std::uint64_t filtered = 0;      ///< of hot pixels, or noise
     std::uint64_t damaged = 0;  ///< events outside the sensor, or at a time beyond kFarthestTime
     std::uint64_t event_windows = 0;   ///< steps of the network
     std::uint64_t merged_windows = 0;  ///< became one with the one before, to keep the latency
     std::uint64_t frames = 0;          ///< written
     std::uint64_t skipped_frames = 0;  ///< left out, to keep the latency
-    std::chrono::microseconds latency_p50{0}, latency_p99{0};  ///< from read() to write()
+    std::chrono::microseconds latency_p50{0};  ///< from read() to write(), median
+    std::chrono::microseconds latency_p99{0};  ///< from read() to write(), 99th percentile
 };
 
 /// Reading, cutting, encoding and rendering on a thread each, with bounded memory in between. Made
@@ -111,8 +115,8 @@ public:
     EventPipeline(EventSource& source, const std::vector<FrameSink*>& sinks,
                   const std::string& model, const PipelineOptions& options = {});
     ~EventPipeline();
-    EventPipeline(EventPipeline&&) noexcept;
-    EventPipeline& operator=(EventPipeline&&) noexcept;
+    EventPipeline(EventPipeline&&) noexcept;             ///< leaves the other empty
+    EventPipeline& operator=(EventPipeline&&) noexcept;  ///< leaves the other empty
 
     /// Until the source has ended, a sink wants no more, or stop(). The first error of any thread
     /// is thrown, after the sinks were closed. Throws Error (usage) the second time.

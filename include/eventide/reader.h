@@ -1,4 +1,5 @@
-// Recordings: files of events, in any format that eventide reads.
+/// @file
+/// Recordings: files of events, in any format that eventide reads.
 #pragma once
 
 #include <eventide/event.h>
@@ -15,21 +16,23 @@ namespace eventide {
 
 /// What a recording's bytes do not say, or say wrongly.
 struct ReaderOptions {
-    std::string format;         ///< "aedat4", "evt3", "text", ...; empty: found from the content
-    int width = 0, height = 0;  ///< px, of the sensor; 0: what the recording says. Both or neither
+    std::string format;  ///< "aedat4", "evt3", "text", ...; empty: found from the content
+    int width = 0;       ///< px, of the sensor; 0: what the recording says. Both or neither
+    int height = 0;      ///< px, likewise
 };
 
-/// AEDAT 1, 2, 3.1 and 4, Prophesee RAW (EVT2, EVT2.1, EVT3) and DAT, text, and folders of the
-/// Event Camera Dataset, found by their content. Read in bounded memory, a batch at a time.
-/// Thread: one at a time.
+/// AEDAT 1 to 4, Prophesee RAW (EVT2, EVT2.1, EVT3) and DAT, HDF5 (of DSEC, MVSEC, M3ED, Prophesee,
+/// event_utils and e2calib), ROS 1 and 2 bags, Event Stream, NumPy arrays (npy, npz), text, and
+/// folders of the Event Camera Dataset, found by their content. Read in bounded memory, a batch at
+/// a time. Thread: one at a time.
 class EVENTIDE_API EventReader final : public EventSource {
 public:
     /// "-" is standard input. Throws Error: input naming the path, what was expected and what was
     /// found; usage for options that make no sense.
     explicit EventReader(const std::string& path, const ReaderOptions& options = {});
     ~EventReader() override;
-    EventReader(EventReader&&) noexcept;
-    EventReader& operator=(EventReader&&) noexcept;
+    EventReader(EventReader&&) noexcept;             ///< leaves the other empty
+    EventReader& operator=(EventReader&&) noexcept;  ///< leaves the other empty
 
     const SensorInfo& info() const noexcept override;
     int width() const noexcept;   ///< px; 0 where the recording does not say

@@ -1,4 +1,5 @@
-// Events in, frames with uncertainty out: one network at work on one sensor's stream.
+/// @file
+/// Events in, frames with uncertainty out: one network at work on one sensor's stream.
 #pragma once
 
 #include <eventide/arithmetic.h>
@@ -37,8 +38,8 @@ struct ReconstructorOptions {
     /// found; "off"; "model": as the model was trained.
     std::string noise_filter = "model";
     std::string hot_pixels = "off";  ///< "off", "learn", or a file that lists pixels, "x,y" a line
-    Precision precision = Precision::automatic;
-    Kernels kernels = Kernels::automatic;
+    Precision precision = Precision::automatic;  ///< of the network's products
+    Kernels kernels = Kernels::automatic;        ///< whose convolutions
     int threads = 0;             ///< the network may use; 0: as many as the process may run on
     bool reset_on_gap = false;   ///< forget the scene where data were lost
     bool allow_silence = false;  ///< next(): any number of frames in a row without events
@@ -84,8 +85,8 @@ public:
     Reconstructor(const std::string& model, int width, int height,
                   const ReconstructorOptions& options = {});
     ~Reconstructor();
-    Reconstructor(Reconstructor&&) noexcept;
-    Reconstructor& operator=(Reconstructor&&) noexcept;
+    Reconstructor(Reconstructor&&) noexcept;             ///< leaves the other empty
+    Reconstructor& operator=(Reconstructor&&) noexcept;  ///< leaves the other empty
 
     int width() const noexcept;       ///< px, of the sensor
     int height() const noexcept;      ///< px, of the sensor
@@ -120,12 +121,14 @@ public:
 
     /// Whether a frame of this time can be rendered; takes the network so far as that needs.
     Readiness readiness(SensorTime t);
+    /// Whether readiness() says so.
     bool ready(SensorTime t) { return readiness(t) == Readiness::ready; }
 
-    /// The frame of one instant, in the size of the options or another. Buffers of `frame` are used
-    /// again where they fit. Throws Error: usage where it is not ready or the size is impossible,
-    /// input where the network gives no finite numbers.
+    /// The frame of one instant, in the size of the options. Buffers of `frame` are used again
+    /// where they fit. Throws Error: usage where it is not ready or the size is impossible, input
+    /// where the network gives no finite numbers.
     void render(SensorTime t, Frame& frame);
+    /// The same in another size, or a part of it.
     void render(SensorTime t, const FrameSize& size, Frame& frame);
 
     /// The newest time that can be rendered, after all events pushed so far have gone through the
@@ -150,7 +153,7 @@ public:
     /// restore() from a file.
     void restore_state(const std::filesystem::path& file);
 
-    ReconstructorCounters counters() const noexcept;
+    ReconstructorCounters counters() const noexcept;  ///< so far
 
 private:
     class Impl;

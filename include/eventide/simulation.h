@@ -1,5 +1,6 @@
-// Event cameras in software before made scenes: events with the truth they came from, and how far a
-// frame is from the truth.
+/// @file
+/// Event cameras in software before made scenes: events with the truth they came from, and how far
+/// a frame is from the truth.
 #pragma once
 
 #include <eventide/array.h>
@@ -19,7 +20,8 @@ namespace eventide {
 struct SimulationOptions {
     std::string scene = "demo";     ///< a name in EventSimulation::scenes()
     std::uint64_t seed = 0;         ///< another seed, another scene; 0: the preset's own
-    int width = 240, height = 180;  ///< px, of the sensor
+    int width = 240;                ///< px, of the sensor
+    int height = 180;               ///< px, of the sensor
     double seconds = 4;             ///< length, above 0; 0: without end
     double images_per_second = 0;   ///< images of the camera in Batch::images; 0: none
     double truths_per_second = 25;  ///< 0: none
@@ -31,8 +33,8 @@ struct SimulationOptions {
 
 /// What an ideal camera would show at one instant: [y][x], 0 black to 1 white.
 struct TrueImage {
-    SensorTime t{};
-    Array2<float> intensity;
+    SensorTime t{};           ///< that instant
+    Array2<float> intensity;  ///< [y][x], 0 black to 1 white
 };
 
 /// The same options give the same data, bit for bit. Thread: one at a time; several simulations may
@@ -43,12 +45,12 @@ public:
     /// that cannot be read.
     explicit EventSimulation(const SimulationOptions& options = {});
     ~EventSimulation();
-    EventSimulation(EventSimulation&&) noexcept;
-    EventSimulation& operator=(EventSimulation&&) noexcept;
+    EventSimulation(EventSimulation&&) noexcept;             ///< leaves the other empty
+    EventSimulation& operator=(EventSimulation&&) noexcept;  ///< leaves the other empty
 
-    const SensorInfo& info() const noexcept;
-    int width() const noexcept;   ///< px
-    int height() const noexcept;  ///< px
+    const SensorInfo& info() const noexcept;  ///< the serial is the seed
+    int width() const noexcept;               ///< px
+    int height() const noexcept;              ///< px
 
     /// The next 10 ms at most, in place of what `batch` and `truths` held: events in order of time,
     /// and the truths of the instants until the last of them. False at the end.
@@ -69,12 +71,13 @@ private:
 /// name what images show. Const functions: any thread, also at once.
 class EVENTIDE_API PerceptualDistance {
 public:
-    /// An npz file with the weights of SqueezeNet 1.1 or AlexNet and their linear heads (docs/
-    /// accuracy.md says where from); none is installed. Throws Error (input).
+    /// An npz file with the weights of SqueezeNet 1.1 or AlexNet, their linear heads and the
+    /// scaling of colours, by the names "core.net.slice1.0.weight", "core.lins.0.model.1.weight",
+    /// "core.scaling_layer.shift" and so on; none is installed. Throws Error (input).
     explicit PerceptualDistance(const std::filesystem::path& weights);
     ~PerceptualDistance();
-    PerceptualDistance(PerceptualDistance&&) noexcept;
-    PerceptualDistance& operator=(PerceptualDistance&&) noexcept;
+    PerceptualDistance(PerceptualDistance&&) noexcept;             ///< leaves the other empty
+    PerceptualDistance& operator=(PerceptualDistance&&) noexcept;  ///< leaves the other empty
 
     /// "LPIPS-Squeeze" or "LPIPS-Alex": the two give different numbers.
     std::string name() const;

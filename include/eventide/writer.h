@@ -1,4 +1,5 @@
-// Recordings being written.
+/// @file
+/// Recordings being written.
 #pragma once
 
 #include <eventide/event.h>
@@ -11,6 +12,7 @@
 
 namespace eventide {
 
+/// How a recording is written.
 struct WriterOptions {
     std::string format;      ///< "aedat4", "evt3", "text", ...; empty: by the file's extension
     bool overwrite = false;  ///< replace a file that exists
@@ -26,8 +28,8 @@ public:
     EventWriter(const std::string& path, const SensorInfo& sensor,
                 const WriterOptions& options = {});
     ~EventWriter();
-    EventWriter(EventWriter&&) noexcept;
-    EventWriter& operator=(EventWriter&&) noexcept;
+    EventWriter(EventWriter&&) noexcept;             ///< leaves the other empty
+    EventWriter& operator=(EventWriter&&) noexcept;  ///< leaves the other empty
 
     /// Must follow what was written before in time. Throws Error: usage for what the format cannot
     /// hold (a coordinate too large) and after finish(), failed where the disk is full.

@@ -63,9 +63,11 @@ def open(path, format="", width=0, height=0):
 
 
 def open_camera(name, settings=""):
-    """Open a camera: "davis:", "dvxplorer:", "v4l2:/dev/video0", "sim:demo"; iterate it for events.
+    """Open a camera; iterate it for arrays of events.
 
-    settings is a file. Raises DeviceError, or UsageError for a name that makes no sense.
+    name is "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
+    "v4l2:/dev/video0", "ros2:/TOPIC", "udp://HOST:PORT?size=640x480" or "sim:demo", settings a
+    file. Raises DeviceError, or UsageError for a name that makes no sense.
     """
     return Camera(name, str(settings))
 
