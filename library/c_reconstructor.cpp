@@ -1,39 +1,15 @@
 // The network at work, for C.
 #include "library/c_call.h"
 #include "library/c_handles.h"
+#include "src/core/arithmetic_words.h"
 
 #include <algorithm>
 #include <cstring>
 #include <memory>
-#include <string_view>
 
 using namespace eventide;
 
 namespace {
-
-template <typename T, std::size_t N>
-T choice_of(const char* text, const char* name,
-            const std::pair<std::string_view, T> (&choices)[N]) {
-    std::string expected;
-    for (const auto& [word, value] : choices) {
-        if (text == word) return value;
-        expected += (expected.empty() ? "" : ", ") + std::string{word};
-    }
-    throw Error(ErrorKind::usage,
-                std::string{name} + ": expected " + expected + ", found '" + text + "'");
-}
-
-Precision precision_of(const char* text) {
-    return choice_of<Precision>(
-        text, "precision",
-        {{"auto", Precision::automatic}, {"f32", Precision::f32}, {"bf16", Precision::bf16}});
-}
-
-Kernels kernels_of(const char* text) {
-    return choice_of<Kernels>(
-        text, "kernels",
-        {{"auto", Kernels::automatic}, {"own", Kernels::own}, {"onednn", Kernels::onednn}});
-}
 
 FrameSize size_of(const eventide_frame_size& size) {
     const eventide_region& r = size.region;
@@ -63,8 +39,9 @@ ReconstructorOptions options_of(const eventide_options* given_options) {
     options.size = size_of(c.size);
     options.sigma = c.sigma != 0;
     options.hot_pixels = &given(c.hot_pixels, "options.hot_pixels");
-    options.precision = precision_of(&given(c.precision, "options.precision"));
-    options.kernels = kernels_of(&given(c.kernels, "options.kernels"));
+    options.precision =
+        option_word("precision", &given(c.precision, "options.precision"), kPrecisionWords);
+    options.kernels = option_word("kernels", &given(c.kernels, "options.kernels"), kKernelWords);
     options.threads = c.threads;
     options.reset_on_gap = c.reset_on_gap != 0;
     options.allow_silence = c.allow_silence != 0;
@@ -82,8 +59,19 @@ extern "C" {
 
 void eventide_options_init(eventide_options* options, size_t struct_size) {
     if (options == nullptr) return;
-    const eventide_options defaults{
-        sizeof(eventide_options), "model", 0, "30", {}, 1, "off", "auto", "auto", 0, 0, 0, "model"};
+    const eventide_options defaults{.struct_size = sizeof(eventide_options),
+                                    .window = "model",
+                                    .lookahead = 0,
+                                    .fps = "30",
+                                    .size = {},
+                                    .sigma = 1,
+                                    .hot_pixels = "off",
+                                    .precision = "auto",
+                                    .kernels = "auto",
+                                    .threads = 0,
+                                    .reset_on_gap = 0,
+                                    .allow_silence = 0,
+                                    .noise_filter = "model"};
     std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
     if (struct_size >= sizeof options->struct_size) options->struct_size = struct_size;
 }
@@ -218,9 +206,16 @@ eventide_status eventide_count(const eventide_reconstructor* reconstructor,
                                eventide_counters* counters) {
     return c_call([&] {
         const ReconstructorCounters c = given(reconstructor, "a reconstructor").it.counters();
-        given(counters, "counters") = {
-            c.events, c.off_sensor, c.time_backwards, c.bad_time,      c.filtered,
-            c.late,   c.left_out,   c.time_resets,    c.event_windows, c.frames};
+        given(counters, "counters") = {.events = c.events,
+                                       .off_sensor = c.off_sensor,
+                                       .time_backwards = c.time_backwards,
+                                       .bad_time = c.bad_time,
+                                       .filtered = c.filtered,
+                                       .late = c.late,
+                                       .left_out = c.left_out,
+                                       .time_resets = c.time_resets,
+                                       .event_windows = c.event_windows,
+                                       .frames = c.frames};
         return EVENTIDE_OK;
     });
 }

@@ -7,7 +7,7 @@
 
 namespace eventide {
 
-/// Thread: keep() and has_error() any; rethrow_if_any() when the threads have ended.
+/// Thread: keep() any; rethrow_if_any() when the threads have ended.
 class FirstError {
 public:
     void keep(std::exception_ptr error) {

@@ -1,5 +1,5 @@
-// What may be changed while a line runs: asked for by any thread, taken by the render thread, and
-// how events are cut by the bin thread.
+// What may be changed while a pipeline runs: asked for by any thread, taken by the render thread,
+// and how events are cut by the bin thread.
 #pragma once
 
 #include "pipeline/frame_clock.h"

@@ -1,6 +1,7 @@
 // Reconstructor for Python.
 #include "python/arrays.h"
 #include "python/parts.h"
+#include "src/core/arithmetic_words.h"
 
 #include <eventide/error.h>
 
@@ -22,27 +23,6 @@ namespace {
 
 using Size = std::optional<std::pair<int, int>>;
 using Roi = std::optional<std::array<int, 4>>;
-
-template <typename T>
-T choice_of(const std::string& text, const char* name, const std::map<std::string, T>& choices) {
-    if (const auto found = choices.find(text); found != choices.end()) return found->second;
-    std::string expected;
-    for (const auto& [word, value] : choices) expected += (expected.empty() ? "" : ", ") + word;
-    throw Error(ErrorKind::usage,
-                std::string{name} + ": expected " + expected + ", found '" + text + "'");
-}
-
-Precision precision_of(const std::string& text) {
-    return choice_of<Precision>(
-        text, "precision",
-        {{"auto", Precision::automatic}, {"f32", Precision::f32}, {"bf16", Precision::bf16}});
-}
-
-Kernels kernels_of(const std::string& text) {
-    return choice_of<Kernels>(
-        text, "kernels",
-        {{"auto", Kernels::automatic}, {"own", Kernels::own}, {"onednn", Kernels::onednn}});
-}
 
 FrameSize size_of(const Size& size, const Roi& roi, FrameSize otherwise = {}) {
     if (size) {
@@ -70,18 +50,19 @@ std::unique_ptr<SizedReconstructor> make(const std::string& model, int width, in
                                          std::string noise_filter, const std::string& precision,
                                          const std::string& kernels, int threads, bool reset_on_gap,
                                          bool allow_silence) {
-    const ReconstructorOptions options{.window = std::move(window),
-                                       .lookahead = lookahead,
-                                       .fps = std::move(fps),
-                                       .size = size_of(size, roi),
-                                       .sigma = sigma,
-                                       .noise_filter = std::move(noise_filter),
-                                       .hot_pixels = std::move(hot_pixels),
-                                       .precision = precision_of(precision),
-                                       .kernels = kernels_of(kernels),
-                                       .threads = threads,
-                                       .reset_on_gap = reset_on_gap,
-                                       .allow_silence = allow_silence};
+    const ReconstructorOptions options{
+        .window = std::move(window),
+        .lookahead = lookahead,
+        .fps = std::move(fps),
+        .size = size_of(size, roi),
+        .sigma = sigma,
+        .noise_filter = std::move(noise_filter),
+        .hot_pixels = std::move(hot_pixels),
+        .precision = option_word("precision", precision, kPrecisionWords),
+        .kernels = option_word("kernels", kernels, kKernelWords),
+        .threads = threads,
+        .reset_on_gap = reset_on_gap,
+        .allow_silence = allow_silence};
     const py::gil_scoped_release released;
     return std::make_unique<SizedReconstructor>(model, width, height, options);
 }
@@ -260,9 +241,10 @@ ReconstructorOptions options_of(const py::dict& given) {
         else if (name == "noise_filter")
             options.noise_filter = value.cast<std::string>();
         else if (name == "precision")
-            options.precision = precision_of(value.cast<std::string>());
+            options.precision =
+                option_word("precision", value.cast<std::string>(), kPrecisionWords);
         else if (name == "kernels")
-            options.kernels = kernels_of(value.cast<std::string>());
+            options.kernels = option_word("kernels", value.cast<std::string>(), kKernelWords);
         else if (name == "threads")
             options.threads = value.cast<int>();
         else if (name == "reset_on_gap")

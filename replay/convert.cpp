@@ -104,6 +104,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     target.finish();
     report.damaged = parser->damaged();
     report.bytes_written = target.bytes_written();
+    report.lost = target.lost();
     return report;
 }
 

@@ -22,6 +22,7 @@ struct ConvertReport {
     DataCounts not_held;  ///< left out because the target has no record for them
     Damage damaged;       ///< found in what was read
     std::uint64_t bytes_written = 0;
+    std::uint64_t lost = 0;  ///< ConvertTarget::lost()
 };
 
 /// Where converted data go.
@@ -35,6 +36,7 @@ public:
     virtual void finish() = 0;                          ///< once, after the last write
     virtual bool reader_gone() const { return false; }  ///< nobody wants more
     virtual std::uint64_t bytes_written() const = 0;
+    virtual std::uint64_t lost() const { return 0; }  ///< datagrams that nobody took
 };
 
 /// What a target is told of where its data come from.

@@ -6,6 +6,7 @@
 #include "replay/stream/scan_geometry.h"
 #include "replay/unsupported_formats.h"
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -75,8 +76,8 @@ OpenedStream open_stream(const ByteFile& file, const Format& format,
 }
 
 void check_size(const OpenOptions& options) {
-    if ((options.width > 0) != (options.height > 0) || options.width < 0 || options.width > 65536 ||
-        options.height > 65536)
+    if ((options.width > 0) != (options.height > 0) || options.width < 0 ||
+        options.width > kLargestRecordedSide || options.height > kLargestRecordedSide)
         throw Error(ErrorKind::usage, "geometry: expected WIDTHxHEIGHT, each 1 to 65536, found " +
                                           std::to_string(options.width) + "x" +
                                           std::to_string(options.height));

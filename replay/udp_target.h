@@ -25,7 +25,7 @@ public:
     void write(const Batch& batch) override;
     void finish() override {}
     std::uint64_t bytes_written() const override { return bytes_; }
-    std::uint64_t lost() const { return lost_; }  ///< datagrams
+    std::uint64_t lost() const override { return lost_; }
 
 private:
     UdpName name_;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What .ci/run has no time for: clang-tidy over the libraries' source files, the tests under the sanitizers, a minute of fuzzing, the API pages, and a wheel for
-# Python, the library of events to frames alone, and Debian packages in a system of their own. An hour or two on two cores; before a release, and after
+# Python, the library of events to frames alone, the program without what can be left out, and Debian packages in a system of their own. An hour or two on two cores; before a release, and after
 # changes to parsers, threads or memory.
-#   scripts/check.sh [api] [wheel] [core] [packages] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
+#   scripts/check.sh [api] [wheel] [core] [bare] [packages] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 fuzz_seconds=2  # of each target: a minute of all together
@@ -64,6 +64,26 @@ core() {
   grep -q "component 'io'" "$place/words"
 }
 
+# The program without what an option can leave out: frames as ever, and a refusal in words, no file left, where one needs what is missing.
+bare() {
+  local place program
+  place=$(mktemp -d)
+  trap 'rm -rf "$place"' RETURN
+  cmake -S . -B build/bare -G Ninja -DCMAKE_BUILD_TYPE=Release -DEVENTIDE_TESTS=OFF -DEVENTIDE_TRAIN=OFF -DEVENTIDE_PYTHON=OFF -DEVENTIDE_VIDEO=OFF \
+    -DEVENTIDE_COMPRESSION=OFF -DEVENTIDE_HDF5=OFF -DEVENTIDE_SQLITE=OFF -DEVENTIDE_HTTP=OFF -DEVENTIDE_ROS2=OFF -DEVENTIDE_USB=OFF -DEVENTIDE_ONEDNN=OFF
+  cmake --build build/bare
+  program=build/bare/apps/cli/eventide
+  "$program" simulate --scene demo --seconds 0.3 --size 64x48 --out "$place/recording.aedat4"
+  "$program" run "$place/recording.aedat4" --out "y4m:$place/video.y4m"
+  [[ $(head -c 9 "$place/video.y4m") == YUV4MPEG2 ]]
+  if "$program" run "$place/recording.aedat4" --out "$place/video.mp4" 2>"$place/words"; then
+    echo "bare: expected mp4 to be refused, found it accepted" >&2
+    return 1
+  fi
+  grep -q EVENTIDE_VIDEO "$place/words"
+  [[ ! -e $place/video.mp4 ]]
+}
+
 # A clean Debian 12, made by debootstrap: packages are installed and run, and programs in C and Python built on them give the frames of
 # `eventide run`. As root, with Debian's archive at hand.
 packages() {
@@ -95,15 +115,16 @@ packages() {
 scripts/install-packages.sh --tests
 for check in "${@:-all}"; do
   case $check in
-    all) scripts/check-format.sh; api; wheel; core; packages; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
+    all) scripts/check-format.sh; api; wheel; core; bare; packages; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
     api) api ;;
     wheel) wheel ;;
     core) core ;;
+    bare) bare ;;
     packages) packages ;;
     tidy) tidy ;;
     fuzz) scripts/fuzz.sh $fuzz_seconds ;;
     asan | tsan) scripts/test.sh "$check" ;;
-    *) echo "check: expected api, wheel, core, packages, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
+    *) echo "check: expected api, wheel, core, bare, packages, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
   esac
 done
 echo "check: passed"

@@ -21,11 +21,11 @@ jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { path = $NF } END { print pa
 keep_memory=(env ${jemalloc:+LD_PRELOAD=$jemalloc
   MALLOC_CONF=dirty_decay_ms:-1,muzzy_decay_ms:-1,narenas:4,oversize_threshold:0,thp:always})
 
-# What every run shares: the shipped network's shape, on pictures small enough for hundreds of steps, and scenes short
+# What every run shares: the shipped network's shape, on images small enough for hundreds of steps, and scenes short
 # enough for hundreds of them: with long ones two seeds differed by .1 in SSIM.
-common=(--minutes "$minutes" --clock cpu --threads 1 --streams 2 --groups 6 --crop 48 --patch 48 --frames 6 --rendered 3 --episode 12,60
+common=(--minutes "$minutes" --clock cpu --threads 1 --streams 2 --groups 6 --crop 48 --patch 48 --event-windows 6 --rendered 3 --episode 12,60
   --widths 16,32,48,48 --mlp 64,64 --rate 0.002 --warm-up 30 --ema 0.99 --validate-minutes 100000
-  --validation-scenes 8 --validation-frames 30 --validation-crop 64)
+  --validation-scenes 8 --validation-windows 30 --validation-crop 64)
 
 declare -A options experiments title
 run() { options[$1]=${*:2}; }

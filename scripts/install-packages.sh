@@ -7,7 +7,7 @@ set -euo pipefail
 build=(
   g++ cmake ninja-build ccache pkg-config
   libopencv-dev libeigen3-dev nlohmann-json3-dev libtbb-dev libhwy-dev libdnnl-dev
-  libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libbz2-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler
+  libconcurrentqueue-dev liblz4-dev libzstd-dev zlib1g-dev libbz2-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
   libusb-1.0-0-dev libhdf5-dev libsqlite3-dev libcpp-httplib-dev
@@ -15,8 +15,8 @@ build=(
   python3-dev python3-numpy pybind11-dev
 )
 tests=(
-  libgtest-dev libgmock-dev libbenchmark-dev libumockdev-dev umockdev
-  libtorch-dev ffmpeg python3
+  libgtest-dev libgmock-dev libbenchmark-dev libflatbuffers-dev flatbuffers-compiler-dev flatbuffers-compiler libumockdev-dev umockdev
+  libtorch-dev libopenblas0-pthread libjemalloc2 ffmpeg python3
   libfastrtps-dev libfastcdr-dev
   clang clang-format clang-tidy libclang-rt-14-dev git
   dpkg-dev file chromium doxygen zsh fish debootstrap

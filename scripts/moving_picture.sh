@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes README's moving picture: events, frame and sigma of a recording, in slow motion, as animated WebP.
+# Makes README's animation: events, frame and sigma of a recording, in slow motion, as animated WebP.
 #   scripts/moving_picture.sh RECORDING OUT.webp [FROM]     davis346_robotarm.aedat4 docs/robotarm.webp 40ms
 # EVENTIDE names the program (build/release/apps/cli/eventide).
 set -euo pipefail

@@ -4,7 +4,7 @@
 # OPTIONS of eventide-train, which the checkpoint keeps.
 # One thread at low priority, at the full learning rate (CONSTANT=.6: it falls in the last two fifths of all minutes so
 # far, for a model to ship: OUT/model.safetensors). Ctrl-C ends it after the step at hand with everything written.
-# TRAIN, PACK name the programs, OUT the folder of the run (out/train; with MODEL out/MODEL), PACKS that of the pictures, packed (out/train).
+# TRAIN, PACK name the programs, OUT the folder of the run (out/train; with MODEL out/MODEL), PACKS that of the photographs, packed (out/train).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -ge 2 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }

@@ -108,27 +108,27 @@ void measure_frames(const Model& model, const StageSettings& s, std::vector<Voxe
     EngineOptions engine = s.engine, without = s.engine;
     if (!is_anywhere) engine.still_codes = engine.still_time = 0;
     without.skip_quiet = false;
-    PipelineUnderTest line{model, s, engine}, judge{model, s, without};
+    PipelineUnderTest tested{model, s, engine}, judge{model, s, without};
     Stopwatch encoding, rendering;
     ErrorSum error;
     int place = 600;
-    row.engine = line.encoder().description();
+    row.engine = tested.encoder().description();
     run(dense, grids, s.repetitions, [&](VoxelGrid& grid, bool counts) {
         if (is_anywhere) place = (place + 370) % 1000;
         if (counts) encoding.start();
-        line.encode(grid);
+        tested.encode(grid);
         if (counts) encoding.stop(), rendering.start();
-        line.push();
-        line.render(place);
+        tested.push();
+        tested.render(place);
         if (counts) rendering.stop();
         judge.encode(grid);
         judge.push();
         judge.render(place);
         if (!counts) return;
-        error.add(line.frame(), judge.frame());
+        error.add(tested.frame(), judge.frame());
         row.is_encode_exact &=
-            std::ranges::equal(line.latent().values.values(), judge.latent().values.values());
-        row.changed = changed_share(line.latent().history);
+            std::ranges::equal(tested.latent().values.values(), judge.latent().values.values());
+        row.changed = changed_share(tested.latent().history);
     });
     if (is_anywhere) {
         row.anywhere_ms = rendering.timing().cpu_ms;

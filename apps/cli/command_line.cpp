@@ -17,17 +17,40 @@ namespace eventide::app {
 
 namespace {
 
-/// Lines of at most 78 columns beside CLI11's column of names.
-std::string wrapped(const std::string& text) {
-    constexpr std::size_t kWidth = 48;
+constexpr std::size_t kColumns = 79;      // of any terminal, and one for its cursor
+constexpr std::size_t kHelpColumns = 48;  // beside CLI11's column of names
+
+std::string wrapped(const std::string& text, std::size_t width = kHelpColumns) {
     std::string lines, line;
     std::istringstream words{text};
     for (std::string word; words >> word;) {
-        if (!line.empty() && line.size() + 1 + word.size() > kWidth)
+        if (!line.empty() && line.size() + 1 + word.size() > width)
             lines += std::exchange(line, "") + "\n";
         line += (line.empty() ? "" : " ") + word;
     }
     return lines + line;
+}
+
+/// A command in as many lines as it takes, each an option's beginning.
+std::string wrapped_command(std::string line) {
+    std::string lines;
+    while (line.size() > kColumns) {
+        const std::size_t at = line.rfind(" --", kColumns - 2);
+        if (at == line.npos || at < 8) break;
+        lines += line.substr(0, at) + " \\\n";
+        line = "     " + line.substr(at);
+    }
+    return lines + line;
+}
+
+/// What stands below the options: paragraphs, and commands, which are set in by two columns.
+std::string footer_of(const std::string& text) {
+    std::string lines;
+    std::istringstream paragraphs{text};
+    for (std::string line; std::getline(paragraphs, line);)
+        lines += (lines.empty() ? "" : "\n") +
+                 (line.starts_with("  ") ? wrapped_command(line) : wrapped(line, kColumns));
+    return lines;
 }
 
 std::string help_of(const Setting& setting) {
@@ -161,11 +184,12 @@ std::string help_hint(const std::string& command) {
 
 Parsed parse_command_line(const std::vector<std::string>& arguments, const SettingTable& common) {
     CLI::App app{"Video with uncertainty from event cameras, in real time.", "eventide"};
-    app.footer(std::string{"Examples:\n"
-                           "  eventide run recording.aedat4 --out video.mp4\n"
-                           "  eventide info recording.raw\n"
-                           "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"} +
-               kExitCodes);
+    app.footer(
+        footer_of(std::string{"Examples:\n"
+                              "  eventide run recording.aedat4 --out video.mp4\n"
+                              "  eventide info recording.raw\n"
+                              "  eventide run recording.aedat4 --fps 200 --out - | ffplay -\n"} +
+                  kExitCodes));
     app.set_version_flag("--version", version_text());
     app.require_subcommand(0, 1);
     app.fallthrough();
@@ -186,8 +210,8 @@ Parsed parse_command_line(const std::vector<std::string>& arguments, const Setti
     std::vector<Options> options(commands.size());
     std::vector<CLI::App*> apps;
     for (std::size_t i = 0; i < commands.size(); ++i) {
-        CLI::App* sub = app.add_subcommand(commands[i]->name(), commands[i]->summary());
-        sub->footer(commands[i]->examples());
+        CLI::App* sub = app.add_subcommand(commands[i]->name(), wrapped(commands[i]->summary()));
+        sub->footer(footer_of(commands[i]->examples()));
         for (const Positional& positional : commands[i]->positionals()) add(*sub, positional);
         options[i].add(*sub, commands[i]->settings());
         apps.push_back(sub);

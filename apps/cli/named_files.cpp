@@ -54,8 +54,13 @@ void NamedFiles::reads_all(const std::string& option, const fs::path& folder) {
 
 void NamedFiles::writes(const std::string& option, const fs::path& path, const std::string& said) {
     if (path.empty()) return;
-    if (path == "-")
-        return add({option + " -", {}, FileIdentity::of_descriptor(STDOUT_FILENO)}, outputs_);
+    if (path == "-") {
+        if (!standard_output_.empty())
+            throw Error(ErrorKind::usage, option + " -: " + standard_output_ +
+                                              " has standard output; expected another file");
+        standard_output_ = option + " -";
+        return add({standard_output_, {}, FileIdentity::of_descriptor(STDOUT_FILENO)}, outputs_);
+    }
     add(named(option + " " + (said.empty() ? path.string() : said), path), outputs_);
     refuse_existing(path, overwrite_);
 }

@@ -24,7 +24,8 @@ public:
     void reads_all(const std::string& option, const std::filesystem::path& folder);
 
     /// One file; an empty path is nothing, "-" standard output. Throws Error (usage) naming both
-    /// where it is also an input or another output, and for a file with something in it that may
+    /// where it is also an input or another output (two on standard output would mix their bytes),
+    /// and for a file with something in it that may
     /// not be replaced.
     /// `said` is how the user wrote it, where that is not just the path: "y4m:x".
     void writes(const std::string& option, const std::filesystem::path& path,
@@ -46,6 +47,7 @@ private:
     void add(Named named, std::vector<Named>& to);
 
     bool overwrite_ = false;
+    std::string standard_output_;  ///< which output has it
     std::vector<Named> inputs_, outputs_;
 };
 

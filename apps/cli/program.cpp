@@ -12,6 +12,7 @@
 #include <poll.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
+#include <opencv2/core.hpp>
 
 #include <cerrno>
 #include <cstdio>
@@ -152,6 +153,16 @@ std::string fish_completion() {
     return fish_completion(common.table(), all_commands());
 }
 
+namespace {
+
+int out_of_memory() {
+    spdlog::error(
+        "out of memory: expected enough for the sensor's size, --size and the buffers, found less");
+    return int(ErrorKind::failed);
+}
+
+}  // namespace
+
 int run_program(Signals& signals, std::vector<std::string> arguments) {
     start_log({});
     try {
@@ -162,9 +173,10 @@ int run_program(Signals& signals, std::vector<std::string> arguments) {
         spdlog::error("{}", error.what());
         return int(error.kind());
     } catch (const std::bad_alloc&) {
-        spdlog::error(
-            "out of memory: expected enough for the sensor's size, --size and the buffers, found "
-            "less");
+        return out_of_memory();
+    } catch (const cv::Exception& error) {
+        if (error.code == cv::Error::StsNoMem) return out_of_memory();
+        spdlog::error("{}", error.what());
         return int(ErrorKind::failed);
     } catch (const std::system_error& error) {
         spdlog::error("{}", system_words(error));

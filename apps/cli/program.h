@@ -23,8 +23,7 @@ std::string fish_completion();
 
 inline constexpr const char* kExitCodes =
     "Exit codes: 0 done, 1 failed while running, 2 wrong usage or configuration, 3 input "
-    "unreadable,\n"
-    "4 device missing or lost, 5 finished but data were lost (with --strict).";
+    "unreadable, 4 device missing or lost, 5 finished but data were lost (with --strict).";
 
 /// Everything but main(): parses, resolves the configuration, runs the command, turns errors into
 /// messages and exit codes.

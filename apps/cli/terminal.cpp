@@ -6,6 +6,7 @@
 #include "src/core/environment.h"
 #include "src/core/error.h"
 
+#include <fcntl.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -14,8 +15,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace eventide::app {
@@ -75,11 +78,26 @@ bool on_terminal() {
     return isatty(STDERR_FILENO) == 1;
 }
 
-void refuse_terminal(const std::string& option, bool force) {
-    if (force || isatty(STDOUT_FILENO) != 1) return;
-    throw Error(ErrorKind::usage, option +
-                                      ": expected a pipe or a file as standard output, found a "
-                                      "terminal; --force writes to it all the same");
+namespace {
+
+bool is_terminal(const std::string& path) {
+    if (path == "-") return isatty(STDOUT_FILENO) == 1;
+    std::error_code none;
+    if (!std::filesystem::is_character_file(path, none)) return false;
+    const int file = ::open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return false;
+    const bool terminal = isatty(file) == 1;
+    ::close(file);
+    return terminal;
+}
+
+}  // namespace
+
+void refuse_terminal(const std::string& option, const std::string& path, bool force) {
+    if (force || !is_terminal(path)) return;
+    throw Error(ErrorKind::usage, option + ": expected a pipe or a file" +
+                                      (path == "-" ? " as standard output" : "") +
+                                      ", found a terminal; --force writes to it all the same");
 }
 
 bool colour_allowed() {

@@ -19,9 +19,9 @@ void start_log(const LogSettings& settings);
 /// Standard error is a terminal.
 bool on_terminal();
 
-/// Throws Error (usage) where standard output is a terminal, which frames and packed events would
-/// only garble. `option` is what asked for it; --force allows it.
-void refuse_terminal(const std::string& option, bool force);
+/// Throws Error (usage) where `path` ("-": standard output) is a terminal, which frames and packed
+/// events would only garble. `option` is what asked for it; --force allows it.
+void refuse_terminal(const std::string& option, const std::string& path, bool force);
 
 /// Whether colour may be used: on a terminal, unless NO_COLOR is set to something (no-color.org).
 bool colour_allowed();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/evaluate/report.h"
+#include "replay/open_options.h"
 #include "src/core/parallel_for.h"
 #include "src/core/sensor_time.h"
 #include "src/model/engine.h"
@@ -43,6 +44,7 @@ struct RecordingSettings {
     /// kSkipHalf: the first half.
     static constexpr int kSkipHalf = -1;
     int skip_images = 3;
+    OpenOptions input;                   ///< what the recordings do not say themselves
     std::optional<double> from_s, to_s;  ///< from the first event or image; what is scored
     /// Every so many images one is given to the model (ImageFusion) and not scored; 0: none.
     int given_images = 0;

@@ -102,7 +102,8 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
         const std::filesystem::path& path = what.recordings[std::size_t(i)];
         std::optional<double> read_from;
         if (what.from_s) read_from = std::max(0., *what.from_s - kWarmUpSeconds);
-        ReferenceSequence sequence = read_reference_sequence(path, read_from, what.to_s);
+        ReferenceSequence sequence =
+            read_reference_sequence(path, read_from, what.to_s, what.input);
         ScoredImages which;
         which.given = what.given_images;
         const int images = int(sequence.images.size());

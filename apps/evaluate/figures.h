@@ -23,8 +23,8 @@ Plot reliability_diagram(const EvaluateReport& report);
 struct FigureSettings {
     SimulatedSettings simulated;
     std::vector<double> scales{1, 1.5, 2, 3, 4, 5, 6};
-    int phases_max = 6;      ///< images per event window
-    int moving_frames = 40;  ///< event windows before the silence
+    int phases_max = 6;       ///< images per event window
+    int moving_windows = 40;  ///< event windows before the silence
     std::vector<int> silent_windows{0, 1, 2, 4, 6, 10, 20, 38, 60, 100, 200, 600, 2000, 6000};
 };
 /// Images rendered at a multiple of the sensor's size, against those of its size enlarged by

@@ -203,7 +203,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
     const auto textures = test_textures(what.simulated);
     const int width = what.simulated.width, height = what.simulated.height;
     FigureSettings moving = what;
-    moving.simulated.event_windows = what.moving_frames;
+    moving.simulated.event_windows = what.moving_windows;
     std::ranges::sort(moving.silent_windows);
     std::vector<std::map<int, double>> moved(std::size_t(what.simulated.sequences));
 

@@ -70,8 +70,9 @@ std::string name_of(const std::filesystem::path& path) {
     return (plain.has_filename() ? plain : plain.parent_path()).stem().string();
 }
 
-void read_recording(const std::filesystem::path& path, Keeper& keeper, ReferenceSequence& into) {
-    const auto recording = open_recording(path.string());
+void read_recording(const std::filesystem::path& path, const OpenOptions& input, Keeper& keeper,
+                    ReferenceSequence& into) {
+    const auto recording = open_recording(path.string(), input);
     const auto parser = recording->make_parser();
     into.width = recording->info().width;
     into.height = recording->info().height;
@@ -89,12 +90,12 @@ void read_recording(const std::filesystem::path& path, Keeper& keeper, Reference
 }  // namespace
 
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
-                                          std::optional<double> from_s,
-                                          std::optional<double> to_s) {
+                                          std::optional<double> from_s, std::optional<double> to_s,
+                                          const OpenOptions& input) {
     ReferenceSequence sequence;
     sequence.name = name_of(path);
     Keeper keeper{sequence, from_s, to_s};
-    read_recording(path, keeper, sequence);
+    read_recording(path, input, keeper, sequence);
     mend_times(sequence.images);
 
     const auto refuse = [&](const std::string& what) {
@@ -103,7 +104,8 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     if (sequence.events.empty()) refuse("expected events, found none in the time asked for");
     if (sequence.images.empty())
         refuse("expected reference images to compare with, found none in the time asked for");
-    if (sequence.width <= 0 || sequence.height <= 0) refuse("does not say the sensor's size");
+    if (sequence.width <= 0 || sequence.height <= 0)
+        refuse("does not say the sensor's size; --input-size does");
     check_sensor_size(path.string(), sequence.width, sequence.height);
     return sequence;
 }

@@ -2,6 +2,7 @@
 // into event windows.
 #pragma once
 
+#include "replay/open_options.h"
 #include "src/core/damage.h"
 #include "src/core/event.h"
 #include "src/core/frame_data.h"
@@ -32,7 +33,8 @@ struct ReferenceSequence {
 /// events, no images, or no sensor size.
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s = {},
-                                          std::optional<double> to_s = {});
+                                          std::optional<double> to_s = {},
+                                          const OpenOptions& input = {});
 
 /// Throws Error(input) naming `file` for a sensor that no model is to be made for, whatever the
 /// file says: its memory would be.

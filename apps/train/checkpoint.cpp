@@ -1,6 +1,7 @@
 #include "apps/train/checkpoint.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <charconv>
 
@@ -42,21 +43,19 @@ std::string exact(double value) {
 }
 
 double number(const TensorFile& file, const std::string& path, const char* key) {
-    double value = 0;
     const auto found = file.metadata.find(key);
     if (found == file.metadata.end())
         throw Error(ErrorKind::input, path + ": expected metadata '" + key + "', found none");
     const std::string& text = found->second;
-    const auto read =
-        std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::hex);
-    if (read.ec != std::errc{})
+    const auto value = hex_number_in<double>(text);
+    if (!value)
         throw Error(ErrorKind::input, path + ": metadata '" + std::string{key} +
                                           "': expected a number, found '" + text + "'");
-    return value;
+    return *value;
 }
 
-std::string memory_name(std::size_t thread, const std::string& part) {
-    return "memory." + std::to_string(thread) + "." + part;
+std::string recurrent_name(std::size_t thread, const std::string& part) {
+    return "recurrent." + std::to_string(thread) + "." + part;
 }
 
 }  // namespace
@@ -69,20 +68,21 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
                      {"steps", exact(double(optimiser.steps))},
                      {"elapsed_minutes", exact(checkpoint.elapsed_minutes)},
                      {"best_score", exact(checkpoint.best_score)},
-                     {"threads", exact(double(checkpoint.memories.size()))},
+                     {"threads", exact(double(checkpoint.recurrent_states.size()))},
                      {"options", checkpoint.options}};
     // A run that stops and goes on is one that did not stop; one that is kept without its states is
     // not, and of means of gradients, which are mostly noise, 1/256 is enough.
-    const bool small_moments = checkpoint.memories.empty();
+    const bool small_moments = checkpoint.recurrent_states.empty();
     put(file, "weights.", optimiser.parameters, false);
     put(file, "moment1.", optimiser.moment1, small_moments);
     put(file, "moment2.", optimiser.moment2, small_moments);
     put(file, "ema.", optimiser.ema, false);
-    for (std::size_t i = 0; i < checkpoint.memories.size(); ++i) {
-        const RecurrentState& memory = checkpoint.memories[i];
-        file.tensors[memory_name(i, "latent")] = to_tensor(memory.latent);
-        for (std::size_t l = 0; l < memory.state.size(); ++l)
-            file.tensors[memory_name(i, "state." + std::to_string(l))] = to_tensor(memory.state[l]);
+    for (std::size_t i = 0; i < checkpoint.recurrent_states.size(); ++i) {
+        const RecurrentState& recurrent = checkpoint.recurrent_states[i];
+        file.tensors[recurrent_name(i, "latent")] = to_tensor(recurrent.latent);
+        for (std::size_t l = 0; l < recurrent.state.size(); ++l)
+            file.tensors[recurrent_name(i, "state." + std::to_string(l))] =
+                to_tensor(recurrent.state[l]);
     }
     write_safetensors(path, file);
 }
@@ -117,15 +117,15 @@ Checkpoint load_checkpoint(const std::filesystem::path& path, Optimiser& optimis
     const auto threads = std::size_t(number(file, name, "threads"));
     for (std::size_t i = 0; i < threads; ++i) {
         const auto map = [&](const std::string& part) {
-            return to_torch(tensor_of(file, name, memory_name(i, part)), device)
+            return to_torch(tensor_of(file, name, recurrent_name(i, part)), device)
                 .contiguous(torch::MemoryFormat::ChannelsLast);
         };
-        RecurrentState& memory = checkpoint.memories.emplace_back();
-        memory.latent = map("latent");
+        RecurrentState& recurrent = checkpoint.recurrent_states.emplace_back();
+        recurrent.latent = map("latent");
         for (int l = 0;; ++l) {
             const std::string part = "state." + std::to_string(l);
-            if (file.tensors.count(memory_name(i, part)) == 0) break;
-            memory.state.push_back(map(part));
+            if (file.tensors.count(recurrent_name(i, part)) == 0) break;
+            recurrent.state.push_back(map(part));
         }
     }
     return checkpoint;

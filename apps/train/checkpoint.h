@@ -14,9 +14,9 @@ namespace eventide {
 struct Checkpoint {
     std::int64_t window = 0;  ///< the next one; as many steps are done
     double elapsed_minutes = 0;
-    double best_score = 1e9;               ///< of the validations so far
-    std::string options;                   ///< OptionTable::record()
-    std::vector<RecurrentState> memories;  ///< of each group's and thread's streams
+    double best_score = 1e9;                       ///< of the validations so far
+    std::string options;                           ///< OptionTable::record()
+    std::vector<RecurrentState> recurrent_states;  ///< of each group's and thread's streams
 };
 
 /// Writes whole or not at all. Throws Error(failed).

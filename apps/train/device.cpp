@@ -27,12 +27,10 @@ torch::Device device_of(const TrainOptions& options) {
 }
 
 torch::ScalarType arithmetic_type(const TrainOptions& options) {
-    if (options.precision == "f32") return torch::kFloat;
-    if (options.precision == "bf16") return torch::kBFloat16;
-    if (options.precision != "auto")
-        throw Error(ErrorKind::usage,
-                    "--precision: expected f32, bf16 or auto, found '" + options.precision + "'");
-    return options.device == "cuda" || processor_has_bf16() ? torch::kBFloat16 : torch::kFloat;
+    const bool bf16 = options.precision == Precision::automatic
+                          ? options.device == "cuda" || processor_has_bf16()
+                          : options.precision == Precision::bf16;
+    return bf16 ? torch::kBFloat16 : torch::kFloat;
 }
 
 double cpu_seconds() {

@@ -105,7 +105,8 @@ OptionTable::OptionTable(TrainOptions& o) {
         Use::once);
     add("card", o.card, "what the model card says first", Use::run);
     add("device", o.device, "cpu or cuda", Use::run);
-    add("precision", o.precision, "of activations: f32, bf16 or auto (bf16 where it is quick)");
+    add_choice("precision", o.precision, "of activations; auto: bf16 where it is quick",
+               kPrecisionWords);
     add("threads", o.threads, "shares of a step computed at the same time");
     add("streams", o.streams, "streams per thread and step");
     add("groups", o.groups, "of streams, that take turns from step to step");
@@ -136,11 +137,11 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("crop", o.data.crop, "px, side of the part of a sensor that is simulated");
     add("sensor-width", o.data.sensor_width,
         "px, of that sensor; its height is three quarters of it");
-    add("frames", o.data.frames, "event windows that gradients flow through");
+    add("event-windows", o.data.event_windows, "event windows that gradients flow through");
     add("rendered", o.data.rendered, "of them compared with the truth");
     add("patch", o.data.patch, "px, side of the patches compared");
     add("episode", o.data.episode, "event windows of one scene");
-    add("frame-s", o.data.frame_s, "s, width of event windows");
+    add("window-s", o.data.window_s, "s, width of event windows");
     add("content-share", o.data.content_share,
         "share of scenes whose event windows end by number of events");
     add("content-epp", o.data.content_epp, "events per pixel that end such a window");
@@ -190,19 +191,13 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("validate-minutes", o.validate_minutes, "between validations", Use::run);
     add("log-every", o.log_every, "steps per line of the log", Use::run);
     add("validation-scenes", o.validation_scenes, "number of scenes to judge by");
-    add("validation-frames", o.validation_frames, "event windows of each");
+    add("validation-windows", o.validation_windows, "event windows of each");
     add("validation-crop", o.validation_crop, "px, side of each");
 }
 
 void OptionTable::set(const std::string& name, const std::string& value) {
-    // Checkpoints keep the options of their run; the older ones have these names.
-    static const std::map<std::string, std::string> kFormerNames{
-        {"lanes", "streams"},         {"pace", "speed-factor"}, {"tremble", "camera-shake"},
-        {"pinned", "static-objects"}, {"flat", "textureless"},  {"faint", "low-contrast"}};
-    const auto former = kFormerNames.find(name);
-    const std::string& now = former == kFormerNames.end() ? name : former->second;
     for (const Option& option : options_)
-        if (option.setting.key == now) return set_from("--" + name, option.setting, value);
+        if (option.setting.key == name) return set_from("--" + name, option.setting, value);
     throw Error(ErrorKind::usage, "expected one of the options of --help, found '--" + name + "'");
 }
 

@@ -5,6 +5,7 @@
 #include "apps/train/network/losses.h"
 #include "apps/train/network/parameters.h"
 #include "apps/train/optimiser.h"
+#include "src/core/arithmetic_words.h"
 #include "src/model/model_config.h"
 #include "src/settings/setting.h"
 
@@ -23,7 +24,8 @@ struct TrainOptions {
     std::string out = "out/train";
     std::string textures, validation_textures, lpips;
     std::string resume, initial, export_file, keep, card;
-    std::string device = "cpu", precision = "auto";
+    std::string device = "cpu";
+    Precision precision = Precision::automatic;  ///< of activations
     double minutes = 60;
     std::string clock = "wall";  ///< that minutes go by: wall, or cpu
     int steps = 0;               ///< where not 0, the budget instead of `minutes`
@@ -33,7 +35,7 @@ struct TrainOptions {
     int warm_up = 100;
     double checkpoint_minutes = 3, validate_minutes = 5;
     int log_every = 25;
-    int validation_scenes = 12, validation_frames = 40, validation_crop = 96;
+    int validation_scenes = 12, validation_windows = 40, validation_crop = 96;
 };
 
 /// Words and their meaning: "--name value".

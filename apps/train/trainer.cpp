@@ -73,10 +73,10 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
     progress_.options = OptionTable{options_}.record();
-    begin_memories();
+    begin_states();
     if (options.validation_scenes > 0)
         validation_ = std::make_unique<Validation>(
-            ValidationSettings{options.validation_scenes, options.validation_frames,
+            ValidationSettings{options.validation_scenes, options.validation_windows,
                                options.validation_crop, 4242},
             options_.data, std::move(validation_textures), device_);
     feed_ = std::make_unique<DataLoader>(options_.data, std::move(textures),
@@ -85,14 +85,15 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
 }
 
 /// A run may go on with other streams or another crop: its states then begin empty.
-void Trainer::begin_memories() {
-    std::vector<RecurrentState>& memories = progress_.memories;
+void Trainer::begin_states() {
+    std::vector<RecurrentState>& recurrent_states = progress_.recurrent_states;
     const int crop = options_.data.crop;
     const RecurrentState empty = empty_recurrent_state(options_.model, options_.streams, crop, crop,
                                                        torch::TensorOptions{device_});
     const auto count = std::size_t(options_.threads * options_.groups);
-    if (memories.size() != count || memories[0].latent.sizes() != empty.latent.sizes())
-        memories.assign(count, empty);
+    if (recurrent_states.size() != count ||
+        recurrent_states[0].latent.sizes() != empty.latent.sizes())
+        recurrent_states.assign(count, empty);
 }
 
 std::filesystem::path Trainer::file(const char* name) const {
@@ -116,14 +117,14 @@ double Trainer::learning_rate() const {
 }
 
 Trainer::Share Trainer::run_share(std::span<const StreamWindow> windows, const WindowPlan& plan,
-                                  RecurrentState& memory) {
+                                  RecurrentState& recurrent) {
     at::set_num_threads(1);  // libgomp keeps the number per thread
     const TrainingBatch batch = to_batch(windows, device_);
-    memory = begin_window(memory, batch.fresh);
+    recurrent = begin_window(recurrent, batch.fresh);
     const Parameters narrow =
         type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
     const Images images =
-        run_window(options_.model, narrow, plan, batch, options_.data.patch, memory);
+        run_window(options_.model, narrow, plan, batch, options_.data.patch, recurrent);
     Share share;
     share.terms = loss(images, options_.loss, perceptual_.get(), options_.lpips_frames);
     std::vector<torch::Tensor> leaves;
@@ -135,7 +136,7 @@ Trainer::Share Trainer::run_share(std::span<const StreamWindow> windows, const W
         const torch::Tensor& g = gradients[i++];
         share.gradients[name] = g.defined() ? g : torch::zeros_like(values);
     }
-    memory = {detach(memory.state), memory.latent.detach()};
+    recurrent = {detach(recurrent.state), recurrent.latent.detach()};
     return share;
 }
 
@@ -145,14 +146,15 @@ void Trainer::step() {
     const WindowPlan plan = window_plan(options_.data, progress_.window);
     const std::vector<StreamWindow> windows = feed_->next();
     std::vector<Share> shares(std::size_t(options_.threads));
-    const std::span<RecurrentState> memories = std::span{progress_.memories}.subspan(
-        std::size_t(progress_.window % options_.groups) * shares.size(), shares.size());
+    const std::span<RecurrentState> recurrent_states =
+        std::span{progress_.recurrent_states}.subspan(
+            std::size_t(progress_.window % options_.groups) * shares.size(), shares.size());
     const auto streams = std::size_t(options_.streams);
     {
         std::vector<std::jthread> threads;
         const auto work = [&](std::size_t i) {
-            shares[i] =
-                run_share(std::span{windows}.subspan(i * streams, streams), plan, memories[i]);
+            shares[i] = run_share(std::span{windows}.subspan(i * streams, streams), plan,
+                                  recurrent_states[i]);
         };
         for (std::size_t i = 1; i < shares.size(); ++i) threads.emplace_back(work, i);
         work(0);
@@ -172,8 +174,8 @@ void Trainer::step() {
     const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
     if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next windows
         ++skipped_;
-        for (RecurrentState& memory : memories)
-            memory = begin_window(memory, std::vector<bool>(streams, true));
+        for (RecurrentState& recurrent : recurrent_states)
+            recurrent = begin_window(recurrent, std::vector<bool>(streams, true));
     }
     ++progress_.window;
     const double seconds = seconds_since(start);
@@ -225,7 +227,7 @@ void Trainer::run(const std::atomic<bool>& stop) {
 
 void Trainer::keep(const std::filesystem::path& path) const {
     Checkpoint without_states = progress_;
-    without_states.memories.clear();
+    without_states.recurrent_states.clear();
     save_checkpoint(path, without_states, optimiser_);
 }
 

@@ -38,12 +38,12 @@ private:
         Parameters gradients;
         LossTerms terms;
     };
-    void begin_memories();
+    void begin_states();
     bool finished() const;
     double learning_rate() const;
     void step();
     Share run_share(std::span<const StreamWindow> windows, const WindowPlan& plan,
-                    RecurrentState& memory);
+                    RecurrentState& recurrent);
     Mark mark() const { return {progress_.window, progress_.elapsed_minutes}; }
     void validate();
     void checkpoint();

@@ -12,9 +12,9 @@ Validation::Validation(const ValidationSettings& settings, DataSettings data,
                        std::shared_ptr<const TextureLibrary> textures, torch::Device device)
     : data_(std::move(data)) {
     data_.crop = data_.patch = settings.crop;
-    data_.frames = settings.frames;
-    data_.rendered = std::max(1, settings.frames - data_.warm_frames);
-    data_.episode = {double(settings.frames), double(settings.frames)};
+    data_.event_windows = settings.event_windows;
+    data_.rendered = std::max(1, settings.event_windows - data_.warm_windows);
+    data_.episode = {double(settings.event_windows), double(settings.event_windows)};
     data_.whole_probability = 1;
     data_.seed = settings.seed;
     plan_ = window_plan(data_, 0);
@@ -28,11 +28,11 @@ Images Validation::render_scene(const ModelConfig& config, const Parameters& par
                                 std::size_t scene, int lookahead) const {
     const TrainingBatch& batch = scenes_[scene];
     const torch::Tensor& grid = batch.grids[0];
-    RecurrentState memory = empty_recurrent_state(config, 1, grid.size(2), grid.size(3),
-                                                  grid.options().dtype(torch::kFloat));
+    RecurrentState recurrent = empty_recurrent_state(config, 1, grid.size(2), grid.size(3),
+                                                     grid.options().dtype(torch::kFloat));
     WindowPlan plan = plan_;
     std::fill(plan.lookahead.begin(), plan.lookahead.end(), lookahead);
-    return run_window(config, parameters, plan, batch, data_.patch, memory);
+    return run_window(config, parameters, plan, batch, data_.patch, recurrent);
 }
 
 Validation::Scores Validation::judge(const ModelConfig& config, const Parameters& parameters,

@@ -10,7 +10,7 @@
 namespace eventide {
 
 struct ValidationSettings {
-    int scenes = 12, frames = 40, crop = 96;
+    int scenes = 12, event_windows = 40, crop = 96;
     std::uint64_t seed = 4242;
 };
 
@@ -24,7 +24,7 @@ public:
         double score = 0;                               ///< the loss: what the choice goes by
         std::array<double, kLossNames.size()> means{};  ///< as LossTerms
     };
-    /// Means over all scenes, states carried from the first frame on.
+    /// Means over all scenes, states carried from the first event window on.
     Scores judge(const ModelConfig& config, const Parameters& parameters, int lookahead,
                  const LossWeights& weights, const Perceptual* perceptual) const;
 

@@ -1,4 +1,4 @@
-# Every package the project stands on, in one place. All are Debian's; scripts/install-packages.sh installs them.
+# Every package the project stands on, in one place, but for those that a single test asks for (tests/*/CMakeLists.txt). All are Debian's; scripts/install-packages.sh installs them.
 # Events to frames (libeventide-core).
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)

@@ -2,6 +2,7 @@
 #include "drivers/ros2/ros2_source.h"
 
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,7 +16,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kReadTimeout = 20ms;
-constexpr int kLargestSide = 4096;               // px
 constexpr std::size_t kEnoughBytes = 256 << 10;  // of messages at once
 
 void append(const EventMessage& message, std::vector<std::byte>& bytes) {
@@ -77,12 +77,12 @@ void Ros2Source::begin(const EventMessage& message) {
     if (message.big_endian)
         throw Error(ErrorKind::device,
                     label() + ": expected little-endian packets, found big-endian ones");
-    if (message.width < 1 || message.width > kLargestSide || message.height < 1 ||
-        message.height > kLargestSide)
+    if (message.width < 1 || message.width > kLargestSensorSide || message.height < 1 ||
+        message.height > kLargestSensorSide)
         throw Error(ErrorKind::device, label() + ": expected a sensor of 1 to " +
-                                           std::to_string(kLargestSide) + " px each way, found " +
-                                           std::to_string(message.width) + "x" +
-                                           std::to_string(message.height));
+                                           std::to_string(kLargestSensorSide) +
+                                           " px each way, found " + std::to_string(message.width) +
+                                           "x" + std::to_string(message.height));
     encoding_ = *encoding;
     info_.name = "ROS 2 " + name_.topic;
     info_.format = encoding_name_;

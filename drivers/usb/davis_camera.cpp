@@ -1,9 +1,9 @@
 #include "drivers/usb/davis_camera.h"
 
 #include "drivers/usb/verified_writes.h"
-#include "src/codec/byte_order.h"
 #include "src/codec/inivation/davis.h"
 #include "src/core/bayer.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <string>
@@ -158,10 +158,10 @@ std::unique_ptr<Parser> DavisCamera::make_parser() const {
 
 /// On the source thread: a control request inside event handling would wait for itself.
 void DavisCamera::between_transfers(UsbDevice& device) {
-    const int wish_us = exposure_request_->exchange(0, std::memory_order_relaxed);
-    if (wish_us <= 0) return;
-    settings_.exposure_us = wish_us;  // also where the camera has to be opened again
-    device.write_register({kApsExposure, adc_cycles(wish_us, features_)});
+    const int wanted_us = exposure_request_->exchange(0, std::memory_order_relaxed);
+    if (wanted_us <= 0) return;
+    settings_.exposure_us = wanted_us;  // also where the camera has to be opened again
+    device.write_register({kApsExposure, adc_cycles(wanted_us, features_)});
 }
 
 std::vector<CameraDescription> list_davis_cameras() {

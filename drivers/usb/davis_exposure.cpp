@@ -39,11 +39,11 @@ void ExposingDavisParser::parse(std::span<const std::byte> bytes, Batch& into) {
             --wait_frames_;
             continue;
         }
-        const int wish = better_exposure_us(into.images[i], exposure_us_);
-        if (wish == exposure_us_) continue;
-        exposure_us_ = wish;
+        const int request = better_exposure_us(into.images[i], exposure_us_);
+        if (request == exposure_us_) continue;
+        exposure_us_ = request;
         wait_frames_ = kFramesUntilItShows;
-        wish_->store(wish, std::memory_order_relaxed);
+        request_->store(request, std::memory_order_relaxed);
     }
 }
 

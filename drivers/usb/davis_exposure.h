@@ -17,13 +17,13 @@ int better_exposure_us(const ReferenceImage& frame, int current_us);
 /// What the bin thread says and the source thread does. 0: nothing to do.
 using ExposureRequest = std::atomic<int>;
 
-/// A DavisParser that also looks at the frames' brightness. The wish is written to the camera by
-/// the source thread, so that no control request ever waits inside event handling.
+/// A DavisParser that also looks at the frames' brightness. The exposure asked for is written to
+/// the camera by the source thread, so that no control request ever waits inside event handling.
 class ExposingDavisParser final : public Parser {
 public:
     ExposingDavisParser(const DavisSensor& sensor, int exposure_us,
-                        std::shared_ptr<ExposureRequest> wish)
-        : parser_(sensor), exposure_us_(exposure_us), wish_(std::move(wish)) {}
+                        std::shared_ptr<ExposureRequest> request)
+        : parser_(sensor), exposure_us_(exposure_us), request_(std::move(request)) {}
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override { parser_.finish(into); }
@@ -39,7 +39,7 @@ private:
     DavisParser parser_;
     int exposure_us_;
     int wait_frames_ = 0;
-    std::shared_ptr<ExposureRequest> wish_;
+    std::shared_ptr<ExposureRequest> request_;
 };
 
 }  // namespace eventide

@@ -1,8 +1,8 @@
 #include "drivers/usb/dvs128_camera.h"
 
 #include "drivers/settings_file.h"
-#include "src/codec/byte_order.h"
 #include "src/codec/inivation/dvs128.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <utility>

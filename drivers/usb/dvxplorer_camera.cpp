@@ -1,9 +1,9 @@
 #include "drivers/usb/dvxplorer_camera.h"
 
 #include "drivers/usb/verified_writes.h"
-#include "src/codec/byte_order.h"
 #include "src/codec/inivation/dvxplorer.h"
 #include "src/codec/inivation/dvxplorer_mini.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <string>

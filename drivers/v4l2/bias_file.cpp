@@ -2,15 +2,16 @@
 #include "drivers/v4l2/bias_file.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/io/input_file.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 namespace eventide {
 
@@ -61,13 +62,11 @@ std::optional<std::int64_t> number_of(const std::string& text) {
     std::size_t begin = negative ? 1 : 0;
     const bool hexadecimal = text.compare(begin, 2, "0x") == 0 || text.compare(begin, 2, "0X") == 0;
     if (hexadecimal) begin += 2;
-    std::uint32_t value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [last, error] =
-        std::from_chars(text.data() + begin, end, value, hexadecimal ? 16 : 10);
-    if (error != std::errc{} || last != end || begin == text.size() || value > INT32_MAX)
-        return std::nullopt;
-    return negative ? -std::int64_t{value} : std::int64_t{value};
+    const std::string_view digits = std::string_view{text}.substr(begin);
+    const auto value =
+        hexadecimal ? hex_number_in<std::uint32_t>(digits) : number_in<std::uint32_t>(digits);
+    if (!value || *value > INT32_MAX) return std::nullopt;
+    return negative ? -std::int64_t{*value} : std::int64_t{*value};
 }
 
 Bias bias_of(const std::string& place, const std::string& text) {

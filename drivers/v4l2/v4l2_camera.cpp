@@ -3,6 +3,7 @@
 #include "src/codec/prophesee/evt2.h"
 #include "src/codec/prophesee/evt3.h"
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <fcntl.h>
 #include <linux/videodev2.h>
@@ -22,7 +23,6 @@ using namespace std::chrono_literals;
 
 /// Users of such boards report poll() that never returns: nothing here waits longer.
 constexpr auto kReadTimeout = 20ms;
-constexpr int kLargestSide = 4096;
 
 struct Coding {
     std::uint32_t fourcc;
@@ -100,8 +100,8 @@ void V4l2Camera::open() {
     info_.height = settings_.height ? settings_.height
                    : sensor         ? sensor->second
                                     : device_->height();
-    if (info_.width < 1 || info_.width > kLargestSide || info_.height < 1 ||
-        info_.height > kLargestSide)
+    if (info_.width < 1 || info_.width > kLargestSensorSide || info_.height < 1 ||
+        info_.height > kLargestSensorSide)
         throw Error(ErrorKind::device,
                     "the camera " + node_.string() + " says its sensor is " +
                         std::to_string(info_.width) + "x" + std::to_string(info_.height) +

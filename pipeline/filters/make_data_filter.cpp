@@ -140,8 +140,10 @@ Made make_time(const Arguments& arguments, const SensorPixels& size) {
     const auto [from, to] = split(arguments.text, "..");
     if (arguments.text.find("..") == arguments.text.npos)
         arguments.refuse("FROM..TO, such as 1s..2.5s");
-    return std::make_unique<TimeFilter>(size, time_point_of(from, arguments),
-                                        time_point_of(to, arguments));
+    const auto begin = time_point_of(from, arguments), end = time_point_of(to, arguments);
+    if (begin && end && begin->absolute == end->absolute && end->value < begin->value)
+        arguments.refuse("FROM before TO");
+    return std::make_unique<TimeFilter>(size, begin, end);
 }
 
 struct KnownFilter {

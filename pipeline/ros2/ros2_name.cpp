@@ -31,8 +31,7 @@ constexpr int kMaxSubscribers = 1000;
 
 template <typename Enum>
 Enum choose(const std::string& key, const std::vector<Word<Enum>>& words, const std::string& text) {
-    for (const Word<Enum>& word : words)
-        if (word.text == text) return word.value;
+    if (const auto value = find_word(text, words)) return *value;
     refuse(key, alternatives(texts_of(words)), text);
 }
 

@@ -1,6 +1,8 @@
 // Whether an image fits into a socket's receive buffer.
 #include "pipeline/ros2/socket_buffer.h"
 
+#include "src/core/number_text.h"
+
 #include <algorithm>
 #include <bit>
 #include <fstream>
@@ -8,9 +10,9 @@
 namespace eventide {
 
 std::size_t largest_socket_buffer() {
-    std::size_t bytes = 0;
+    std::string bytes;
     std::ifstream{"/proc/sys/net/core/rmem_max"} >> bytes;
-    return bytes;
+    return number_in<std::size_t>(bytes).value_or(0);
 }
 
 /// The kernel counts its own bookkeeping against the buffer; it grants twice what is asked for to

@@ -43,6 +43,7 @@ ContactSheetSink::ContactSheetSink(ContactSheetSettings settings) : settings_{st
 
 void ContactSheetSink::write(const Frame& frame) {
     if (frames_ == 0) first_ = frame.t;
+    draw_truth_until(frame.t - kTruthDelay);
     if (frames_++ % stride_ != 0) return;
     kept_.push_back(row_of(frame));
     if (kept_.size() > 4 * std::size_t(settings_.rows)) drop_every_other();
@@ -57,7 +58,9 @@ void ContactSheetSink::drop_every_other() {
 ContactSheetSink::Row ContactSheetSink::row_of(const Frame& frame) const {
     const cv::Size size{frame.intensity.width(), frame.intensity.height()};
     Row row;
-    row.seconds = std::chrono::duration<double>(frame.t - first_).count();
+    row.t = frame.t;
+    row.window = frame.window;
+    row.waits_for_truth = bool(settings_.draw_truth);
     cv::Mat image;
     draw(frame, Uncertainty::none, 1.0f, image);
     row.intensity = fitted(image, size);
@@ -67,12 +70,17 @@ ContactSheetSink::Row ContactSheetSink::row_of(const Frame& frame) const {
     }
     draw_events(frame, image);
     if (!image.empty()) row.events = fitted(image, size);
-    if (settings_.draw_truth) {
-        cv::Mat truth;
-        settings_.draw_truth(frame, truth);
-        if (!truth.empty()) row.truth = fitted(truth, size);
-    }
     return row;
+}
+
+void ContactSheetSink::draw_truth_until(SensorTime t) {
+    for (Row& row : kept_) {
+        if (!row.waits_for_truth || row.t > t) continue;
+        row.waits_for_truth = false;
+        cv::Mat truth;
+        settings_.draw_truth(row.t, row.window, truth);
+        if (!truth.empty()) row.truth = fitted(truth, row.intensity.size());
+    }
 }
 
 cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
@@ -99,7 +107,8 @@ cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
             const cv::Mat& image = rows[r].*columns[c].second;
             if (!image.empty()) image.copyTo(sheet(cv::Rect({x, y}, cell)));
             char text[32];
-            std::snprintf(text, sizeof text, "%.3f s", rows[r].seconds);
+            std::snprintf(text, sizeof text, "%.3f s",
+                          std::chrono::duration<double>(rows[r].t - first_).count());
             if (c == 0) caption(sheet, text, x, y + cell.height);
         }
     }
@@ -108,6 +117,7 @@ cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
 
 void ContactSheetSink::close() {
     if (std::exchange(closed_, true) || kept_.empty()) return;
+    draw_truth_until(SensorTime::max());
     const std::size_t count = std::min(kept_.size(), std::size_t(settings_.rows));
     std::vector<Row> rows;
     // Middles of equal parts: the first frames, before the network has seen much, do not stand for

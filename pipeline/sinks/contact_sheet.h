@@ -3,6 +3,7 @@
 
 #include "pipeline/sink.h"
 #include "pipeline/sinks/draw_frame.h"
+#include "src/core/sensor_time.h"
 
 #include <filesystem>
 #include <functional>
@@ -16,11 +17,15 @@ struct ContactSheetSettings {
     bool overwrite = false;
     float sigma_white = kSigmaWhite;
     int rows = 4;  ///< frames on the sheet, >= 1
-    /// Draws the reference image of a frame, CV_8UC1, or leaves the image empty where there is
-    /// none; may be empty.
-    std::function<void(const Frame&, cv::Mat&)> draw_truth = {};
+    /// Draws the reference image for a frame of this time and event window, CV_8UC1, or leaves the
+    /// image empty where there is none; asked once frames have come to kTruthDelay after it, as
+    /// images come later than they were taken. May be empty.
+    std::function<void(SensorTime, const Window&, cv::Mat&)> draw_truth = {};
     std::string truth_caption = "truth";  ///< what those images are: a sensor's own are not truth
 };
+
+/// An exposure and a read-out, and an image more, which may be the nearer one.
+constexpr SensorDuration kTruthDelay{500'000};
 
 /// Columns are left out where no frame has anything for them: events need Frame::event_preview.
 ///
@@ -37,10 +42,13 @@ public:
 private:
     /// One frame's images, all of one size, CV_8UC3; an empty one where there is nothing to show.
     struct Row {
-        double seconds = 0;
+        SensorTime t{};
+        Window window{};
+        bool waits_for_truth = false;
         cv::Mat events, intensity, sigma, truth;
     };
     Row row_of(const Frame& frame) const;
+    void draw_truth_until(SensorTime t);
     void drop_every_other();
     cv::Mat lay_out(const std::vector<Row>& rows) const;
 

@@ -54,12 +54,17 @@ RunFolderFiles FolderSink::files() {
 }
 
 FolderSink::FolderSink(FolderSettings settings)
-    : settings_{std::move(settings)},
-      folder_{settings_.path, settings_.overwrite, files()},
-      seconds_{settings_.path / "timestamps.txt", {.appears = Appears::growing}},
-      table_{settings_.path / "timestamps.csv", {.appears = Appears::growing}} {
-    table_.write("frame,index,t_us,window_begin_us,window_end_us,events,lost\n");
+    : settings_{std::move(settings)}, folder_{settings_.path, settings_.overwrite, files()} {
     load_image_codecs();
+}
+
+void FolderSink::begin() {
+    if (table_) return;
+    folder_.begin();
+    const OutputOptions growing{.appears = Appears::growing};
+    seconds_.emplace(settings_.path / "timestamps.txt", growing);
+    table_.emplace(settings_.path / "timestamps.csv", growing);
+    table_->write("frame,index,t_us,window_begin_us,window_end_us,events,lost\n");
 }
 
 void FolderSink::write(const Frame& frame) {
@@ -68,6 +73,7 @@ void FolderSink::write(const Frame& frame) {
     // 1 = not compressed: deflating float noise costs time and saves nothing.
     static const std::vector<int> kTiff{cv::IMWRITE_TIFF_COMPRESSION, 1};
 
+    begin();
     draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
     write_image(folder_.next(kFrames), image_, ".png", kPng);
     if (settings_.uncertainty != Uncertainty::none && !frame.sigma.empty()) {
@@ -82,19 +88,21 @@ void FolderSink::write(const Frame& frame) {
 }
 
 void FolderSink::write_times(const Frame& frame) {
-    seconds_.write(seconds_of(frame.t) + "\n");
+    seconds_->write(seconds_of(frame.t) + "\n");
     std::string line;
     for (const std::int64_t n :
          {std::int64_t(frames_), std::int64_t(frame.index), to_us(frame.t),
           to_us(frame.window.begin), to_us(frame.window.end), std::int64_t(frame.events)})
         line += std::to_string(n) + ",";
-    table_.write(line + std::to_string(settings_.lost ? settings_.lost() : 0) + "\n");
+    table_->write(line + std::to_string(settings_.lost ? settings_.lost() : 0) + "\n");
 }
 
 void FolderSink::close() {
     if (std::exchange(closed_, true)) return;
-    seconds_.close();
-    table_.close();
+    if (folder_.holds_earlier_run()) return;  // there is no frame to put in its place
+    begin();
+    seconds_->close();
+    table_->close();
     folder_.finish(settings_.run_json ? settings_.run_json() : "{}");
 }
 

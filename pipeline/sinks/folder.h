@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace eventide {
@@ -38,7 +39,8 @@ struct FolderSettings {
 /// every image is whole.
 class FolderSink : public Sink {
 public:
-    /// Makes the folder. Throws Error as RunFolder does.
+    /// Makes the folder; an earlier run in it goes with the first frame. Throws Error as RunFolder
+    /// does.
     explicit FolderSink(FolderSettings settings);
 
     /// What it writes.
@@ -48,11 +50,12 @@ public:
     void close() override;
 
 private:
+    void begin();
     void write_times(const Frame& frame);
 
     FolderSettings settings_;
     RunFolder folder_;
-    OutputFile seconds_, table_;
+    std::optional<OutputFile> seconds_, table_;  // from the first frame on
     cv::Mat image_;
     std::uint64_t frames_ = 0;
     bool closed_ = false;

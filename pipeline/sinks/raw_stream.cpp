@@ -3,7 +3,7 @@
 
 #include "pipeline/sinks/raw_pixels.h"
 #include "pipeline/sinks/video/yuv.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -7,9 +7,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 namespace eventide {
@@ -113,6 +117,24 @@ RunFolder::RunFolder(fs::path folder, bool overwrite, RunFolderFiles files)
         throw Error(ErrorKind::failed,
                     folder_.string() + ": cannot be made: " + error.code().message());
     }
+    if (::access(folder_.c_str(), W_OK | X_OK) != 0)
+        throw Error(ErrorKind::failed, folder_.string() + ": cannot be written to: " +
+                                           std::generic_category().message(errno));
+}
+
+RunFolder::~RunFolder() {
+    std::error_code holds_something;
+    if (made_) fs::remove(folder_, holds_something);
+}
+
+void RunFolder::begin() {
+    if (std::exchange(begun_, true)) return;
+    try {
+        for (const fs::path& file : earlier_) fs::remove(file);
+    } catch (const fs::filesystem_error& error) {
+        throw Error(ErrorKind::failed,
+                    error.path1().string() + ": cannot be removed: " + error.code().message());
+    }
     write_record("{}", false);
 }
 
@@ -125,9 +147,9 @@ void RunFolder::prepare(bool overwrite) {
                         folder_.string() +
                             ": expected an empty or new folder, found one that holds something; "
                             "--overwrite replaces an earlier run");
-        for (const fs::path& file : earlier_files(folder_, files_)) fs::remove(file);
+        earlier_ = earlier_files(folder_, files_);
     }
-    fs::create_directories(folder_);
+    made_ = fs::create_directories(folder_);
 }
 
 fs::path RunFolder::next(std::size_t kind) {

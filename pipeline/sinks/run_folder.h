@@ -35,16 +35,27 @@ struct RunFolderFiles {
 
 class RunFolder {
 public:
-    /// Makes the folder. With `overwrite` an earlier run's files are removed, as far as its record
-    /// says they are its own. Throws Error: usage for a folder that holds something, without
-    /// `overwrite`, or holds a file that would be replaced and is not an earlier run's; failed when
-    /// it cannot be made.
+    /// Makes the folder. With `overwrite` it may hold an earlier run's files, which stay until
+    /// begin(). Throws Error: usage for a folder that holds something, without `overwrite`, or
+    /// holds a file that would be replaced and is not an earlier run's by its record; failed when
+    /// it cannot be made or written to.
     RunFolder(std::filesystem::path folder, bool overwrite, RunFolderFiles files);
+    /// A folder that was made here and holds nothing is removed.
+    ~RunFolder();
+    RunFolder(const RunFolder&) = delete;
+    RunFolder& operator=(const RunFolder&) = delete;
+
+    /// The first thing is about to be written: an earlier run's files go. Throws Error (failed).
+    void begin();
+    /// An earlier run is still there, whole.
+    bool holds_earlier_run() const { return !begun_ && !earlier_.empty(); }
 
     /// Folder, subfolder and name of one more file of a kind; the subfolder is made for the first.
+    /// After begin().
     std::filesystem::path next(std::size_t kind);
 
-    /// Ends the record; `about` is a JSON object to put in it. Throws Error (failed).
+    /// Ends the record; `about` is a JSON object to put in it. After begin(). Throws Error
+    /// (failed).
     void finish(const std::string& about = "{}") { write_record(about, true); }
 
 private:
@@ -53,6 +64,8 @@ private:
 
     std::filesystem::path folder_;
     RunFolderFiles files_;
+    std::vector<std::filesystem::path> earlier_;  // an earlier run's
+    bool made_ = false, begun_ = false;
     std::vector<std::uint64_t> written_;  // of each kind
 };
 

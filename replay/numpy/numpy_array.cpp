@@ -1,7 +1,7 @@
 // "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }", or descr as a list of fields.
 #include "replay/numpy/numpy_array.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <algorithm>
@@ -161,7 +161,7 @@ NumpyArray read_numpy_header(ByteSource& bytes, const std::string& name) {
     std::string text(length, '\0');
     NumpyArray array;
     if (!bytes.read_at(start, std::as_writable_bytes(std::span(text))) || !parse(text, array))
-        refuse("a header that is not read: " + text.substr(0, 80));
+        refuse("a header that is not supported: " + text.substr(0, 80));
     array.data_offset = start + length;
     std::uint64_t items = 1;
     for (const std::uint64_t side : array.shape) {

@@ -2,7 +2,7 @@
 // 4.5.3 (zip64).
 #include "replay/numpy/zip_directory.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <algorithm>

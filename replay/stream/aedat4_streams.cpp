@@ -3,7 +3,7 @@
 
 #include "src/codec/aedat4/aedat4_compression.h"
 #include "src/codec/aedat4/aedat4_flat.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 #include <array>

@@ -34,7 +34,11 @@ ByteFile::ByteFile(const std::string& path) : path_(path == "-" ? "standard inpu
     if (::fstat(fd_, &facts) != 0) fail(path_, "examine");
     if (S_ISDIR(facts.st_mode)) {
         ::close(std::exchange(fd_, -1));
-        throw Error(ErrorKind::input, path_ + ": expected a recording, found a directory");
+        throw Error(
+            ErrorKind::input,
+            path_ +
+                ": expected a recording, found a directory; of a ROS 2 bag, name the .mcap or "
+                ".db3 file in it");
     }
     // Standard input redirected from a file is a file too, but it may be shared with others who
     // expect its position to move: it is read as a stream.

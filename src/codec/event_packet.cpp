@@ -1,7 +1,7 @@
 // event_camera_msgs/EventPacket of ROS drivers.
 #include "src/codec/event_packet.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 // Event Stream 2, byte by byte.
 #include "src/codec/event_stream.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Data as records of 16 bytes, and back.
 #include "src/codec/plain_records.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>

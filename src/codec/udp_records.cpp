@@ -1,7 +1,7 @@
 // Records of UDP datagrams.
 #include "src/codec/udp_records.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 

@@ -1,4 +1,5 @@
-// Numbers from text: the one place.
+// Numbers from text: the one place, but for the exact decimals of text recordings
+// (src/codec/text/text_number.h).
 #pragma once
 
 #include <charconv>
@@ -32,6 +33,20 @@ template <typename T>
 std::optional<T> number_in(std::string_view text) noexcept {
     const std::optional<T> value = take_number<T>(text);
     return text.empty() ? value : std::nullopt;
+}
+
+/// The whole of `text` as hexadecimal digits, without "0x": an exact way to write floating point
+/// numbers.
+template <typename T>
+std::optional<T> hex_number_in(std::string_view text) noexcept {
+    T value{};
+    const char* const end = text.data() + text.size();
+    std::from_chars_result read{};
+    if constexpr (std::floating_point<T>)
+        read = std::from_chars(text.data(), end, value, std::chars_format::hex);
+    else
+        read = std::from_chars(text.data(), end, value, 16);
+    return read.ec == std::errc{} && read.ptr == end ? std::optional{value} : std::nullopt;
 }
 
 /// "640x480": width and height.

@@ -6,6 +6,9 @@ namespace eventide {
 /// px. Larger coordinates are damage, and not taken for a size.
 constexpr int kLargestSensorSide = 4096;
 
+/// px: what coordinates of 16 bits can say. Recordings this large can be read and converted.
+constexpr int kLargestRecordedSide = 65536;
+
 /// Event windows after its own that a frame may wait for.
 constexpr int kMaxLookahead = 2;
 

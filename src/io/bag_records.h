@@ -1,7 +1,7 @@
 // The container of ROS 1 bags, format 2.0: records, some of them packed in chunks.
 #pragma once
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/damage.h"
 #include "src/core/error.h"
 #include "src/core/sensor_time.h"

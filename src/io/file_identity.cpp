@@ -61,8 +61,8 @@ FileIdentity FileIdentity::of(const fs::path& path) {
 FileIdentity FileIdentity::of_descriptor(int descriptor) {
     FileIdentity identity;
     struct stat facts {};
-    // Pipes and sockets at both ends of a program are the shell's business.
-    identity.shared_ = ::fstat(descriptor, &facts) != 0 || !S_ISREG(facts.st_mode);
+    // A socket or terminal at both ends of a program is the shell's business.
+    identity.shared_ = ::fstat(descriptor, &facts) != 0 || can_be_shared(facts.st_mode);
     identity.device_ = facts.st_dev;
     identity.inode_ = facts.st_ino;
     return identity;

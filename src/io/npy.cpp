@@ -89,7 +89,7 @@ NpyHeader parse_npy_header(std::span<const std::byte> begin, const std::string& 
     NpyHeader header;
     const std::string_view kind = value_after(dictionary, "'descr'");
     if (!parse_kind(kind, header))
-        refuse("numbers of kind " + std::string{kind.substr(0, 8)} + ", which are not read");
+        refuse("numbers of kind " + std::string{kind.substr(0, 8)} + ", which are not supported");
     if (!value_after(dictionary, "'fortran_order'").starts_with("False")) refuse("Fortran order");
     if (!parse_shape(value_after(dictionary, "'shape'"), header.shape))
         refuse("a shape that cannot be read");

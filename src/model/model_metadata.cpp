@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
+#include "src/core/words.h"
 
 #include <algorithm>
 #include <array>
@@ -101,25 +102,14 @@ Key constant(const char* name, const char* value) {
 }
 
 /// One of a few words.
-template <typename Enum, std::size_t N>
-Key choice(const char* name, Enum ModelConfig::*member, const Enum (&values)[N],
-           const char* const (&words)[N]) {
-    std::map<std::string, Enum> meaning;
-    std::string expected;
-    for (std::size_t i = 0; i < N; ++i) {
-        meaning[words[i]] = values[i];
-        expected += (i == 0 ? "" : i + 1 == N ? " or " : ", ") + std::string{words[i]};
-    }
-    return {name, expected,
-            [=](const ModelConfig& config) {
-                return std::ranges::find(meaning, config.*member,
-                                         &std::pair<const std::string, Enum>::second)
-                    ->first;
-            },
-            [=](const std::string& word, ModelConfig& config) {
-                const auto found = meaning.find(word);
-                if (found != meaning.end()) config.*member = found->second;
-                return found != meaning.end();
+template <typename Enum>
+Key choice(const char* name, Enum ModelConfig::*member, const std::vector<Word<Enum>>& words) {
+    return {name, alternatives(texts_of(words)),
+            [=](const ModelConfig& config) { return show_word(config.*member, words); },
+            [=](const std::string& text, ModelConfig& config) {
+                const auto value = find_word(text, words);
+                if (value) config.*member = *value;
+                return value.has_value();
             }};
 }
 
@@ -127,8 +117,8 @@ const std::vector<Key>& keys() {
     static const std::vector<Key> kKeys{
         constant("format", "eventide-model"),
         constant("version", "1"),
-        choice("encoder", &ModelConfig::encoder, {EncoderKind::gated, EncoderKind::thesis},
-               {"gated", "thesis"}),
+        choice("encoder", &ModelConfig::encoder,
+               {{EncoderKind::gated, "gated"}, {EncoderKind::thesis, "thesis"}}),
         whole_number("bins", &ModelConfig::bins),
         list("widths", &ModelConfig::widths),
         list("recurrent", &ModelConfig::recurrent),
@@ -143,14 +133,14 @@ const std::vector<Key>& keys() {
         number("log_sigma_min", &ModelConfig::log_sigma_min),
         number("log_sigma_max", &ModelConfig::log_sigma_max),
         number("sigma_scale", &ModelConfig::sigma_scale),
-        choice("sigma_rule", &ModelConfig::sigma_rule, {SigmaRule::log_blend, SigmaRule::mixture},
-               {"log_blend", "mixture"}),
-        optional(choice("blend", &ModelConfig::blend, {Blend::linear, Blend::smooth},
-                        {"linear", "smooth"})),
-        optional(choice("live_edge", &ModelConfig::live_edge, {LiveEdge::jump, LiveEdge::fade},
-                        {"jump", "fade"})),
+        choice("sigma_rule", &ModelConfig::sigma_rule,
+               {{SigmaRule::log_blend, "log_blend"}, {SigmaRule::mixture, "mixture"}}),
+        optional(choice("blend", &ModelConfig::blend,
+                        {{Blend::linear, "linear"}, {Blend::smooth, "smooth"}})),
+        optional(choice("live_edge", &ModelConfig::live_edge,
+                        {{LiveEdge::jump, "jump"}, {LiveEdge::fade, "fade"}})),
         optional(
-            choice("noise_filter", &ModelConfig::noise_filter, {false, true}, {"off", "auto"})),
+            choice("noise_filter", &ModelConfig::noise_filter, {{false, "off"}, {true, "auto"}})),
         text("window", &ModelConfig::window),
         text("card", &ModelConfig::card),
     };

@@ -91,12 +91,10 @@ Setting choice_setting(std::string key, Enum& value, std::string help,
     Setting setting = parsed_setting<Enum>(std::move(key), value, value_name, std::move(help), {},
                                            [words](const Enum& v) { return show_word(v, words); });
     setting.set = [words, &value](const SettingValue& given) {
-        for (const Word<Enum>& word : words)
-            if (given.text == word.text && given.may_be(ValueKind::text)) {
-                value = word.value;
-                return;
-            }
-        given.refuse(alternatives(texts_of(words), given.place.empty() ? "" : "\""));
+        const auto found = find_word(given.text, words);
+        if (!found || !given.may_be(ValueKind::text))
+            given.refuse(alternatives(texts_of(words), given.place.empty() ? "" : "\""));
+        value = *found;
     };
     return setting;
 }

@@ -38,13 +38,6 @@ std::string show_number(double value) {
     return error == std::errc{} ? std::string{text.data(), end} : "?";
 }
 
-std::string alternatives(const std::vector<std::string>& names, const std::string& quotes) {
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + quotes + names[i] + quotes;
-    return text;
-}
-
 const std::string& parse_choice(const std::string& text, const std::vector<std::string>& names) {
     if (std::ranges::find(names, text) == names.end()) throw_usage(alternatives(names), text);
     return text;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/core/sensor_time.h"
+#include "src/core/words.h"
 
 #include <string>
 #include <vector>
@@ -16,8 +17,6 @@ double parse_number(const std::string& text, double least, double most);
 /// The shortest text that reads back as the same number.
 std::string show_number(double value);
 
-/// "a, b or c", each between `quotes`.
-std::string alternatives(const std::vector<std::string>& names, const std::string& quotes = {});
 /// `text`, which is one of `names`.
 const std::string& parse_choice(const std::string& text, const std::vector<std::string>& names);
 

@@ -2,11 +2,11 @@
 // are used where they are at hand (EVENTIDE_DATA names the folder that holds formats/).
 #include "src/codec/aedat4/aedat4.h"
 #include "src/codec/aedat4/aedat4_writer.h"
-#include "src/codec/byte_order.h"
 #include "src/codec/prophesee/dat.h"
 #include "src/codec/prophesee/evt2.h"
 #include "src/codec/prophesee/evt3.h"
 #include "src/codec/prophesee/evt_header.h"
+#include "src/core/byte_order.h"
 #include "tests/bench/parse_bench.h"
 
 #include <benchmark/benchmark.h>

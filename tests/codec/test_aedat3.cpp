@@ -1,7 +1,7 @@
 // AEDAT 3.1, from packets spelled out and from the writer.
 #include "src/codec/aedat/aedat3.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/codec/parser_checks.h"
 

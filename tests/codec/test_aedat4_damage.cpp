@@ -1,6 +1,6 @@
 // AEDAT4 files that are cut, spoiled or lie: what can be saved is, the rest is counted by reason.
 #include "src/codec/aedat4/aedat4_flat_writer.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/codec/aedat4_files.h"
 

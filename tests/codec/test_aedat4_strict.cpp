@@ -2,7 +2,7 @@
 // library writes, read by ours.
 #include "src/codec/aedat4/aedat4.h"
 #include "src/codec/aedat4/aedat4_writer.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "tests/codec/parser_checks.h"
 
 #include <aedat4_generated.h>

@@ -1,7 +1,7 @@
 // DAT, record by record.
 #include "src/codec/prophesee/dat.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/codec/data_files.h"
 #include "tests/codec/parser_checks.h"

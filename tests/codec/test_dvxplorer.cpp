@@ -1,8 +1,8 @@
 // DVXplorer and DVS128 words, spelled out.
-#include "src/codec/byte_order.h"
 #include "src/codec/inivation/dvs128.h"
 #include "src/codec/inivation/dvxplorer.h"
 #include "src/codec/inivation/dvxplorer_mini.h"
+#include "src/core/byte_order.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Event packets of ROS drivers: streams in words, splits, damage, and a driver's recording.
-#include "src/codec/byte_order.h"
 #include "src/codec/event_packet.h"
+#include "src/core/byte_order.h"
 #include "tests/codec/data_files.h"
 #include "tests/codec/parser_checks.h"
 

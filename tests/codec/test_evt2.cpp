@@ -1,7 +1,7 @@
 // EVT2 and EVT2.1, word by word, and RAW headers through the years.
-#include "src/codec/byte_order.h"
 #include "src/codec/prophesee/evt2.h"
 #include "src/codec/prophesee/evt_header.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/codec/data_files.h"
 #include "tests/codec/parser_checks.h"

@@ -1,7 +1,7 @@
 // EVT3, word by word, and what the writer makes of events.
-#include "src/codec/byte_order.h"
 #include "src/codec/prophesee/evt3.h"
 #include "src/codec/prophesee/evt_header.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/codec/data_files.h"
 #include "tests/codec/parser_checks.h"

@@ -1,6 +1,6 @@
 // EVT3 as cameras sent it into ROS recordings: headerless words, cut into messages.
-#include "src/codec/byte_order.h"
 #include "src/codec/prophesee/evt3.h"
+#include "src/core/byte_order.h"
 #include "tests/codec/data_files.h"
 #include "tests/codec/parser_checks.h"
 

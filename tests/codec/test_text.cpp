@@ -172,6 +172,13 @@ TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
         EXPECT_EQ(header.layout.unit, c.unit) << c.first << " " << c.step;
         EXPECT_EQ(!header.remarks.empty(), c.is_said) << c.first << " " << c.step;
     }
+    // A first time of another clock, which readers leave out, tells nothing either.
+    std::string text = "0 1 2 1\n";
+    for (int i = 0; i < 500; ++i)
+        text += std::to_string(1'600'000'000'000'000 + 10 * i) + " 1 2 1\n";
+    const TextHeader leap = read_text_header(to_bytes(text), {});
+    EXPECT_EQ(leap.layout.unit, TextTimeUnit::microseconds);
+    EXPECT_TRUE(leap.remarks.empty()) << leap.remarks.front();
     // A few rows tell no rate.
     EXPECT_EQ(read_text_header(to_bytes("0 1 2 1\n20000 1 2 1\n"), {}).layout.unit,
               TextTimeUnit::microseconds);

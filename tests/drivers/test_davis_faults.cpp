@@ -1,6 +1,6 @@
 // Whatever a DAVIS or its cable does wrong: what can be saved is saved, the rest is counted by
 // reason, and what cannot go on says why.
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "tests/drivers/davis_streams.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // ROS 1 bags as rosbag writes them: connections and messages in packed chunks, an index behind.
 #pragma once
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/event.h"
 #include "src/core/frame_data.h"
 

@@ -154,7 +154,7 @@ TEST_F(CInterface, RefusesWhatMakesNoSenseInWords) {
     eventide_options options = repeatable_options();
     options.precision = "f64";
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
-    EXPECT_TRUE(said("precision: expected auto, f32, bf16, found 'f64'"));
+    EXPECT_TRUE(said("precision: expected auto, f32 or bf16, found 'f64'"));
     options = repeatable_options();
     options.struct_size = 9999;
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);

@@ -12,30 +12,30 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Which of `due` frames are kept, with event windows every 50 ms and frames of `cost`.
-std::vector<bool> kept_of(FrameDropper& shedder, std::uint64_t due, HostTime::duration cost,
+std::vector<bool> kept_of(FrameDropper& dropper, std::uint64_t due, HostTime::duration cost,
                           int rounds, std::size_t waiting = 0) {
     static HostTime now{};  // goes on over all calls
     std::vector<bool> kept;
     for (int round = 0; round < rounds; ++round) {
         now += 50ms;
-        shedder.open({.frames = due}, now);
+        dropper.open({.frames = due}, now);
         kept.assign(due, false);
         for (std::uint64_t i = 0; i < due; ++i) {
-            kept[i] = shedder.keeps_next(waiting);
-            if (kept[i]) shedder.took(cost);
+            kept[i] = dropper.keeps_next(waiting);
+            if (kept[i]) dropper.took(cost);
         }
     }
     return kept;
 }
 
 TEST(FrameDropper, KeepsAllWhereThereIsTime) {
-    FrameDropper shedder(2);
-    for (const bool kept : kept_of(shedder, 10, 1ms, 20)) EXPECT_TRUE(kept);
+    FrameDropper dropper(2);
+    for (const bool kept : kept_of(dropper, 10, 1ms, 20)) EXPECT_TRUE(kept);
 }
 
 TEST(FrameDropper, KeepsAsManyAsThereIsTimeForEvenlyAndTheNewest) {
-    FrameDropper shedder(2);
-    const auto kept = kept_of(shedder, 100, 1ms, 50);
+    FrameDropper dropper(2);
+    const auto kept = kept_of(dropper, 100, 1ms, 50);
     EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 45);
     EXPECT_TRUE(kept.back());
     for (std::size_t i = 0; i + 3 < kept.size(); ++i)
@@ -43,22 +43,22 @@ TEST(FrameDropper, KeepsAsManyAsThereIsTimeForEvenlyAndTheNewest) {
 }
 
 TEST(FrameDropper, KeepsTheNewestHoweverSlowRenderingIs) {
-    FrameDropper shedder(2);
-    const auto kept = kept_of(shedder, 7, 500ms, 50);
+    FrameDropper dropper(2);
+    const auto kept = kept_of(dropper, 7, 500ms, 50);
     EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 1);
     EXPECT_TRUE(kept.back());
 }
 
 TEST(FrameDropper, RecoversWhenRenderingIsQuickAgain) {
-    FrameDropper shedder(2);
-    kept_of(shedder, 10, 500ms, 50);
-    for (const bool kept : kept_of(shedder, 10, 1ms, 100)) EXPECT_TRUE(kept);
+    FrameDropper dropper(2);
+    kept_of(dropper, 10, 500ms, 50);
+    for (const bool kept : kept_of(dropper, 10, 1ms, 100)) EXPECT_TRUE(kept);
 }
 
 TEST(FrameDropper, LeavesFramesOutWhileEventWindowsPileUp) {
-    FrameDropper shedder(2);
-    for (const bool kept : kept_of(shedder, 10, 1ms, 5, 2)) EXPECT_FALSE(kept);
-    for (const bool kept : kept_of(shedder, 10, 1ms, 5, 1)) EXPECT_TRUE(kept);
+    FrameDropper dropper(2);
+    for (const bool kept : kept_of(dropper, 10, 1ms, 5, 2)) EXPECT_FALSE(kept);
+    for (const bool kept : kept_of(dropper, 10, 1ms, 5, 1)) EXPECT_TRUE(kept);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using namespace test;
 struct Ending {
     explicit Ending(int lookahead, FrameRate rate = {200'000, 1},  // a frame each 5 us
                     bool allow_silence = false)
-        : presenter(
+        : output(
               renderer, {&sink}, {rate, {}, lookahead, false, 1, allow_silence, &changes},
               [] { return 0; }, stop, counters, keeper) {
         sink.before_write = [this](auto) { pushed.push_back(renderer.pushed()); };
@@ -31,13 +31,13 @@ struct Ending {
         encoded.latent.window = {from_us(begin_us), from_us(begin_us + 10)};
         encoded.latent.events = 1;
         encoded.latent.reset_before = reset_before;
-        presenter.take(encoded);
+        output.take(encoded);
     }
     void give_silence(std::int64_t begin_us, std::int64_t end_us) {
         Encoded encoded;
         encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
         encoded.latent.window = {from_us(begin_us), from_us(end_us)};
-        presenter.take(encoded);
+        output.take(encoded);
     }
     std::vector<std::int64_t> times() const {
         std::vector<std::int64_t> times;
@@ -52,7 +52,7 @@ struct Ending {
     Counters counters;
     LatencyKeeper keeper{{}};
     LiveChanges changes;
-    FrameOutput presenter;
+    FrameOutput output;
 };
 
 TEST(FrameOutput, RendersEachFrameWithItsLookahead) {
@@ -61,7 +61,7 @@ TEST(FrameOutput, RendersEachFrameWithItsLookahead) {
         for (int k = 0; k < 4; ++k) e.give(10 * k);
         const auto before_end = e.sink.seen.size();
         EXPECT_EQ(before_end, std::size_t(1 + 2 * (4 - lookahead)));
-        e.presenter.finish();
+        e.output.finish();
         EXPECT_TRUE(e.renderer.finished);
         EXPECT_EQ(e.times(), (std::vector<std::int64_t>{0, 5, 10, 15, 20, 25, 30, 35, 40}));
         for (std::size_t i = 0; i < before_end; ++i) {
@@ -84,7 +84,7 @@ TEST(FrameOutput, GivesNoneOneOrManyFramesPerEventWindow) {
     EXPECT_EQ(often.sink.seen.size(), 61U);
     Ending without_rate(1, {});
     for (int k = 0; k < 3; ++k) without_rate.give(10 * k);
-    without_rate.presenter.finish();
+    without_rate.output.finish();
     EXPECT_EQ(without_rate.times(), (std::vector<std::int64_t>{10, 20, 30}));
 }
 
@@ -94,7 +94,7 @@ TEST(FrameOutput, FinishesTheOldStreamBeforeANewOne) {
     e.give(3, true);
     EXPECT_EQ(e.times().back(), 1030);
     EXPECT_EQ(e.renderer.pushed(), 1U);
-    e.presenter.finish();
+    e.output.finish();
     EXPECT_EQ(e.times().back(), 13);
     for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
 }
@@ -148,7 +148,7 @@ TEST(FrameOutput, RendersNothingThatNobodyWatches) {
     StopRequest stop;
     Counters counters;
     LatencyKeeper keeper{{}};
-    FrameOutput presenter(
+    FrameOutput output(
         renderer, {&first, &second}, {{100'000, 1}, {}, 0, false, 1, false}, [] { return 0; }, stop,
         counters, keeper);
     for (int k = 0; k < 6; ++k) {
@@ -158,7 +158,7 @@ TEST(FrameOutput, RendersNothingThatNobodyWatches) {
         encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
         encoded.latent.window = {from_us(10 * k), from_us(10 * k + 10)};
         encoded.latent.events = 1;
-        presenter.take(encoded);
+        output.take(encoded);
     }
     EXPECT_EQ(first.times_us, (std::vector<std::int64_t>{0, 10, 20, 60}));
     EXPECT_EQ(second.times_us, first.times_us) << "what one of them watches all get";
@@ -173,9 +173,9 @@ TEST(FrameOutput, ClosesAllSinksThoughOneFails) {
     StopRequest stop;
     Counters counters;
     LatencyKeeper keeper{{}};
-    FrameOutput presenter(
+    FrameOutput output(
         renderer, {&bad, &good}, {}, [] { return 0; }, stop, counters, keeper);
-    EXPECT_THROW(presenter.close(), std::runtime_error);
+    EXPECT_THROW(output.close(), std::runtime_error);
     EXPECT_EQ(good.closed, 1);
 }
 
@@ -202,14 +202,14 @@ TEST(FrameOutput, WritesNoFrameThatIsNotFinite) {
     StopRequest stop;
     Counters counters;
     LatencyKeeper keeper{{}};
-    FrameOutput presenter(
+    FrameOutput output(
         renderer, {&sink}, {{200'000, 1}, {}, 0, false, 1}, [] { return 0; }, stop, counters,
         keeper);
     Encoded encoded;
     encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
     encoded.latent.window = {from_us(0), from_us(100)};
     try {
-        presenter.take(encoded);
+        output.take(encoded);
         FAIL() << "nothing was thrown";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
@@ -267,7 +267,7 @@ TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
     EXPECT_EQ(e.times().back(), 50);
     e.give(60);
     EXPECT_EQ(e.times().back(), 60);
-    e.presenter.finish();
+    e.output.finish();
     EXPECT_EQ(e.times().size(), 15U);
     for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
 }

@@ -1,4 +1,4 @@
-// The line in made time: a source sends a multiple of what the engine can do, and frames are no
+// The pipeline in made time: a source sends a multiple of what the engine can do, and frames are no
 // later than the bound. All decisions are the pipeline's own; only work and waiting are made.
 #include "pipeline/frame_clock.h"
 #include "pipeline/pace/encoder_gate.h"
@@ -29,10 +29,10 @@ struct Worker {
     bool idle(HostTime now) const { return now >= busy_until; }
 };
 
-/// The line of pipeline.cpp and presenter.cpp, with made work.
-class MadeLine {
+/// The pipeline of pipeline.cpp and frame_output.cpp, with made work.
+class MadePipeline {
 public:
-    MadeLine(double times, std::optional<Duration> bound)
+    MadePipeline(double times, std::optional<Duration> bound)
         : keeper_{bound},
           window_{std::chrono::duration_cast<Duration>(kWindow / times)},
           packet_{std::chrono::duration_cast<Duration>(kPacket / times)} {}
@@ -58,11 +58,11 @@ private:
         HostTime arrived;
     };
     struct Lent {
-        const MadeLine* line;
+        const MadePipeline* line;
         std::size_t operator()() const { return line->grids_.size() + (line->encoding_ ? 1 : 0); }
     };
     struct HandOn {
-        MadeLine* line;
+        MadePipeline* line;
         void operator()(const EventWindow& event_window) const {
             line->grids_.push_back({event_window.window, event_window.arrived});
         }
@@ -171,7 +171,7 @@ private:
 TEST(LatencyKeeper, HoldsItsBoundHoweverMuchComes) {
     for (const double times : {0.5, 1.0, 2.0, 5.0, 20.0}) {
         SCOPED_TRACE(times);
-        MadeLine line{times, kBound};
+        MadePipeline line{times, kBound};
         line.run(60s);
         EXPECT_LT(line.latency.summary().p99, kBound + kWindow);
         EXPECT_GT(line.frames, 60U * 10) << "and frames come";
@@ -182,17 +182,17 @@ TEST(LatencyKeeper, HoldsItsBoundHoweverMuchComes) {
 }
 
 TEST(LatencyKeeper, WithoutABoundLatencyIsWhatTheBuffersHoldAndDataAreLost) {
-    MadeLine line{2, {}};
+    MadePipeline line{2, {}};
     line.run(60s);
     EXPECT_GT(line.latency.summary().p50, kBound) << "else this test would show nothing";
     EXPECT_GT(line.lost, 0U);
 }
 
 TEST(LatencyKeeper, LeavesOutInTheDocumentedOrder) {
-    MadeLine easy{0.5, kBound};
+    MadePipeline easy{0.5, kBound};
     easy.run(60s);
     EXPECT_EQ(easy.most_halvings, 0U);
-    MadeLine twice{2, kBound};
+    MadePipeline twice{2, kBound};
     twice.run(60s);
     EXPECT_GT(twice.skipped, 0U);
     EXPECT_GT(twice.most_halvings, 0U);

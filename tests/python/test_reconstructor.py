@@ -108,7 +108,7 @@ class Frames(RecordedTest):
         for options, words in [
             ({"window": "5 bananas"}, "5 bananas"),
             ({"lookahead": 7}, "found 7"),
-            ({"precision": "f64"}, "precision: expected auto, bf16, f32, found 'f64'"),
+            ({"precision": "f64"}, "precision: expected auto, f32 or bf16, found 'f64'"),
             ({"size": (0, 5)}, r"found \(0, 5\)"),
         ]:
             with self.assertRaisesRegex(eventide.UsageError, words):

@@ -1,5 +1,5 @@
 // eventide run between ROS 2 topics, as a user starts it.
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "tests/ros2/topics.h"
 #include "tests/system/program_test.h"
 

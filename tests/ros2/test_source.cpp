@@ -1,6 +1,6 @@
 // A ROS 2 driver as a source: what is published is what is parsed.
 #include "drivers/ros2/ros2_source.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/ros2/image_cdr.h"
 #include "tests/ros2/topics.h"

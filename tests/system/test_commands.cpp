@@ -129,6 +129,10 @@ TEST_F(Commands, ConvertSendsDatagrams) {
     close(reader);
     ASSERT_EQ(eventide({"convert", recording(), "a.aedat4", "--to", "5ms"}).exit_code, 0);
     EXPECT_EQ(bytes, 13 * info(temp_ / "a.aedat4")["events"].get<std::size_t>());
+    // Nobody listens any more.
+    const Result lost = eventide({"convert", recording(), to, "--strict"});
+    EXPECT_EQ(lost.exit_code, 5);
+    EXPECT_NE(lost.error.find("that nobody took"), std::string::npos) << lost.error;
     const Result format = eventide({"convert", recording(), to, "--to-format", "text"});
     EXPECT_EQ(format.exit_code, 2);
     EXPECT_NE(format.error.find("?format=t64"), std::string::npos) << format.error;

@@ -3,6 +3,7 @@
 #include "tests/system/program_test.h"
 
 #include <filesystem>
+#include <sstream>
 
 namespace eventide::test {
 namespace {
@@ -22,6 +23,9 @@ TEST_F(ExitCodes, HelpAndVersionAreData) {
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_NE(result.output.find("Examples:"), std::string::npos) << command;
         EXPECT_EQ(result.output.find("Excludes"), std::string::npos) << command;
+        std::istringstream lines{result.output};
+        for (std::string line; std::getline(lines, line);)
+            EXPECT_LE(line.size(), 80U) << command << ": " << line;
     }
 }
 
@@ -56,6 +60,14 @@ TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {
     expect(2, {"run", recording(), "--from", "100s", "--out", "a/"}, "--from 100s: expected a");
     expect(2, {"run", recording(), "--from", "@99999999999", "--out", "a/"}, "--from @99999999999");
     expect(2, {"run", recording(), "--to", "@-5", "--out", "a/"}, "--to: expected a time after");
+    // Also where both ends are given, and in another format.
+    expect(2, {"run", recording(), "--from", "@-9", "--to", "@-5", "--out", "a/"},
+           "--to: expected");
+    expect(2, {"convert", recording(), "a.raw", "--from", "100s"}, "--from 100s: expected a");
+    expect(2, {"convert", recording(), "a.raw", "--to", "@-5"}, "--to: expected a time after");
+    expect(2, {"convert", recording(), "a/", "--from", "9ms", "--to", "5ms"}, "lies before --from");
+    expect(2, {"convert", recording(), "a.raw", "--filter", "time:20ms..10ms"}, "time:");
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "a.raw"));
     std::string text = "16 16\n";
     for (int i = 0; i < 100; ++i) text += "0." + std::to_string(100'000 + i) + " 1 2 1\n";
     write_text(temp_ / "no_images.txt", text);
@@ -177,7 +189,7 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(2, {"run", recording(), "video.mp4"},
            "unexpected argument 'video.mp4'; did you mean --out?");
     expect(2, {"run", recording(), "--roi", "9999,0,5x5", "--out", "null"},
-           "--roi exceeds the frame");
+           "--roi exceeds the 64x48 frame");
     write_text(temp_ / "empty.raw", "");
     expect(3, {"info", "empty.raw"}, "the file is empty");
     write_text(temp_ / "letters.raw", "letters and nothing else, for a while, which is no format");
@@ -189,7 +201,7 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
                               "EVENTIDE_RUN_FPS?"),
               std::string::npos)
         << typo.error;
-    EXPECT_NE(eventide({"convert", recording(), "none.txt", "--from", "@900000000"})
+    EXPECT_NE(eventide({"convert", recording(), "none.txt", "--filter", "time:900s..901s"})
                   .error.find("wrote 0 events"),
               std::string::npos);
 }

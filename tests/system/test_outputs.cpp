@@ -62,6 +62,14 @@ TEST_F(Outputs, AnInputIsNoOutputByWhateverName) {
 }
 
 TEST_F(Outputs, ModelsStatesAndSettingsAreInputsToo) {
+    write_text(temp_ / "hot.txt", "3,4\n");
+    for (const char* command : {"run", "convert"}) {
+        std::vector<std::string> line{command, "rec.aedat4", "--filter", "hot-pixels:hot.txt",
+                                      "--overwrite"};
+        if (line[0] == "run") line.insert(line.end(), {"--out", "null", "--events-out"});
+        line.emplace_back("hot.txt");
+        expect_refused(line, "hot.txt", "--filter hot.txt");
+    }
     const std::vector<std::string> run{"run", "rec.aedat4", "--out", "null", "--overwrite"};
     const auto refused = [&](std::vector<std::string> more, const std::string& input) {
         more.insert(more.begin(), run.begin(), run.end());
@@ -93,6 +101,13 @@ TEST_F(Outputs, TwoOutputsAreNotOneFile) {
     refused({"--out", "a/", "--stats", "a/timestamps.csv"});
     refused({"--out", "x.mp4", "--uncertainty", "separate", "--out", "x.sigma.mp4"});
     refused({"--out", "null", "--record", "x.aedat4", "--stats", "x.aedat4"});
+    // Also where standard output is a pipe, as it is here: their bytes would mix.
+    expect_refused({"run", "rec.aedat4", "--out", "gray8:-", "--events-out", "text:-"},
+                   "--events-out -", "--out -");
+    expect_refused({"run", "rec.aedat4", "--out", "gray8:-", "--out", "-"}, "--out -",
+                   "standard output");
+    expect_refused({"run", "rec.aedat4", "--out", "-", "--events-out", "text:/dev/stdout"},
+                   "--events-out", "--out -");
     expect_refused({"evaluate", "rec.aedat4", "--json", "x", "--csv", "x"}, "--json x", "--csv x");
     expect_refused({"simulate", "--out", "a/", "--truth", "a/"}, "--out a/", "--truth a/");
 }
@@ -134,6 +149,28 @@ TEST_F(Outputs, WhatWasAskedForIsReplaced) {
     EXPECT_EQ(read_text(temp_ / "stats").front(), '{');
     EXPECT_EQ(read_text(temp_ / "scores").front(), '{');
     EXPECT_EQ(eventide({"run", "rec.aedat4", "--out", "null", "--state-in", "state"}).exit_code, 0);
+}
+
+/// What another part of the same command is refused for leaves an earlier run as it was.
+TEST_F(Outputs, AnEarlierRunStaysWhereTheNextCannotStart) {
+    ASSERT_EQ(eventide({"run", "rec.aedat4", "--out", "k/"}).exit_code, 0);
+    const auto before = files();
+    const auto fails = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"run", "rec.aedat4", "--out", "k/", "--overwrite"});
+        EXPECT_NE(eventide(more).exit_code, 0) << more.back();
+        EXPECT_TRUE(files() == before) << more.back();
+    };
+    fails({"--crop", "100"});
+    fails({"--roi", "0,0,999x9"});
+    fails({"--latency", "1s"});
+    fails({"--out", "x.gif", "--fps", "300"});
+    fails({"--out", "nodir/x.mp4"});
+    fails({"--stats", "nodir/x"});
+    fails({"--out", "v4l2:/dev/video99"});
+    write_text(temp_ / "none.txt", "64 48\n");
+    const auto with_none = files();
+    eventide({"run", "none.txt", "--out", "k/", "--overwrite"});
+    EXPECT_TRUE(files() == with_none) << "there is no frame to put in its place";
 }
 
 TEST_F(Outputs, AFolderLosesAnEarlierRunAndNothingElse) {

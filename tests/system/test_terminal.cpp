@@ -20,6 +20,9 @@ TEST_F(Terminal, FramesAreNotWrittenToATerminalUnlessItIsForced) {
         EXPECT_NE(result.output, "");
     }
     expect(2, {"convert", recording(), "-", "--to-format", "evt3"}, "--force", terminal);
+    expect(2, {"run", recording(), "--out", "null", "--events-out", "aedat4:-"}, "--force",
+           terminal);
+    expect(2, {"run", recording(), "--out", "y4m:/dev/stdout"}, "--force", terminal);
     const Result text =
         eventide({"convert", recording(), "-", "--to-format", "text", "--to", "1ms"}, terminal);
     EXPECT_EQ(text.exit_code, 0) << "people can read it";

@@ -26,7 +26,7 @@ public:
 
     void write(const Frame& frame) override {
         cv::Mat image;
-        references_.draw(frame, sensor_.width, sensor_.height, image);
+        references_.draw(frame.t, frame.window, {sensor_.width, sensor_.height}, image);
         if (image.empty() || frame.intensity.width() != image.cols ||
             frame.intensity.height() != image.rows)
             return;

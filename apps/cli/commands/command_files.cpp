@@ -3,6 +3,8 @@
 
 #include "replay/ecd_folder.h"
 
+#include <string_view>
+
 namespace eventide::app {
 
 namespace fs = std::filesystem;
@@ -23,6 +25,13 @@ void name_files(const std::string& option, const fs::path& path, NamedFiles& fil
         files.reads_all(option, path);
     else
         files.reads(option, path);
+}
+
+void name_filter_files(const std::vector<std::string>& filters, NamedFiles& files) {
+    constexpr std::string_view kHotPixels = "hot-pixels:";
+    for (const std::string& filter : filters)
+        if (filter.starts_with(kHotPixels) && filter != "hot-pixels:learn")
+            files.reads("--filter", filter.substr(kHotPixels.size()));
 }
 
 void name_run_folder(const std::string& option, const fs::path& folder,

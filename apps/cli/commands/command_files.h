@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace eventide::app {
 
@@ -15,6 +16,9 @@ void name_recording(const std::string& option, const std::string& path, NamedFil
 
 /// A file, or a folder that is read as a whole.
 void name_files(const std::string& option, const std::filesystem::path& path, NamedFiles& files);
+
+/// Lists of hot pixels that --filter takes. Throws Error (usage).
+void name_filter_files(const std::vector<std::string>& filters, NamedFiles& files);
 
 /// What a run writes into a folder. Throws Error (usage).
 void name_run_folder(const std::string& option, const std::filesystem::path& folder,

@@ -3,6 +3,7 @@
 
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/commands/disorder.h"
+#include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/run/colour.h"
@@ -64,6 +65,7 @@ void say(const std::string& source, const std::string& source_format, const std:
     if (!(report.not_held == DataCounts{}))
         spdlog::warn("{}: its format cannot hold {}, which were left out", file,
                      text_of(report.not_held));
+    if (report.lost > 0) spdlog::warn("{}: lost {}", file, lost_datagrams(report.lost));
     if (const std::string why =
             disorder_text(source, source_format, report.written.events, report.damaged);
         !why.empty())
@@ -110,9 +112,9 @@ SettingTable ConvertCommand::settings() {
                      "wrote."));
     table.settings.push_back(flag_setting(
         "force", force_, "Write to standard output even where it is a terminal, other than text."));
-    table.settings.push_back(
-        flag_setting("strict", strict_,
-                     "End with exit code 5 when something was damaged or could not be held."));
+    table.settings.push_back(flag_setting(
+        "strict", strict_,
+        "End with exit code 5 when something was damaged, lost, or could not be held."));
     input_.add_to(table);
     return table;
 }
@@ -125,10 +127,11 @@ int ConvertCommand::run(Program& program) {
                                           "; datagrams have ?format=t64, t32 or spif");
     const Format* format = to_udp ? nullptr : target_format(to_file_, to_format_);
     const OpenOptions options = input_.options();
-    if (to_file_ == "-" && format != nullptr && format->name != "text")
-        refuse_terminal("TO -", force_);
+    if (format != nullptr && format->name != "text")
+        refuse_terminal("TO " + to_file_, to_file_, force_);
     program.files.may_replace(overwrite_);
     name_recording("FROM", from_file_, program.files);
+    name_filter_files(filter_, program.files);
     if (format != nullptr)
         program.files.writes("TO", to_file_);
     else if (!to_udp)
@@ -139,6 +142,7 @@ int ConvertCommand::run(Program& program) {
     ConvertOptions how;
     if (from_) how.from = times.time_of(*from_);
     if (to_) how.to = times.time_of(*to_);
+    check_part({from_file_, options, from_, how.from, how.to});
     StreamHeader header = header_of(*recording);
     FilterChain filters{filter_, {header.width, header.height}};
     header.width = filters.size().width;
@@ -165,7 +169,8 @@ int ConvertCommand::run(Program& program) {
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(from_file_, recording->info().format, to_file_, report);
     if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());
-    const bool incomplete = report.damaged.total() > 0 || !(report.not_held == DataCounts{});
+    const bool incomplete =
+        report.damaged.total() > 0 || report.lost > 0 || !(report.not_held == DataCounts{});
     return strict_ && incomplete ? exit_data_lost : exit_done;
 }
 

@@ -20,19 +20,23 @@ RunFolderFiles EcdWriter::files() {
 }
 
 EcdWriter::EcdWriter(const fs::path& folder, bool overwrite, int width, int height)
-    : width_{width},
-      height_{height},
-      folder_{folder, overwrite, files()},
-      list_{folder / "images.txt", {.appears = Appears::growing}} {
+    : width_{width}, height_{height}, path_{folder}, folder_{folder, overwrite, files()} {}
+
+void EcdWriter::begin() {
+    if (events_) return;
+    folder_.begin();
+    list_.emplace(path_ / "images.txt", OutputOptions{.appears = Appears::growing});
     StreamHeader header;
     header.format = "text";
-    header.width = width;
-    header.height = height;
-    events_ = std::make_unique<RecordingFile>((folder / "events.txt").string(), false,
+    header.width = width_;
+    header.height = height_;
+    events_ = std::make_unique<RecordingFile>((path_ / "events.txt").string(), false,
                                               open_writer("text"), header);
 }
 
 void EcdWriter::write(const Batch& batch) {
+    if (batch.events.empty() && batch.images.empty()) return;
+    begin();
     Batch events;
     events.events = batch.events;
     if (!events.empty()) events_->write(events);
@@ -50,7 +54,7 @@ void EcdWriter::write(const ReferenceImage& image) {
     std::snprintf(seconds, sizeof seconds, "%s%" PRId64 ".%06" PRId64 " ",
                   to_us(image.t) < 0 ? "-" : "", us / 1'000'000, us % 1'000'000);
     const std::string line = seconds + ("images/" + file.filename().string()) + "\n";
-    list_.write(line);
+    list_->write(line);
     write_file(file, std::as_bytes(std::span{png}), false);
     image_bytes_ += line.size() + png.size();
 }
@@ -72,8 +76,10 @@ cv::Mat EcdWriter::covering_sensor(const ReferenceImage& image) const {
 }
 
 void EcdWriter::finish() {
+    if (folder_.holds_earlier_run()) return;  // there is nothing to put in its place
+    begin();
     events_->finish();
-    list_.close();
+    list_->close();
     folder_.finish();
 }
 

@@ -12,12 +12,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace eventide::app {
 
 class EcdWriter {
 public:
-    /// Throws Error as RunFolder does.
+    /// An earlier recording in the folder goes with the first event or image. Throws Error as
+    /// RunFolder does.
     EcdWriter(const std::filesystem::path& folder, bool overwrite, int width, int height);
 
     /// What it writes.
@@ -26,17 +28,21 @@ public:
     /// Events and images; inertial samples and triggers have no place there.
     void write(const Batch& batch);
     void finish();
-    std::uint64_t bytes_written() const { return events_->bytes_written() + image_bytes_; }
+    std::uint64_t bytes_written() const {
+        return events_ ? events_->bytes_written() + image_bytes_ : 0;
+    }
 
 private:
+    void begin();
     void write(const ReferenceImage& image);
     cv::Mat covering_sensor(const ReferenceImage& image) const;
 
     int width_, height_;  // of the sensor
     std::uint64_t image_bytes_ = 0;
+    std::filesystem::path path_;
     RunFolder folder_;
-    std::unique_ptr<RecordingFile> events_;
-    OutputFile list_;
+    std::unique_ptr<RecordingFile> events_;  // both from the first event or image on
+    std::optional<OutputFile> list_;
 };
 
 }  // namespace eventide::app

@@ -148,6 +148,7 @@ SettingTable EvaluateCommand::settings() {
         "calibrated", calibrated_, "FILE",
         "Fit one factor for sigma on what was evaluated, and write the model with it."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
+    input_.add_to(table);
     return table;
 }
 
@@ -218,6 +219,7 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
             ErrorKind::usage,
             "--frames 1: all images would be given and none scored; expected 0, or 2 or more");
     what.given_images = given_images_;
+    what.input = input_.options();
     what.from_s = seconds_of(from_, "start");
     what.to_s = seconds_of(to_, "end");
     return evaluate_recordings(what, how);

@@ -35,6 +35,7 @@ private:
     void calibrate(const EvaluateReport& report, const EvaluateSettings& how) const;
 
     std::vector<std::string> inputs_;
+    InputSettings input_;
     Protocol protocol_ = Protocol::recordings;
     std::string model_ = "default", lpips_, window_ = "reference";
     int lookahead_ = 0, skip_ = 3, given_images_ = 0, threads_ = 0;

@@ -18,9 +18,9 @@ namespace eventide::app {
 namespace {
 
 /// Reads on, from `from` where given, until `enough` says so of what was read; false at the end.
-bool read_until(const RunSettings& settings, std::optional<SensorTime> from,
+bool read_until(const AskedPart& part, std::optional<SensorTime> from,
                 const std::function<bool(const Batch&)>& enough) {
-    const auto recording = open_recording(settings.source, settings.input.options());
+    const auto recording = open_recording(part.source, part.options);
     if (from) recording->seek(*from);
     const auto parser = recording->make_parser();
     RawPacket packet;
@@ -38,31 +38,32 @@ std::string seconds(SensorDuration duration) {
     return show_number(double(duration.count()) / 1e6) + "s";
 }
 
-SensorTime first_event(const RunSettings& settings) {
-    return TimePointReader{settings.source, settings.input.options()}.time_of({});
+SensorTime first_event(const AskedPart& part) {
+    return TimePointReader{part.source, part.options}.time_of({});
 }
 
-void check_from(const RunSettings& settings, SensorTime from) {
+void check_from(const AskedPart& part) {
     SensorTime last = SensorTime::min();
     const auto reaches_it = [&](const Batch& batch) {
         if (!batch.events.empty()) last = batch.events.back().t;
-        return last >= from;
+        return last >= *part.from;
     };
-    if (read_until(settings, from, reaches_it)) return;
+    if (read_until(part, part.from, reaches_it)) return;
     // A recording with an index may have gone past every event: from the start for the last.
-    if (last == SensorTime::min() && read_until(settings, {}, reaches_it)) return;
-    const SensorTime first = first_event(settings);
-    throw Error(ErrorKind::usage, "--from " + show_time_point(*settings.from) +
-                                      ": expected a time until the last event, " +
-                                      seconds(last - first) + " or @" +
-                                      std::to_string(to_us(last)) + ", of " + settings.source);
+    if (last == SensorTime::min() && read_until(part, {}, reaches_it)) return;
+    const SensorTime first = first_event(part);
+    throw Error(ErrorKind::usage,
+                "--from " + show_time_point(part.from_said.value_or(TimePoint{})) +
+                    ": expected a time until the last event, " + seconds(last - first) + " or @" +
+                    std::to_string(to_us(last)) + ", of " + part.source);
 }
 
-void check_end(const RunSettings& settings, SensorTime end) {
-    const SensorTime first = first_event(settings);
-    if (first <= end) return;
+void check_end(const AskedPart& part) {
+    const SensorTime first = first_event(part);
+    if (first <= *part.to) return;
     throw Error(ErrorKind::usage, "--to: expected a time after the first event, 0s or @" +
-                                      std::to_string(to_us(first)) + ", of " + settings.source);
+                                      std::to_string(to_us(first)) + ", of " + part.source +
+                                      ", found an end before it");
 }
 
 /// A pipe is gone when it has been read.
@@ -74,14 +75,22 @@ bool can_be_read_twice(const std::string& source) {
 
 }  // namespace
 
-void check_recording(const RunSettings& settings, const Span& span, const SlicerSettings& slicer) {
-    if (!can_be_read_twice(settings.source)) return;
-    if (span.frames_from) check_from(settings, *span.frames_from);
-    if (span.end && !span.frames_from) check_end(settings, *span.end);
+void check_order(std::optional<SensorTime> from, std::optional<SensorTime> to) {
+    if (from && to && *to < *from) throw Error(ErrorKind::usage, "--to lies before --from");
+}
+
+void check_part(const AskedPart& part) {
+    check_order(part.from, part.to);
+    if (!can_be_read_twice(part.source)) return;
+    if (part.from) check_from(part);
+    if (part.to) check_end(part);
+}
+
+void check_images(const AskedPart& part, const SlicerSettings& slicer) {
+    if (slicer.rule != WindowRule::reference || !can_be_read_twice(part.source)) return;
     const auto has_image = [](const Batch& batch) { return !batch.images.empty(); };
-    if (slicer.rule == WindowRule::reference && !read_until(settings, {}, has_image))
-        throw Error(ErrorKind::usage, "--window aps: expected reference images in " +
-                                          settings.source +
+    if (!read_until(part, {}, has_image))
+        throw Error(ErrorKind::usage, "--window aps: expected reference images in " + part.source +
                                           ", found none; another --window, such as 50ms, needs "
                                           "events alone");
 }

@@ -8,8 +8,9 @@
 namespace eventide::app {
 
 std::string RunCommand::examples() const {
-    return "SOURCE is a recording, an ECD folder, davis:[serial], dvxplorer:[serial], "
-           "dvs128:[serial], v4l2:/dev/videoN, sim:SCENE, or - for text on standard input.\n"
+    return "SOURCE is a recording, a folder of the Event Camera Dataset, davis:[SERIAL], "
+           "dvxplorer:[SERIAL], dvs128:[SERIAL], v4l2:/dev/videoN, ros2:/TOPIC, udp://HOST:PORT, "
+           "sim:SCENE, or - for a recording on standard input.\n"
            "Examples:\n"
            "  eventide run recording.aedat4 --out video.mp4\n"
            "  eventide run recording.raw --fps 1000 --size 2.5x --out frames/ --out video.mp4 "

@@ -217,7 +217,7 @@ int SimulateCommand::run(Program& program) {
     simulate(what, textures, [&](const Batch& batch, std::vector<Frame>& seen) {
         if (const Batch held = held_of(batch, out.holds()); !held.empty()) out.write(held);
         events += batch.events.size();
-        images += batch.images.size();
+        images += out.holds().images ? batch.images.size() : 0;
         for (Frame& view : seen) {
             view.index = truths++;
             truth->write(view);

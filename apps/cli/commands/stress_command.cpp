@@ -113,9 +113,9 @@ std::vector<Plot> plots_of(const std::vector<stress::SoakSample>& samples) {
 
 std::string StressCommand::examples() const {
     return "Hard cases go through the whole pipeline with each model, and codes and frames are "
-           "compared\n"
-           "with double precision. Errors are relative to the larger of 1 and the map's largest "
-           "number.\n"
+           "compared with double precision. Errors are relative to the larger of 1 and the map's "
+           "largest "
+           "number. "
            "Exit code 1 when a case fails. Long cases are cut where time is short, and say what "
            "they ran.\n"
            "Examples:\n"

@@ -41,6 +41,11 @@ std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool ove
                                           growing ? Appears::growing : Appears::whole);
 }
 
+std::string lost_datagrams(std::uint64_t lost) {
+    if (lost == 0) return {};
+    return std::to_string(lost) + (lost == 1 ? " datagram" : " datagrams") + " that nobody took";
+}
+
 void EventsOut::see(const Batch& batch) {
     const FormatHolds& holds = target_->holds();
     const auto keep = [](const auto& some, bool held, auto& to) {

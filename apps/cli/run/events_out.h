@@ -4,6 +4,7 @@
 #include "pipeline/stages.h"
 #include "replay/convert.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,9 @@ std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool ove
 /// The file or folder in it; empty for what is none.
 std::string file_of_event_target(const std::string& to);
 
+/// "3 datagrams that nobody took"; empty for none.
+std::string lost_datagrams(std::uint64_t lost);
+
 /// The last of the filters. Bin thread; it holds up the pipeline for as long as writing takes.
 class EventsOut final : public EventFilter, public DataObserver {
 public:
@@ -31,6 +35,7 @@ public:
     void see(const Batch& batch) override;
     void process(std::vector<Event>& events) override;
     void finish();
+    std::uint64_t lost() const { return target_->lost(); }
 
 private:
     EventFilter* filter_;

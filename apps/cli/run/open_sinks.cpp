@@ -168,9 +168,9 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.rows = settings.sheet_rows;
     sheet.truth_caption = plan.reference_caption;
     if (plan.references != nullptr)
-        sheet.draw_truth = [references = plan.references, sensor = plan.sensor](const Frame& frame,
-                                                                                cv::Mat& image) {
-            references->draw(frame, sensor.width, sensor.height, image);
+        sheet.draw_truth = [references = plan.references, sensor = plan.sensor](
+                               SensorTime t, const Window& window, cv::Mat& image) {
+            references->draw_nearest(t, window, {sensor.width, sensor.height}, image);
         };
     return std::make_unique<ContactSheetSink>(std::move(sheet));
 }

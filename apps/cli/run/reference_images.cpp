@@ -31,19 +31,49 @@ void ReferenceImages::see(const Batch& batch) {
     while (images_.size() > kKept) images_.pop_front();
 }
 
-void ReferenceImages::draw(const Frame& frame, int sensor_width, int sensor_height,
-                           cv::Mat& shown) const {
-    const std::lock_guard lock{mutex_};
+SensorDuration ReferenceImages::spacing_at(std::size_t image) const {
+    SensorDuration nearest{0};
+    const auto neighbour = [&](std::size_t other) {
+        const SensorDuration apart = std::chrono::abs(images_[image].t - images_[other].t);
+        nearest = nearest.count() == 0 ? apart : std::min(nearest, apart);
+    };
+    if (image > 0) neighbour(image - 1);
+    if (image + 1 < images_.size()) neighbour(image + 1);
+    return nearest;
+}
+
+std::optional<std::size_t> ReferenceImages::nearest_to(SensorTime t) const {
     const auto distance = [&](const ReferenceImage& image) {
-        return std::chrono::abs(image.t - frame.t);
+        return std::chrono::abs(image.t - t);
     };
     const auto nearest = std::ranges::min_element(images_, {}, distance);
-    if (nearest == images_.end() || distance(*nearest) > frame.window.width() / 2) return;
-    const cv::Mat grey = grey_of(*nearest);
-    shown = cv::Mat::zeros(sensor_height, sensor_width, CV_8UC1);
-    const cv::Rect sensor{0, 0, sensor_width, sensor_height};
-    const cv::Rect place = cv::Rect{nearest->x0, nearest->y0, grey.cols, grey.rows} & sensor;
-    grey(place - cv::Point{nearest->x0, nearest->y0}).copyTo(shown(place));
+    if (nearest == images_.end()) return std::nullopt;
+    return std::size_t(nearest - images_.begin());
+}
+
+void ReferenceImages::draw(SensorTime t, const Window& window, cv::Size sensor,
+                           cv::Mat& shown) const {
+    const std::lock_guard lock{mutex_};
+    const auto image = nearest_to(t);
+    if (image && 2 * std::chrono::abs(images_[*image].t - t) <= window.width())
+        draw(images_[*image], sensor, shown);
+}
+
+void ReferenceImages::draw_nearest(SensorTime t, const Window& window, cv::Size sensor,
+                                   cv::Mat& shown) const {
+    const std::lock_guard lock{mutex_};
+    const auto image = nearest_to(t);
+    if (image &&
+        2 * std::chrono::abs(images_[*image].t - t) <= std::max(window.width(), spacing_at(*image)))
+        draw(images_[*image], sensor, shown);
+}
+
+void ReferenceImages::draw(const ReferenceImage& image, cv::Size sensor, cv::Mat& shown) const {
+    const cv::Mat grey = grey_of(image);
+    shown = cv::Mat::zeros(sensor, CV_8UC1);
+    const cv::Rect whole{{0, 0}, sensor};
+    const cv::Rect place = cv::Rect{image.x0, image.y0, grey.cols, grey.rows} & whole;
+    grey(place - cv::Point{image.x0, image.y0}).copyTo(shown(place));
 }
 
 }  // namespace eventide::app

@@ -6,8 +6,10 @@
 
 #include <opencv2/core.hpp>
 
+#include <cstddef>
 #include <deque>
 #include <mutex>
+#include <optional>
 
 namespace eventide::app {
 
@@ -19,11 +21,20 @@ public:
 
     void see(const Batch& batch) override;
 
-    /// The image taken nearest to the frame's time, no further than half its window away, on black
-    /// where it does not cover the sensor (CV_8UC1); leaves `image` empty where there is none.
-    void draw(const Frame& frame, int sensor_width, int sensor_height, cv::Mat& shown) const;
+    /// The image taken nearest to a frame's time, no further than half its event window away, on
+    /// black where it does not cover the sensor (CV_8UC1); leaves `shown` empty where there is
+    /// none.
+    void draw(SensorTime t, const Window& window, cv::Size sensor, cv::Mat& shown) const;
+    /// To be looked at beside the frame: also where it is as near as half the time between images.
+    void draw_nearest(SensorTime t, const Window& window, cv::Size sensor, cv::Mat& shown) const;
 
 private:
+    /// Empty where there is none.
+    std::optional<std::size_t> nearest_to(SensorTime t) const;
+    void draw(const ReferenceImage& image, cv::Size sensor, cv::Mat& shown) const;
+    /// Between it and the nearer of its neighbours; 0 where it has none.
+    SensorDuration spacing_at(std::size_t image) const;
+
     mutable std::mutex mutex_;
     std::deque<ReferenceImage> images_;
 };

@@ -106,7 +106,10 @@ Run::Run(Program& program, RunSettings& settings)
       observers_{sheet_ ? &references_ : nullptr,
                  settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
       render_{render_stage()} {
-    check_recording(settings, span_, slicer_);
+    const AskedPart part{settings.source, settings.input.options(), settings.from,
+                         span_.frames_from, span_.end};
+    check_part(part);
+    check_images(part, slicer_);
     quality_.tell_rate(rate_.is_set() ? nominal_fps(rate_, slicer_, settings.slow) : 0);
     if (settings.colour) {
         colour_.emplace(network_, sensor_, colour_filter_,
@@ -249,7 +252,9 @@ int Run::run() {
     else if (settings_.frames == CameraFrames::use)
         spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
                      end_counters.images);
-    const bool lost = lost_data(end_counters) || camera.device_dropped > 0;
+    const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
+    if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
+    const bool lost = lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
 

@@ -8,6 +8,7 @@
 #include "apps/cli/run/state/stream_state.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/sink_name.h"
+#include "apps/cli/terminal.h"
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_name.h"
 
@@ -15,9 +16,10 @@ namespace eventide::app {
 
 namespace {
 
-void name_events_out(const std::string& to, NamedFiles& files) {
+void name_events_out(const std::string& to, bool force, NamedFiles& files) {
     const std::string file = file_of_event_target(to);
-    if (file.starts_with("udp://")) return;
+    if (to.empty() || file.starts_with("udp://")) return;
+    if (to != "-" && !to.starts_with("text:")) refuse_terminal("--events-out " + to, file, force);
     if (names_folder(file))
         name_run_folder("--events-out", file, EcdWriter::files(), files);
     else
@@ -41,11 +43,9 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
 
     name_sink_files(settings, files);
     files.writes("--record", settings.record);
-    name_events_out(settings.events_out, files);
-    for (const std::string& filter : settings.filter)
-        if (filter.starts_with("hot-pixels:") && filter != "hot-pixels:learn")
-            files.reads("--filter", filter.substr(filter.find(':') + 1));
-    if (settings.stats != "-") files.writes("--stats", settings.stats);
+    name_events_out(settings.events_out, settings.force, files);
+    name_filter_files(settings.filter, files);
+    if (settings.stats != "-") files.writes("--stats", settings.stats);  // else standard error
     files.writes("--state-out", settings.state_out);
     if (settings.states_out.empty()) return;
     files.writes_folder("--states-out", settings.states_out);

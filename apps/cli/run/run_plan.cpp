@@ -1,6 +1,7 @@
 // What was asked for becomes what is to be done.
 #include "apps/cli/run/run_plan.h"
 
+#include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/run/open_sinks.h"
 #include "drivers/simulated/simulated_name.h"
 #include "pipeline/filters/event_filter.h"
@@ -60,8 +61,7 @@ Span span_of(const RunSettings& settings, bool live) {
         const SensorTime end = begin + *settings.duration;
         span.end = span.end ? std::min(*span.end, end) : end;
     }
-    if (span.end && span.frames_from && *span.end < *span.frames_from)
-        throw Error(ErrorKind::usage, "--to lies before --from");
+    check_order(span.frames_from, span.end);
     return span;
 }
 
@@ -79,13 +79,25 @@ Span resumed_span(const RunSettings& settings, Span span, SensorTime t) {
     return span;
 }
 
+namespace {
+
+TimePoint state_point(const std::string& text) {
+    try {
+        return parse_time_point(text);
+    } catch (const Error& error) {
+        throw Error(error.kind(), "--states-at: " + std::string{error.what()});
+    }
+}
+
+}  // namespace
+
 std::vector<SensorTime> state_times_of(const RunSettings& settings) {
     if (settings.states_at.empty() != settings.states_out.empty())
         throw Error(ErrorKind::usage, "--states-out and --states-at: expected both, found one");
     const TimePointReader reader = times_of(settings);
     std::vector<SensorTime> times;
     for (const std::string& text : settings.states_at) {
-        const SensorTime t = reader.time_of(parse_time_point(text));
+        const SensorTime t = reader.time_of(state_point(text));
         if (!times.empty() && t <= times.back())
             throw Error(ErrorKind::usage,
                         "--states-at " + text + ": expected times that ascend, found one before");

@@ -57,7 +57,7 @@ struct RunSettings {
     bool reconnect = false;
     std::optional<TimePoint> from, to;
     bool allow_silence = false;
-    std::optional<SensorDuration> warmup;  ///< before `from`; empty: warmup_of() decides
+    std::optional<SensorDuration> warmup;  ///< before `from`; empty: as run_plan.cpp says
     std::optional<SensorDuration> duration;
     std::string speed = "auto";    ///< auto, max, or a factor
     std::string latency = "auto";  ///< auto, none, or a time

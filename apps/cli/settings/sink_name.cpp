@@ -46,18 +46,6 @@ std::optional<SinkName> with_prefix(const std::string& sink) {
     return std::nullopt;
 }
 
-/// Two sinks on standard output would mix their bytes, and a terminal would show them as letters.
-void check_standard_output(const std::vector<std::string>& sinks, bool force) {
-    const auto is_standard_output = [](const std::string& sink) {
-        return sink == "-" || sink.ends_with(":-");
-    };
-    const auto first = std::ranges::find_if(sinks, is_standard_output);
-    if (first == sinks.end()) return;
-    if (std::any_of(first + 1, sinks.end(), is_standard_output))
-        throw Error(ErrorKind::usage, "--out: only one sink can have standard output");
-    refuse_terminal("--out " + *first, force);
-}
-
 /// A setting that changes nothing is a misunderstanding.
 void check_stamp(const RunSettings& settings) {
     if (!settings.stamp) return;
@@ -100,7 +88,6 @@ SinkName parse_sink(const std::string& sink) {
 }
 
 void name_sink_files(const RunSettings& settings, NamedFiles& files) {
-    check_standard_output(settings.out, settings.force);
     check_stamp(settings);
     for (const std::string& text : settings.out) {
         const SinkName sink = parse_sink(text);
@@ -114,6 +101,8 @@ void name_sink_files(const RunSettings& settings, NamedFiles& files) {
                     files.writes("--out", sigma_path(sink.path));
                 break;
             case SinkKind::stream:
+                refuse_terminal("--out " + text, sink.path, settings.force);
+                [[fallthrough]];
             case SinkKind::sheet:
                 files.writes("--out", sink.path, text);
                 break;

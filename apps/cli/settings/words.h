@@ -1,6 +1,7 @@
 // Words and limits that several commands take.
 #pragma once
 
+#include "src/core/arithmetic_words.h"
 #include "src/core/bayer.h"
 #include "src/model/engine.h"
 #include "src/model/instructions.h"
@@ -16,14 +17,10 @@ constexpr int kMaxThreads = 1024;
 
 inline const std::vector<Word<Engine>> kEngineWords{{Engine::plain, "plain"},
                                                     {Engine::fast, "fast"}};
-inline const std::vector<Word<Precision>> kPrecisionWords{
-    {Precision::automatic, "auto"}, {Precision::f32, "f32"}, {Precision::bf16, "bf16"}};
 inline const std::vector<Word<Instructions>> kInstructionWords{{Instructions::best, "best"},
                                                                {Instructions::avx512, "avx512"},
                                                                {Instructions::avx2, "avx2"},
                                                                {Instructions::sse4, "sse4"}};
-inline const std::vector<Word<Kernels>> kKernelWords{
-    {Kernels::automatic, "auto"}, {Kernels::own, "own"}, {Kernels::onednn, "onednn"}};
 
 /// As name_of() has them.
 inline const std::vector<Word<ColourFilter>>& bayer_words() {

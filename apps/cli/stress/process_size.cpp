@@ -1,6 +1,8 @@
 // What this process holds: /proc.
 #include "apps/cli/stress/process_size.h"
 
+#include "src/core/number_text.h"
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,10 +20,8 @@ int entries(const char* folder) {
 /// Bytes of a line "name: n kB".
 std::int64_t bytes_of(const char* path, const std::string& name) {
     std::ifstream file{path};
-    for (std::string word, rest; file >> word; std::getline(file, rest)) {
-        std::int64_t kib = 0;
-        if (word == name && file >> kib) return kib << 10;
-    }
+    for (std::string word, value, rest; file >> word >> value; std::getline(file, rest))
+        if (word == name) return number_in<std::int64_t>(value).value_or(0) << 10;
     return 0;
 }
 

@@ -1,4 +1,5 @@
 // What opening and closing leaves behind.
+#include "apps/cli/commands/recording_out.h"
 #include "apps/cli/stress/process_size.h"
 #include "apps/cli/stress/stress_case.h"
 #include "pipeline/sinks/contact_sheet.h"
@@ -6,7 +7,6 @@
 #include "pipeline/sinks/raw_stream.h"
 #include "pipeline/sinks/video/video.h"
 #include "replay/formats.h"
-#include "replay/recording_file.h"
 #include "src/core/error.h"
 
 #include <cstdlib>
@@ -77,9 +77,9 @@ Result recordings(const Bench& bench) {
     std::vector<std::string> files;
     std::string names;
     for (const Format& format : all_formats()) {
-        if (format.make_writer == nullptr) continue;
+        if (!format.is_written()) continue;
         files.push_back(folder / (std::string{format.name} + std::string{format.extension}));
-        RecordingFile file{files.back(), true, open_writer(format.name), header};
+        app::RecordingOut file{files.back(), true, &format, header};
         file.write(batch);
         file.finish();
         names += (names.empty() ? "" : ", ") + std::string{format.name};

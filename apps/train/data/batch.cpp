@@ -15,12 +15,12 @@ RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t str
             .contiguous(torch::MemoryFormat::ChannelsLast)};
 }
 
-RecurrentState begin_window(const RecurrentState& memory, const std::vector<bool>& fresh) {
+RecurrentState begin_window(const RecurrentState& recurrent, const std::vector<bool>& fresh) {
     std::vector<float> keep;
     for (const bool anew : fresh) keep.push_back(anew ? 0.0F : 1.0F);
-    const auto factor = torch::tensor(keep).view({-1, 1, 1, 1}).to(memory.latent.options());
-    RecurrentState next{{}, memory.latent.detach() * factor};
-    for (const torch::Tensor& map : memory.state) next.state.push_back(map.detach() * factor);
+    const auto factor = torch::tensor(keep).view({-1, 1, 1, 1}).to(recurrent.latent.options());
+    RecurrentState next{{}, recurrent.latent.detach() * factor};
+    for (const torch::Tensor& map : recurrent.state) next.state.push_back(map.detach() * factor);
     return next;
 }
 
@@ -64,15 +64,15 @@ TrainingBatch to_batch(std::span<const StreamWindow> windows, torch::Device devi
 }
 
 Images run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
-                  const TrainingBatch& batch, int patch, RecurrentState& memory) {
+                  const TrainingBatch& batch, int patch, RecurrentState& recurrent) {
     const auto type = parameters.begin()->second.scalar_type();
-    std::vector<torch::Tensor> z{memory.latent.to(type)};  // z[k + 1] belongs to frame k
+    std::vector<torch::Tensor> z{recurrent.latent.to(type)};  // z[k + 1] belongs to frame k
     for (const torch::Tensor& grid : batch.grids) {
-        Encoded encoded = encode(config, parameters, grid, memory.state);
-        memory.state = std::move(encoded.state);
+        Encoded encoded = encode(config, parameters, grid, recurrent.state);
+        recurrent.state = std::move(encoded.state);
         z.push_back(encoded.latent.to(type));
     }
-    memory.latent = z.back().to(memory.latent.scalar_type());
+    recurrent.latent = z.back().to(recurrent.latent.scalar_type());
 
     std::vector<RenderTask> tasks;
     for (std::size_t i = 0; i < batch.f.size(); ++i) {

@@ -22,7 +22,7 @@ RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t str
                                      torch::TensorOptions options);
 
 /// Streams with `fresh` begin empty; gradients do not reach into the window before.
-RecurrentState begin_window(const RecurrentState& memory, const std::vector<bool>& fresh);
+RecurrentState begin_window(const RecurrentState& recurrent, const std::vector<bool>& fresh);
 
 struct TrainingBatch {
     std::vector<torch::Tensor> grids;  ///< per frame, [N][4B+1][H][W]
@@ -32,10 +32,10 @@ struct TrainingBatch {
 };
 TrainingBatch to_batch(std::span<const StreamWindow> windows, torch::Device device);
 
-/// Encodes a window and renders the frames the plan names. `memory` goes in as begin_window() left
-/// it and comes out as it is after the window, still attached.
+/// Encodes a window and renders the frames the plan names. `recurrent` goes in as begin_window()
+/// left it and comes out as it is after the window, still attached.
 Images run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
-                  const TrainingBatch& batch, int patch, RecurrentState& memory);
+                  const TrainingBatch& batch, int patch, RecurrentState& recurrent);
 
 /// [N][C][H][W] of grids [y][x][channel].
 torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Device device);

@@ -35,7 +35,7 @@ SceneSettings DataSettings::training_scenes() {
 WindowPlan window_plan(const DataSettings& settings, std::int64_t window) {
     Random random{seed_of(settings, 0, std::uint64_t(window))};
     WindowPlan plan;
-    plan.first_rendered = random.integer(0, settings.frames - settings.rendered);
+    plan.first_rendered = random.integer(0, settings.event_windows - settings.rendered);
     const double whole = settings.crop - 1;
     const double one_to_one = std::min(whole, settings.patch - 1.0);
     const bool on_pixels = random.chance(settings.whole_probability);
@@ -104,8 +104,8 @@ struct SceneStream::Episode {
           stream(camera.scene, camera.sensor, std::move(textures), part, random.bits()),
           binner(settings.bins, settings.crop, settings.crop),
           grid(binner.make_output()),
-          width_s(random.log_uniform(settings.frame_s)),
-          jitter(random.chance(settings.jitter_probability) ? settings.frame_jitter : 0) {
+          width_s(random.log_uniform(settings.window_s)),
+          jitter(random.chance(settings.jitter_probability) ? settings.window_jitter : 0) {
         // A share of 0 draws nothing, so that runs of before go on as they were.
         if (settings.content_share > 0 && random.chance(settings.content_share))
             enough = random.log_uniform(settings.content_epp) * settings.crop * settings.crop;
@@ -122,13 +122,13 @@ struct SceneStream::Episode {
         stream.advance(window.end, events);
         if (noise_filter) noise_filter->process(events);
         binner.process({.window = window, .events = events}, grid);
-        ++frames;
+        ++event_windows;
     }
 
     /// us; foreseen from the rate of the window before, so that each is simulated in one step.
     double width_by_content() const {
         constexpr double kLeast = 1e3, kGrowth = 2;
-        const double before = frames == 0 ? kLeast : double(window.width().count());
+        const double before = event_windows == 0 ? kLeast : double(window.width().count());
         const double by_rate = before * enough / std::max(1.0, double(events.size()));
         return std::max(kLeast, std::min(by_rate, kGrowth * before));
     }
@@ -144,7 +144,7 @@ struct SceneStream::Episode {
     double enough = 0;  ///< events that end a window before its time; 0: none do
     Window window;
     std::vector<Event> events;
-    int frames = 0;
+    int event_windows = 0;
 };
 
 SceneStream::SceneStream(const DataSettings& settings,
@@ -168,8 +168,9 @@ void SceneStream::start_episode() {
     ++episode_;
     now_.reset();
     Random random{seed_of(settings_, std::uint64_t(place_.stream) + 1, std::uint64_t(episode_))};
-    const double frames = random.log_uniform(settings_.episode);
-    windows_left_ = std::max<std::int64_t>(1, std::llround(frames / settings_.frames));
+    const double event_windows = random.log_uniform(settings_.episode);
+    windows_left_ =
+        std::max<std::int64_t>(1, std::llround(event_windows / settings_.event_windows));
 }
 
 void SceneStream::open_episode() {
@@ -185,7 +186,7 @@ StreamWindow SceneStream::next() {
     if (out.fresh) open_episode();
     const WindowPlan plan = window_plan(settings_, window_ * place_.groups + place_.group);
     Episode& episode = *now_;
-    for (int k = 0; k < settings_.frames; ++k) {
+    for (int k = 0; k < settings_.event_windows; ++k) {
         episode.advance();
         out.grids.push_back(episode.grid.values);
         if (k < plan.first_rendered || k >= plan.first_rendered + settings_.rendered) continue;
@@ -194,7 +195,7 @@ StreamWindow SceneStream::next() {
         const auto part = std::clamp<std::int64_t>(
             edge ? width : std::llround(episode.random.uniform() * double(width)), 1, width);
         out.f.push_back(float(double(part) / double(width)));
-        out.weight.push_back(episode.frames > settings_.warm_frames ? 1.0F : 0.0F);
+        out.weight.push_back(episode.event_windows > settings_.warm_windows ? 1.0F : 0.0F);
         out.truth.emplace_back(settings_.patch, settings_.patch);
         episode.stream.truth(episode.window.begin + SensorDuration{part}, plan.y0, plan.x0,
                              plan.span, plan.span, out.truth.back());

@@ -22,17 +22,17 @@ struct DataSettings {
     /// px, log-uniform per episode; width of that sensor, whose height is three quarters of it.
     /// Never smaller than the crop.
     Range sensor_width{128, 346};
-    int frames = 8;            ///< event windows per window: gradients flow through one window
-    int rendered = 4;          ///< of them, consecutive, are compared with the truth
-    int patch = 64;            ///< px, side of the images compared
-    Range episode{20, 400};    ///< log-uniform; event windows until a stream starts anew
-    Range frame_s{.01, .1};    ///< log-uniform per episode; width of the event windows
-    double frame_jitter = .3;  ///< ln; widths of one episode's frames differ by up to this ...
+    int event_windows = 8;           ///< per window of training: gradients flow through one window
+    int rendered = 4;                ///< of them, consecutive, are compared with the truth
+    int patch = 64;                  ///< px, side of the images compared
+    Range episode{20, 400};          ///< log-uniform; event windows until a stream starts anew
+    Range window_s{.01, .1};         ///< log-uniform per episode; width of the event windows
+    double window_jitter = .3;       ///< ln; widths within an episode differ by up to this ...
     double jitter_probability = .5;  ///< ... in this share of the episodes
     double whole_probability = .6;   ///< patches whose points are pixels
     double span_scale_max = 4;       ///< else log-uniform 1..this points per pixel
     double edge_probability = .4;    ///< images at the end of their event window; else anywhere
-    int warm_frames = 4;             ///< frames of a new stream that count nothing
+    int warm_windows = 4;            ///< of a new stream, that count nothing
     double content_share = 0;        ///< episodes whose windows end by content, too:
     Range content_epp{.2, 1};        ///< log-uniform; at so many events per pixel, never under 1 ms
     bool noise_filter = false;       ///< events are left out as NoiseFilter does
@@ -42,22 +42,22 @@ struct DataSettings {
     SensorSettings sensor;
 
     /// The simulator's own ranges, less of what shows next to nothing: a scene that stands still
-    /// from its first frame on cannot be learned from.
+    /// from the beginning cannot be learned from.
     static SceneSettings training_scenes();
 };
 
 /// What all streams of one window share, so that they are computed together.
 struct WindowPlan {
-    int first_rendered = 0;           ///< frame of the window
+    int first_rendered = 0;           ///< of its event windows
     double y0 = 0, x0 = 0, span = 0;  ///< px, of the patch
-    std::vector<int> lookahead;       ///< per rendered frame: 0, 1 or 2
+    std::vector<int> lookahead;       ///< per rendered one: 0, 1 or 2
 };
 WindowPlan window_plan(const DataSettings& settings, std::int64_t window);
 
 /// One stream's part of a window.
 struct StreamWindow {
     bool fresh = false;                ///< a new scene: the state before it is empty
-    std::vector<Array3<float>> grids;  ///< per frame, [y][x][channel]
+    std::vector<Array3<float>> grids;  ///< per event window, [y][x][channel]
     std::vector<float> f;              ///< per rendered frame, instant in the event window (0, 1]
     std::vector<float> weight;         ///< per rendered frame
     std::vector<Array2<float>> truth;  ///< per rendered frame, patch x patch

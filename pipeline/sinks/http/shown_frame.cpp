@@ -1,10 +1,10 @@
 #include "pipeline/sinks/http/shown_frame.h"
 
 #include "src/core/error.h"
+#include "src/core/words.h"
 #include "src/io/image_codecs.h"
 
 #include <algorithm>
-#include <array>
 
 namespace eventide {
 
@@ -58,10 +58,11 @@ private:
 }  // namespace
 
 std::optional<Show> parse_show(std::string_view word) {
-    constexpr std::array<std::string_view, 4> kWords{"intensity", "sigma", "side", "overlay"};
-    const auto found = std::ranges::find(kWords, word);
-    if (found == kWords.end()) return std::nullopt;
-    return Show(found - kWords.begin());
+    static const std::vector<Word<Show>> kWords{{Show::intensity, "intensity"},
+                                                {Show::sigma, "sigma"},
+                                                {Show::side, "side"},
+                                                {Show::overlay, "overlay"}};
+    return find_word(word, kWords);
 }
 
 ShownFrame::ShownFrame(Frame frame, float sigma_white, std::chrono::nanoseconds latency)

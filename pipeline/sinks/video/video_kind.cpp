@@ -19,7 +19,10 @@ constexpr VideoKind kKinds[]{{".mp4", "libx264", "yuv420p", false, 1'000'000, 1e
                              {".gif", "gif", "gray", true, 100, 50, false}};
 
 const VideoKind* find(const std::filesystem::path& path) {
-    const auto found = std::ranges::find(kKinds, path.extension().string(), &VideoKind::extension);
+    std::string extension = path.extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    const auto found = std::ranges::find(kKinds, extension, &VideoKind::extension);
     return found == std::end(kKinds) ? nullptr : found;
 }
 

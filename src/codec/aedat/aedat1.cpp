@@ -2,7 +2,7 @@
 #include "src/codec/aedat/aedat1.h"
 
 #include "src/codec/aedat/aedat_header.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 #include "src/codec/aedat/aedat2.h"
 
 #include "src/codec/aedat/aedat_header.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "src/codec/aedat/aedat3.h"
 
 #include "src/codec/aedat/aedat3_records.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // Packet headers of AEDAT 3, and how to tell one from other bytes.
 #include "src/codec/aedat/aedat3_packet.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 namespace eventide {
 

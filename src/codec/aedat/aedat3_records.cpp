@@ -2,8 +2,8 @@
 #include "src/codec/aedat/aedat3_records.h"
 
 #include "src/codec/aedat/aedat3_packet.h"
-#include "src/codec/byte_order.h"
 #include "src/core/bayer.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Events, frames, IMU samples, triggers -> AEDAT 3.1 packets.
 #include "src/codec/aedat/aedat3.h"
 #include "src/codec/aedat/aedat3_records.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 namespace eventide {
 
 struct AedatHeaderLines {
-    std::vector<std::string_view> lines;  ///< without the '#' and the pipeline's end
+    std::vector<std::string_view> lines;  ///< without the '#' and the line's end
     std::size_t end = 0;                  ///< bytes up to the first record
 };
 

@@ -1,7 +1,7 @@
 // Finds the packets of AEDAT4 in a stream cut anywhere, whole or damaged.
 #include "src/codec/aedat4/aedat4.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,7 +1,7 @@
 // LZ4 frames by lz4frame (blocks may depend on each other), ZSTD frames by libzstd.
 #include "src/codec/aedat4/aedat4_compression.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <lz4frame.h>

@@ -1,7 +1,7 @@
 // Reads flatbuffers that may be damaged: every offset is checked, nothing need be aligned.
 #pragma once
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Writes size-prefixed flatbuffers front to back: tables, vectors, texts.
 #pragma once
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <array>
 #include <cassert>

@@ -2,8 +2,8 @@
 #include "src/codec/aedat4/aedat4_header.h"
 
 #include "src/codec/aedat4/aedat4_flat.h"
-#include "src/codec/byte_order.h"
 #include "src/core/bayer.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 

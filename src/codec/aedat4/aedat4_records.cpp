@@ -161,7 +161,12 @@ std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const Even
     return newest;
 }
 
-std::optional<std::int64_t> take_aedat4_imu(const FlatTable& packet, Batch& into, Damage& damage) {
+namespace {
+
+/// Calls take(record, time) for each of a packet's records that has a time; the others are damage.
+template <typename Take>
+std::optional<std::int64_t> take_timed_records(const FlatTable& packet, Damage& damage,
+                                               const Take& take) {
     std::optional<std::int64_t> newest;
     const auto elements = packet.vector(0, 4);
     if (!elements) damage.count(DamageReason::bad_record);
@@ -171,40 +176,39 @@ std::optional<std::int64_t> take_aedat4_imu(const FlatTable& packet, Batch& into
             damage.count(DamageReason::bad_record);
             continue;
         }
-        ImuSample sample;
-        sample.t = from_us(record->scalar<std::int64_t>(0));
-        sample.temperature_c = record->scalar<float>(1);
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto at = std::size_t(axis);
-            sample.acceleration_g[at] = record->scalar<float>(2 + axis);
-            sample.gyro_dps[at] = record->scalar<float>(5 + axis);
-            sample.magnetic_ut[at] = record->scalar<float>(8 + axis);
-        }
-        into.imu.push_back(sample);
-        keep_newest(newest, to_us(sample.t));
+        const auto t = record->scalar<std::int64_t>(0);
+        take(*record, from_us(t));
+        keep_newest(newest, t);
     }
     return newest;
 }
 
+}  // namespace
+
+std::optional<std::int64_t> take_aedat4_imu(const FlatTable& packet, Batch& into, Damage& damage) {
+    return take_timed_records(packet, damage, [&](const FlatTable& record, SensorTime t) {
+        ImuSample sample;
+        sample.t = t;
+        sample.temperature_c = record.scalar<float>(1);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto at = std::size_t(axis);
+            sample.acceleration_g[at] = record.scalar<float>(2 + axis);
+            sample.gyro_dps[at] = record.scalar<float>(5 + axis);
+            sample.magnetic_ut[at] = record.scalar<float>(8 + axis);
+        }
+        into.imu.push_back(sample);
+    });
+}
+
 std::optional<std::int64_t> take_aedat4_triggers(const FlatTable& packet, Batch& into,
                                                  Damage& damage) {
-    std::optional<std::int64_t> newest;
-    const auto elements = packet.vector(0, 4);
-    if (!elements) damage.count(DamageReason::bad_record);
-    for (std::size_t i = 0; elements && i < elements->size; ++i) {
-        const auto record = packet.element(*elements, i);
-        if (!record || !is_aedat4_time(record->scalar<std::int64_t>(0))) {
-            damage.count(DamageReason::bad_record);
-            continue;
-        }
-        const auto number = record->scalar<std::uint8_t>(1);
+    return take_timed_records(packet, damage, [&](const FlatTable& record, SensorTime t) {
+        const auto number = record.scalar<std::uint8_t>(1);
         Trigger trigger =
             number < kTriggers.size() ? kTriggers[number] : Trigger{{}, Kind::other, number};
-        trigger.t = from_us(record->scalar<std::int64_t>(0));
+        trigger.t = t;
         into.triggers.push_back(trigger);
-        keep_newest(newest, to_us(trigger.t));
-    }
-    return newest;
+    });
 }
 
 int aedat4_trigger_number(const Trigger& trigger) {

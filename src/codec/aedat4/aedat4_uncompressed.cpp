@@ -1,6 +1,6 @@
 // AEDAT4 packets of a build without LZ4 and ZSTD: bare ones alone.
 #include "src/codec/aedat4/aedat4_compression.h"
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 namespace eventide {

@@ -1,5 +1,5 @@
-// data -> DAVIS USB words: what the software camera sends, and the inverse that the parser is
-// tested with.
+// data -> DAVIS USB words: what the software camera sends, what `eventide stress` feeds a parser
+// with, and the inverse that the parser is tested with.
 #pragma once
 
 #include "src/codec/inivation/davis_sensor.h"

@@ -1,6 +1,6 @@
 #include "src/codec/inivation/dvxplorer.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 namespace eventide {
 namespace {

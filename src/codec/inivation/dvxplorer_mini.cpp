@@ -1,6 +1,6 @@
 #include "src/codec/inivation/dvxplorer_mini.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 #include <cmath>

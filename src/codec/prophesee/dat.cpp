@@ -1,8 +1,8 @@
 // DAT records -> events or triggers.
 #include "src/codec/prophesee/dat.h"
 
-#include "src/codec/byte_order.h"
 #include "src/codec/prophesee/evt_header.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 

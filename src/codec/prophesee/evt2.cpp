@@ -1,7 +1,7 @@
 // EVT2 and EVT2.1 words -> events: a short loop for events, one function for all else.
 #include "src/codec/prophesee/evt2.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <bit>
 

@@ -1,7 +1,7 @@
 // EVT3 words -> events: a short loop for the usual, one function for everything.
 #include "src/codec/prophesee/evt3.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <bit>
 

@@ -1,6 +1,6 @@
 // data -> RAW files of EVT3.
-#include "src/codec/byte_order.h"
 #include "src/codec/prophesee/evt3.h"
+#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 
@@ -19,7 +20,7 @@ bool is_text(std::string_view line) {
 
 int side(std::string_view text) {
     const int px = number_in<int>(text).value_or(0);
-    return px > 0 && px <= 65536 ? px : 0;
+    return px > 0 && px <= kLargestRecordedSide ? px : 0;
 }
 
 /// "EVT3;height=720;width=1280"

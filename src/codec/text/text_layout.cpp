@@ -4,9 +4,11 @@
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
@@ -150,7 +152,6 @@ bool is_fractional(std::string_view field) {
 
 /// How many of the rows of whole numbers can be events in this order, none before the last.
 std::size_t rows_that_fit(const std::vector<Fields>& rows, std::string_view order) {
-    constexpr std::int64_t kMaxSide = 65536;
     std::size_t fit = 0;
     std::int64_t last = std::numeric_limits<std::int64_t>::min();
     for (const Fields& row : rows) {
@@ -161,7 +162,7 @@ std::size_t rows_that_fit(const std::vector<Fields>& rows, std::string_view orde
         const auto t = whole('t'), x = whole('x'), y = whole('y'), p = whole('p');
         // A polarity in words is no number.
         if (!t || !x || !y || *t < last || (p && (*p < -1 || *p > 1))) continue;
-        if (*x < 0 || *x >= kMaxSide || *y < 0 || *y >= kMaxSide) continue;
+        if (*x < 0 || *x >= kLargestRecordedSide || *y < 0 || *y >= kLargestRecordedSide) continue;
         last = *t;
         ++fit;
     }
@@ -190,20 +191,34 @@ struct Times {
     bool fractions = false;
 };
 
+/// The first time is not of the clock of the others: a 0 before times since 1970, which readers
+/// leave out as a leap.
+bool is_apart(const std::vector<std::int64_t>& times) {
+    constexpr double kFar = 1e6;  // times what the others span
+    const auto [least, largest] = std::ranges::minmax_element(times.begin() + 1, times.end());
+    const double span = double(*largest) - double(*least) + 1;
+    return std::abs(double(times[1]) - double(times[0])) > kFar * span;
+}
+
 Times times_of(const std::vector<Fields>& rows, const TextLayout& layout) {
     const auto column =
         std::size_t(std::find(layout.columns.begin(), layout.columns.end(), TextField::time) -
                     layout.columns.begin());
     Times times;
+    std::vector<std::int64_t> all;
     for (const Fields& row : rows) {
         const auto value = column < row.size() ? parse_decimal(row[column]) : std::nullopt;
         const auto whole = value ? scaled_integer(*value, 0) : std::nullopt;
         if (!whole) continue;
         times.fractions |= value->fractional;
-        times.first = times.count == 0 ? *whole : std::min(times.first, *whole);
-        times.last = times.count == 0 ? *whole : std::max(times.last, *whole);
-        ++times.count;
+        all.push_back(*whole);
     }
+    if (all.size() > 2 && is_apart(all)) all.erase(all.begin());
+    times.count = all.size();
+    if (all.empty()) return times;
+    const auto [least, largest] = std::ranges::minmax_element(all);
+    times.first = *least;
+    times.last = *largest;
     return times;
 }
 
@@ -281,8 +296,7 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     if (line) {
         if (const auto geometry = geometry_of(split_fields(*line))) {
             const auto [width, height] = *geometry;
-            constexpr int kMaxSide = 65536;
-            if (std::min(width, height) < 1 || std::max(width, height) > kMaxSide)
+            if (std::min(width, height) < 1 || std::max(width, height) > kLargestRecordedSide)
                 throw Error(ErrorKind::input,
                             "text recording: expected a sensor's size in the line of two numbers, "
                             "each from 1 to 65536, found \"" +

@@ -52,7 +52,7 @@ struct TextHeader {
 /// header row, a "width height" line, or rows of at least four numbers.
 bool looks_like_text(std::span<const std::byte> first_bytes);
 
-/// Throws Error (input) when no line of data is among the bytes and `is_whole_file` is false or the
+/// Throws Error (input) when no line of data is among the bytes or the
 /// lines are no rows of events; Error (usage) when the options contradict themselves.
 TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOptions& options);
 

@@ -11,8 +11,7 @@
 
 namespace eventide {
 
-/// The fields of a line: separated by spaces, tabs, a comma or a semicolon, without the pipeline's
-/// end.
+/// The fields of a line: separated by spaces, tabs, a comma or a semicolon, without its end.
 std::vector<std::string_view> split_fields(std::string_view line);
 
 /// True for what carries no data and is no damage: blank lines and comments ('#' or '%').

@@ -66,9 +66,9 @@ const PaddedMap* FirstLayerCache::code(std::int64_t k) const noexcept {
 void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
     newest_ = k;
     const std::size_t slot = LatentWindow::slot(k);
-    const StaleTiles outdated{histories_[slot], latent.history};
+    const StaleTiles stale{histories_[slot], latent.history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int worker, int n) {
-        if (outdated(std::size_t(n)))
+        if (stale(std::size_t(n)))
             hold_tile(k, tiles_[std::size_t(n)], latent.values,
                       scratch_[std::size_t(worker)].data());
     });

@@ -44,7 +44,6 @@ public:
     /// Where tiles begin along an axis, and where the last ends.
     std::vector<int> row_edges() const;
     std::vector<int> column_edges() const;
-    int tile_columns() const { return tile_columns_; }
 
 private:
     const Sums* find(std::int64_t k, bool whole) const noexcept;

@@ -126,7 +126,12 @@ FrameKind FastRenderer::kind_of(const CodeChoice& codes, const Job& job,
     int newest = index;  // of the sample at `index`, then of the one after it
     if (index == 0 && codes.next[0]) newest = codes.next[1] ? 2 : 1;
     if (index < 0) newest = 0;
-    return {job.geometry, job.rule, has_sigma, index - 1, newest, index};
+    return {.geometry = job.geometry,
+            .rule = job.rule,
+            .has_sigma = has_sigma,
+            .oldest = index - 1,
+            .newest = newest,
+            .time_index = index};
 }
 
 bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,

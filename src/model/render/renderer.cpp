@@ -26,16 +26,27 @@ FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int se
     return geometry;
 }
 
-void check_axis(const char* name, int size, int at, int part) {
+void check_side(const char* name, int size) {
     if (size < 1 || size > kLargestFrameSide)
         throw Error(ErrorKind::usage, std::string{"frame "} + name + ": expected 1 to " +
                                           std::to_string(kLargestFrameSide) + " px, found " +
                                           std::to_string(size));
-    if (at < 0 || part < 1 || at > size - part)
-        throw Error(ErrorKind::usage, std::string{"--roi exceeds the frame, "} + name +
-                                          ": expected to lie within " + std::to_string(size) +
-                                          " px, found " + std::to_string(part) + " from " +
-                                          std::to_string(at));
+}
+
+bool lies_within(int size, int at, int part) {
+    return at >= 0 && part >= 1 && at <= size - part;
+}
+
+void check_part(const FrameGeometry& g) {
+    if (lies_within(g.width, g.x, g.part_width) && lies_within(g.height, g.y, g.part_height))
+        return;
+    const auto size = [](int width, int height) {
+        return std::to_string(width) + "x" + std::to_string(height);
+    };
+    throw Error(ErrorKind::usage, "--roi exceeds the " + size(g.width, g.height) +
+                                      " frame: expected a part of it, found " +
+                                      size(g.part_width, g.part_height) + " from " +
+                                      std::to_string(g.x) + "," + std::to_string(g.y));
 }
 
 void fit(Array2<float>& map, int height, int width) {
@@ -47,8 +58,8 @@ void fit(Array2<float>& map, int height, int width) {
 Renderer::Renderer(const Model& model, int sensor_width, int sensor_height,
                    const EngineOptions& options)
     : config_(model.config), sensor_width_(sensor_width), sensor_height_(sensor_height) {
-    check_axis("width of the sensor", sensor_width, 0, 1);
-    check_axis("height of the sensor", sensor_height, 0, 1);
+    check_side("width of the sensor", sensor_width);
+    check_side("height of the sensor", sensor_height);
     check_model(model, "renderer");
     core_ = options.engine == Engine::plain
                 ? make_plain_renderer(model)
@@ -86,8 +97,9 @@ Readiness Renderer::readiness(SensorTime t, int lookahead) const noexcept {
 
 Frame Renderer::make_output(const RenderRequest& request) const {
     const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
-    check_axis("width", geometry.width, geometry.x, geometry.part_width);
-    check_axis("height", geometry.height, geometry.y, geometry.part_height);
+    check_side("width", geometry.width);
+    check_side("height", geometry.height);
+    check_part(geometry);
     if (request.lookahead < 0 || request.lookahead > kMaxLookahead)
         throw Error(ErrorKind::usage,
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(request.lookahead));

@@ -77,7 +77,7 @@ FigureSettings small_figures() {
     what.simulated.score_every = 3;
     what.scales = {1, 2};
     what.phases_max = 3;
-    what.moving_frames = 4;
+    what.moving_windows = 4;
     what.silent_windows = {0, 1, 5};
     return what;
 }

@@ -91,8 +91,8 @@ std::vector<double> contents(const DataSettings& settings) {
 TEST(SceneStream, WindowsThatEndByContentHoldAboutSoManyEventsOrEndByTime) {
     DataSettings settings = tiny_options({}).data;
     settings.episode = {200, 200};
-    settings.frame_s = {.1, .1};
-    settings.frame_jitter = 0;
+    settings.window_s = {.1, .1};
+    settings.window_jitter = 0;
     settings.scene.wander.speed = {200, 400};
     settings.scene.still_background = settings.scene.faint_probability = 0;
     settings.scene.pause_start = 0;

@@ -41,7 +41,7 @@ TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
     TrainOptions options = tiny_options(out);
     options.steps = 3;
     options.validation_scenes = 2;
-    options.validation_frames = 8;
+    options.validation_windows = 8;
     options.validation_crop = 32;
     const auto run = trainer(options);
     train(*run);

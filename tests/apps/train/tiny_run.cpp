@@ -20,10 +20,10 @@ TrainOptions tiny_options(const fs::path& out) {
     o.model.latent = 4;
     o.model.mlp = {16};
     o.data.crop = o.data.patch = 32;
-    o.data.frames = 4;
+    o.data.event_windows = 4;
     o.data.rendered = 3;
     o.data.episode = {8, 24};
-    o.precision = "f32";
+    o.precision = Precision::f32;
     o.threads = 2;
     o.streams = 1;
     o.groups = 2;

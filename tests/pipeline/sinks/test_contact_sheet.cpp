@@ -32,7 +32,7 @@ TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {
         sheet_of(50,
                  {.path = temp / "four.png",
                   .rows = 3,
-                  .draw_truth = [](const Frame&,
+                  .draw_truth = [](SensorTime, const Window&,
                                    cv::Mat& image) { image = cv::Mat(30, 40, CV_8UC1, 200.0); }},
                  true);
     ASSERT_FALSE(two.empty());
@@ -47,7 +47,7 @@ TEST(ContactSheet, NamesTheReferenceImagesAsItIsTold) {
     const TempFolder temp;
     const auto sheet = [&](const std::string& caption) {
         ContactSheetSettings settings{.path = temp / (caption + ".png"), .rows = 1};
-        settings.draw_truth = [](const Frame&, cv::Mat& image) {
+        settings.draw_truth = [](SensorTime, const Window&, cv::Mat& image) {
             image = cv::Mat(30, 40, CV_8UC1, 200.0);
         };
         settings.truth_caption = caption;
@@ -58,6 +58,25 @@ TEST(ContactSheet, NamesTheReferenceImagesAsItIsTold) {
                   rest = difference.rowRange(22, difference.rows);
     EXPECT_GT(cv::sum(caption)[0], 0);
     EXPECT_EQ(cv::sum(rest)[0], 0);
+}
+
+/// The image nearest to a frame may come after it.
+TEST(ContactSheet, AsksForTheTruthOnceItsImagesHaveCome) {
+    const TempFolder temp;
+    SensorTime now{};
+    std::vector<SensorDuration> delays;
+    ContactSheetSettings settings{.path = temp / "a.png", .rows = 2};
+    settings.draw_truth = [&](SensorTime t, const Window&, cv::Mat&) { delays.push_back(now - t); };
+    ContactSheetSink sink{settings};
+    for (int n = 0; n < 100; ++n) {
+        now = from_us(20'000 * n);
+        sink.write(test::ramp_frame(40, 30, n, now));
+    }
+    ASSERT_GT(delays.size(), 2U);
+    for (const SensorDuration delay : delays) EXPECT_GE(delay, kTruthDelay);
+    const std::size_t until_then = delays.size();
+    sink.close();
+    EXPECT_GT(delays.size(), until_then) << "at the end for those that are left";
 }
 
 TEST(ContactSheet, KeepsOneSizeHoweverLongTheRun) {

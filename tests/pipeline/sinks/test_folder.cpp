@@ -77,6 +77,10 @@ TEST(FolderSink, RefusesAFolderThatHoldsSomethingAndReplacesOnlyItsOwnFiles) {
     EXPECT_EQ(test::read_text(temp / "out/notes.txt"), "mine");
 }
 
+std::size_t files_in(const std::filesystem::path& folder) {
+    return std::size_t(std::distance(std::filesystem::directory_iterator{folder}, {}));
+}
+
 std::string refusal(const FolderSettings& settings) {
     try {
         FolderSink sink{settings};
@@ -112,8 +116,38 @@ TEST(FolderSink, ARunThatWasKilledCanBeReplaced) {
         for (int n = 0; n < 3; ++n) killed.write(test::ramp_frame(8, 8, n, test::odd_time(n)));
     }
     test::write_text(temp / "out/frames/frame_0000000003.png.part", "half of the frame in work");
-    EXPECT_EQ(refusal(settings), "");
-    EXPECT_TRUE(std::filesystem::is_empty(temp / "out/frames"));
+    { FolderSink{settings}.write(test::ramp_frame(8, 8, 0, test::odd_time(0))); }
+    EXPECT_EQ(files_in(temp / "out/frames"), 1U);
+}
+
+/// Another sink, or the run itself, may refuse to start after this one did; and a run may have no
+/// frame.
+TEST(FolderSink, AnEarlierRunStaysUntilTheFirstFrame) {
+    const TempFolder temp;
+    const FolderSettings settings{.path = temp / "out", .overwrite = true};
+    {
+        FolderSink earlier{settings};
+        for (int n = 0; n < 2; ++n) earlier.write(test::ramp_frame(8, 8, n, test::odd_time(n)));
+        earlier.close();
+    }
+    const std::string record = test::read_text(temp / "out/run.json");
+    { const FolderSink never_begun{settings}; }
+    FolderSink{settings}.close();
+    EXPECT_EQ(files_in(temp / "out/frames"), 2U);
+    EXPECT_EQ(test::read_text(temp / "out/run.json"), record);
+    EXPECT_TRUE(std::filesystem::exists(temp / "out/timestamps.txt"));
+    FolderSink{settings}.write(test::ramp_frame(8, 8, 0, test::odd_time(0)));
+    EXPECT_EQ(files_in(temp / "out/frames"), 1U);
+    EXPECT_EQ(test::read_text(temp / "out/timestamps.txt").find('\n'),
+              test::read_text(temp / "out/timestamps.txt").size() - 1);
+}
+
+TEST(FolderSink, ANewFolderIsNotLeftBehindByWhatNeverBegan) {
+    const TempFolder temp;
+    { const FolderSink never_begun{{.path = temp / "out"}}; }
+    EXPECT_FALSE(std::filesystem::exists(temp / "out"));
+    FolderSink{{.path = temp / "out"}}.close();
+    EXPECT_TRUE(std::filesystem::exists(temp / "out/run.json")) << "a run without frames is a run";
 }
 
 TEST(FolderSink, ARunOfAnEarlierVersionCanBeReplaced) {
@@ -123,8 +157,9 @@ TEST(FolderSink, ARunOfAnEarlierVersionCanBeReplaced) {
     test::write_text(temp / "out/timestamps.csv", "frame,index\n0,0\n1,1\n");
     for (const char* n : {"0", "1"})
         test::write_text(temp / ("out/frames/frame_000000000" + std::string{n} + ".png"), "old");
-    EXPECT_EQ(refusal({.path = temp / "out", .overwrite = true}), "");
-    EXPECT_TRUE(std::filesystem::is_empty(temp / "out/frames"));
+    FolderSink{{.path = temp / "out", .overwrite = true}}.write(
+        test::ramp_frame(8, 8, 0, test::odd_time(0)));
+    EXPECT_EQ(files_in(temp / "out/frames"), 1U);
 }
 
 TEST(FolderSink, NegativeTimesKeepTheirSign) {

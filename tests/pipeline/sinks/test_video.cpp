@@ -1,5 +1,6 @@
 // Videos: every frame with its exact time, in files that survive a killed program.
 #include "pipeline/sinks/video/video.h"
+#include "pipeline/sinks/video/video_kind.h"
 #include "src/core/error.h"
 #include "tests/pipeline/sinks/frames.h"
 #include "tests/system/process.h"
@@ -33,6 +34,12 @@ std::vector<std::int64_t> packet_times(const std::string& file) {
     std::vector<std::int64_t> times;
     for (std::string line; std::getline(lines, line);) times.push_back(std::stoll(line));
     return times;
+}
+
+TEST(Video, IsNamedInSmallOrLargeLetters) {
+    EXPECT_TRUE(names_video("a.mp4"));
+    EXPECT_TRUE(names_video("A.MKV"));
+    EXPECT_FALSE(names_video("a.mp5"));
 }
 
 TEST(VideoSink, KeepsEachFramesTimeToTheMicrosecond) {

@@ -1,6 +1,6 @@
 #include "tests/support/usb/dvs128_model.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "tests/support/usb/dvxplorer_words.h"
 
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // How transfers end: answered by the camera, by a fault, or by the cable.
-#include "src/codec/byte_order.h"
+#include "src/core/byte_order.h"
 #include "tests/support/usb/usb_testbed_parts.h"
 
 #include <algorithm>

@@ -41,7 +41,6 @@ public:
     bool look(const QualityMeasure& now);
 
     const QualityLevel& level() const { return levels_[at_]; }
-    bool is_best() const { return at_ == 0; }
     /// What the level at the last look took, of a thread each.
     NetworkLoad measured() const { return measured_; }
 

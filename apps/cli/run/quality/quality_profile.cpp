@@ -2,6 +2,7 @@
 #include "apps/cli/run/quality/quality_profile.h"
 
 #include "apps/cli/printable.h"
+#include "src/core/arithmetic_words.h"
 #include "src/core/error.h"
 
 #include <nlohmann/json.hpp>
@@ -45,9 +46,11 @@ double milliseconds(const Json& json, const char* name) {
 
 PrecisionCost precision_cost(const Json& json) {
     const Json &name = member(json, "precision"), &engine = member(json, "engine");
-    if (name != "f32" && name != "bf16") refuse("f32 or bf16", name.dump());
+    const auto precision =
+        find_word(name.is_string() ? name.get<std::string>() : "", kPrecisionWords);
+    if (!precision || *precision == Precision::automatic) refuse("f32 or bf16", name.dump());
     if (!engine.is_string()) refuse("the engine's name", engine.dump());
-    return {name == "f32" ? Precision::f32 : Precision::bf16,
+    return {*precision,
             engine.get<std::string>(),
             milliseconds(json, "encode_ms"),
             milliseconds(json, "first_ms"),
@@ -74,7 +77,7 @@ std::string profile_text(const QualityProfile& profile) {
     Json json{{"format", kFormat}, {"version", kVersion}, {"key", json_of(profile.key)}};
     json["costs"] = Json::array();
     for (const PrecisionCost& cost : profile.costs)
-        json["costs"].push_back({{"precision", cost.precision == Precision::f32 ? "f32" : "bf16"},
+        json["costs"].push_back({{"precision", show_word(cost.precision, kPrecisionWords)},
                                  {"engine", cost.engine},
                                  {"encode_ms", cost.encode_ms},
                                  {"first_ms", cost.first_ms},

@@ -60,9 +60,9 @@ bool lost_data(const Snapshot& end) {
 
 std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     const double seconds = progress.elapsed.count();
-    std::string text =
-        text_of("%llu frames from %s events in %.2f s", static_cast<unsigned long long>(end.frames),
-                short_count(double(end.events)).c_str(), seconds);
+    std::string text = text_of(
+        "%llu %s from %s events in %.2f s", static_cast<unsigned long long>(end.frames),
+        end.frames == 1 ? "frame" : "frames", short_count(double(end.events)).c_str(), seconds);
     if (seconds > 0) text += text_of(" (%.1f frames/s)", double(end.frames) / seconds);
     if (progress.in_step) text += "; " + latency_text(end) + " (p50/p99)";
     text += "\n" + losses_text(end);

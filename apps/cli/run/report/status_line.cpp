@@ -14,8 +14,8 @@ namespace {
 
 enum Part : std::size_t { share, speed, left, rate, window, frames, quality, latency, losses };
 // What people watch a run for goes last.
-constexpr std::size_t kGivesWay[]{quality, window,  share,  frames, quality, losses, rate, share,
-                                  speed,   latency, losses, left,   latency, left,   speed};
+constexpr std::size_t kGivesWay[]{quality, window,  share,  frames, quality, rate, losses, share,
+                                  speed,   latency, losses, left,   latency, left, speed};
 
 template <typename... Args>
 std::string text_of(const char* format, Args... args) {
