@@ -108,7 +108,8 @@ TEST(NoiseFilter, KeepsTheMovingEdgeAndLeavesOutTheNoise) {
     Events edge;
     for (int x = 0; x < kSide; ++x)
         for (int y = 0; y < kSide; ++y) edge.push_back(at(1000 * x + y, x, y));
-    EXPECT_GT(filtered({kSide, kSide, constant(10'000)}, edge).size(), edge.size() * .95);
+    EXPECT_GT(double(filtered({kSide, kSide, constant(10'000)}, edge).size()),
+              double(edge.size()) * .95);
 }
 
 TEST(NoiseFilter, LearnsTheNoiseAndChoosesTheTimeByIt) {
@@ -137,8 +138,9 @@ TEST(NoiseFilter, KeepsSlowMotionWhereThereIsNoNoise) {
         std::ranges::sort(column, {}, &Event::t);
         slow.insert(slow.end(), column.begin(), column.end());
     }
-    EXPECT_GT(filtered({kSide, kSide, {}}, slow).size(), slow.size() * .85);
-    EXPECT_LT(filtered({kSide, kSide, constant(10'000)}, slow).size(), slow.size() * .5);
+    EXPECT_GT(double(filtered({kSide, kSide, {}}, slow).size()), double(slow.size()) * .85);
+    EXPECT_LT(double(filtered({kSide, kSide, constant(10'000)}, slow).size()),
+              double(slow.size()) * .5);
 }
 
 TEST(NoiseFilter, LeavesOutTheNoiseOfAStillSceneAndKeepsWhatMovesInIt) {

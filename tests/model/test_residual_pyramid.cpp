@@ -40,7 +40,7 @@ ResidualPyramid observed(const Array2<float>& residual, float trust = 1) {
 }
 
 TEST(ResidualPyramid, HalvingAndDoublingKeepAPlainSurface) {
-    for (const auto [height, width] : {std::pair{1, 1}, {1, 7}, {5, 1}, {8, 8}, {17, 13}}) {
+    for (const auto& [height, width] : {std::pair{1, 1}, {1, 7}, {5, 1}, {8, 8}, {17, 13}}) {
         const Array2<float> plain = constant(height, width, .7F);
         Array2<float> half((height + 1) / 2, (width + 1) / 2), back = constant(height, width, 0);
         halve(plain, half);
@@ -66,7 +66,7 @@ TEST(ResidualPyramid, KnowsNothingBeforeTheFirstObservation) {
 }
 
 TEST(ResidualPyramid, GivesBackWhatWasSeenWhileNothingHappens) {
-    for (const auto [height, width] : {std::pair{1, 1}, {1, 33}, {31, 17}, {96, 120}}) {
+    for (const auto& [height, width] : {std::pair{1, 1}, {1, 33}, {31, 17}, {96, 120}}) {
         const Array2<float> residual = noise(height, width, 1);
         ResidualPyramid pyramid = observed(residual);
         for (int i = 0; i < 1000; ++i) pyramid.forget(constant(height, width, 0));

@@ -1,0 +1,42 @@
+// The mean of several trainings of one network.
+#include "apps/train/mean_of_models.h"
+#include "src/core/error.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide {
+namespace {
+
+ModelConfig tiny() {
+    ModelConfig config;
+    config.widths = {8, 8};
+    config.recurrent = {1, 0};
+    return config;
+}
+
+TEST(MeanOfModels, LiesBetweenThem) {
+    Model one = random_model(tiny(), 1), other = random_model(tiny(), 2);
+    one.config.sigma_scale = 1;
+    other.config.sigma_scale = 2;
+    const Model mean = mean_of({{one, .75}, {other, .25}});
+    EXPECT_FLOAT_EQ(mean.config.sigma_scale, 1.25F);
+    for (const auto& [name, tensor] : mean.weights)
+        for (std::size_t i = 0; i < tensor.values.size(); ++i)
+            ASSERT_NEAR(
+                tensor.values[i],
+                .75 * one.weights.at(name).values[i] + .25 * other.weights.at(name).values[i], 1e-6)
+                << name;
+    EXPECT_EQ(mean_of({{one, .5}, {one, .5}}).weights, one.weights) << "bit for bit";
+}
+
+TEST(MeanOfModels, RefusesOtherShapesAndOtherSums) {
+    ModelConfig wider = tiny();
+    wider.widths = {8, 16};
+    const Model one = random_model(tiny(), 1), other = random_model(wider, 1);
+    EXPECT_THROW(mean_of({{one, .5}, {other, .5}}), Error);
+    EXPECT_THROW(mean_of({{one, .5}, {one, .4}}), Error);
+    EXPECT_THROW(mean_of({}), Error);
+}
+
+}  // namespace
+}  // namespace eventide
