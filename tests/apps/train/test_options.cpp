@@ -1,9 +1,11 @@
 // The command line of eventide-train.
 #include "apps/train/options.h"
 #include "src/core/error.h"
+#include "src/nn/safetensors.h"
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <sstream>
 
 namespace eventide {
@@ -55,11 +57,22 @@ TEST(Options, AWrongWordIsRefusedByName) {
     }
 }
 
-TEST(Options, OlderCheckpointsNamesAreRead) {
-    TrainOptions options;
-    OptionTable{options}.parse({"--lanes", "5", "--pace", "2,3"});
-    EXPECT_EQ(options.streams, 5);
-    EXPECT_EQ(options.data.scene.wander.pace.high, 3);
+/// So that training goes on from them.
+TEST(Options, ThoseOfTheRepositorysCheckpointsAreKnown) {
+    int checkpoints = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator{EVENTIDE_SOURCE_DIR "/config/models/checkpoints"}) {
+        std::istringstream lines{read_safetensors(entry.path()).metadata.at("options")};
+        TrainOptions options;
+        OptionTable table{options};
+        for (std::string line; std::getline(lines, line);) {
+            const auto space = line.find(' ');
+            EXPECT_NO_THROW(table.parse({line.substr(0, space), line.substr(space + 1)}))
+                << entry.path() << ": " << line;
+        }
+        ++checkpoints;
+    }
+    EXPECT_EQ(checkpoints, 3);
 }
 
 }  // namespace
