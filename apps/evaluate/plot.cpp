@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -124,7 +125,35 @@ std::string frame_of(const Plot& plot, const Axes& axes) {
                       "text-anchor='middle' transform='rotate(-90 18 " + number(middle) + ")'");
 }
 
-std::string drawn(const Series& s, const Axes& axes, const std::string& colour) {
+/// Where labels of points stand, so that none lies on another.
+class LabelPlaces {
+public:
+    /// The base line of a label for the point at (x, y): above it, below it, or further away.
+    double place(double x, double y, const std::string& label) {
+        constexpr double kHeightOfLine = 11, kCharacter = 5.8;  // at font size 10
+        Box box{x, x + kCharacter * double(label.size()), 0};
+        for (const double offset :
+             {-5., 13., -5 - kHeightOfLine, 13 + kHeightOfLine, 13 + 2 * kHeightOfLine}) {
+            box.y = y + offset;
+            const bool free = std::ranges::none_of(taken_, [&](const Box& other) {
+                return box.x0 < other.x1 && other.x0 < box.x1 &&
+                       std::abs(box.y - other.y) < kHeightOfLine;
+            });
+            if (free && box.y > kTop + kHeightOfLine) break;
+        }
+        taken_.push_back(box);
+        return box.y;
+    }
+
+private:
+    struct Box {
+        double x0, x1, y;
+    };
+    std::vector<Box> taken_;
+};
+
+std::string drawn(const Series& s, const Axes& axes, const std::string& colour,
+                  LabelPlaces& places) {
     std::string path, above, below, dots;
     for (std::size_t i = 0; i < s.x.size(); ++i) {
         if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
@@ -132,8 +161,9 @@ std::string drawn(const Series& s, const Axes& axes, const std::string& colour) 
         path += x + "," + y + " ";
         dots += "<circle cx='" + x + "' cy='" + y + "' r='2.5' fill='" + colour + "'/>\n";
         if (i < s.labels.size())
-            dots += text(axes.x.at(s.x[i]) + 5, axes.y.at(s.y[i]) - 5, s.labels[i],
-                         "font-size='10' fill='" + colour + "'");
+            dots += text(axes.x.at(s.x[i]) + 5,
+                         places.place(axes.x.at(s.x[i]) + 5, axes.y.at(s.y[i]), s.labels[i]),
+                         s.labels[i], "font-size='10' fill='" + colour + "'");
         if (i >= s.spread.size()) continue;
         above += x + "," + number(axes.y.at(s.y[i] + s.spread[i])) + " ";
         below = x + "," + number(axes.y.at(s.y[i] - s.spread[i])) + " " + below;
@@ -185,8 +215,9 @@ std::string svg(const Plot& plot) {
         out += line(axes.x.at(low), axes.y.at(low), axes.x.at(high), axes.y.at(high),
                     "stroke='#888' stroke-dasharray='5 4'");
     }
+    LabelPlaces places;
     for (std::size_t i = 0; i < plot.series.size(); ++i)
-        out += drawn(plot.series[i], axes, kColours[i % kColours.size()]);
+        out += drawn(plot.series[i], axes, kColours[i % kColours.size()], places);
     return out + legend_of(plot) + "</svg>\n";
 }
 

@@ -61,6 +61,23 @@ TEST(Plot, NamesSeriesBesideTheDrawingAndPointsInIt) {
     EXPECT_LT(x_of("AVX2 alone"), width);
 }
 
+TEST(Plot, NamesOfNearPointsDoNotLieOnEachOther) {
+    const Plot plot{.name = "p",
+                    .series = {{.label = "s",
+                                .x = {1, 1, 1, 2},
+                                .y = {1, 1, 1, 2},
+                                .labels = {"first", "second", "third", "far"},
+                                .joined = false}}};
+    const std::string drawn = svg(plot);
+    const auto y_of = [&](const std::string& word) {
+        const auto end = drawn.find(">" + word + "<");
+        return std::stod(drawn.substr(drawn.rfind("y='", end) + 3));
+    };
+    for (const auto& [one, other] :
+         {std::pair{"first", "second"}, {"second", "third"}, {"first", "third"}})
+        EXPECT_GT(std::abs(y_of(one) - y_of(other)), 10) << one << " and " << other;
+}
+
 TEST(Plot, IsWrittenAsImageAndNumbers) {
     const auto folder = std::filesystem::path{testing::TempDir()} / "eventide_plots";
     const Plot plot{.name = "some", .series = {{"s", {1, 2}, {3, 4}, {}}}};
