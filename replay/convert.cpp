@@ -41,7 +41,8 @@ void add(DataCounts& sum, const DataCounts& more) {
 /// One file of one format.
 class FileTarget final : public ConvertTarget {
 public:
-    FileTarget(const std::string& path, bool overwrite, const Format& format, StreamHeader header)
+    FileTarget(const std::string& path, bool overwrite, const Format& format,
+               const StreamHeader& header)
         : format_{format}, file_{path, overwrite, format, header} {}
     const FormatHolds& holds() const override { return format_.holds; }
     void write(const Batch& batch) override { file_.write(batch); }

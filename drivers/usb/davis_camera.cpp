@@ -50,7 +50,7 @@ const char* chip_name(DavisChip chip) {
 
 }  // namespace
 
-DavisCamera::DavisCamera(DavisOptions options)
+DavisCamera::DavisCamera(const DavisOptions& options)
     : UsbCamera(kind(), options, options.settings.transfers), settings_(options.settings) {
     open();
 }

@@ -25,7 +25,7 @@ public:
     /// Opens and configures. Throws Error (device): no camera, no permission, in use, firmware or
     /// logic that does not fit, a second-generation board, a setting that was not taken; each says
     /// what to do.
-    explicit DavisCamera(DavisOptions options);
+    explicit DavisCamera(const DavisOptions& options);
     ~DavisCamera() override;
 
     std::unique_ptr<Parser> make_parser() const override;

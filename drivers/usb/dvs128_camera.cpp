@@ -60,7 +60,7 @@ Dvs128Settings load_dvs128_settings(const std::filesystem::path& file) {
     return settings;
 }
 
-Dvs128Camera::Dvs128Camera(Dvs128Options options)
+Dvs128Camera::Dvs128Camera(const Dvs128Options& options)
     : UsbCamera(kind(), options, options.settings.transfers), settings_(options.settings) {
     open();
 }

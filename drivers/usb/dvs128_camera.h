@@ -47,7 +47,7 @@ class Dvs128Camera final : public UsbCamera {
 public:
     /// Opens and configures. Throws Error (device): no camera, no permission, in use, firmware that
     /// is too old.
-    explicit Dvs128Camera(Dvs128Options options);
+    explicit Dvs128Camera(const Dvs128Options& options);
     ~Dvs128Camera() override;
 
     std::unique_ptr<Parser> make_parser() const override;

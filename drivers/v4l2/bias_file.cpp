@@ -103,8 +103,8 @@ using Json = nlohmann::json;
 
 /// proto3's JSON may leave out a value of 0.
 Bias bias_of(const Json& each, const std::string& place) {
-    const bool named =
-        each.is_object() && each.contains("name") && each["name"].is_string() && each["name"] != "";
+    const bool named = each.is_object() && each.contains("name") && each["name"].is_string() &&
+                       !each["name"].get_ref<const std::string&>().empty();
     const Json value = each.is_object() ? each.value("value", Json(0)) : Json();
     const bool whole = value.is_number_integer() &&
                        (!value.is_number_unsigned() || value.get<std::uint64_t>() <= INT32_MAX) &&

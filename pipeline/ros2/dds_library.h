@@ -41,6 +41,7 @@ namespace eventide {
 
 /// Each under its own name.
 struct DdsLibrary {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared stands in none.
 #define EVENTIDE_DDS_MEMBER(name) decltype(&::name) name = nullptr;
     EVENTIDE_DDS_FUNCTIONS(EVENTIDE_DDS_MEMBER)
 #undef EVENTIDE_DDS_MEMBER

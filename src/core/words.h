@@ -36,6 +36,7 @@ std::string show_word(const T& value, const std::vector<Word<T>>& words) {
 template <typename T>
 std::vector<std::string> texts_of(const std::vector<Word<T>>& words) {
     std::vector<std::string> texts;
+    texts.reserve(words.size());
     for (const Word<T>& word : words) texts.emplace_back(word.text);
     return texts;
 }
@@ -44,8 +45,10 @@ std::vector<std::string> texts_of(const std::vector<Word<T>>& words) {
 inline std::string alternatives(const std::vector<std::string>& names,
                                 const std::string& quotes = {}) {
     std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + quotes + names[i] + quotes;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+        text.append(quotes).append(names[i]).append(quotes);
+    }
     return text;
 }
 
