@@ -174,14 +174,12 @@ int run_program(Signals& signals, std::vector<std::string> arguments) {
         return int(error.kind());
     } catch (const std::bad_alloc&) {
         return out_of_memory();
-    } catch (const cv::Exception& error) {
-        if (error.code == cv::Error::StsNoMem) return out_of_memory();
-        spdlog::error("{}", error.what());
-        return int(ErrorKind::failed);
     } catch (const std::system_error& error) {
         spdlog::error("{}", system_words(error));
         return int(ErrorKind::failed);
     } catch (const std::exception& error) {
+        const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
+        if (of_opencv != nullptr && of_opencv->code == cv::Error::StsNoMem) return out_of_memory();
         spdlog::error("{}", error.what());
         return int(ErrorKind::failed);
     }

@@ -18,21 +18,23 @@ void check_weights(const std::vector<WeightedModel>& models) {
                     "expected weights that add up to 1, found " + std::to_string(sum));
 }
 
-void check_shapes(const Model& first, const Model& other) {
-    if (expected_tensors(first.config) != expected_tensors(other.config))
-        throw Error(ErrorKind::input, "expected models of one shape, found another one");
+void check_shapes(const std::vector<WeightedModel>& models) {
+    const auto shape = expected_tensors(models.front().model.config);
+    for (const WeightedModel& one : models)
+        if (expected_tensors(one.model.config) != shape)
+            throw Error(ErrorKind::input, "expected models of one shape, found another one");
 }
 
 }  // namespace
 
 Model mean_of(const std::vector<WeightedModel>& models) {
     check_weights(models);
+    check_shapes(models);
     Model mean = models.front().model;
     mean.config.sigma_scale = 0;
     for (auto& [name, tensor] : mean.weights) {
         std::vector<double> sums(tensor.values.size());
         for (const WeightedModel& one : models) {
-            check_shapes(mean, one.model);
             const std::vector<float>& values = one.model.weights.at(name).values;
             for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += one.weight * values[i];
         }

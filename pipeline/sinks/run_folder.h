@@ -45,6 +45,8 @@ public:
     RunFolder(const RunFolder&) = delete;
     RunFolder& operator=(const RunFolder&) = delete;
 
+    const std::filesystem::path& path() const { return folder_; }
+
     /// The first thing is about to be written: an earlier run's files go. Throws Error (failed).
     void begin();
     /// An earlier run is still there, whole.

@@ -6,6 +6,7 @@
 #include "replay/table_reader.h"
 #include "src/codec/text/text_layout.h"
 #include "src/core/error.h"
+#include "src/core/lower_case.h"
 
 #include <algorithm>
 #include <array>
@@ -20,8 +21,8 @@ namespace {
 constexpr std::array<std::string_view, 4> kFields{"t", "x", "y", "p"};  // as TextField
 
 /// What a column may be called, besides what header rows of text are.
-std::string canonical(std::string name) {
-    for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
+std::string canonical(std::string_view column) {
+    std::string name = lower_case(column);
     if (name == "xs") return "x";
     if (name == "ys") return "y";
     if (name == "ps" || name == "pol" || name == "polarity" || name == "polarities" || name == "on")

@@ -21,20 +21,22 @@ constexpr T reverse_bytes(T value) {
 }
 
 /// sizeof(T) bytes must be readable at p.
-template <typename T>
-T load_little(const std::byte* p) {
+template <std::endian order, typename T>
+T load(const std::byte* p) {
     T value;
     std::memcpy(&value, p, sizeof value);
-    if constexpr (std::endian::native == std::endian::big) value = reverse_bytes(value);
+    if constexpr (std::endian::native != order) value = reverse_bytes(value);
     return value;
 }
 
 template <typename T>
+T load_little(const std::byte* p) {
+    return load<std::endian::little, T>(p);
+}
+
+template <typename T>
 T load_big(const std::byte* p) {
-    T value;
-    std::memcpy(&value, p, sizeof value);
-    if constexpr (std::endian::native == std::endian::little) value = reverse_bytes(value);
-    return value;
+    return load<std::endian::big, T>(p);
 }
 
 inline float load_little_float(const std::byte* p) {

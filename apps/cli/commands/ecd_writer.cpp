@@ -20,17 +20,17 @@ RunFolderFiles EcdWriter::files() {
 }
 
 EcdWriter::EcdWriter(const fs::path& folder, bool overwrite, int width, int height)
-    : width_{width}, height_{height}, path_{folder}, folder_{folder, overwrite, files()} {}
+    : width_{width}, height_{height}, folder_{folder, overwrite, files()} {}
 
 void EcdWriter::begin() {
     if (events_) return;
     folder_.begin();
-    list_.emplace(path_ / "images.txt", OutputOptions{.appears = Appears::growing});
+    list_.emplace(folder_.path() / "images.txt", OutputOptions{.appears = Appears::growing});
     StreamHeader header;
     header.format = "text";
     header.width = width_;
     header.height = height_;
-    events_ = std::make_unique<RecordingFile>((path_ / "events.txt").string(), false,
+    events_ = std::make_unique<RecordingFile>((folder_.path() / "events.txt").string(), false,
                                               open_writer("text"), header);
 }
 

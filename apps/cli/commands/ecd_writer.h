@@ -39,7 +39,6 @@ private:
 
     int width_, height_;  // of the sensor
     std::uint64_t image_bytes_ = 0;
-    std::filesystem::path path_;
     RunFolder folder_;
     std::unique_ptr<RecordingFile> events_;  // both from the first event or image on
     std::optional<OutputFile> list_;

@@ -42,7 +42,6 @@ std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool ove
 }
 
 std::string lost_datagrams(std::uint64_t lost) {
-    if (lost == 0) return {};
     return std::to_string(lost) + (lost == 1 ? " datagram" : " datagrams") + " that nobody took";
 }
 

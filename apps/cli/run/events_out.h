@@ -20,7 +20,7 @@ std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool ove
 /// The file or folder in it; empty for what is none.
 std::string file_of_event_target(const std::string& to);
 
-/// "3 datagrams that nobody took"; empty for none.
+/// "3 datagrams that nobody took"
 std::string lost_datagrams(std::uint64_t lost);
 
 /// The last of the filters. Bin thread; it holds up the pipeline for as long as writing takes.

@@ -2,6 +2,7 @@
 
 #include "pipeline/sinks/http/http_address.h"
 #include "src/core/error.h"
+#include "src/core/lower_case.h"
 
 #include <sys/random.h>
 
@@ -12,13 +13,6 @@ namespace eventide {
 
 namespace {
 
-std::string lower(std::string_view text) {
-    std::string out{text};
-    for (char& c : out)
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-    return out;
-}
-
 bool is_port(std::string_view text) {
     return !text.empty() && text.size() <= 5 &&
            std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
@@ -27,18 +21,18 @@ bool is_port(std::string_view text) {
 bool is_ours(const std::string& name, const std::vector<std::string>& names) {
     return !name.empty() && (name == "localhost" || is_ip_address(name) ||
                              std::ranges::any_of(names, [&](const std::string& known) {
-                                 return lower(known) == name;
+                                 return lower_case(known) == name;
                              }));
 }
 
 /// A proxy may speak HTTPS to the browser and HTTP to us.
 bool is_same_origin(const std::string& origin, const std::string& host) {
-    const std::string given = lower(origin), own = lower(host);
+    const std::string given = lower_case(origin), own = lower_case(host);
     return given == "http://" + own || given == "https://" + own;
 }
 
 bool is_json(std::string_view content_type) {
-    const std::string type = lower(content_type.substr(0, content_type.find(';')));
+    const std::string type = lower_case(content_type.substr(0, content_type.find(';')));
     const auto end = type.find_last_not_of(" \t");
     return end != type.npos && type.substr(0, end + 1) == "application/json";
 }
@@ -54,14 +48,14 @@ bool equal(std::string_view a, std::string_view b) {
 bool has_token(const RequestHead& request, const std::string& token) {
     constexpr std::string_view kBearer = "bearer ";
     const std::string& given = request.authorization;
-    if (given.size() > kBearer.size() && lower(given.substr(0, kBearer.size())) == kBearer &&
+    if (given.size() > kBearer.size() && lower_case(given.substr(0, kBearer.size())) == kBearer &&
         equal(std::string_view{given}.substr(kBearer.size()), token))
         return true;
     return equal(request.token, token);
 }
 
 bool is_of_another_site(const RequestHead& request) {
-    const std::string site = lower(request.fetch_site);
+    const std::string site = lower_case(request.fetch_site);
     if (site.empty() || site == "same-origin" || site == "none") return false;
     // A link to the page itself does no harm, wherever it stands.
     return request.method == "POST" || request.path != "/";
@@ -75,12 +69,12 @@ std::string host_name(std::string_view host) {
         if (end == host.npos) return {};
         const std::string_view rest = host.substr(end + 1);
         if (!rest.empty() && !(rest.front() == ':' && is_port(rest.substr(1)))) return {};
-        std::string name = lower(host.substr(1, end - 1));
+        std::string name = lower_case(host.substr(1, end - 1));
         return name.find(':') != name.npos && is_ip_address(name) ? name : "";
     }
     const std::size_t colon = host.find(':');
     if (colon != host.npos && !is_port(host.substr(colon + 1))) return {};
-    return lower(host.substr(0, colon));
+    return lower_case(host.substr(0, colon));
 }
 
 std::optional<Refusal> judge(const RequestHead& request, const GuardSettings& settings) {

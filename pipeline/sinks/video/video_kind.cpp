@@ -2,6 +2,7 @@
 #include "pipeline/sinks/video/video_kind.h"
 
 #include "src/core/error.h"
+#include "src/core/lower_case.h"
 
 #include <algorithm>
 #include <string>
@@ -19,10 +20,8 @@ constexpr VideoKind kKinds[]{{".mp4", "libx264", "yuv420p", false, 1'000'000, 1e
                              {".gif", "gif", "gray", true, 100, 50, false}};
 
 const VideoKind* find(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-    const auto found = std::ranges::find(kKinds, extension, &VideoKind::extension);
+    const auto found =
+        std::ranges::find(kKinds, lower_case(path.extension().string()), &VideoKind::extension);
     return found == std::end(kKinds) ? nullptr : found;
 }
 

@@ -4,10 +4,10 @@
 #include "src/codec/aedat/aedat_header.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
+#include "src/core/lower_case.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 
 namespace eventide {
@@ -32,8 +32,7 @@ constexpr std::array kChips{
 };
 
 const Chip* find_chip(std::string_view named) {
-    std::string lower;
-    for (const char c : named) lower += char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string lower = lower_case(named);
     for (const Chip& chip : kChips)
         if (lower.find(chip.name) != lower.npos) return &chip;
     return nullptr;

@@ -4,6 +4,7 @@
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
 #include "src/core/error.h"
+#include "src/core/lower_case.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
@@ -89,9 +90,8 @@ struct ColumnName {
 
 /// What a header row calls a column: "t", "time", "timestamp_us", "t[s]", "x", "pol", ...
 ColumnName column_named(std::string_view title) {
-    std::string name;
-    for (const char c : title)
-        if (c != '"' && c != '\'') name += char(std::tolower(static_cast<unsigned char>(c)));
+    std::string name = lower_case(title);
+    std::erase_if(name, [](char c) { return c == '"' || c == '\''; });
     if (name == "x") return {TextField::x, {}};
     if (name == "y") return {TextField::y, {}};
     if (name == "p" || name == "pol" || name == "polarity" || name == "on")
