@@ -1,27 +1,17 @@
-// What every function of the C interface does around its work.
-#include "library/c_call.h"
-
+// The version and the last error of this thread, for both libraries.
+#include <eventide/eventide.h>
 #include <eventide/version.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <string_view>
 
-namespace eventide {
 namespace {
 
 thread_local std::array<char, 1024> last_message{};
 
 }  // namespace
-
-eventide_status failed(eventide_status status, const char* message) noexcept {
-    const std::size_t length = std::min(std::strlen(message), last_message.size() - 1);
-    std::memcpy(last_message.data(), message, length);
-    last_message[length] = '\0';
-    return status;
-}
-
-}  // namespace eventide
 
 extern "C" {
 
@@ -30,6 +20,15 @@ const char* eventide_version(void) {
 }
 
 const char* eventide_error_message(void) {
-    return eventide::last_message.data();
+    return last_message.data();
+}
+
+eventide_status eventide_set_error(eventide_status status, const char* message) {
+    const std::string_view text = message == nullptr ? "" : message;
+    const std::size_t length = std::min(text.size(), last_message.size() - 1);
+    // The message may be the kept one, or a part of it.
+    std::memmove(last_message.data(), text.data(), length);
+    last_message[length] = '\0';
+    return status;
 }
 }

@@ -13,23 +13,19 @@
 
 namespace eventide {
 
-/// Keeps the words for eventide_error_message(). Thread: its own. Shown to libeventide.so alone
-/// (exported_frames.map), so that the words of both libraries are kept in one place.
-EVENTIDE_API eventide_status failed(eventide_status status, const char* message) noexcept;
-
 /// Runs `body`, which returns a status; what it throws becomes one.
 template <typename Body>
 eventide_status c_call(Body body) noexcept {
     try {
         return body();
     } catch (const Error& error) {
-        return failed(eventide_status(error.kind()), error.what());
+        return eventide_set_error(eventide_status(error.kind()), error.what());
     } catch (const std::bad_alloc&) {
-        return failed(EVENTIDE_FAILED, "expected enough memory, found too little");
+        return eventide_set_error(EVENTIDE_FAILED, "expected enough memory, found too little");
     } catch (const std::exception& error) {
-        return failed(EVENTIDE_FAILED, error.what());
+        return eventide_set_error(EVENTIDE_FAILED, error.what());
     } catch (...) {
-        return failed(EVENTIDE_FAILED, "unknown error");
+        return eventide_set_error(EVENTIDE_FAILED, "unknown error");
     }
 }
 

@@ -36,6 +36,10 @@ EVENTIDE_API const char* eventide_version(void);
  * failure on this thread. */
 EVENTIDE_API const char* eventide_error_message(void);
 
+/** Sets what eventide_error_message() says on this thread, cut after 1023 bytes, and returns
+ * `status`. For code around these functions, as a binding, that reports its own failures so. */
+EVENTIDE_API eventide_status eventide_set_error(eventide_status status, const char* message);
+
 /** One change of brightness at one pixel. */
 typedef struct eventide_event {
     int64_t t;  /**< us */

@@ -182,6 +182,18 @@ TEST_F(CInterface, OfOlderHeadersHasTheDefaultsOfWhatTheyLack) {
     EXPECT_EQ(open_with(options), EVENTIDE_OK) << eventide_error_message();
 }
 
+TEST_F(CInterface, KeepsTheErrorsOfCodeAroundIt) {
+    EXPECT_EQ(eventide_set_error(EVENTIDE_DEVICE, "lens: expected one, found none"),
+              EVENTIDE_DEVICE);
+    EXPECT_STREQ(eventide_error_message(), "lens: expected one, found none");
+    eventide_set_error(EVENTIDE_INPUT, eventide_error_message() + 6);
+    EXPECT_STREQ(eventide_error_message(), "expected one, found none") << "a part of itself";
+    eventide_set_error(EVENTIDE_FAILED, std::string(5000, 'x').c_str());
+    EXPECT_EQ(eventide_error_message(), std::string(1023, 'x'));
+    EXPECT_EQ(eventide_set_error(EVENTIDE_OK, nullptr), EVENTIDE_OK);
+    EXPECT_STREQ(eventide_error_message(), "");
+}
+
 TEST_F(CInterface, RefusesANoiseFilterThatIsNone) {
     eventide_options options = repeatable_options();
     options.noise_filter = "a lot";
