@@ -106,7 +106,7 @@ void ResidualPyramid::observe(const Array2<float>& residual, const Array2<float>
         for (std::size_t i = 0; i < band.known.values().size(); ++i) {
             const float sure = band.left.values()[i];
             // u <- trust + (1 - trust) u rho: rho by the events since the image before, which are
-            // replaced only now.
+            // replaced after this.
             band.known.values()[i] = sure + (1 - sure) * band.known.values()[i] * band.rho(i);
         }
         k == 0 ? copy(events, band.events) : halve(bands_[k - 1].events, band.events);
