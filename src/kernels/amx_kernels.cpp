@@ -30,6 +30,12 @@ using namespace amx;
 constexpr int kSumTiles = 4;
 
 /// Pairs of a stretch that go into one product: the same for all of a layer.
+/// At most 16, and a divisor of every stretch's length:
+///
+///     channels of a 3x3 layer    8     16        21        24        64
+///     pairs of a stretch         12    24        33        36        96
+///     pairs of a product         12    12        11        12        16
+///     products of a stretch      1     2         3         3         6
 int pairs_of(const DotArea& r) {
     int common = 0;
     for (int s = 0; s < r.count; ++s) common = std::gcd(common, r.stretches[s].length);
@@ -73,6 +79,7 @@ EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
     alignas(64) float sums[kTileRows * kTileOutputs];
     store_tile<kTile>(sums, kTileOutputs * sizeof(float));
     const __m512 floor = _mm512_set1_ps(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
+    // An odd number of outputs as bf16: the sum beside the last is of zeros alone, as it should be.
     const int stored = r.to_bf16 ? (r.outputs + 1) / 2 * 2 : r.outputs;
     const auto mask =
         __mmask16(stored - first >= kTileOutputs ? 0xffffU : (1U << unsigned(stored - first)) - 1U);
@@ -91,6 +98,22 @@ EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
 }
 
 /// kRuns runs of pixels x one or two vectors of outputs from `first` on.
+/// C += A B in the tile registers:
+///
+///     two vectors of outputs (kTwo)             one vector
+///                  B in 6    B in 7                          B in 6
+///     A in 4       C 0       C 1                A in 4       C 0        runs 0 and 2 take turns
+///     A in 5       C 2       C 3                A in 5       C 1        in 4, runs 1 and 3 in 5
+///                                               A in 4       C 2
+///                                               A in 5       C 3
+///
+/// Rows of A overlap in memory. Of a 3x3 layer of 16 channels, 8 pairs a pixel, products of 12:
+///
+///     stretch    pixel 0: 0 .. 7    pixel 1: 8 .. 15    pixel 2: 16 .. 23    pixel 3: 24 .. 31
+///     k = 0      row 0: 0 .. 11     row 1: 8 .. 19      row 2: 16 .. 27      ...
+///     k = 12     row 0: 12 .. 23    row 1: 20 .. 31     row 2: 28 .. 39      ...
+///
+/// B is 12 rows of the packed weights, one for each pair, 16 units of the 16 or 32 that lie there.
 template <int kRuns, bool kTwo>
 EVENTIDE_AMX void dot_runs(const Work& work, const Run* runs, const std::uint32_t* weight,
                            int first) {
@@ -150,6 +173,8 @@ EVENTIDE_AMX void dot_outputs(const Work& work, const std::uint32_t* weight, int
     int n = 0;
     for (int y = 0; y < r.height; ++y)
         for (int x = 0; x < r.width; x += work.pixels) {
+            // Of 17 pixels in runs of 9: from 0 and from 8; pixel 8 is written twice, with the same
+            // bits.
             runs[n++] = {y, std::min(x, r.width - work.pixels)};
             if (n < kMax) continue;
             dot_runs<kMax, kTwo>(work, runs, weight, first);
@@ -170,6 +195,7 @@ EVENTIDE_AMX void dot_area(const DotArea& r) {
         avx512_bf16::bf16_kernels().dot_area(r);
         return;
     }
+    // As few runs as 16 rows allow, of one length, since tiles have one shape for all of the area.
     const int parts = (r.width + kTileRows - 1) / kTileRows;
     const Work work{r, (r.width + parts - 1) / parts, pairs};
     const TileShapes shapes{work.pixels, pairs};

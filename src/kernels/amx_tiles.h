@@ -15,6 +15,13 @@ namespace eventide::amx {
 constexpr int kTileRows = 16, kTileOutputs = 16;
 
 /// What the tile registers hold, as the processor wants to be told.
+/// One shape for all of an area:
+///
+///     byte    0          1        2 to 15     16 to 47                 48 to 63
+///             palette    start    reserved    bytes of a row, 8 x 2    rows, 8 x 1
+///
+/// C has `pixels` rows of 16 float32 sums, A `pixels` rows of `pairs` units, B `pairs` rows of 16
+/// units. A register has 16 rows of 64 bytes, hence at most 16 pixels and 16 pairs.
 struct alignas(64) TileShapes {
     std::uint8_t palette = 1, start = 0, reserved[14] = {};
     std::uint16_t row_bytes[16] = {};

@@ -53,6 +53,7 @@ struct Wide {
                                  (__m256i)_mm512_cvtneps_pbh(_mm512_max_ps(v, floor)));
     }
 };
+/// For layers of at most 8 outputs (bf16_lanes()), which half a register holds.
 struct Narrow {
     static constexpr int kLanes = 8;
     using Sum = __m256;
@@ -116,6 +117,7 @@ struct Sums<Vector, 0, kTwo> {
     EVENTIDE_BF16_INLINE void store(Number*, std::ptrdiff_t, int, Sum) const {}
 };
 
+/// One unit: a pair of each of P pixels times that pair's weights for all outputs of the block.
 template <class Vector, int P, bool kTwo>
 EVENTIDE_BF16_INLINE void add_pair(Sums<Vector, P, kTwo>& sums, const std::uint32_t* from,
                                    std::ptrdiff_t step, const std::uint32_t* weight) {
@@ -148,6 +150,8 @@ EVENTIDE_BF16 void dot_block(const DotArea& r, const std::uint32_t* weight, int 
     }
     const auto floor = Vector::all(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
     const std::ptrdiff_t to = y * r.out_pitch + x * r.out_step;
+    // As bf16 an even number of outputs is stored. The one past an odd last has weights and bias of
+    // zero (PackedWeights), so its sum is the zero that belongs there.
     if (r.to_bf16)
         sums.store(static_cast<std::uint16_t*>(r.out) + 2 * to + first, 2 * r.out_step,
                    (r.outputs + 1) / 2 * 2 - first, floor);
@@ -198,6 +202,7 @@ EVENTIDE_BF16_INLINE __m512 widened(const std::uint16_t* from, __mmask16 mask) {
 }
 
 /// Sample by sample, for the two pixels it is left of: the one on it, and the one before the next.
+/// See double_channels() in vector_maps-inl.h; numbers are rounded once, when they are stored.
 EVENTIDE_BF16 void double_row(const DoubleRow& r) {
     const auto *above = static_cast<const std::uint16_t*>(r.above),
                *under = static_cast<const std::uint16_t*>(r.under);
@@ -225,6 +230,8 @@ EVENTIDE_BF16 void double_row(const DoubleRow& r) {
     }
 }
 
+/// `step`: numbers of a pixel with the zero beside an odd last, which is stored, too (`stored`):
+/// there `mask` has loaded zeros.
 EVENTIDE_BF16 void offset_rows(const OffsetRows& r) {
     const std::ptrdiff_t width = r.width, step = (width + 1) / 2 * 2;
     constexpr std::ptrdiff_t kLine = 64 / sizeof(std::uint16_t);

@@ -11,6 +11,12 @@
 
 namespace eventide {
 
+/// A pair is a unit of 4 bytes: the even channel's number in its low half, the next channel's in
+/// its high half. A pixel of 5 channels, and the product of two pairs:
+///
+///     unit        0            1            2
+///     channels    c0 | c1      c2 | c3      c4 | 0
+///     sum <- sum + low(in) low(weight) + high(in) high(weight)
 struct Bf16Kernels {
     const char* name;       ///< of the instruction set
     bool by_quads = false;  ///< as VectorKernels::by_quads

@@ -18,6 +18,12 @@ namespace {
 
 constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMaxNumbers = 32;
 
+/// What 32 pixels pass through, 6 KiB:
+///
+///     numbers    rows 0 to 15: A of run 0, rows 16 to 31: A of run 1; a row is one pixel's 32
+///                numbers, 64 bytes, with zeros past the layer's width
+///     sums       [0] run 0, outputs 0 to 15     [1] run 0, outputs 16 to 31
+///                [2] run 1, outputs 0 to 15     [3] run 1, outputs 16 to 31
 struct Room {
     alignas(64) std::uint16_t numbers[kBoth][kMaxNumbers] = {};
     alignas(64) float sums[4][kRun][kTileOutputs];  // of 16 pixels: outputs 0-15, 16-31
@@ -51,6 +57,8 @@ struct Half {
     }
 };
 
+/// relu(sums + base + dx slope) of `count` pixels as bf16, one row of `numbers` each: outputs 0 to
+/// 15 in the row's low half, 16 to 31 in its high half.
 EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Half& low, const Half& high,
                                        int first, int count, Room& room) {
     for (int p = 0; p < count; ++p) {
@@ -103,6 +111,8 @@ EVENTIDE_AMX_INLINE PairOfSums sums_of(const LastLayer& last, const float (*low)
     }
 }
 
+/// mu and log sigma of a run, in 16 lanes: relu(sums) . last weights, the lanes of each pixel added
+/// up, plus the bias. Only the first `count` are pixels of the frame.
 EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int run, int first,
                               int count, const Room& room) {
     const PairOfSums sums = sums_of<kRun>(last, room.sums[2 * run], room.sums[2 * run + 1], 0);
@@ -113,6 +123,11 @@ EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int ru
                           _mm512_add_ps(sums.second, _mm512_set1_ps(r.last_bias[1])));
 }
 
+/// sums = bias + numbers x hidden weights:
+///
+///                           B in 6: outputs 0 to 15    B in 7: outputs 16 to 31
+///     A in 4: run 0         C 0                        C 1
+///     A in 5: run 1         C 2                        C 3
 EVENTIDE_AMX_INLINE void multiply_tiles(const HiddenRows& r, Room& room) {
     constexpr std::ptrdiff_t kRow = sizeof(room.numbers[0]), kSums = sizeof(room.sums[0][0]);
     load_tile<0>(r.bias, 0);
@@ -133,6 +148,7 @@ EVENTIDE_AMX_INLINE void multiply_tiles(const HiddenRows& r, Room& room) {
 
 /// The same by vectors: eight pixels x 2 x 16 sums at a time.
 EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
+    // 8 x 2 sums, 2 weights and a pair: 19 of 32 registers.
     constexpr int kPixels = 8;
     const auto* weight = static_cast<const std::uint32_t*>(r.weight);
     for (int first = 0; first < kBoth; first += kPixels) {
@@ -160,6 +176,8 @@ EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
     }
 }
 
+/// The hidden layer's weights, which stay in tiles 6 and 7 for all pixels: one product takes the
+/// whole width, of at most 16 pairs.
 EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
     const TileShapes shapes{kRun, r.offset.width / 2};
     _tile_loadconfig(&shapes);
@@ -171,6 +189,7 @@ EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
 template <bool kTiles>
 EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
     const OffsetRows& offset = r.offset;
+    // One row of A holds a pixel's numbers, in pairs; two tiles of sums its 17 to 32 outputs.
     if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMaxNumbers ||
         r.outputs <= kTileOutputs || r.outputs > 2 * kTileOutputs)
         return false;
@@ -179,6 +198,7 @@ EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
     const LastLayer last{r};
     Room room;
     for (int first = 0; first < offset.pixels; first += kBoth) {
+        // Rows past the last pixel hold what was there before; their sums are not stored.
         const int count = std::min(kBoth, offset.pixels - first);
         offset_pixels(offset, low, high, first, count, room);
         kTiles ? multiply_tiles(r, room) : multiply_vectors(r, room);

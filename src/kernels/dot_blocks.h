@@ -22,8 +22,10 @@ void dot_in_blocks(const DotArea& r, int lanes, const std::array<Block, kMaxOfOn
     for (int s = 0; s < r.count; ++s) length += r.stretches[s].length;
     const auto* weight = static_cast<const Number*>(r.weight);
     for (int first = 0; first < r.outputs;) {
+        // Of 40 outputs and 16 lanes: two vectors from 0 on, then one from 32 on.
         const bool is_two = r.outputs - first > lanes;
         const Block* blocks = is_two ? two.data() : one.data();
+        // Of 40 pixels in blocks of at most 14: 3 parts, size 13, 1 larger: 14 + 13 + 13.
         const int most = int(is_two ? kMaxOfTwo : kMaxOfOne), parts = (r.width + most - 1) / most;
         const int size = parts > 0 ? r.width / parts : 0, larger = r.width - size * parts;
         for (int y = 0; y < r.height; ++y)
@@ -32,6 +34,8 @@ void dot_in_blocks(const DotArea& r, int lanes, const std::array<Block, kMaxOfOn
                 blocks[pixels - 1](r, weight, y, x, first);
                 x += pixels;
             }
+        // All blocks of pixels read the same length x width weights; behind them lie those of the
+        // next outputs.
         const int width = is_two ? 2 * lanes : lanes;
         weight += length * width;
         first += width;

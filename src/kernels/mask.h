@@ -42,6 +42,7 @@ inline void join_bytes(const std::uint8_t* from, std::uint8_t* to, int n, bool b
 
 /// Calls step(shift) so that what joined with itself, shifted so, again and again reaches `radius`
 /// further.
+/// Radius 12: shifts of 1, 2, 4 and 5 cover 2, 4, 8 and 13 pixels, itself included.
 template <typename Step>
 void reach(int radius, Step step) {
     for (int covered = 1; covered < radius + 1;) {
@@ -54,6 +55,11 @@ void reach(int radius, Step step) {
 /// out = 1 where `in` has a 1 within the (2 radius + 1)^2 square around the pixel. `scratch` has
 /// the size of `in`; `out` may be `in`. First rows, then columns: one copy reaches to the right
 /// (down), one to the left (up), doubling with each step.
+///
+///     in           0 0 0 0 1 0 0 0 0
+///     right        0 0 0 0 1 1 1 0 0      radius 2
+///     left         0 0 1 1 1 0 0 0 0
+///     both         0 0 1 1 1 1 1 0 0
 inline void dilate(const Mask& in, int radius, Mask& scratch, Mask& out) {
     const int height = in.height(), width = in.width();
     for (int y = 0; y < height; ++y) {
@@ -77,6 +83,7 @@ inline void dilate(const Mask& in, int radius, Mask& scratch, Mask& out) {
     join_bytes(scratch.values().data(), out.values().data(), int(out.values().size()), false);
 }
 
+/// out[y][x] = max of in[2 y - 1 .. 2 y + 1][2 x - 1 .. 2 x + 1], as far as they are there. That is
 /// m_{l+1}: the 3x3 maximum at every second pixel. `out` has half the size of `in`, rounded up.
 inline void halve(const Mask& in, Mask& out) {
     for (int y = 0; y < out.height(); ++y) {

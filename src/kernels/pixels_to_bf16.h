@@ -6,6 +6,8 @@
 
 namespace eventide {
 
+/// [pixels][channels] to [pixels][(channels + 1) / 2] pairs. An even number of channels leaves no
+/// gap, so all pixels are one row.
 template <typename RowToBf16>
 void convert_pixels(RowToBf16 row_to_bf16, const float* in, std::size_t pixels, int channels,
                     std::uint32_t* out) {

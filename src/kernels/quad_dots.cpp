@@ -54,6 +54,13 @@ EVENTIDE_QUADS_INLINE __m128i quad(const std::uint32_t* from) {
     return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
 }
 
+/// The four quads of a register, of pixels of two quads each (8 units, InTwos):
+///
+///     in memory     p0 q0 | p0 q1 | p1 q0 | p1 q1      behind them p2 q0 | p2 q1 | p3 q0 | ...
+///     k = 0         p0 q0 | p1 q0 | p2 q0 | p3 q0
+///     k = 4         p0 q1 | p1 q1 | p2 q1 | p3 q1      from the same two loads
+///     k = 8         p1 q0 | p2 q0 | p3 q0 | p4 q0      a stretch goes on with the next pixel
+///
 /// Quad `k / 4` of each of four pixels that are `step` units apart.
 struct Beside {  // 4 units
     EVENTIDE_QUADS_INLINE static __m512i load(const std::uint32_t* from, std::ptrdiff_t, int k) {
@@ -69,6 +76,7 @@ struct InTwos {  // 8 units; of an odd quad the one before is read, too, so that
         return _mm512_permutex2var_epi64(whole(at), is_odd ? odd : even, whole(at + 16));
     }
 };
+// Any step: a load for each pixel.
 struct Apart {
     EVENTIDE_QUADS_INLINE static __m512i load(const std::uint32_t* from, std::ptrdiff_t step,
                                               int k) {
@@ -82,6 +90,13 @@ struct Apart {
 };
 
 /// kGroups x 4 pixels x kQuads x 4 outputs.
+/// Of 8 outputs (2 quads) and 8 groups 16 sums, 8 quads of input, 2 of weights and 1 unit that is
+/// spread take 27 of 32 registers; of 16 outputs and 5 groups 20 + 5 + 4 + 1 = 30.
+///
+///     weights       unit 0: w0 .. w3 | w4 .. w7    unit 1: w0 .. w3 | w4 .. w7    8 outputs
+///     sums[g][o]    outputs 4 o to 4 o + 3 of pixels 4 g to 4 g + 3
+///
+/// Each sum is added up unit by unit, as in dot_block() of vector_dots-inl.h, to the same bits.
 template <class Number, int kGroups, int kQuads>
 struct Block {
     __m512 sums[kGroups][kQuads];
@@ -125,7 +140,12 @@ struct Block {
     }
 };
 
-/// Four registers of a quad of outputs each, to one for each pixel.
+/// Four registers of a quad of outputs (q) each, to one for each pixel.
+///
+///     v[0]  p0 q0 | p1 q0 | p2 q0 | p3 q0        a  p0 q0 | p1 q0 | p0 q1 | p1 q1
+///     v[1]  p0 q1 | p1 q1 | p2 q1 | p3 q1        b  p2 q0 | p3 q0 | p2 q1 | p3 q1
+///     v[2]  p0 q2 | ...                          c, d: the same of q2 and q3
+///     v[3]  p0 q3 | ...                     ->   v[0]  p0 q0 | p0 q1 | p0 q2 | p0 q3, ...
 EVENTIDE_QUADS_INLINE void by_pixels(__m512 (&v)[4]) {
     const __m512 a = _mm512_shuffle_f32x4(v[0], v[1], 0x44),
                  b = _mm512_shuffle_f32x4(v[0], v[1], 0xee),
@@ -148,6 +168,7 @@ EVENTIDE_QUADS_INLINE void store(const DotArea& r, std::ptrdiff_t at, __m512 (&v
     for (int p = 0; p < 4; ++p) _mm512_storeu_ps(out + 16 * p, v[p]);
 }
 EVENTIDE_QUADS_INLINE void store(const DotArea& r, std::ptrdiff_t at, __m512 (&v)[2]) {
+    // 8 outputs: p0 q0 | p0 q1 | p1 q0 | p1 q1, then the same of p2 and p3.
     const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
                   high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
     const auto a = (__m512)_mm512_permutex2var_epi64((__m512i)v[0], low, (__m512i)v[1]),
@@ -196,6 +217,7 @@ constexpr std::array<Dot, sizeof...(kGroups)> dots(std::integer_sequence<int, kG
 template <class Number, int kQuads, int kMax>
 void dot_rows(const DotArea& r) {
     static constexpr auto kDots = dots<Number, kQuads>(std::make_integer_sequence<int, kMax>{});
+    // Of 10 pixels: groups from 0, 4 and 6 (back 2); pixels 6 and 7 are written twice, the same.
     const int groups = (r.width + 3) / 4, parts = (groups + kMax - 1) / kMax;
     for (int y = 0; y < r.height; ++y)
         for (int part = 0; part < parts; ++part) {

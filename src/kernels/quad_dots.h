@@ -26,6 +26,11 @@ void dot_quads_bf16(const DotArea& area);
 
 /// Pixels of a map in several, `size` channels in each and zeros beyond the last, so that layers
 /// read quads where they lie.
+///
+///     in       c0 .. c20 | c0 .. c20 | ...        21 channels
+///     map 0    c0 .. c7  | c0 .. c7  | ...        maps of 8; one starts `plane` after the other
+///     map 1    c8 .. c15 | c8 .. c15 | ...
+///     map 2    c16 .. c20 0 0 0 | ...
 struct SplitRow {
     const float* in = nullptr;  ///< [pixels][channels], channels <= size maps
     int pixels = 0, channels = 0, size = 0, maps = 0;

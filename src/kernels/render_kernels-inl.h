@@ -113,6 +113,7 @@ void weigh_rows(const WeighRows& r) {
     const D d;
     const auto n = std::size_t(r.pixels);
     const V weight = hn::Set(d, r.weight), least = hn::Set(d, r.least), most = hn::Set(d, r.most);
+    // The squares first: they read mu and log sigma, which the two lines below overwrite.
     if (r.square != nullptr)
         map(WeighedSquare{weight, least, most}, n, r.square, r.log_sigma, r.share, r.mu, r.mu);
     map(Weighed{weight}, n, r.mu, r.mu, r.share, r.share, r.share);

@@ -8,6 +8,7 @@ namespace eventide {
 /// The first layer of the renderer's network, where its convolution is known:
 /// out[p][n] = max(0, sums[column[p] width + n] + base[n] + dx[p] slope[n])
 /// `sums` and `out` are of the numbers that layers read, pixels one after the other.
+/// base, slope: [width]. As `ahead` the renderer gives the way to the sample below.
 struct OffsetRows {
     const void* sums = nullptr;
     std::ptrdiff_t ahead = 0;     ///< units from here to sums wanted soon; 0: none
@@ -30,6 +31,10 @@ struct TwoOutputs {
 };
 
 /// The first layer's offsets, one hidden layer and the last of two outputs at once.
+///
+///     relu(sums[column[p]] + base + dx[p] slope)      pixels x offset.width
+///     relu(hidden weights . that + bias)              pixels x outputs
+///     last weights . that + last bias                 pixels x 2: mu, log_sigma
 struct HiddenRows {
     OffsetRows offset;             ///< `out` is not used
     const void* weight = nullptr;  ///< of the hidden layer, as dot_area reads them

@@ -25,6 +25,16 @@ using Narrow = hn::CappedTag<float, kNarrowLanes>;
 
 /// Sums of P pixels x (one or two) vectors of outputs, held in registers. A chain of structs and
 /// not an array, because compilers keep members in registers and arrays often not.
+///
+/// Registers of AVX2 with P = 6 and two vectors of 8 outputs, at one unit k of a stretch:
+///
+///     weights of unit k          w0 .. w7    w8 .. w15
+///     pixel 0: in[0 step + k]    a           b              sum += in w, in every lane
+///     pixel 1: in[1 step + k]    a           b
+///       ...
+///     pixel 5: in[5 step + k]    a           b              12 sums, 2 weights, 1 number: 15 of 16
+///
+/// Sums<P> holds those of pixel P - 1, and in `before` those of the pixels before it.
 template <class Tag, int P, bool kTwo>
 struct Sums {
     using Vector = hn::Vec<Tag>;
@@ -65,11 +75,14 @@ HWY_NOINLINE void dot_block(const DotArea& r, const float* weight, int y, int x,
     const std::size_t lanes = hn::Lanes(d);
     const float* bias = r.bias + first;
     Sums<Tag, P, kTwo> sums;
+    // Of one vector `b` is never used; what is loaded for it is the first vector again, so that
+    // nothing past the end is read.
     sums.start(hn::LoadU(d, bias), hn::LoadU(d, bias + (kTwo ? lanes : 0)));
     for (int s = 0; s < r.count; ++s) {
         const Stretch& stretch = r.stretches[s];
         const std::ptrdiff_t step = stretch.step;
         const float* from = static_cast<const float*>(stretch.in) + y * stretch.pitch + x * step;
+        // Weights go by unit after unit, `width` numbers each, over all stretches.
         const std::size_t second = kTwo ? lanes : 0, width = lanes + second;
         // Four at a time: stretches are short, and the end of each loop costs a wrong guess.
         int k = 0;
@@ -80,6 +93,7 @@ HWY_NOINLINE void dot_block(const DotArea& r, const float* weight, int y, int x,
         for (; k < stretch.length; ++k, weight += width)
             sums.add(from + k, step, hn::LoadU(d, weight), hn::LoadU(d, weight + second));
     }
+    // max(sum, floor): a ReLU, or nothing.
     const auto floor = hn::Set(d, r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
     sums.store(static_cast<float*>(r.out) + y * r.out_pitch + x * r.out_step + first, r.out_step,
                r.outputs - first, floor);
@@ -105,6 +119,7 @@ void dot_area_by(const DotArea& r) {
     dot_in_blocks<float>(r, int(hn::Lanes(Tag())), kOne, kTwo);
 }
 
+/// Quads take four pixels x four outputs in the 16 lanes that these targets have.
 constexpr bool kByQuads = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL;
 
 void dot_area(const DotArea& r) {

@@ -12,6 +12,7 @@ namespace eventide {
 
 /// Pixels x0 <= x < x1 of a row of up2 (docs/model.md), between two rows of samples: each the mean
 /// of the samples around it, two above and two under.
+/// out[x] = (above[x / 2] + under[x / 2] + above[x'] + under[x']) / 4, x' = min((x + 1) / 2, last)
 struct DoubleRow {
     const void *above = nullptr, *under = nullptr;  ///< sample 0 of the rows
     int last = 0;                                   ///< sample of a row

@@ -56,6 +56,8 @@ HWY_INLINE Vector exp_within(Vector v) {
     const hn::RebindToSigned<decltype(d)> i;
     constexpr float kP[] = {1.9875691500e-4F, 1.3981999507e-3F, 8.3334519073e-3F,
                             4.1665795894e-2F, 1.6666665459e-1F, 5.0000001201e-1F};
+    // ln 2 in two parts. The first is 355 / 512: its products with whole numbers as small as n are
+    // exact in float32.
     constexpr float kLn2High = 0.693359375F, kLn2Low = -2.12194440e-4F, kLog2E = 1.44269504F;
     const Vector x = hn::Min(hn::Max(v, hn::Set(d, -40.0F)), hn::Set(d, 40.0F));
     const auto n = hn::NearestInt(hn::Mul(x, hn::Set(d, kLog2E)));
@@ -65,6 +67,7 @@ HWY_INLINE Vector exp_within(Vector v) {
     Vector p = hn::Set(d, kP[0]);
     for (std::size_t k = 1; k < 6; ++k) p = hn::MulAdd(p, f, hn::Set(d, kP[k]));
     p = hn::MulAdd(hn::Mul(f, f), p, hn::Add(f, hn::Set(d, 1.0F)));
+    // 2^n: n + 127 where float32 has its exponent.
     const auto exponent = hn::ShiftLeft<23>(hn::Add(n, hn::Set(i, 127)));
     return hn::Mul(p, hn::BitCast(d, exponent));
 }
@@ -99,7 +102,9 @@ HWY_INLINE V log1p_of(V x) {
     constexpr float kLn2High = 0.693359375F, kLn2Low = -2.12194440e-4F;
     const V one = hn::Set(d, 1.0F), y = hn::Add(one, x), lost = hn::Sub(x, hn::Sub(y, one));
     const auto bits = hn::BitCast(i, y);
+    // e such that m = y 2^-e lies from sqrt(1/2) to sqrt(2), hence f from -.29 to .41.
     const auto e = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(i, 0x3f3504f3)));  // of sqrt(1/2)
+    // Less this, y's bits are those of m; less this, those of 1 are `scale`, 2^-e.
     const auto exponent = hn::ShiftLeft<23>(e);
     const V m = hn::BitCast(d, hn::Sub(bits, exponent)),
             scale = hn::BitCast(d, hn::Sub(hn::Set(i, 127 << 23), exponent));
@@ -129,11 +134,17 @@ HWY_INLINE void over_channels(Tag d, int channels, Body body) {
     for (; c + lanes <= channels; c += lanes) body(c, lanes);
     if (c < channels) body(c, channels - c);
 }
+/// n numbers: a whole vector of them in one go, fewer as load_some() takes them.
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> load_upto(Tag d, const float* from, int n) {
     return n >= int(hn::Lanes(d)) ? hn::LoadU(d, from) : load_some(d, from, std::size_t(n));
 }
 
+/// out = r h, of pixels of C channels. `r` is the second half of what the gates' layer puts out, so
+/// its pixels lie 2 C apart; where C fills a vector (8 here), a pixel is one product:
+///
+///     gates    u0 .. u7  r0 .. r7 | u0 .. u7  r0 .. r7 | ...    r_step 16
+///     h        h0 .. h7           | h0 .. h7           | ...    one after the other, as `out`
 template <class Tag>
 HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, const float* h,
                              float* out, int channels, int pixels) {
@@ -147,6 +158,7 @@ HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, const
             store_some(d, hn::Mul(load_upto(d, r + c, n), load_upto(d, h + c, n)), out + c, n);
         });
 }
+/// out = h + u (c - h), by one fused multiply-add a number.
 /// `candidate` is tanh(c) already.
 template <class Tag>
 HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdiff_t u_step,
@@ -192,11 +204,18 @@ struct Elu {
 };
 /// Channels c to c + Lanes(d) of a DoubleRow. Sample by sample, for the two pixels that it is left
 /// of: the one on it, and the one before the next.
+///
+///     samples     s0        s1        s2 (the last)
+///     column      c0        c1        c2               c = above + under
+///     pixels      0    1    2    3    4    5
+///     4 out       c0   c0   c1   c1   c2   c2
+///               + c0   c1   c1   c2   c2   c2
 template <class Tag>
 HWY_INLINE void double_channels(Tag d, const DoubleRow& r, std::ptrdiff_t c) {
     const std::ptrdiff_t n = r.channels;
     const auto *above = static_cast<const float*>(r.above) + c,
                *under = static_cast<const float*>(r.under) + c;
+    // Where pixel 0 of the row would be, so that pixels are counted as the row counts them.
     auto* const out = static_cast<float*>(r.out) + c - r.x0 * n;
     const auto quarter = hn::Set(d, 0.25F);
     const auto column = [&](int sample) HWY_ATTR {

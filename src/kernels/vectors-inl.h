@@ -15,9 +15,13 @@ HWY_BEFORE_NAMESPACE();
 namespace eventide::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+/// As many lanes as a register of the target has: 4 with SSE4 and NEON, 8 with AVX2, 16 with
+/// AVX-512.
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 
+/// The first n numbers, at most a vector of them, and zeros behind; what lies past them is not
+/// read.
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> load_some(Tag d, const float* from, std::size_t n) {
     HWY_ALIGN float whole[HWY_MAX_BYTES / sizeof(float)] = {};
@@ -28,6 +32,7 @@ HWY_INLINE V load_some(const float* from, std::size_t n) {
     return load_some(D(), from, n);
 }
 
+/// The first n lanes of v; what lies past them is not written.
 /// All of v where n is at least its size.
 template <class Tag>
 HWY_INLINE void store_some(Tag d, hn::Vec<Tag> v, float* out, int n) {

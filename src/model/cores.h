@@ -11,6 +11,8 @@
 
 namespace eventide {
 
+/// step() advances the state by one event window; latent.values has the size that
+/// Encoder::make_output() gave, and may hold codes of any step before.
 class EncoderCore {
 public:
     virtual ~EncoderCore() = default;
@@ -35,6 +37,8 @@ struct CodeChoice {
     bool next[2] = {};    ///< whether z_{k+1} and z_{k+2} are known
 };
 
+/// push() of k = 1, 2, ... since construction or reset(); a frame reads z_{k-2} to z_{k+2} of those
+/// still kept (LatentWindow). Maps are copied. One thread at a time, as of EncoderCore.
 class RendererCore {
 public:
     virtual ~RendererCore() = default;

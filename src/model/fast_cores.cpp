@@ -17,6 +17,7 @@ Arithmetic arithmetic_of(const EngineOptions& options) {
                     "kernels onednn: expected a program built with oneDNN (EVENTIDE_ONEDNN), found "
                     "one without; use own");
     if (options.emulate_bf16) return {Products::bf16_emulated, false};
+    // What pays best of what is allowed; what was asked for by name then takes its place.
     const Arithmetic best =
         best_arithmetic(options.precision != Precision::f32, options.kernels != Kernels::own);
     Arithmetic chosen = best;

@@ -1,3 +1,4 @@
+// See instructions.h.
 #include "src/model/instructions.h"
 
 #include "src/kernels/vector_kernels.h"

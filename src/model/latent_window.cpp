@@ -12,6 +12,10 @@ std::int64_t LatentWindow::push(const LatentMap& latent) noexcept {
     return newest_;
 }
 
+/// Event windows are (begin, end] each:
+///
+///     (  k - 1  ](  k  ]  hole  (  k + 1  ]
+///               begin of k: the last instant of k - 1; in the hole: k + 1, fraction 0
 FramePosition LatentWindow::locate(SensorTime t) const noexcept {
     const std::int64_t oldest = std::max<std::int64_t>(1, newest_ - kLatentsKept + 1);
     for (std::int64_t k = oldest; k <= newest_; ++k) {
@@ -29,6 +33,7 @@ FramePosition LatentWindow::locate(SensorTime t) const noexcept {
 }
 
 Readiness LatentWindow::readiness(SensorTime t, int lookahead) const noexcept {
+    // Before the first event window all times count as its own.
     const std::int64_t k = newest_ == 0 ? 1 : locate(t).k;
     if (k == 0) return Readiness::gone;
     if (k > newest_) return finished_ ? Readiness::gone : Readiness::later;

@@ -16,6 +16,12 @@ struct FramePosition {
 
 /// Keeps the stamps of the newest kLatentsKept event windows; whoever keeps the maps themselves
 /// puts that of event window k into slot k % kLatentsKept.
+///
+///     read in window k    z_{k-2}    z_{k-1}    z_k    z_{k+1}    z_{k+2}
+///     lookahead 0                    x          x
+///     lookahead 1                    x          x      x
+///     lookahead 2                    x          x      x          x
+///     a fading edge       x          x          x
 class LatentWindow {
 public:
     /// Lookahead 2 reads z_{k-1} .. z_{k+2}, a live edge that fades z_{k-2} .. z_k.
@@ -44,6 +50,7 @@ public:
     Readiness readiness(SensorTime t, int lookahead) const noexcept;
 
 private:
+    // That of k in slot(k), for newest_ - 4 <= k <= newest_; k counts from 1 since reset().
     std::array<WindowStamp, kLatentsKept> stamps_{};
     std::int64_t newest_ = 0;
     bool finished_ = false;

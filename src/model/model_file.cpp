@@ -43,6 +43,9 @@ std::string numbered(const char* name, int i) {
     return "encoder." + std::string{name} + "." + std::to_string(i);
 }
 
+/// Of widths 8, 16, 32, 64, 64, 21 input channels and 16 codes: in [8][21][3][3], down.1
+/// [16][8][3][3], gru.0.gates [2 x 8][8 + 8][3][3], res.0.0 [64][64][3][3], up.0 [8][16 + 8][3][3],
+/// out [16][8][3][3].
 void list_gated(const ModelConfig& config, TensorList& list) {
     const auto width = [&](int level) { return config.widths[std::size_t(level)]; };
     const int levels = config.levels(), top = width(levels - 1), last = config.latent_stride - 1;
@@ -78,6 +81,7 @@ public:
         std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
         z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        // The upper 24 bits as a whole number from -2^23 on: all of them fit a float32.
         return float(std::int64_t(z ^ (z >> 31)) >> 40) * 0x1p-23f;
     }
 

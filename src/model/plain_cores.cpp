@@ -52,6 +52,7 @@ public:
     void render(const CodeChoice& choice, const FrameGeometry& geometry, SigmaRule rule,
                 Array2<float>& intensity, Array2<float>* sigma) noexcept override {
         const auto code = [&](std::int64_t k) { return &codes_[LatentWindow::slot(k)]; };
+        // z_{k-2} .. z_{k+2}
         const plain::Codes<float> codes{choice.k > 2 ? code(choice.k - 2) : nullptr,
                                         choice.k > 1 ? code(choice.k - 1) : nullptr, code(choice.k),
                                         choice.next[0] ? code(choice.k + 1) : nullptr,

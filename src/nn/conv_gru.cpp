@@ -6,6 +6,8 @@
 //     gates        (side + 2)^2   2 C float32: u, r         kept, new state
 //     candidate    side^2         C float32                 new state
 //
+// At side 48 with C = 8 in float32: 21632 + 20000 + 40000 + 18432 numbers, 391 KiB.
+//
 // h is read by the gates where it lies, in the state's map. Each 3x3 layer reads one pixel more on
 // each side than it puts out, so that a tile's step has rims, which neighbouring tiles compute,
 // too:
@@ -52,6 +54,7 @@ ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
 std::size_t ConvGru::scratch_size() const {
     const auto c = std::size_t(channels_), u = std::size_t(units());
     return square(side_ + 4) * u + square(side_ + 2) * (u + 2 * c) + square(side_) * c +
+           // What a layer needs, or keep() for a row of r.h in float32: one after the other.
            std::max({gates_.scratch_size(side_ + 2, side_ + 2),
                      candidate_.scratch_size(side_, side_), std::size_t(side_ + 2) * c});
 }
@@ -93,6 +96,7 @@ void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
 }
 
 /// Opens the gates, and what they keep of the state.
+/// [u; r] = sigmoid(gates), kept = r.h: h in float32, the product as layers read it.
 void ConvGru::keep(const StateMap& state, std::size_t i, const Tile& close, float* gates,
                    float* kept, float* row) const noexcept {
     const VectorKernels& kernels = vector_kernels();
@@ -109,6 +113,8 @@ void ConvGru::keep(const StateMap& state, std::size_t i, const Tile& close, floa
     }
 }
 
+/// next = h + u (tanh(candidate) - h), where the mask lets it. Until commit() neighbours read the
+/// old h.
 void ConvGru::update(const StateMap& state, std::size_t i, const Mask* mask, float* gates,
                      float* candidate) noexcept {
     const Tile& tile = tiles_[i];

@@ -57,6 +57,7 @@ private:
         return kept + (y - tiles_[i].y0 + 1) * kept_pitch() +
                std::ptrdiff_t(x - tiles_[i].x0 + 1) * units();
     }
+    /// A pixel's gates are u_0 .. u_{C-1}, then r_0 .. r_{C-1}.
     float* gates_at(float* gates, std::size_t i, int y, int x) const {
         return gates + (y - tiles_[i].y0 + 1) * gates_pitch() +
                std::ptrdiff_t(x - tiles_[i].x0 + 1) * 2 * channels_;

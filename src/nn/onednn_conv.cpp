@@ -61,6 +61,8 @@ std::size_t in_lines(std::size_t bytes) {
 }
 
 /// Cuts scratch memory into aligned pieces.
+///
+///     | up to 63 bytes | input, where it is gathered here | output | oneDNN's scratchpad |
 class Pieces {
 public:
     explicit Pieces(float* scratch) : at_(reinterpret_cast<std::byte*>(scratch)) {

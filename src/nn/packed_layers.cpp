@@ -51,6 +51,7 @@ PackedWeights::PackedWeights(std::vector<Shape> stretches, int outputs, const At
         weight_.resize(packed_size(1, length, outputs, lanes_));
         pack(lanes_, weight, weight_.data());
     }
+    // Whole vectors, whichever kernel reads them.
     const int lanes = std::max(kBf16Lanes, vector_kernels().lanes);
     bias_.resize(std::size_t((outputs + lanes - 1) / lanes * lanes));
     std::ranges::copy(bias, bias_.begin());
@@ -141,6 +142,12 @@ bool PackedConv::by_quads() const {
 
 /// body(source, row, first column) of each of the stretches that an output reads, in the order in
 /// which they are summed up.
+///
+///     sources a, b, side 3       a: row 0 | row 1 | row 2    b: row 0 | row 1 | row 2
+///     as_one                     row 0: a0 b0 | a1 b1 | a2 b2    row 1: a0 b0 | ...
+///
+/// The second is the order in which a map that has the channels of both is summed up: the bits are
+/// the same.
 template <typename Body>
 void PackedConv::over_stretches(const Body& body) const {
     const int sources = int(sources_.size());
@@ -173,6 +180,7 @@ PackedWeights PackedConv::packed(const plain::ConvWeights<float>& weights, int p
     });
     const auto weight = [&](int s, int at, int c, int o) {
         const auto& [channel, y, first] = places[std::size_t(s)];
+        // The tap at which its output sees this pixel: the second output's begin `stride_` later.
         const int x = first + at - o / outputs_ * stride_;
         if (x < 0 || x >= side_) return 0.0F;
         const int tap = (o % outputs_ * inputs_ + channel + c) * side_ * side_ + y * side_ + x;
@@ -222,6 +230,10 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
     run_own(area, call.out_step);
 }
 
+/// Pairs of outputs where there are weights for them. A row of 5:
+///
+///     outputs    0 1 | 2 3 |
+///                          3 4
 void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step) const noexcept {
     const bool is_dense = out_step == (area.to_bf16 ? numbers().units(outputs_) : outputs_);
     if (pair_.empty() || !is_dense || area.width < 2) {
@@ -279,6 +291,8 @@ void PackedConv::run_onednn(const ConvArea& area, float* scratch) const noexcept
                              static_cast<float*>(area.out) + y * area.out_pitch);
 }
 
+/// The sources' channels side by side, [reach][reach][inputs_], without the zeros beside the last
+/// of an odd number.
 void PackedConv::gather(const ConvArea& area, void* dense) const noexcept {
     const std::size_t size = numbers().bf16() != nullptr ? sizeof(std::uint16_t) : sizeof(float);
     auto* to = static_cast<std::byte*>(dense);

@@ -57,6 +57,8 @@ private:
     int outputs_ = 0, lanes_ = 0;
     bool relu_ = false;
     Numbers numbers_;
+    /// weight_ is filled where the layer reads float32, pairs_ where it reads bf16; the other is
+    /// empty. bias_: outputs rounded up to whole vectors, zeros beyond them.
     FloatBuffer weight_, bias_;
     std::vector<std::uint32_t, CacheLineAllocator<std::uint32_t>> pairs_;
 };

@@ -9,6 +9,11 @@
 namespace eventide {
 
 /// [y][x][channel], -1 <= y <= height, -1 <= x <= width. The border stays zero: nobody writes it.
+///
+///     at(-1, -1)  0 0 0 0 0      height 2, width 3: rows of (3 + 2) channels numbers each
+///                 0 a b c 0      at(0, 0) is a
+///                 0 d e f 0
+///                 0 0 0 0 0
 class PaddedMap {
 public:
     PaddedMap() = default;

@@ -1,4 +1,10 @@
 // safetensors: 8 bytes length (little endian), that many bytes of JSON, then the raw numbers.
+//
+//     byte    0         8                             8 + n
+//             n         {"encoder.in.bias": {...},    numbers of one tensor after the other, which
+//                       ...}, spaces                  data_offsets count from here
+//
+// An entry: {"dtype": "F32", "shape": [16, 21, 3, 3], "data_offsets": [0, 12096]}
 #include "src/nn/safetensors.h"
 
 #include "src/core/error.h"

@@ -11,6 +11,11 @@ namespace eventide {
 
 /// In float32 both are one map. In bf16 a state that a GRU updates is kept in float32 beside the
 /// bf16 numbers that layers read; of any other only these are kept.
+///
+///                               read()           exact()
+///     float32                   h                the same map
+///     bf16, is_updated          h, rounded       h
+///     bf16, held features       h, rounded       not to be asked for
 class StateMap {
 public:
     StateMap() = default;

@@ -42,6 +42,10 @@ public:
 
     /// Of work in two halves: first() of the tiles of one group of `group` consecutive ones, then
     /// second() of those of the group before. At most two groups are between their halves.
+    ///
+    ///     first     0    1         2         3               group numbers, in order of time
+    ///     second              0         1         2    3
+    ///     between   0    0 1       1 2       2 3             what ConvGru holds aside
     template <typename First, typename Second>
     void in_groups(const std::vector<Tile>& tiles, const Mask& where, std::size_t group,
                    const First& first, const Second& second) noexcept {
@@ -86,6 +90,7 @@ private:
 
     ParallelFor parallel_for_;
     bool skip_quiet_;
+    // Worker w writes scratch_[w] alone; active_ is written between runs, and read by all workers.
     std::vector<UntouchedZeros> scratch_;  // per worker
     std::vector<int> active_;              // numbers of the tiles at work
 };

@@ -37,6 +37,11 @@ struct Tile {
 
 /// Zeros in what of `wide` lies outside `inside`. Its first pixel is at `out`, `pitch` numbers from
 /// one row to the next, `units` a pixel.
+///
+///     0 0 0 0 0      wide: 4 x 5, of which `inside` (i) is 3 x 4, as of a tile in the upper left
+///     0 i i i i      corner; what is inside stays as it is, and its caller writes it
+///     0 i i i i
+///     0 i i i i
 inline void clear_outside(const Tile& wide, const Tile& inside, float* out, std::ptrdiff_t pitch,
                           std::ptrdiff_t units) {
     const auto clear = [&](int y, int x0, int x1) {
@@ -53,6 +58,9 @@ inline void clear_outside(const Tile& wide, const Tile& inside, float* out, std:
 }
 
 /// Tiles of about the same size, at most `side` long: they depend on the map's size alone.
+///
+///     240 columns, side 48: 5 tiles of 48      100 columns: 33, 33, 34
+///     180 rows: 4 of 45                        49 rows: 24, 25
 inline std::vector<Tile> tiles_of(int height, int width, int side) {
     const int rows = (height + side - 1) / side, columns = (width + side - 1) / side;
     std::vector<Tile> tiles;

@@ -45,6 +45,8 @@ struct GruWeights {
 };
 
 /// h <- h + m u (c - h). Where the mask is 0, h is not touched.
+///
+///     [u; r] = sigmoid(gates * [a; h]),  c = tanh(candidate * [a; r h])
 template <typename T>
 void gru(const GruWeights<T>& weights, const Array3<T>& a, const Mask& mask, Array3<T>& h) {
     const Array3<T> gates = each(conv(weights.gates, join<T>({&a, &h})), sigmoid<T>);
@@ -69,6 +71,8 @@ struct NormWeights {
 };
 
 /// InstanceNorm2d+ (docs/model.md). One channel alone has no spread of means: its alpha term is 0.
+/// norm(x)_c = gamma_c ((x_c - mean_c) / sqrt(variance_c + 1e-5)
+///                      + alpha_c (mean_c - grand) / sqrt(spread + 1e-5)) + beta_c
 /// Statistics are double for every T: sums over an image would lose a float's last digits.
 template <typename T>
 Array3<T> norm(const NormWeights<T>& weights, Array3<T> map) {

@@ -19,6 +19,7 @@ struct ConvWeights {
     int side = 3;           ///< 3 or 1
 };
 
+/// out[y][x][o] = bias[o] + sum of weight[o][i][dy][dx] in[stride y + dy][stride x + dx][i]
 /// Zeros outside. Output j is centred on input stride j; n inputs give (n + stride - 1) /
 /// stride.
 template <typename T>

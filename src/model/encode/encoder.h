@@ -45,6 +45,7 @@ private:
     /// `grid` is [height][width][4 bins + 1].
     void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
 
+    // identity_: encoder_identity() of the model, which saved states carry.
     int width_, height_, bins_, latent_height_, latent_width_, latent_channels_;
     std::string identity_;
     std::unique_ptr<EncoderCore> core_;

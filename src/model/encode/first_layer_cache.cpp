@@ -10,6 +10,9 @@ namespace eventide {
 namespace {
 
 /// Layer 1 as a convolution over the first `codes` of the three codes, joined per pixel.
+///
+///     renderer    [out][dt][dy dx][d], then 3 offsets; of D = 16, unfold 1: 32 x (48 + 3)
+///     here        [out][code, d][dy dx], code = dt + 1: 32 x 32 x 1 or 32 x 48 x 1
 plain::ConvWeights<float> first_layer_weights(const Model& model, int codes) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const int outputs = int(first.shape[0]), inputs = int(first.shape[1]);
@@ -44,13 +47,16 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
     whole_ = {first_layer_weights(model, 3), 1, false, arithmetic, extents,
               std::vector<int>(3, depth_)};
     for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_)};
+    // Read again for each row (a pitch of 0): a tile's width and its rim.
     zeros_ = {1, kLatentSide, numbers_.units(depth_)};
     for (LatentHistory& history : histories_) history.changed.reserve(tiles_.size());
     for (Sums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
+    // All count as changed until push() says otherwise.
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
     scratch_.assign(kWorkers, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
                                                     whole_.scratch_size(kLatentSide, kLatentSide),
+                                                    // A row of codes in float32, for is_still().
                                                     std::size_t(kLatentSide * depth_)})));
 }
 
@@ -63,6 +69,7 @@ const PaddedMap* FirstLayerCache::code(std::int64_t k) const noexcept {
     return k >= 1 ? &codes_[LatentWindow::slot(k)] : nullptr;
 }
 
+/// Slot k % 5 holds z_{k-5}: only tiles that changed since are written.
 void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
     newest_ = k;
     const std::size_t slot = LatentWindow::slot(k);
@@ -112,6 +119,7 @@ void FirstLayerCache::note_changes(std::int64_t k, const LatentHistory& history)
     const bool comparable = before != nullptr && options_.skip_quiet;
     const StaleTiles since{histories_[LatentWindow::slot(k - 1)], history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
+        // A sample at the tile's edge may read codes of the pixel beyond it.
         const Tile near = tiles_[std::size_t(n)].grown(1, height_, width_);
         const auto bytes = std::size_t(near.width()) * std::size_t(mine.channels()) * sizeof(float);
         bool same = comparable;
@@ -182,6 +190,7 @@ const FirstLayerCache::Sums& FirstLayerCache::bring(std::int64_t k, bool whole,
     if (const Sums* there = find(k, whole)) return *there;
     // The one that shares most with what is wanted: of the same kind, and newest.
     const auto worth = [&](const Sums& there) {
+        // Sums of a later event window than wanted tell nothing: unchanged() looks forward only.
         if (&there == keep) return std::int64_t{-2};
         return there.whole == whole && there.k <= k ? there.k : std::int64_t{-1};
     };

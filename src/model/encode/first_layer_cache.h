@@ -16,6 +16,14 @@
 namespace eventide {
 
 /// One thread at a time; nothing is allocated after construction.
+///
+///     z_{k-2}    z_{k-1}    z_k    z_{k+1}    z_{k+2}       codes_[k % 5]
+///                [- past_: 2 -]                             sums of event window k, not `whole`
+///                [----- whole_: 3 ------]                   sums of event window k, `whole`
+///                           [----- whole_: 3 ------]        sums of event window k + 1
+///
+/// A frame blends two event windows, hence two maps of sums. changed_ says per event window and
+/// tile whether z_k is another than z_{k-1}, and so which of the sums still hold.
 class FirstLayerCache {
 public:
     /// Layer 1 without its offset part, at every sample of event window k.

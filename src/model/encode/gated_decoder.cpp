@@ -21,6 +21,7 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
         return PackedConv{plain::conv_weights<float>(model.weights, name), 1,      relu, arithmetic,
                           extents_of(tiles, 0, size.height, size.width),   sources};
     };
+    // A worker's scratch: what is joined for a layer, then what the layer needs itself.
     const auto need = [&](std::size_t joined, const PackedConv& made, int side) {
         scratch_ = std::max(scratch_, joined + made.scratch_size(side, side));
     };
@@ -33,6 +34,7 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
                         {widths_[l + 1], widths_[l]});
         level.d = {height, width, numbers_.units(widths_[l])};
         const int side = levels[l].side(), doubled = numbers_.units(widths_[l + 1]);
+        // up2(d_{l+1}) of a tile with a rim of 1.
         need(std::size_t((side + 2) * (side + 2) * doubled), level.up, side);
     }
     const GatedLevel& deepest = levels.back();
@@ -44,6 +46,7 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
         const Block& block = blocks_.emplace_back(
             Block{conv(name + ".0", true, deepest.tiles(), deepest.size()),
                   conv(name + ".1", false, deepest.tiles(), deepest.size()), map, map, sum});
+        // A row of h in float32, for add().
         need(std::size_t(deepest.side() * widths_.back()), block.first, deepest.side());
         need(0, block.second, deepest.side());
     }
@@ -72,6 +75,7 @@ void GatedDecoder::write_codes(const std::vector<StateMap>& states, const Tile& 
              scratch);
 }
 
+/// A tile of `to`, from the tile of `from` and a rim of 1, which may be its border of zeros.
 void GatedDecoder::convolve(const PackedConv& conv, const PaddedMap& from, PaddedMap& to,
                             bool to_bf16, const Tile& tile, float* scratch) noexcept {
     conv.run(ConvArea{{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
@@ -87,6 +91,7 @@ void GatedDecoder::spread(Level& level) noexcept {
     dilate(level.touched, 1, level.room, level.touched);
 }
 
+/// d_l, as layers read it.
 const PaddedMap& GatedDecoder::decoded(std::size_t l, const std::vector<StateMap>& states) const {
     if (l + 1 < levels_.size()) return levels_[l].d;
     return blocks_.empty() ? states[l].read() : blocks_.back().out;
@@ -101,6 +106,8 @@ void GatedDecoder::run_blocks(const GatedLevel& deepest, const PaddedMap& h, boo
     else
         std::ranges::copy(deepest.mask().values(), level.touched.values().begin());
     const PaddedMap *d = &h, *before = &h;
+    // `d` is the map that layers read, `before` the one that a block adds: with bf16 products the
+    // state itself is bf16, the sums of the blocks behind it are float32.
     bool is_float = numbers_.bf16() == nullptr;
     for (Block& block : blocks_) {
         spread(level);
@@ -148,6 +155,12 @@ void GatedDecoder::join(const GatedLevel& level, const PaddedMap& h, const Padde
 }
 
 /// d_l = relu(up.l * [up2(d_{l+1}); h_l])
+/// up2 goes into scratch, h is read where it lies:
+///
+///     scratch    (height + 2) x (width + 2) pixels of d_{l+1}'s units, zeros past the map's edge;
+///                behind them what the layer needs
+///
+/// Each tile writes its own part of d_l; d_{l+1} and h_l are only read meanwhile.
 void GatedDecoder::join_tile(const PaddedMap& h, const PaddedMap& below, std::size_t l,
                              const Tile& tile, float* scratch) noexcept {
     Level& level = levels_[l];

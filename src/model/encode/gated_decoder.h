@@ -9,6 +9,13 @@
 
 namespace eventide {
 
+/// Where it works anew, by masks (level l has 1/2^l of the resolution):
+///
+///     touched, of the deepest level     its mask, spread by 1 px for each layer of the blocks
+///     of level l                        its mask or what up2 reads of level l + 1's, spread by 1
+///     of the top                        spread by 1 more, for `out`: where codes may have changed
+///
+/// A tile without a touched pixel is left out; its numbers are those of the last run().
 class GatedDecoder {
 public:
     GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,

@@ -1,4 +1,15 @@
 // See gated_encoder.h; docs/model.md has the formulas.
+//
+// A network of widths 8, 16, 32, 64, 64 whose top level alone is recurrent, at 240x180; a step goes
+// down the table (GatedLevel), then up again (GatedDecoder):
+//
+//     level    map        channels    keeps            tiles       on the way up
+//     0        240x180    8           ConvGRU          20 of 48    d_0 from up2(d_1) and h_0
+//     1        120x90     16          held features    20 of 24    d_1
+//     2        60x45      32          held features    12 of 16    d_2
+//     3        30x23      64          held features    6 of 12     d_3 from up2(d_4) and h_3
+//     4        15x12      64          held features    2 of 12     d_4 from h_4, residual blocks
+//     codes    240x180    16                           48 of 32    z from d_0
 #include "src/model/encode/gated_encoder.h"
 
 #include "src/model/encode/plain_encoder.h"
@@ -56,6 +67,7 @@ void GatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
                 latent_.mark_changed(i);
         stale_ = false;
     }
+    // Also where nothing happened: this buffer may hold codes of a step long before.
     runner_.over(latent_.tiles(), [&](std::size_t i, const Tile& tile, float* scratch) {
         if (latent_.is_outdated(i, latent))
             decoder_.write_codes(states_, tile, latent.values, scratch);
@@ -63,6 +75,7 @@ void GatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
     latent.history = latent_.history();
 }
 
+/// m_0 = events, dilated by gate_radius; m_{l+1} = halved m_l; the deepest dilated by gate_spread.
 bool GatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
     Mask& top = levels_.front().mask();
     if (!grid.touched.empty())
@@ -72,6 +85,7 @@ bool GatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
             const float* pixel = grid.values.pixel(y, 0).data();
             for (int x = 0; x < top.width(); ++x, pixel += grid.values.channels()) {
                 bool any = false;
+                // Channel 4 b + 3 of a grid counts the events of bin b.
                 for (int b = 0; b < config_.bins; ++b) any |= pixel[4 * b + 3] != 0;
                 top(y, x) = std::uint8_t(any);
             }

@@ -30,6 +30,7 @@ private:
     ModelConfig config_;
     EngineOptions options_;
     Arithmetic arithmetic_;
+    // Levels from the top (full resolution) to the deepest; states_[l] is that of levels_[l].
     std::vector<GatedLevel> levels_;
     std::vector<StateMap> states_;  // h_l
     GatedDecoder decoder_;

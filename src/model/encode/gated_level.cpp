@@ -12,6 +12,8 @@ namespace {
 
 /// Small enough that a tile's maps stay in a core's own cache, large enough that borders computed
 /// twice cost little. Deeper levels have more channels and smaller maps.
+/// A tile of levels 0 to 3 so covers 48, 48, 64 and 96 px of the sensor on a side; what lies deeper
+/// has tiles of 12, too.
 constexpr int kSides[] = {48, 24, 16, 12};
 
 /// Grids are larger than a core's cache, and pieces of rows too short for its own foresight.
@@ -26,6 +28,10 @@ constexpr std::size_t kLeastGroup = 32;
 
 /// The input layer's channels in maps of one quad of units or two, where layers go by quads and not
 /// too many channels of zeros have to be added; else in one.
+///
+///     channels    21 (5 bins)      9 (2 bins)
+///     float32     3 maps of 8      3 maps of 4
+///     bf16        3 maps of 8      1 of 9, as 2 maps of 8 would add too many
 struct InputMaps {
     int count = 1, size = 0;
 };
@@ -46,6 +52,7 @@ InputMaps input_maps(int channels, const Arithmetic& arithmetic) {
 }
 
 /// With zeros for channels that are not there.
+/// (outputs x inputs x taps) to (outputs x more inputs x taps): an output's weights stay in front.
 plain::ConvWeights<float> with_inputs(const plain::ConvWeights<float>& weights, int inputs) {
     plain::ConvWeights<float> wider{weights.out, inputs, {}, weights.bias, weights.side};
     const std::size_t taps = std::size_t(weights.side) * std::size_t(weights.side),
@@ -89,6 +96,7 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
            std::vector<int>(std::size_t(maps_), map_channels_),
            maps_ > 1};
     if (!recurrent_) return;
+    // 640x480: 14 tiles a row of tiles, so groups of 3 rows, 42 tiles.
     const auto row = std::size_t(std::ranges::count(tiles_, tiles_.front().y0, &Tile::y0));
     group_ = row * ((kLeastGroup + row - 1) / row);
     gru_ = {plain::gru_weights<float>(model.weights, encoder_layer("gru", number)),
@@ -99,6 +107,13 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
             2 * group_};
 }
 
+// A worker's scratch, one piece behind the other:
+//
+//     recurrent    ConvGru's (conv_gru.cpp) | what feed() needs
+//     held         the next state of a tile | what feed() needs
+//     feed()       top: the grid, [map][y][x][channels] with a rim | a row of it, then in_'s
+//                  below: in_'s
+//
 // Scratch of a level that is not recurrent: a tile's next state, and what feed() needs. Of the top
 // level: the compressed grid as layers read it, then a row of it in float32.
 std::size_t GatedLevel::scratch_size() const {
@@ -120,6 +135,8 @@ void GatedLevel::advance(const Array3<float>& grid, std::vector<StateMap>& state
         return;
     }
     const Tile& tile = tiles_[i];
+    // h <- h + m (a - h), m 0 or 1. Written at once, as no tile of this level reads h: the level
+    // below and the decoder do, later.
     feed(grid, states, {tile, scratch, std::ptrdiff_t(tile.width()) * units()},
          scratch + next_size());
     write(states[number_].read(), tile, scratch);
@@ -143,6 +160,8 @@ void GatedLevel::write(PaddedMap& h, const Tile& tile, const float* next) const 
 }
 
 /// a_l in a region.
+/// a_0 = relu(in * T(grid)), a_l = relu(down.l * h_{l-1}) with stride 2, so that output (y, x) is
+/// centred on (2 y, 2 x) of the level above, and its first input is (2 y - 1, 2 x - 1).
 void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& states,
                       const Target& target, float* scratch) const noexcept {
     if (number_ == 0) {
@@ -195,6 +214,7 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
         else if (compressed != to)
             numbers.from_float(compressed, pixels, channels, to);
     }
+    // Maps past maps_ are named, too, and not read.
     in_.run(ConvArea{.in = {{{scratch, row}, {scratch + plane, row}, {scratch + 2 * plane, row}}},
                      .out = target.out,
                      .out_pitch = target.pitch,

@@ -6,6 +6,7 @@
 namespace eventide {
 namespace {
 
+/// From 1 on, as 0 stands for nothing known; encoders may be made on several threads.
 std::uint64_t new_source() {
     static std::atomic<std::uint64_t> sources{0};
     return ++sources;

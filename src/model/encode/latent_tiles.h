@@ -10,6 +10,10 @@
 namespace eventide {
 
 /// Which tiles of a copy are out of date: those that changed since, or all.
+///
+///     step           1    2    3    4    5
+///     tile 7 new          x              x        now.changed[7] = 5
+///     a copy of step 4 is stale in tile 7; one of step 5, or of 6, is not
 class StaleTiles {
 public:
     StaleTiles(const LatentHistory& copy, const LatentHistory& now)

@@ -66,6 +66,7 @@ public:
     const std::vector<Array3<T>>& states() const { return states_; }
 
 private:
+    /// Down: m_l, a_l and h_l level by level, each from the new h of the level above.
     void advance(const Array3<T>& grid) {
         Mask mask = event_mask(grid, config_.bins);
         Mask scratch = mask;
@@ -89,17 +90,20 @@ private:
                 hold(a, mask, h);
         }
     }
+    /// h <- h + m (a - h)
     static void hold(const Array3<T>& a, const Mask& mask, Array3<T>& h) {
         for (int y = 0; y < h.height(); ++y)
             for (int x = 0; x < h.width(); ++x)
                 if (mask(y, x) != 0)
                     for (int c = 0; c < h.channels(); ++c) h(y, x, c) = a(y, x, c);
     }
+    /// Up: d_{L-1} from h_{L-1} by the residual blocks, d_l = relu(up.l * [up2(d_{l+1}); h_l]), z.
     /// Reads the states only, so that z rests where they rest.
     Array3<T> read_out() const {
         Array3<T> d = states_.back();
         for (const auto& [first, second] : res_)
             d = each(each(d, conv(second, each(conv(first, d), relu<T>)), std::plus<T>{}), relu<T>);
+        // To level 0, or 1 where codes have half the resolution.
         for (int l = config_.levels() - 2; l >= config_.latent_stride - 1; --l) {
             const Array3<T>& h = states_[std::size_t(l)];
             const Array3<T> up = up2(d, h.height(), h.width());

@@ -13,6 +13,9 @@ constexpr int kMaxBands = 7;
 
 /// Where a fine pixel lies between two coarse ones: the first of them, and the weight of the
 /// second.
+///
+///     fine      0     1     2     3     4     5
+///     coarse       0           1           2         fine 1: .75 of 0, .25 of 1
 struct Between {
     int first, second;
     float weight;
@@ -59,6 +62,7 @@ float ResidualPyramid::Band::rho(std::size_t i) const {
     return std::exp(-reach * events.values()[i]);
 }
 
+/// Bands as long as a side can be halved, at most 7; each answers for the same share of variance.
 ResidualPyramid::ResidualPyramid(int width, int height) {
     for (int k = 0; k < kMaxBands && (k == 0 || std::min(width, height) > 1); ++k) {
         Band band;
@@ -91,6 +95,7 @@ void ResidualPyramid::forget(const Array2<float>& events) noexcept {
 
 void ResidualPyramid::observe(const Array2<float>& residual, const Array2<float>& trust,
                               const Array2<float>& events) noexcept {
+    // r_k = mean_k(residual) - up(mean_{k+1}(residual)); the last band is the mean itself.
     const auto copy = [](const Array2<float>& from, Array2<float>& to) {
         std::ranges::copy(from.values(), to.values().begin());
     };
@@ -100,6 +105,8 @@ void ResidualPyramid::observe(const Array2<float>& residual, const Array2<float>
         k == 0 ? copy(trust, band.left) : halve(bands_[k - 1].left, band.left);
         for (std::size_t i = 0; i < band.known.values().size(); ++i) {
             const float sure = band.left.values()[i];
+            // u <- trust + (1 - trust) u rho: rho by the events since the image before, which are
+            // replaced after this.
             band.known.values()[i] = sure + (1 - sure) * band.known.values()[i] * band.rho(i);
         }
         k == 0 ? copy(events, band.events) : halve(bands_[k - 1].events, band.events);
@@ -114,6 +121,8 @@ void ResidualPyramid::observe(const Array2<float>& residual, const Array2<float>
     }
 }
 
+/// correction = sum over k of up(rho_k r_k), variance = sum over k of up(s_k (1 - (u_k rho_k)^2)):
+/// from the coarsest on each band is added to the doubled sum of those above it.
 void ResidualPyramid::expect(Array2<float>& correction, Array2<float>& variance) noexcept {
     for (std::size_t k = bands_.size(); k-- > 0;) {
         Band& band = bands_[k];

@@ -26,6 +26,10 @@ void add_doubled(const Array2<float>& from, Array2<float>& to) noexcept;
 /// its own size. Where nothing happens, nothing is forgotten. As an autoregressive process has it,
 /// what is expected is rho_k times the band, and of the share s_k of the model's variance that the
 /// band is responsible for, 1 - rho_k^2 is left.
+///
+///     band, of 240x180    0          1         2        3        4        5       6
+///     map                 240x180    120x90    60x45    30x23    15x12    8x6     4x3
+///     a / 2^k, a = 2      2          1         1/2      1/4      1/8      1/16    1/32
 class ResidualPyramid {
 public:
     /// All memory is taken here.

@@ -1,4 +1,15 @@
 // See thesis_encoder.h; docs/model.md has the formulas.
+//
+// Full size but where it says half. Behind each norm is an elu; a norm looks at all tiles' sums
+// before any tile goes on:
+//
+//     grid --in--> raw --norm0--> x0 --gru.0--> h0 --res.0--> raw --norm1--> inner
+//     inner --res.1--> raw --norm2, + h0--> x2 --down--> half --gru.1--> h1 (half) --up2--> x3
+//     [x3; x2; x0] --head.0--> raw --norm3--> y0 --head.1--> raw --norm4, + y0--> y1
+//     y1 --head.2--> codes
+//
+// A worker's scratch is the largest of: a tile with its rim of up to three maps and what a
+// convolution needs; a GRU's; the half GRU's, then `down` of its tile and 2 more on each side.
 #include "src/model/encode/thesis_encoder.h"
 
 #include "src/kernels/vector_kernels.h"
@@ -11,6 +22,7 @@
 namespace eventide {
 namespace {
 
+/// Full-size tiles are those in which changes of codes are told.
 constexpr int kSide = kLatentSide, kHalfSide = 24;
 
 }  // namespace
@@ -142,6 +154,12 @@ void ThesisEncoder::keep_sums(std::size_t i) noexcept {
     }
 }
 
+/// mean_c and variance_c from the tiles' sums, then norm(x)_c = scale_c x + shift_c:
+///
+///     scale_c = gamma_c / sqrt(variance_c + 1e-5)
+///     shift_c = beta_c - mean_c scale_c + gamma_c alpha_c (mean_c - M) / sqrt(V + 1e-5)
+///
+/// M, V: mean and unbiased variance of the means (`grand`, `spread`).
 void ThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, PaddedMap& to) noexcept {
     constexpr double kEpsilon = 1e-5;
     const auto channels = std::size_t(channels_);
@@ -159,6 +177,7 @@ void ThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, PaddedMap
     const plain::NormWeights<float>& weights = norms_[norm];
     for (std::size_t c = 0; c < channels; ++c) {
         const double mean = total(c);
+        // E[x^2] - E[x]^2, which rounding may leave below 0.
         const double variance = std::max(total(channels + c) - mean * mean, 0.0);
         const double scale = weights.gamma[c] / std::sqrt(variance + kEpsilon);
         scale_[c] = float(scale);
@@ -192,6 +211,7 @@ void ThesisEncoder::step_full() noexcept {
 /// h1 <- gru.1(elu(down x2), h1)
 void ThesisEncoder::step_half() noexcept {
     runner_.over(half_tiles_, [&](std::size_t i, const Tile&, float* scratch) {
+        // down of a tile and 2 more on each side, in float32: at most 28 x 28 pixels.
         float* wide = scratch + half_gru_.scratch_size();
         half_gru_.step(states_[1], i, nullptr, scratch, [&](const ConvGru::Target& target) {
             const Tile& region = target.region;
@@ -224,6 +244,8 @@ void ThesisEncoder::join_head() noexcept {
         ConvArea call;
         call.in[0] = {scratch, row};
         float* rest = scratch + area;
+        // Scratch: up2(h1) of the tile and a rim of 1, then, where layers read bf16, x2 and x0 of
+        // the same pixels; in float32 these are read where they lie.
         for (std::size_t n = 1; n < 3; ++n) {
             const PaddedMap& from = n == 1 ? x2_ : x0_;
             call.in[n] = {from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()};

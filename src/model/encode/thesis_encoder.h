@@ -48,6 +48,8 @@ private:
     ConvGru full_gru_, half_gru_;
     PaddedMap x0_, inner_, x2_, y0_, y1_;
     Array3<float> raw_;
+    // Of raw_, written by the worker that writes the tile; added up in the order of tiles, so that
+    // no bit depends on threads.
     std::vector<double> sums_;          // [tile][sum, sum of squares][C]
     std::vector<float> scale_, shift_;  // [C]
 };

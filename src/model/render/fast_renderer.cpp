@@ -36,6 +36,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
                    latent_samples(sensor_width, config_.latent_stride), options, arithmetic) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const auto inputs = std::size_t(first.shape[1]);
+    // The last three inputs of layer 1, [H_1][27 D + 3]: t - t_v, x - x_v, y - y_v.
     for (std::size_t o = 0; o < std::size_t(first_); ++o)
         for (std::size_t d = 0; d < 3; ++d)
             slope_[d].push_back(first.values[(o + 1) * inputs - 3 + d]);
@@ -51,8 +52,10 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
             last_bias_ = bias;
         }
     }
+    // `base` of render_span(), then three maps of a block (run_blocks()).
     scratch_.assign(kWorkers, FloatBuffer(std::size_t(first_) +
                                           std::size_t(kBlock) * 3 * std::size_t(widest_)));
+    // Sized by lay_out(), as it depends on the frame.
     row_sums_.resize(kWorkers);
 }
 
@@ -77,6 +80,7 @@ void FastRenderer::lay_out(const FrameGeometry& geometry) {
     kept_.make_room(geometry, layout_.tiles());
     spans_.reserve(std::size_t(geometry.part_height) *
                    std::size_t(layout_.columns.count() / 2 + 1));
+    // Six rows of part_width numbers: mu, ln sigma and square, twice.
     // What members have given together, and what one gives.
     for (FloatBuffer& sums : row_sums_) sums.resize(6 * std::size_t(geometry.part_width));
     laid_out_ = geometry;
@@ -120,6 +124,12 @@ void FastRenderer::render(const CodeChoice& codes, const FrameGeometry& geometry
     if (sigma != nullptr) std::ranges::copy(kept.sigma, out.sigma);
 }
 
+/// Codes read: sample k + index reads z_{k+index-1} up to `newest`.
+///
+///     t.index 0, next 2 known     z_{k-1} .. z_{k+2}
+///     t.index 0, next known       z_{k-1} .. z_{k+1}
+///     t.index 0                   z_{k-1}, z_k
+///     t.index -1, a fading edge   z_{k-2} .. z_k
 FrameKind FastRenderer::kind_of(const CodeChoice& codes, const Job& job,
                                 bool has_sigma) const noexcept {
     const int index = job.t.index;
@@ -149,6 +159,10 @@ bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
     return true;
 }
 
+/// Of a row of tiles with rows 10 to 41 and five tiles, of which o are out of date:
+///
+///     tiles     0    1    2    3    4
+///               o    o         o         spans {10, 0, 2}, {10, 3, 4}, then {11, 0, 2}, ...
 void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept {
     spans_.clear();
     const int columns = layout_.columns.count();
@@ -185,6 +199,12 @@ void FastRenderer::render_spans(const Job& job, const Target& target) noexcept {
     });
 }
 
+/// Up to 8 members, added up in this order whichever span a pixel is in:
+///
+///     for time a, row b        base = dt_a slope_t + dy_b slope_y, weight w_a w_b
+///       for side 0, 1          left samples, then right ones: + dx slope_x, weight times w_x
+///
+///     mu = sum w mu_i,  ln sigma = sum w s_i  or  sigma^2 = sum w (sigma_i^2 + mu_i^2) - mu^2
 void FastRenderer::render_span(const Job& job, const Span& span, const Target& target,
                                std::size_t worker) noexcept {
     const int width = job.geometry.part_width;
@@ -206,6 +226,7 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
             base[o] = slope_[0][o] * float(job.t.offset[a]) + slope_[2][o] * float(y.offset[b]);
         const int sample = y.index + int(b);
         const Array3<float>& sums = job.sums[a]->values;
+        // The row of samples below is the next that rows of pixels further down read.
         const std::ptrdiff_t ahead =
             sample + 1 < sums.height() ? std::ptrdiff_t(sums.width()) * sums.channels() : 0;
         for (std::size_t side = 0; side < 2; ++side)
@@ -221,6 +242,7 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
                                     end - begin);
         return;
     }
+    // Rounding may leave a variance below 0.
     for (std::size_t i = begin; i < end; ++i) {
         const float mu = blended[i], square = blended[2 * count + i];
         sigma[i] = config_.sigma_scale * std::sqrt(std::max(square - mu * mu, 0.0F));

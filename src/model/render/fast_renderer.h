@@ -39,6 +39,7 @@ private:
         float* sigma;  ///< may be null
     };
     /// Everything about a frame but its pixels.
+    /// sums[0] is of event window k + t.index, sums[1] of the one after it.
     struct Job {
         const FrameGeometry& geometry;
         SigmaRule rule;
@@ -63,6 +64,7 @@ private:
     void find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept;
     bool is_up_to_date(const KeptFrame& kept, int row, int column,
                        const CodeChoice& codes) const noexcept;
+    /// Spans are shared among workers; no two write the same pixels.
     void render_spans(const Job& job, const Target& target) noexcept;
     void render_span(const Job& job, const Span& span, const Target& target,
                      std::size_t worker) noexcept;
@@ -71,6 +73,7 @@ private:
                   float* scratch) const noexcept;
     /// What a member gives each pixel of a span, not yet added to what others do.
     struct Outputs {
+        // [pixels of the span that have a sample on this side], without gaps.
         float *mu, *log_sigma, *square;  // square: null where not needed
     };
     void run_blocks(const OffsetRows& all, const Outputs& out, float* scratch) const noexcept;

@@ -6,6 +6,11 @@
 
 namespace eventide {
 
+/// What a member gives goes to the second half of row_sums_, pixel after pixel of its side's list,
+/// and from there to the pixels of the row:
+///
+///     span of pixels 0 .. 6, side 1     part       j = 0   1   2
+///                                       blended        1   3   5     (FrameColumns::pixel)
 void FastRenderer::evaluate(const Member& member, const Span& span, float* blended, int width,
                             float* scratch) const noexcept {
     const FrameColumns& columns = layout_.pixels;
@@ -22,6 +27,7 @@ void FastRenderer::evaluate(const Member& member, const Span& span, float* blend
                             .slope = slope_[1].data(),
                             .pixels = int(pixels),
                             .width = first_};
+    // All layers in one kernel where there is one for it; else block by block.
     if (layers_.size() != 1 || !layers_[0].run(HiddenRows{.offset = offset,
                                                           .last_weight = last_weight_.data(),
                                                           .last_bias = last_bias_.data(),
@@ -90,6 +96,7 @@ const float* FastRenderer::run_layers(const float* activations, int pixels,
     float* out = room;
     for (const PackedWeights& layer : layers_) {
         const bool is_last = &layer == &layers_.back();
+        // Pixels are the "outputs" of an area, each of which reads one stretch: itself.
         const Stretch stretch{in, layer.step(), 0, layer.step()};
         DotArea area;
         area.stretches = &stretch;
@@ -104,6 +111,7 @@ const float* FastRenderer::run_layers(const float* activations, int pixels,
         out = out == room ? room + block : room;
     }
     if (!layers_.empty() || numbers_.bf16() == nullptr) return in;
+    // No hidden layer behind the first, whose result is bf16.
     numbers_.to_float(activations, std::size_t(pixels), first_, room);
     return room;
 }

@@ -15,6 +15,7 @@ AxisTiles cut(int n, const std::vector<int>& edges, const At& at) {
         tiles.begin.push_back(i);
         bool reads_next = false;
         for (; i < n; ++i) {
+            // Pixels belong to the tile of their first sample; the second may be the next tile's.
             const AxisSamples samples = at(i);
             if (samples.index >= edges[t + 1]) break;
             reads_next |= samples.weight[1] != 0 && samples.index + 1 >= edges[t + 1];

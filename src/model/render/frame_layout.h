@@ -19,6 +19,14 @@ struct AxisTiles {
 };
 
 /// What a frame's columns read; the same for all its rows.
+/// For 7 pixels over 4 samples of stride 1 (sample_axis()), linear:
+///
+///     side 0: pixel     0    1    2    3    4    5    6       those with a left sample
+///             column    0    0    1    1    2    2    3       that sample
+///             weight    1    .5   1    .5   1    .5   1
+///     side 1: pixel          1         3         5            those between two
+///             column         1         2         3
+///             weight         .5        .5        .5
 struct FrameColumns {
     // By side: the pixels that use their left (0) or right (1) sample.
     std::array<std::vector<int>, 2> pixel, column;
@@ -26,6 +34,8 @@ struct FrameColumns {
     std::array<std::vector<std::size_t>, 2> tile;  ///< where tile c begins; one more than tiles
 };
 
+/// Tiles are those of the latent map, in its order: row of tiles times columns.count() + column.
+/// Those in which no pixel of the frame has its first sample are counted, too.
 struct FrameLayout {
     AxisTiles rows, columns;
     FrameColumns pixels;

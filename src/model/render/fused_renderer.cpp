@@ -51,6 +51,10 @@ void FusedRenderer::give(ReferenceImage image) noexcept {
     ++dropped_;
 }
 
+/// With lookahead 1 window n waits for the images before n + 1 ends:
+///
+///     push()     n - 1    n              n + 1
+///     settles             n - 1          n            advance(), then the images until its end
 void FusedRenderer::push(const Window& window, const Array2<float>& events) noexcept {
     active_ = active_ || (!images_.empty() && images_.front().t <= window.end);
     if (!active_) return;
@@ -81,6 +85,7 @@ void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexc
 }
 
 void FusedRenderer::render(const RenderRequest& request, Frame& frame) noexcept {
+    // The frame's own window and those before it, where they still wait.
     while (waiting_count_ > 0 && waiting_[oldest_].window.begin < request.t) settle_oldest();
     renderer_.render(request, frame);
     if (!active_) return;

@@ -45,6 +45,8 @@ public:
     static constexpr std::size_t kMaxWaiting = 64;
 
 private:
+    /// A window and its events, until the images that frames of it may know have come: a ring, from
+    /// oldest_ on waiting_count_ of 3.
     struct Waiting {
         Window window{};
         Array2<float> events;

@@ -11,6 +11,7 @@ namespace eventide {
 namespace {
 
 // Each slot of the past takes at least this long: 12 of them reach back 200 ms and more.
+// 11 whole ones, 200.2 ms, beside the one that is being filled.
 constexpr SensorDuration kPastSlot{18'200};
 // Standard deviation of a camera's own images.
 constexpr float kImageNoise = .02F;
@@ -88,12 +89,14 @@ bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) no
     std::ranges::copy(now.correction.values(), residual_.values().begin());
     fill(trust_, 0);
     const int columns = image.pixels.width() / image.channels;
+    // Image pixel (y, x) is sensor pixel (y + y0, x + x0), as far as there is one.
     for (int y = std::max(0, -image.y0); y < std::min(image.pixels.height(), height_ - image.y0);
          ++y)
         for (int x = std::max(0, -image.x0); x < std::min(columns, width_ - image.x0); ++x) {
             const float seen = grey_at(image, y, x);
             const int v = y + image.y0, u = x + image.x0;
             const float shown = rendered.intensity(v, u);
+            // A residual is image - mu; where the image tells nothing, what is expected already.
             const float before = shown + residual_(v, u);
             // Beyond the ends of the image's range the truth is at least as dark or bright.
             const bool beyond =
@@ -135,9 +138,12 @@ void ImageFusion::mix_row(const Array2<float>& before, const Array2<float>& afte
     }
 }
 
+/// intensity += correction, sigma^2 = v sigma^2 + (1 - v) .02^2 with v = variance: both linear in
+/// time between the ends of two windows, and in place between the sensor's pixels.
 void ImageFusion::apply(const RenderRequest& request, Frame& frame) noexcept {
     assert(frame.intensity.width() == int(columns_.size()));
     std::uint64_t k = windows_;
+    // The window that the frame is in: the newest or one of the two before it.
     while (k > 1 && k + 2 > windows_ && frame.t <= at_end_of(k).window.begin) --k;
     const Expected &after = at_end_of(k), &before = at_end_of(k - 1);
     const double width = double(after.window.width().count());

@@ -27,6 +27,10 @@ struct LinearTap {
 ///
 /// Between the edges of a window the correction goes over linearly from what it was at the end of
 /// the window before to what it is now, so that an image does not make frames jump.
+///
+///     event windows    n - 3  |  n - 2  |  n - 1  |  n  |
+///     expected_        at each of these four ends, that of window n in slot n % 4
+///     apply()                 (- in any of these three: from one end to the next -)
 class ImageFusion {
 public:
     ImageFusion(int sensor_width, int sensor_height);
@@ -72,6 +76,7 @@ private:
     ResidualPyramid pyramid_;
     std::uint64_t windows_ = 0;         // so many came
     std::array<Expected, 4> expected_;  // that of window n at n % 4
+    // A ring: the newest slot is filled until it is 18.2 ms wide, then the oldest begins anew.
     std::array<Past, 12> past_;
     std::size_t past_newest_ = 0;
     Array2<float> residual_, trust_, since_;

@@ -32,6 +32,7 @@ KeptFrame& KeptFrames::choose(const FrameKind& kind, double fraction, double bou
     const std::span frames = std::span{frames_}.first(count_);
     KeptFrame* chosen = &*std::ranges::min_element(frames, {}, apart);
     if (apart(*chosen) > bound) chosen = &*std::ranges::min_element(frames, {}, &KeptFrame::used);
+    // Of the same kind it keeps its tiles' stamps: what is still true of them saves rendering.
     if (chosen->kind != kind) std::ranges::fill(chosen->tiles, KeptFrame::Stamp{});
     chosen->kind = kind;
     chosen->fraction = fraction;

@@ -38,6 +38,9 @@ struct KeptFrame {
 
 /// As many frames as fit into kMaxBytes, at least one and at most kMaxFrames: a rate of frames
 /// that divides the event window's comes back to the same few places in it.
+///
+///     whole frame    240x180    640x480    1280x720
+///     frames         16         6          2           two maps of float32 each
 class KeptFrames {
 public:
     static constexpr std::size_t kMaxBytes = std::size_t{16} << 20;

@@ -80,6 +80,7 @@ private:
         T mu, log_sigma;
     };
 
+    /// out[o] = bias[o] + sum of weight[o][i] in[i]
     static std::vector<T> linear(const Layer& layer, const std::vector<T>& in) {
         std::vector<T> out = layer.bias;
         for (std::size_t o = 0; o < out.size(); ++o)
@@ -106,6 +107,8 @@ private:
         return dk == -1 && dt == 1 ? nullptr : codes[std::size_t(2 + dk + dt)];
     }
 
+    /// Input n D + d is number d of the code at place n = (dt + 1) area + (dy + reach) side + dx +
+    /// reach; zero where there is none.
     void unfold(const Codes<T>& codes, int dk, int j, int i, std::vector<T>& input) const {
         const auto depth = std::size_t(config_.latent);
         std::ranges::fill(input, T(0));
@@ -128,6 +131,7 @@ private:
         for (int dt = -1; dt <= 1; ++dt) {
             ConvWeights<T> part{
                 first.out, config_.latent, {}, std::vector<T>(first.bias.size()), side};
+            // Three convolutions, one a code, of which the first alone adds the bias.
             if (dt == -1) part.bias = first.bias;
             for (int o = 0; o < first.out; ++o)
                 for (int d = 0; d < config_.latent; ++d)
@@ -143,6 +147,8 @@ private:
     }
 
     /// Local ensemble: evaluate(dk, j, i, offset) at the samples around each query.
+    /// mu = sum w mu_i; ln sigma = sum w s_i (log_blend) or sigma^2 = sum w (sigma_i^2 + mu_i^2) -
+    /// mu^2 (mixture); then sigma times sigma_scale.
     template <typename Evaluate>
     RenderedFrame<T> blend(const Codes<T>& codes, double fraction, const FrameGeometry& geometry,
                            SigmaRule rule, Evaluate evaluate) const {

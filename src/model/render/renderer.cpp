@@ -116,6 +116,7 @@ void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
     // A time that is not ready() shows the nearest event window kept: wrong, but never unsafe.
     if (at.k > window_.newest()) at = {window_.newest(), 1};
     if (at.k == 0)
+        // The oldest k whose z_{k-2} is still kept.
         at = {std::max<std::int64_t>(1, window_.newest() - LatentWindow::kLatentsKept + 3), 0};
     const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
     const CodeChoice codes{at.k,
@@ -130,6 +131,7 @@ void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
     core_->render(codes, geometry, request.sigma_rule.value_or(config_.sigma_rule), frame.intensity,
                   request.want_sigma ? &frame.sigma : nullptr);
     stamp_frame(request.t, 0, window_.stamp(at.k), frame);
+    // Of the newest event window that the frame may read.
     frame.arrived = window_.stamp(std::min(window_.newest(), at.k + request.lookahead)).arrived;
 }
 

@@ -16,6 +16,7 @@ inline int latent_samples(int sensor_size, int stride) {
 /// The one or two samples around a query along one axis. Sample `index + i` lies `offset[i]` before
 /// the query (offset = query - sample) and has weight `weight[i]`; a sample of weight 0 is not
 /// evaluated.
+/// Weights add up to 1. As constructed: on sample 0, alone.
 struct AxisSamples {
     int index = 0;
     std::array<double, 2> weight{1, 0};
@@ -31,6 +32,14 @@ inline double blend_weight(double fraction, Blend blend) {
 /// Output sample i of out_size, spread align-corners over sensor_size pixels, among samples at
 /// every `stride`-th pixel. Past the last sample only that one is used, with its true offset.
 /// Offsets are in latent pixels.
+///
+/// In latent pixels the query lies at i (sensor_size - 1) / ((out_size - 1) stride). 7 pixels over
+/// a sensor of 4, stride 1, linear:
+///
+///     i                      0      1      2      3      4      5      6
+///     index                  0      0      1      1      2      2      3
+///     weight of index        1      .5     1      .5     1      .5     1
+///     weight of index + 1    0      .5     0      .5     0      .5     0
 inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride, Blend blend) {
     const int samples = latent_samples(sensor_size, stride);
     if (out_size == 1) return {};
@@ -49,6 +58,11 @@ inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride,
 /// The one or two samples around a time in event window k (docs/model.md, "Time"): those of event
 /// frames k + index and k + index + 1. A live edge that fades takes k - 1 as it was shown last
 /// (`from_before`: z_k is not read by it) and k.
+///
+///     samples              next known    jump    fade
+///     index, index + 1     k, k + 1      k       k - 1, k
+///     offsets              f, f - 1      f       1, f        f: `fraction`
+///     weights              1 - f, f      1       1 - f, f
 inline AxisSamples sample_time(double fraction, bool next_known, bool from_before) {
     AxisSamples found;
     if (next_known) {
