@@ -15,5 +15,7 @@ build=build/dev
 ctest --test-dir "$build" --output-on-failure \
   -R '^(FullDisk|Signals|ExitCodes|DavisUnplugged|DavisFaults|DvxplorerFaults|Live)\.|^Pipeline\..*(Slow|Error|Failed)'
 
-# What a thousand times opened and closed leaves behind.
+# What a thousand times opened and closed leaves behind: cameras in software and what goes over networks, then recordings,
+# files and networks.
+EVENTIDE_OPENINGS=1000 ctest --test-dir "$build" --output-on-failure -R 'UsbOpenings\.|LeavesNothingBehind'
 "$build/apps/cli/eventide" stress --cases 'open-*'

@@ -64,7 +64,7 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
                      const Optimiser& optimiser) {
     TensorFile file;
     file.metadata = {{"format", "eventide-checkpoint"},
-                     {"window", exact(double(checkpoint.window))},
+                     {"window", exact(double(checkpoint.segment))},
                      {"steps", exact(double(optimiser.steps))},
                      {"elapsed_minutes", exact(checkpoint.elapsed_minutes)},
                      {"best_score", exact(checkpoint.best_score)},
@@ -105,7 +105,7 @@ Checkpoint load_checkpoint(const std::filesystem::path& path, Optimiser& optimis
     const std::string name = path.string();
     Checkpoint checkpoint;
     checkpoint.options = checkpoint_options(path);
-    checkpoint.window = std::int64_t(number(file, name, "window"));
+    checkpoint.segment = std::int64_t(number(file, name, "window"));
     checkpoint.elapsed_minutes = number(file, name, "elapsed_minutes");
     checkpoint.best_score = number(file, name, "best_score");
     optimiser.steps = std::int64_t(number(file, name, "steps"));

@@ -12,7 +12,7 @@
 namespace eventide {
 
 struct Checkpoint {
-    std::int64_t window = 0;  ///< the next one; as many steps are done
+    std::int64_t segment = 0;  ///< the next one; as many steps are done
     double elapsed_minutes = 0;
     double best_score = 1e9;                       ///< of the validations so far
     std::string options;                           ///< OptionTable::record()

@@ -81,7 +81,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
             options_.data, std::move(validation_textures), device_);
     feed_ = std::make_unique<DataLoader>(options_.data, std::move(textures),
                                          options.threads * options.streams, options.groups,
-                                         progress_.window);
+                                         progress_.segment);
 }
 
 /// A run may go on with other streams or another crop: its states then begin empty.
@@ -101,14 +101,14 @@ std::filesystem::path Trainer::file(const char* name) const {
 }
 
 bool Trainer::finished() const {
-    return options_.steps > 0 ? progress_.window >= options_.steps
+    return options_.steps > 0 ? progress_.segment >= options_.steps
                               : progress_.elapsed_minutes >= options_.minutes;
 }
 
 double Trainer::learning_rate() const {
-    const double done = options_.steps > 0 ? double(progress_.window) / options_.steps
+    const double done = options_.steps > 0 ? double(progress_.segment) / options_.steps
                                            : progress_.elapsed_minutes / options_.minutes;
-    const double rise = std::min(1.0, double(progress_.window + 1) / (options_.warm_up + 1));
+    const double rise = std::min(1.0, double(progress_.segment + 1) / (options_.warm_up + 1));
     const double falling =
         std::clamp((done - options_.constant_share) / (1 - options_.constant_share), 0.0, 1.0);
     const double cosine = 0.5 * (1 + std::cos(std::numbers::pi * falling));
@@ -116,15 +116,15 @@ double Trainer::learning_rate() const {
            (options_.final_rate + (1 - options_.final_rate) * cosine);
 }
 
-Trainer::Share Trainer::run_share(std::span<const StreamWindow> windows, const WindowPlan& plan,
+Trainer::Share Trainer::run_share(std::span<const StreamSegment> segments, const SegmentPlan& plan,
                                   RecurrentState& recurrent) {
     at::set_num_threads(1);  // libgomp keeps the number per thread
-    const TrainingBatch batch = to_batch(windows, device_);
-    recurrent = begin_window(recurrent, batch.fresh);
+    const TrainingBatch batch = to_batch(segments, device_);
+    recurrent = begin_segment(recurrent, batch.fresh);
     const Parameters narrow =
         type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
     const Images images =
-        run_window(options_.model, narrow, plan, batch, options_.data.patch, recurrent);
+        run_segment(options_.model, narrow, plan, batch, options_.data.patch, recurrent);
     Share share;
     share.terms = loss(images, options_.loss, perceptual_.get(), options_.lpips_frames);
     std::vector<torch::Tensor> leaves;
@@ -143,17 +143,17 @@ Trainer::Share Trainer::run_share(std::span<const StreamWindow> windows, const W
 void Trainer::step() {
     const auto start = Clock::now();
     const double cpu_start = cpu_seconds();
-    const WindowPlan plan = window_plan(options_.data, progress_.window);
-    const std::vector<StreamWindow> windows = feed_->next();
+    const SegmentPlan plan = segment_plan(options_.data, progress_.segment);
+    const std::vector<StreamSegment> segments = feed_->next();
     std::vector<Share> shares(std::size_t(options_.threads));
     const std::span<RecurrentState> recurrent_states =
         std::span{progress_.recurrent_states}.subspan(
-            std::size_t(progress_.window % options_.groups) * shares.size(), shares.size());
+            std::size_t(progress_.segment % options_.groups) * shares.size(), shares.size());
     const auto streams = std::size_t(options_.streams);
     {
         std::vector<std::jthread> threads;
         const auto work = [&](std::size_t i) {
-            shares[i] = run_share(std::span{windows}.subspan(i * streams, streams), plan,
+            shares[i] = run_share(std::span{segments}.subspan(i * streams, streams), plan,
                                   recurrent_states[i]);
         };
         for (std::size_t i = 1; i < shares.size(); ++i) threads.emplace_back(work, i);
@@ -172,12 +172,12 @@ void Trainer::step() {
     torch::Tensor& of_inputs = gradients.at("encoder.in.weight");
     of_inputs = of_inputs * input_mask_;  // what starts at 0 stays there
     const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
-    if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next windows
+    if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next segments
         ++skipped_;
         for (RecurrentState& recurrent : recurrent_states)
-            recurrent = begin_window(recurrent, std::vector<bool>(streams, true));
+            recurrent = begin_segment(recurrent, std::vector<bool>(streams, true));
     }
-    ++progress_.window;
+    ++progress_.segment;
     const double seconds = seconds_since(start);
     progress_.elapsed_minutes +=
         (options_.clock == "cpu" ? cpu_seconds() - cpu_start : seconds) / 60;
@@ -237,7 +237,7 @@ Model Trainer::finished_model() const {
         model.weights = load_model(file("best.safetensors")).weights;
     std::ostringstream card;
     card << options_.card << (options_.card.empty() ? "" : " ")
-         << "Trained by eventide-train: " << progress_.window << " steps, "
+         << "Trained by eventide-train: " << progress_.segment << " steps, "
          << std::lround(progress_.elapsed_minutes) << " minutes. ";
     if (validation_ != nullptr) {
         const Parameters weights = to_parameters(model.weights, device_);

@@ -1,4 +1,4 @@
-// The loop: windows in, weights out, until the budget is spent or somebody asks it to stop.
+// The loop: segments in, weights out, until the budget is spent or somebody asks it to stop.
 #pragma once
 
 #include "apps/train/checkpoint.h"
@@ -30,7 +30,7 @@ public:
     /// on held-out scenes and the card written.
     Model finished_model() const;
 
-    std::int64_t steps() const { return progress_.window; }
+    std::int64_t steps() const { return progress_.segment; }
     const Parameters& parameters() const { return optimiser_.parameters; }
 
 private:
@@ -42,9 +42,9 @@ private:
     bool finished() const;
     double learning_rate() const;
     void step();
-    Share run_share(std::span<const StreamWindow> windows, const WindowPlan& plan,
+    Share run_share(std::span<const StreamSegment> segments, const SegmentPlan& plan,
                     RecurrentState& recurrent);
-    Mark mark() const { return {progress_.window, progress_.elapsed_minutes}; }
+    Mark mark() const { return {progress_.segment, progress_.elapsed_minutes}; }
     void validate();
     void checkpoint();
     std::filesystem::path file(const char* name) const;

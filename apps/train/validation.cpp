@@ -17,10 +17,10 @@ Validation::Validation(const ValidationSettings& settings, DataSettings data,
     data_.episode = {double(settings.event_windows), double(settings.event_windows)};
     data_.whole_probability = 1;
     data_.seed = settings.seed;
-    plan_ = window_plan(data_, 0);
+    plan_ = segment_plan(data_, 0);
     for (int scene = 0; scene < settings.scenes; ++scene) {
-        const StreamWindow window = SceneStream{data_, textures, {.stream = scene}, 0}.next();
-        scenes_.push_back(to_batch({&window, 1}, device));
+        const StreamSegment segment = SceneStream{data_, textures, {.stream = scene}, 0}.next();
+        scenes_.push_back(to_batch({&segment, 1}, device));
     }
 }
 
@@ -30,9 +30,9 @@ Images Validation::render_scene(const ModelConfig& config, const Parameters& par
     const torch::Tensor& grid = batch.grids[0];
     RecurrentState recurrent = empty_recurrent_state(config, 1, grid.size(2), grid.size(3),
                                                      grid.options().dtype(torch::kFloat));
-    WindowPlan plan = plan_;
+    SegmentPlan plan = plan_;
     std::fill(plan.lookahead.begin(), plan.lookahead.end(), lookahead);
-    return run_window(config, parameters, plan, batch, data_.patch, recurrent);
+    return run_segment(config, parameters, plan, batch, data_.patch, recurrent);
 }
 
 Validation::Scores Validation::judge(const ModelConfig& config, const Parameters& parameters,

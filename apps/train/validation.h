@@ -41,7 +41,7 @@ private:
                         int lookahead) const;
 
     DataSettings data_;
-    WindowPlan plan_;
+    SegmentPlan plan_;
     std::vector<TrainingBatch> scenes_;
 };
 

@@ -32,7 +32,8 @@ struct Stretch {
 };
 
 /// out[y][x][o] = act(bias[o] + sum over stretches s, k of in_s[y pitch_s + x step_s + k]
-/// weight[s][k][o]). Every output is summed in the order of s and k, whatever the blocking.
+/// weight[s][k][o]). Every output is summed in the order of s and k,
+/// whatever the blocking; within one product AMX has an order of its own.
 /// In float32 output o of pixel (y, x) is number y out_pitch + x out_step + o of `out`; as bf16, of
 /// which two fill a unit, number 2 (y out_pitch + x out_step) + o.
 struct DotArea {

@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace eventide::HWY_NAMESPACE {
 
-/// Calls body(vector, vector out)-like step over n numbers, the rest through a short copy, so that
+/// step.whole(i) for each full vector of n numbers, step.some(i, rest) for what is left, so that
 /// nothing outside is read or written.
 template <typename Step>
 HWY_INLINE void over(std::size_t n, Step step) {

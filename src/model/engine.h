@@ -1,4 +1,4 @@
-// How a network is run: by the readable reference or by the fast kernels, and with which numbers.
+// How a network is run: by plain code or by the fast kernels, and with which numbers.
 #pragma once
 
 #include "src/core/parallel_for.h"
@@ -8,7 +8,7 @@
 namespace eventide {
 
 enum class Engine {
-    plain,  ///< the reference: readable, slow, allocates
+    plain,  ///< readable, slow, allocates: judges the other
     fast,   ///< tiles over vector kernels; allocation-free once warm
 };
 

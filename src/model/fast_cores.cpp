@@ -9,7 +9,7 @@ namespace eventide {
 namespace {
 
 Arithmetic arithmetic_of(const EngineOptions& options) {
-    if (options.precision == Precision::bf16 && !bf16_available())
+    if (options.precision == Precision::bf16 && !options.emulate_bf16 && !bf16_available())
         throw Error(ErrorKind::usage,
                     "precision bf16: expected a processor with AVX512_BF16, found none; use f32");
     if (options.kernels == Kernels::onednn && !onednn_available())

@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -79,10 +78,6 @@ constexpr float kLargestBf16 = 0x1.fep127F;
 
 std::size_t bytes_of_number(const Tensor& tensor) {
     return tensor.bf16 ? sizeof(std::uint16_t) : sizeof(float);
-}
-
-float from_bf16(std::uint16_t half) {
-    return std::bit_cast<float>(std::uint32_t{half} << 16);
 }
 
 /// Where a tensor lies in the data part.

@@ -2,13 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <random>
-#include <thread>
 
 namespace eventide::test {
 
@@ -79,26 +75,6 @@ Streamed stream(DavisCamera& camera, UsbTestbed& bed, const DavisModel& model) {
     parser->finish(streamed.data);
     streamed.damaged = parser->damaged();
     return streamed;
-}
-
-Holdings holdings() {
-    const auto count = [](const char* folder) {
-        return std::size_t(std::distance(std::filesystem::directory_iterator{folder},
-                                         std::filesystem::directory_iterator{}));
-    };
-    return {count("/proc/self/fd"), count("/proc/self/task"), mallinfo2().uordblks};
-}
-
-Holdings holdings_down_to(const Holdings& wanted) {
-    using Clock = std::chrono::steady_clock;
-    const auto deadline = Clock::now() + std::chrono::seconds{10};
-    Holdings held = holdings();
-    while ((held.files > wanted.files || held.threads > wanted.threads) &&
-           Clock::now() < deadline) {
-        std::this_thread::yield();
-        held = holdings();
-    }
-    return held;
 }
 
 }  // namespace eventide::test

@@ -5,6 +5,7 @@
 #include "src/codec/parser.h"
 #include "src/core/error.h"
 #include "src/core/event.h"
+#include "tests/support/holdings.h"
 #include "tests/support/usb/davis_model.h"
 #include "tests/support/usb/davis_sensors.h"
 #include "tests/support/usb/usb_testbed.h"
@@ -55,15 +56,5 @@ struct PluggedIn {
     std::shared_ptr<testing_support::DavisModel> model;
     Batch seen;
 };
-
-/// What a leak would make grow: open files, threads, memory from malloc in use.
-struct Holdings {
-    std::size_t files = 0, threads = 0, bytes = 0;
-};
-Holdings holdings();
-/// The same, looked at until there are no more files and threads than so many: the test bus closes
-/// some of its own, and the kernel strikes an ended thread off, a little after it was asked. What
-/// is still too much after ten seconds has leaked.
-Holdings holdings_down_to(const Holdings& wanted);
 
 }  // namespace eventide::test

@@ -2,6 +2,7 @@
 #include "drivers/udp/udp_source.h"
 #include "replay/udp_target.h"
 #include "src/core/error.h"
+#include "tests/support/holdings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -122,6 +123,21 @@ TEST(Udp, NamesThatMakeNoSenseAreRefused) {
         refusal("//127.0.0.1:" + std::to_string(source.port()) + "?size=4x4", ErrorKind::device),
         HasSubstr("in use"));
     EXPECT_THROW(UdpTarget("udp://127.0.0.1:9?format=t16", {}), Error);
+}
+
+TEST(Udp, OpenedAndClosedLeavesNothingBehind) {
+    StreamHeader header;
+    header.width = 640;
+    header.height = 480;
+    Batch sent;
+    sent.events = random_events(3, 200, 5'000'000);
+    test::expect_nothing_left([&] {
+        UdpSource source = source_of("t64");
+        UdpTarget target(name_of(source, "t64"), header);
+        target.write(sent);
+        target.finish();
+        EXPECT_EQ(receive(source, sent.events.size()).events.size(), sent.events.size());
+    });
 }
 
 TEST(Udp, StopEndsAWaitingRead) {

@@ -5,6 +5,7 @@
 #include "replay/formats.h"
 #include "src/core/error.h"
 #include "tests/drivers/v4l2_sensor.h"
+#include "tests/support/holdings.h"
 #include "tests/support/preload.h"
 #include "tests/support/v4l2/v4l2_testbed.h"
 
@@ -219,6 +220,16 @@ TEST(V4l2Camera, SilenceIsATimeoutAndStopEnds) {
     EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
     camera.stop();
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
+}
+
+TEST(V4l2Camera, OpenedAndClosedLeavesNothingBehind) {
+    V4l2Testbed bed{sensor()};
+    test::expect_nothing_left([&] {
+        auto camera = open();
+        bed.give({bytes_of({time_high(1), time_low(5), row(7), column(3)})});
+        for (RawPacket packet; camera.read(packet) != ReadStatus::data;) continue;
+        camera.stop();
+    });
 }
 
 TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {

@@ -2,6 +2,7 @@
 // refusals.
 #include "pipeline/sinks/v4l2_output.h"
 #include "src/core/error.h"
+#include "tests/support/holdings.h"
 #include "tests/support/preload.h"
 #include "tests/support/v4l2/v4l2_testbed.h"
 
@@ -102,6 +103,15 @@ TEST(V4l2Output, NeverWaitsForADeviceThatTakesNothing) {
     for (int i = 0; i < 5; ++i) sink.write(frame(4, 4));
     EXPECT_EQ(bed.written().size(), 2U);
     EXPECT_EQ(sink.skipped(), 3U);
+}
+
+TEST(V4l2Output, OpenedAndClosedLeavesNothingBehind) {
+    V4l2Testbed bed{loopback({V4L2_PIX_FMT_GREY})};
+    test::expect_nothing_left([] {
+        V4l2OutputSink sink{node()};
+        sink.write(frame(3, 2));
+        sink.close();
+    });
 }
 
 TEST(V4l2Output, SaysWhyItCannotWrite) {

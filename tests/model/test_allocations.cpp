@@ -10,15 +10,17 @@
 namespace eventide {
 namespace {
 
-std::int64_t allocations_of(const ModelConfig& config, const EngineOptions& options) {
+std::int64_t allocations_of(const ModelConfig& config, const EngineOptions& options, int width = 80,
+                            Region part = {}) {
     const Model model = random_model(config, 1);
-    Encoder encoder{model, 80, 60, options};
-    Renderer renderer{model, 80, 60, options};
-    test::GridStream stream{config, 60, 80, 2};
+    Encoder encoder{model, width, 60, options};
+    Renderer renderer{model, width, 60, options};
+    test::GridStream stream{config, 60, width, 2};
     LatentMap latent = encoder.make_output();
     RenderRequest request;
     request.width = 100;
     request.height = 75;
+    request.region = part;
     Frame frame = renderer.make_output(request);
     std::int64_t counted = 0;
     for (int k = 0; k < 30; ++k) {
@@ -44,6 +46,12 @@ TEST(Allocations, NoneAfterConstruction) {
             if (backend.name == "emulated bf16" && config.encoder == EncoderKind::thesis) continue;
             EXPECT_EQ(allocations_of(config, backend.options), 0) << backend.name;
         }
+}
+
+TEST(Allocations, NoneForAPartThatMostTilesLieBeside) {
+    if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
+    const Region top{0, 0, 100, 3};
+    EXPECT_EQ(allocations_of(test::small_config(), {}, 20, top), 0);
 }
 
 TEST(Allocations, TheCounterFires) {

@@ -1,5 +1,5 @@
 // What a correction of frames keeps while the scene stands still, and loses where it moves.
-#include "src/model/encode/residual_pyramid.h"
+#include "src/model/render/residual_pyramid.h"
 
 #include <gtest/gtest.h>
 

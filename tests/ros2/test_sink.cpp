@@ -5,6 +5,7 @@
 #include "tests/pipeline/sinks/frames.h"
 #include "tests/ros2/image_cdr.h"
 #include "tests/ros2/topics.h"
+#include "tests/support/holdings.h"
 #include "tests/system/process.h"
 
 #include <gmock/gmock.h>
@@ -54,6 +55,15 @@ protected:
     std::vector<std::string> said_;
     TempFolder temp_;
 };
+
+/// The last of the process to leave the domain takes all of Cyclone DDS with it.
+TEST_F(Ros2SinkTest, OpenedAndClosedLeavesNothingBehind) {
+    expect_nothing_left([&] {
+        const auto sink = open();
+        sink->write(frame(0));
+        sink->close();
+    });
+}
 
 TEST_F(Ros2SinkTest, AnImageIsTheseBytes) {
     TopicReader reader{kImageType, name_ + "/image_raw"};

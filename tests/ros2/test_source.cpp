@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "tests/ros2/image_cdr.h"
 #include "tests/ros2/topics.h"
+#include "tests/support/holdings.h"
 #include "tests/system/process.h"
 
 #include <gmock/gmock.h>
@@ -115,6 +116,16 @@ TEST_F(Ros2SourceTest, GivesWhatIsPublishedInRosTime) {
         for (std::size_t k = 0; k < kMessages; ++k) EXPECT_EQ(heard.events[k], event(k)) << k;
         EXPECT_EQ(parser->damaged().total(), 0U);
     }
+}
+
+TEST_F(Ros2SourceTest, OpenedAndClosedLeavesNothingBehind) {
+    expect_nothing_left([&] {
+        EventPublisher publisher{name_};
+        const auto source = open(publisher, message(0));
+        const auto parser = source->make_parser();
+        publisher.publish(message(1));
+        EXPECT_EQ(read(*source, *parser, 2).events.size(), 2U);
+    });
 }
 
 TEST_F(Ros2SourceTest, AJumpOfTheNumbersIsAGap) {

@@ -1,6 +1,7 @@
 // A simulated camera as a source: names, bytes, silence, stopping.
 #include "drivers/simulated/simulated_camera.h"
 #include "src/core/error.h"
+#include "tests/support/holdings.h"
 
 #include <gtest/gtest.h>
 
@@ -43,6 +44,14 @@ TEST(SimulatedName, IsRefusedWhereItMakesNoSense) {
         EXPECT_THROW(parse_simulated_name(name), Error) << name;
     EXPECT_THROW(open_simulation("sim:demo?size=1x1"), Error);
     EXPECT_THROW(open_simulation("sim:demo?textures=/nowhere/at/all"), Error);
+}
+
+TEST(SimulatedCamera, OpenedAndClosedLeavesNothingBehind) {
+    test::expect_nothing_left([] {
+        const auto camera = open_simulation("sim:demo?size=40x30&seed=4&images=0");
+        for (RawPacket packet; camera->read(packet) != ReadStatus::data;) continue;
+        camera->stop();
+    });
 }
 
 TEST(SimulatedCamera, GivesTheRecordingOfItsSettingsAndEnds) {

@@ -37,6 +37,14 @@ TEST_F(Resources, OneIsTooLittleMemoryAndItIsSaidBeforeTheFirstFrame) {
     EXPECT_NE(large.error.find("for a sensor of 4096x4096 wants at least"), std::string::npos)
         << large.error;
     EXPECT_FALSE(std::filesystem::exists(temp_ / "a"));
+    const Result wide = with_memory(
+        3000, {"run", recording(), "--model", model(), "--size", "16384x16384", "--out", "null"},
+        folder);
+    EXPECT_EQ(wide.exit_code, 1) << wide.error;
+    EXPECT_NE(wide.error.find("a frame of 16384x16384 (--size, --roi) for a sensor of 64x48 wants "
+                              "at least 20"),
+              std::string::npos)
+        << wide.error;
 }
 
 /// The shipped network at a real sensor's size: libraries that make code and threads are in it.

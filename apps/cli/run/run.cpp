@@ -10,6 +10,7 @@
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
+#include "src/settings/values.h"
 
 #include <spdlog/spdlog.h>
 
@@ -137,10 +138,14 @@ Run::Run(Program& program, RunSettings& settings)
         pipeline_made_ = true;
     } catch (const std::bad_alloc&) {
         const auto& config = network_.config();
-        throw out_of_memory("the network with its buffers (--buffers-grids, --buffers-latents)",
-                            network_bytes(config, sensor_) +
-                                buffer_bytes(config, sensor_, pipeline_settings().buffers),
-                            sensor_);
+        const RenderRequest request = request_of(settings_, sensor_, lookahead_, undistortion_);
+        throw out_of_memory(
+            "the network with its buffers (--buffers-grids, --buffers-latents) and "
+            "a frame of " +
+                show_size({request.width, request.height}) + " (--size, --roi)",
+            network_bytes(config, sensor_) + frame_bytes(request) +
+                buffer_bytes(config, sensor_, pipeline_settings().buffers),
+            sensor_);
     }
 }
 

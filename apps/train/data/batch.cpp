@@ -15,7 +15,7 @@ RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t str
             .contiguous(torch::MemoryFormat::ChannelsLast)};
 }
 
-RecurrentState begin_window(const RecurrentState& recurrent, const std::vector<bool>& fresh) {
+RecurrentState begin_segment(const RecurrentState& recurrent, const std::vector<bool>& fresh) {
     std::vector<float> keep;
     for (const bool anew : fresh) keep.push_back(anew ? 0.0F : 1.0F);
     const auto factor = torch::tensor(keep).view({-1, 1, 1, 1}).to(recurrent.latent.options());
@@ -35,26 +35,27 @@ torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Devic
     return all.to(device).permute({0, 3, 1, 2});
 }
 
-TrainingBatch to_batch(std::span<const StreamWindow> windows, torch::Device device) {
+TrainingBatch to_batch(std::span<const StreamSegment> segments, torch::Device device) {
     TrainingBatch batch;
-    const StreamWindow& like = windows[0];
-    for (const StreamWindow& window : windows) batch.fresh.push_back(window.fresh);
+    const StreamSegment& like = segments[0];
+    for (const StreamSegment& segment : segments) batch.fresh.push_back(segment.fresh);
     for (std::size_t k = 0; k < like.grids.size(); ++k) {
         std::vector<const Array3<float>*> grids;
-        for (const StreamWindow& window : windows) grids.push_back(&window.grids[k]);
+        for (const StreamSegment& segment : segments) grids.push_back(&segment.grids[k]);
         batch.grids.push_back(to_torch(grids, device));
     }
-    const auto tasks = std::int64_t(like.f.size()), streams = std::int64_t(windows.size());
+    const auto tasks = std::int64_t(like.f.size()), streams = std::int64_t(segments.size());
     const int patch = like.truth[0].height();
     batch.truth = torch::empty({tasks * streams, patch, patch});
     float* out = batch.truth.data_ptr<float>();
     std::vector<float> weight;
     for (std::size_t i = 0; i < like.f.size(); ++i) {
         std::vector<float> f;
-        for (const StreamWindow& window : windows) {
-            f.push_back(window.f[i]);
-            weight.push_back(window.weight[i]);
-            out = std::copy(window.truth[i].values().begin(), window.truth[i].values().end(), out);
+        for (const StreamSegment& segment : segments) {
+            f.push_back(segment.f[i]);
+            weight.push_back(segment.weight[i]);
+            out =
+                std::copy(segment.truth[i].values().begin(), segment.truth[i].values().end(), out);
         }
         batch.f.push_back(torch::tensor(f).to(device));
     }
@@ -63,8 +64,8 @@ TrainingBatch to_batch(std::span<const StreamWindow> windows, torch::Device devi
     return batch;
 }
 
-Images run_window(const ModelConfig& config, const Parameters& parameters, const WindowPlan& plan,
-                  const TrainingBatch& batch, int patch, RecurrentState& recurrent) {
+Images run_segment(const ModelConfig& config, const Parameters& parameters, const SegmentPlan& plan,
+                   const TrainingBatch& batch, int patch, RecurrentState& recurrent) {
     const auto type = parameters.begin()->second.scalar_type();
     std::vector<torch::Tensor> z{recurrent.latent.to(type)};  // z[k + 1] belongs to frame k
     for (const torch::Tensor& grid : batch.grids) {
@@ -77,7 +78,7 @@ Images run_window(const ModelConfig& config, const Parameters& parameters, const
     std::vector<RenderTask> tasks;
     for (std::size_t i = 0; i < batch.f.size(); ++i) {
         const std::size_t k = std::size_t(plan.first_rendered) + i;
-        // Codes past the window's end are not known, whatever the lookahead.
+        // Codes past the segment's end are not known, whatever the lookahead.
         const auto code = [&](std::size_t ahead) {
             const bool known = int(ahead) <= plan.lookahead[i] && k + 1 + ahead < z.size();
             return known ? z[k + 1 + ahead] : torch::Tensor{};

@@ -12,7 +12,7 @@
 namespace eventide {
 namespace {
 
-constexpr std::size_t kWindowsAhead = 3;
+constexpr std::size_t kSegmentsAhead = 3;
 
 std::uint64_t seed_of(const DataSettings& settings, std::uint64_t a, std::uint64_t b) {
     return Random{settings.seed + 0x9e3779b97f4a7c15ULL * (a + 1)}.bits() ^
@@ -32,9 +32,9 @@ SceneSettings DataSettings::training_scenes() {
     return scene;
 }
 
-WindowPlan window_plan(const DataSettings& settings, std::int64_t window) {
-    Random random{seed_of(settings, 0, std::uint64_t(window))};
-    WindowPlan plan;
+SegmentPlan segment_plan(const DataSettings& settings, std::int64_t segment) {
+    Random random{seed_of(settings, 0, std::uint64_t(segment))};
+    SegmentPlan plan;
     plan.first_rendered = random.integer(0, settings.event_windows - settings.rendered);
     const double whole = settings.crop - 1;
     const double one_to_one = std::min(whole, settings.patch - 1.0);
@@ -149,17 +149,17 @@ struct SceneStream::Episode {
 
 SceneStream::SceneStream(const DataSettings& settings,
                          std::shared_ptr<const TextureLibrary> textures, StreamPlace place,
-                         std::int64_t first_window)
+                         std::int64_t first_segment)
     : settings_(settings), textures_(std::move(textures)), place_(place) {
-    // Turns of this stream before the run's window `first_window`.
-    const std::int64_t first = (first_window - place.group + place.groups - 1) / place.groups;
-    // Scenes that are over are skipped; the one under way is simulated again up to the window.
+    // Turns of this stream before the run's segment `first_segment`.
+    const std::int64_t first = (first_segment - place.group + place.groups - 1) / place.groups;
+    // Scenes that are over are skipped; the one under way is simulated again up to the segment.
     start_episode();
-    while (window_ + windows_left_ <= first) {
-        window_ += windows_left_;
+    while (segment_ + segments_left_ <= first) {
+        segment_ += segments_left_;
         start_episode();
     }
-    while (window_ < first) next();
+    while (segment_ < first) next();
 }
 
 SceneStream::~SceneStream() = default;
@@ -169,7 +169,7 @@ void SceneStream::start_episode() {
     now_.reset();
     Random random{seed_of(settings_, std::uint64_t(place_.stream) + 1, std::uint64_t(episode_))};
     const double event_windows = random.log_uniform(settings_.episode);
-    windows_left_ =
+    segments_left_ =
         std::max<std::int64_t>(1, std::llround(event_windows / settings_.event_windows));
 }
 
@@ -179,12 +179,12 @@ void SceneStream::open_episode() {
         ~seed_of(settings_, std::uint64_t(place_.stream) + 1, std::uint64_t(episode_)));
 }
 
-StreamWindow SceneStream::next() {
-    if (windows_left_ == 0) start_episode();
-    StreamWindow out;
+StreamSegment SceneStream::next() {
+    if (segments_left_ == 0) start_episode();
+    StreamSegment out;
     out.fresh = now_ == nullptr;
     if (out.fresh) open_episode();
-    const WindowPlan plan = window_plan(settings_, window_ * place_.groups + place_.group);
+    const SegmentPlan plan = segment_plan(settings_, segment_ * place_.groups + place_.group);
     Episode& episode = *now_;
     for (int k = 0; k < settings_.event_windows; ++k) {
         episode.advance();
@@ -200,39 +200,39 @@ StreamWindow SceneStream::next() {
         episode.stream.truth(episode.window.begin + SensorDuration{part}, plan.y0, plan.x0,
                              plan.span, plan.span, out.truth.back());
     }
-    ++window_;
-    --windows_left_;
+    ++segment_;
+    --segments_left_;
     return out;
 }
 
 DataLoader::DataLoader(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
-                       int streams, int groups, std::int64_t first_window)
+                       int streams, int groups, std::int64_t first_segment)
     : settings_(settings),
       textures_(std::move(textures)),
       streams_(streams),
       groups_(groups),
-      window_(first_window),
+      segment_(first_segment),
       slots_(std::size_t(streams * groups)) {
     for (int stream = 0; stream < streams * groups; ++stream) {
         const StreamPlace place{stream, stream / streams, groups};
-        threads_.emplace_back([this, place, first_window](std::stop_token stop) {
-            simulate(stop, place, first_window);
+        threads_.emplace_back([this, place, first_segment](std::stop_token stop) {
+            simulate(stop, place, first_segment);
         });
     }
 }
 
 DataLoader::~DataLoader() = default;
 
-void DataLoader::simulate(std::stop_token stop, StreamPlace place, std::int64_t first_window) {
+void DataLoader::simulate(std::stop_token stop, StreamPlace place, std::int64_t first_segment) {
     Slot& slot = slots_[std::size_t(place.stream)];
     try {
-        SceneStream source{settings_, textures_, place, first_window};
+        SceneStream source{settings_, textures_, place, first_segment};
         while (!stop.stop_requested()) {
-            StreamWindow window = source.next();
+            StreamSegment segment = source.next();
             std::unique_lock lock{mutex_};
-            if (!changed_.wait(lock, stop, [&] { return slot.ready.size() < kWindowsAhead; }))
+            if (!changed_.wait(lock, stop, [&] { return slot.ready.size() < kSegmentsAhead; }))
                 return;
-            slot.ready.push_back(std::move(window));
+            slot.ready.push_back(std::move(segment));
             changed_.notify_all();
         }
     } catch (...) {
@@ -242,18 +242,18 @@ void DataLoader::simulate(std::stop_token stop, StreamPlace place, std::int64_t 
     }
 }
 
-std::vector<StreamWindow> DataLoader::next() {
-    std::vector<StreamWindow> windows;
+std::vector<StreamSegment> DataLoader::next() {
+    std::vector<StreamSegment> segments;
     std::unique_lock lock{mutex_};
-    const auto group = std::size_t(window_++ % groups_), streams = std::size_t(streams_);
+    const auto group = std::size_t(segment_++ % groups_), streams = std::size_t(streams_);
     for (Slot& slot : std::span{slots_}.subspan(group * streams, streams)) {
         changed_.wait(lock, [&] { return !slot.ready.empty() || slot.failure; });
         if (slot.ready.empty()) std::rethrow_exception(slot.failure);
-        windows.push_back(std::move(slot.ready.front()));
+        segments.push_back(std::move(slot.ready.front()));
         slot.ready.pop_front();
     }
     changed_.notify_all();
-    return windows;
+    return segments;
 }
 
 }  // namespace eventide

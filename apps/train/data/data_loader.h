@@ -22,10 +22,10 @@ struct DataSettings {
     /// px, log-uniform per episode; width of that sensor, whose height is three quarters of it.
     /// Never smaller than the crop.
     Range sensor_width{128, 346};
-    int event_windows = 8;           ///< per window of training: gradients flow through one window
-    int rendered = 4;                ///< of them, consecutive, are compared with the truth
-    int patch = 64;                  ///< px, side of the images compared
-    Range episode{20, 400};          ///< log-uniform; event windows until a stream starts anew
+    int event_windows = 8;   ///< per segment, which is what a step sees: gradients flow through one
+    int rendered = 4;        ///< of them, consecutive, are compared with the truth
+    int patch = 64;          ///< px, side of the images compared
+    Range episode{20, 400};  ///< log-uniform; event windows until a stream starts anew
     Range window_s{.01, .1};         ///< log-uniform per episode; width of the event windows
     double window_jitter = .3;       ///< ln; widths within an episode differ by up to this ...
     double jitter_probability = .5;  ///< ... in this share of the episodes
@@ -46,16 +46,16 @@ struct DataSettings {
     static SceneSettings training_scenes();
 };
 
-/// What all streams of one window share, so that they are computed together.
-struct WindowPlan {
+/// What all streams of one segment share, so that they are computed together.
+struct SegmentPlan {
     int first_rendered = 0;           ///< of its event windows
     double y0 = 0, x0 = 0, span = 0;  ///< px, of the patch
     std::vector<int> lookahead;       ///< per rendered one: 0, 1 or 2
 };
-WindowPlan window_plan(const DataSettings& settings, std::int64_t window);
+SegmentPlan segment_plan(const DataSettings& settings, std::int64_t segment);
 
-/// One stream's part of a window.
-struct StreamWindow {
+/// One stream's part of a segment.
+struct StreamSegment {
     bool fresh = false;                ///< a new scene: the state before it is empty
     std::vector<Array3<float>> grids;  ///< per event window, [y][x][channel]
     std::vector<float> f;              ///< per rendered frame, instant in the event window (0, 1]
@@ -63,22 +63,22 @@ struct StreamWindow {
     std::vector<Array2<float>> truth;  ///< per rendered frame, patch x patch
 };
 
-/// Which stream, and how often its turn comes: window w of the run is made of the streams of group
-/// w % groups. Neighbouring steps then see other scenes, and scenes may be long all the same.
+/// Which stream, and how often its turn comes: segment n of the run is made of the streams of group
+/// n % groups. Neighbouring steps then see other scenes, and scenes may be long all the same.
 struct StreamPlace {
     int stream = 0;
     int group = 0, groups = 1;
 };
 
-/// Windows of one stream, one after the other; the same for the same settings and place.
+/// Segments of one stream, one after the other; the same for the same settings and place.
 class SceneStream {
 public:
-    /// Goes on where the run is at `first_window`.
+    /// Goes on where the run is at `first_segment`.
     SceneStream(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
-                StreamPlace place, std::int64_t first_window);
+                StreamPlace place, std::int64_t first_segment);
     ~SceneStream();
 
-    StreamWindow next();
+    StreamSegment next();
 
 private:
     struct Episode;
@@ -88,32 +88,32 @@ private:
     DataSettings settings_;
     std::shared_ptr<const TextureLibrary> textures_;
     StreamPlace place_;
-    std::int64_t window_ = 0, episode_ = -1, windows_left_ = 0;
+    std::int64_t segment_ = 0, episode_ = -1, segments_left_ = 0;
     std::unique_ptr<Episode> now_;
 };
 
-/// Streams that simulate ahead on threads of their own, a bounded number of windows.
+/// Streams that simulate ahead on threads of their own, a bounded number of segments.
 class DataLoader {
 public:
     /// `streams` in each of `groups`.
     DataLoader(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
-               int streams, int groups, std::int64_t first_window);
+               int streams, int groups, std::int64_t first_segment);
     ~DataLoader();
 
-    /// The next window of the streams whose turn it is; waits. Rethrows what a stream threw.
-    std::vector<StreamWindow> next();
+    /// The next segment of the streams whose turn it is; waits. Rethrows what a stream threw.
+    std::vector<StreamSegment> next();
 
 private:
     struct Slot {
-        std::deque<StreamWindow> ready;
+        std::deque<StreamSegment> ready;
         std::exception_ptr failure;
     };
-    void simulate(std::stop_token stop, StreamPlace place, std::int64_t first_window);
+    void simulate(std::stop_token stop, StreamPlace place, std::int64_t first_segment);
 
     DataSettings settings_;
     std::shared_ptr<const TextureLibrary> textures_;
     int streams_, groups_;
-    std::int64_t window_;
+    std::int64_t segment_;
     std::mutex mutex_;
     std::condition_variable_any changed_;
     std::vector<Slot> slots_;            // by mutex_

@@ -18,7 +18,7 @@ float second_of(std::uint32_t pair) {
 
 using Block = std::array<float, 2 * std::size_t{kBf16Lanes}>;
 
-/// A product of two bf16 numbers is exact in float32, so only the sums round, as in the processor.
+/// A product of two bf16 numbers is exact in float32, so only the sums round.
 /// Returns where the next block's weights are.
 const std::uint32_t* sum_block(const DotArea& r, int y, int x, int width,
                                const std::uint32_t* weight, Block& sums) {

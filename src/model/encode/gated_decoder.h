@@ -21,7 +21,7 @@ public:
     GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,
                  const Arithmetic& arithmetic);
 
-    /// Of the map of codes that run() writes.
+    /// Of the map of codes that write_codes() writes.
     Extent latent_size() const { return latent_size_; }
 
     /// Numbers run() needs for each worker.

@@ -1,7 +1,6 @@
 // See fast_renderer.h; docs/model.md has the formulas.
 #include "src/model/render/fast_renderer.h"
 
-#include "src/kernels/bf16_kernels.h"
 #include "src/kernels/vector_kernels.h"
 #include "src/nn/load_weights.h"
 
@@ -176,6 +175,7 @@ void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexc
             stamp.k = codes.k;
             if (is_kept) continue;
             stamp.fraction = codes.fraction;
+            if (first_row == last_row) continue;  // beside the part of the frame that is asked for
             if (spans_.size() > begin && spans_.back().last == c)
                 spans_.back().last = c + 1;
             else
@@ -183,7 +183,6 @@ void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexc
         }
         // Rows below the first are cut as it is.
         const auto end = spans_.size();
-        if (first_row == last_row) spans_.resize(begin);
         for (int row = first_row + 1; row < last_row; ++row)
             for (auto i = begin; i < end; ++i)
                 spans_.push_back({row, spans_[i].first, spans_[i].last});

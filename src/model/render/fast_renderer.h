@@ -3,7 +3,7 @@
 // frame rendered before are copied from it (kept_frames.h).
 #pragma once
 
-#include "src/model/encode/first_layer_cache.h"
+#include "src/model/render/first_layer_cache.h"
 #include "src/model/render/frame_layout.h"
 #include "src/model/render/kept_frames.h"
 
@@ -26,8 +26,8 @@ public:
     std::uint64_t pixels_rendered() const override { return pixels_rendered_; }
 
 private:
-    /// Pixels that go through the layers together: two maps of 56 x 64 numbers fill half a
-    /// first-level cache; a multiple of the kernels' 14 and near one of their 6.
+    /// Pixels that go through the layers together: two maps of 56 x 64 numbers, 28 KiB,
+    /// lie in a first-level cache; a multiple of the kernels' 14 and near one of their 6.
     static constexpr int kBlock = 56;
     /// A stretch of a row to be rendered: that of the tiles first <= c < last.
     struct Span {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "src/core/frame_data.h"
-#include "src/model/encode/residual_pyramid.h"
 #include "src/model/render/renderer.h"
+#include "src/model/render/residual_pyramid.h"
 
 #include <array>
 #include <cstdint>

@@ -56,7 +56,7 @@ inline AxisSamples sample_axis(int i, int out_size, int sensor_size, int stride,
 }
 
 /// The one or two samples around a time in event window k (docs/model.md, "Time"): those of event
-/// frames k + index and k + index + 1. A live edge that fades takes k - 1 as it was shown last
+/// windows k + index and k + index + 1. A live edge that fades takes k - 1 as it was shown last
 /// (`from_before`: z_k is not read by it) and k.
 ///
 ///     samples              next known    jump    fade

@@ -1,4 +1,4 @@
-// What a window of training looks at, and the scenes it looks at.
+// What a segment of training looks at, and the scenes it looks at.
 #include "tests/apps/train/tiny_run.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ int plans_on_pixels(int crop, int patch) {
     settings.crop = crop;
     settings.patch = patch;
     int on_pixels = 0;
-    for (int window = 0; window < 400; ++window) {
-        const WindowPlan plan = window_plan(settings, window);
+    for (int segment = 0; segment < 400; ++segment) {
+        const SegmentPlan plan = segment_plan(settings, segment);
         for (const double begin : {plan.y0, plan.x0}) {
             EXPECT_GE(begin, 0);
             EXPECT_LE(begin + plan.span, crop - 1 + 1e-9);
@@ -30,17 +30,17 @@ int plans_on_pixels(int crop, int patch) {
     return on_pixels;
 }
 
-TEST(WindowPlan, PatchesLieInTheCropAndMostOnItsPixels) {
+TEST(SegmentPlan, PatchesLieInTheCropAndMostOnItsPixels) {
     const double share = DataSettings{}.whole_probability;
     for (const int patch : {64, 48, 17})
         EXPECT_NEAR(plans_on_pixels(64, patch) / 400.0, share, .1) << patch;
     EXPECT_EQ(plans_on_pixels(64, 90), 0) << "a patch of more points than the crop has pixels";
 }
 
-TEST(WindowPlan, IsTheSameForTheSameWindow) {
+TEST(SegmentPlan, IsTheSameForTheSameSegment) {
     const DataSettings settings;
-    for (int window = 0; window < 20; ++window) {
-        const WindowPlan a = window_plan(settings, window), b = window_plan(settings, window);
+    for (int segment = 0; segment < 20; ++segment) {
+        const SegmentPlan a = segment_plan(settings, segment), b = segment_plan(settings, segment);
         EXPECT_EQ(a.span, b.span);
         EXPECT_EQ(a.y0, b.y0);
         EXPECT_EQ(a.x0, b.x0);
@@ -53,21 +53,21 @@ TEST(SceneStream, IsTheSameHoweverOftenTheRunStops) {
     settings.thesis_share = .5;
     const StreamPlace place{.stream = 3, .group = 1, .groups = 2};
     SceneStream whole{settings, few_textures(), place, 0};
-    std::vector<StreamWindow> windows;
-    for (int i = 0; i < 12; ++i) windows.push_back(whole.next());
+    std::vector<StreamSegment> segments;
+    for (int i = 0; i < 12; ++i) segments.push_back(whole.next());
     int fresh = 0;
     for (const int at : {0, 1, 5, 9}) {
-        // The stream's window i is the run's window 2 i + 1.
-        StreamWindow again = SceneStream{settings, few_textures(), place, 2 * at}.next();
-        const StreamWindow& expected = windows[std::size_t(at)];
+        // The stream's segment i is the run's segment 2 i + 1.
+        StreamSegment again = SceneStream{settings, few_textures(), place, 2 * at}.next();
+        const StreamSegment& expected = segments[std::size_t(at)];
         EXPECT_EQ(again.fresh, expected.fresh);
         EXPECT_EQ(again.f, expected.f);
         EXPECT_EQ(again.grids, expected.grids);
         EXPECT_EQ(again.truth, expected.truth);
     }
-    for (const StreamWindow& window : windows) fresh += window.fresh;
+    for (const StreamSegment& segment : segments) fresh += segment.fresh;
     EXPECT_GT(fresh, 1) << "scenes end";
-    EXPECT_LT(fresh, 12) << "scenes last longer than a window";
+    EXPECT_LT(fresh, 12) << "scenes last longer than a segment";
 }
 
 /// Events per pixel of each event window of a few streams.
@@ -82,7 +82,7 @@ std::vector<double> contents(const DataSettings& settings) {
     };
     for (int n = 0; n < 6; ++n) {
         SceneStream stream{settings, few_textures(), {.stream = n}, 0};
-        for (int window = 0; window < 6; ++window)
+        for (int segment = 0; segment < 6; ++segment)
             for (const Array3<float>& grid : stream.next().grids) add(grid);
     }
     return all;

@@ -4,6 +4,7 @@
 #include "pipeline/pipeline.h"
 #include "src/core/error.h"
 #include "src/model/model_config.h"
+#include "src/model/render/renderer.h"
 
 #include <cstdint>
 #include <string>
@@ -16,6 +17,9 @@ std::uint64_t network_bytes(const ModelConfig& config, const SensorInfo& sensor)
 /// Of the event windows and latent maps on their way, without frames.
 std::uint64_t buffer_bytes(const ModelConfig& config, const SensorInfo& sensor,
                            const PipelineBuffers& buffers);
+
+/// Of a frame as it is rendered, or the part of it that is wanted.
+std::uint64_t frame_bytes(const RenderRequest& request);
 
 /// Of kind failed: what wanted how much, and for which sensor.
 Error out_of_memory(const std::string& what, std::uint64_t bytes, const SensorInfo& sensor);

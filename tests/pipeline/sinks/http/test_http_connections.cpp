@@ -1,28 +1,13 @@
 // Clients that are many, slow, gone, or up to no good: every byte of theirs is ours.
 #include "tests/pipeline/sinks/http/served.h"
+#include "tests/support/holdings.h"
 
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
 namespace eventide::test {
 namespace {
-
-std::size_t open_files() {
-    std::size_t count = 0;
-    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator{"/proc/self/fd"})
-        ++count;
-    return count;
-}
-
-std::size_t threads() {
-    std::size_t count = 0;
-    for ([[maybe_unused]] const auto& entry :
-         std::filesystem::directory_iterator{"/proc/self/task"})
-        ++count;
-    return count;
-}
 
 std::string answer_to(const HttpSink& sink, const std::string& text) {
     const RawClient client{sink};
@@ -81,6 +66,15 @@ TEST(HttpConnections, CloseEndsAllOfThem) {
     for (const RawClient& client : clients) client.receive_all();  // ends
 }
 
+TEST(HttpConnections, APageOpenedAndClosedLeavesNothingBehind) {
+    expect_nothing_left([] {
+        const auto sink = open_page();
+        sink->write(ramp_frame(64, 48, 0, odd_time(0)));
+        EXPECT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
+        sink->close();
+    });
+}
+
 /// More by hand: EVENTIDE_CONNECTIONS=10000 test_http_sink --gtest_filter=*Dropped*.
 TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
     const char* const asked = std::getenv("EVENTIDE_CONNECTIONS");
@@ -89,7 +83,7 @@ TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
     const Frames frames{*sink};
     ASSERT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
     ASSERT_TRUE(becomes_true([&] { return sink->connections() == 0; }));
-    const std::size_t files = open_files(), running = threads();
+    const Holdings before = holdings();
     const std::string beginnings[]{"",
                                    "GET /stream HTTP/1.1\r\nHo",
                                    request("GET /stream"),
@@ -110,8 +104,9 @@ TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
         if (i % 2 == 0) client.drop();
     }
     EXPECT_TRUE(becomes_true([&] { return sink->connections() == 0; })) << sink->connections();
-    EXPECT_TRUE(becomes_true([&] { return open_files() <= files; })) << open_files() << files;
-    EXPECT_TRUE(becomes_true([&] { return threads() <= running; })) << threads() << running;
+    const Holdings after = holdings_down_to(before);
+    EXPECT_LE(after.files, before.files);
+    EXPECT_LE(after.threads, before.threads);
     EXPECT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
 }
 

@@ -1,5 +1,5 @@
 // See first_layer_cache.h; docs/model.md has the formulas.
-#include "src/model/encode/first_layer_cache.h"
+#include "src/model/render/first_layer_cache.h"
 
 #include "src/kernels/vector_kernels.h"
 
@@ -119,8 +119,8 @@ void FirstLayerCache::note_changes(std::int64_t k, const LatentHistory& history)
     const bool comparable = before != nullptr && options_.skip_quiet;
     const StaleTiles since{histories_[LatentWindow::slot(k - 1)], history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
-        // A sample at the tile's edge may read codes of the pixel beyond it.
-        const Tile near = tiles_[std::size_t(n)].grown(1, height_, width_);
+        // A sample at the tile's edge may read codes beyond it.
+        const Tile near = tiles_[std::size_t(n)].grown(reach_, height_, width_);
         const auto bytes = std::size_t(near.width()) * std::size_t(mine.channels()) * sizeof(float);
         bool same = comparable;
         const bool may_differ = same && around(n, since);
@@ -130,8 +130,9 @@ void FirstLayerCache::note_changes(std::int64_t k, const LatentHistory& history)
     });
 }
 
-/// Whether a tile or one beside it may have changed.
+/// Whether a tile, or one beside it that its samples read, too, may have changed.
 bool FirstLayerCache::around(int tile, const StaleTiles& since) const noexcept {
+    if (reach_ == 0) return since(std::size_t(tile));
     const int rows = int(tiles_.size()) / tile_columns_, columns = tile_columns_;
     const int row = tile / columns, column = tile % columns;
     for (int r = std::max(0, row - 1); r <= std::min(row + 1, rows - 1); ++r)

@@ -1,5 +1,5 @@
 // A correction of frames, band by band.
-#include "src/model/encode/residual_pyramid.h"
+#include "src/model/render/residual_pyramid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -42,7 +42,7 @@ public:
 
     /// A new residual, [y][x] of the sensor, and how far it can be trusted, 0 to 1. `events`:
     /// events per pixel that have come since, which count as if forget() had been told. Where it
-    /// can't be trusted, `residual` should repeat what correction() said.
+    /// can't be trusted, `residual` should repeat what expect() said.
     void observe(const Array2<float>& residual, const Array2<float>& trust,
                  const Array2<float>& events) noexcept;
 
