@@ -2,7 +2,7 @@
 #include "apps/bench/peaks.h"
 
 #include "apps/bench/timing.h"
-#include "src/nn/arithmetic.h"
+#include "src/nn/backend.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -152,8 +152,7 @@ Peaks measure_peaks(Instructions most) {
         if (__builtin_cpu_supports("avx512bf16") != 0) peaks.bf16 = rate_of(products_bf16, 16 * 32);
         if (__builtin_cpu_supports("avx512vnni") != 0) peaks.int8 = rate_of(products_int8, 16 * 64);
     }
-    if (most == Instructions::best && amx_available())
-        peaks.bf16_amx = rate_of(products_amx, 4 * 16 * 16 * 32);
+    if (amx_kernels(most) != nullptr) peaks.bf16_amx = rate_of(products_amx, 4 * 16 * 16 * 32);
 #else
     (void)most;
 #endif

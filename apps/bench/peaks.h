@@ -2,7 +2,7 @@
 // can pass it, so that a stage's share of it says how much is left.
 #pragma once
 
-#include "src/model/instructions.h"
+#include "src/core/instructions.h"
 
 namespace eventide::bench {
 

@@ -229,8 +229,8 @@ bool amx_there() {
 
 }  // namespace
 
-const Bf16Kernels* amx_kernels() {
-    if (kernels_limited() || amx_left_out() || !amx_there()) return nullptr;
+const Bf16Kernels* amx_kernels(Instructions most) {
+    if (most != Instructions::best || !amx_there()) return nullptr;
     const Bf16Kernels& vectors = avx512_bf16::bf16_kernels();
     static const Bf16Kernels kKernels{.name = "AMX",
                                       .dot_area = dot_area,
@@ -248,7 +248,7 @@ const Bf16Kernels* amx_kernels() {
 
 namespace eventide {
 
-const Bf16Kernels* amx_kernels() {
+const Bf16Kernels* amx_kernels(Instructions) {
     return nullptr;
 }
 

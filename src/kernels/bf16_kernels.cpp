@@ -290,9 +290,10 @@ const Bf16Kernels& bf16_kernels() {
 
 }  // namespace avx512_bf16
 
-const Bf16Kernels* bf16_kernels() {
-    if (const Bf16Kernels* amx = amx_kernels()) return amx;
-    return avx512_bf16::there() && !kernels_limited() ? &avx512_bf16::bf16_kernels() : nullptr;
+const Bf16Kernels* bf16_kernels(Instructions most) {
+    if (const Bf16Kernels* amx = amx_kernels(most)) return amx;
+    const bool is_allowed = most == Instructions::best || most == Instructions::avx512;
+    return is_allowed && avx512_bf16::there() ? &avx512_bf16::bf16_kernels() : nullptr;
 }
 
 }  // namespace eventide

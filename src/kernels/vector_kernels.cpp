@@ -107,45 +107,31 @@ namespace eventide {
 namespace {
 
 HWY_EXPORT(table);
-bool g_limited = false, g_without_amx = false;
 
-void leave_out(std::int64_t targets) {
-    g_limited = g_without_amx = targets != 0;
-    hwy::DisableTargets(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+std::int64_t left_out(Instructions most) {
+    switch (most) {
+        case Instructions::best:
+        case Instructions::avx512:
+            return 0;
+        case Instructions::avx2:
+            return HWY_AVX3 | HWY_AVX3_DL;
+        case Instructions::sse4:
+            return HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL;
+    }
+    return 0;
 }
 
 }  // namespace
 
-const VectorKernels& vector_kernels() {
-    return *HWY_DYNAMIC_DISPATCH(table)();
+/// Not HWY_DYNAMIC_DISPATCH(): what that chooses is the whole process's.
+const VectorKernels& vector_kernels(Instructions most) {
+    hwy::ChosenTarget chosen;
+    chosen.Update(hwy::SupportedTargets() & ~left_out(most));
+    return *HWY_DISPATCH_TABLE(table)[chosen.GetIndex()]();
 }
 
-void limit_kernels_to_avx2() {
-    leave_out(HWY_AVX3 | HWY_AVX3_DL);
-}
-void limit_kernels_to_avx512() {
-    leave_out(0);
-    g_without_amx = true;
-}
-void limit_kernels_to_sse4() {
-    leave_out(HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL);
-}
-
-void lift_kernel_limits() {
-    leave_out(0);
-}
-
-bool kernels_limited() {
-    return g_limited;
-}
-bool amx_left_out() {
-    return g_without_amx;
-}
-
-int dot_lanes(int outputs) {
-    const int lanes = vector_kernels().lanes;
-    return outputs <= kNarrowLanes ? std::min(kNarrowLanes, lanes) : lanes;
+int dot_lanes(const VectorKernels& kernels, int outputs) {
+    return outputs <= kNarrowLanes ? std::min(kNarrowLanes, kernels.lanes) : kernels.lanes;
 }
 
 std::size_t packed_size(int stretches, int length, int outputs, int lanes) {

@@ -2,6 +2,7 @@
 // chosen at run time. All take plain pointers; nothing is allocated.
 #pragma once
 
+#include "src/core/instructions.h"
 #include "src/kernels/dot_area.h"
 #include "src/kernels/render_kernels.h"
 
@@ -53,25 +54,14 @@ struct VectorKernels {
     void (*scaled_exp)(const float* in, float scale, float* out, std::size_t n);
 };
 
-/// The best the processor has.
-const VectorKernels& vector_kernels();
-
-/// Leaves out everything past AVX2 (or SSE4) from now on, here and in bf16_kernels.h: for tests and
-/// comparisons. Not while any encoder or renderer exists. oneDNN has its own variable,
-/// ONEDNN_MAX_CPU_ISA.
-void limit_kernels_to_avx2();
-/// Leaves out AMX alone.
-void limit_kernels_to_avx512();
-void limit_kernels_to_sse4();
-void lift_kernel_limits();  ///< all that the processor has, again
-bool kernels_limited();     ///< to AVX2 or SSE4
-bool amx_left_out();        ///< by any limit
+/// The best the processor has, up to `most`.
+const VectorKernels& vector_kernels(Instructions most = Instructions::best);
 
 /// Vectors of this many outputs do for layers of so few.
 constexpr int kNarrowLanes = 8;
 
 /// How many outputs a vector holds for a layer of so many.
-int dot_lanes(int outputs);
+int dot_lanes(const VectorKernels& kernels, int outputs);
 
 /// How many numbers weights take, as dot_area reads them: [s][k][o] in blocks of two vectors of
 /// outputs, then one of one vector; short vectors are filled with zeros.

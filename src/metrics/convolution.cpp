@@ -46,7 +46,7 @@ Convolution::Convolution(const NpzFile& file, const std::string& name,
         for (int i = 0; i < shape.in; ++i)
             for (int tap = 0; tap < k * k; ++tap)
                 turned[std::size_t((tap * shape.in + i) * shape.out + o)] = stored[at++];
-    weights_ = PackedWeights(k, k, shape.in, shape.out, turned, bias, true, Products::f32);
+    weights_ = PackedWeights(k, k, shape.in, shape.out, turned, bias, true, Backend{});
 }
 
 void Convolution::process(const FeatureMap& in, FeatureMap& out, int first_channel) const {

@@ -1,6 +1,7 @@
-// How a network is run: by plain code or by the fast kernels, and with which numbers.
+// How a network is run: by plain code or by the fast kernels, and with what.
 #pragma once
 
+#include "src/core/instructions.h"
 #include "src/core/parallel_for.h"
 
 #include <eventide/arithmetic.h>
@@ -16,6 +17,8 @@ struct EngineOptions {
     Engine engine = Engine::fast;
     Precision precision = Precision::automatic;
     Kernels kernels = Kernels::automatic;
+    /// The most that our own kernels may use: for comparisons. oneDNN has ONEDNN_MAX_CPU_ISA.
+    Instructions instructions = Instructions::best;
     /// Products of bf16 numbers on any processor, slowly, whatever `precision` says: for judging
     /// bf16 without a processor that has it.
     bool emulate_bf16 = false;

@@ -35,15 +35,14 @@ std::size_t square(int n) {
 }  // namespace
 
 ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
-                 const std::vector<Tile>& tiles, int side, const Arithmetic& arithmetic,
-                 std::size_t held)
+                 const std::vector<Tile>& tiles, int side, const Backend& backend, std::size_t held)
     : channels_(weights.candidate.out),
       side_(side),
       tiles_(tiles),
-      gates_(weights.gates, 1, false, arithmetic, extents_of(tiles, 1, map.height, map.width),
+      gates_(weights.gates, 1, false, backend, extents_of(tiles, 1, map.height, map.width),
              {channels_, channels_}),
-      candidate_(weights.candidate, 1, false, arithmetic,
-                 extents_of(tiles, 0, map.height, map.width), {channels_, channels_}) {
+      candidate_(weights.candidate, 1, false, backend, extents_of(tiles, 0, map.height, map.width),
+                 {channels_, channels_}) {
     std::size_t largest = 0;
     for (const Tile& tile : tiles_)
         largest = std::max(largest, std::size_t(tile.height()) * std::size_t(tile.width()));
@@ -99,7 +98,7 @@ void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
 /// [u; r] = sigmoid(gates), kept = r.h: h in float32, the product as layers read it.
 void ConvGru::keep(const StateMap& state, std::size_t i, const Tile& close, float* gates,
                    float* kept, float* row) const noexcept {
-    const VectorKernels& kernels = vector_kernels();
+    const VectorKernels& kernels = state.numbers().kernels();
     const auto width = std::size_t(close.width());
     for (int y = close.y0; y < close.y1; ++y) {
         float* open = gates_at(gates, i, y, close.x0);
@@ -121,9 +120,9 @@ void ConvGru::update(const StateMap& state, std::size_t i, const Mask* mask, flo
     const std::ptrdiff_t row = std::ptrdiff_t(tile.width()) * channels_;
     float* next = next_[i % next_.size()].data();
     for (int y = tile.y0; y < tile.y1; ++y, next += row, candidate += row) {
-        vector_kernels().update_state(state.exact().at(y, tile.x0), gates_at(gates, i, y, tile.x0),
-                                      2 * std::ptrdiff_t(channels_), candidate, next, channels_,
-                                      tile.width());
+        state.numbers().kernels().update_state(
+            state.exact().at(y, tile.x0), gates_at(gates, i, y, tile.x0),
+            2 * std::ptrdiff_t(channels_), candidate, next, channels_, tile.width());
         if (mask != nullptr) keep_unmasked(state.exact(), *mask, y, tile, next);
     }
 }

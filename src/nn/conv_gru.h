@@ -26,7 +26,7 @@ public:
     /// For maps of height x width cut into `tiles`, each at most `side` x `side`. `held`: at any
     /// time only so many consecutive tiles are between step() and commit(); 0: all of them.
     ConvGru(const plain::GruWeights<float>& weights, Extent map, const std::vector<Tile>& tiles,
-            int side, const Arithmetic& arithmetic, std::size_t held = 0);
+            int side, const Backend& backend, std::size_t held = 0);
 
     /// Scratch numbers step() needs.
     std::size_t scratch_size() const;

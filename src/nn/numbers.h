@@ -1,10 +1,8 @@
 // What numbers layers read: float32, or bf16 in pairs.
 #pragma once
 
-#include "src/kernels/bf16_kernels.h"
 #include "src/kernels/quad_dots.h"
-#include "src/kernels/vector_kernels.h"
-#include "src/nn/arithmetic.h"
+#include "src/nn/backend.h"
 
 #include <cstring>
 
@@ -15,16 +13,14 @@ namespace eventide {
 class Numbers {
 public:
     Numbers() = default;
-    explicit Numbers(Products products)
-        : bf16_(products == Products::f32 ? nullptr
-                : products == Products::bf16 && eventide::bf16_kernels() != nullptr
-                    ? eventide::bf16_kernels()
-                    : &plain::bf16_kernels()) {}
+    explicit Numbers(const Backend& backend) : f32_(backend.f32), bf16_(backend.bf16) {}
 
+    /// For all but products.
+    const VectorKernels& kernels() const { return *f32_; }
     /// Null where they are float32.
     const Bf16Kernels* bf16() const { return bf16_; }
     /// Whether layers of 8 and 16 outputs go by quads of units (quad_dots.h).
-    bool by_quads() const { return bf16_ != nullptr ? bf16_->by_quads : vector_kernels().by_quads; }
+    bool by_quads() const { return bf16_ != nullptr ? bf16_->by_quads : f32_->by_quads; }
     int units(int channels) const { return bf16_ != nullptr ? (channels + 1) / 2 : channels; }
 
     /// Pixels of so many channels, one after the other, from float32 and back.
@@ -52,7 +48,7 @@ public:
     /// See DoubleRow.
     void double_row(DoubleRow row) const noexcept {
         if (bf16_ == nullptr) {
-            vector_kernels().double_row(row);
+            f32_->double_row(row);
             return;
         }
         row.channels = 2 * units(row.channels);
@@ -60,10 +56,11 @@ public:
     }
     /// See OffsetRows.
     void offset_rows(const OffsetRows& rows) const noexcept {
-        bf16_ != nullptr ? bf16_->offset_rows(rows) : vector_kernels().offset_rows(rows);
+        bf16_ != nullptr ? bf16_->offset_rows(rows) : f32_->offset_rows(rows);
     }
 
 private:
+    const VectorKernels* f32_ = &vector_kernels();
     const Bf16Kernels* bf16_ = nullptr;
 };
 

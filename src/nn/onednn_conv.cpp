@@ -114,7 +114,7 @@ struct OnednnConv::Primitives {
     };
 
     int channels = 0, outputs = 0, stride = 1;
-    bool bf16 = false;
+    const Bf16Kernels* bf16 = nullptr;  // null: float32
     memory bias;
     std::vector<Sized> sized;
 
@@ -139,7 +139,7 @@ void expect_room() {
 void OnednnConv::Primitives::add(Extent extent, bool relu, const memory& plain_weights) {
     expect_room();
     const auto [rows, columns] = reach(extent);
-    const auto type = bf16 ? memory::data_type::bf16 : memory::data_type::f32;
+    const auto type = bf16 != nullptr ? memory::data_type::bf16 : memory::data_type::f32;
     Sized& made = sized.emplace_back();
     made.extent = extent;
     made.in = {{1, channels, rows, columns}, type, memory::format_tag::nhwc};
@@ -187,25 +187,21 @@ const OnednnConv::Primitives::Sized& OnednnConv::Primitives::of(Extent extent) c
 const void* OnednnConv::Primitives::gather(const ConvCall& call, void* dense) const noexcept {
     const auto [rows, columns] = reach({call.height, call.width});
     const auto row = std::ptrdiff_t(columns) * channels;
-    if (!bf16) {
+    if (bf16 == nullptr) {
         if (call.in_pitch == row) return call.in;
         for (int y = 0; y < rows; ++y)
             std::memcpy(static_cast<float*>(dense) + y * row, call.in + y * call.in_pitch,
                         std::size_t(row) * sizeof(float));
         return dense;
     }
-    // Where oneDNN multiplies bf16 numbers, the processor has AVX512_BF16 (onednn_has_bf16).
-    const Bf16Kernels& kernels =
-        bf16_kernels() != nullptr ? *bf16_kernels() : plain::bf16_kernels();
     auto* pixels_to_bf16 = static_cast<std::uint16_t*>(dense);
     for (int y = 0; y < rows; ++y)
-        kernels.row_to_bf16(call.in + y * call.in_pitch, std::size_t(row),
-                            pixels_to_bf16 + y * row);
+        bf16->row_to_bf16(call.in + y * call.in_pitch, std::size_t(row), pixels_to_bf16 + y * row);
     return dense;
 }
 
-OnednnConv::OnednnConv(const plain::ConvWeights<float>& weights, int stride, bool relu, bool bf16,
-                       std::vector<Extent> extents) {
+OnednnConv::OnednnConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
+                       const Bf16Kernels* bf16, std::vector<Extent> extents) {
     const OneThread one_thread;
     auto made = std::make_unique<Primitives>();
     made->channels = weights.in;

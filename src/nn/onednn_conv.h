@@ -1,6 +1,7 @@
 // 3x3 convolutions by oneDNN, one primitive per size of region, run on the caller's thread alone.
 #pragma once
 
+#include "src/kernels/bf16_kernels.h"
 #include "src/kernels/plain/conv.h"
 #include "src/nn/tiling.h"
 
@@ -35,10 +36,11 @@ bool onednn_has_amx();
 /// allocations inside oneDNN, which keeps its argument lists on the heap.
 class OnednnConv {
 public:
-    /// run() may be called for regions of these extents. Throws Error(usage) where oneDNN is not
+    /// `bf16`: makes inputs bf16, and products are of bf16; null: of float32. run() may be called
+    /// for regions of these extents. Throws Error(usage) where oneDNN is not
     /// there.
-    OnednnConv(const plain::ConvWeights<float>& weights, int stride, bool relu, bool bf16,
-               std::vector<Extent> extents);
+    OnednnConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
+               const Bf16Kernels* bf16, std::vector<Extent> extents);
     ~OnednnConv();
 
     /// Numbers of 4 bytes that run() needs for any of the extents.

@@ -30,8 +30,8 @@ void PackedWeights::pack(int lanes, const Value& value, Number* packed) const {
 }
 
 PackedWeights::PackedWeights(std::vector<Shape> stretches, int outputs, const At& weight,
-                             const std::vector<float>& bias, bool relu, Products products)
-    : shapes_(std::move(stretches)), outputs_(outputs), relu_(relu), numbers_(products) {
+                             const std::vector<float>& bias, bool relu, const Backend& backend)
+    : shapes_(std::move(stretches)), outputs_(outputs), relu_(relu), numbers_(backend) {
     int length = 0;
     for (const Shape& shape : shapes_) length += shape.pixels * numbers_.units(shape.channels);
     if (numbers_.bf16() != nullptr) {
@@ -47,25 +47,25 @@ PackedWeights::PackedWeights(std::vector<Shape> stretches, int outputs, const At
         pairs_.resize(packed_size(1, length, outputs, lanes_));
         pack(lanes_, pair, pairs_.data());
     } else {
-        lanes_ = dot_lanes(outputs);
+        lanes_ = dot_lanes(numbers_.kernels(), outputs);
         weight_.resize(packed_size(1, length, outputs, lanes_));
         pack(lanes_, weight, weight_.data());
     }
     // Whole vectors, whichever kernel reads them.
-    const int lanes = std::max(kBf16Lanes, vector_kernels().lanes);
+    const int lanes = std::max(kBf16Lanes, numbers_.kernels().lanes);
     bias_.resize(std::size_t((outputs + lanes - 1) / lanes * lanes));
     std::ranges::copy(bias, bias_.begin());
 }
 
 PackedWeights::PackedWeights(int stretches, int pixels, int channels, int outputs,
                              const std::vector<float>& values, const std::vector<float>& bias,
-                             bool relu, Products products)
+                             bool relu, const Backend& backend)
     : PackedWeights(
           std::vector<Shape>(std::size_t(stretches), Shape{pixels, channels}), outputs,
           [&](int s, int pixel, int c, int o) {
               return values[std::size_t(((s * pixels + pixel) * channels + c) * outputs + o)];
           },
-          bias, relu, products) {}
+          bias, relu, backend) {}
 
 void PackedWeights::run(DotArea area) const noexcept {
     area.outputs = outputs_;
@@ -78,7 +78,7 @@ void PackedWeights::run(DotArea area) const noexcept {
     } else {
         area.weight = weight_.data();
         area.to_bf16 = false;
-        vector_kernels().dot_area(area);
+        numbers_.kernels().dot_area(area);
     }
 }
 
@@ -110,7 +110,7 @@ void PackedWeights::run(const void* in, std::ptrdiff_t pitch, std::ptrdiff_t ste
 }
 
 PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
-                       const Arithmetic& arithmetic, std::vector<Extent> extents,
+                       const Backend& backend, std::vector<Extent> extents,
                        std::vector<int> sources, bool as_one)
     : stride_(stride),
       side_(weights.side),
@@ -121,17 +121,17 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
     if (sources_.empty()) sources_ = {weights.in};
     assert(std::accumulate(sources_.begin(), sources_.end(), 0) == weights.in);
     assert(sources_.size() <= ConvArea::kMaxSources);
-    assert(!as_one || sources_.size() == 1 || !arithmetic.onednn);
-    single_ = packed(weights, 1, relu, arithmetic.products);
-    if (arithmetic.onednn && side_ == 3) {
-        onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, arithmetic.bf16(),
+    assert(!as_one || sources_.size() == 1 || !backend.onednn);
+    single_ = packed(weights, 1, relu, backend);
+    if (backend.onednn && side_ == 3) {
+        onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, backend.bf16,
                                                      std::move(extents));
         return;
     }
-    const int lanes = arithmetic.bf16() ? kBf16Lanes : vector_kernels().lanes;
-    const bool is_whole = !arithmetic.bf16() || outputs_ % 2 == 0;
+    const int lanes = backend.bf16 != nullptr ? kBf16Lanes : backend.f32->lanes;
+    const bool is_whole = backend.bf16 == nullptr || outputs_ % 2 == 0;
     if (!by_quads() && !as_one_ && side_ > 1 && 2 * outputs_ <= lanes && is_whole)
-        pair_ = packed(weights, 2, relu, arithmetic.products);
+        pair_ = packed(weights, 2, relu, backend);
 }
 
 bool PackedConv::by_quads() const {
@@ -167,7 +167,7 @@ void PackedConv::over_stretches(const Body& body) const {
 ///     output 0       w0  w1  w2  0
 ///     output 1       0   w0  w1  w2
 PackedWeights PackedConv::packed(const plain::ConvWeights<float>& weights, int pixels, bool relu,
-                                 Products products) const {
+                                 const Backend& backend) const {
     struct Place {
         int channel, row, x;  // where a stretch begins
     };
@@ -189,7 +189,7 @@ PackedWeights PackedConv::packed(const plain::ConvWeights<float>& weights, int p
     std::vector<float> bias;
     for (int p = 0; p < pixels; ++p)
         bias.insert(bias.end(), weights.bias.begin(), weights.bias.end());
-    return {stretches, pixels * outputs_, weight, bias, relu, products};
+    return {stretches, pixels * outputs_, weight, bias, relu, backend};
 }
 
 std::size_t PackedConv::scratch_size(int height, int width) const {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/kernels/plain/conv.h"
-#include "src/nn/arithmetic.h"
+#include "src/nn/backend.h"
 #include "src/nn/numbers.h"
 #include "src/nn/onednn_conv.h"
 
@@ -27,11 +27,11 @@ public:
 
     PackedWeights() = default;
     PackedWeights(std::vector<Shape> stretches, int outputs, const At& weight,
-                  const std::vector<float>& bias, bool relu, Products products);
+                  const std::vector<float>& bias, bool relu, const Backend& backend);
     /// `values` is [stretch][pixel][channel][output]: `pixels` pixels of `channels` per stretch.
     PackedWeights(int stretches, int pixels, int channels, int outputs,
                   const std::vector<float>& values, const std::vector<float>& bias, bool relu,
-                  Products products);
+                  const Backend& backend);
 
     const Numbers& numbers() const { return numbers_; }
     int channels() const { return shapes_.front().channels; }
@@ -88,7 +88,7 @@ public:
     /// where it is empty. `as_one`: products are summed up as if all lay in one, whatever `sources`
     /// says.
     PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
-               const Arithmetic& arithmetic, std::vector<Extent> extents = {},
+               const Backend& backend, std::vector<Extent> extents = {},
                std::vector<int> sources = {}, bool as_one = false);
 
     const Numbers& numbers() const { return single_.numbers(); }
@@ -100,7 +100,7 @@ public:
 
 private:
     PackedWeights packed(const plain::ConvWeights<float>& weights, int pixels, bool relu,
-                         Products products) const;
+                         const Backend& backend) const;
     void run_own(const ConvArea& area, std::ptrdiff_t out_step) const noexcept;
     void run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
                   int at_once) const noexcept;

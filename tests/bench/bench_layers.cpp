@@ -41,11 +41,10 @@ plain::ConvWeights<float> random_weights(int in, int out) {
     return weights;
 }
 
-void convolve(benchmark::State& state, const Shape& s, const Arithmetic& arithmetic) {
+void convolve(benchmark::State& state, const Shape& s, const Backend& backend) {
     constexpr int kApart = 3;  // pixels more per row, as in a map larger than the tile
     const int reach = (s.side - 1) * s.stride + 3;
-    const PackedConv conv{
-        random_weights(s.in, s.out), s.stride, true, arithmetic, {{s.side, s.side}}};
+    const PackedConv conv{random_weights(s.in, s.out), s.stride, true, backend, {{s.side, s.side}}};
     Array3<float> in{reach, reach + kApart, s.in}, out{s.side, s.side + kApart, s.out};
     std::mt19937 random{2};
     for (float& v : in.values()) v = float(random() % 2001) / 1000 - 1;
@@ -60,11 +59,11 @@ void convolve(benchmark::State& state, const Shape& s, const Arithmetic& arithme
     for (auto _ : state) conv.run(call, scratch.data());
     state.counters["GFLOP/s"] = benchmark::Counter(2e-9 * 9 * s.in * s.out * s.side * s.side,
                                                    benchmark::Counter::kIsIterationInvariantRate);
-    state.SetLabel(name_of(arithmetic));
+    state.SetLabel(name_of(backend));
 }
 
 /// A block of pixels through the renderer's hidden layer.
-void linear(benchmark::State& state, Products products) {
+void linear(benchmark::State& state, const Backend& backend) {
     constexpr int kPixels = 56, kWidth = 32;
     const auto weights = random_weights(kWidth, kWidth);
     const PackedWeights layer{1,
@@ -74,7 +73,7 @@ void linear(benchmark::State& state, Products products) {
                               {weights.weight.begin(), weights.weight.begin() + kWidth * kWidth},
                               weights.bias,
                               true,
-                              products};
+                              backend};
     const std::vector<float> in(kPixels * kWidth, 0.5F);
     std::vector<float> out(kPixels * kWidth);
     for (auto _ : state) {
@@ -87,25 +86,26 @@ void linear(benchmark::State& state, Products products) {
 
 int register_all() {
     bench::add_peaks(Instructions::best);
-    std::vector<Arithmetic> kinds{{Products::f32, false}};
-    if (onednn_available()) kinds.push_back({Products::f32, true});
-    if (bf16_available()) kinds.push_back({Products::bf16, false});
-    if (onednn_has_bf16() && bf16_available()) kinds.push_back({Products::bf16, true});
+    std::vector<Backend> kinds{{}};
+    if (onednn_available()) kinds.push_back({.onednn = true});
+    const Bf16Kernels* bf16 = bf16_kernels();
+    if (bf16 != nullptr) kinds.push_back({.bf16 = bf16});
+    if (bf16 != nullptr && onednn_has_bf16()) kinds.push_back({.bf16 = bf16, .onednn = true});
     for (const Shape& s : kShapes)
-        for (const Arithmetic& kind : kinds) {
+        for (const Backend& kind : kinds) {
             const std::string name = std::string{s.name} + "/" + std::to_string(s.side) + "px/" +
                                      std::to_string(s.in) + "->" + std::to_string(s.out) +
-                                     (kind.bf16() ? "/bf16" : "/f32") +
+                                     (kind.bf16 != nullptr ? "/bf16" : "/f32") +
                                      (kind.onednn ? "/onednn" : "/own");
             benchmark::RegisterBenchmark(name.c_str(), convolve, s, kind)
                 ->Unit(benchmark::kMicrosecond)
                 ->MinTime(0.1);
         }
-    for (const Products products : {Products::f32, Products::bf16}) {
-        if (products == Products::bf16 && !bf16_available()) continue;
-        const char* name = products == Products::bf16 ? "renderer, hidden layer/bf16"
-                                                      : "renderer, hidden layer/f32";
-        benchmark::RegisterBenchmark(name, linear, products)
+    for (const Backend& kind : kinds) {
+        if (kind.onednn) continue;
+        const char* name =
+            kind.bf16 != nullptr ? "renderer, hidden layer/bf16" : "renderer, hidden layer/f32";
+        benchmark::RegisterBenchmark(name, linear, kind)
             ->Unit(benchmark::kMicrosecond)
             ->MinTime(0.1);
     }

@@ -39,10 +39,12 @@ struct Setting {
     Model model;
     int width, height, threads;
     Precision precision;
+    Instructions instructions;
 
     EngineOptions options() const {
         EngineOptions options;
         options.precision = precision;
+        options.instructions = instructions;
         options.parallel_for = threads > 1 ? parallel_for_with(threads) : sequential_for;
         return options;
     }
@@ -164,15 +166,14 @@ Model shipped(const std::string& name) {
 int register_all() {
     const bool is_avx2 = std::getenv("EVENTIDE_BENCH_AVX2") != nullptr;
     const Instructions most = is_avx2 ? Instructions::avx2 : Instructions::best;
-    limit_instructions(most);
     bench::add_peaks(most);
     for (const auto& [width, height] :
          std::vector<std::pair<int, int>>{{240, 180}, {346, 260}, {640, 480}, {1280, 720}})
         for (const std::string name : {"default", "small", "thesis"})
             for (const Precision precision : {Precision::f32, Precision::bf16}) {
-                if (precision == Precision::bf16 && !bf16_available()) continue;
+                if (precision == Precision::bf16 && !bf16_kernels(most) != nullptr) continue;
                 for (const int threads : {1, 2}) {
-                    const Setting s{name, shipped(name), width, height, threads, precision};
+                    const Setting s{name, shipped(name), width, height, threads, precision, most};
                     add("encode/" + s.text(), encode, s, Kind::everywhere);
                     if (name != "thesis") {
                         add("encode_patch/" + s.text(), encode, s, Kind::patch);

@@ -123,6 +123,7 @@ void measure(const Options& options, Instructions most, int width, int height) {
                 settings.height = height;
                 settings.repetitions = options.repetitions;
                 settings.engine.precision = precision;
+                settings.engine.instructions = most;
                 if (threads > 1) settings.engine.parallel_for = parallel_for_with(threads);
                 const Model model =
                     load_model(EVENTIDE_SOURCE_DIR "/config/models/" + name + ".safetensors");
@@ -143,8 +144,7 @@ void measure(const Options& options, Instructions most, int width, int height) {
 }
 
 /// Before libtorch or oneDNN ask what the processor has.
-void limit_all(Instructions most) {
-    limit_instructions(most);
+void limit_libraries(Instructions most) {
     if (most == Instructions::best) return;
     setenv("ATEN_CPU_CAPABILITY", "avx2", 1);
     setenv("ONEDNN_MAX_CPU_ISA", "AVX2", 1);
@@ -160,7 +160,7 @@ int run(const Options& options) {
         std::fflush(stdout);
         const pid_t child = fork();
         if (child == 0) {
-            limit_all(most);
+            limit_libraries(most);
             try {
                 for (const std::string& size : options.sizes) {
                     int width = 0, height = 0;

@@ -1,7 +1,7 @@
 // All memory is taken before the first step: steps and frames allocate nothing.
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
-#include "tests/model/backends.h"
+#include "tests/model/engine_choices.h"
 #include "tests/model/streams.h"
 #include "tests/support/allocation_counter.h"
 
@@ -39,12 +39,12 @@ std::int64_t allocations_of(const ModelConfig& config, const EngineOptions& opti
 TEST(Allocations, NoneAfterConstruction) {
     if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
     for (const ModelConfig& config : {test::small_config(), test::thesis_config()})
-        for (const test::Backend& backend : test::backends()) {
+        for (const test::EngineChoice& choice : test::engine_choices()) {
             // oneDNN's own: OnednnConv.AllocatesNoMoreThanItsArgumentLists.
-            if (backend.options.kernels != Kernels::own) continue;
+            if (choice.options.kernels != Kernels::own) continue;
             // Slow, and with the same memory as bf16 by the processor.
-            if (backend.name == "emulated bf16" && config.encoder == EncoderKind::thesis) continue;
-            EXPECT_EQ(allocations_of(config, backend.options), 0) << backend.name;
+            if (choice.name == "emulated bf16" && config.encoder == EncoderKind::thesis) continue;
+            EXPECT_EQ(allocations_of(config, choice.options), 0) << choice.name;
         }
 }
 

@@ -1,7 +1,7 @@
 // The encoder: fast against plain against double, and what must not change anything.
 #include "src/core/error.h"
 #include "src/model/encode/encoder.h"
-#include "tests/model/backends.h"
+#include "tests/model/engine_choices.h"
 #include "tests/model/streams.h"
 
 #include <gtest/gtest.h>
@@ -50,8 +50,8 @@ TEST(Encoder, FastAgreesWithPlainAtEveryShape) {
             const Model model = random_model(c.config, 7);
             Encoder plain{model, width, height, with(Engine::plain)};
             std::vector<Encoder> fast;
-            for (const test::Backend& backend : test::backends())
-                if (!backend.bf16) fast.emplace_back(model, width, height, backend.options);
+            for (const test::EngineChoice& choice : test::engine_choices())
+                if (!choice.bf16) fast.emplace_back(model, width, height, choice.options);
             GridStream stream{c.config, height, width, 3};
             LatentMap a = plain.make_output(), b = plain.make_output();
             for (int i = 0; i < 4; ++i) {
@@ -81,13 +81,13 @@ void expect_same(Encoder a, Encoder b, const ModelConfig& config, int steps) {
 
 TEST(Encoder, LeavingOutQuietTilesChangesNoBit) {
     for (const Case& c : cases())
-        for (const test::Backend& backend : test::backends()) {
-            if (backend.name == "emulated bf16") continue;  // slow, and the same code around it
+        for (const test::EngineChoice& choice : test::engine_choices()) {
+            if (choice.name == "emulated bf16") continue;  // slow, and the same code around it
             const Model model = random_model(c.config, 2);
-            EngineOptions all = backend.options;
+            EngineOptions all = choice.options;
             all.skip_quiet = false;
-            expect_same({model, 150, 131, backend.options}, {model, 150, 131, all}, c.config,
-                        backend.options.kernels == Kernels::own ? 15 : 5);
+            expect_same({model, 150, 131, choice.options}, {model, 150, 131, all}, c.config,
+                        choice.options.kernels == Kernels::own ? 15 : 5);
         }
 }
 

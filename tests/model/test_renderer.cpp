@@ -2,7 +2,7 @@
 #include "src/core/error.h"
 #include "src/model/render/plain_renderer.h"
 #include "src/model/render/renderer.h"
-#include "tests/model/backends.h"
+#include "tests/model/engine_choices.h"
 #include "tests/model/streams.h"
 #include "tests/model/threads.h"
 
@@ -138,12 +138,12 @@ double compare(Renderer a, Renderer b, const ModelConfig& config, int height, in
 TEST(Renderer, FastAgreesWithPlainAtEverySizeTimeAndLookahead) {
     for (const ModelConfig& config : every_kind()) {
         const Model model = random_model(config, 3);
-        for (const test::Backend& backend : test::backends()) {
-            if (backend.bf16) continue;
-            EXPECT_LE(compare({model, 13, 9, backend.options}, {model, 13, 9, with(Engine::plain)},
+        for (const test::EngineChoice& choice : test::engine_choices()) {
+            if (choice.bf16) continue;
+            EXPECT_LE(compare({model, 13, 9, choice.options}, {model, 13, 9, with(Engine::plain)},
                               config, 9, 13, kOutputs),
                       kFloatTolerance)
-                << backend.name;
+                << choice.name;
         }
         EXPECT_LE(compare({model, 1, 1, with(Engine::fast)}, {model, 1, 1, with(Engine::plain)},
                           config, 1, 1, {{1, 1}, {3, 2}}),
@@ -173,13 +173,13 @@ TEST(Renderer, Bf16StaysNear) {
 TEST(Renderer, ThreadsChangeNoBit) {
     for (const ModelConfig& config : {config_of(1), fading_config()}) {
         const Model model = random_model(config, 3);
-        for (const test::Backend& backend : test::backends()) {
-            EngineOptions many = backend.options;
+        for (const test::EngineChoice& choice : test::engine_choices()) {
+            EngineOptions many = choice.options;
             many.parallel_for = test::with_threads(3);
-            EXPECT_EQ(compare({model, 75, 61, many}, {model, 75, 61, backend.options}, config, 61,
+            EXPECT_EQ(compare({model, 75, 61, many}, {model, 75, 61, choice.options}, config, 61,
                               75, {{61, 75}, {70, 90}}),
                       0)
-                << backend.name;
+                << choice.name;
         }
     }
 }

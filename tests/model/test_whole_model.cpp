@@ -4,7 +4,7 @@
 #include "src/model/encode/plain_encoder.h"
 #include "src/model/render/plain_renderer.h"
 #include "src/model/render/renderer.h"
-#include "tests/model/backends.h"
+#include "tests/model/engine_choices.h"
 #include "tests/model/streams.h"
 #include "tests/model/threads.h"
 #include "tests/support/allocation_counter.h"
@@ -94,8 +94,8 @@ void compare(const Model& model, int height, int width, int steps, int render_ev
              bool plain_too = true) {
     Exact<Network> exact{model, height, width};
     std::vector<Run> runs;
-    for (const test::Backend& backend : test::backends())
-        runs.emplace_back(backend.name, backend.bf16, model, height, width, backend.options);
+    for (const test::EngineChoice& choice : test::engine_choices())
+        runs.emplace_back(choice.name, choice.bf16, model, height, width, choice.options);
     if (plain_too)
         runs.emplace_back("plain f32", false, model, height, width,
                           EngineOptions{.engine = Engine::plain});
@@ -197,12 +197,12 @@ TEST(WholeModel, TheNumberOfThreadsChangesNoBit) {
     half.latent_stride = 2;
     for (const ModelConfig& config : {test::small_config(), half, test::thesis_config()}) {
         const Model model = random_model(config, 1);
-        for (test::Backend& backend : test::backends()) {
-            const Bits alone = bits_of(model, 61, 75, backend.options);
+        for (test::EngineChoice& choice : test::engine_choices()) {
+            const Bits alone = bits_of(model, 61, 75, choice.options);
             for (const int threads : {2, 3}) {
-                backend.options.parallel_for = test::with_threads(threads);
-                EXPECT_EQ(bits_of(model, 61, 75, backend.options), alone)
-                    << backend.name << ", " << threads << " threads";
+                choice.options.parallel_for = test::with_threads(threads);
+                EXPECT_EQ(bits_of(model, 61, 75, choice.options), alone)
+                    << choice.name << ", " << threads << " threads";
             }
         }
     }

@@ -2,6 +2,7 @@
 #include "src/kernels/bf16_kernels.h"
 #include "src/kernels/vector_kernels.h"
 #include "tests/nn/fills.h"
+#include "tests/nn/instruction_sets.h"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ void expect_made_bf16(const Bf16Kernels& kernels) {
 TEST(Bf16, RowsAreNarrowedNumberByNumber) {
     expect_made_bf16(plain::bf16_kernels());
     if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
-    expect_made_bf16(*bf16_kernels());
+    for (const Bf16Kernels* kernels : test::all_bf16_kernels()) expect_made_bf16(*kernels);
 }
 
 /// An area of two stretches of `length` pairs, as a convolution's rows lie: pixels overlap.

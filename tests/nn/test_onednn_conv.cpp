@@ -92,7 +92,7 @@ TEST(OnednnConv, AllocatesNoMoreThanItsArgumentLists) {
 
 TEST(OnednnConv, IsRefusedWhereItWasNotBuiltIn) {
     EXPECT_FALSE(onednn_available());
-    EXPECT_THROW(OnednnConv(weights_of(1, 1), 1, true, false, {{1, 1}}), Error);
+    EXPECT_THROW(OnednnConv(weights_of(1, 1), 1, true, nullptr, {{1, 1}}), Error);
 }
 
 #endif

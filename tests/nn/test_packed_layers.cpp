@@ -43,7 +43,7 @@ Bound bound_of(int terms) {
     return {6e-8 * std::sqrt(double(terms)) * 4, 1.0 / 128};
 }
 
-void check(const Shape& s, Fill fill, const Arithmetic& arithmetic) {
+void check(const Shape& s, Fill fill, const Backend& backend) {
     test::Numbers numbers{std::uint32_t(s.height * 1000 + s.width)};
     const auto weights = random_conv<float>(s.out, s.in, numbers);
     Array3<float> in{s.height, s.width, s.in};
@@ -67,7 +67,7 @@ void check(const Shape& s, Fill fill, const Arithmetic& arithmetic) {
     for (int y = 0; y < s.height; ++y)
         std::copy_n(in.pixel(y, 0).data(), s.width * s.in,
                     padded.data() + ((y + 1) * columns + 1) * s.in);
-    const PackedConv conv{weights, s.stride, false, arithmetic, {{exact.height(), exact.width()}}};
+    const PackedConv conv{weights, s.stride, false, backend, {{exact.height(), exact.width()}}};
     test::Guarded out{exact.values().size()},
         scratch{conv.scratch_size(exact.height(), exact.width())};
     conv.run({padded.data(), std::ptrdiff_t(columns) * s.in, out.data(),
@@ -80,44 +80,26 @@ void check(const Shape& s, Fill fill, const Arithmetic& arithmetic) {
     for (std::size_t i = 0; i < exact.values().size(); ++i) {
         const double size = sizes.values()[i] + 1e-37;
         ASSERT_LE(std::abs(out.data()[i] - exact.values()[i]),
-                  size * (arithmetic.bf16() ? bound.bf16_share : bound.float_share))
-            << name_of(arithmetic) << " " << s.height << "x" << s.width << " " << s.in << "->"
-            << s.out << " fill " << int(fill);
+                  size * (backend.bf16 != nullptr ? bound.bf16_share : bound.float_share))
+            << name_of(backend) << " " << s.height << "x" << s.width << " " << s.in << "->" << s.out
+            << " fill " << int(fill);
         ASSERT_LE(std::abs(plain.values()[i] - exact.values()[i]), size * bound.float_share);
     }
 }
 
-TEST(PackedConv, AgreesWithDoubleForEveryShapeAndFill) {
-    for (const Shape& shape : kShapes)
-        for (const Fill fill : test::kFills) check(shape, fill, {Products::f32, false});
-}
-TEST(PackedConv, EmulatedBf16AgreesWithDoubleForEveryShapeAndFill) {
-    for (const Shape& shape : kShapes)
-        for (const Fill fill : test::kFills) check(shape, fill, {Products::bf16_emulated, false});
-}
-TEST(PackedConv, Bf16AgreesWithDoubleForEveryShapeAndFill) {
-    if (!bf16_available()) GTEST_SKIP() << "this processor has no bf16 products";
-    for (const Shape& shape : kShapes)
-        for (const Fill fill : test::kFills) check(shape, fill, {Products::bf16, false});
-}
-TEST(PackedConv, OnednnAgreesWithDoubleForEveryShapeAndFill) {
-    if (!onednn_available()) GTEST_SKIP() << "built without oneDNN";
-    for (const Shape& shape : kShapes)
-        for (const Fill fill : test::kFills) check(shape, fill, {Products::f32, true});
-}
-TEST(PackedConv, OnednnInBf16AgreesWithDoubleForEveryShapeAndFill) {
-    if (!onednn_has_bf16()) GTEST_SKIP() << "oneDNN has no bf16 products on this processor";
-    for (const Shape& shape : kShapes)
-        for (const Fill fill : test::kFills) check(shape, fill, {Products::bf16, true});
+TEST(PackedConv, AgreesWithDoubleForEveryBackendShapeAndFill) {
+    for (const Backend& backend : all_backends())
+        for (const Shape& shape : kShapes)
+            for (const Fill fill : test::kFills) check(shape, fill, backend);
 }
 
 TEST(PackedConv, WhereATileBeginsChangesNoBit) {
     test::Numbers numbers{1};
     const auto weights = random_conv<float>(24, 12, numbers);
     const auto in = numbers.many(std::size_t(34 * 42 * 12), Fill::ordinary);
-    for (const Products products : {Products::f32, Products::bf16_emulated, Products::bf16}) {
-        if (products == Products::bf16 && !bf16_available()) continue;
-        const PackedConv conv{weights, 1, true, {products, false}};
+    for (const Backend& backend : all_backends()) {
+        if (backend.onednn) continue;  // it knows its regions when it is made
+        const PackedConv conv{weights, 1, true, backend};
         std::vector<float> whole(std::size_t(32 * 40 * 24)), part(std::size_t(5 * 17 * 24));
         std::vector<float> scratch(conv.scratch_size(32, 40));
         conv.run({in.data(), 42 * 12, whole.data(), 40 * 24, 24, 32, 40}, scratch.data());

@@ -78,10 +78,7 @@ void over_shapes(bool is_bf16, const Body& body) {
 
 TEST(Quads, FloatsAreThoseOfAvx2BitForBit) {
     if (!vector_kernels().by_quads) GTEST_SKIP() << "this processor has no AVX-512";
-    const bool without_amx = amx_left_out();
-    limit_kernels_to_avx2();
-    const auto dot_area = vector_kernels().dot_area;
-    without_amx ? limit_kernels_to_avx512() : lift_kernel_limits();
+    const auto dot_area = vector_kernels(Instructions::avx2).dot_area;
     over_shapes(false, [&](const Work& work, bool relu) {
         const DotArea area = work.area(false, relu);
         ASSERT_TRUE(avx512::takes_quads(area));
@@ -127,16 +124,17 @@ TEST(Quads, AMapInThreeGivesTheSameBits) {
         kOutputs, kPadded, {}, numbers.many(kOutputs, Fill::ordinary)};
     weights.weight = numbers.many(std::size_t(kOutputs * kPadded * 9), Fill::ordinary);
     const auto in = numbers.many(std::size_t(kSide * kSide * kChannels), Fill::ordinary);
-    for (const Products products : {Products::f32, Products::bf16}) {
-        if (!Numbers{products}.by_quads()) continue;
-        const int units = Numbers{products}.units(8);
+    for (const Backend& backend : all_backends()) {
+        const Numbers layer_numbers{backend};
+        if (!layer_numbers.by_quads() || backend.onednn) continue;
+        const int units = layer_numbers.units(8);
         const std::ptrdiff_t plane = std::ptrdiff_t(kSide) * kSide * units;
         std::vector<float> split(3 * std::size_t(plane), 5), whole(3 * std::size_t(plane), 5);
-        Numbers{products}.split({in.data(), kSide * kSide, kChannels, 8, 3, split.data(), plane});
+        layer_numbers.split({in.data(), kSide * kSide, kChannels, 8, 3, split.data(), plane});
         std::vector<float> padded(std::size_t(kSide * kSide * kPadded));
         for (std::size_t p = 0; p < std::size_t(kSide * kSide); ++p)
             std::copy_n(in.data() + p * kChannels, kChannels, padded.data() + p * kPadded);
-        Numbers{products}.from_float(padded.data(), kSide * kSide, kPadded, whole.data());
+        layer_numbers.from_float(padded.data(), kSide * kSide, kPadded, whole.data());
         const auto run = [&](const PackedConv& conv, ConvArea area) {
             std::vector<float> out(49 * kOutputs);
             area.out = out.data();
@@ -145,14 +143,13 @@ TEST(Quads, AMapInThreeGivesTheSameBits) {
             conv.run(area, nullptr);
             return out;
         };
-        const Arithmetic arithmetic{products, false};
         const float* first = split.data();
         const std::ptrdiff_t pitch = std::ptrdiff_t(kSide) * units;
         EXPECT_EQ(
-            run({weights, 1, true, arithmetic, {}, {8, 8, 8}, true},
+            run({weights, 1, true, backend, {}, {8, 8, 8}, true},
                 {.in = {{{first, pitch}, {first + plane, pitch}, {first + 2 * plane, pitch}}}}),
-            run({weights, 1, true, arithmetic}, {.in = {{{whole.data(), 3 * pitch}}}}))
-            << name_of(arithmetic);
+            run({weights, 1, true, backend}, {.in = {{{whole.data(), 3 * pitch}}}}))
+            << name_of(backend);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "src/kernels/bf16_kernels.h"
 #include "src/kernels/vector_kernels.h"
 #include "tests/nn/fills.h"
+#include "tests/nn/instruction_sets.h"
 
 #include <gtest/gtest.h>
 
@@ -14,90 +15,106 @@ namespace {
 
 using test::Fill;
 
+/// Runs `body` with the kernels of each instruction set.
+template <typename Body>
+void with_each(const Body& body) {
+    for (const VectorKernels* kernels : test::all_vector_kernels()) {
+        SCOPED_TRACE(kernels->name);
+        body(*kernels);
+    }
+}
+
 TEST(RenderKernels, TwoOutputsAreTwoSumsOfProducts) {
-    test::Numbers numbers{3};
-    for (const int width : {1, 7, 16, 30, 64, 128})
-        for (const int pixels : {1, 5, 16, 21, 56}) {
-            const auto n = std::size_t(width), count = std::size_t(pixels);
-            const auto in = numbers.many(count * n, Fill::ordinary),
-                       weight = numbers.many(2 * n, Fill::ordinary);
-            const float bias[] = {0.5F, -2};
-            test::Guarded first{count}, second{count};
-            vector_kernels().two_outputs(
-                {in.data(), weight.data(), bias, pixels, width, first.data(), second.data()});
-            EXPECT_TRUE(first.intact() && second.intact());
-            for (std::size_t p = 0; p < count; ++p)
-                for (std::size_t o = 0; o < 2; ++o) {
-                    double sum = bias[o];
-                    for (std::size_t i = 0; i < n; ++i)
-                        sum += double(in[p * n + i]) * weight[o * n + i];
-                    EXPECT_NEAR((o == 0 ? first : second).data()[p], sum, 1e-5);
-                }
-        }
+    with_each([&](const VectorKernels& k) {
+        test::Numbers numbers{3};
+        for (const int width : {1, 7, 16, 30, 64, 128})
+            for (const int pixels : {1, 5, 16, 21, 56}) {
+                const auto n = std::size_t(width), count = std::size_t(pixels);
+                const auto in = numbers.many(count * n, Fill::ordinary),
+                           weight = numbers.many(2 * n, Fill::ordinary);
+                const float bias[] = {0.5F, -2};
+                test::Guarded first{count}, second{count};
+                k.two_outputs(
+                    {in.data(), weight.data(), bias, pixels, width, first.data(), second.data()});
+                EXPECT_TRUE(first.intact() && second.intact());
+                for (std::size_t p = 0; p < count; ++p)
+                    for (std::size_t o = 0; o < 2; ++o) {
+                        double sum = bias[o];
+                        for (std::size_t i = 0; i < n; ++i)
+                            sum += double(in[p * n + i]) * weight[o * n + i];
+                        EXPECT_NEAR((o == 0 ? first : second).data()[p], sum, 1e-5);
+                    }
+            }
+    });
 }
 
 TEST(RenderKernels, OffsetsAreAddedToTheSumsOfTheirColumn) {
-    constexpr int kPixels = 7;
-    const int column[kPixels] = {0, 0, 1, 1, 2, 4, 4};
-    for (const int width : {1, 8, 17, 32, 40}) {
-        test::Numbers numbers{6};
-        const auto n = std::size_t(width), step = (n + 1) / 2 * 2;
-        const auto sums = numbers.many(5 * n, Fill::ordinary),
-                   dx = numbers.many(kPixels, Fill::ordinary),
-                   base = numbers.many(n, Fill::ordinary), slope = numbers.many(n, Fill::ordinary);
-        std::vector<float> exact;
-        for (std::size_t p = 0; p < kPixels; ++p)
-            for (std::size_t c = 0; c < n; ++c)
-                exact.push_back(std::max(
-                    0.0F, sums[std::size_t(column[p]) * n + c] + base[c] + dx[p] * slope[c]));
-        test::Guarded out{kPixels * n};
-        vector_kernels().offset_rows({sums.data(), 0, column, dx.data(), base.data(), slope.data(),
-                                      kPixels, width, out.data()});
-        EXPECT_TRUE(out.intact());
-        for (std::size_t i = 0; i < exact.size(); ++i)
-            ASSERT_NEAR(out.data()[i], exact[i], 1e-6) << width;
-        const auto expect_rows = [&](const Bf16Kernels& kernels) {
-            std::vector<std::uint32_t> narrow(5 * step / 2);
-            kernels.pixels_to_bf16(sums.data(), 5, width, narrow.data());
-            test::Guarded rows{kPixels * step / 2};
-            kernels.offset_rows({narrow.data(), 0, column, dx.data(), base.data(), slope.data(),
-                                 kPixels, width, rows.data()});
-            EXPECT_TRUE(rows.intact());
-            const auto* row = reinterpret_cast<const std::uint16_t*>(rows.data());
+    with_each([&](const VectorKernels& k) {
+        constexpr int kPixels = 7;
+        const int column[kPixels] = {0, 0, 1, 1, 2, 4, 4};
+        for (const int width : {1, 8, 17, 32, 40}) {
+            test::Numbers numbers{6};
+            const auto n = std::size_t(width), step = (n + 1) / 2 * 2;
+            const auto sums = numbers.many(5 * n, Fill::ordinary),
+                       dx = numbers.many(kPixels, Fill::ordinary),
+                       base = numbers.many(n, Fill::ordinary),
+                       slope = numbers.many(n, Fill::ordinary);
+            std::vector<float> exact;
             for (std::size_t p = 0; p < kPixels; ++p)
-                for (std::size_t c = 0; c < step; ++c)
-                    ASSERT_NEAR(from_bf16(row[p * step + c]), c < n ? exact[p * n + c] : 0,
-                                1.0 / 64)
-                        << width;
-        };
-        expect_rows(plain::bf16_kernels());
-        if (bf16_kernels() != nullptr) expect_rows(*bf16_kernels());
-    }
+                for (std::size_t c = 0; c < n; ++c)
+                    exact.push_back(std::max(
+                        0.0F, sums[std::size_t(column[p]) * n + c] + base[c] + dx[p] * slope[c]));
+            test::Guarded out{kPixels * n};
+            k.offset_rows({sums.data(), 0, column, dx.data(), base.data(), slope.data(), kPixels,
+                           width, out.data()});
+            EXPECT_TRUE(out.intact());
+            for (std::size_t i = 0; i < exact.size(); ++i)
+                ASSERT_NEAR(out.data()[i], exact[i], 1e-6) << width;
+            const auto expect_rows = [&](const Bf16Kernels& kernels) {
+                std::vector<std::uint32_t> narrow(5 * step / 2);
+                kernels.pixels_to_bf16(sums.data(), 5, width, narrow.data());
+                test::Guarded rows{kPixels * step / 2};
+                kernels.offset_rows({narrow.data(), 0, column, dx.data(), base.data(), slope.data(),
+                                     kPixels, width, rows.data()});
+                EXPECT_TRUE(rows.intact());
+                const auto* row = reinterpret_cast<const std::uint16_t*>(rows.data());
+                for (std::size_t p = 0; p < kPixels; ++p)
+                    for (std::size_t c = 0; c < step; ++c)
+                        ASSERT_NEAR(from_bf16(row[p * step + c]), c < n ? exact[p * n + c] : 0,
+                                    1.0 / 64)
+                            << width;
+            };
+            expect_rows(plain::bf16_kernels());
+            for (const Bf16Kernels* kernels : test::all_bf16_kernels()) expect_rows(*kernels);
+        }
+    });
 }
 
 TEST(RenderKernels, ASampleIsWeighedByItsShare) {
-    for (const int pixels : {1, 9, 16, 37}) {
-        test::Numbers numbers{9};
-        const auto n = std::size_t(pixels);
-        const auto mu = numbers.many(n, Fill::ordinary), share = numbers.many(n, Fill::ordinary);
-        auto log_sigma = numbers.many(n, Fill::ordinary);
-        for (float& v : log_sigma) v *= 8;  // past its limits, -6 and 1
-        test::Guarded a{n}, b{n}, c{n}, sigma{n};
-        std::ranges::copy(mu, a.data());
-        std::ranges::copy(log_sigma, b.data());
-        vector_kernels().weigh_rows(
-            {a.data(), b.data(), c.data(), share.data(), 0.7F, -6, 1, pixels});
-        vector_kernels().scaled_exp(log_sigma.data(), 0.9F, sigma.data(), n);
-        EXPECT_TRUE(a.intact() && b.intact() && c.intact() && sigma.intact());
-        for (std::size_t i = 0; i < n; ++i) {
-            const double w = 0.7 * share[i], s = std::clamp(double(log_sigma[i]), -6.0, 1.0);
-            EXPECT_NEAR(a.data()[i], w * mu[i], 1e-6);
-            EXPECT_NEAR(b.data()[i], w * s, 1e-6);
-            EXPECT_NEAR(c.data()[i], w * (std::exp(2 * s) + double(mu[i]) * mu[i]), 1e-5);
-            EXPECT_NEAR(sigma.data()[i], 0.9 * std::exp(double(log_sigma[i])),
-                        1e-6 * std::exp(double(log_sigma[i])));
+    with_each([&](const VectorKernels& k) {
+        for (const int pixels : {1, 9, 16, 37}) {
+            test::Numbers numbers{9};
+            const auto n = std::size_t(pixels);
+            const auto mu = numbers.many(n, Fill::ordinary),
+                       share = numbers.many(n, Fill::ordinary);
+            auto log_sigma = numbers.many(n, Fill::ordinary);
+            for (float& v : log_sigma) v *= 8;  // past its limits, -6 and 1
+            test::Guarded a{n}, b{n}, c{n}, sigma{n};
+            std::ranges::copy(mu, a.data());
+            std::ranges::copy(log_sigma, b.data());
+            k.weigh_rows({a.data(), b.data(), c.data(), share.data(), 0.7F, -6, 1, pixels});
+            k.scaled_exp(log_sigma.data(), 0.9F, sigma.data(), n);
+            EXPECT_TRUE(a.intact() && b.intact() && c.intact() && sigma.intact());
+            for (std::size_t i = 0; i < n; ++i) {
+                const double w = 0.7 * share[i], s = std::clamp(double(log_sigma[i]), -6.0, 1.0);
+                EXPECT_NEAR(a.data()[i], w * mu[i], 1e-6);
+                EXPECT_NEAR(b.data()[i], w * s, 1e-6);
+                EXPECT_NEAR(c.data()[i], w * (std::exp(2 * s) + double(mu[i]) * mu[i]), 1e-5);
+                EXPECT_NEAR(sigma.data()[i], 0.9 * std::exp(double(log_sigma[i])),
+                            1e-6 * std::exp(double(log_sigma[i])));
+            }
         }
-    }
+    });
 }
 
 /// Offsets, a hidden layer and two outputs at once, against the same in double.
@@ -156,8 +173,7 @@ void expect_hidden_rows(const Bf16Kernels& kernels) {
 }
 TEST(RenderKernels, HiddenRowsAreTheLayersOneByOne) {
     if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
-    expect_hidden_rows(avx512_bf16::bf16_kernels());
-    if (amx_kernels() != nullptr) expect_hidden_rows(*amx_kernels());
+    for (const Bf16Kernels* kernels : test::all_bf16_kernels()) expect_hidden_rows(*kernels);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "src/kernels/plain/activations.h"
 #include "src/kernels/vector_kernels.h"
 #include "tests/nn/fills.h"
+#include "tests/nn/instruction_sets.h"
 
 #include <gtest/gtest.h>
 
@@ -21,132 +22,149 @@ double limit(double exact, double tolerance) {
     return tolerance * std::max(1.0, std::abs(exact));
 }
 
+/// Runs `body` with the kernels of each instruction set.
+template <typename Body>
+void with_each(const Body& body) {
+    for (const VectorKernels* kernels : test::all_vector_kernels()) {
+        SCOPED_TRACE(kernels->name);
+        body(*kernels);
+    }
+}
+
 class Lengths : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(VectorKernels, Lengths, testing::Values(1, 3, 8, 15, 16, 17, 24, 64, 85));
 
 TEST_P(Lengths, GatesAndActivationsAgreeWithDouble) {
-    const VectorKernels& k = vector_kernels();
-    const int n = GetParam();
-    const auto count = std::size_t(n);
-    for (const Fill fill : test::kFills) {
-        test::Numbers numbers{7};
-        const auto a = numbers.many(count, fill), b = numbers.many(count, fill);
-        const auto h = numbers.many(count, Fill::ordinary);
-        test::Guarded out{count};
-        const auto expect = [&](auto exact, double tolerance, const char* what) {
-            EXPECT_TRUE(out.intact()) << what;
-            for (std::size_t i = 0; i < count; ++i)
-                ASSERT_LE(std::abs(out.data()[i] - exact(i)), limit(exact(i), tolerance))
-                    << what << " of " << a[i] << ", " << b[i];
-        };
-        k.compress(a.data(), out.data(), count);
-        expect([&](std::size_t i) { return plain::compress(double(a[i])); }, 3e-7, "compress");
-        auto gates = a, candidate = b;
-        k.sigmoid(gates.data(), count);
-        k.reset_state(gates.data(), n, h.data(), out.data(), n, 1);
-        expect([&](std::size_t i) { return plain::sigmoid(double(a[i])) * h[i]; }, kGateTolerance,
-               "reset");
-        k.update_state(h.data(), gates.data(), n, candidate.data(), out.data(), n, 1);
-        expect(
-            [&](std::size_t i) {
-                return h[i] + plain::sigmoid(double(a[i])) * (std::tanh(double(b[i])) - h[i]);
-            },
-            2 * kGateTolerance, "update");
-        k.add_relu(a.data(), b.data(), out.data(), count);
-        expect([&](std::size_t i) { return plain::relu(double(a[i]) + b[i]); }, 1e-7, "add");
-        k.elu(a.data(), out.data(), count);
-        expect([&](std::size_t i) { return plain::elu(double(a[i])); }, 3e-7, "elu");
-    }
+    with_each([&](const VectorKernels& k) {
+        const int n = GetParam();
+        const auto count = std::size_t(n);
+        for (const Fill fill : test::kFills) {
+            test::Numbers numbers{7};
+            const auto a = numbers.many(count, fill), b = numbers.many(count, fill);
+            const auto h = numbers.many(count, Fill::ordinary);
+            test::Guarded out{count};
+            const auto expect = [&](auto exact, double tolerance, const char* what) {
+                EXPECT_TRUE(out.intact()) << what;
+                for (std::size_t i = 0; i < count; ++i)
+                    ASSERT_LE(std::abs(out.data()[i] - exact(i)), limit(exact(i), tolerance))
+                        << what << " of " << a[i] << ", " << b[i];
+            };
+            k.compress(a.data(), out.data(), count);
+            expect([&](std::size_t i) { return plain::compress(double(a[i])); }, 3e-7, "compress");
+            auto gates = a, candidate = b;
+            k.sigmoid(gates.data(), count);
+            k.reset_state(gates.data(), n, h.data(), out.data(), n, 1);
+            expect([&](std::size_t i) { return plain::sigmoid(double(a[i])) * h[i]; },
+                   kGateTolerance, "reset");
+            k.update_state(h.data(), gates.data(), n, candidate.data(), out.data(), n, 1);
+            expect(
+                [&](std::size_t i) {
+                    return h[i] + plain::sigmoid(double(a[i])) * (std::tanh(double(b[i])) - h[i]);
+                },
+                2 * kGateTolerance, "update");
+            k.add_relu(a.data(), b.data(), out.data(), count);
+            expect([&](std::size_t i) { return plain::relu(double(a[i]) + b[i]); }, 1e-7, "add");
+            k.elu(a.data(), out.data(), count);
+            expect([&](std::size_t i) { return plain::elu(double(a[i])); }, 3e-7, "elu");
+        }
+    });
 }
 
 TEST_P(Lengths, NearIsEveryNumberWithinTheBound) {
-    const VectorKernels& k = vector_kernels();
-    const auto count = std::size_t(GetParam());
-    const std::vector<float> a(count, 1.0F);
-    for (std::size_t i = 0; i < count; ++i) {
-        std::vector<float> b = a;
-        b[i] = 1.25F;
-        EXPECT_TRUE(k.are_near(a.data(), b.data(), .25F, count));
-        EXPECT_FALSE(k.are_near(a.data(), b.data(), .2F, count)) << i;
-        b[i] = NAN;
-        EXPECT_FALSE(k.are_near(a.data(), b.data(), .25F, count)) << i;
-    }
+    with_each([&](const VectorKernels& k) {
+        const auto count = std::size_t(GetParam());
+        const std::vector<float> a(count, 1.0F);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::vector<float> b = a;
+            b[i] = 1.25F;
+            EXPECT_TRUE(k.are_near(a.data(), b.data(), .25F, count));
+            EXPECT_FALSE(k.are_near(a.data(), b.data(), .2F, count)) << i;
+            b[i] = NAN;
+            EXPECT_FALSE(k.are_near(a.data(), b.data(), .25F, count)) << i;
+        }
+    });
 }
 
 /// Gates of the network lie beside each other, [u; r], and a row of pixels is one call.
 TEST(VectorKernels, RowsOfGatesAreTheirPixels) {
-    const VectorKernels& k = vector_kernels();
-    for (const int channels : {1, 4, 8, 12, 16, 24, 40}) {
-        constexpr int kPixels = 5;
-        const auto c = std::size_t(channels), count = kPixels * c;
-        test::Numbers numbers{11};
-        const auto gates = numbers.many(2 * count, Fill::ordinary),
-                   candidate = numbers.many(count, Fill::ordinary),
-                   h = numbers.many(count, Fill::ordinary);
-        test::Guarded next{count}, one{count}, kept{count}, alone{count};
-        auto row = candidate, pixels = candidate;
-        k.update_state(h.data(), gates.data(), 2 * channels, row.data(), next.data(), channels,
-                       kPixels);
-        k.reset_state(gates.data() + c, 2 * channels, h.data(), kept.data(), channels, kPixels);
-        for (std::size_t p = 0; p < kPixels; ++p) {
-            k.update_state(h.data() + p * c, gates.data() + 2 * p * c, channels,
-                           pixels.data() + p * c, one.data() + p * c, channels, 1);
-            k.reset_state(gates.data() + (2 * p + 1) * c, channels, h.data() + p * c,
-                          alone.data() + p * c, channels, 1);
+    with_each([&](const VectorKernels& k) {
+        for (const int channels : {1, 4, 8, 12, 16, 24, 40}) {
+            constexpr int kPixels = 5;
+            const auto c = std::size_t(channels), count = kPixels * c;
+            test::Numbers numbers{11};
+            const auto gates = numbers.many(2 * count, Fill::ordinary),
+                       candidate = numbers.many(count, Fill::ordinary),
+                       h = numbers.many(count, Fill::ordinary);
+            test::Guarded next{count}, one{count}, kept{count}, alone{count};
+            auto row = candidate, pixels = candidate;
+            k.update_state(h.data(), gates.data(), 2 * channels, row.data(), next.data(), channels,
+                           kPixels);
+            k.reset_state(gates.data() + c, 2 * channels, h.data(), kept.data(), channels, kPixels);
+            for (std::size_t p = 0; p < kPixels; ++p) {
+                k.update_state(h.data() + p * c, gates.data() + 2 * p * c, channels,
+                               pixels.data() + p * c, one.data() + p * c, channels, 1);
+                k.reset_state(gates.data() + (2 * p + 1) * c, channels, h.data() + p * c,
+                              alone.data() + p * c, channels, 1);
+            }
+            EXPECT_TRUE(next.intact() && kept.intact());
+            EXPECT_TRUE(std::equal(next.data(), next.data() + count, one.data())) << channels;
+            EXPECT_TRUE(std::equal(kept.data(), kept.data() + count, alone.data())) << channels;
         }
-        EXPECT_TRUE(next.intact() && kept.intact());
-        EXPECT_TRUE(std::equal(next.data(), next.data() + count, one.data())) << channels;
-        EXPECT_TRUE(std::equal(kept.data(), kept.data() + count, alone.data())) << channels;
-    }
+    });
 }
 
 TEST(VectorKernels, SaturatedGatesAreExact) {
-    const float h = 0.25F, r = 0.5F;
-    float out = 0;
-    for (const float big : {60.0F, 1e30F, std::numeric_limits<float>::max()}) {
-        float open = big, closed = -big, full = big, candidate = r;
-        vector_kernels().sigmoid(&open, 1);
-        vector_kernels().sigmoid(&closed, 1);
-        vector_kernels().update_state(&h, &open, 1, &full, &out, 1, 1);
-        EXPECT_EQ(out, 1.0F);
-        vector_kernels().update_state(&h, &closed, 1, &candidate, &out, 1, 1);
-        EXPECT_NEAR(out, h, 1e-7) << "a closed gate keeps the state";
-    }
+    with_each([&](const VectorKernels& k) {
+        const float h = 0.25F, r = 0.5F;
+        float out = 0;
+        for (const float big : {60.0F, 1e30F, std::numeric_limits<float>::max()}) {
+            float open = big, closed = -big, full = big, candidate = r;
+            k.sigmoid(&open, 1);
+            k.sigmoid(&closed, 1);
+            k.update_state(&h, &open, 1, &full, &out, 1, 1);
+            EXPECT_EQ(out, 1.0F);
+            k.update_state(&h, &closed, 1, &candidate, &out, 1, 1);
+            EXPECT_NEAR(out, h, 1e-7) << "a closed gate keeps the state";
+        }
+    });
 }
 
 /// The mean of four samples, of float32 and bf16 alike; the last sample stands for those behind it.
 TEST(VectorKernels, DoubledRowsAreMeansOfSamples) {
-    constexpr int kSamples = 5;
-    for (const int channels : {2, 8, 16, 22, 64}) {
-        test::Numbers numbers{8};
-        const auto n = std::size_t(channels);
-        const auto above = numbers.many(kSamples * n, Fill::ordinary),
-                   under = numbers.many(kSamples * n, Fill::ordinary);
-        std::vector<float> out(9 * n);
-        vector_kernels().double_row(
-            {above.data(), under.data(), kSamples - 1, 1, 10, channels, out.data()});
-        std::vector<std::uint32_t> narrow_above(kSamples * n / 2), narrow_under(kSamples * n / 2),
-            narrow(9 * n / 2);
-        plain::bf16_kernels().pixels_to_bf16(above.data(), kSamples, channels, narrow_above.data());
-        plain::bf16_kernels().pixels_to_bf16(under.data(), kSamples, channels, narrow_under.data());
-        const auto expect_means = [&](const Bf16Kernels& kernels) {
-            kernels.double_row({narrow_above.data(), narrow_under.data(), kSamples - 1, 1, 10,
-                                channels, narrow.data()});
-            const auto* doubled = reinterpret_cast<const std::uint16_t*>(narrow.data());
-            for (std::size_t i = 0; i < out.size(); ++i)
-                ASSERT_NEAR(from_bf16(doubled[i]), out[i], 1.0 / 64) << channels;
-        };
-        expect_means(plain::bf16_kernels());
-        if (bf16_kernels() != nullptr) expect_means(*bf16_kernels());
-        for (int x = 1; x < 10; ++x)
-            for (std::size_t c = 0; c < n; ++c) {
-                const auto left = std::size_t(x / 2) * n + c,
-                           right = std::size_t(std::min((x + 1) / 2, kSamples - 1)) * n + c;
-                const double mean =
-                    (double(above[left]) + above[right] + under[left] + under[right]) / 4;
-                ASSERT_NEAR(out[std::size_t(x - 1) * n + c], mean, 1e-6);
-            }
-    }
+    with_each([&](const VectorKernels& k) {
+        constexpr int kSamples = 5;
+        for (const int channels : {2, 8, 16, 22, 64}) {
+            test::Numbers numbers{8};
+            const auto n = std::size_t(channels);
+            const auto above = numbers.many(kSamples * n, Fill::ordinary),
+                       under = numbers.many(kSamples * n, Fill::ordinary);
+            std::vector<float> out(9 * n);
+            k.double_row({above.data(), under.data(), kSamples - 1, 1, 10, channels, out.data()});
+            std::vector<std::uint32_t> narrow_above(kSamples * n / 2),
+                narrow_under(kSamples * n / 2), narrow(9 * n / 2);
+            plain::bf16_kernels().pixels_to_bf16(above.data(), kSamples, channels,
+                                                 narrow_above.data());
+            plain::bf16_kernels().pixels_to_bf16(under.data(), kSamples, channels,
+                                                 narrow_under.data());
+            const auto expect_means = [&](const Bf16Kernels& kernels) {
+                kernels.double_row({narrow_above.data(), narrow_under.data(), kSamples - 1, 1, 10,
+                                    channels, narrow.data()});
+                const auto* doubled = reinterpret_cast<const std::uint16_t*>(narrow.data());
+                for (std::size_t i = 0; i < out.size(); ++i)
+                    ASSERT_NEAR(from_bf16(doubled[i]), out[i], 1.0 / 64) << channels;
+            };
+            expect_means(plain::bf16_kernels());
+            for (const Bf16Kernels* kernels : test::all_bf16_kernels()) expect_means(*kernels);
+            for (int x = 1; x < 10; ++x)
+                for (std::size_t c = 0; c < n; ++c) {
+                    const auto left = std::size_t(x / 2) * n + c,
+                               right = std::size_t(std::min((x + 1) / 2, kSamples - 1)) * n + c;
+                    const double mean =
+                        (double(above[left]) + above[right] + under[left] + under[right]) / 4;
+                    ASSERT_NEAR(out[std::size_t(x - 1) * n + c], mean, 1e-6);
+                }
+        }
+    });
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ struct BenchSettings {
     int threads = 0;                             ///< of the pipeline, as in eventide run
     int repetitions = bench::kLeastRepetitions;  ///< of stages
     Engine engine = Engine::fast;
-    double still_codes = 0.02, still_time = 1;  ///< EngineOptions, of activity
-    std::string lpips;                          ///< weights; empty: frames are not judged by it
+    Instructions instructions = Instructions::best;  ///< the most that may be used
+    double still_codes = 0.02, still_time = 1;       ///< EngineOptions, of activity
+    std::string lpips;  ///< weights; empty: frames are not judged by it
 
     bench::StageSettings stage(const Size& sensor, Precision precision) const {
         return {.width = sensor.width,
@@ -31,6 +32,7 @@ struct BenchSettings {
                 .lookahead = lookahead,
                 .engine = {.engine = engine,
                            .precision = precision,
+                           .instructions = instructions,
                            .still_codes = still_codes,
                            .still_time = still_time},
                 .repetitions = repetitions};
@@ -40,6 +42,7 @@ struct BenchSettings {
         settings.model = model;
         settings.precision = precision;
         settings.engine = engine;
+        settings.instructions = instructions;
         settings.threads = threads;
         settings.scale = scale;
         settings.lookahead = lookahead;

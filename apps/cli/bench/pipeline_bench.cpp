@@ -72,6 +72,7 @@ PipelineBench measure_pipeline(const std::shared_ptr<const RecordedPackets>& dat
     of_network.model = settings.model;
     of_network.precision = settings.precision;
     of_network.kernels = settings.kernels;
+    of_network.instructions = settings.instructions;
     of_network.engine = settings.engine;
     of_network.threads = settings.threads;
     of_network.size.scale = settings.scale;

@@ -18,6 +18,7 @@ struct PipelineBenchSettings {
     std::string model = "default";
     Precision precision = Precision::automatic;
     Kernels kernels = Kernels::automatic;
+    Instructions instructions = Instructions::best;
     Engine engine = Engine::fast;
     int threads = 0;               ///< as in eventide run
     double scale = 1;              ///< of the frames, times the sensor's size

@@ -7,7 +7,7 @@
 #include "apps/cli/stress/double_network.h"
 #include "apps/cli/version.h"
 #include "src/binning/binner.h"
-#include "src/model/instructions.h"
+#include "src/core/instructions.h"
 
 #include <spawn.h>
 #include <sys/resource.h>
@@ -26,23 +26,16 @@ constexpr int kWindows = 6;                     ///< of a scene, for the stages 
 constexpr int kCompared = 3;                    ///< of them, against double precision
 constexpr double kMaxComparedPixels = 100'000;  ///< double precision takes seconds a window beyond
 
-/// Which kernels, and with which numbers.
-struct Arithmetic {
-    Instructions instructions;
-    Precision precision;
-    Kernels kernels;
-};
-
 /// Built-in kernels where instructions are left out: oneDNN's do not ask us.
-std::vector<Arithmetic> arithmetics(const bench::Peaks& peaks) {
-    std::vector<Arithmetic> all{{Instructions::avx2, Precision::f32, Kernels::own}};
-    if (peaks.f32_avx512 > 0)
-        all.push_back({Instructions::best, Precision::f32, Kernels::automatic});
-    if (peaks.bf16 > 0) all.push_back({Instructions::best, Precision::bf16, Kernels::automatic});
+std::vector<EngineOptions> engines(const bench::Peaks& peaks) {
+    std::vector<EngineOptions> all{
+        {.precision = Precision::f32, .kernels = Kernels::own, .instructions = Instructions::avx2}};
+    if (peaks.f32_avx512 > 0) all.push_back({.precision = Precision::f32});
+    if (peaks.bf16 > 0) all.push_back({.precision = Precision::bf16});
     return all;
 }
 
-/// Latent maps of the first windows, in this arithmetic and in double precision.
+/// Latent maps of the first windows, by this engine and in double precision.
 double codes_against_double(const Model& model, const std::vector<bench::SceneWindow>& windows,
                             const bench::StageSettings& settings) {
     if (double(settings.width) * settings.height > kMaxComparedPixels) return 0;
@@ -72,9 +65,9 @@ public:
             const auto data =
                 simulated_packets(settings_.scene, parse_size(size), settings_.seconds);
             for (const std::string& model : settings_.models)
-                for (const Arithmetic& arithmetic : arithmetics(report.peaks)) {
+                for (const EngineOptions& engine : engines(report.peaks)) {
                     if (stopping(model + ", " + size)) return;
-                    report.speed.push_back(speed_row(model, arithmetic, windows, data, report));
+                    report.speed.push_back(speed_row(model, engine, windows, data, report));
                 }
         }
         shorter_windows(report);
@@ -153,22 +146,20 @@ private:
         return how;
     }
 
-    SpeedRow speed_row(const std::string& name, const Arithmetic& arithmetic,
+    SpeedRow speed_row(const std::string& name, const EngineOptions& engine,
                        const std::vector<bench::SceneWindow>& windows,
                        const std::shared_ptr<const RecordedPackets>& data, const Report& report) {
-        const LimitedInstructions here{arithmetic.instructions};
         const Size sensor{data->info.width, data->info.height};
         const std::filesystem::path file = find_model(name);
         const Model model = load_model(file);
         bench::StageSettings how = stage_settings(sensor);
-        how.engine.precision = arithmetic.precision;
-        how.engine.kernels = arithmetic.kernels;
+        how.engine = engine;
         const auto stages =
             bench::measure_stages(file.stem().string(), model, windows, how, report.peaks);
         PipelineBenchSettings of_error = pipeline_settings(name);
-        of_error.precision = arithmetic.precision;
-        of_error.kernels = arithmetic.kernels;
-        // Made here: its weights are laid out for the instructions of now.
+        of_error.precision = engine.precision;
+        of_error.kernels = engine.kernels;
+        of_error.instructions = engine.instructions;
         const auto lpips = load_lpips(settings_.lpips);
         of_error.lpips = lpips.get();
         SpeedRow row{stages.model,

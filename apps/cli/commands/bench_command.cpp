@@ -108,7 +108,7 @@ SettingTable BenchCommand::settings() {
     add(list_setting("precisions", settings_.precisions, "P",
                      "auto, f32 or bf16, any number of times."));
     add(choice_setting("engine", settings_.engine, "As in eventide run.", kEngineWords));
-    add(choice_setting("instructions", instructions_,
+    add(choice_setting("instructions", settings_.instructions,
                        "What the kernels may use: best (all the processor has), or no more than "
                        "an older one; avx512: all but AMX.",
                        kInstructionWords));
@@ -258,7 +258,6 @@ int BenchCommand::report(Program& program) const {
 }
 
 int BenchCommand::run(Program& program) {
-    limit_instructions(instructions_);
     name_bench_files(program.files);
     if (!report_.empty()) return report(program);
     if (!peers_.empty())
@@ -267,7 +266,7 @@ int BenchCommand::run(Program& program) {
     std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
                 version().c_str(), compiler_text().c_str(), settings_.scene.c_str(),
                 settings_.lookahead);
-    const bench::Peaks peaks = bench::measure_peaks(instructions_);
+    const bench::Peaks peaks = bench::measure_peaks(settings_.instructions);
     std::fputs(bench::peaks_text(peaks).c_str(), stdout);
     std::vector<bench::StageRow> stages;
     std::vector<bench::ActivityRow> activity;

@@ -7,7 +7,6 @@
 #include "apps/cli/command.h"
 #include "apps/cli/commands/recording_in_memory.h"
 #include "apps/cli/settings/run_settings.h"
-#include "src/model/instructions.h"
 #include "src/settings/values.h"
 
 #include <memory>
@@ -54,7 +53,6 @@ private:
     void name_bench_files(NamedFiles& files) const;
 
     BenchSettings settings_;
-    Instructions instructions_ = Instructions::best;
     std::string json_, plots_, report_, peers_;
 
     bool stages_ = false, activity_ = false, overwrite_ = false;

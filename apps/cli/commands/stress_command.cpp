@@ -188,16 +188,16 @@ int StressCommand::run(Program& program) {
         return exit_done;
     }
     name_stress_files(program.files);
-    limit_instructions(instructions_);
     return soak_hours_ > 0 ? run_soak(program) : run_cases(program);
 }
 
 namespace {
 
-EngineOptions engine_with(int threads) {
+EngineOptions engine_with(int threads, Instructions instructions) {
     EngineOptions engine;
     engine.precision = Precision::f32;
     engine.kernels = Kernels::own;
+    engine.instructions = instructions;
     engine.parallel_for = parallel_for_with(threads);
     return engine;
 }
@@ -225,7 +225,7 @@ int StressCommand::run_cases(Program& program) {
             progress.show(double(c) / double(cases.size()), cases[c].title + ", " + models_[m]);
             StressRow row =
                 row_of(cases[c], models_[m],
-                       {models[m], engine_with(threads_), instructions_, budget(program)});
+                       {models[m], engine_with(threads_, instructions_), budget(program)});
             progress.clear();
             if (program.signals.stopping()) break;  // it did not come to its end
             print_row(row);
@@ -259,7 +259,8 @@ int StressCommand::run_soak(Program& program) {
         settings.on_sample = [&](const stress::SoakSample& sample) {
             progress.show(sample.stream_hours / soak_hours_, name);
         };
-        const auto samples = stress::soak(load_tried(name), engine_with(threads_), settings);
+        const auto samples =
+            stress::soak(load_tried(name), engine_with(threads_, instructions_), settings);
         progress.clear();
         rows.push_back({"soak", short_number(soak_hours_) + " h of pauses and bursts", name,
                         stress::soak_verdict(samples), 0});

@@ -3,7 +3,7 @@
 
 #include "apps/cli/command.h"
 #include "apps/cli/stress/stress_case.h"
-#include "src/model/instructions.h"
+#include "src/core/instructions.h"
 
 #include <string>
 #include <vector>

@@ -36,6 +36,7 @@ Network::Network(const RunSettings& settings, const SensorInfo& sensor)
       engine_{.engine = settings.engine,
               .precision = settings.precision,
               .kernels = settings.kernels,
+              .instructions = settings.instructions,
               .parallel_for = parallel_for_with(settings.threads)},
       encoder_{made_for<Encoder>(model_, sensor, engine_)},
       renderer_{made_for<Renderer>(model_, sensor, engine_)} {}

@@ -77,6 +77,7 @@ struct RunSettings {
     SigmaChoice sigma_rule;
     Precision precision = Precision::automatic;
     Kernels kernels = Kernels::automatic;
+    Instructions instructions = Instructions::best;  ///< of `eventide bench`: no option of runs
     Engine engine = Engine::fast;
     int threads = 0;
     std::string state_in, state_out;

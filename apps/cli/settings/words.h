@@ -3,8 +3,8 @@
 
 #include "src/core/arithmetic_words.h"
 #include "src/core/bayer.h"
+#include "src/core/instructions.h"
 #include "src/model/engine.h"
-#include "src/model/instructions.h"
 #include "src/settings/words.h"
 
 #include <iterator>

@@ -1,7 +1,6 @@
 // Every way of computing the same thing, against double precision and each other.
 #include "apps/cli/stress/stress_case.h"
-#include "src/model/instructions.h"
-#include "src/nn/arithmetic.h"
+#include "src/nn/backend.h"
 #include "src/nn/onednn_conv.h"
 
 #include <atomic>
@@ -54,12 +53,12 @@ Result float_kernels(const Bench& bench) {
 
 Result instruction_sets(const Bench& bench) {
     Result result;
-    for (const auto& [name, most] :
-         {std::pair{"SSE4", Instructions::sse4}, std::pair{"AVX2", Instructions::avx2},
-          std::pair{"best", Instructions::best}}) {
-        if (most < bench.instructions) continue;  // the enumerators go down
-        const LimitedInstructions here{most};
-        const PipelineOutcome outcome = measured(bench, with(bench, Precision::f32, Kernels::own));
+    const Instructions most = bench.engine.instructions;
+    for (const Instructions each : {Instructions::sse4, Instructions::avx2, most}) {
+        if (each < most) continue;  // the enumerators go down
+        EngineOptions engine = with(bench, Precision::f32, Kernels::own);
+        engine.instructions = each;
+        const PipelineOutcome outcome = measured(bench, engine);
         add(outcome, outcome.engine, result);
     }
     return result;
@@ -80,8 +79,9 @@ Result bf16(const Bench& bench) {
     EngineOptions emulated = with(bench, Precision::automatic, Kernels::own);
     emulated.emulate_bf16 = true;
     note("emulated", emulated);
-    if (bf16_available()) note("built-in", with(bench, Precision::bf16, Kernels::own));
-    if (bf16_available() && onednn_has_bf16())
+    const bool has_bf16 = bf16_kernels(bench.engine.instructions) != nullptr;
+    if (has_bf16) note("built-in", with(bench, Precision::bf16, Kernels::own));
+    if (has_bf16 && onednn_has_bf16())
         note("oneDNN", with(bench, Precision::bf16, Kernels::onednn));
     return result;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "apps/cli/stress/pipeline_run.h"
-#include "src/model/instructions.h"
 
 #include <chrono>
 #include <functional>
@@ -53,7 +52,6 @@ private:
 struct Bench {
     const Model& model;
     EngineOptions engine;
-    Instructions instructions = Instructions::best;  ///< the most that may be used
     Budget budget;
 
     PipelineRunSettings run_settings() const {

@@ -11,14 +11,14 @@
 namespace eventide {
 
 GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,
-                           const Arithmetic& arithmetic)
+                           const Backend& backend)
     : top_(std::size_t(model.config.latent_stride - 1)),
       widths_(model.config.widths),
-      numbers_(arithmetic.products),
+      numbers_(backend),
       latent_size_(levels[top_].size()) {
     const auto conv = [&](const std::string& name, bool relu, const std::vector<Tile>& tiles,
                           Extent size, const std::vector<int>& sources = {}) {
-        return PackedConv{plain::conv_weights<float>(model.weights, name), 1,      relu, arithmetic,
+        return PackedConv{plain::conv_weights<float>(model.weights, name), 1,      relu, backend,
                           extents_of(tiles, 0, size.height, size.width),   sources};
     };
     // A worker's scratch: what is joined for a layer, then what the layer needs itself.
@@ -139,7 +139,7 @@ void GatedDecoder::add(const PaddedMap& before, bool is_float, Block& block, con
             skip = scratch;
         }
         float* sum = block.sum.at(y, tile.x0);
-        vector_kernels().add_relu(skip, sum, sum, width * std::size_t(channels));
+        numbers_.kernels().add_relu(skip, sum, sum, width * std::size_t(channels));
         numbers_.from_float(sum, width, channels, block.out.at(y, tile.x0));
     }
 }

@@ -18,8 +18,7 @@ namespace eventide {
 /// A tile without a touched pixel is left out; its numbers are those of the last run().
 class GatedDecoder {
 public:
-    GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,
-                 const Arithmetic& arithmetic);
+    GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels, const Backend& backend);
 
     /// Of the map of codes that write_codes() writes.
     Extent latent_size() const { return latent_size_; }

@@ -21,22 +21,22 @@ namespace eventide {
 namespace {
 
 std::vector<GatedLevel> levels_of(const Model& model, int height, int width,
-                                  const Arithmetic& arithmetic) {
+                                  const Backend& backend) {
     std::vector<GatedLevel> levels;
     for (const auto& [rows, columns] : plain::level_sizes(height, width, model.config.levels()))
-        levels.emplace_back(model, levels.size(), Extent{rows, columns}, arithmetic);
+        levels.emplace_back(model, levels.size(), Extent{rows, columns}, backend);
     return levels;
 }
 
 }  // namespace
 
 GatedEncoder::GatedEncoder(const Model& model, int height, int width, const EngineOptions& options,
-                           const Arithmetic& arithmetic)
+                           const Backend& backend)
     : config_(model.config),
       options_(options),
-      arithmetic_(arithmetic),
-      levels_(levels_of(model, height, width, arithmetic)),
-      decoder_(model, levels_, arithmetic),
+      backend_(backend),
+      levels_(levels_of(model, height, width, backend)),
+      decoder_(model, levels_, backend),
       latent_(decoder_.latent_size().height, decoder_.latent_size().width),
       runner_(options.parallel_for, options.skip_quiet),
       top_room_(levels_.front().mask()),
@@ -44,8 +44,8 @@ GatedEncoder::GatedEncoder(const Model& model, int height, int width, const Engi
     std::size_t scratch = decoder_.scratch_size(), tiles = 0;
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const Extent size = levels_[l].size();
-        states_.emplace_back(size.height, size.width, config_.widths[l],
-                             Numbers{arithmetic.products}, config_.recurrent[l] != 0);
+        states_.emplace_back(size.height, size.width, config_.widths[l], Numbers{backend},
+                             config_.recurrent[l] != 0);
         scratch = std::max(scratch, levels_[l].scratch_size());
         tiles = std::max(tiles, levels_[l].tiles().size());
     }
@@ -53,7 +53,7 @@ GatedEncoder::GatedEncoder(const Model& model, int height, int width, const Engi
 }
 
 std::string GatedEncoder::description() const {
-    return engine_name(arithmetic_);
+    return engine_name(backend_);
 }
 
 void GatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {

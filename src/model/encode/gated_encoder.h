@@ -14,7 +14,7 @@ namespace eventide {
 class GatedEncoder final : public EncoderCore {
 public:
     GatedEncoder(const Model& model, int height, int width, const EngineOptions& options,
-                 const Arithmetic& arithmetic);
+                 const Backend& backend);
 
     std::string description() const override;
     void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
@@ -29,7 +29,7 @@ private:
 
     ModelConfig config_;
     EngineOptions options_;
-    Arithmetic arithmetic_;
+    Backend backend_;
     // Levels from the top (full resolution) to the deepest; states_[l] is that of levels_[l].
     std::vector<GatedLevel> levels_;
     std::vector<StateMap> states_;  // h_l

@@ -35,12 +35,12 @@ constexpr std::size_t kLeastGroup = 32;
 struct InputMaps {
     int count = 1, size = 0;
 };
-InputMaps input_maps(int channels, const Arithmetic& arithmetic) {
+InputMaps input_maps(int channels, const Backend& backend) {
     constexpr double kMaxAdded = 1.34;  // pixels in pairs, the other way, cost as much
-    const Numbers numbers{arithmetic.products};
+    const Numbers numbers{backend};
     const bool is_bf16 = numbers.bf16() != nullptr;
     InputMaps best{1, channels};
-    if (!numbers.by_quads() || arithmetic.onednn) return best;
+    if (!numbers.by_quads() || backend.onednn) return best;
     for (const int size : {4, 8}) {
         const int count = (channels + size - 1) / size;
         if ((is_bf16 && size == 4) || count > ConvArea::kMaxSources) continue;
@@ -73,8 +73,7 @@ std::string encoder_layer(const char* part, std::size_t i) {
     return "encoder." + std::string{part} + "." + std::to_string(i);
 }
 
-GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
-                       const Arithmetic& arithmetic)
+GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size, const Backend& backend)
     : number_(number),
       size_(size),
       channels_(model.config.widths[number]),
@@ -85,13 +84,13 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
       mask_(size.height, size.width) {
     const auto weights = plain::conv_weights<float>(
         model.weights, number == 0 ? "encoder.in" : encoder_layer("down", number));
-    const InputMaps maps = number == 0 ? input_maps(inputs_, arithmetic) : InputMaps{1, inputs_};
+    const InputMaps maps = number == 0 ? input_maps(inputs_, backend) : InputMaps{1, inputs_};
     maps_ = maps.count;
     map_channels_ = maps.size;
     in_ = {with_inputs(weights, maps_ * map_channels_),
            number == 0 ? 1 : 2,
            true,
-           arithmetic,
+           backend,
            extents_of(tiles_, recurrent_ ? kGruReach : 0, size.height, size.width),
            std::vector<int>(std::size_t(maps_), map_channels_),
            maps_ > 1};
@@ -103,7 +102,7 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size,
             size,
             tiles_,
             side_,
-            arithmetic,
+            backend,
             2 * group_};
 }
 
@@ -207,8 +206,8 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
             fetch(grid.pixel(y + kRowsAhead, inside.x0).data(), pixels * std::size_t(channels));
         float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
         float* compressed = numbers.bf16() != nullptr || maps_ > 1 ? rest : to;
-        vector_kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
-                                  pixels * std::size_t(channels));
+        numbers.kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
+                                   pixels * std::size_t(channels));
         if (maps_ > 1)
             numbers.split({compressed, inside.width(), channels, map_channels_, maps_, to, plane});
         else if (compressed != to)

@@ -18,7 +18,7 @@ std::string encoder_layer(const char* part, std::size_t i);
 /// all tiles writes aside, commit() of all tiles brings it into the map. Others have no commit().
 class GatedLevel {
 public:
-    GatedLevel(const Model& model, std::size_t number, Extent size, const Arithmetic& arithmetic);
+    GatedLevel(const Model& model, std::size_t number, Extent size, const Backend& backend);
 
     const Extent& size() const { return size_; }
     int side() const { return side_; }  ///< of its tiles, at most

@@ -28,8 +28,8 @@ constexpr int kSide = kLatentSide, kHalfSide = 24;
 }  // namespace
 
 ThesisEncoder::ThesisEncoder(const Model& model, int height, int width,
-                             const EngineOptions& options, const Arithmetic& arithmetic)
-    : arithmetic_(arithmetic),
+                             const EngineOptions& options, const Backend& backend)
+    : backend_(backend),
       channels_(model.config.widths[0]),
       latent_(height, width),
       half_tiles_(tiles_of((height + 1) / 2, (width + 1) / 2, kHalfSide)),
@@ -37,12 +37,11 @@ ThesisEncoder::ThesisEncoder(const Model& model, int height, int width,
     const Tensors& w = model.weights;
     const Extent full{height, width}, half{(height + 1) / 2, (width + 1) / 2};
     const auto conv = [&](const std::string& name, const std::vector<int>& sources = {}) {
-        return PackedConv{
-            plain::conv_weights<float>(w, "encoder." + name), 1,      false, arithmetic_,
-            extents_of(latent_.tiles(), 0, height, width),    sources};
+        return PackedConv{plain::conv_weights<float>(w, "encoder." + name), 1,      false, backend_,
+                          extents_of(latent_.tiles(), 0, height, width),    sources};
     };
     in_ = conv("in");
-    down_ = {plain::conv_weights<float>(w, "encoder.down"), 2, false, arithmetic_,
+    down_ = {plain::conv_weights<float>(w, "encoder.down"), 2, false, backend_,
              extents_of(half_tiles_, 2, half.height, half.width)};
     for (int i = 0; i < 2; ++i) res_[i] = conv("res." + std::to_string(i));
     for (int i = 0; i < 3; ++i)
@@ -51,9 +50,9 @@ ThesisEncoder::ThesisEncoder(const Model& model, int height, int width,
     for (int i = 0; i < 5; ++i)
         norms_.push_back(plain::norm_weights<float>(w, "encoder.norm" + std::to_string(i)));
     full_gru_ = {plain::gru_weights<float>(w, "encoder.gru.0"), full, latent_.tiles(), kSide,
-                 arithmetic_};
+                 backend_};
     half_gru_ = {plain::gru_weights<float>(w, "encoder.gru.1"), half, half_tiles_, kHalfSide,
-                 arithmetic_};
+                 backend_};
     states_.emplace_back(height, width, channels_, in_.numbers(), true);
     states_.emplace_back(half.height, half.width, channels_, in_.numbers(), true);
     x0_ = inner_ = x2_ = y0_ = y1_ = {height, width, channels_};
@@ -76,7 +75,7 @@ ThesisEncoder::ThesisEncoder(const Model& model, int height, int width,
 }
 
 std::string ThesisEncoder::description() const {
-    return engine_name(arithmetic_);
+    return engine_name(backend_);
 }
 
 void ThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
@@ -121,10 +120,9 @@ void ThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
         const std::ptrdiff_t c = grid.channels(), row = (tile.width() + 2) * c;
         std::memset(scratch, 0, std::size_t((tile.height() + 2) * row) * sizeof(float));
         for (int y = near.y0; y < near.y1; ++y)
-            vector_kernels().compress(
-                grid.pixel(y, near.x0).data(),
-                scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * c,
-                std::size_t(near.width()) * std::size_t(c));
+            backend_.f32->compress(grid.pixel(y, near.x0).data(),
+                                   scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * c,
+                                   std::size_t(near.width()) * std::size_t(c));
         in_.run(into_raw(tile, scratch, row), scratch + (tile.height() + 2) * row);
         keep_sums(i);
     });
@@ -187,9 +185,9 @@ void ThesisEncoder::normalise(std::size_t norm, const PaddedMap* skip, PaddedMap
     }
     runner_.over(latent_.tiles(), [&](std::size_t, const Tile& tile, float*) {
         for (int y = tile.y0; y < tile.y1; ++y)
-            vector_kernels().norm_elu(raw_.pixel(y, tile.x0).data(), scale_.data(), shift_.data(),
-                                      skip != nullptr ? skip->at(y, tile.x0) : nullptr,
-                                      to.at(y, tile.x0), std::size_t(tile.width()), channels_);
+            backend_.f32->norm_elu(raw_.pixel(y, tile.x0).data(), scale_.data(), shift_.data(),
+                                   skip != nullptr ? skip->at(y, tile.x0) : nullptr,
+                                   to.at(y, tile.x0), std::size_t(tile.width()), channels_);
     });
 }
 
@@ -219,7 +217,7 @@ void ThesisEncoder::step_half() noexcept {
             down_.run(ConvCall{x2_.at(2 * region.y0 - 1, 2 * region.x0 - 1), x2_.pitch(), wide, row,
                                channels_, region.height(), region.width()},
                       wide + region.height() * row);
-            vector_kernels().elu(wide, wide, std::size_t(region.height() * row));
+            backend_.f32->elu(wide, wide, std::size_t(region.height() * row));
             for (int y = 0; y < region.height(); ++y)
                 states_[1].numbers().from_float(wide + y * row, std::size_t(region.width()),
                                                 channels_, target.out + y * target.pitch);

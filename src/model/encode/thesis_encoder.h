@@ -17,7 +17,7 @@ namespace eventide {
 class ThesisEncoder final : public EncoderCore {
 public:
     ThesisEncoder(const Model& model, int height, int width, const EngineOptions& options,
-                  const Arithmetic& arithmetic);
+                  const Backend& backend);
 
     std::string description() const override;
     void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
@@ -37,7 +37,7 @@ private:
     void join_head() noexcept;
     ConvCall into_raw(const Tile& tile, const float* in, std::ptrdiff_t pitch) noexcept;
 
-    Arithmetic arithmetic_;
+    Backend backend_;
     int channels_;
     LatentTiles latent_;  // one way of cutting for all maps of full size
     std::vector<Tile> half_tiles_;

@@ -24,15 +24,15 @@ std::vector<float> transposed(const Tensor& weight) {
 }  // namespace
 
 FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_height,
-                           const EngineOptions& options, const Arithmetic& arithmetic)
+                           const EngineOptions& options, const Backend& backend)
     : config_(model.config),
       options_(options),
-      arithmetic_(arithmetic),
-      numbers_(arithmetic.products),
+      backend_(backend),
+      numbers_(backend),
       first_(config_.mlp[0]),
       widest_(*std::ranges::max_element(config_.mlp)),
       first_layer_(model, latent_samples(sensor_height, config_.latent_stride),
-                   latent_samples(sensor_width, config_.latent_stride), options, arithmetic) {
+                   latent_samples(sensor_width, config_.latent_stride), options, backend) {
     const Tensor& first = model.weights.at("renderer.mlp.0.weight");
     const auto inputs = std::size_t(first.shape[1]);
     // The last three inputs of layer 1, [H_1][27 D + 3]: t - t_v, x - x_v, y - y_v.
@@ -45,7 +45,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
         const std::vector<float>& bias = model.weights.at(name + ".bias").values;
         if (i < config_.mlp.size()) {
             layers_.emplace_back(1, 1, int(weight.shape[1]), int(weight.shape[0]),
-                                 transposed(weight), bias, true, arithmetic.products);
+                                 transposed(weight), bias, true, backend);
         } else {
             last_weight_ = weight.values;
             last_bias_ = bias;
@@ -59,7 +59,7 @@ FastRenderer::FastRenderer(const Model& model, int sensor_width, int sensor_heig
 }
 
 std::string FastRenderer::description() const {
-    return engine_name(arithmetic_);
+    return engine_name(backend_);
 }
 
 void FastRenderer::reset() noexcept {
@@ -237,8 +237,8 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
     if (target.sigma == nullptr) return;
     float* sigma = target.sigma + row;
     if (job.rule == SigmaRule::log_blend) {
-        vector_kernels().scaled_exp(blended + count + begin, config_.sigma_scale, sigma + begin,
-                                    end - begin);
+        numbers_.kernels().scaled_exp(blended + count + begin, config_.sigma_scale, sigma + begin,
+                                      end - begin);
         return;
     }
     // Rounding may leave a variance below 0.

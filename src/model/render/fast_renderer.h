@@ -15,7 +15,7 @@ namespace eventide {
 class FastRenderer final : public RendererCore {
 public:
     FastRenderer(const Model& model, int sensor_width, int sensor_height,
-                 const EngineOptions& options, const Arithmetic& arithmetic);
+                 const EngineOptions& options, const Backend& backend);
 
     std::string description() const override;
     void make_room(const FrameGeometry& geometry) override { lay_out(geometry); }
@@ -85,7 +85,7 @@ private:
 
     ModelConfig config_;
     EngineOptions options_;
-    Arithmetic arithmetic_;
+    Backend backend_;
     Numbers numbers_;
     int first_ = 0, widest_ = 0;  // outputs of layer 1, of the widest layer
     FirstLayerCache first_layer_;

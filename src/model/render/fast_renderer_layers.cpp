@@ -58,27 +58,27 @@ void FastRenderer::run_blocks(const OffsetRows& all, const Outputs& out,
         block.out = activations;
         numbers_.offset_rows(block);
         const float* last = run_layers(activations, block.pixels, room);
-        vector_kernels().two_outputs({.in = last,
-                                      .weight = last_weight_.data(),
-                                      .bias = last_bias_.data(),
-                                      .pixels = block.pixels,
-                                      .width = config_.mlp.back(),
-                                      .first = out.mu + begin,
-                                      .second = out.log_sigma + begin});
+        numbers_.kernels().two_outputs({.in = last,
+                                        .weight = last_weight_.data(),
+                                        .bias = last_bias_.data(),
+                                        .pixels = block.pixels,
+                                        .width = config_.mlp.back(),
+                                        .first = out.mu + begin,
+                                        .second = out.log_sigma + begin});
     }
 }
 
 void FastRenderer::add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
                        float* blended, int width) const noexcept {
     const FrameColumns& columns = layout_.pixels;
-    vector_kernels().weigh_rows({.mu = outputs.mu,
-                                 .log_sigma = outputs.log_sigma,
-                                 .square = outputs.square,
-                                 .share = columns.weight[member.side].data() + begin,
-                                 .weight = member.weight,
-                                 .least = config_.log_sigma_min,
-                                 .most = config_.log_sigma_max,
-                                 .pixels = pixels});
+    numbers_.kernels().weigh_rows({.mu = outputs.mu,
+                                   .log_sigma = outputs.log_sigma,
+                                   .square = outputs.square,
+                                   .share = columns.weight[member.side].data() + begin,
+                                   .weight = member.weight,
+                                   .least = config_.log_sigma_min,
+                                   .most = config_.log_sigma_max,
+                                   .pixels = pixels});
     const int* pixel = columns.pixel[member.side].data() + begin;
     const float* const parts[] = {outputs.mu, outputs.log_sigma, outputs.square};
     for (const float* part : parts) {

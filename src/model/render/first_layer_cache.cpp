@@ -31,7 +31,7 @@ plain::ConvWeights<float> first_layer_weights(const Model& model, int codes) {
 }  // namespace
 
 FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
-                                 const EngineOptions& options, const Arithmetic& arithmetic)
+                                 const EngineOptions& options, const Backend& backend)
     : options_(options),
       height_(height),
       width_(width),
@@ -40,11 +40,11 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
       reach_(model.config.unfold / 2),
       tiles_(latent_tiles(height, width)),
       tile_columns_(int(std::ranges::count(tiles_, 0, &Tile::y0))),
-      numbers_(arithmetic.products) {
+      numbers_(backend) {
     const auto extents = extents_of(tiles_, 0, height, width);
-    past_ = {first_layer_weights(model, 2), 1, false, arithmetic, extents,
+    past_ = {first_layer_weights(model, 2), 1, false, backend, extents,
              std::vector<int>(2, depth_)};
-    whole_ = {first_layer_weights(model, 3), 1, false, arithmetic, extents,
+    whole_ = {first_layer_weights(model, 3), 1, false, backend, extents,
               std::vector<int>(3, depth_)};
     for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_)};
     // Read again for each row (a pitch of 0): a tile's width and its rim.
@@ -104,8 +104,8 @@ bool FirstLayerCache::is_still(const PaddedMap& before, const Tile& tile,
     const auto width = std::size_t(tile.width());
     for (int y = tile.y0; y < tile.y1; ++y) {
         numbers_.to_float(before.at(y, tile.x0), width, depth_, row);
-        if (!vector_kernels().are_near(latent.pixel(y, tile.x0).data(), row,
-                                       float(options_.still_codes), width * std::size_t(depth_)))
+        if (!numbers_.kernels().are_near(latent.pixel(y, tile.x0).data(), row,
+                                         float(options_.still_codes), width * std::size_t(depth_)))
             return false;
     }
     return true;

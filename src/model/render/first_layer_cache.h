@@ -36,7 +36,7 @@ public:
 
     /// Latent maps are of `height` x `width`.
     FirstLayerCache(const Model& model, int height, int width, const EngineOptions& options,
-                    const Arithmetic& arithmetic);
+                    const Backend& backend);
 
     /// Takes z_k; k - 1 before it, unless reset() was.
     void push(std::int64_t k, const LatentMap& latent) noexcept;

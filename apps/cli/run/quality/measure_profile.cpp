@@ -8,7 +8,7 @@
 #include "src/core/error.h"
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
-#include "src/nn/arithmetic.h"
+#include "src/nn/backend.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,8 +145,9 @@ PrecisionCost measure_precision(const ProfileKey& key, const Model& model, Preci
 
 ProfileKey profile_key(const std::string& name, const Model& model, int width, int height,
                        Kernels kernels) {
-    std::string instructions = name_of(Arithmetic{});
-    if (bf16_available()) instructions += std::string{", "} + name_of(Arithmetic{Products::bf16});
+    std::string instructions = name_of(Backend{});
+    if (const Bf16Kernels* bf16 = bf16_kernels())
+        instructions += ", " + name_of(Backend{.bf16 = bf16});
     return {processor_text(),
             instructions,
             show_word(kernels, kKernelWords),
@@ -165,7 +166,7 @@ QualityProfile measure_profile(const ProfileKey& key, const Model& model,
     binner.process({.window = {SensorTime{}, SensorTime{} + kWindow}, .events = events}, grid);
 
     std::vector<Precision> precisions{Precision::f32};
-    if (bf16_available()) precisions.push_back(Precision::bf16);
+    if (bf16_kernels() != nullptr) precisions.push_back(Precision::bf16);
     constexpr int kStages = 5;
     const Measuring measuring{settings, kStages * int(precisions.size())};
     QualityProfile profile{key, {}};
