@@ -283,7 +283,8 @@ bool onednn_has_amx() {
 }
 
 struct OnednnConv::Primitives {};
-OnednnConv::OnednnConv(const plain::ConvWeights<float>&, int, bool, bool, std::vector<Extent>) {
+OnednnConv::OnednnConv(const plain::ConvWeights<float>&, int, bool, const Bf16Kernels*,
+                       std::vector<Extent>) {
     throw Error(ErrorKind::usage,
                 "kernels onednn: expected a program built with EVENTIDE_ONEDNN, found one without");
 }

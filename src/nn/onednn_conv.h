@@ -37,8 +37,7 @@ bool onednn_has_amx();
 class OnednnConv {
 public:
     /// `bf16`: makes inputs bf16, and products are of bf16; null: of float32. run() may be called
-    /// for regions of these extents. Throws Error(usage) where oneDNN is not
-    /// there.
+    /// for regions of these extents. Throws Error(usage) where oneDNN is not there.
     OnednnConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                const Bf16Kernels* bf16, std::vector<Extent> extents);
     ~OnednnConv();

@@ -50,7 +50,7 @@ struct Work {
 
 const OnednnConv& convolution() {
     static const OnednnConv kConv{
-        weights_of(Work::kOut, Work::kIn), 1, true, false, {{Work::kHeight, Work::kWidth}}};
+        weights_of(Work::kOut, Work::kIn), 1, true, nullptr, {{Work::kHeight, Work::kWidth}}};
     return kConv;
 }
 
