@@ -7,19 +7,23 @@
 
 namespace eventide {
 
-/// Thread: keep() any; rethrow_if_any() when the threads have ended.
+/// Thread: keep() and is_there() any; rethrow_if_any() when the threads have ended.
 class FirstError {
 public:
     void keep(std::exception_ptr error) {
         const std::lock_guard lock{mutex_};
         if (!error_) error_ = std::move(error);
     }
+    bool is_there() const {
+        const std::lock_guard lock{mutex_};
+        return error_ != nullptr;
+    }
     void rethrow_if_any() const {
         if (error_) std::rethrow_exception(error_);
     }
 
 private:
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::exception_ptr error_;
 };
 

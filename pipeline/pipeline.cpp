@@ -239,8 +239,12 @@ void Pipeline::run() {
     {
         std::jthread reading, binning, encoding;
         start(reading, "eventide-read", &Pipeline::read, packets_);
-        start(binning, "eventide-bin", &Pipeline::bin, grids_);
-        start(encoding, "eventide-encode", &Pipeline::encode, latents_);
+        // A thread that is not there takes nothing: what is meant for it goes home here, so that
+        // who sends it does not wait for ever.
+        if (!start(binning, "eventide-bin", &Pipeline::bin, grids_))
+            while (packets_.pop()) continue;
+        if (!start(encoding, "eventide-encode", &Pipeline::encode, latents_))
+            while (grids_.pop()) continue;
         present();
     }
     close_and_report();
@@ -286,7 +290,7 @@ void Pipeline::stop() noexcept {
 
 /// A thread that cannot start must still close the link it would have closed.
 template <typename Handle>
-void Pipeline::start(std::jthread& thread, const char* name, void (Pipeline::*work)(),
+bool Pipeline::start(std::jthread& thread, const char* name, void (Pipeline::*work)(),
                      Link<Handle>& out) {
     const bool started = guarded([&] {
         thread = std::jthread{[this, name, work] {
@@ -295,6 +299,7 @@ void Pipeline::start(std::jthread& thread, const char* name, void (Pipeline::*wo
         }};
     });
     if (!started) out.close();
+    return started;
 }
 
 /// Runs `body` on every item. After an error it still empties the link, so that buffers go home and

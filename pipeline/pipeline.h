@@ -79,6 +79,10 @@ public:
     /// Thread: any. What has been read is still finished, for at most about a second.
     void stop() noexcept;
 
+    /// So far nobody has stopped it, and nothing has failed: at the sinks' close() it tells whether
+    /// they have all that was asked for. Thread: any.
+    bool is_whole() const { return !stop_.is_set() && !error_.is_there(); }
+
     Snapshot snapshot() const { return counters_.snapshot(); }  ///< Thread: any, at any time
 
 private:
@@ -103,7 +107,7 @@ private:
     Encoded make_encoded() const;
 
     template <typename Handle>
-    void start(std::jthread& thread, const char* name, void (Pipeline::*work)(), Link<Handle>& out);
+    bool start(std::jthread& thread, const char* name, void (Pipeline::*work)(), Link<Handle>& out);
     template <typename Handle, typename Body>
     bool for_each(Link<Handle>& link, Body body);
     template <typename Body>

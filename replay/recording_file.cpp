@@ -13,9 +13,8 @@ RecordingFile::RecordingFile(const std::string& path, bool overwrite,
     file_.emplace(path, OutputOptions{.overwrite = overwrite, .appears = appears});
 }
 
-RecordingFile::RecordingFile(const std::string& path, bool overwrite, const Format& format,
-                             const StreamHeader& header, Appears appears) {
-    const OutputOptions options{.overwrite = overwrite, .appears = appears};
+RecordingFile::RecordingFile(const std::string& path, const OutputOptions& options,
+                             const Format& format, const StreamHeader& header) {
     if (format.make_file_writer == nullptr) {
         writer_ = open_writer(format.name);
         writer_->begin(header, pending_);

@@ -22,8 +22,8 @@ public:
                   const StreamHeader& header, Appears appears = Appears::whole);
 
     /// In a format of the table, also one that is no stream of bytes (then `path` is no pipe).
-    RecordingFile(const std::string& path, bool overwrite, const Format& format,
-                  const StreamHeader& header, Appears appears = Appears::whole);
+    RecordingFile(const std::string& path, const OutputOptions& options, const Format& format,
+                  const StreamHeader& header);
 
     /// Throws Error (failed) when the disk is full, Error (usage) for what the format cannot hold.
     void write(const Batch& batch);

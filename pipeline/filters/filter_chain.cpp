@@ -63,7 +63,9 @@ ColourFilter FilterChain::pattern(ColourFilter before) const {
     return before;
 }
 
+/// Times count from the recording's first event, whatever filters leave of the beginning.
 void FilterChain::process(Batch& batch) {
+    if (!counts_ && !batch.events.empty()) count_from(batch.events.front().t);
     for (Link& link : links_) {
         const std::size_t before = batch.events.size();
         link.filter->process(batch);

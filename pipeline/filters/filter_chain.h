@@ -24,6 +24,7 @@ public:
     void process(Batch& batch);
     /// Tells when the recording's first event was, where that is not the first that is processed.
     void count_from(SensorTime first) {
+        counts_ = true;
         for (Link& link : links_) link.filter->count_from(first);
     }
 
@@ -40,6 +41,7 @@ private:
     };
     SensorPixels size_;
     std::deque<Link> links_;  // counters stay where they are
+    bool counts_ = false;     // the first event's time is known
 };
 
 /// A source as it looks behind filters. Its parsers share the chain: one is used at a time.

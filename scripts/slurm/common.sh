@@ -21,9 +21,9 @@ number_in() {
   echo "$value"
 }
 
-# FOLDER: whether a run in it came to its end.
+# FOLDER: whether a run in it came to its end, not stopped on the way.
 is_finished() {
-  [ -e "$1/run.json" ] && grep -Eq '"finished": *true' "$1/run.json"
+  [ -e "$1/run.json" ] && grep -Eq '"finished": *true' "$1/run.json" && ! grep -Eq '"complete": *false' "$1/run.json"
 }
 
 # OUT NUMBER: what the task begins with; the states of a recording have numbers of their own.

@@ -29,8 +29,9 @@ void require(bool holds) {
 
 void judge_head(std::string_view& text) {
     RequestHead head;
-    for (std::string* field : {&head.method, &head.path, &head.host, &head.origin, &head.fetch_site,
-                               &head.content_type, &head.authorization, &head.token})
+    for (std::string* field :
+         {&head.method, &head.path, &head.host, &head.origin, &head.fetch_site, &head.content_type,
+          &head.content_encoding, &head.authorization, &head.token})
         *field = line_of(text);
     head.hosts = 1;
     const GuardSettings open{"", {"camera.example"}}, closed{"secret", {"camera.example"}};

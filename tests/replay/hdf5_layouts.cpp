@@ -82,7 +82,7 @@ void write_hdf5(const std::string& path, const std::vector<Event>& events) {
     StreamHeader header;
     header.width = 640;
     header.height = 480;
-    RecordingFile file(path, true, *find_format("hdf5"), header);
+    RecordingFile file(path, OutputOptions{.overwrite = true}, *find_format("hdf5"), header);
     Batch batch;
     batch.events = events;
     file.write(batch);

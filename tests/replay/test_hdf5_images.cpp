@@ -73,7 +73,7 @@ TEST(Hdf5Images, SurviveTheWayThroughDsecsLayout) {
             image.pixels.values()[i] = std::uint16_t(n == 1 ? i * 11 : i % 256 * 257);
         batch.images.push_back(image);
     }
-    RecordingFile file(folder.path("a.h5"), false, *find_format("hdf5"), header);
+    RecordingFile file(folder.path("a.h5"), OutputOptions{}, *find_format("hdf5"), header);
     file.write(batch);
     file.finish();
     EXPECT_EQ(file.bytes_written(), std::filesystem::file_size(folder.path("a.h5")));

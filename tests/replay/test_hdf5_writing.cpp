@@ -43,10 +43,11 @@ TEST(Hdf5Writing, LeavesNothingBehindWhereItFails) {
     const std::string precious = folder.write("a.h5", "precious");
     StreamHeader header;
     header.width = header.height = 128;
-    EXPECT_THROW(RecordingFile(precious, false, *find_format("hdf5"), header), Error);
+    EXPECT_THROW(RecordingFile(precious, OutputOptions{}, *find_format("hdf5"), header), Error);
     EXPECT_EQ(read_text(precious), "precious");
     {
-        RecordingFile file(precious, true, *find_format("hdf5"), header);
+        RecordingFile file(precious, OutputOptions{.overwrite = true}, *find_format("hdf5"),
+                           header);
         Batch batch;
         batch.events = {{from_us(0), 1, 2, Polarity::on},
                         {from_us(8LL * 86400 * 1'000'000), 1, 2, Polarity::on}};
@@ -57,7 +58,9 @@ TEST(Hdf5Writing, LeavesNothingBehindWhereItFails) {
         std::distance(
             std::filesystem::directory_iterator(std::filesystem::path(precious).parent_path()), {}),
         1);
-    EXPECT_THROW(RecordingFile("/dev/null", true, *find_format("hdf5"), header), Error);
+    EXPECT_THROW(
+        RecordingFile("/dev/null", OutputOptions{.overwrite = true}, *find_format("hdf5"), header),
+        Error);
 }
 
 TEST(Hdf5Writing, GrowsUnderItsNameWhereThatIsAskedFor) {
@@ -65,7 +68,8 @@ TEST(Hdf5Writing, GrowsUnderItsNameWhereThatIsAskedFor) {
     StreamHeader header;
     header.width = header.height = 128;
     const auto events = some_events(3'000);
-    RecordingFile file(folder.path("a.h5"), false, *find_format("hdf5"), header, Appears::growing);
+    RecordingFile file(folder.path("a.h5"), OutputOptions{.appears = Appears::growing},
+                       *find_format("hdf5"), header);
     Batch batch;
     batch.events = events;
     file.write(batch);

@@ -126,6 +126,15 @@ void Process::close_output() {
     output_ = -1;
 }
 
+bool Process::catches(int number) const {
+    const std::string status = read_text("/proc/" + std::to_string(child_) + "/status");
+    const std::string name = "SigCgt:";
+    const std::size_t at = status.find(name);
+    if (at == status.npos) return false;
+    const unsigned long long caught = std::stoull(status.substr(at + name.size()), nullptr, 16);
+    return (caught >> (number - 1) & 1) != 0;
+}
+
 void Process::signal(int number) {
     if (!status_) kill(child_, number);
 }

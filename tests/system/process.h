@@ -58,6 +58,8 @@ public:
     /// What it has written to standard error so far, where that is no terminal.
     std::string error_so_far() const { return read_text(files_ / "error"); }
     void signal(int number);
+    /// Whether it has a handler for this signal by now.
+    bool catches(int number) const;
     bool running();
     Result wait();
 

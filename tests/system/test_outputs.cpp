@@ -224,6 +224,14 @@ TEST_F(Outputs, OtherOutputsMayLieInAFolderOfFrames) {
         EXPECT_TRUE(fs::exists(temp_ / ("a/" + std::string{name}))) << name;
 }
 
+TEST_F(Outputs, OneFileIsWholeWhereAnotherFails) {
+    fs::create_symlink("/dev/full", temp_ / "full.aedat4");
+    const Result result = eventide({"run", "rec.aedat4", "--out", "null", "--record", "full.aedat4",
+                                    "--events-out", "events.aedat4"});
+    EXPECT_EQ(result.exit_code, 1) << result.error;
+    EXPECT_EQ(eventide({"info", "events.aedat4"}).exit_code, 0);
+}
+
 TEST_F(Outputs, AFileThatCannotBeWrittenWholeLeavesTheOldOne) {
     const auto limited = [&](const std::string& arguments) {
         return run({"bash", "-c", "ulimit -f 1; exec " EVENTIDE_PROGRAM " " + arguments},

@@ -245,6 +245,16 @@ TEST_F(Run, TakesASimulationInPlaceOfACamera) {
     EXPECT_GE(column(temp_ / "a/timestamps.csv", 0).size(), 9U);
 }
 
+TEST_F(Run, ASourceThatHasNotBegunIsAliveForAServiceManager) {
+    ManagerSocket socket{temp_ / "notify"};
+    Process process = start(
+        {"run", "udp://127.0.0.1:0?size=32x24", "--out", "null"},
+        {.environment = {{"NOTIFY_SOCKET", temp_ / "notify"}, {"WATCHDOG_USEC", "30000000"}}});
+    while (process.running() && socket.next() != "WATCHDOG=1") continue;
+    process.signal(SIGTERM);
+    EXPECT_EQ(process.wait().exit_code, 0);
+}
+
 TEST_F(Run, TellsAServiceManagerOfItsBeginningItsLifeAndItsEnd) {
     ManagerSocket socket{temp_ / "notify"};
     const Result result =

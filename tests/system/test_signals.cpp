@@ -33,7 +33,9 @@ TEST_F(Signals, TheFirstSigintDrainsAndClosesEverything) {
     EXPECT_GE(times.size(), 5U);
     EXPECT_EQ(packet_times(temp_ / "video.mp4").size(), times.size());
     EXPECT_NE(read_text(temp_ / "stats.jsonl").find("\"final\":true"), std::string::npos);
-    EXPECT_TRUE(std::filesystem::exists(temp_ / "frames/run.json"));
+    const std::string record = read_text(temp_ / "frames/run.json");
+    EXPECT_NE(record.find("\"finished\": true"), std::string::npos);
+    EXPECT_NE(record.find("\"complete\": false"), std::string::npos) << "it was stopped";
     EXPECT_NE(result.error.find("frames from"), std::string::npos) << "the summary";
 }
 
@@ -69,6 +71,23 @@ TEST_F(Signals, APipeThatSaysNothingIsLeftAtTheFirstSignal) {
     }
     EXPECT_FALSE(std::filesystem::exists(temp_ / "frames"));
     EXPECT_FALSE(std::filesystem::exists(temp_ / "out.txt"));
+}
+
+TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
+    const std::string pipe = temp_ / "events";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::vector<std::string>& output :
+         {std::vector<std::string>{"--events-out", "text:" + pipe},
+          {"--stats", pipe},
+          {"--out", "gray8:" + pipe}}) {
+        std::vector<std::string> command{"run", recording()};
+        command.insert(command.end(), output.begin(), output.end());
+        if (output[0] != "--out") command.insert(command.end(), {"--out", "null"});
+        Process process = start(command);
+        while (process.running() && !process.catches(SIGTERM)) continue;
+        process.signal(SIGTERM);
+        EXPECT_LE(process.wait().exit_code, 1) << output[0];
+    }
 }
 
 TEST_F(Signals, AClosedTerminalEndsLikeSigtermHoweverOftenItHangsUp) {

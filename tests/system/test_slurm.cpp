@@ -114,6 +114,30 @@ TEST_F(Slurm, StatesGiveTheSegmentsWhatOneRunRemembered) {
     EXPECT_THAT(read_text(temp_ / "out/parts/long.000002/run.json"), HasSubstr("state_000001"));
 }
 
+/// As Ctrl-C would: the run ends properly, and the part is not whole all the same.
+TEST_F(Slurm, ATaskThatWasStoppedIsNotDone) {
+    simulate("long.aedat4");
+    std::vector<std::string> words{"--plan", "out",    "long.aedat4", "--",      "--fps",
+                                   "1000",   "--size", "8x",          "--speed", "1"};
+    ASSERT_EQ(script("submit.sh", words).exit_code, 0);
+    const std::string stopper = temp_ / "stopper";
+    write_text(stopper,
+               "#!/bin/bash\n\"$PROGRAM\" \"$@\" & run=$!\n"
+               "until grep -q , $OUT/*.work/timestamps.csv 2>/dev/null; do :; done\n"
+               "kill -INT $run; wait $run\n");
+    fs::permissions(stopper, fs::perms::owner_all);
+    const Result stopped =
+        run({EVENTIDE_SOURCE_DIR "/scripts/slurm/task.sh", "out", "0"},
+            {.environment = {{"EVENTIDE", stopper},
+                             {"PROGRAM", EVENTIDE_PROGRAM},
+                             {"OUT", temp_ / "out/parts"},
+                             {"EVENTIDE_MODELS", fs::path{model()}.parent_path().string()}},
+             .folder = temp_.path().string()});
+    EXPECT_EQ(stopped.exit_code, 2) << stopped.error;
+    EXPECT_THAT(stopped.error, HasSubstr("expected a finished run"));
+    EXPECT_THAT(script("merge.sh", {"out"}).error, HasSubstr("tasks 0 are not done"));
+}
+
 TEST_F(Slurm, OneTaskForEachRecording) {
     simulate("a.aedat4");
     fs::copy_file(temp_ / "a.aedat4", temp_ / "b.aedat4");

@@ -151,13 +151,15 @@ int ConvertCommand::run(Program& program) {
     if (format != nullptr && format->name == "aedat4" && recording->info().format == "aedat3")
         header.colour_filter = filter_of_images(from_file_, options);
     header.colour_filter = filters.pattern(header.colour_filter);
-    if (!filters.empty() && how.from && from_file_ != "-") filters.count_from(times.time_of({}));
+    if (!filters.empty() && how.from && !is_read_once(from_file_))
+        filters.count_from(times.time_of({}));
     if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
     std::unique_ptr<ConvertTarget> target;
     if (to_udp)
-        target = open_event_target(to_file_, overwrite_, false, header);
+        target = open_event_target(to_file_, {.overwrite = overwrite_}, header);
     else
-        target = std::make_unique<RecordingOut>(to_file_, overwrite_, format, header);
+        target = std::make_unique<RecordingOut>(to_file_, OutputOptions{.overwrite = overwrite_},
+                                                format, header);
     Progress progress{program.quiet};
     const ConvertReport report = convert(*recording, *target, how, [&] {
         if (recording->size_bytes() > 0)

@@ -66,11 +66,8 @@ void check_end(const AskedPart& part) {
                                       ", found an end before it");
 }
 
-/// A pipe is gone when it has been read.
 bool can_be_read_twice(const std::string& source) {
-    std::error_code none;
-    return !names_camera(source) && !names_simulation(source) && source != "-" &&
-           !std::filesystem::is_other(source, none);
+    return !names_camera(source) && !names_simulation(source) && !is_read_once(source);
 }
 
 }  // namespace

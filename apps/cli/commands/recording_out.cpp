@@ -11,15 +11,15 @@ bool names_folder(const std::string& path) {
     return path.ends_with('/') || std::filesystem::is_directory(path, none);
 }
 
-RecordingOut::RecordingOut(const std::string& path, bool overwrite, const Format* format,
-                           StreamHeader header, Appears appears)
+RecordingOut::RecordingOut(const std::string& path, const OutputOptions& options,
+                           const Format* format, StreamHeader header)
     : format_{format} {
     if (format == nullptr) {
-        folder_ = std::make_unique<EcdWriter>(path, overwrite, header.width, header.height);
+        folder_ = std::make_unique<EcdWriter>(path, options.overwrite, header.width, header.height);
         return;
     }
     header.format = format->name;
-    file_ = std::make_unique<RecordingFile>(path, overwrite, *format, header, appears);
+    file_ = std::make_unique<RecordingFile>(path, options, *format, header);
 }
 
 const FormatHolds& RecordingOut::holds() const {

@@ -18,8 +18,8 @@ class RecordingOut final : public ConvertTarget {
 public:
     /// `format` is empty for a folder, and `path` then that of one. `header` says whose data they
     /// are; its format is filled in. Throws Error as RecordingFile and EcdWriter do.
-    RecordingOut(const std::string& path, bool overwrite, const Format* format, StreamHeader header,
-                 Appears appears = Appears::whole);
+    RecordingOut(const std::string& path, const OutputOptions& options, const Format* format,
+                 StreamHeader header);
 
     const FormatHolds& holds() const override;
     void write(const Batch& batch) override;

@@ -205,7 +205,7 @@ int SimulateCommand::run(Program& program) {
             : colour_textures_from_folder(textures_);
     StreamHeader header = header_of(what);
     header.colour_filter = bayer_;
-    RecordingOut out{out_, overwrite_, format_of(out_), header};
+    RecordingOut out{out_, {.overwrite = overwrite_}, format_of(out_), header};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);
     std::unique_ptr<FolderSink> truth;

@@ -1,15 +1,14 @@
 // Colour cameras.
 #include "apps/cli/run/colour.h"
 
+#include "apps/cli/settings/time_point.h"
 #include "drivers/simulated/simulated_name.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
 
 #include <opencv2/imgproc.hpp>
 
-#include <filesystem>
 #include <string>
-#include <system_error>
 
 namespace eventide::app {
 
@@ -53,8 +52,7 @@ void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourF
 
 ColourFilter filter_of_images(const std::string& source, const OpenOptions& options) {
     constexpr std::uint64_t kMaxBytes = 256 << 20;
-    std::error_code none;
-    if (source == "-" || std::filesystem::is_other(source, none)) return ColourFilter::none;
+    if (is_read_once(source)) return ColourFilter::none;
     const auto recording = open_recording(source, options);
     const auto parser = recording->make_parser();
     RawPacket packet;

@@ -24,8 +24,9 @@ std::string file_of_event_target(const std::string& to) {
     return format_in_front(to) != nullptr ? to.substr(to.find(':') + 1) : to;
 }
 
-std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool overwrite,
-                                                 bool growing, const StreamHeader& header) {
+std::unique_ptr<ConvertTarget> open_event_target(const std::string& to,
+                                                 const OutputOptions& options,
+                                                 const StreamHeader& header) {
     if (to.starts_with("udp:")) return std::make_unique<UdpTarget>(to, header);
     const std::string file = file_of_event_target(to);
     const Format* format = format_in_front(to);
@@ -37,8 +38,7 @@ std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool ove
                         to + ": expected the extension of a format that can be written (.aedat4, "
                              ".h5, .raw, .txt, ...), FORMAT:PATH or folder/");
     }
-    return std::make_unique<RecordingOut>(file, overwrite, format, header,
-                                          growing ? Appears::growing : Appears::whole);
+    return std::make_unique<RecordingOut>(file, options, format, header);
 }
 
 std::string lost_datagrams(std::uint64_t lost) {
@@ -53,6 +53,9 @@ void EventsOut::see(const Batch& batch) {
     keep(batch.images, holds.images, batch_.images);
     keep(batch.imu, holds.imu, batch_.imu);
     keep(batch.triggers, holds.triggers, batch_.triggers);
+    // process() is called with events alone; the rest does not wait for them.
+    std::vector<Event> none;
+    if (batch.events.empty()) process(none);
 }
 
 void EventsOut::process(std::vector<Event>& events) {

@@ -12,10 +12,11 @@
 namespace eventide::app {
 
 /// Where --events-out and convert's TO go: "udp://HOST:PORT", "FORMAT:PATH" (also "FORMAT:-"),
-/// "folder/", a file by its extension, or "-" as text. `growing`: a file shows from its first byte.
-/// Throws Error (usage) for what is none of these and for a file that exists.
-std::unique_ptr<ConvertTarget> open_event_target(const std::string& to, bool overwrite,
-                                                 bool growing, const StreamHeader& header);
+/// "folder/", a file by its extension, or "-" as text. Throws Error (usage) for what is none of
+/// these and for a file that exists.
+std::unique_ptr<ConvertTarget> open_event_target(const std::string& to,
+                                                 const OutputOptions& options,
+                                                 const StreamHeader& header);
 
 /// The file or folder in it; empty for what is none.
 std::string file_of_event_target(const std::string& to);
@@ -31,7 +32,8 @@ public:
               std::optional<SensorTime> from, std::optional<SensorTime> to)
         : filter_(filter), target_(std::move(target)), from_(from), to_(to) {}
 
-    /// Images and the rest, which are written with the events that come next.
+    /// Images and the rest, which are written with the events they came with, or at once where
+    /// there are none.
     void see(const Batch& batch) override;
     void process(std::vector<Event>& events) override;
     void finish();

@@ -5,10 +5,11 @@
 
 namespace eventide::app {
 
-RecordedSource::RecordedSource(Source& source, const std::string& path, bool overwrite)
+RecordedSource::RecordedSource(Source& source, const std::string& path, OutputOptions options)
     : source_{source} {
+    options.appears = Appears::growing;
     if (path.ends_with(".bin")) {
-        bytes_.emplace(path, OutputOptions{.overwrite = overwrite, .appears = Appears::growing});
+        bytes_.emplace(path, options);
         return;
     }
     format_ = format_for_writing(path);
@@ -23,7 +24,7 @@ RecordedSource::RecordedSource(Source& source, const std::string& path, bool ove
     header.sensor_name = source.info().name;
     header.serial = source.info().serial;
     header.colour_filter = source.info().colour_filter;
-    file_ = std::make_unique<RecordingFile>(path, overwrite, *format_, header, Appears::growing);
+    file_ = std::make_unique<RecordingFile>(path, options, *format_, header);
     parser_ = source.make_parser();
 }
 

@@ -19,7 +19,7 @@ class RecordedSource : public Source {
 public:
     /// `source` is borrowed. Throws Error (usage) for an extension that is no format and for a file
     /// that exists, (failed) when it cannot be made.
-    RecordedSource(Source& source, const std::string& path, bool overwrite);
+    RecordedSource(Source& source, const std::string& path, OutputOptions options);
     ~RecordedSource() override;
 
     const SensorInfo& info() const override { return source_.info(); }

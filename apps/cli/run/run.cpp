@@ -8,6 +8,7 @@
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/state/run_state.h"
 #include "pipeline/filters/event_filter.h"
+#include "pipeline/first_error.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
@@ -23,9 +24,10 @@ namespace eventide::app {
 
 namespace {
 
-std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source) {
+std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source,
+                                            const OutputOptions& growing) {
     if (settings.record.empty()) return nullptr;
-    return std::make_unique<RecordedSource>(source, settings.record, settings.overwrite);
+    return std::make_unique<RecordedSource>(source, settings.record, growing);
 }
 
 SensorPixels size_of(const Source& source) {
@@ -42,7 +44,7 @@ SensorInfo info_behind(SensorInfo info, const FilterChain& filters) {
 /// Null: not asked for.
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
                                          ColourFilter colours, const Span& span,
-                                         EventFilter* filter) {
+                                         EventFilter* filter, const OutputOptions& growing) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
@@ -50,9 +52,9 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
     header.sensor_name = sensor.name;
     header.serial = sensor.serial;
     header.colour_filter = colours;
-    return std::make_unique<EventsOut>(
-        filter, open_event_target(settings.events_out, settings.overwrite, true, header),
-        span.frames_from, span.end);
+    return std::make_unique<EventsOut>(filter,
+                                       open_event_target(settings.events_out, growing, header),
+                                       span.frames_from, span.end);
 }
 
 std::optional<TensorFile> state_in_of(const RunSettings& settings) {
@@ -74,10 +76,11 @@ Span span_in(const RunSettings& settings, const std::optional<StreamState>& resu
 }
 
 /// Null: not asked for.
-std::unique_ptr<OutputFile> stats_of(const RunSettings& settings) {
+std::unique_ptr<OutputFile> stats_of(const RunSettings& settings, OutputOptions options) {
     if (settings.stats.empty()) return nullptr;
+    options.appears = Appears::whole;
     return std::make_unique<OutputFile>(settings.stats == "-" ? "/dev/stderr" : settings.stats,
-                                        OutputOptions{.overwrite = settings.overwrite});
+                                        std::move(options));
 }
 
 }  // namespace
@@ -127,12 +130,15 @@ Run::Run(Program& program, RunSettings& settings)
     }
     if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
         bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
-    recorded_ = recorder_of(settings, *opened_.source);
-    events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get());
+    const OutputOptions growing{.overwrite = settings.overwrite,
+                                .appears = Appears::growing,
+                                .give_up = [&program] { return program.signals.stopping(); }};
+    recorded_ = recorder_of(settings, *opened_.source, growing);
+    events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
     if (!settings.states_out.empty()) std::filesystem::create_directories(settings.states_out);
-    stats_ = stats_of(settings);  // last: it may lie in a folder that a sink makes
+    stats_ = stats_of(settings, growing);  // last: it may lie in a folder that a sink makes
     try {
         pipeline_.emplace(parts(), pipeline_settings());
         pipeline_made_ = true;
@@ -263,23 +269,25 @@ int Run::run() {
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
 
-/// Also when it fails, what arrived until then is a whole recording.
+/// Also when it fails, what arrived until then is a whole recording; so is one of two files when
+/// the other fails.
 void Run::run_pipeline() {
-    try {
-        if (settings_.sequential)
-            pipeline_->run_sequential();
-        else
-            pipeline_->run();
-    } catch (...) {
-        finish_files();
-        throw;
-    }
-    finish_files();
-}
-
-void Run::finish_files() {
-    if (recorded_) recorded_->finish();
-    if (events_out_) events_out_->finish();
+    FirstError error;
+    const auto guarded = [&](const auto& body) {
+        try {
+            body();
+        } catch (...) {
+            error.keep(std::current_exception());
+        }
+    };
+    guarded([&] { settings_.sequential ? pipeline_->run_sequential() : pipeline_->run(); });
+    guarded([&] {
+        if (recorded_) recorded_->finish();
+    });
+    guarded([&] {
+        if (events_out_) events_out_->finish();
+    });
+    error.rethrow_if_any();
 }
 
 CameraCounters Run::camera_counters() const {

@@ -57,7 +57,6 @@ private:
     RunProgress progress() const;
     std::string run_json();
     std::vector<HttpControl> controls();
-    void finish_files();
     /// What the filters left out counts as read.
     Snapshot counters() const;
     Snapshot snapshot() const { return pipeline_made_ ? counters() : Snapshot{}; }

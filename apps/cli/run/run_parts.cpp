@@ -110,6 +110,8 @@ std::string Run::run_json() {
     nlohmann::ordered_json json;
     json["program"] = "eventide " + version();
     json["arguments"] = program_.arguments;
+    // Not stopped, and nothing failed: all that was asked for is there.
+    json["complete"] = pipeline_.has_value() && pipeline_->is_whole();
     json["source"] = {{"name", settings_.source}, {"format", sensor_.format},
                       {"sensor", sensor_.name},   {"serial", sensor_.serial},
                       {"width", sensor_.width},   {"height", sensor_.height}};

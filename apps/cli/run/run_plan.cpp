@@ -20,12 +20,12 @@ namespace {
 constexpr SensorDuration kWarmup{1'000'000};
 
 /// As long before the first frame as was asked for, and no earlier than the first event: silence
-/// teaches nothing. Standard input cannot be asked for its first event.
+/// teaches nothing. What is read once cannot be asked for its first event.
 SensorTime warm_up_from(const RunSettings& settings, const TimePointReader& times,
                         SensorTime frames_from) {
     const SensorDuration usual = settings.state_in.empty() ? kWarmup : SensorDuration{0};
     const SensorTime begin = frames_from - settings.warmup.value_or(usual);
-    if (settings.source == "-" || begin == frames_from) return begin;
+    if (is_read_once(settings.source) || begin == frames_from) return begin;
     return std::min(std::max(begin, times.time_of({})), frames_from);
 }
 
@@ -37,7 +37,7 @@ TimePointReader times_of(const RunSettings& settings) {
 }  // namespace
 
 std::optional<SensorTime> first_event_of(const RunSettings& settings, bool live) {
-    if (live || settings.source == "-" || names_simulation(settings.source)) return {};
+    if (live || is_read_once(settings.source) || names_simulation(settings.source)) return {};
     return times_of(settings).time_of({});
 }
 
@@ -56,7 +56,9 @@ Span span_of(const RunSettings& settings, bool live) {
         span.begin = warm_up_from(settings, times, *span.frames_from);
     }
     if (settings.to) span.end = times.time_of(*settings.to);
-    if (settings.duration) {
+    if (settings.duration && !settings.from && !settings.to && is_read_once(settings.source)) {
+        span.duration = settings.duration;  // from its first event on, as of a live source
+    } else if (settings.duration) {
         const SensorTime begin = span.frames_from ? *span.frames_from : times.time_of({});
         const SensorTime end = begin + *settings.duration;
         span.end = span.end ? std::min(*span.end, end) : end;

@@ -5,6 +5,9 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
+#include <filesystem>
+#include <system_error>
+
 namespace eventide::app {
 
 TimePoint parse_time_point(const std::string& text) {
@@ -36,11 +39,17 @@ SensorTime TimePointReader::time_of(const TimePoint& point) const {
     return *first_ + point.value;
 }
 
+bool is_read_once(const std::string& path) {
+    std::error_code none;
+    return path == "-" || std::filesystem::is_other(path, none);
+}
+
 SensorTime TimePointReader::first_time() const {
-    if (path_ == "-")
+    if (is_read_once(path_))
         throw Error(ErrorKind::usage,
-                    "standard input cannot be read twice to find its first event; expected times "
-                    "as @MICROSECONDS of the sensor");
+                    (path_ == "-" ? "standard input" : path_) +
+                        " cannot be read twice to find its first event; expected times as "
+                        "@MICROSECONDS of the sensor");
     const auto recording = open_recording(path_, options_);
     const auto parser = recording->make_parser();
     RawPacket packet;

@@ -24,6 +24,9 @@ std::string show_time_point(const TimePoint& point);
 Setting time_point_setting(std::string key, std::optional<TimePoint>& value, std::string word,
                            std::string help);
 
+/// Standard input and named pipes: what was read is gone.
+bool is_read_once(const std::string& path);
+
 /// Knows when a recording begins, once somebody asks.
 class TimePointReader {
 public:
@@ -33,8 +36,8 @@ public:
     explicit TimePointReader(SensorTime first) : first_{first} {}
 
     /// Reads the beginning of the recording, through an opening of its own, for the first relative
-    /// point. Throws Error: usage for a relative point of standard input, input where there is no
-    /// event.
+    /// point. Throws Error: usage for a relative point of what is read once, input where there is
+    /// no event.
     SensorTime time_of(const TimePoint& point) const;
 
 private:

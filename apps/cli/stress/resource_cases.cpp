@@ -79,7 +79,7 @@ Result recordings(const Bench& bench) {
     for (const Format& format : all_formats()) {
         if (!format.is_written()) continue;
         files.push_back(folder / (std::string{format.name} + std::string{format.extension}));
-        app::RecordingOut file{files.back(), true, &format, header};
+        app::RecordingOut file{files.back(), {.overwrite = true}, &format, header};
         file.write(batch);
         file.finish();
         names += (names.empty() ? "" : ", ") + std::string{format.name};

@@ -58,6 +58,7 @@ RequestHead head_of(const httplib::Request& request) {
     head.origin = request.get_header_value("Origin");
     head.fetch_site = request.get_header_value("Sec-Fetch-Site");
     head.content_type = request.get_header_value("Content-Type");
+    head.content_encoding = request.get_header_value("Content-Encoding");
     head.authorization = request.get_header_value("Authorization");
     head.token = request.get_param_value("token");
     return head;

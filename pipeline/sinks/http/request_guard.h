@@ -19,7 +19,7 @@ struct GuardSettings {
 struct RequestHead {
     std::string method, path;
     std::size_t hosts = 0;  ///< number of Host headers
-    std::string host, origin, fetch_site, content_type, authorization;
+    std::string host, origin, fetch_site, content_type, content_encoding, authorization;
     std::string token;  ///< of the query
 };
 
@@ -36,6 +36,7 @@ struct Refusal {
 /// - an Origin is the host itself, and a browser that tells where a request comes from (Sec-Fetch-
 ///   Site) does not say another site, unless somebody followed a link to the page (403);
 /// - a POST is JSON (415), which other sites cannot send without asking first, and nobody answers;
+///   and it is not packed (415): a few hundred bytes could become a gigabyte;
 /// - the token, where there is one, as "Authorization: Bearer" or in the query (401). The page's
 ///   script and style need none.
 std::optional<Refusal> judge(const RequestHead& request, const GuardSettings& settings);

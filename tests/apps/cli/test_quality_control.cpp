@@ -127,6 +127,24 @@ TEST(QualityControl, WindowsThatHadToBeMergedCallForLess) {
     EXPECT_NE(machine.level(), (QualityLevel{1, 0}));
 }
 
+/// Twice the pace, and so twice the frames: the load is told as it is, not twice of that.
+TEST(QualityControl, CountsThePaceOnce) {
+    const QualityDemand demand{.windows = 40, .frames = 80, .threads = 1, .share = {}, .pace = 2};
+    QualityControl control{kCost, quality_levels({1, 0}, true, true), 0, demand};
+    const double expected = load_of(kCost, control.level(), demand).frames;
+    QualityMeasure now;
+    now.pace = 2;
+    for (int i = 0; i < 20; ++i) {
+        now.at += Seconds{1};
+        now.windows += 40;
+        now.frames += 80;
+        now.encode += Seconds{load_of(kCost, control.level(), demand).encode};
+        now.present += Seconds{expected};
+        control.look(now);
+    }
+    EXPECT_NEAR(control.measured().frames, expected, .01 * expected);
+}
+
 TEST(QualityControl, NothingFollowsFromSilence) {
     Machine machine;
     machine.run(5, 1);

@@ -130,6 +130,18 @@ TEST(RunPlan, APartWarmsUpForASecondUnlessItIsToldWhatWasBefore) {
     EXPECT_EQ(to_us(*span_of(settings, false).begin), 7'000'000);
 }
 
+TEST(RunPlan, OfWhatIsReadOnceADurationCountsFromTheFirstEventThatComes) {
+    RunSettings settings;
+    settings.source = "-";
+    settings.duration = SensorDuration{1'000'000};
+    const Span span = span_of(settings, false);
+    EXPECT_EQ(span.duration, settings.duration);
+    EXPECT_FALSE(span.end);
+    EXPECT_EQ(slicer_of(settings, {}, span, false).duration, settings.duration);
+    settings.from = parse_time_point("1s");
+    EXPECT_THROW(span_of(settings, false), Error);
+}
+
 TEST(RunPlan, SpansCountFromTheFirstEvent) {
     const test::TempFolder temp;
     test::write_text(temp / "e.txt", "8 8\n5.0 1 1 1\n9.5 2 2 0\n");

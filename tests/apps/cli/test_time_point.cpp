@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 namespace eventide::app {
 namespace {
 
@@ -29,6 +31,19 @@ TEST(TimePoint, OfStandardInputMustBeAbsolute) {
     const TimePointReader reader{"-", {}};
     EXPECT_EQ(to_us(reader.time_of(parse_time_point("@7"))), 7);
     EXPECT_THROW(reader.time_of(parse_time_point("1s")), Error);
+}
+
+/// What is read to find the first event would be missing afterwards.
+TEST(TimePoint, OfANamedPipeMustBeAbsolute) {
+    const test::TempFolder temp;
+    ASSERT_EQ(mkfifo((temp / "pipe").c_str(), 0600), 0);
+    const TimePointReader reader{temp / "pipe", {}};
+    EXPECT_EQ(to_us(reader.time_of(parse_time_point("@7"))), 7);
+    EXPECT_THROW(reader.time_of(parse_time_point("1s")), Error);
+    EXPECT_TRUE(is_read_once(temp / "pipe"));
+    EXPECT_TRUE(is_read_once("-"));
+    EXPECT_FALSE(is_read_once(temp.path()));
+    EXPECT_FALSE(is_read_once("nothing"));
 }
 
 }  // namespace

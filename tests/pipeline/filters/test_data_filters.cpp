@@ -262,5 +262,11 @@ TEST(DataFilters, WrongWordsAreRefusedWithWhatIsExpected) {
     EXPECT_THAT(refusal("hot-pixels:/no/such"), HasSubstr("/no/such"));
 }
 
+TEST(DataFilters, TimesCountFromTheRecordingsFirstEventInAnyOrder) {
+    const auto events = random_events(2'000);
+    EXPECT_EQ(filtered({"region:0,0,9x9", "time:40ms..120ms"}, events),
+              filtered({"time:40ms..120ms", "region:0,0,9x9"}, events));
+}
+
 }  // namespace
 }  // namespace eventide

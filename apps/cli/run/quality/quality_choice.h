@@ -30,6 +30,7 @@ struct QualityDemand {
     double frames = 30;           ///< frames asked for, before halvings
     double threads = 1;           ///< that the network may use
     std::optional<double> share;  ///< --budget: processor time, in cores
+    double pace = 1;              ///< sensor time over that of the clock, in windows and frames
 };
 
 /// What encoding and frames take, as parts of a core.

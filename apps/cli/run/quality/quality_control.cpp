@@ -22,7 +22,7 @@ QualityControl::QualityControl(PrecisionCost profile, std::vector<QualityLevel> 
                                std::size_t at, const QualityDemand& demand)
     : profile_{std::move(profile)},
       levels_{std::move(levels)},
-      asked_{demand.frames},
+      asked_{demand.frames / (demand.pace > 0 ? demand.pace : 1)},
       at_{at},
       demand_{demand},
       encode_factor_{1 / std::max(demand.threads, 1.0)},

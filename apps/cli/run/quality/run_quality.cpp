@@ -135,6 +135,7 @@ QualityDemand RunQuality::demand_of(const RunSettings& settings, const Place& pl
     constexpr double kWindowsByContent = 20;  // until it is known how much moves
     const SlicerSettings slicer = slicer_of(settings, config, place.span, place.as_live);
     QualityDemand demand;
+    demand.pace = place.pace;
     demand.windows =
         place.pace * (slicer.rule == WindowRule::duration ? 1e6 / double(slicer.width.count())
                                                           : kWindowsByContent);

@@ -50,11 +50,13 @@ void Status::tick() {
 }
 
 /// The watchdog hears of work that was done since it heard last: a camera gives event windows in
-/// silence, too. A recording may stand still for as long as its reader likes.
+/// silence, too, but for the time before its first data, which may be long in coming. A recording
+/// may stand still for as long as its reader likes.
 void Status::tell_manager(const Snapshot& now, const RunProgress& state, bool also_status) {
     if (!manager_.is_there()) return;
     const std::uint64_t work = now.packets + now.event_windows + now.frames;
-    if (manager_.watchdog() && (work != last_work_ || !live_)) manager_.alive();
+    const bool waits = now.packets == 0 || !live_;
+    if (manager_.watchdog() && (work != last_work_ || waits)) manager_.alive();
     last_work_ = work;
     constexpr std::size_t kColumns = 120;
     if (also_status) manager_.status(status_line(now, state, kColumns));

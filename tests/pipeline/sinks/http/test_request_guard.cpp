@@ -91,6 +91,18 @@ TEST(RequestGuard, PostsAreJson) {
     EXPECT_EQ(status(head), 200);
 }
 
+/// 600 MB of zeros are 481 bytes of Brotli's.
+TEST(RequestGuard, PostsAreNotPacked) {
+    RequestHead head = post("");
+    head.content_type = "application/json";
+    for (const char* encoding : {"br", "gzip", "deflate", "identity, br", "GZIP"}) {
+        head.content_encoding = encoding;
+        EXPECT_EQ(status(head), 415) << encoding;
+    }
+    head.content_encoding = "Identity";
+    EXPECT_EQ(status(head), 200);
+}
+
 TEST(RequestGuard, OtherMethodsAreRefused) {
     for (const char* method : {"PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "get"}) {
         RequestHead head = get("localhost");
