@@ -43,7 +43,8 @@ public:
     Impl(const std::string& path, const SensorInfo& sensor, const WriterOptions& options)
         : path_(path),
           format_(format_of(path, options)),
-          file_(path, options.overwrite, format_, header_of(format_, sensor, path)) {}
+          file_(path, {.overwrite = options.overwrite}, format_, header_of(format_, sensor, path)) {
+    }
 
     void write(std::span<const Event> events) {
         held_.clear();

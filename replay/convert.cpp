@@ -43,7 +43,7 @@ class FileTarget final : public ConvertTarget {
 public:
     FileTarget(const std::string& path, bool overwrite, const Format& format,
                const StreamHeader& header)
-        : format_{format}, file_{path, overwrite, format, header} {}
+        : format_{format}, file_{path, {.overwrite = overwrite}, format, header} {}
     const FormatHolds& holds() const override { return format_.holds; }
     void write(const Batch& batch) override { file_.write(batch); }
     void finish() override { file_.finish(); }
