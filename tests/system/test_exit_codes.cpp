@@ -54,6 +54,8 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"convert", recording(), "a.xyz"}, "a.xyz");
     expect(2, {"simulate", "--scene", "nowhere", "--out", "a.aedat4"}, "nowhere");
     expect(2, {"evaluate", recording(), "--protocol", "folders"}, "two folders");
+    expect(2, {"evaluate", recording(), "--frames", "2", "--calibrated", "a.safetensors"},
+           "--calibrated a.safetensors: ");
 }
 
 TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {
