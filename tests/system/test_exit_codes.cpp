@@ -56,6 +56,9 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"evaluate", recording(), "--protocol", "folders"}, "two folders");
     expect(2, {"evaluate", recording(), "--frames", "2", "--calibrated", "a.safetensors"},
            "--calibrated a.safetensors: ");
+    for (const std::string output : {"--json", "--csv", "--frame-csv", "--calibrated"})
+        expect(2, {"evaluate", "--figure", "silence", output, "a"},
+               output + " a: expected an evaluation, found --figure silence");
 }
 
 TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {

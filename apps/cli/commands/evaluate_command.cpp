@@ -206,6 +206,20 @@ void EvaluateCommand::require_outputs_that_fit() const {
                         ": a factor found on frames that images corrected is not the model's; "
                         "expected --frames 0, found " +
                         std::to_string(given_images_));
+    if (evaluates()) return;
+    for (const auto& [option, file] : {std::pair{"--json ", &json_},
+                                       {"--csv ", &csv_},
+                                       {"--frame-csv ", &frame_csv_},
+                                       {"--calibrated ", &calibrated_}})
+        if (!file->empty())
+            throw Error(ErrorKind::usage, option + *file +
+                                              ": expected an evaluation, found --figure " +
+                                              figures_.front() + ", which makes only figures");
+}
+
+/// Some figures are runs of their own, and need nothing else.
+bool EvaluateCommand::evaluates() const {
+    return figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
 }
 
 EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
@@ -299,8 +313,7 @@ int EvaluateCommand::run(Program& program) {
     name_evaluation_files(settings, program.files);
     require_outputs_that_fit();
     make_simulated_figures(settings);
-    const bool table = figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
-    if (!table) return exit_done;
+    if (!evaluates()) return exit_done;
     require_inputs();
     const EvaluateReport report = evaluate(settings);
     write(report);
