@@ -63,6 +63,7 @@ std::vector<HttpControl> Run::controls() {
 ModelRenderStage Run::render_stage() {
     const RenderRequest request = request_of(settings_, sensor_, lookahead_, undistortion_);
     if (settings_.frames == CameraFrames::ignore) return {network_.renderer(), request};
+    if (live()) images_.keep_at_most(ImagesOnTheWay::kKeptLive);
     return {network_.renderer(), request, sensor_.width, sensor_.height, images_};
 }
 
