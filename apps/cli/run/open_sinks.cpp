@@ -77,6 +77,7 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.uncertainty = settings.uncertainty;
     stream.sigma_white = float(settings.sigma_white);
     stream.fps = plan.fps;
+    stream.rate = plan.rate;
     stream.stamp = settings.stamp;
     stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
     stream.give_up = plan.questions.stopping;

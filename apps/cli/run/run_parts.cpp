@@ -12,6 +12,7 @@ namespace eventide::app {
 SinkPlan Run::sink_plan() {
     SinkPlan plan;
     plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
+    plan.rate = video_rate_of(settings_, slicer_);
     plan.constant_rate = rate_.is_set();
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
