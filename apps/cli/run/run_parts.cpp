@@ -46,18 +46,7 @@ std::vector<HttpControl> Run::controls() {
     plan.live = live();
     plan.slicer = slicer_;
     auto controls = live_controls(plan);
-    for (HttpControl& control : controls) {
-        if (!control.set || (control.name != "fps" && control.name != "scale")) continue;
-        control.set = [this, set = std::move(control.set)](double wanted) {
-            quality_.take_over(changes_);
-            set(wanted);
-        };
-        if (control.name == "scale")
-            control.get = [this, get = std::move(control.get)] {
-                const QualityState now = quality_.state();
-                return now.chosen && !now.taken_over ? now.level.scale : get();
-            };
-    }
+    quality_.follow(controls, changes_);
     return controls;
 }
 

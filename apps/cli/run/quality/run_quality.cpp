@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 namespace eventide::app {
 
@@ -222,6 +223,33 @@ void RunQuality::take_over(LiveChanges& changes) {
     state_.level.halvings = 0;
     changes.set_halvings(0);
     spdlog::info("quality: a viewer has set rate or scale; it is not changed any more");
+}
+
+void RunQuality::tell_rate(double frames_per_second) {
+    const std::lock_guard lock{mutex_};
+    state_.frames_per_second = frames_per_second;
+}
+
+void RunQuality::tell_scale(double scale) {
+    const std::lock_guard lock{mutex_};
+    state_.level.scale = scale;
+}
+
+void RunQuality::follow(std::vector<HttpControl>& controls, LiveChanges& changes) {
+    for (HttpControl& control : controls) {
+        const bool scale = control.name == "scale";
+        if (!control.set || (control.name != "fps" && !scale)) continue;
+        control.set = [this, &changes, scale, set = std::move(control.set)](double wanted) {
+            take_over(changes);
+            set(wanted);
+            scale ? tell_scale(wanted) : tell_rate(wanted);
+        };
+        if (scale)
+            control.get = [this, get = std::move(control.get)] {
+                const QualityState now = state();
+                return now.chosen ? now.level.scale : get();
+            };
+    }
 }
 
 QualityState RunQuality::state() const {
