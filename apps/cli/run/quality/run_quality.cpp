@@ -90,7 +90,12 @@ bool chooses_quality(const RunSettings& settings, bool live, double pace) {
         throw Error(ErrorKind::usage, "--budget " + show_budget(settings.budget) +
                                           ": expected a pace to hold, found " + settings.source +
                                           " as fast as possible; --realtime gives it one");
-    if (settings.engine == Engine::plain) return false;
+    if (settings.engine == Engine::plain) {
+        if (settings.budget.is_set())
+            spdlog::info("--budget {}: nothing is chosen by it with --engine plain",
+                         show_budget(settings.budget));
+        return false;
+    }
     return live || settings.realtime || settings.budget.is_set();
 }
 
