@@ -37,8 +37,20 @@ double PerceptualDistance::between(const Array2<float>& a, const Array2<float>& 
     return lpips.distance(lpips.features(a), lpips.features(b));
 }
 
+namespace {
+
+void refuse_below_zero(const Array2<float>& sigma) {
+    for (const float s : sigma.values())
+        if (s < 0)
+            throw Error(ErrorKind::usage,
+                        "sigma: expected 0 or more everywhere, found " + std::to_string(s));
+}
+
+}  // namespace
+
 FrameMeasures measure(const Array2<float>& intensity, const Array2<float>& sigma,
                       const Array2<float>& truth, const PerceptualDistance* lpips) {
+    refuse_below_zero(sigma);
     const Array2<float> shown = clipped(intensity);
     FrameMeasures measures;
     measures.mse = mean_squared_error(shown, truth);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -12,17 +13,22 @@
 
 namespace eventide {
 
-/// Images on their way from the bin thread to the render thread, by their number in the stream. Of
-/// more than kKept the oldest are dropped.
+/// Images on their way from the bin thread to the render thread, by their number in the stream. All
+/// arrive: of a recording, whose bin thread waits for the render thread's buffers, there are never
+/// more than belong to the event windows between the two. A live source does not wait.
 class ImagesOnTheWay {
 public:
-    static constexpr std::size_t kKept = 64;
+    static constexpr std::size_t kKeptLive = 64, kAll = std::numeric_limits<std::size_t>::max();
+
+    /// Of more than so many the oldest are dropped. Before the first.
+    void keep_at_most(std::size_t images) { most_ = images; }
+    std::size_t most() const { return most_; }
 
     void put(const std::vector<ReferenceImage>& images) {
         const std::lock_guard lock{mutex_};
         for (const ReferenceImage& image : images) images_.push_back(image);
         given_ += images.size();
-        while (images_.size() > kKept) images_.pop_front();
+        for (; images_.size() > most_; ++dropped_) images_.pop_front();
     }
 
     /// The next one of those before number `end`.
@@ -34,10 +40,16 @@ public:
         return image;
     }
 
+    std::uint64_t dropped() const {
+        const std::lock_guard lock{mutex_};
+        return dropped_;
+    }
+
 private:
-    std::mutex mutex_;
+    std::size_t most_ = kAll;
+    mutable std::mutex mutex_;
     std::deque<ReferenceImage> images_;
-    std::uint64_t given_ = 0;
+    std::uint64_t given_ = 0, dropped_ = 0;
 };
 
 }  // namespace eventide

@@ -24,6 +24,7 @@ public:
           request_(request),
           images_(&images),
           fused_(std::in_place, renderer, sensor_width, sensor_height, request.lookahead) {
+        fused_->keep_at_most(images.most());
         fused_->prepare(request_);
     }
 
@@ -62,6 +63,10 @@ public:
 
     /// After the run; null where no images are taken.
     const FusedRenderer* fused() const { return fused_ ? &*fused_ : nullptr; }
+    /// After the run: images that corrected nothing.
+    std::uint64_t dropped_images() const {
+        return fused_ ? images_->dropped() + fused_->dropped() : 0;
+    }
 
 private:
     Renderer& renderer_;

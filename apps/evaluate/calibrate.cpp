@@ -39,6 +39,7 @@ void write_calibrated(const std::filesystem::path& from, const std::filesystem::
                       const Calibration& calibration, bool overwrite) {
     Model model = load_model(from);
     model.config.sigma_scale = float(double(model.config.sigma_scale) * calibration.factor);
+    model.config.sigma_rule = calibration.sigma_rule.value_or(model.config.sigma_rule);
     char line[160];
     std::snprintf(line, sizeof line,
                   "sigma calibrated by %.4f: PICP80 %.3f -> %.3f, LL %.2f -> %.2f on held-out data",

@@ -86,6 +86,8 @@ struct Calibration {
     double factor = 1;  ///< multiplies the model's present sigma_scale
     double picp80_before = 0, picp80_after = 0;
     double ll_before = 0, ll_after = 0;
+    /// What it holds for, and what the model then blends by; else the model's own.
+    std::optional<SigmaRule> sigma_rule{};
 };
 enum class CalibrationRule {
     coverage,    ///< PICP80 becomes .8 over all pixels
@@ -94,7 +96,8 @@ enum class CalibrationRule {
 };
 Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule);
 
-/// Writes `model` again as `to`, with sigma_scale multiplied and a line in its card.
+/// Writes `model` again as `to`, with sigma_scale multiplied, the calibration's rule and a line in
+/// its card.
 void write_calibrated(const std::filesystem::path& model, const std::filesystem::path& to,
                       const Calibration& calibration, bool overwrite = false);
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <ranges>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -42,6 +43,15 @@ std::uint64_t lower_bound_row(NpyFile& file, SensorTime t) {
     });
 }
 
+/// Events are found by bisection and cut by their times: only in order does that mean anything.
+void check_order(const NpyFile& file, std::uint64_t row, SensorTime before, SensorTime t) {
+    if (t >= before) return;
+    throw Error(ErrorKind::input, file.name() + ": row " + std::to_string(row) +
+                                      ": expected a time not before the row above, found " +
+                                      std::to_string(to_us(t)) + " us after " +
+                                      std::to_string(to_us(before)) + " us");
+}
+
 /// Both ends included.
 struct Span {
     SensorTime from, to;
@@ -60,14 +70,17 @@ void read_events(const fs::path& folder, const Span& span, ReferenceSequence& in
                                           std::to_string(p.rows()));
     const std::uint64_t begin = lower_bound_row(ts, span.from),
                         end = lower_bound_row(ts, span.to + SensorDuration{1});
+    SensorTime newest = SensorTime::min();
     constexpr std::uint64_t kAtATime = 1 << 20;
     for (std::uint64_t row = begin; row < end; row += kAtATime) {
         const std::uint64_t n = std::min(kAtATime, end - row);
         const auto t = ts.read(row, n), place = xy.read(row, n), polarity = p.read(row, n);
         for (std::size_t i = 0; i < n; ++i) {
+            const SensorTime before = std::exchange(newest, time_of(t[i], ts, row + i));
+            check_order(ts, row + i, before, newest);
             const double x = place[2 * i], y = place[2 * i + 1];
             if (!(x >= 0 && y >= 0 && x < into.width && y < into.height)) continue;
-            into.events.push_back({time_of(t[i], ts, row + i), std::uint16_t(x), std::uint16_t(y),
+            into.events.push_back({newest, std::uint16_t(x), std::uint16_t(y),
                                    polarity[i] > 0 ? Polarity::on : Polarity::off});
         }
     }
@@ -129,6 +142,7 @@ ReferenceSequence read_evreal_sequence(const fs::path& path, std::optional<doubl
     ReferenceSequence sequence;
     sequence.name = path.filename().string();
     read_images(path, span, sequence);
+    mend_times(sequence.images);
     read_events(path, span, sequence);
     if (sequence.events.empty() || sequence.images.empty())
         throw Error(ErrorKind::input,

@@ -1,6 +1,7 @@
 // Axes, ticks at round numbers, lines, a legend: no more than the figures need.
 #include "apps/evaluate/plot.h"
 
+#include "apps/evaluate/csv_field.h"
 #include "src/io/output_file.h"
 
 #include <algorithm>
@@ -225,7 +226,7 @@ std::string csv(const Plot& plot) {
     std::string out = "series,x,y,spread\n";
     for (const Series& s : plot.series)
         for (std::size_t i = 0; i < s.x.size(); ++i)
-            out += s.label + "," + number(s.x[i]) + "," + number(s.y[i]) + "," +
+            out += csv_field(s.label) + "," + number(s.x[i]) + "," + number(s.y[i]) + "," +
                    (i < s.spread.size() ? number(s.spread[i]) : "") + "\n";
     return out;
 }

@@ -58,13 +58,6 @@ private:
     bool begun_ = false;
 };
 
-void mend_times(std::vector<ReferenceImage>& images) {
-    for (std::size_t i = 1; i + 1 < images.size(); ++i)
-        if (images[i].t > images[i + 1].t)
-            images[i].t = images[i - 1].t + (images[i + 1].t - images[i - 1].t) / 2;
-    std::ranges::stable_sort(images, {}, &ReferenceImage::t);
-}
-
 std::string name_of(const std::filesystem::path& path) {
     const auto plain = path.lexically_normal();
     return (plain.has_filename() ? plain : plain.parent_path()).stem().string();
@@ -110,6 +103,13 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     return sequence;
 }
 
+void mend_times(std::vector<ReferenceImage>& images) {
+    for (std::size_t i = 1; i + 1 < images.size(); ++i)
+        if (images[i].t > images[i + 1].t)
+            images[i].t = images[i - 1].t + (images[i + 1].t - images[i - 1].t) / 2;
+    std::ranges::stable_sort(images, {}, &ReferenceImage::t);
+}
+
 void check_sensor_size(const std::string& file, std::int64_t width, std::int64_t height) {
     if (width >= 1 && height >= 1 && width <= kLargestSensorSide && height <= kLargestSensorSide)
         return;
@@ -138,7 +138,7 @@ void for_each_reference_window(const ReferenceSequence& sequence,
         const SensorTime end = images[i].t;
         const SensorTime begin =
             i == 0 ? end - std::max(first_width, SensorDuration{1}) : images[i - 1].t;
-        if (begin == end) continue;  // an image stored twice
+        if (end <= begin) continue;  // an image stored twice
         EventWindow event_window{.window = {begin, end}, .events = {}};
         if (i > 0) event_window.events = {after(begin), after(end)};
         use(event_window);

@@ -28,13 +28,16 @@ struct ReferenceSequence {
 };
 
 /// Reads a recording of any format. Where given, only data in [from, to]
-/// (s from `first`) are kept. A single image time that lies after the next one is taken as the
-/// middle of its neighbours, as EVREAL does (HQF has one). Throws Error(input) where there are no
+/// (s from `first`) are kept. Image times are mended. Throws Error(input) where there are no
 /// events, no images, or no sensor size.
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s = {},
                                           std::optional<double> to_s = {},
                                           const OpenOptions& input = {});
+
+/// A single time that lies after the next one is taken as the middle of its neighbours, as EVREAL
+/// does (HQF has one); then images are in order of time.
+void mend_times(std::vector<ReferenceImage>& images);
 
 /// Throws Error(input) naming `file` for a sensor that no model is to be made for, whatever the
 /// file says: its memory would be.

@@ -1,6 +1,8 @@
 // Three ways to write the same numbers.
 #include "apps/evaluate/report.h"
 
+#include "apps/evaluate/csv_field.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -65,7 +67,7 @@ std::string text_row(const SequenceScores& s, std::size_t name_width) {
 }
 
 std::string csv_row(const SequenceScores& s) {
-    std::string row = s.sequence + "," + std::to_string(s.frames);
+    std::string row = csv_field(s.sequence) + "," + std::to_string(s.frames);
     for (const ImageScores& p : {s.raw, s.affine})
         row += "," + exact(p.mse) + "," + exact(p.ssim) + "," + exact(p.lpips);
     return row + "," + exact(s.mean_sigma) + "," + exact(s.picp80) + "," + exact(s.ll) + "," +
@@ -114,7 +116,8 @@ std::string frame_csv(const EvaluateReport& report) {
     std::string out = std::string("sequence,time_s,events_per_pixel,") + kCsvScores;
     for (const SequenceReport& s : report.sequences)
         for (const FrameScores& f : s.frames) {
-            out += s.scores.sequence + "," + exact(f.time_s) + "," + exact(f.events_per_pixel);
+            out += csv_field(s.scores.sequence) + "," + exact(f.time_s) + "," +
+                   exact(f.events_per_pixel);
             for (const ImageScores& p : {f.raw, f.affine})
                 out += "," + exact(p.mse) + "," + exact(p.ssim) + "," + exact(p.lpips);
             out += "," + exact(f.mean_sigma) + "," + exact(f.picp80) + "," + exact(f.ll) + "," +

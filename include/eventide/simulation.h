@@ -102,13 +102,15 @@ struct FrameMeasures {
     // Empty where there is no sigma.
     std::optional<double>
         picp80;  ///< share of pixels within 1.2816 sigma of the truth; .8 is right
-    std::optional<double> log_likelihood;  ///< mean, nats per pixel, of a Gaussian of this sigma
+    std::optional<double> log_likelihood;  ///< mean, nats per pixel, of a Gaussian of this sigma;
+                                           ///< infinite where a pixel's sigma is 0
 
     std::optional<double> lpips;  ///< empty where no PerceptualDistance was given
 };
 
-/// `intensity` is clipped to 0..1 first; `sigma` may be empty, `lpips` null. [y][x], of one size,
-/// at least 11 px each way, and what `lpips` wants. Throws Error (usage) else.
+/// `intensity` is clipped to 0..1 first; `sigma` may be empty and is nowhere below 0, `lpips` may
+/// be null. [y][x], of one size, at least 11 px each way, and what `lpips` wants. Throws Error
+/// (usage) else.
 EVENTIDE_API FrameMeasures measure(const Array2<float>& intensity, const Array2<float>& sigma,
                                    const Array2<float>& truth,
                                    const PerceptualDistance* lpips = nullptr);

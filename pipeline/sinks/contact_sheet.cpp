@@ -69,7 +69,7 @@ ContactSheetSink::Row ContactSheetSink::row_of(const Frame& frame) const {
         row.sigma = fitted(image, size);
     }
     draw_events(frame, image);
-    if (!image.empty()) row.events = fitted(image, size);
+    if (!image.empty()) row.events = fitted(part_of(image, settings_.part), size);
     return row;
 }
 
@@ -79,7 +79,8 @@ void ContactSheetSink::draw_truth_until(SensorTime t) {
         row.waits_for_truth = false;
         cv::Mat truth;
         settings_.draw_truth(row.t, row.window, truth);
-        if (!truth.empty()) row.truth = fitted(truth, row.intensity.size());
+        if (!truth.empty())
+            row.truth = fitted(part_of(truth, settings_.part), row.intensity.size());
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace eventide {
@@ -162,12 +163,21 @@ void draw_events(const Frame& frame, cv::Mat& image) {
     }
 }
 
-void draw_events_beside(const Frame& frame, cv::Mat& image) {
+cv::Mat part_of(const cv::Mat& sensor, const ShownPart& part) {
+    const auto cut = [](double from, double length, int side) {
+        const int begin = std::clamp(int(std::lround(from * side)), 0, side - 1);
+        const int end = std::clamp(int(std::lround((from + length) * side)), begin + 1, side);
+        return cv::Range{begin, end};
+    };
+    return sensor(cut(part.top, part.height, sensor.rows), cut(part.left, part.width, sensor.cols));
+}
+
+void draw_events_beside(const Frame& frame, const ShownPart& part, cv::Mat& image) {
     cv::Mat events, scaled, coloured = image;
     draw_events(frame, events);
     if (events.empty()) return;
-    cv::resize(events, scaled, {frame.intensity.width(), frame.intensity.height()}, 0, 0,
-               cv::INTER_NEAREST);
+    cv::resize(part_of(events, part), scaled, {frame.intensity.width(), frame.intensity.height()},
+               0, 0, cv::INTER_NEAREST);
     if (image.channels() == 1) cv::cvtColor(image, coloured, cv::COLOR_GRAY2BGR);
     if (image.channels() == 4) cv::cvtColor(image, coloured, cv::COLOR_BGRA2BGR);
     cv::hconcat(scaled, coloured, image);

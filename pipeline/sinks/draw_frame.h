@@ -47,10 +47,19 @@ void draw(const Frame& frame, Uncertainty how, float sigma_white, cv::Mat& image
 /// Leaves `image` empty where the frame has none.
 void draw_events(const Frame& frame, cv::Mat& image);
 
-/// Puts the frame's events left of `image`, what draw() made of the frame: as colours and at the
-/// intensity's size, so that single events stay visible. `image` becomes CV_8UC3. Where the frame
-/// has no Frame::event_preview nothing changes.
-void draw_events_beside(const Frame& frame, cv::Mat& image);
+/// What frames show of the sensor, in shares of its sides: events and reference images are of all
+/// of it.
+struct ShownPart {
+    double left = 0, top = 0, width = 1, height = 1;
+};
+
+/// That part of an image of the whole sensor, whose pixels it shares: at least one each way.
+cv::Mat part_of(const cv::Mat& sensor, const ShownPart& part);
+
+/// Puts the frame's events, of the part it shows, left of `image`, what draw() made of the frame:
+/// as colours and at the intensity's size, so that single events stay visible. `image` becomes
+/// CV_8UC3. Where the frame has no Frame::event_preview nothing changes.
+void draw_events_beside(const Frame& frame, const ShownPart& part, cv::Mat& image);
 
 /// Draws sigma alone: CV_8UC1.
 void draw_sigma(const Frame& frame, float sigma_white, cv::Mat& image);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -36,8 +37,15 @@ bool supports(StreamFormat format, Uncertainty how) {
     return false;
 }
 
-/// A frame rate as the fraction of integers Y4M wants; thousandths are exact.
-std::string rate_of(double fps) {
+/// A frame rate as the fraction of integers Y4M wants, of 31 bits as its readers have them;
+/// thousandths are exact, and slow rates to a second.
+std::string rate_of(const StreamSettings& settings) {
+    constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+    const FrameRate& rate = settings.rate;
+    if (rate.is_set() && rate.frames <= kMost && rate.seconds <= kMost)
+        return std::to_string(rate.frames) + ":" + std::to_string(rate.seconds);
+    const double fps = settings.fps;
+    if (fps < .1) return "1:" + std::to_string(std::llround(1 / fps));
     const auto thousandths = std::uint64_t(std::llround(fps * 1000));
     const std::uint64_t common = std::gcd(thousandths, std::uint64_t(1000));
     return std::to_string(thousandths / common) + ":" + std::to_string(1000 / common);
@@ -47,13 +55,13 @@ void append_text(std::vector<std::byte>& bytes, std::string_view text) {
     for (const char c : text) bytes.push_back(std::byte(c));
 }
 
-std::string header_of(const cv::Mat& image, StreamFormat format, double fps) {
-    const bool mono = format == StreamFormat::y4m_mono;
+std::string header_of(const cv::Mat& image, const StreamSettings& settings) {
+    const bool mono = settings.format == StreamFormat::y4m_mono;
     // 4:2:0 readers disagree about odd sizes, so there are none.
     const int width = mono ? image.cols : even(image.cols);
     const int height = mono ? image.rows : even(image.rows);
     return "YUV4MPEG2 W" + std::to_string(width) + " H" + std::to_string(height) + " F" +
-           rate_of(fps) + " Ip A1:1 " + (mono ? "Cmono" : "C420jpeg") + " XCOLORRANGE=FULL\n";
+           rate_of(settings) + " Ip A1:1 " + (mono ? "Cmono" : "C420jpeg") + " XCOLORRANGE=FULL\n";
 }
 
 }  // namespace
@@ -121,7 +129,7 @@ void StreamSink::repeat_until(std::uint64_t index) {
 void StreamSink::append_y4m(const Frame& frame) {
     draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
     if (!begun_) {
-        append_text(bytes_, header_of(image_, settings_.format, settings_.fps));
+        append_text(bytes_, header_of(image_, settings_));
         file_->write(bytes_);  // apart, so that a frame that is repeated is a frame alone
         bytes_.clear();
     }

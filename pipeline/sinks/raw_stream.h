@@ -1,6 +1,7 @@
 // Frames as bytes into standard output, a named pipe or a file: Y4M, or raw numbers.
 #pragma once
 
+#include "pipeline/frame_clock.h"
 #include "pipeline/sink.h"
 #include "pipeline/sinks/draw_frame.h"
 #include "src/io/output_file.h"
@@ -56,7 +57,8 @@ struct StreamSettings {
     /// is.
     Uncertainty uncertainty = Uncertainty::automatic;
     float sigma_white = kSigmaWhite;
-    double fps = 30;  ///< nominal, > 0, for the header of Y4M
+    double fps = 30;      ///< nominal, > 0, for the header of Y4M
+    FrameRate rate = {};  ///< the same as a fraction, where there is one
     /// Raw formats: a FrameStamp before each frame. Y4M has the sensor's microseconds in each frame
     /// header anyway (XT=).
     bool stamp = false;

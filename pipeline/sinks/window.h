@@ -19,6 +19,7 @@ struct WindowSettings {
     double speed = 1;  ///< at the beginning
     /// Asked while paused: true ends the pause, because the run is being stopped. May be empty.
     std::function<bool()> give_up = {};
+    ShownPart part = {};  ///< that frames show
 };
 
 /// Throws Error (usage) when there is no display, or none that answers.

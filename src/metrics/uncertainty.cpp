@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace eventide {
@@ -41,14 +42,15 @@ void need_same_size(const Array2<float>& mu, const Array2<float>& sigma,
         throw Error(ErrorKind::usage, "mu, sigma and reference: expected images of one size");
 }
 
-/// Calls use(z, sigma) for each pixel.
+/// Calls use(z, sigma) for each pixel. What is certain and right is as near as can be: z is 0.
 template <typename Use>
 void for_each_error(const Array2<float>& mu, const Array2<float>& sigma,
                     const Array2<float>& reference, Use use) {
     need_same_size(mu, sigma, reference);
     for (std::size_t i = 0; i < mu.values().size(); ++i) {
         const double s = double(sigma.values()[i]);
-        use((double(reference.values()[i]) - double(mu.values()[i])) / s, s);
+        const double error = double(reference.values()[i]) - double(mu.values()[i]);
+        use(error == 0 ? 0 : error / s, s);
     }
 }
 
@@ -81,8 +83,12 @@ double coverage_80(const Array2<float>& mu, const Array2<float>& sigma,
 double log_likelihood(const Array2<float>& mu, const Array2<float>& sigma,
                       const Array2<float>& reference) {
     double sum = 0;
-    for_each_error(mu, sigma, reference,
-                   [&](double z, double s) { sum -= std::log(s) + .5 * z * z; });
+    bool impossible = false;  // one pixel that is certain and wrong, whatever the others say
+    for_each_error(mu, sigma, reference, [&](double z, double s) {
+        impossible |= std::isinf(z);
+        sum -= std::log(s) + .5 * z * z;
+    });
+    if (impossible) return -std::numeric_limits<double>::infinity();
     return sum / double(mu.values().size()) - .5 * std::log(2 * std::numbers::pi);
 }
 

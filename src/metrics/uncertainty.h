@@ -15,7 +15,8 @@ namespace eventide {
 double coverage_80(const Array2<float>& mu, const Array2<float>& sigma,
                    const Array2<float>& reference);
 
-/// Mean of -ln(2 pi)/2 - ln sigma - (reference - mu)^2 / (2 sigma^2), in nats per pixel.
+/// Mean of -ln(2 pi)/2 - ln sigma - (reference - mu)^2 / (2 sigma^2), in nats per pixel. Where
+/// sigma is 0 it is infinite: below 0 where such a pixel is wrong, above where all such are right.
 double log_likelihood(const Array2<float>& mu, const Array2<float>& sigma,
                       const Array2<float>& reference);
 

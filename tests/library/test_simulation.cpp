@@ -55,6 +55,9 @@ TEST(Measures, SayWhatIsWrongWithAFrame) {
     EXPECT_FALSE(alone.picp80.has_value());
     EXPECT_NEAR(measure(shown, sigma, truth).picp80.value_or(0), .5, .01);
     error_of([&] { measure(shown, sigma, Array2<float>(20, 31)); });
+    sigma(3, 4) = -.5F;
+    EXPECT_NE(error_of([&] { measure(shown, sigma, truth); }).find("sigma: expected 0 or more"),
+              std::string::npos);
 }
 
 TEST(Measures, OfLpipsAreThoseOfItsWeights) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -46,6 +47,23 @@ TEST(LogLikelihood, IsTheFormula) {
     const double expected =
         -.5 * std::log(2 * std::numbers::pi) - .5 * (std::log(.5) + .5 * .25 + std::log(.125));
     EXPECT_NEAR(log_likelihood(mu, sigma, truth), expected, 1e-12);
+}
+
+TEST(Coverage, HoldsWhatIsCertainAndRight) {
+    Array2<float> mu(1, 2), sigma(1, 2), truth(1, 2);
+    truth(0, 1) = .5F;  // certain and wrong
+    EXPECT_EQ(coverage_80(mu, sigma, truth), .5);
+    Reliability diagram;
+    diagram.add(mu, sigma, truth);
+    EXPECT_EQ(diagram.inside(0), .5);
+}
+
+TEST(LogLikelihood, OfCertaintyIsInfinite) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Array2<float> mu(1, 2), sigma(1, 2), truth(1, 2);
+    EXPECT_EQ(log_likelihood(mu, sigma, truth), kInfinity);
+    truth(0, 1) = .5F;
+    EXPECT_EQ(log_likelihood(mu, sigma, truth), -kInfinity);
 }
 
 TEST(LogLikelihood, IsLargestForTheTrueSigma) {

@@ -139,6 +139,44 @@ TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
     }
 }
 
+TEST(ModelLine, EveryImageOfARecordingCorrectsAlsoWhereThereAreMoreThanWindowsHold) {
+    const Model model = random_model(small_config(), 1);
+    constexpr int kImages = 900;
+    std::vector<std::byte> bytes;
+    append_record(bytes, ToyKind::event, 1, 2, 2, true);
+    for (int i = 1; i <= kImages; ++i) {  // five a millisecond: a hundred in a window
+        append_record(bytes, ToyKind::image, 200 * i);
+        append_record(bytes, ToyKind::event, 200 * i + 1, i % kWidth, i % kHeight, true);
+    }
+    const PipelineSettings settings = settings_for(model, 2);
+    FusedRun whole({bytes}, model, settings);
+    whole.pipeline.run_sequential();
+    EXPECT_EQ(whole.images.dropped(), 0U);
+    EXPECT_EQ(whole.render.fused()->used(), std::uint64_t(kImages));
+    EXPECT_EQ(whole.render.dropped_images(), 0U);
+    FusedRun split(ToySource::packets_of(bytes, 900), model, settings);
+    split.pipeline.run();
+    EXPECT_EQ(split.render.fused()->used(), std::uint64_t(kImages));
+    EXPECT_TRUE(split.sink.seen == whole.sink.seen);
+}
+
+TEST(ImagesOnTheWay, AreAllKeptAndOfALiveSourceCountedWhereTheyAreNot) {
+    ImagesOnTheWay all, live;
+    live.keep_at_most(2);
+    for (int i = 0; i < 200; ++i) {
+        ReferenceImage image;
+        image.t = from_us(i);
+        all.put({image});
+        live.put({image});
+    }
+    EXPECT_EQ(all.dropped(), 0U);
+    EXPECT_EQ(all.take(1)->t, from_us(0));
+    EXPECT_FALSE(all.take(1).has_value());
+    EXPECT_EQ(live.dropped(), 198U);
+    EXPECT_FALSE(live.take(198).has_value());
+    EXPECT_EQ(live.take(199)->t, from_us(198));
+}
+
 TEST(ModelLine, AllocatesNothingPerEventWindowOnceWarm) {
     if (!can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
     const Model model = random_model(small_config(), 1);

@@ -54,6 +54,11 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"convert", recording(), "a.xyz"}, "a.xyz");
     expect(2, {"simulate", "--scene", "nowhere", "--out", "a.aedat4"}, "nowhere");
     expect(2, {"evaluate", recording(), "--protocol", "folders"}, "two folders");
+    expect(2, {"evaluate", recording(), "--frames", "2", "--calibrated", "a.safetensors"},
+           "--calibrated a.safetensors: ");
+    for (const std::string output : {"--json", "--csv", "--frame-csv", "--calibrated"})
+        expect(2, {"evaluate", "--figure", "silence", output, "a"},
+               output + " a: expected an evaluation, found --figure silence");
 }
 
 TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {

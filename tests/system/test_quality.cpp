@@ -118,6 +118,13 @@ TEST_F(Quality, ARecordingIsPacedAsACameraWhereThatIsAskedFor) {
     EXPECT_EQ(run_json("b").at("counters").at("skipped_frames"), 0);
 }
 
+TEST_F(Quality, SaysWhereABudgetChoosesNothing) {
+    const Result plain = eventide({"run", recording(), "--realtime", "--engine", "plain",
+                                   "--budget", "50%", "--out", "null"});
+    EXPECT_EQ(plain.exit_code, 0) << plain.error;
+    EXPECT_THAT(plain.error, HasSubstr("nothing is chosen by it with --engine plain"));
+}
+
 TEST_F(Quality, WithoutAPaceThereIsNothingToChooseBy) {
     const Result budget = eventide({"run", recording(), "--budget", "8ms", "--out", "null"});
     EXPECT_EQ(budget.exit_code, 2);
@@ -126,6 +133,9 @@ TEST_F(Quality, WithoutAPaceThereIsNothingToChooseBy) {
         eventide({"run", recording(), "--realtime", "--speed", "max", "--out", "null"});
     EXPECT_EQ(pace.exit_code, 2);
     EXPECT_THAT(pace.error, HasSubstr("found --speed max"));
+    const Result own = eventide({"run", kCamera, "--speed", "0.1", "--out", "null"});
+    EXPECT_EQ(own.exit_code, 2);
+    EXPECT_THAT(own.error, HasSubstr("--speed 0.1: expected a recording"));
 }
 
 }  // namespace

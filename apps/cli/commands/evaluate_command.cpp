@@ -199,6 +199,29 @@ void EvaluateCommand::require_inputs() const {
                     std::string{"evaluate: expected "} + expected + ", found " + std::to_string(n));
 }
 
+void EvaluateCommand::require_outputs_that_fit() const {
+    if (!calibrated_.empty() && given_images_ > 0)
+        throw Error(ErrorKind::usage,
+                    "--calibrated " + calibrated_ +
+                        ": a factor found on frames that images corrected is not the model's; "
+                        "expected --frames 0, found " +
+                        std::to_string(given_images_));
+    if (evaluates()) return;
+    for (const auto& [option, file] : {std::pair{"--json ", &json_},
+                                       {"--csv ", &csv_},
+                                       {"--frame-csv ", &frame_csv_},
+                                       {"--calibrated ", &calibrated_}})
+        if (!file->empty())
+            throw Error(ErrorKind::usage, option + *file +
+                                              ": expected an evaluation, found --figure " +
+                                              figures_.front() + ", which makes only figures");
+}
+
+/// Some figures are runs of their own, and need nothing else.
+bool EvaluateCommand::evaluates() const {
+    return figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
+}
+
 EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
     switch (protocol_) {
         case Protocol::evreal:
@@ -246,7 +269,8 @@ void EvaluateCommand::write(const EvaluateReport& report) const {
 }
 
 void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSettings& how) const {
-    const Calibration found = eventide::calibrate(report, calibration_);
+    Calibration found = eventide::calibrate(report, calibration_);
+    found.sigma_rule = how.sigma_rule;
     write_calibrated(how.model, calibrated_, found, overwrite_);
     spdlog::info("{}: sigma times {:.4f}; PICP80 {:.3f} to {:.3f}, LL {:.3f} to {:.3f}",
                  calibrated_, found.factor, found.picp80_before, found.picp80_after,
@@ -287,9 +311,9 @@ void EvaluateCommand::name_evaluation_files(const EvaluateSettings& how, NamedFi
 int EvaluateCommand::run(Program& program) {
     const EvaluateSettings settings = how(program);
     name_evaluation_files(settings, program.files);
+    require_outputs_that_fit();
     make_simulated_figures(settings);
-    const bool table = figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
-    if (!table) return exit_done;
+    if (!evaluates()) return exit_done;
     require_inputs();
     const EvaluateReport report = evaluate(settings);
     write(report);

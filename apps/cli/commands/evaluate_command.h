@@ -27,6 +27,8 @@ private:
     SimulatedSettings simulated() const;
     EvaluateReport evaluate(const EvaluateSettings& how) const;
     void require_inputs() const;
+    void require_outputs_that_fit() const;
+    bool evaluates() const;
     void name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const;
     void name_plots(NamedFiles& files) const;
     void write_plots(const std::vector<Plot>& plots) const;

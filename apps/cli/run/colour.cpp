@@ -107,8 +107,8 @@ ReferenceImage demosaiced(const ReferenceImage& image, ColourFilter filter) {
 }
 
 ColourNetworks::ColourNetworks(Network& network, const SensorInfo& sensor, ColourFilter filter,
-                               const RenderRequest& request, bool fuse, EncodeStage& encode,
-                               RenderStage& render)
+                               const RenderRequest& request, const ImagesOnTheWay* images,
+                               EncodeStage& encode, RenderStage& render)
     : filter_{filter} {
     SensorInfo half = sensor;
     half.width /= 2;
@@ -117,14 +117,15 @@ ColourNetworks::ColourNetworks(Network& network, const SensorInfo& sensor, Colou
     own.width = half.width;
     own.height = half.height;
     own.region = {};
-    own.want_sigma = fuse && request.want_sigma;
+    own.want_sigma = images != nullptr && request.want_sigma;
     std::array<EncodeStage*, 3> encoders{};
     std::array<RenderStage*, 3> renderers{};
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         Channel& channel = channels_[c];
         channel.encoder.emplace(network.make_encoder(half));
         channel.renderer.emplace(network.make_renderer(half));
-        if (fuse)
+        if (images != nullptr) channel.images.keep_at_most(images->most());
+        if (images != nullptr)
             channel.render.emplace(*channel.renderer, own, half.width, half.height, channel.images);
         else
             channel.render.emplace(*channel.renderer, own);

@@ -34,9 +34,10 @@ ReferenceImage demosaiced(const ReferenceImage& image, ColourFilter filter);
 /// What --colour adds to the stages for all pixels.
 class ColourNetworks {
 public:
-    /// The camera's images correct each colour's frames where `fuse`.
+    /// The camera's images correct each colour's frames where `images` are taken; no more than of
+    /// those are on their way.
     ColourNetworks(Network& network, const SensorInfo& sensor, ColourFilter filter,
-                   const RenderRequest& request, bool fuse, EncodeStage& encode,
+                   const RenderRequest& request, const ImagesOnTheWay* images, EncodeStage& encode,
                    RenderStage& render);
 
     EncodeStage& encode() { return *encode_; }

@@ -33,13 +33,39 @@ std::unique_ptr<Sink> open_folder(const std::string& path, const RunSettings& se
                        plan.questions.lost, plan.questions.run_json});
 }
 
+ShownPart part_of_sensor(const Region& region, const Size& frame) {
+    const double width = frame.width, height = frame.height;
+    return {region.x / width, region.y / height,
+            (region.width > 0 ? region.width : frame.width - region.x) / width,
+            (region.height > 0 ? region.height : frame.height - region.y) / height};
+}
+
+/// Of the frames that sinks see: the contact sheet those that are rendered, the others those that
+/// are cropped and flipped, beside events that are only flipped.
+ShownPart shown_part(const RunSettings& settings, const SinkPlan& plan, bool rendered) {
+    const Size frame = settings.size.of(plan.sensor);
+    const Region asked = settings.region.value_or(Region{});
+    if (rendered)
+        return part_of_sensor(
+            plan.undistortion && settings.region ? plan.undistortion->source : asked, frame);
+    ShownPart part = part_of_sensor(asked, frame);
+    const double x = double(settings.adjust.crop_px) / frame.width,
+                 y = double(settings.adjust.crop_px) / frame.height;
+    part = {part.left + x, part.top + y, part.width - 2 * x, part.height - 2 * y};
+    const Flip flip = settings.adjust.flip;
+    if (flip == Flip::horizontal || flip == Flip::both) part.left = 1 - part.left - part.width;
+    if (flip == Flip::vertical || flip == Flip::both) part.top = 1 - part.top - part.height;
+    return part;
+}
+
 std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& settings,
                                  const SinkPlan& plan) {
     if (path.ends_with(".mkv"))
         spdlog::warn("{}: Matroska rounds times to 1 ms; MP4 keeps microseconds", path);
-    return std::make_unique<VideoSink>(VideoSettings{
-        path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
-        settings.video_preset, settings.video_crf, plan.fps, settings.slow, settings.events});
+    return std::make_unique<VideoSink>(
+        VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
+                      settings.video_preset, settings.video_crf, plan.fps, settings.slow,
+                      settings.events, shown_part(settings, plan, false)});
 }
 
 std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
@@ -51,6 +77,7 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.uncertainty = settings.uncertainty;
     stream.sigma_white = float(settings.sigma_white);
     stream.fps = plan.fps;
+    stream.rate = plan.rate;
     stream.stamp = settings.stamp;
     stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
     stream.give_up = plan.questions.stopping;
@@ -65,6 +92,7 @@ std::unique_ptr<Sink> open_window(const RunSettings& settings, const SinkPlan& p
     window.speed = plan.speed;
     window.speed_changed = plan.questions.speed_changed;
     window.give_up = plan.questions.stopping;
+    window.part = shown_part(settings, plan, false);
     return std::make_unique<WindowSink>(std::move(window));
 }
 
@@ -167,6 +195,7 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.sigma_white = float(settings.sigma_white);
     sheet.rows = settings.sheet_rows;
     sheet.truth_caption = plan.reference_caption;
+    sheet.part = shown_part(settings, plan, true);
     if (plan.references != nullptr)
         sheet.draw_truth = [references = plan.references, sensor = plan.sensor](
                                SensorTime t, const Window& window, cv::Mat& image) {

@@ -29,6 +29,7 @@ struct SinkQuestions {
 
 struct SinkPlan {
     double fps = 30;                                    ///< nominal
+    FrameRate rate = {};                                ///< the same as a fraction; none: not known
     bool constant_rate = true;                          ///< and no frame for each event window
     double speed = 1;                                   ///< of the recording, for the window
     Size sensor;                                        ///< px

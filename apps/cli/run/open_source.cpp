@@ -29,6 +29,17 @@ void refuse_unknown_prefix(const std::string& source) {
                     "input");
 }
 
+/// Of what has a pace of its own.
+void refuse_speed(const RunSettings& settings) {
+    if (settings.speed == "auto") return;
+    if (!names_simulation(settings.source) && !names_camera(settings.source)) return;
+    throw Error(
+        ErrorKind::usage,
+        "--speed " + settings.speed + ": expected a recording as SOURCE, found " + settings.source +
+            (names_simulation(settings.source) ? "; a simulation's own is ?speed=S after its scene"
+                                               : "; a camera has one speed"));
+}
+
 OpenedSource open_file(const RunSettings& settings, double speed,
                        const std::function<bool()>& give_up) {
     refuse_unknown_prefix(settings.source);
@@ -68,6 +79,7 @@ OpenedSource open_source(const RunSettings& settings, double speed,
         throw Error(ErrorKind::usage, "--camera " + settings.camera +
                                           ": expected a camera as SOURCE, found " +
                                           settings.source);
+    refuse_speed(settings);
     if (names_simulation(settings.source))
         opened.source = open_simulation(settings.source);
     else if (names_camera(settings.source))

@@ -22,13 +22,26 @@ cv::Mat grey_of(const ReferenceImage& image) {
     return grey;
 }
 
+std::size_t bytes_of(const ReferenceImage& image) {
+    return image.pixels.values().size_bytes();
+}
+
 }  // namespace
 
 void ReferenceImages::see(const Batch& batch) {
     if (batch.images.empty()) return;
     const std::lock_guard lock{mutex_};
-    for (const ReferenceImage& image : batch.images) images_.push_back(image);
-    while (images_.size() > kKept) images_.pop_front();
+    for (const ReferenceImage& image : batch.images) {
+        images_.push_back(image);
+        bytes_ += bytes_of(image);
+    }
+    for (; is_one_too_many(); images_.pop_front()) bytes_ -= bytes_of(images_.front());
+}
+
+/// After the clock began anew, too, times are far apart.
+bool ReferenceImages::is_one_too_many() const {
+    if (images_.size() <= kKeptAnyway) return false;
+    return bytes_ > kMostBytes || std::chrono::abs(images_.back().t - images_.front().t) > kKept;
 }
 
 SensorDuration ReferenceImages::spacing_at(std::size_t image) const {

@@ -1,6 +1,7 @@
 // The sensor's own images of the last moments, kept for whoever shows the truth beside a frame.
 #pragma once
 
+#include "pipeline/sinks/contact_sheet.h"
 #include "pipeline/stages.h"
 #include "src/core/frame_data.h"
 
@@ -16,8 +17,10 @@ namespace eventide::app {
 /// Thread: any; see() is called on the bin thread, draw() on the render thread.
 class ReferenceImages : public DataObserver {
 public:
-    /// More than can lie between the two threads.
-    static constexpr std::size_t kKept = 64;
+    /// Longer than the contact sheet waits and event windows lie between the two threads, however
+    /// many images that is; but no more memory than that for images beyond the first few.
+    static constexpr SensorDuration kKept = 4 * kTruthDelay;
+    static constexpr std::size_t kKeptAnyway = 64, kMostBytes = std::size_t{1} << 29;
 
     void see(const Batch& batch) override;
 
@@ -35,8 +38,11 @@ private:
     /// Between it and the nearer of its neighbours; 0 where it has none.
     SensorDuration spacing_at(std::size_t image) const;
 
+    bool is_one_too_many() const;
+
     mutable std::mutex mutex_;
     std::deque<ReferenceImage> images_;
+    std::size_t bytes_ = 0;  // of their pixels
 };
 
 }  // namespace eventide::app

@@ -83,6 +83,10 @@ std::unique_ptr<OutputFile> stats_of(const RunSettings& settings, OutputOptions 
                                         std::move(options));
 }
 
+std::string dropped_text(std::uint64_t images) {
+    return images == 0 ? "" : "; " + std::to_string(images) + " came too late or were too many";
+}
+
 }  // namespace
 
 Run::Run(Program& program, RunSettings& settings)
@@ -118,7 +122,8 @@ Run::Run(Program& program, RunSettings& settings)
     if (settings.colour) {
         colour_.emplace(network_, sensor_, colour_filter_,
                         request_of(settings, sensor_, lookahead_, undistortion_),
-                        render_.fused() != nullptr, network_.encoder(), render_);
+                        render_.fused() != nullptr ? &images_ : nullptr, network_.encoder(),
+                        render_);
         observers_.hand_images_to(*colour_);
     }
     if (state_) resume();
@@ -259,7 +264,8 @@ int Run::run() {
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);
     if (render_.fused() != nullptr && render_.fused()->used() > 0)
-        spdlog::info("frames corrected by {} of the camera's images", render_.fused()->used());
+        spdlog::info("frames corrected by {} of the camera's images{}", render_.fused()->used(),
+                     dropped_text(render_.dropped_images()));
     else if (settings_.frames == CameraFrames::use)
         spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
                      end_counters.images);

@@ -12,6 +12,7 @@ namespace eventide::app {
 SinkPlan Run::sink_plan() {
     SinkPlan plan;
     plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
+    plan.rate = video_rate_of(settings_, slicer_);
     plan.constant_rate = rate_.is_set();
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
@@ -45,24 +46,14 @@ std::vector<HttpControl> Run::controls() {
     plan.live = live();
     plan.slicer = slicer_;
     auto controls = live_controls(plan);
-    for (HttpControl& control : controls) {
-        if (!control.set || (control.name != "fps" && control.name != "scale")) continue;
-        control.set = [this, set = std::move(control.set)](double wanted) {
-            quality_.take_over(changes_);
-            set(wanted);
-        };
-        if (control.name == "scale")
-            control.get = [this, get = std::move(control.get)] {
-                const QualityState now = quality_.state();
-                return now.chosen && !now.taken_over ? now.level.scale : get();
-            };
-    }
+    quality_.follow(controls, changes_);
     return controls;
 }
 
 ModelRenderStage Run::render_stage() {
     const RenderRequest request = request_of(settings_, sensor_, lookahead_, undistortion_);
     if (settings_.frames == CameraFrames::ignore) return {network_.renderer(), request};
+    if (live()) images_.keep_at_most(ImagesOnTheWay::kKeptLive);
     return {network_.renderer(), request, sensor_.width, sensor_.height, images_};
 }
 

@@ -145,9 +145,13 @@ SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, 
     return slicer;
 }
 
+FrameRate video_rate_of(const RunSettings& settings, const SlicerSettings& slicer) {
+    if (!settings.fps.automatic) return settings.fps.rate;
+    return slicer.rule == WindowRule::reference ? FrameRate{} : FrameRate{30, 1};
+}
+
 FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer) {
-    if (!settings.fps.automatic) return slowed(settings.fps.rate, settings.slow);
-    return slicer.rule == WindowRule::reference ? FrameRate{} : slowed({30, 1}, settings.slow);
+    return slowed(video_rate_of(settings, slicer), settings.slow);
 }
 
 double nominal_fps(const FrameRate& rate, const SlicerSettings& slicer, double slow) {

@@ -46,6 +46,9 @@ std::optional<HostTime::duration> latency_of(const RunSettings& settings, bool l
 SlicerSettings slicer_of(const RunSettings& settings, const ModelConfig& model, const Span& span,
                          bool live);
 
+/// Frames per second of the video; none: one for each event window.
+FrameRate video_rate_of(const RunSettings& settings, const SlicerSettings& slicer);
+
 /// Of sensor time: --slow 10 asks for ten times the frames of the video's rate. Throws Error
 /// (usage) for more than sensor time has microseconds.
 FrameRate rate_of(const RunSettings& settings, const SlicerSettings& slicer);

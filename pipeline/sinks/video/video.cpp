@@ -53,7 +53,7 @@ std::int64_t VideoSink::microseconds_to_show(SensorTime t) {
 void VideoSink::write(const Frame& frame) {
     const std::int64_t t_us = microseconds_to_show(frame.t);
     draw(frame, settings_.uncertainty, settings_.sigma_white, image_);
-    if (settings_.events) draw_events_beside(frame, image_);
+    if (settings_.events) draw_events_beside(frame, settings_.part, image_);
     if (!video_kind_of(settings_.path).colour && image_.channels() == 3)
         cv::extractChannel(image_, image_, 2);  // of events' red and blue: a light and a dark grey
     intensity_->write(image_, t_us);

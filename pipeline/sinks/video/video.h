@@ -25,6 +25,7 @@ struct VideoSettings {
     double slow = 1;      ///< the video is so many times as long as what it shows
     bool events = false;  ///< left of the intensity, where frames have Frame::event_preview; in GIF
                           ///< grey: ON light, OFF dark
+    ShownPart part = {};  ///< that frames show
 };
 
 /// "FFmpeg 5.1.6", which encodes them; "no FFmpeg" in a build without EVENTIDE_VIDEO.

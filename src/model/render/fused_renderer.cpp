@@ -46,7 +46,7 @@ void FusedRenderer::give(ReferenceImage image) noexcept {
         ++dropped_;
         return;
     }
-    if (images_.size() <= kMaxWaiting) return;
+    if (images_.size() <= most_waiting_) return;
     images_.pop_front();
     ++dropped_;
 }

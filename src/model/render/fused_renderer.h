@@ -20,7 +20,7 @@ public:
 
     void reset() noexcept;
 
-    /// In order of time. Of more than kMaxWaiting images whose time has not come, the oldest are
+    /// In order of time. Of more images whose time has not come than may wait the oldest are
     /// dropped; so are those that there is no memory for.
     void give(ReferenceImage image) noexcept;
 
@@ -43,6 +43,8 @@ public:
     }  ///< images that came too late or in too great a number
 
     static constexpr std::size_t kMaxWaiting = 64;
+    /// Instead of kMaxWaiting. Before the first.
+    void keep_at_most(std::size_t images) { most_waiting_ = images; }
 
 private:
     /// A window and its events, until the images that frames of it may know have come: a ring, from
@@ -58,6 +60,7 @@ private:
     Renderer& renderer_;
     int width_, height_;  // px, of the sensor
     int lookahead_;
+    std::size_t most_waiting_ = kMaxWaiting;
     RenderRequest prepared_;
     bool active_ = false;                // since the first image's window; before, nothing is spent
     std::optional<ImageFusion> fusion_;  // none: before the first image

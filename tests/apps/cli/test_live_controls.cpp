@@ -1,6 +1,7 @@
 // What viewers of the live page may change, by what else a run does; and how the page is named.
 #include "apps/cli/run/live_controls.h"
 #include "apps/cli/run/open_sinks.h"
+#include "apps/cli/run/quality/run_quality.h"
 #include "apps/cli/run/run_plan.h"
 #include "apps/cli/settings/sink_name.h"
 #include "src/core/error.h"
@@ -53,6 +54,23 @@ TEST_F(LiveControls, TellTheLineWhatIsWanted) {
     EXPECT_EQ(wanted.lookahead, 1);
     EXPECT_EQ(fps.get(), 120);
     EXPECT_FALSE(changes_.take().rate) << "once";
+}
+
+TEST_F(LiveControls, AreWhatTheQualitySaysItIs) {
+    RunQuality::Place place;
+    place.sensor.width = 240;
+    place.sensor.height = 180;
+    RunQuality quality{settings_, place, {}};
+    quality.tell_rate(30);
+    auto all = made();
+    quality.follow(all, changes_);
+    std::ranges::find(all, "fps", &HttpControl::name)->set(60);
+    const HttpControl scale = *std::ranges::find(all, "scale", &HttpControl::name);
+    scale.set(.5);
+    EXPECT_EQ(quality.state().frames_per_second, 60);
+    EXPECT_EQ(quality.state().level.scale, .5);
+    EXPECT_EQ(scale.get(), .5);
+    EXPECT_EQ(changes_.take().size->width, 120);
 }
 
 TEST_F(LiveControls, CountFramesOfTheVideoInSlowMotion) {

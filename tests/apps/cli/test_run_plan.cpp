@@ -26,6 +26,7 @@ TEST(RunPlan, FramesComeThirtyASecondOrOneForEachReferenceImage) {
     const SlicerSettings usual = slicer_of(settings, model, {}, true);
     EXPECT_EQ(usual.width.count(), 50'000);
     EXPECT_EQ(rate_of(settings, usual), (FrameRate{30, 1}));
+    EXPECT_EQ(video_rate_of(settings, usual), (FrameRate{30, 1}));
     settings.window = "aps";
     EXPECT_FALSE(rate_of(settings, slicer_of(settings, model, {}, false)).is_set());
     settings.fps = {false, {1000, 1}};

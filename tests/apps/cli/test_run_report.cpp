@@ -68,7 +68,10 @@ TEST(RunReport, ARunWithoutFramesSaysWhy) {
     none.events = 9;
     none.slicing.after_end = 2;
     EXPECT_NE(why_no_frames(none).find("between --from and --to"), std::string::npos);
-    none.events = 10;
+    none.events = none.filtered_events = 10;
+    none.slicing = {};
+    EXPECT_NE(why_no_frames(none).find("filters took every event"), std::string::npos);
+    none.filtered_events = 9;
     EXPECT_NE(why_no_frames(none).find("--fps"), std::string::npos);
 }
 

@@ -28,6 +28,22 @@ TEST(Calibration, BringsTheCoverageToEightTenthsAndIsWrittenIntoTheModel) {
     EXPECT_NE(load_model(calibrated).config.card.find("calibrated"), std::string::npos);
 }
 
+TEST(Calibration, IsWrittenWithTheRuleItHoldsFor) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("calibration_rule"), .9, .001, .1)};
+    EvaluateSettings how = small_model();
+    how.sigma_rule = SigmaRule::mixture;
+    how.lookahead = 1;  // of one latent map the rules say the same
+    Calibration found = calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
+    found.sigma_rule = how.sigma_rule;
+    const fs::path calibrated = fresh_folder("calibrated_rule") / "model.safetensors";
+    write_calibrated(how.model, calibrated, found);
+    EXPECT_EQ(load_model(calibrated).config.sigma_rule, SigmaRule::mixture);
+    how.model = calibrated;
+    how.sigma_rule.reset();
+    EXPECT_NEAR(*evaluate_recordings(what, how).overall.ll, found.ll_after, .02);
+}
+
 TEST(Calibration, CautiouslyHoldsInEverySequence) {
     const fs::path folder = fresh_folder("cautious");
     RecordingSettings what;

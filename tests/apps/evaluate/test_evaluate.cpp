@@ -213,5 +213,15 @@ TEST(Report, IsJsonWithTheAgreedKeysAndNullForWhatWasNotMeasured) {
     EXPECT_EQ(std::ranges::count(frames, '\n'), 1 + report.overall.frames);
 }
 
+TEST(Report, NamesSequencesInOneColumnWhateverTheyAreCalled) {
+    EvaluateReport report;
+    SequenceReport& sequence = report.sequences.emplace_back();
+    sequence.scores.sequence = "desk, \"slow\"";
+    sequence.frames.emplace_back();
+    const std::string name = "\n\"desk, \"\"slow\"\"\",";
+    EXPECT_NE(csv(report).find(name), std::string::npos) << csv(report);
+    EXPECT_NE(frame_csv(report).find(name), std::string::npos) << frame_csv(report);
+}
+
 }  // namespace
 }  // namespace eventide::test

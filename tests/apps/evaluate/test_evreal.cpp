@@ -115,6 +115,54 @@ TEST(Evreal, RefusesTimesThatAreNone) {
     EXPECT_THROW(read_evreal_sequence(folder, {}, {}), Error);
 }
 
+/// Three events and three images of 3 x 2 px at these times, as arrays.
+fs::path write_arrays(const std::string& name, const std::vector<double>& events_ts,
+                      const std::vector<double>& images_ts) {
+    const fs::path folder = fresh_folder(name);
+    write_npy(folder / "events_ts.npy", "<f8", "3,", events_ts);
+    write_npy<std::int64_t>(folder / "events_xy.npy", "<i8", "3, 2", {0, 0, 1, 1, 2, 1});
+    write_npy<std::int64_t>(folder / "events_p.npy", "<i8", "3,", {0, 1, 0});
+    write_npy(folder / "images_ts.npy", "<f8", "3,", images_ts);
+    write_npy(folder / "images.npy", "|u1", "3, 2, 3", std::vector<std::uint8_t>(18));
+    return folder;
+}
+
+TEST(Evreal, MendsImageTimesOfArraysAsOfRecordings) {
+    const auto sequence =
+        read_evreal_sequence(write_arrays("disorder", {.1, .2, .3}, {.1, .5, .3}), {}, {});
+    std::size_t events = 0;
+    for_each_reference_window(sequence, [&](const EventWindow& event_window) {
+        EXPECT_LT(event_window.window.begin, event_window.window.end);
+        events += event_window.events.size();
+    });
+    EXPECT_EQ(events, 2U) << "of (.1, .2] and (.2, .3]";
+    EXPECT_EQ(sequence.images[1].t, from_us(200'000));
+}
+
+TEST(Evreal, GivesNoWindowThatEndsBeforeItBegins) {
+    ReferenceSequence sequence;
+    for (const int t : {10, 30, 20}) sequence.images.emplace_back().t = from_us(t);
+    for (const int t : {15, 25}) sequence.events.push_back({from_us(t), 0, 0, Polarity::on});
+    int windows = 0;
+    for_each_reference_window(sequence, [&](const EventWindow& event_window) {
+        ++windows;
+        EXPECT_LE(event_window.events.size(), sequence.events.size());
+    });
+    EXPECT_EQ(windows, 2);
+}
+
+TEST(Evreal, NamesEventTimesThatDoNotAscend) {
+    const fs::path folder = write_arrays("unsorted", {.1, .3, .2}, {.1, .2, .3});
+    try {
+        read_evreal_sequence(folder, {}, {});
+        FAIL() << "was taken";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("events_ts.npy: row 2: expected a time"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Evreal, RefusesSensorsLargerThanAny) {
     const fs::path folder = fresh_folder("large");
     write_npy<double>(folder / "events_ts.npy", "<f8", "0,", {});

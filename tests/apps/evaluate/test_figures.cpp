@@ -78,6 +78,12 @@ TEST(Plot, NamesOfNearPointsDoNotLieOnEachOther) {
         EXPECT_GT(std::abs(y_of(one) - y_of(other)), 10) << one << " and " << other;
 }
 
+TEST(Plot, QuotesLabelsThatWouldEndAColumn) {
+    const Plot plot{.name = "p",
+                    .series = {{"default, 240x180", {1}, {2}, {}}, {"a \"b\"", {1}, {2}, {}}}};
+    EXPECT_EQ(csv(plot), "series,x,y,spread\n\"default, 240x180\",1,2,\n\"a \"\"b\"\"\",1,2,\n");
+}
+
 TEST(Plot, IsWrittenAsImageAndNumbers) {
     const auto folder = std::filesystem::path{testing::TempDir()} / "eventide_plots";
     const Plot plot{.name = "some", .series = {{"s", {1, 2}, {3, 4}, {}}}};

@@ -43,6 +43,29 @@ TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {
     EXPECT_EQ(four.at<cv::Vec3b>(30, four.cols - 20), cv::Vec3b(200, 200, 200));
 }
 
+/// The left half of the sensor is dark and without events, the right half not.
+TEST(ContactSheet, ShowsOfEventsAndTruthThePartThatFramesShow) {
+    const TempFolder temp;
+    ContactSheetSettings settings{.path = temp / "part.png", .rows = 1};
+    settings.draw_truth = [](SensorTime, const Window&, cv::Mat& image) {
+        image = cv::Mat(60, 80, CV_8UC1, 200.0);
+        image.colRange(0, 40) = 0.0;
+    };
+    settings.part = {.left = .5, .top = .25, .width = .5, .height = .5};
+    ContactSheetSink sink{settings};
+    Frame frame = test::ramp_frame(40, 30, 0, from_us(0));
+    frame.event_preview = Array2<float>(60, 80);
+    for (int y = 0; y < 60; ++y)
+        for (int x = 40; x < 80; ++x) frame.event_preview(y, x) = 1;
+    sink.write(frame);
+    sink.close();
+    const cv::Mat sheet = cv::imread(settings.path.string());
+    for (const int x : {6, 40}) {  // of the cell's 40, which begin at 4
+        EXPECT_EQ(sheet.at<cv::Vec3b>(30, x), cv::Vec3b(60, 60, 220));
+        EXPECT_EQ(sheet.at<cv::Vec3b>(30, sheet.cols - x - 1), cv::Vec3b(200, 200, 200));
+    }
+}
+
 TEST(ContactSheet, NamesTheReferenceImagesAsItIsTold) {
     const TempFolder temp;
     const auto sheet = [&](const std::string& caption) {

@@ -125,5 +125,18 @@ TEST(Yuv, KnowsTheCornersOfBt709) {
     EXPECT_EQ(int(u), 102);       // 128 - 224 0.2126 / 1.8556
 }
 
+TEST(DrawEventsBeside, ShowsThePartThatTheFrameShows) {
+    Frame frame = test::ramp_frame(20, 10, 0, from_us(0));
+    frame.event_preview = Array2<float>(40, 60);
+    frame.event_preview(31, 47) = 1;
+    const ShownPart part{40 / 60., 30 / 40., 10 / 60., 5 / 40.};
+    cv::Mat image;
+    draw(frame, Uncertainty::none, 1.0f, image);
+    draw_events_beside(frame, part, image);
+    EXPECT_EQ(image.cols, 40);
+    EXPECT_EQ(image.at<cv::Vec3b>(2, 14), cv::Vec3b(60, 60, 220)) << "twice the sensor's size";
+    EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 255, 255));
+}
+
 }  // namespace
 }  // namespace eventide

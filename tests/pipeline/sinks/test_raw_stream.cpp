@@ -37,6 +37,23 @@ TEST(StreamSink, FfprobeReadsY4m) {
               "32,18,yuv420p,pc,200/1,20\n");
 }
 
+TEST(StreamSink, HeadsY4mWithTheRateAsItWasAskedFor) {
+    const TempFolder temp;
+    const auto rate_in = [&](double fps, const FrameRate& rate) {
+        StreamSink sink{{.path = temp / "a.y4m", .overwrite = true, .fps = fps, .rate = rate}};
+        sink.write(test::ramp_frame(16, 8, 0, test::odd_time(0)));
+        sink.close();
+        const std::string text = test::read_text(temp / "a.y4m");
+        const auto at = text.find(" F") + 2;
+        return text.substr(at, text.find(' ', at) - at);
+    };
+    EXPECT_EQ(rate_in(30000. / 1001, {30000, 1001}), "30000:1001");
+    EXPECT_EQ(rate_in(1. / 3600, {1, 3600}), "1:3600");
+    EXPECT_EQ(rate_in(1. / 3600, {}), "1:3600");
+    EXPECT_EQ(rate_in(29.97, {}), "2997:100");
+    EXPECT_EQ(rate_in(100, {300'000'000'000, 3'000'000'000}), "100:1") << "more than 31 bits";
+}
+
 /// The times in the headers of Y4M frames.
 std::vector<std::int64_t> y4m_times(const std::string& bytes) {
     constexpr std::string_view kHeader = "FRAME XT=";

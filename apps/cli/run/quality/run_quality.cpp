@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 namespace eventide::app {
 
@@ -89,7 +90,12 @@ bool chooses_quality(const RunSettings& settings, bool live, double pace) {
         throw Error(ErrorKind::usage, "--budget " + show_budget(settings.budget) +
                                           ": expected a pace to hold, found " + settings.source +
                                           " as fast as possible; --realtime gives it one");
-    if (settings.engine == Engine::plain) return false;
+    if (settings.engine == Engine::plain) {
+        if (settings.budget.is_set())
+            spdlog::info("--budget {}: nothing is chosen by it with --engine plain",
+                         show_budget(settings.budget));
+        return false;
+    }
     return live || settings.realtime || settings.budget.is_set();
 }
 
@@ -223,6 +229,33 @@ void RunQuality::take_over(LiveChanges& changes) {
     state_.level.halvings = 0;
     changes.set_halvings(0);
     spdlog::info("quality: a viewer has set rate or scale; it is not changed any more");
+}
+
+void RunQuality::tell_rate(double frames_per_second) {
+    const std::lock_guard lock{mutex_};
+    state_.frames_per_second = frames_per_second;
+}
+
+void RunQuality::tell_scale(double scale) {
+    const std::lock_guard lock{mutex_};
+    state_.level.scale = scale;
+}
+
+void RunQuality::follow(std::vector<HttpControl>& controls, LiveChanges& changes) {
+    for (HttpControl& control : controls) {
+        const bool scale = control.name == "scale";
+        if (!control.set || (control.name != "fps" && !scale)) continue;
+        control.set = [this, &changes, scale, set = std::move(control.set)](double wanted) {
+            take_over(changes);
+            set(wanted);
+            scale ? tell_scale(wanted) : tell_rate(wanted);
+        };
+        if (scale)
+            control.get = [this, get = std::move(control.get)] {
+                const QualityState now = state();
+                return now.chosen ? now.level.scale : get();
+            };
+    }
 }
 
 QualityState RunQuality::state() const {

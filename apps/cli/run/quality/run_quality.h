@@ -6,11 +6,13 @@
 #include "apps/cli/run/run_plan.h"
 #include "pipeline/counters.h"
 #include "pipeline/live_changes.h"
+#include "pipeline/sinks/http/control.h"
 
 #include <atomic>
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 namespace eventide::app {
 
@@ -38,14 +40,16 @@ public:
 
     bool changes_while_running() const { return control_.has_value(); }
     unsigned halvings() const { return state_.level.halvings; }  ///< before the run
-    /// Frames a second of the video, to be said; 0: one for each event window. Before the run.
-    void tell_rate(double frames_per_second) { state_.frames_per_second = frames_per_second; }
+    /// Frames a second of the video, to be said; 0: one for each event window. Any thread.
+    void tell_rate(double frames_per_second);
 
     /// Asks `changes` for what the work so far calls for. Status thread, before the run ends.
     void look(const Snapshot& now, std::chrono::duration<double> elapsed, double pace,
               LiveChanges& changes);
-    /// A viewer has set rate or scale: nothing is changed any more. Any thread.
-    void take_over(LiveChanges& changes);
+    /// Once a viewer sets rate or scale by these controls nothing is changed any more; state() has
+    /// what was set, and the scale that is shown is that of now. Before the run; `changes` and this
+    /// outlive the controls.
+    void follow(std::vector<HttpControl>& controls, LiveChanges& changes);
     QualityState state() const;  ///< any thread
 
 private:
@@ -55,6 +59,8 @@ private:
                             const ModelConfig& config) const;
     void begin_control(const RunSettings& settings, const Chosen& chosen);
     void say() const;
+    void take_over(LiveChanges& changes);
+    void tell_scale(double scale);
 
     mutable std::mutex mutex_;
     QualityState state_;

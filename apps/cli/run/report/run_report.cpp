@@ -80,6 +80,8 @@ std::string why_no_frames(const Snapshot& end) {
     const SlicerCounters& cut = end.slicing;
     if (end.events == 0)
         return "no frame: no event was read; eventide info says from when to when there are any";
+    if (end.filtered_events == end.events)
+        return "no frame: filters took every event (--noise-filter, --hot-pixels, --filter)";
     if (cut.before_begin == end.events) return "no frame: all events lie before --from";
     if (cut.before_begin + cut.after_end == end.events)
         return "no frame: no event lies between --from and --to";

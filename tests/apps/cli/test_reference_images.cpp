@@ -1,0 +1,48 @@
+// The sensor's own images, kept for whoever shows the truth beside a frame.
+#include "apps/cli/run/reference_images.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide::app {
+namespace {
+
+/// An image of one grey in each millisecond, that of its number.
+void show_images(ReferenceImages& references, int from_ms, int to_ms) {
+    for (int ms = from_ms; ms < to_ms; ++ms) {
+        Batch batch;
+        ReferenceImage& image = batch.images.emplace_back();
+        image.t = from_us(1000 * ms);
+        image.pixels = Array2<std::uint16_t>(2, 3);
+        for (std::uint16_t& pixel : image.pixels.values()) pixel = std::uint16_t(257 * (ms % 256));
+        references.see(batch);
+    }
+}
+
+/// Empty where there is none.
+cv::Mat truth_at(const ReferenceImages& references, int ms) {
+    cv::Mat shown;
+    const SensorTime t = from_us(1000 * ms);
+    references.draw_nearest(t, {t - SensorDuration{1000}, t}, {3, 2}, shown);
+    return shown;
+}
+
+TEST(ReferenceImages, AreThereForAsLongAsTheContactSheetWaitsHoweverManyThereAre) {
+    ReferenceImages references;
+    show_images(references, 0, 3000);
+    const int early = 3000 - int((kTruthDelay + SensorDuration{400'000}).count() / 1000);
+    const cv::Mat shown = truth_at(references, early);
+    ASSERT_FALSE(shown.empty());
+    EXPECT_EQ(shown.at<std::uint8_t>(1, 2), early % 256);
+    EXPECT_TRUE(truth_at(references, 100).empty()) << "they do not grow without end";
+}
+
+TEST(ReferenceImages, OfAClockThatBeganAnewAreTheNewOnes) {
+    ReferenceImages references;
+    show_images(references, 10'000, 10'100);
+    show_images(references, 0, 100);
+    EXPECT_TRUE(truth_at(references, 10'010).empty());
+    EXPECT_FALSE(truth_at(references, 10).empty());
+}
+
+}  // namespace
+}  // namespace eventide::app
