@@ -232,6 +232,40 @@ TEST(V4l2Camera, OpenedAndClosedLeavesNothingBehind) {
     });
 }
 
+/// Of the sensor's buffers in this process's memory; the kernel may count several as one.
+std::size_t mapped_buffers() {
+    std::ifstream maps{"/proc/self/maps"};
+    std::size_t count = 0;
+    for (std::string line; std::getline(maps, line);)
+        count += line.ends_with("/dev/video0") ? 1 : 0;
+    return count;
+}
+
+TEST(V4l2Camera, ASensorThatDoesNotStartLeavesNoMemoryMapped) {
+    V4l2Testbed bed{sensor()};
+    for (const auto& [request, words] :
+         {std::pair{"QBUF", "does not take a buffer"}, {"STREAMON", "does not start streaming"}}) {
+        bed.fail_next(request, EIO);
+        EXPECT_THAT(failure_of([] { open(); }), HasSubstr(words));
+        EXPECT_EQ(mapped_buffers(), 0U) << request;
+    }
+    {
+        auto camera = open({}, true);
+        EXPECT_GT(mapped_buffers(), 0U);
+        bed.fail_with(EIO);
+        bed.fail_next("STREAMON", EIO, 5);
+        RawPacket packet;
+        for (int look = 0; look < 5; ++look) {
+            EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+            EXPECT_EQ(mapped_buffers(), 0U) << look;
+        }
+        bed.fail_with(0);
+        bed.give({bytes_of({time_high(0)})});
+        while (camera.read(packet) != ReadStatus::data) continue;
+    }
+    EXPECT_EQ(mapped_buffers(), 0U);
+}
+
 TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     V4l2Testbed bed{sensor()};
     RawPacket packet;

@@ -75,6 +75,11 @@ void V4l2Testbed::fail_with(int error) {
     parts_->error = error;
 }
 
+void V4l2Testbed::fail_next(const std::string& request, int error, int times) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->failures.insert(parts_->failures.end(), std::size_t(times), {request, error});
+}
+
 void V4l2Testbed::refuse_writes(int count) {
     const std::lock_guard lock{parts_->mutex};
     parts_->refusals = count;
