@@ -36,7 +36,8 @@ V4l2Device::V4l2Device(const std::filesystem::path& node, int buffers)
     if (fd_.get() < 0) fail("cannot be opened", errno);
     query();
     map_buffers(buffers);
-    for (std::uint32_t i = 0; i < buffers_.size(); ++i) queue(i);
+    for (std::uint32_t i = 0; i < buffers_.size(); ++i)
+        if (const int error = queue(i); error != 0) fail("does not take a buffer", error);
     int type = int(type_);
     if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_STREAMON, &type); error != 0)
         fail("does not start streaming", error);
@@ -110,7 +111,7 @@ void V4l2Device::map_buffers(int wanted) {
     if (buffers_.size() < 2) fail("gives fewer than two buffers", ENOMEM);
 }
 
-void V4l2Device::queue(std::uint32_t index) {
+int V4l2Device::queue(std::uint32_t index) {
     v4l2_buffer buffer{};
     v4l2_plane plane{};
     buffer.index = index;
@@ -121,16 +122,12 @@ void V4l2Device::queue(std::uint32_t index) {
         buffer.m.planes = &plane;
         buffer.length = 1;
     }
-    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_QBUF, &buffer); error != 0)
-        fail("does not take a buffer back", error);
-}
-
-void V4l2Device::requeue_held() {
-    if (held_) queue(*std::exchange(held_, std::nullopt));
+    return v4l2_ioctl(fd_.get(), VIDIOC_QBUF, &buffer);
 }
 
 V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds timeout) {
-    requeue_held();
+    if (held_ && queue(*std::exchange(held_, std::nullopt)) != 0)
+        return Status::lost;  // EIO, ENODEV, as below
     pollfd poll_fd{fd_.get(), POLLIN, 0};
     const int ready = ::poll(&poll_fd, 1, int(timeout.count()));
     if (ready == 0 || (ready < 0 && errno == EINTR)) return Status::timeout;

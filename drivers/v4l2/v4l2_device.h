@@ -57,8 +57,7 @@ private:
     };
     void query();
     void map_buffers(int wanted);
-    void queue(std::uint32_t index);
-    void requeue_held();
+    int queue(std::uint32_t index);  ///< 0 or errno
     [[noreturn]] void fail(const std::string& what, int error) const;
 
     std::filesystem::path node_;

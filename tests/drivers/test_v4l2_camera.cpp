@@ -285,6 +285,27 @@ TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     EXPECT_GE(camera.counters().reconnects, 1U);
 }
 
+TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
+    V4l2Testbed bed{sensor()};
+    for (const bool reconnect : {false, true}) {
+        auto camera = open({}, reconnect);
+        bed.give({bytes_of({time_high(0)})});
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        bed.fail_next("QBUF", ENODEV);
+        if (!reconnect) {
+            EXPECT_THAT(failure_of([&] { camera.read(packet); }),
+                        HasSubstr("stopped (use --reconnect"));
+            continue;
+        }
+        EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+        bed.give({bytes_of({time_high(0)})});
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_TRUE(packet.gap_before);
+        EXPECT_EQ(camera.counters().reconnects, 1U);
+    }
+}
+
 TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     V4l2NodeSettings settings = sensor();
     settings.controls = {{"bias_fo", {-10, 10, 0}}, {"serial", {0, 100, 7, true}}};
