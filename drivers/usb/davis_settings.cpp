@@ -96,8 +96,9 @@ void add_chip(Writes& writes, const DavisSettings& settings, const DavisSensor& 
     bit(12, 0);
     bit(13, 0);
     bit(14, features.global_shutter && settings.global_shutter ? 1 : 0);
+    if (sensor.is_davis240()) return;  // it has neither of these
     bit(15, 1);
-    if (!sensor.is_davis240()) bit(16, 0);
+    bit(16, 0);
 }
 
 /// Wanted, but this logic says it cannot do it.
@@ -176,12 +177,13 @@ void add_aps(Writes& writes, const DavisSettings& settings, const DavisSensor& s
     writes.push_back({kApsInterval, adc_cycles(settings.frame_interval_us, features)});
 }
 
-void add_imu(Writes& writes, const DavisSettings& settings) {
+void add_imu(Writes& writes, const DavisSettings& settings, const DavisSensor& sensor) {
+    if (sensor.imu_type == kNoImu) return;
     add(writes, kImuRateDivider, 0);
     add(writes, kImuAccelLowPass, 1);
     add(writes, kImuAccelScale,
         std::countr_zero(unsigned(settings.accel_range_g)) - 1);  // 2 g << code
-    add(writes, kImuGyroLowPass, 1);
+    if (sensor.imu_type == kImuMpu6500) add(writes, kImuGyroLowPass, 1);
     add(writes, kImuGyroScale,
         std::countr_zero(unsigned(settings.gyro_range_dps / 250)));  // 250 << code
 }
@@ -216,7 +218,7 @@ Writes configuration(const DavisSettings& settings, const DavisSensor& sensor,
     add(writes, kDropDvsOnStall, 1);
     add_dvs(writes, settings, sensor, features);
     add_aps(writes, settings, sensor, features);
-    add_imu(writes, settings);
+    add_imu(writes, settings, sensor);
     add_extinput(writes, settings, features);
     const double usb_cycles_per_us = features.usb_mhz * features.deviation / 1000.0;
     add(writes, kUsbEarlyPacketDelay, int(settings.early_packet_delay_us * usb_cycles_per_us));

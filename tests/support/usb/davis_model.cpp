@@ -75,10 +75,19 @@ std::uint32_t DavisModel::read(Register at) const {
     return found == registers_.end() ? 0 : found->second;
 }
 
+/// Of the IMU's registers, and those of the newer chips, as libcaer writes them.
+bool DavisModel::has(Register at) const {
+    constexpr Register kGreyCounter{chip, kChipConfig + 15}, kTestAdc{chip, kChipConfig + 16};
+    const DavisSensor& s = settings_.sensor;
+    if (at.module == imu && s.imu_type == kNoImu) return false;
+    if (at == kImuGyroLowPass) return s.imu_type == kImuMpu6500;
+    return !s.is_davis240() || (at != kGreyCounter && at != kTestAdc);
+}
+
 void DavisModel::write(Write write) {
     const bool time_starts = write == Write{kTimestampRun, 1} && read(kTimestampRun) != 1;
     writes_.push_back(write);
-    registers_[write.at] = write.value;
+    if (has(write.at)) registers_[write.at] = write.value;
     asked_ = 0;
     if (time_starts) begin_time();
     if (write != Write{kTimestampReset, 1}) return;

@@ -36,7 +36,8 @@ struct DavisModelSettings {
     std::function<SensorTime()> now;
 };
 
-/// Registers, and the stream they let flow: words come out only while MUX run, timestamp run and
+/// Registers, and the stream they let flow; those that such a camera has not got read 0 whatever is
+/// written to them. Words come out only while MUX run, timestamp run and
 /// USB run are 1; events only with DVS run and chip run, images only with APS run, IMU samples only
 /// with its accelerometer on. Time begins with timestamp run, and nothing else is needed.
 ///
@@ -71,6 +72,7 @@ public:
     std::uint64_t bytes_sent() const { return bytes_sent_; }
 
 private:
+    bool has(davis::Register at) const;
     bool is_too_early_for_part_of_a_packet();
     SensorTime now() const;
     void begin_time();
