@@ -94,7 +94,7 @@ void DavisCamera::read_features(UsbDevice& device) {
     features_.roi = flag(kDvsHasRoi);
     features_.skip = flag(kDvsHasSkip);
     features_.polarity_filter = flag(kDvsHasPolarityFilter);
-    features_.statistics = flag(kDvsHasStatistics);
+    features_.statistics = flag(kMuxHasStatistics);
     features_.global_shutter = flag(kApsHasGlobalShutter);
     features_.generator = flag(kExtHasGenerator);
     features_.logic_mhz = number(kLogicMhz);

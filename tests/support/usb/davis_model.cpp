@@ -54,7 +54,7 @@ DavisModel::DavisModel(DavisModelSettings settings) : settings_(std::move(settin
                   {kDvsHasRoi, 1},
                   {kDvsHasSkip, 1},
                   {kDvsHasPolarityFilter, 1},
-                  {kDvsHasStatistics, 1},
+                  {kDvsHasStatistics, settings_.dvs_statistics ? 1U : 0U},
                   {kApsColumns, std::uint32_t(s.aps_columns)},
                   {kApsRows, std::uint32_t(s.aps_rows)},
                   {kApsOrientation, orientation(s.aps_swapped, s.aps_flip_x, s.aps_flip_y)},
@@ -63,7 +63,7 @@ DavisModel::DavisModel(DavisModelSettings settings) : settings_(std::move(settin
                   {kImuType, std::uint32_t(s.imu_type)},
                   {kImuOrientation, orientation(s.imu_flip_x, s.imu_flip_y, s.imu_flip_z)},
                   {kExtHasGenerator, 1},
-                  {kMuxHasStatistics, 1}};
+                  {kMuxHasStatistics, settings_.mux_statistics ? 1U : 0U}};
 }
 
 void DavisModel::show(Batch scene) {

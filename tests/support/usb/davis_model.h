@@ -25,6 +25,7 @@ struct DavisModelSettings {
     std::uint16_t product = 0x841A;  ///< behind FX3
     std::uint8_t firmware = 6, board_type = 3;
     std::uint32_t logic = 18, patch = 1;
+    bool dvs_statistics = true, mux_statistics = true;  ///< whether the logic says it has them
     /// Of the camera's own memory for words that nobody fetches; 0: endless. Events that find no
     /// room are dropped and counted (MUX 83); images and IMU samples wait.
     std::size_t fifo_bytes = 0;
