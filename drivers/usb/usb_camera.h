@@ -98,6 +98,7 @@ private:
 
     UsbKind kind_;
     UsbCameraOptions options_;
+    UsbSelector selector_;
     UsbStreamSettings transfers_;
     SensorInfo info_;
     std::string logic_;

@@ -171,5 +171,31 @@ TEST(DavisUnplugged, OnlyTheSameCameraIsTakenBack) {
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
 }
 
+TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {
+    UsbTestbed bed;
+    DavisModelSettings settings;
+    settings.serial = "";
+    const auto plug_in = [&](testing_support::UsbPlace place) {
+        const auto model = std::make_shared<DavisModel>(settings);
+        model->show(davis_scene(settings.sensor, {.events = 2'000}));
+        bed.plug_in(model, place);
+    };
+    plug_in({.port = 2, .address = 5});
+    DavisCamera camera{small_transfers(true)};
+    EXPECT_EQ(camera.info().serial, "TMP00261") << "bus 1, address 5";
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    plug_in({.port = 3, .address = 6});
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters().reconnects, 0U);
+    bed.unplug();
+    plug_in({.port = 2, .address = 7});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_EQ(camera.counters().reconnects, 1U);
+}
+
 }  // namespace
 }  // namespace eventide::test
