@@ -50,13 +50,13 @@ struct DavisSettings {
 /// (Error, usage).
 DavisSettings load_davis_settings(const std::filesystem::path& file);
 
-struct Bias {
+struct DavisBias {
     const char* name;
     std::uint16_t address;
     std::uint16_t value;  ///< 16-bit word (docs/protocols.md A.7)
 };
 /// libcaer's defaults.
-const std::vector<Bias>& default_biases(DavisChip chip);
+const std::vector<DavisBias>& default_biases(DavisChip chip);
 
 /// What the logic says it can do.
 struct DavisFeatures {

@@ -246,7 +246,7 @@ void EvaluateCommand::write(const EvaluateReport& report) const {
 }
 
 void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSettings& how) const {
-    const Calibration found = eventide::calibrate(report, calibration_);
+    const SigmaCalibration found = eventide::calibrate(report, calibration_);
     write_calibrated(how.model, calibrated_, found, overwrite_);
     spdlog::info("{}: sigma times {:.4f}; PICP80 {:.3f} to {:.3f}, LL {:.3f} to {:.3f}",
                  calibrated_, found.factor, found.picp80_before, found.picp80_after,
