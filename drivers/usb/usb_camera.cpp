@@ -18,7 +18,10 @@ constexpr auto kBeginTimeout = 1000ms;
 }  // namespace
 
 UsbCamera::UsbCamera(UsbKind kind, UsbCameraOptions options, UsbStreamSettings transfers)
-    : kind_(std::move(kind)), options_(std::move(options)), transfers_(transfers) {
+    : kind_(std::move(kind)),
+      options_(std::move(options)),
+      warnings_(options_.warn),
+      transfers_(transfers) {
     selector_.name = kind_.name;
     selector_.products = kind_.products;
     selector_.serial = options_.serial;
@@ -169,8 +172,10 @@ ReadStatus UsbCamera::wait_for_return() {
         start();
         ++counters_.reconnects;
         gap_ = true;
-    } catch (const Error&) {  // not there yet, or not yet ready: the next look will tell
+        warnings_.is_back();
+    } catch (const Error& error) {  // not there yet, or not yet ready: the next look will tell
         close();
+        warnings_.tell(error);
         std::this_thread::sleep_for(kReadTimeout);
     }
     return ReadStatus::timeout;

@@ -306,6 +306,37 @@ TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
     }
 }
 
+TEST(V4l2Camera, WhyItIsNotBackIsToldOnceAndSettingsThatDoNotFitEndTheWait) {
+    V4l2NodeSettings settings = sensor();
+    settings.controls = {{"bias_fo", {-10, 10, 0}}};
+    V4l2Testbed bed{settings};
+    V4l2Settings wanted;
+    wanted.controls["bias_fo"] = 5;
+    std::vector<std::string> warnings;
+    auto camera = open(wanted, true, [&](const std::string& text) { warnings.push_back(text); });
+    const auto look = [&](int times) {
+        RawPacket packet;
+        for (int i = 0; i < times; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    };
+    bed.fail_with(EIO);
+    bed.fail_next("STREAMON", EIO, 3);
+    look(3);
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("does not start streaming")));
+    bed.fail_next("STREAMON", EBUSY, 3);
+    look(3);
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_THAT(warnings[1], HasSubstr("in use by another program"));
+    look(1);
+    EXPECT_EQ(camera.counters().reconnects, 1U);
+    bed.fail_next("STREAMON", EIO);
+    look(1);
+    EXPECT_EQ(warnings.size(), 3U) << "gone once more";
+    bed.take_controls_away();
+    RawPacket packet;
+    EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("no control 'bias_fo'"));
+    EXPECT_EQ(warnings.size(), 3U);
+}
+
 TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     V4l2NodeSettings settings = sensor();
     settings.controls = {{"bias_fo", {-10, 10, 0}}, {"serial", {0, 100, 7, true}}};

@@ -95,6 +95,11 @@ std::vector<std::string> V4l2Testbed::requests() const {
     return parts_->requests;
 }
 
+void V4l2Testbed::take_controls_away() {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->settings.controls.clear();
+}
+
 V4l2NodeSettings::Control V4l2Testbed::control(const std::string& name) const {
     const std::lock_guard lock{parts_->mutex};
     return parts_->settings.controls.at(name);

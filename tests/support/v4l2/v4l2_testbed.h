@@ -57,6 +57,8 @@ public:
     /// The next so many writes find the device busy (EAGAIN).
     void refuse_writes(int count);
 
+    /// The driver has none any more.
+    void take_controls_away();
     V4l2NodeSettings::Control control(const std::string& name) const;
 
 private:
