@@ -43,6 +43,7 @@ template <typename OpenedCamera, typename Options, auto load_settings>
 std::unique_ptr<Camera> open_usb(std::string_view which, const CameraOptions& asked) {
     Options options;
     options.reconnect = asked.reconnect;
+    options.warn = asked.warn;
     if (!asked.settings.empty()) options.settings = load_settings(asked.settings);
     const auto colon = which.find(':');
     if (colon == which.npos)

@@ -17,6 +17,9 @@ struct CameraOptions {
     bool reconnect = false;          ///< wait for an unplugged camera to come back
     /// Asked while a camera that has to be waited for is opened: true gives up. May be empty.
     std::function<bool()> give_up = {};
+    /// For people: why a camera that is waited for is not back yet, once each. Source thread. May
+    /// be empty.
+    std::function<void(const std::string&)> warn = {};
 };
 
 /// Whether a source on the command line names a camera rather than a file: "davis:", "v4l2:", ...

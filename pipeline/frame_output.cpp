@@ -84,6 +84,7 @@ void FrameOutput::present_oldest() {
     Waiting& held = held_[oldest_];
     oldest_ = (oldest_ + 1) % held_.size();
     --held_count_;
+    tell_lookahead();
     schedule_.open(held.window);
     check_silence(held);
     if (settings_.live) open_dropper();
@@ -106,6 +107,14 @@ void FrameOutput::present_oldest() {
             counters_.present.skipped_frames.add();
         }
     }
+}
+
+/// What came behind the window at hand: less than the lookahead at the end, more where that has
+/// just become shorter.
+void FrameOutput::tell_lookahead() {
+    if (told_lookahead_ == held_count_) return;
+    told_lookahead_ = held_count_;
+    for (Sink* sink : sinks_) sink->lookahead_is(int(held_count_));
 }
 
 bool FrameOutput::is_watched() const {

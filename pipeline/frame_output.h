@@ -75,6 +75,7 @@ private:
     };
     void change();
     void present_oldest();
+    void tell_lookahead();
     void open_dropper();
     bool is_watched() const;
     bool is_wanted(const DueFrame& due) const;
@@ -95,8 +96,9 @@ private:
     FrameDropper dropper_;
     std::array<Waiting, kMaxLookahead + 1> held_;  // a ring
     std::size_t oldest_ = 0, held_count_ = 0;
-    std::uint64_t silent_ = 0;  // frames in a row without events
-    HostTime arrived_{};        // of the newest latent map
+    std::optional<std::size_t> told_lookahead_;  // to the sinks
+    std::uint64_t silent_ = 0;                   // frames in a row without events
+    HostTime arrived_{};                         // of the newest latent map
     Frame frame_;
     bool wanted_ = true;
 };

@@ -15,6 +15,10 @@ public:
     /// Render thread.
     virtual void write(const Frame& frame) = 0;
 
+    /// Render thread, before the first frame that it holds for: how many event windows after a
+    /// frame's own came before Frame::arrived. Changes while a run goes on, and at its end.
+    virtual void lookahead_is(int /*windows*/) {}
+
     /// Render thread, once, after the last frame, also after an error or SIGINT: complete and close
     /// what was written.
     virtual void close() {}

@@ -22,7 +22,7 @@ double factor_by(CalibrationRule rule, const EvaluateReport& held_out) {
 
 }  // namespace
 
-Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule) {
+SigmaCalibration calibrate(const EvaluateReport& held_out, CalibrationRule rule) {
     const SigmaScale& errors = held_out.observations.sigma_scale;
     if (errors.pixels() == 0)
         throw Error(ErrorKind::usage,
@@ -36,7 +36,7 @@ Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule) {
 }
 
 void write_calibrated(const std::filesystem::path& from, const std::filesystem::path& to,
-                      const Calibration& calibration, bool overwrite) {
+                      const SigmaCalibration& calibration, bool overwrite) {
     Model model = load_model(from);
     model.config.sigma_scale = float(double(model.config.sigma_scale) * calibration.factor);
     model.config.sigma_rule = calibration.sigma_rule.value_or(model.config.sigma_rule);

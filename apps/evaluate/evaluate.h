@@ -82,7 +82,7 @@ EvaluateReport evaluate_folders(const std::filesystem::path& frames,
 EvaluateReport evaluate_evreal(const std::filesystem::path& dataset, const EvaluateSettings& how);
 
 /// One factor for sigma, found on held-out data.
-struct Calibration {
+struct SigmaCalibration {
     double factor = 1;  ///< multiplies the model's present sigma_scale
     double picp80_before = 0, picp80_after = 0;
     double ll_before = 0, ll_after = 0;
@@ -94,11 +94,11 @@ enum class CalibrationRule {
     likelihood,  ///< LL becomes largest
     cautious     ///< PICP80 becomes .8 in the sequence that needs it most, more in all others
 };
-Calibration calibrate(const EvaluateReport& held_out, CalibrationRule rule);
+SigmaCalibration calibrate(const EvaluateReport& held_out, CalibrationRule rule);
 
 /// Writes `model` again as `to`, with sigma_scale multiplied, the calibration's rule and a line in
 /// its card.
 void write_calibrated(const std::filesystem::path& model, const std::filesystem::path& to,
-                      const Calibration& calibration, bool overwrite = false);
+                      const SigmaCalibration& calibration, bool overwrite = false);
 
 }  // namespace eventide

@@ -165,12 +165,21 @@ void EventTopic::wait(std::chrono::milliseconds at_most) {
               "wait for messages");
 }
 
-int EventTopic::publishers() const {
-    constexpr std::size_t kMax = 16;
-    std::array<dds_instance_handle_t, kMax> handles{};
+std::vector<dds_instance_handle_t> EventTopic::matched_publishers() const {
+    constexpr std::size_t kMax = 64;
+    std::vector<dds_instance_handle_t> handles(kMax);
     const dds_return_t n = dds().dds_get_matched_publications(reader_.get(), handles.data(), kMax);
     check_dds(n, "count the publishers of " + name_);
-    return n;
+    handles.resize(std::min(std::size_t(n), kMax));  // it tells how many there are
+    return handles;
+}
+
+int EventTopic::publishers() const {
+    return int(matched_publishers().size());
+}
+
+bool EventTopic::has_publisher(std::uint64_t publisher) const {
+    return std::ranges::count(matched_publishers(), publisher) > 0;
 }
 
 void EventTopic::wake() noexcept {

@@ -47,6 +47,7 @@ public:
     /// Until there may be a message, at most so long, or wake().
     void wait(std::chrono::milliseconds at_most);
     int publishers() const;
+    bool has_publisher(std::uint64_t publisher) const;  ///< EventMessage::publisher
 
     void wake() noexcept;  ///< any thread: wait() returns at once, from now on
 
@@ -56,6 +57,7 @@ private:
         dds_reliability_kind_t reliability;
     };
     std::vector<Endpoint> endpoints() const;
+    std::vector<dds_instance_handle_t> matched_publishers() const;
     void open(dds_reliability_kind_t reliability);
     void give_back() noexcept;
 

@@ -140,12 +140,16 @@ void Ros2Source::take_messages(RawPacket& into) {
     }
 }
 
-/// One that is new takes over; what the one before still sends is left out.
+/// One that is new takes over; what the one before still sends is left out, unless the new one has
+/// ended meanwhile.
 bool Ros2Source::is_of_this_publisher(const EventMessage& message) {
     constexpr std::size_t kMax = 64;
     if (message.publisher == publisher_) return true;
-    if (std::ranges::find(publishers_before_, message.publisher) != publishers_before_.end())
-        return false;
+    const auto before = std::ranges::find(publishers_before_, message.publisher);
+    if (before != publishers_before_.end()) {
+        if (topic_.has_publisher(publisher_)) return false;
+        publishers_before_.erase(before);
+    }
     publishers_before_.push_back(publisher_);
     if (publishers_before_.size() > kMax) publishers_before_.pop_front();
     publisher_ = message.publisher;

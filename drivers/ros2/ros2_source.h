@@ -14,7 +14,8 @@
 namespace eventide {
 
 /// The bytes are what EventPacketParser reads. A jump of the messages' numbers is a gap. One
-/// publisher is read at a time: of several the one that was heard of last.
+/// publisher is read at a time: of several the one that was heard of last, and when it has ended
+/// one that goes on.
 class Ros2Source final : public Camera {
 public:
     /// Waits for the first message, which tells size and encoding: name.wait, or with

@@ -6,6 +6,8 @@
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <thread>
 #include <utility>
@@ -22,8 +24,8 @@ UsbKind kind() {
     return {"DAVIS", "davis:", {kDavisFx3, kDavisFx2}};
 }
 
-const char* chip_name(DavisChip chip) {
-    switch (chip) {
+const char* chip_name(std::uint32_t chip_id) {
+    switch (chip_id > UINT8_MAX ? DavisChip{UINT8_MAX} : DavisChip(chip_id)) {
         case DavisChip::davis240a:
             return "DAVIS240A";
         case DavisChip::davis240b:
@@ -45,7 +47,16 @@ const char* chip_name(DavisChip chip) {
         case DavisChip::davis346c:
             return "DAVIS346C";
     }
-    return "DAVIS";
+    return "unknown";
+}
+
+/// The others have other biases, or read their frames in another order.
+bool is_supported(std::uint32_t chip_id) {
+    constexpr std::array kSupported{DavisChip::davis240a, DavisChip::davis240b,
+                                    DavisChip::davis240c, DavisChip::davis346a,
+                                    DavisChip::davis346b, DavisChip::davis346c};
+    return std::ranges::any_of(kSupported,
+                               [&](DavisChip chip) { return std::uint32_t(chip) == chip_id; });
 }
 
 }  // namespace
@@ -67,7 +78,7 @@ SensorInfo DavisCamera::set_up(UsbDevice& device) {
     read_sensor(device);
     write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
     SensorInfo info;
-    info.name = chip_name(sensor_.chip);
+    info.name = chip_name(std::uint32_t(sensor_.chip));
     info.format = "davis";
     info.width = sensor_.width();
     info.height = sensor_.height();
@@ -83,7 +94,7 @@ void DavisCamera::read_features(UsbDevice& device) {
     features_.roi = flag(kDvsHasRoi);
     features_.skip = flag(kDvsHasSkip);
     features_.polarity_filter = flag(kDvsHasPolarityFilter);
-    features_.statistics = flag(kDvsHasStatistics);
+    features_.statistics = flag(kMuxHasStatistics);
     features_.global_shutter = flag(kApsHasGlobalShutter);
     features_.generator = flag(kExtHasGenerator);
     features_.logic_mhz = number(kLogicMhz);
@@ -94,7 +105,11 @@ void DavisCamera::read_features(UsbDevice& device) {
 
 void DavisCamera::read_sensor(UsbDevice& device) {
     const auto number = [&](Register at) { return int(device.read_register(at)); };
-    sensor_.chip = DavisChip(number(kChipId));
+    const std::uint32_t chip_id = device.read_register(kChipId);
+    if (!is_supported(chip_id))
+        refuse("has chip id " + std::to_string(chip_id) + " (" + chip_name(chip_id) +
+               "), expected that of a DAVIS240A, B or C or of a DAVIS346A, B or C");
+    sensor_.chip = DavisChip(chip_id);
     sensor_.dvs_columns = number(kDvsColumns);
     sensor_.dvs_rows = number(kDvsRows);
     sensor_.dvs_swapped = (number(kDvsOrientation) & 4) != 0;

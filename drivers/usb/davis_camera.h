@@ -23,8 +23,8 @@ struct DavisOptions : UsbCameraOptions {
 class DavisCamera final : public UsbCamera {
 public:
     /// Opens and configures. Throws Error (device): no camera, no permission, in use, firmware or
-    /// logic that does not fit, a second-generation board, a setting that was not taken; each says
-    /// what to do.
+    /// logic that does not fit, a second-generation board, a chip other than those of the DAVIS240
+    /// and DAVIS346, a setting that was not taken; each says what to do.
     explicit DavisCamera(const DavisOptions& options);
     ~DavisCamera() override;
 

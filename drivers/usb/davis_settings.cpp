@@ -15,57 +15,57 @@ namespace {
 using namespace davis;
 
 // docs/protocols.md A.7, from libcaer's src/davis.c.
-const std::vector<Bias> kBiases346{{"ApsOverflowLevel", 0, 0x019B},
-                                   {"ApsCas", 1, 0x0195},
-                                   {"AdcRefHigh", 2, 0x01E0},
-                                   {"AdcRefLow", 3, 0x01C1},
-                                   {"AdcTestVoltage", 4, 0x01D5},
-                                   {"LocalBufBn", 8, 0x5A4F},
-                                   {"PadFollBn", 9, 0x7D7E},
-                                   {"DiffBn", 10, 0x427F},
-                                   {"OnBn", 11, 0x5FFF},
-                                   {"OffBn", 12, 0x401F},
-                                   {"PixInvBn", 13, 0x690F},
-                                   {"PrBp", 14, 0x23AD},
-                                   {"PrSFBp", 15, 0x110D},
-                                   {"RefrBp", 16, 0x419D},
-                                   {"ReadoutBufBp", 17, 0x614D},
-                                   {"ApsROSFBn", 18, 0x6DBF},
-                                   {"AdcCompBp", 19, 0x514D},
-                                   {"ColSelLowBn", 20, 0x001F},
-                                   {"DACBufBp", 21, 0x63CD},
-                                   {"LcolTimeoutBn", 22, 0x531F},
-                                   {"AEPdBn", 23, 0x65BF},
-                                   {"AEPuXBp", 24, 0x450D},
-                                   {"AEPuYBp", 25, 0x798D},
-                                   {"IfRefrBn", 26, 0x5FFF},
-                                   {"IfThrBn", 27, 0x5FFF},
-                                   {"BiasBuffer", 34, 0x5FEF},
-                                   {"SSP", 35, 0x8410},
-                                   {"SSN", 36, 0x8410}};
+const std::vector<DavisBias> kBiases346{{"ApsOverflowLevel", 0, 0x019B},
+                                        {"ApsCas", 1, 0x0195},
+                                        {"AdcRefHigh", 2, 0x01E0},
+                                        {"AdcRefLow", 3, 0x01C1},
+                                        {"AdcTestVoltage", 4, 0x01D5},
+                                        {"LocalBufBn", 8, 0x5A4F},
+                                        {"PadFollBn", 9, 0x7D7E},
+                                        {"DiffBn", 10, 0x427F},
+                                        {"OnBn", 11, 0x5FFF},
+                                        {"OffBn", 12, 0x401F},
+                                        {"PixInvBn", 13, 0x690F},
+                                        {"PrBp", 14, 0x23AD},
+                                        {"PrSFBp", 15, 0x110D},
+                                        {"RefrBp", 16, 0x419D},
+                                        {"ReadoutBufBp", 17, 0x614D},
+                                        {"ApsROSFBn", 18, 0x6DBF},
+                                        {"AdcCompBp", 19, 0x514D},
+                                        {"ColSelLowBn", 20, 0x001F},
+                                        {"DACBufBp", 21, 0x63CD},
+                                        {"LcolTimeoutBn", 22, 0x531F},
+                                        {"AEPdBn", 23, 0x65BF},
+                                        {"AEPuXBp", 24, 0x450D},
+                                        {"AEPuYBp", 25, 0x798D},
+                                        {"IfRefrBn", 26, 0x5FFF},
+                                        {"IfThrBn", 27, 0x5FFF},
+                                        {"BiasBuffer", 34, 0x5FEF},
+                                        {"SSP", 35, 0x8410},
+                                        {"SSN", 36, 0x8410}};
 
-const std::vector<Bias> kBiases240{{"DiffBn", 0, 0x427F},
-                                   {"OnBn", 1, 0x5FFF},
-                                   {"OffBn", 2, 0x400F},
-                                   {"ApsCasEpc", 3, 0x5B9B},
-                                   {"DiffCasBnc", 4, 0x573B},
-                                   {"ApsROSFBn", 5, 0x6DBF},
-                                   {"LocalBufBn", 6, 0x5A4F},
-                                   {"PixInvBn", 7, 0x690F},
-                                   {"PrBp", 8, 0x23AD},
-                                   {"PrSFBp", 9, 0x110D},
-                                   {"RefrBp", 10, 0x419D},
-                                   {"AEPdBn", 11, 0x65BF},
-                                   {"LcolTimeoutBn", 12, 0x531F},
-                                   {"AEPuXBp", 13, 0x450D},
-                                   {"AEPuYBp", 14, 0x798D},
-                                   {"IfThrBn", 15, 0x5FFF},
-                                   {"IfRefrBn", 16, 0x5FFF},
-                                   {"PadFollBn", 17, 0x7D7F},
-                                   {"ApsOverflowLevelBn", 18, 0x6FDF},
-                                   {"BiasBuffer", 19, 0x5FEF},
-                                   {"SSP", 20, 0x8410},
-                                   {"SSN", 21, 0x8410}};
+const std::vector<DavisBias> kBiases240{{"DiffBn", 0, 0x427F},
+                                        {"OnBn", 1, 0x5FFF},
+                                        {"OffBn", 2, 0x400F},
+                                        {"ApsCasEpc", 3, 0x5B9B},
+                                        {"DiffCasBnc", 4, 0x573B},
+                                        {"ApsROSFBn", 5, 0x6DBF},
+                                        {"LocalBufBn", 6, 0x5A4F},
+                                        {"PixInvBn", 7, 0x690F},
+                                        {"PrBp", 8, 0x23AD},
+                                        {"PrSFBp", 9, 0x110D},
+                                        {"RefrBp", 10, 0x419D},
+                                        {"AEPdBn", 11, 0x65BF},
+                                        {"LcolTimeoutBn", 12, 0x531F},
+                                        {"AEPuXBp", 13, 0x450D},
+                                        {"AEPuYBp", 14, 0x798D},
+                                        {"IfThrBn", 15, 0x5FFF},
+                                        {"IfRefrBn", 16, 0x5FFF},
+                                        {"PadFollBn", 17, 0x7D7F},
+                                        {"ApsOverflowLevelBn", 18, 0x6FDF},
+                                        {"BiasBuffer", 19, 0x5FEF},
+                                        {"SSP", 20, 0x8410},
+                                        {"SSN", 21, 0x8410}};
 
 using Writes = std::vector<Write>;
 
@@ -76,7 +76,7 @@ void add(Writes& writes, Register at, int value) {
 void add_chip(Writes& writes, const DavisSettings& settings, const DavisSensor& sensor,
               const DavisFeatures& features) {
     auto wanted = settings.biases;
-    for (const Bias& bias : default_biases(sensor.chip)) {
+    for (const DavisBias& bias : default_biases(sensor.chip)) {
         const auto own = wanted.extract(bias.name);
         add(writes, {chip, bias.address}, own.empty() ? bias.value : int(own.mapped()));
     }
@@ -96,8 +96,9 @@ void add_chip(Writes& writes, const DavisSettings& settings, const DavisSensor& 
     bit(12, 0);
     bit(13, 0);
     bit(14, features.global_shutter && settings.global_shutter ? 1 : 0);
+    if (sensor.is_davis240()) return;  // it has neither of these
     bit(15, 1);
-    if (!sensor.is_davis240()) bit(16, 0);
+    bit(16, 0);
 }
 
 /// Wanted, but this logic says it cannot do it.
@@ -176,12 +177,13 @@ void add_aps(Writes& writes, const DavisSettings& settings, const DavisSensor& s
     writes.push_back({kApsInterval, adc_cycles(settings.frame_interval_us, features)});
 }
 
-void add_imu(Writes& writes, const DavisSettings& settings) {
+void add_imu(Writes& writes, const DavisSettings& settings, const DavisSensor& sensor) {
+    if (sensor.imu_type == kNoImu) return;
     add(writes, kImuRateDivider, 0);
     add(writes, kImuAccelLowPass, 1);
     add(writes, kImuAccelScale,
         std::countr_zero(unsigned(settings.accel_range_g)) - 1);  // 2 g << code
-    add(writes, kImuGyroLowPass, 1);
+    if (sensor.imu_type == kImuMpu6500) add(writes, kImuGyroLowPass, 1);
     add(writes, kImuGyroScale,
         std::countr_zero(unsigned(settings.gyro_range_dps / 250)));  // 250 << code
 }
@@ -203,7 +205,7 @@ std::uint32_t adc_cycles(int us, const DavisFeatures& features) {
     return std::uint32_t(std::int64_t(us) * features.adc_mhz * features.deviation / 1000);
 }
 
-const std::vector<Bias>& default_biases(DavisChip chip) {
+const std::vector<DavisBias>& default_biases(DavisChip chip) {
     return chip <= DavisChip::davis240c ? kBiases240 : kBiases346;
 }
 
@@ -216,7 +218,7 @@ Writes configuration(const DavisSettings& settings, const DavisSensor& sensor,
     add(writes, kDropDvsOnStall, 1);
     add_dvs(writes, settings, sensor, features);
     add_aps(writes, settings, sensor, features);
-    add_imu(writes, settings);
+    add_imu(writes, settings, sensor);
     add_extinput(writes, settings, features);
     const double usb_cycles_per_us = features.usb_mhz * features.deviation / 1000.0;
     add(writes, kUsbEarlyPacketDelay, int(settings.early_packet_delay_us * usb_cycles_per_us));

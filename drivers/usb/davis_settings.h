@@ -50,18 +50,19 @@ struct DavisSettings {
 /// (Error, usage).
 DavisSettings load_davis_settings(const std::filesystem::path& file);
 
-struct Bias {
+struct DavisBias {
     const char* name;
     std::uint16_t address;
     std::uint16_t value;  ///< 16-bit word (docs/protocols.md A.7)
 };
 /// libcaer's defaults.
-const std::vector<Bias>& default_biases(DavisChip chip);
+const std::vector<DavisBias>& default_biases(DavisChip chip);
 
 /// What the logic says it can do.
 struct DavisFeatures {
     bool global_shutter = true, pixel_filter = true, activity_filter = true, roi = true,
-         skip = true, polarity_filter = true, statistics = true, generator = true;
+         skip = true, polarity_filter = true, generator = true;
+    bool statistics = true;  ///< of the multiplexer: what it dropped
     int logic_mhz = 90, adc_mhz = 30, usb_mhz = 30, deviation = 1000;  ///< MHz; per mille
 };
 

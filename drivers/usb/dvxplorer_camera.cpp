@@ -39,6 +39,7 @@ SensorInfo DvxplorerCamera::set_up(UsbDevice& device) {
     require_firmware(device.identity(), kFirmware);
     require_logic(device, kPatch);
     features_.mini = device.identity().board_type == kCx3Board;
+    features_.lite = device.read_register(kChipId) == kLiteChip;
     if (!features_.mini) {  // a Mini does this itself
         device.write_register({kRunChip, 1});
         std::this_thread::sleep_for(waits().idle);
@@ -48,8 +49,7 @@ SensorInfo DvxplorerCamera::set_up(UsbDevice& device) {
     write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
 
     SensorInfo info;
-    const bool lite = device.read_register(kChipId) == kLiteChip;
-    info.name = features_.mini ? "DVXplorer Mini" : lite ? "DVXplorer Lite" : "DVXplorer";
+    info.name = features_.mini ? "DVXplorer Mini" : features_.lite ? "DVXplorer Lite" : "DVXplorer";
     info.format = features_.mini ? "dvxplorer-mini" : "dvxplorer";
     info.width = sensor_.width;
     info.height = sensor_.height;

@@ -1,8 +1,11 @@
 #include "drivers/usb/dvxplorer_settings.h"
 
+#include "src/core/error.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace eventide {
@@ -63,6 +66,18 @@ void add_extinput(Writes& writes, const DvxplorerSettings& settings,
     if (features.generator) add(writes, davis::kExtGeneratorRun, 0);
 }
 
+/// 0, 1, 3, 7 for every, every 2nd, 4th, 8th row or column; of a Lite 1, 3, 7 for every, every 2nd,
+/// 4th (docs/protocols.md A.12).
+int subsample_ratio(int subsample, const DvxplorerFeatures& features) {
+    constexpr int kMost = 7;
+    const int ratio = features.lite ? 2 * subsample - 1 : subsample - 1;
+    if (ratio > kMost)
+        throw Error(ErrorKind::usage,
+                    "camera settings: subsample: expected 1, 2 or 4 for a DVXplorer Lite, found " +
+                        std::to_string(subsample));
+    return ratio;
+}
+
 /// libcaer's default configuration of the readout.
 void add_readout(Writes& writes, const DvxplorerSettings& settings,
                  const DvxplorerFeatures& features) {
@@ -82,9 +97,9 @@ void add_readout(Writes& writes, const DvxplorerSettings& settings,
     const std::uint32_t others = features.digital_enable & ~(kNoSubsampling | kNoAreaBlocking);
     writes.push_back(
         {kDigitalEnable, others | kNoAreaBlocking | (settings.subsample > 1 ? 0 : kNoSubsampling)});
-    add(writes, kDualBinning, 0);
-    const int ratio = settings.subsample - 1;  // 0, 1, 3, 7; vertical, horizontal
-    add(writes, kSubsampleRatio, (ratio << 3) | ratio);
+    if (!features.lite) add(writes, kDualBinning, 0);
+    const int ratio = subsample_ratio(settings.subsample, features);
+    add(writes, kSubsampleRatio, (ratio << 3) | ratio);  // vertical, horizontal
     add_bytes(writes, kGhCount, 3, 2);
     add_bytes(writes, kGrsCount, 3, 0);
     add_bytes(writes, kGrsEnd, 3, 1);

@@ -20,7 +20,8 @@ struct DvxplorerSettings {
     // What limits the event rate, on the camera.
     std::optional<SensorRegion> roi;
     SentPolarity polarity = SentPolarity::both;
-    int subsample = 1;  ///< every pixel, or every 2nd, 4th, 8th in both directions
+    /// Every pixel, or every 2nd, 4th, 8th (not of a Lite) in both directions.
+    int subsample = 1;
     /// Readouts are sent only where enough happens: from `activity_positive` events up, until fewer
     /// than `activity_negative`.
     bool activity_decision = false;
@@ -46,6 +47,7 @@ DvxplorerSettings load_dvxplorer_settings(const std::filesystem::path& file);
 /// What the camera says of itself.
 struct DvxplorerFeatures {
     bool mini = false;  ///< a CX3 board (Mini, Micro): no multiplexer, external input or USB module
+    bool lite = false;  ///< chip 19: other ratios of subsampling, no dual binning
     bool flip_x = false, flip_y = false;  ///< orientation bits 1, 0
     bool statistics = true, generator = true;
     int logic_mhz = 104, usb_mhz = 30, deviation = 1000;  ///< MHz; per mille
@@ -57,7 +59,7 @@ struct DvxplorerFeatures {
 std::vector<davis::Write> chip_writes();
 
 /// All writes that configure an idle camera, in order. Throws Error (usage) for a region outside
-/// the sensor.
+/// the sensor, and for a subsampling that a Lite has not got.
 std::vector<davis::Write> configuration(const DvxplorerSettings& settings,
                                         const DvxplorerSensor& sensor,
                                         const DvxplorerFeatures& features);

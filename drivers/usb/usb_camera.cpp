@@ -18,7 +18,16 @@ constexpr auto kBeginTimeout = 1000ms;
 }  // namespace
 
 UsbCamera::UsbCamera(UsbKind kind, UsbCameraOptions options, UsbStreamSettings transfers)
-    : kind_(std::move(kind)), options_(std::move(options)), transfers_(transfers) {}
+    : kind_(std::move(kind)),
+      options_(std::move(options)),
+      warnings_(options_.warn),
+      transfers_(transfers) {
+    selector_.name = kind_.name;
+    selector_.products = kind_.products;
+    selector_.serial = options_.serial;
+    selector_.bus = options_.bus;
+    selector_.address = options_.address;
+}
 
 void UsbCamera::refuse(const std::string& why) const {
     throw Error(ErrorKind::device,
@@ -46,19 +55,15 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
 }
 
 void UsbCamera::open() {
-    UsbSelector selector;
-    selector.name = kind_.name;
-    selector.products = kind_.products;
-    selector.serial = options_.serial;
-    selector.bus = options_.bus;
-    selector.address = options_.address;
-    device_ = std::make_unique<UsbDevice>(selector);
-    const std::string serial = device_->identity().serial;
-    info_.serial = serial;
+    device_ = std::make_unique<UsbDevice>(selector_);
+    const UsbIdentity& identity = device_->identity();
+    info_.serial = identity.serial;
     info_ = set_up(*device_);
-    info_.serial = serial;
-    options_.serial = serial;  // the same camera must come back, not another
-    options_.bus = options_.address = -1;
+    info_.serial = identity.serial;
+    // The same camera must come back, not another; one without a serial number to the same port.
+    selector_.serial = identity.has_serial ? identity.serial : "";
+    selector_.port = identity.has_serial ? "" : identity.port;
+    selector_.bus = selector_.address = -1;
 }
 
 void UsbCamera::start() {
@@ -167,8 +172,10 @@ ReadStatus UsbCamera::wait_for_return() {
         start();
         ++counters_.reconnects;
         gap_ = true;
-    } catch (const Error&) {  // not there yet, or not yet ready: the next look will tell
+        warnings_.is_back();
+    } catch (const Error& error) {  // not there yet, or not yet ready: the next look will tell
         close();
+        warnings_.tell(error);
         std::this_thread::sleep_for(kReadTimeout);
     }
     return ReadStatus::timeout;

@@ -5,6 +5,7 @@
 #include "drivers/camera.h"
 #include "drivers/usb/usb_device.h"
 #include "drivers/usb/usb_stream.h"
+#include "drivers/wait_warnings.h"
 
 #include <atomic>
 #include <chrono>
@@ -30,6 +31,7 @@ struct UsbCameraOptions {
     std::string serial;          ///< empty: the first camera found
     int bus = -1, address = -1;  ///< -1: any
     bool reconnect = false;  ///< wait for the camera to come back instead of ending with an error
+    std::function<void(const std::string&)> warn = {};  ///< as CameraOptions::warn
     UsbWaits waits;
 };
 
@@ -98,6 +100,8 @@ private:
 
     UsbKind kind_;
     UsbCameraOptions options_;
+    UsbSelector selector_;
+    WaitWarnings warnings_;
     UsbStreamSettings transfers_;
     SensorInfo info_;
     std::string logic_;

@@ -35,6 +35,16 @@ Context make_context() {
     return Context{context};
 }
 
+std::string port_of(libusb_device* device) {
+    constexpr int kDeepest = 7;
+    std::array<std::uint8_t, kDeepest> ports{};
+    const int depth = libusb_get_port_numbers(device, ports.data(), kDeepest);
+    std::string text = std::to_string(libusb_get_bus_number(device));
+    for (int i = 0; i < depth; ++i)
+        text += (i == 0 ? "-" : ".") + std::to_string(ports[std::size_t(i)]);
+    return text;
+}
+
 UsbIdentity identity_of(libusb_device* device, const libusb_device_descriptor& descriptor) {
     UsbIdentity identity;
     identity.vendor = descriptor.idVendor;
@@ -43,12 +53,12 @@ UsbIdentity identity_of(libusb_device* device, const libusb_device_descriptor& d
     identity.board_type = std::uint8_t(descriptor.bcdDevice >> 8);
     identity.bus = libusb_get_bus_number(device);
     identity.address = libusb_get_device_address(device);
+    identity.port = port_of(device);
     return identity;
 }
 
-/// Cameras without a serial number are told apart by where they are plugged in, as libcaer does.
-std::string read_serial(libusb_device_handle* handle, const libusb_device_descriptor& descriptor,
-                        const UsbIdentity& identity) {
+/// Empty where it has none.
+std::string read_serial(libusb_device_handle* handle, const libusb_device_descriptor& descriptor) {
     std::array<unsigned char, 64> text{};
     const int length = descriptor.iSerialNumber == 0
                            ? 0
@@ -56,7 +66,11 @@ std::string read_serial(libusb_device_handle* handle, const libusb_device_descri
                                                                 text.data(), int(text.size()));
     std::string serial(text.begin(), text.begin() + std::max(0, length));
     if (serial.size() > kSerialLength) serial.resize(kSerialLength);
-    if (!serial.empty()) return serial;
+    return serial;
+}
+
+/// Cameras without a serial number are told apart by where they are plugged in, as libcaer does.
+std::string made_up_serial(const UsbIdentity& identity) {
     std::array<char, 16> made_up{};
     std::snprintf(made_up.data(), made_up.size(), "TMP%05d",
                   ((identity.bus << 8) | identity.address) % 100000);
@@ -86,12 +100,15 @@ void for_each_device(libusb_context* context, const UsbSelector& selector, Visit
         Found found{identity_of(device, descriptor), nullptr};
         if (selector.bus >= 0 && found.identity.bus != selector.bus) continue;
         if (selector.address >= 0 && found.identity.address != selector.address) continue;
+        if (!selector.port.empty() && found.identity.port != selector.port) continue;
         libusb_device_handle* opened = nullptr;
         if (const int code = libusb_open(device, &opened); code != 0) {
             found.identity.problem = explain_usb_error(code);
         } else {
             found.handle.reset(opened);
-            found.identity.serial = read_serial(opened, descriptor, found.identity);
+            found.identity.serial = read_serial(opened, descriptor);
+            found.identity.has_serial = !found.identity.serial.empty();
+            if (!found.identity.has_serial) found.identity.serial = made_up_serial(found.identity);
         }
         if (found.handle && !selector.serial.empty() && found.identity.serial != selector.serial)
             continue;
@@ -102,6 +119,7 @@ void for_each_device(libusb_context* context, const UsbSelector& selector, Visit
 std::string describe(const UsbSelector& selector) {
     std::string text = selector.name;
     if (!selector.serial.empty()) text += " with serial '" + selector.serial + "'";
+    if (!selector.port.empty()) text += " at port " + selector.port;
     if (selector.bus >= 0) text += " on bus " + std::to_string(selector.bus);
     if (selector.address >= 0) text += " at address " + std::to_string(selector.address);
     return text;

@@ -23,8 +23,10 @@ struct UsbIdentity {
     std::uint16_t vendor = 0, product = 0;
     std::uint8_t firmware = 0;    ///< low byte of bcdDevice
     std::uint8_t board_type = 0;  ///< high byte of bcdDevice
-    int bus = 0, address = 0;
-    std::string serial;   ///< at most 8 characters; "TMP" and five digits where the device has none
+    int bus = 0, address = 0;     ///< the address is another each time it is plugged in
+    std::string port;             ///< "1-4.2": the bus and the ports on the way
+    std::string serial;  ///< at most 8 characters; "TMP" and five digits where the device has none
+    bool has_serial = false;
     std::string problem;  ///< why it could not be opened; empty where it could
 };
 
@@ -33,7 +35,7 @@ struct UsbSelector {
     std::string name = "camera";    ///< in messages: "DAVIS"
     std::uint16_t vendor = 0x152A;  ///< iniVation
     std::vector<std::uint16_t> products;
-    std::string serial;
+    std::string serial, port;
     int bus = -1, address = -1;
 };
 

@@ -43,11 +43,11 @@ std::string text_in(const std::filesystem::path& file) {
     return text;
 }
 
-void add(const Bias& bias, std::vector<Bias>& to) {
+void add(const BiasLine& bias, std::vector<BiasLine>& to) {
     if (bias.name.size() > kMaxName)
         refuse(bias.place,
                "expected a name of at most 100 characters, found '" + piece_of(bias.name) + "'");
-    const auto before = std::ranges::find(to, bias.name, &Bias::name);
+    const auto before = std::ranges::find(to, bias.name, &BiasLine::name);
     if (before == to.end())
         to.push_back(bias);
     else if (before->value != bias.value)
@@ -69,7 +69,7 @@ std::optional<std::int64_t> number_of(const std::string& text) {
     return negative ? -std::int64_t{*value} : std::int64_t{*value};
 }
 
-Bias bias_of(const std::string& place, const std::string& text) {
+BiasLine bias_of(const std::string& place, const std::string& text) {
     // Metavision pads values to five characters, so that longer ones touch the %.
     const std::size_t percent = std::min(text.find('%'), text.size());
     std::istringstream before{text.substr(0, percent)}, after{text.substr(percent)};
@@ -84,9 +84,9 @@ Bias bias_of(const std::string& place, const std::string& text) {
     return {name, *number, place};
 }
 
-std::vector<Bias> read_lines(const std::filesystem::path& file) {
+std::vector<BiasLine> read_lines(const std::filesystem::path& file) {
     std::istringstream stream{text_in(file)};
-    std::vector<Bias> biases;
+    std::vector<BiasLine> biases;
     std::size_t line = 0;
     for (std::string text; std::getline(stream, text);) {
         ++line;
@@ -102,7 +102,7 @@ std::vector<Bias> read_lines(const std::filesystem::path& file) {
 using Json = nlohmann::json;
 
 /// proto3's JSON may leave out a value of 0.
-Bias bias_of(const Json& each, const std::string& place) {
+BiasLine bias_of(const Json& each, const std::string& place) {
     const bool named = each.is_object() && each.contains("name") && each["name"].is_string() &&
                        !each["name"].get_ref<const std::string&>().empty();
     const Json value = each.is_object() ? each.value("value", Json(0)) : Json();
@@ -128,7 +128,7 @@ Json json_in(const std::filesystem::path& file) {
     }
 }
 
-std::vector<Bias> read_json(const std::filesystem::path& file) {
+std::vector<BiasLine> read_json(const std::filesystem::path& file) {
     const Json root = json_in(file);
     const Json* state =
         root.is_object() && root.contains("ll_biases_state") ? &root["ll_biases_state"] : nullptr;
@@ -137,7 +137,7 @@ std::vector<Bias> read_json(const std::filesystem::path& file) {
         refuse(file.string(),
                "expected camera settings of Metavision with ll_biases_state.bias, a list of biases "
                "with name and value, found none");
-    std::vector<Bias> biases;
+    std::vector<BiasLine> biases;
     const Json& list = (*state)["bias"];
     for (std::size_t i = 0; i < list.size(); ++i)
         add(bias_of(list[i], file.string() + ": ll_biases_state.bias[" + std::to_string(i) + "]"),
@@ -151,7 +151,7 @@ bool names_bias_file(const std::filesystem::path& file) {
     return file.extension() == ".bias" || file.extension() == ".json";
 }
 
-std::vector<Bias> read_bias_file(const std::filesystem::path& file) {
+std::vector<BiasLine> read_bias_file(const std::filesystem::path& file) {
     return file.extension() == ".json" ? read_json(file) : read_lines(file);
 }
 

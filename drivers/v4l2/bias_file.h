@@ -8,7 +8,7 @@
 
 namespace eventide {
 
-struct Bias {
+struct BiasLine {
     std::string name;  ///< "bias_fo"
     std::int64_t value = 0;
     std::string place;  ///< "x.bias:3", "x.json: ll_biases_state.bias[2]"
@@ -23,6 +23,6 @@ bool names_bias_file(const std::filesystem::path& file);
 /// ll_biases_state.bias, [{"name": ..., "value": ...}], is read. Throws Error (usage) with file and
 /// place for anything else, for a name with two values, for a file without a bias, and for one of
 /// more than 1 MiB, 1000 biases or 16 levels.
-std::vector<Bias> read_bias_file(const std::filesystem::path& file);
+std::vector<BiasLine> read_bias_file(const std::filesystem::path& file);
 
 }  // namespace eventide

@@ -67,8 +67,12 @@ std::span<const std::byte> before_end_of_data(std::span<const std::byte> bytes,
         bytes, [](std::uint64_t w) { return (w & 0xE00000FF00000000U) == 0xE000001900000000U; });
 }
 
-V4l2Camera::V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool reconnect)
-    : node_(std::move(node)), settings_(std::move(settings)), reconnect_(reconnect) {
+V4l2Camera::V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool reconnect,
+                       std::function<void(const std::string&)> warn)
+    : node_(std::move(node)),
+      settings_(std::move(settings)),
+      reconnect_(reconnect),
+      warnings_(std::move(warn)) {
     open();
 }
 
@@ -152,8 +156,10 @@ ReadStatus V4l2Camera::lost() {
         open();
         ++counters_.reconnects;
         gap_ = true;
-    } catch (const Error&) {  // not there yet: the next look will tell
+        warnings_.is_back();
+    } catch (const Error& error) {  // not there yet: the next look will tell
         device_.reset();
+        warnings_.tell(error);
         std::this_thread::sleep_for(kReadTimeout);
     }
     return stopped_ ? ReadStatus::end : ReadStatus::timeout;

@@ -4,9 +4,11 @@
 #include "drivers/camera.h"
 #include "drivers/devices.h"
 #include "drivers/v4l2/v4l2_device.h"
+#include "drivers/wait_warnings.h"
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -50,7 +52,9 @@ std::span<const std::byte> before_end_of_data(std::span<const std::byte> bytes,
 
 class V4l2Camera final : public Camera {
 public:
-    V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool reconnect);
+    /// `warn`: as CameraOptions::warn.
+    V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool reconnect,
+               std::function<void(const std::string&)> warn = {});
 
     const SensorInfo& info() const override { return info_; }
     ReadStatus read(RawPacket& into) override;
@@ -66,6 +70,7 @@ private:
     std::filesystem::path node_;
     V4l2Settings settings_;
     bool reconnect_;
+    WaitWarnings warnings_;
     SensorInfo info_;
     EvtEncoding encoding_ = EvtEncoding::evt3;
     CameraCounters counters_;

@@ -36,7 +36,8 @@ V4l2Device::V4l2Device(const std::filesystem::path& node, int buffers)
     if (fd_.get() < 0) fail("cannot be opened", errno);
     query();
     map_buffers(buffers);
-    for (std::uint32_t i = 0; i < buffers_.size(); ++i) queue(i);
+    for (std::uint32_t i = 0; i < buffers_.size(); ++i)
+        if (const int error = queue(i); error != 0) fail("does not take a buffer", error);
     int type = int(type_);
     if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_STREAMON, &type); error != 0)
         fail("does not start streaming", error);
@@ -45,7 +46,10 @@ V4l2Device::V4l2Device(const std::filesystem::path& node, int buffers)
 V4l2Device::~V4l2Device() {
     int type = int(type_);
     v4l2_ioctl(fd_.get(), VIDIOC_STREAMOFF, &type);
-    for (const Buffer& buffer : buffers_) ::munmap(buffer.memory, buffer.length);
+}
+
+V4l2Device::Buffer::~Buffer() {
+    if (!bytes_.empty()) ::munmap(bytes_.data(), bytes_.size());
 }
 
 void V4l2Device::fail(const std::string& what, int error) const {
@@ -102,32 +106,28 @@ void V4l2Device::map_buffers(int wanted) {
         void* memory =
             ::mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_SHARED, fd_.get(), offset);
         if (memory == MAP_FAILED) fail("does not map its buffers", errno);
-        buffers_.push_back({memory, length});
+        buffers_.emplace_back(memory, length);
     }
     if (buffers_.size() < 2) fail("gives fewer than two buffers", ENOMEM);
 }
 
-void V4l2Device::queue(std::uint32_t index) {
+int V4l2Device::queue(std::uint32_t index) {
     v4l2_buffer buffer{};
     v4l2_plane plane{};
     buffer.index = index;
     buffer.type = type_;
     buffer.memory = V4L2_MEMORY_MMAP;
     if (is_multi_planar(type_)) {
-        plane.length = std::uint32_t(buffers_[index].length);
+        plane.length = std::uint32_t(buffers_[index].bytes().size());
         buffer.m.planes = &plane;
         buffer.length = 1;
     }
-    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_QBUF, &buffer); error != 0)
-        fail("does not take a buffer back", error);
-}
-
-void V4l2Device::requeue_held() {
-    if (held_) queue(*std::exchange(held_, std::nullopt));
+    return v4l2_ioctl(fd_.get(), VIDIOC_QBUF, &buffer);
 }
 
 V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds timeout) {
-    requeue_held();
+    if (held_ && queue(*std::exchange(held_, std::nullopt)) != 0)
+        return Status::lost;  // EIO, ENODEV, as below
     pollfd poll_fd{fd_.get(), POLLIN, 0};
     const int ready = ::poll(&poll_fd, 1, int(timeout.count()));
     if (ready == 0 || (ready < 0 && errno == EINTR)) return Status::timeout;
@@ -150,11 +150,11 @@ V4l2Device::Status V4l2Device::read(Filled& into, std::chrono::milliseconds time
     }
     if (buffer.index >= buffers_.size()) return Status::lost;
     held_ = buffer.index;
-    const Buffer& filled = buffers_[buffer.index];
+    const std::span<const std::byte> filled = buffers_[buffer.index].bytes();
     const std::size_t offset = is_multi_planar(type_) ? plane.data_offset : 0;
     const std::size_t used = is_multi_planar(type_) ? plane.bytesused : buffer.bytesused;
-    const std::size_t end = std::min(used, filled.length), begin = std::min(offset, end);
-    into.bytes = {static_cast<const std::byte*>(filled.memory) + begin, end - begin};
+    const std::size_t end = std::min(used, filled.size()), begin = std::min(offset, end);
+    into.bytes = filled.subspan(begin, end - begin);
     into.sequence = buffer.sequence;
     into.damaged = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0;
     return Status::data;

@@ -42,14 +42,22 @@ public:
     Status read(Filled& into, std::chrono::milliseconds timeout);
 
 private:
-    struct Buffer {
-        void* memory = nullptr;
-        std::size_t length = 0;
+    /// Of the driver's, in our memory until it goes.
+    class Buffer {
+    public:
+        Buffer(void* memory, std::size_t length)
+            : bytes_{static_cast<std::byte*>(memory), length} {}
+        Buffer(Buffer&& other) noexcept : bytes_{std::exchange(other.bytes_, {})} {}
+        Buffer& operator=(Buffer&&) = delete;
+        ~Buffer();
+        std::span<const std::byte> bytes() const { return bytes_; }
+
+    private:
+        std::span<std::byte> bytes_;
     };
     void query();
     void map_buffers(int wanted);
-    void queue(std::uint32_t index);
-    void requeue_held();
+    int queue(std::uint32_t index);  ///< 0 or errno
     [[noreturn]] void fail(const std::string& what, int error) const;
 
     std::filesystem::path node_;
@@ -58,7 +66,7 @@ private:
     std::uint32_t type_ = 0;  ///< single or multi-planar capture
     std::uint32_t fourcc_ = 0;
     int width_ = 0, height_ = 0;
-    std::vector<Buffer> buffers_;
+    std::vector<Buffer> buffers_;        ///< after fd_: unmapped before it is closed
     std::optional<std::uint32_t> held_;  ///< the buffer whose bytes are lent out
 };
 

@@ -55,7 +55,7 @@ std::unique_ptr<Camera> open_v4l2(std::string_view node, const CameraOptions& op
     return std::make_unique<V4l2Camera>(
         std::filesystem::path{node},
         options.settings.empty() ? V4l2Settings{} : load_v4l2_settings(options.settings),
-        options.reconnect);
+        options.reconnect, options.warn);
 }
 
 }  // namespace eventide

@@ -12,7 +12,7 @@ namespace eventide {
 namespace {
 
 void add_biases(const std::filesystem::path& file, V4l2Settings& settings) {
-    for (const Bias& bias : read_bias_file(file)) {
+    for (const BiasLine& bias : read_bias_file(file)) {
         if (const auto other = settings.control_places.find(bias.name);
             other != settings.control_places.end())
             throw Error(ErrorKind::usage, bias.place + ": '" + bias.name + "' is also in " +

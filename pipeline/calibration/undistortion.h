@@ -59,6 +59,7 @@ public:
         : undistortion_{std::move(plan)}, behind_{std::move(behind)} {}
 
     void write(const Frame& frame) override { behind_.write(undistortion_.apply(frame)); }
+    void lookahead_is(int windows) override { behind_.lookahead_is(windows); }
     void close() override { behind_.close(); }
     bool wants_more() const override { return behind_.wants_more(); }
     bool is_watched() const override { return behind_.is_watched(); }

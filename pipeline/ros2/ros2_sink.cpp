@@ -168,7 +168,7 @@ public:
           image_{participant_, topic("/image_raw"), settings_.name.encoding},
           info_{participant_, topic("/camera_info"), calibration_, settings_.geometry},
           diagnostics_{participant_, settings_.name.name_space},
-          clock_{settings_.name.stamp, settings_.live, settings_.lookahead} {
+          clock_{settings_.name.stamp, settings_.live} {
         if (settings_.with_sigma)
             sigma_.emplace(participant_, topic("/uncertainty"), settings_.name.uncertainty);
         if (settings_.name.compressed != ImageCompression::none)
@@ -196,6 +196,8 @@ public:
         if (first && settings_.name.subscribers > 0)
             image_.writer.wait_for_readers_to_take_all(kLastTimeout);
     }
+
+    void lookahead_is(int windows) override { clock_.set_lookahead(windows); }
 
     bool is_watched() const override {
         if (!settings_.name.lazy) return true;

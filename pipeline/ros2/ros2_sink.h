@@ -19,7 +19,6 @@ struct Ros2SinkSettings {
     bool with_sigma = true;  ///< else there is no topic of it
     ImageGeometry geometry;  ///< of the frames, for a calibration
     bool live = false;       ///< the stamps' offset follows the camera's drift
-    int lookahead = 0;       ///< event windows
     /// Asked while it waits for subscribers: true gives up. May be empty.
     std::function<bool()> give_up = {};
     /// For people, once each; may be empty. Render thread, or the constructor's.

@@ -21,9 +21,10 @@ public:
     /// Times from here on count from 1970: 2001-09-09.
     static constexpr SensorTime kSince1970{SensorDuration{1'000'000'000'000'000}};
 
-    /// `lookahead`: event windows that came between a frame's own and Frame::arrived.
-    StampClock(StampRule rule, bool live, int lookahead)
-        : rule_{rule}, live_{live}, lookahead_{lookahead} {}
+    StampClock(StampRule rule, bool live) : rule_{rule}, live_{live} {}
+
+    /// Of the frames to come: event windows that came between a frame's own and Frame::arrived.
+    void set_lookahead(int windows) { lookahead_ = windows; }
 
     /// In us since 1970. `arrived_us` is Frame::arrived by the system's clock.
     std::int64_t stamp_us(const Frame& frame, std::int64_t arrived_us);
@@ -40,7 +41,7 @@ private:
 
     StampRule rule_;
     bool live_;
-    int lookahead_;
+    int lookahead_ = 0;
     bool shifted_ = false, set_anew_ = false;
     double offset_us_ = 0, least_us_ = 0;  // least_us_: the least delay seen, less the drift
     std::int64_t arrived_us_ = 0;          // of the last frame

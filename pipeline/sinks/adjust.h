@@ -71,6 +71,7 @@ public:
     AdjustSink(AdjustSettings settings, std::vector<std::unique_ptr<Sink>> behind);
 
     void write(const Frame& frame) override { behind_.write(adjust_.apply(frame)); }
+    void lookahead_is(int windows) override { behind_.lookahead_is(windows); }
     void close() override { behind_.close(); }
     bool wants_more() const override { return behind_.wants_more(); }
     bool is_watched() const override { return behind_.is_watched(); }

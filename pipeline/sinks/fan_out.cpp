@@ -13,6 +13,10 @@ void FanOut::write(const Frame& frame) {
     for (const auto& sink : sinks_) sink->write(frame);
 }
 
+void FanOut::lookahead_is(int windows) {
+    for (const auto& sink : sinks_) sink->lookahead_is(windows);
+}
+
 void FanOut::close() {
     std::exception_ptr first;
     for (const auto& sink : sinks_) {

@@ -13,6 +13,7 @@ public:
     explicit FanOut(std::vector<std::unique_ptr<Sink>> sinks);
 
     void write(const Frame& frame);
+    void lookahead_is(int windows);
     /// Closes all; then throws the first error of those.
     void close();
     /// False as soon as one of them wants no more.

@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -169,6 +171,50 @@ TEST(Architecture, TheDetectorSeesAViolation) {
     EXPECT_EQ(include_target("  #include <libusb-1.0/libusb.h> // x"), "libusb-1.0/libusb.h");
     const Arrows back = arrows_of({{"src/core/a.h", "src/nn/backend.h"}});
     EXPECT_EQ(beyond(back, kArrows), std::set<std::string>{"src/core -> src/nn"});
+}
+
+using TypesInFiles = std::map<std::string, std::set<std::string>>;
+
+/// The types that a header's lines define outside of other types, with their namespaces.
+void add_types(std::istream& header, const std::string& file, TypesInFiles& types) {
+    static const std::regex opens{R"(namespace ([\w:]+) \{)"};
+    static const std::regex defines{R"((?:struct|class|enum|enum class) (\w+)( final)?( [:{].*)?)"};
+    std::vector<std::string> inside{""};
+    std::smatch found;
+    for (std::string line; std::getline(header, line);) {
+        if (std::regex_match(line, found, opens))
+            inside.push_back(inside.back() + found.str(1) + "::");
+        else if (line.starts_with("}  // namespace") && inside.size() > 1)
+            inside.pop_back();
+        else if (std::regex_match(line, found, defines))
+            types[inside.back() + found.str(1)].insert(file);
+    }
+}
+
+/// Two that differ in one program are undefined behaviour, which no linker reports.
+TEST(Architecture, ATypeIsDefinedInOneHeader) {
+    const fs::path root{EVENTIDE_SOURCE_DIR};
+    TypesInFiles types;
+    for (const std::string& folder : kSources)
+        for (const auto& entry : fs::recursive_directory_iterator{root / folder}) {
+            if (entry.path().extension() != ".h") continue;
+            std::ifstream header{entry.path()};
+            add_types(header, fs::relative(entry.path(), root).string(), types);
+        }
+    EXPECT_EQ(types["eventide::Event"], std::set<std::string>{"include/eventide/event.h"});
+    for (const auto& [name, files] : types)
+        if (files.size() > 1) ADD_FAILURE() << name << ": " << testing::PrintToString(files);
+}
+
+TEST(Architecture, TheDetectorSeesATypeInTwoHeaders) {
+    TypesInFiles types;
+    for (const char* file : {"a.h", "b.h"}) {
+        std::istringstream header{
+            "namespace eventide {\nclass Later;\nstruct Bias {\n};\n"
+            "}  // namespace eventide\n"};
+        add_types(header, file, types);
+    }
+    EXPECT_EQ(types, (TypesInFiles{{"eventide::Bias", {"a.h", "b.h"}}}));
 }
 
 TEST(Architecture, IncludesStartAtTheRoot) {

@@ -101,6 +101,11 @@ TEST(DavisCamera, SaysWhatToDoWhenItCannotStart) {
     EXPECT_THAT(with([](auto& s) { s.logic = 9912; }), HasSubstr("another protocol"));
     EXPECT_THAT(with([](auto& s) { s.board_type = 5; }), HasSubstr("second-generation"));
     EXPECT_THAT(with([](auto& s) { s.sensor.dvs_rows = 0; }), HasSubstr("a side of 0 px"));
+    EXPECT_THAT(
+        with([](auto& s) { s.sensor.chip = DavisChip::davis640; }),
+        HasSubstr("the DAVIS '00000042' has chip id 6 (DAVIS640), expected that of a DAVIS240A"));
+    EXPECT_THAT(with([](auto& s) { s.sensor.chip = DavisChip{10}; }),
+                HasSubstr("has chip id 10 (unknown), expected"));
 }
 
 TEST(Devices, ListsWhatIsPluggedInAndWhyItCannotBeUsed) {
@@ -186,6 +191,22 @@ TEST_P(DavisBoards, AreConfiguredWithLibcaersDefaults) {
         EXPECT_EQ(value(kImuGyroScale), 1U) << "+-500 deg/s";
         EXPECT_EQ(value(kUsbEarlyPacketDelay), 1000U * 30) << "1 ms in cycles of the USB clock";
     });
+}
+
+TEST_P(DavisBoards, AreToldNothingThatTheyHaveNoRegisterFor) {
+    using namespace davis;
+    for (const int imu_type : {kNoImu, kImuMpu6050, kImuMpu6500}) {
+        DavisModelSettings settings = board();
+        settings.sensor.imu_type = imu_type;
+        PluggedIn camera_side{settings, {.events = 1}};
+        EXPECT_EQ(failure_of([] { DavisCamera{at_once()}; }), "nothing was thrown") << imu_type;
+        const auto value = [&](Register at) { return camera_side.model->read(at); };
+        camera_side.bed.look([&] {
+            EXPECT_EQ(value(kImuAccelScale), imu_type == kNoImu ? 0U : 1U);
+            EXPECT_EQ(value(kImuGyroLowPass), imu_type == kImuMpu6500 ? 1U : 0U);
+            EXPECT_EQ(value({chip, kChipConfig + 15}), settings.sensor.is_davis240() ? 0U : 1U);
+        });
+    }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // A DAVIS that is pulled out, at every moment there is, and put in again.
 #include "tests/drivers/davis_streams.h"
+#include "tests/drivers/usb_sessions.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@ namespace eventide::test {
 namespace {
 
 using testing::AnyOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing_support::DavisModel;
 using testing_support::DavisModelSettings;
@@ -169,6 +171,66 @@ TEST(DavisUnplugged, OnlyTheSameCameraIsTakenBack) {
     EXPECT_EQ(camera.counters().reconnects, 0U);
     camera.stop();
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
+}
+
+TEST(DavisUnplugged, WhyItIsNotBackIsToldOnceAndSettingsThatDoNotFitEndTheWait) {
+    UsbTestbed bed;
+    bed.plug_in(camera_before(2'000));
+    DavisOptions options = small_transfers(true);
+    options.settings.roi = SensorRegion{0, 0, 300, 200};
+    std::vector<std::string> warnings;
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DavisCamera camera{options};
+    RawPacket packet;
+    const auto look = [&] {
+        for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    };
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    look();
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr("no DAVIS with serial '00000042' found")));
+    DavisModelSettings other;
+    other.logic = 16;
+    bed.plug_in(std::make_shared<DavisModel>(other));
+    look();
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_THAT(warnings[1], HasSubstr("has FPGA logic version 16"));
+    bed.unplug();
+    look();
+    EXPECT_EQ(warnings.size(), 2U) << "that was told";
+    other = {};
+    other.sensor = testing_support::davis240();
+    bed.plug_in(std::make_shared<DavisModel>(other));
+    EXPECT_THAT(words_of(ErrorKind::usage, [&] { camera.read(packet); }),
+                HasSubstr("roi reaches to 300,200, this sensor has 240x180"));
+    EXPECT_EQ(warnings.size(), 2U);
+}
+
+TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {
+    UsbTestbed bed;
+    DavisModelSettings settings;
+    settings.serial = "";
+    const auto plug_in = [&](testing_support::UsbPlace place) {
+        const auto model = std::make_shared<DavisModel>(settings);
+        model->show(davis_scene(settings.sensor, {.events = 2'000}));
+        bed.plug_in(model, place);
+    };
+    plug_in({.port = 2, .address = 5});
+    DavisCamera camera{small_transfers(true)};
+    EXPECT_EQ(camera.info().serial, "TMP00261") << "bus 1, address 5";
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    plug_in({.port = 3, .address = 6});
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters().reconnects, 0U);
+    bed.unplug();
+    plug_in({.port = 2, .address = 7});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_EQ(camera.counters().reconnects, 1U);
 }
 
 }  // namespace

@@ -104,6 +104,22 @@ TEST(DvxplorerCamera, CutsARegionOutOnTheCamera) {
             }
 }
 
+TEST(DvxplorerCamera, LeavesOutRowsAndColumnsOnTheCamera) {
+    for (const auto& settings : boards())
+        for (const int subsample : {1, 2, 4}) {
+            PluggedIn side{settings, 100};
+            DvxplorerOptions options = at_once();
+            options.settings.subsample = subsample;
+            DvxplorerCamera camera{options};
+            std::vector<Event> expected;
+            std::copy_if(
+                side.seen.events.begin(), side.seen.events.end(), std::back_inserter(expected),
+                [&](const Event& e) { return e.x % subsample == 0 && e.y % subsample == 0; });
+            EXPECT_EQ(stream_scene(camera, side.bed, *side.model).events, expected)
+                << "1/" << subsample << " of chip " << settings.chip;
+        }
+}
+
 TEST(DvxplorerCamera, SendsOnlyThePolarityAskedFor) {
     PluggedIn side;
     DvxplorerOptions options = at_once();

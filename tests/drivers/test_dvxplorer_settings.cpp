@@ -124,5 +124,24 @@ TEST(DvxplorerSettings, AMiniIsToldNothingOfTheModulesItHasNot) {
         EXPECT_THAT(write.at.module, testing::AnyOf(davis::imu, davis::chip));
 }
 
+TEST(DvxplorerSettings, ALiteCountsItsSubsamplingAsLibcaerDoes) {
+    DvxplorerFeatures lite;
+    lite.lite = true;
+    for (const auto& [subsample, ratio] : {std::pair{1, 1U}, {2, 3U}, {4, 7U}}) {
+        DvxplorerSettings settings;
+        settings.subsample = subsample;
+        const auto registers = registers_of(settings, lite);
+        EXPECT_EQ(registers.at(chip(0x3204)), ratio << 3 | ratio) << subsample;
+        EXPECT_EQ(registers.count(chip(0x3202)), 0U) << "it has no dual binning";
+    }
+    EXPECT_THAT(words_of(ErrorKind::usage,
+                         [&] {
+                             DvxplorerSettings settings;
+                             settings.subsample = 8;
+                             configuration(settings, {}, lite);
+                         }),
+                HasSubstr("subsample: expected 1, 2 or 4 for a DVXplorer Lite, found 8"));
+}
+
 }  // namespace
 }  // namespace eventide::test

@@ -23,8 +23,9 @@ inline V4l2NodeSettings sensor(std::uint32_t fourcc = kEvt3) {
     return settings;
 }
 
-inline V4l2Camera open(V4l2Settings settings = {}, bool reconnect = false) {
-    return V4l2Camera{"/dev/video0", std::move(settings), reconnect};
+inline V4l2Camera open(V4l2Settings settings = {}, bool reconnect = false,
+                       std::function<void(const std::string&)> warn = {}) {
+    return V4l2Camera{"/dev/video0", std::move(settings), reconnect, std::move(warn)};
 }
 
 inline std::string failure_of(const std::function<void()>& what) {

@@ -26,7 +26,7 @@ public:
 void read(const std::filesystem::path& name) {
     using namespace eventide;
     try {
-        for (const Bias& bias : read_bias_file(name))
+        for (const BiasLine& bias : read_bias_file(name))
             if (bias.name.empty() || bias.value > INT32_MAX || bias.value < INT32_MIN) std::abort();
     } catch (const Error& error) {
         // A piece of it, not the file.

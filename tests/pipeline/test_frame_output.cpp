@@ -23,7 +23,10 @@ struct Ending {
         : output(
               renderer, {&sink}, {rate, {}, lookahead, false, 1, allow_silence, &changes},
               [] { return 0; }, stop, counters, keeper) {
-        sink.before_write = [this](auto) { pushed.push_back(renderer.pushed()); };
+        sink.before_write = [this](auto) {
+            pushed.push_back(renderer.pushed());
+            lookaheads.push_back(sink.lookahead);
+        };
     }
     void give(std::int64_t begin_us, bool reset_before = false) {
         Encoded encoded;
@@ -48,6 +51,7 @@ struct Ending {
     ToyRenderer renderer;
     ToySink sink;
     std::vector<std::size_t> pushed;  // latent maps the renderer had, per frame
+    std::vector<int> lookaheads;      // what the sink had been told, per frame
     StopRequest stop;
     Counters counters;
     LatencyKeeper keeper{{}};
@@ -269,6 +273,7 @@ TEST(FrameOutput, ChangesItsLookaheadWithoutLosingAFrame) {
     EXPECT_EQ(e.times().back(), 60);
     e.output.finish();
     EXPECT_EQ(e.times().size(), 15U);
+    EXPECT_EQ(e.lookaheads, (std::vector<int>{2, 2, 2, 2, 2, 2, 2, 1, 1, 0, 0, 1, 1, 0, 0}));
     for (std::size_t i = 0; i < e.sink.seen.size(); ++i) EXPECT_EQ(e.sink.seen[i].index, i);
 }
 

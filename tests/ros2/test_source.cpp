@@ -181,6 +181,37 @@ TEST_F(Ros2SourceTest, OfTwoPublishersTheNewOneIsRead) {
     EXPECT_THAT(read(*source, *parser, 2).events, ElementsAre(event(11), event(12)));
 }
 
+TEST_F(Ros2SourceTest, WhenTheNewOfTwoPublishersEndsTheOtherIsReadAgain) {
+    EventPublisher old{name_};
+    const auto source = open(old, message(0));
+    const auto parser = source->make_parser();
+    auto fresh = std::make_unique<EventPublisher>(name_);
+    fresh->wait_for_readers(1);
+    fresh->publish(message(10));
+    EXPECT_THAT(read(*source, *parser, 2).events, ElementsAre(event(0), event(10)));
+    fresh->wait_until_taken();
+    fresh.reset();
+    // Until it is known that the new one has ended, the other's messages are left out.
+    std::uint64_t k = 10;
+    RawPacket packet;
+    do old.publish(message(++k));
+    while (source->read(packet) != ReadStatus::data);
+    EXPECT_TRUE(packet.gap_before);
+    old.publish(message(++k));
+    Batch batch;
+    parser->resync();
+    parser->parse(packet.bytes, batch);
+    while (batch.events.empty() || batch.events.back() != event(k))
+        if (source->read(packet) == ReadStatus::data) {
+            EXPECT_FALSE(packet.gap_before);
+            parser->parse(packet.bytes, batch);
+        }
+    const std::uint64_t first = k + 1 - batch.events.size();
+    for (std::size_t i = 0; i < batch.events.size(); ++i)
+        EXPECT_EQ(batch.events[i], event(first + i)) << i;
+    EXPECT_EQ(source->counters().reconnects, 0U);
+}
+
 TEST_F(Ros2SourceTest, StopsWhileItWaits) {
     EventPublisher publisher{name_};
     const auto source = open(publisher, message(0));

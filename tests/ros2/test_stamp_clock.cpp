@@ -19,7 +19,7 @@ Frame frame_at(std::int64_t t_us, std::int64_t window_end_us) {
 }
 
 TEST(StampClock, ASensorThatCountsFromItsStartIsShiftedToItsArrival) {
-    StampClock clock{StampRule::automatic, false, 0};
+    StampClock clock{StampRule::automatic, false};
     EXPECT_EQ(clock.stamp_us(frame_at(4'000, 10'000), kNow), kNow - 6'000);
     EXPECT_TRUE(clock.is_set_anew());
     EXPECT_EQ(clock.stamp_us(frame_at(14'000, 20'000), kNow + 99'000), kNow + 4'000)
@@ -28,23 +28,36 @@ TEST(StampClock, ASensorThatCountsFromItsStartIsShiftedToItsArrival) {
 }
 
 TEST(StampClock, ASensorThatCountsFrom1970IsTakenAtItsWord) {
-    StampClock clock{StampRule::automatic, true, 0};
+    StampClock clock{StampRule::automatic, true};
     const std::int64_t t = 1'633'953'690'975'951;
     EXPECT_EQ(clock.stamp_us(frame_at(t, t + 10), kNow), t);
     EXPECT_EQ(clock.offset_us(), 0);
-    StampClock arrival{StampRule::arrival, true, 0};
+    StampClock arrival{StampRule::arrival, true};
     EXPECT_EQ(arrival.stamp_us(frame_at(t, t + 10), kNow), kNow - 10);
-    StampClock sensor{StampRule::sensor, true, 0};
+    StampClock sensor{StampRule::sensor, true};
     EXPECT_EQ(sensor.stamp_us(frame_at(5, 10), kNow), 5);
 }
 
 TEST(StampClock, KnowsThatLaterWindowsCameWithLookahead) {
-    StampClock clock{StampRule::arrival, false, 2};
+    StampClock clock{StampRule::arrival, false};
+    clock.set_lookahead(2);
     EXPECT_EQ(clock.stamp_us(frame_at(10'000, 10'000), kNow), kNow - 20'000);
 }
 
+TEST(StampClock, AnotherLookaheadLeavesTheStampsWhereTheyAre) {
+    StampClock clock{StampRule::arrival, true};
+    std::int64_t t = 0;
+    for (const int lookahead : {2, 0, 1})
+        for (int k = 0; k < 1000; ++k) {
+            t += 10'000;
+            clock.set_lookahead(lookahead);
+            ASSERT_EQ(clock.stamp_us(frame_at(t, t), kNow + t + 10'000 * lookahead), kNow + t)
+                << lookahead << " event windows, frame " << k;
+        }
+}
+
 TEST(StampClock, FollowsTheDriftOfACameraAndNotItsDelays) {
-    StampClock clock{StampRule::arrival, true, 0};
+    StampClock clock{StampRule::arrival, true};
     constexpr double kDrift = 80e-6;  // the sensor is slow by so much
     std::int64_t before = 0;
     for (int k = 0; k < 60'000; ++k) {  // ten minutes
@@ -61,19 +74,19 @@ TEST(StampClock, FollowsTheDriftOfACameraAndNotItsDelays) {
 }
 
 TEST(StampClock, OfARecordingTheOffsetStays) {
-    StampClock clock{StampRule::arrival, false, 0};
+    StampClock clock{StampRule::arrival, false};
     const std::int64_t first = clock.stamp_us(frame_at(10'000, 10'000), kNow);
     EXPECT_EQ(clock.stamp_us(frame_at(20'000, 20'000), kNow + 5'000'000), first + 10'000)
         << "slower than recorded";
 }
 
 TEST(StampClock, RisesThoughTheCamerasClockBeginsAnew) {
-    StampClock clock{StampRule::arrival, true, 0};
+    StampClock clock{StampRule::arrival, true};
     const std::int64_t before = clock.stamp_us(frame_at(5'000'000, 5'000'000), kNow);
     const std::int64_t after = clock.stamp_us(frame_at(1'000, 1'000), kNow + 50'000);
     EXPECT_TRUE(clock.is_set_anew());
     EXPECT_EQ(after, before + 50'000);
-    StampClock sensor{StampRule::sensor, true, 0};
+    StampClock sensor{StampRule::sensor, true};
     EXPECT_EQ(sensor.stamp_us(frame_at(5'000'000, 5'000'000), kNow), 5'000'000);
     EXPECT_EQ(sensor.stamp_us(frame_at(1'000, 1'000), kNow), 5'000'001);
 }

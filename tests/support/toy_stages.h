@@ -96,6 +96,7 @@ public:
     };
 
     void write(const Frame& frame) override;
+    void lookahead_is(int windows) override { lookahead = windows; }
     void close() override;
     bool wants_more() const override { return count < wants; }
 
@@ -103,6 +104,7 @@ public:
     bool keeps = true;  ///< false: only counts, and does not allocate
     std::uint64_t count = 0, wants = UINT64_MAX;
     int closed = 0;
+    int lookahead = -1;  ///< that was told last
     std::function<void(std::uint64_t frame)> before_write;
     std::function<void()> before_close;
 };

@@ -269,7 +269,7 @@ void EvaluateCommand::write(const EvaluateReport& report) const {
 }
 
 void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSettings& how) const {
-    Calibration found = eventide::calibrate(report, calibration_);
+    SigmaCalibration found = eventide::calibrate(report, calibration_);
     found.sigma_rule = how.sigma_rule;
     write_calibrated(how.model, calibrated_, found, overwrite_);
     spdlog::info("{}: sigma times {:.4f}; PICP80 {:.3f} to {:.3f}, LL {:.3f} to {:.3f}",

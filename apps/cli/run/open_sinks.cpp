@@ -179,7 +179,6 @@ std::unique_ptr<Sink> open_ros2(const std::string& name, const RunSettings& sett
     ros2.with_sigma = how != Uncertainty::none;
     ros2.geometry = geometry_of(settings, plan);
     ros2.live = plan.live;
-    ros2.lookahead = plan.lookahead;
     ros2.give_up = plan.questions.stopping;
     ros2.say = [](const std::string& text) { spdlog::info("{}", text); };
     ros2.warn = [](const std::string& text) { spdlog::warn("{}", text); };

@@ -34,7 +34,6 @@ struct SinkPlan {
     double speed = 1;                                   ///< of the recording, for the window
     Size sensor;                                        ///< px
     bool live = false;                                  ///< the source is a camera
-    int lookahead = 0;                                  ///< event windows
     std::optional<UndistortionPlan> undistortion = {};  ///< empty: not asked for
     ReferenceImages* references = nullptr;
     std::string reference_caption;  ///< for people

@@ -1,11 +1,14 @@
 // SOURCE on the command line becomes a source of bytes.
 #include "apps/cli/run/open_source.h"
 
+#include "apps/cli/printable.h"
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_camera.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
 #include "src/core/sensor_limits.h"
+
+#include <spdlog/spdlog.h>
 
 #include <filesystem>
 #include <string>
@@ -75,6 +78,7 @@ void check_size(const Source& source, const std::string& name) {
 OpenedSource open_source(const RunSettings& settings, double speed,
                          const std::function<bool()>& give_up) {
     OpenedSource opened;
+    const auto warn = [](const std::string& text) { spdlog::warn("{}", printable(text)); };
     if (!settings.camera.empty() && !names_camera(settings.source))
         throw Error(ErrorKind::usage, "--camera " + settings.camera +
                                           ": expected a camera as SOURCE, found " +
@@ -84,7 +88,7 @@ OpenedSource open_source(const RunSettings& settings, double speed,
         opened.source = open_simulation(settings.source);
     else if (names_camera(settings.source))
         opened.source =
-            open_camera(settings.source, {settings.camera, settings.reconnect, give_up});
+            open_camera(settings.source, {settings.camera, settings.reconnect, give_up, warn});
     else
         opened = open_file(settings, speed, give_up);
     check_size(*opened.source, settings.source);

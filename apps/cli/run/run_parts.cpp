@@ -17,7 +17,6 @@ SinkPlan Run::sink_plan() {
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
     plan.live = live();
-    plan.lookahead = lookahead_;
     plan.undistortion = undistortion_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);

@@ -69,7 +69,7 @@ Images run_segment(const ModelConfig& config, const Parameters& parameters, cons
     const auto type = parameters.begin()->second.scalar_type();
     std::vector<torch::Tensor> z{recurrent.latent.to(type)};  // z[k + 1] belongs to frame k
     for (const torch::Tensor& grid : batch.grids) {
-        Encoded encoded = encode(config, parameters, grid, recurrent.state);
+        EncodedGrid encoded = encode(config, parameters, grid, recurrent.state);
         recurrent.state = std::move(encoded.state);
         z.push_back(encoded.latent.to(type));
     }

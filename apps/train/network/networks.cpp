@@ -75,8 +75,8 @@ std::string numbered(const char* name, int i) {
     return std::string{name} + "." + std::to_string(i);
 }
 
-Encoded encode_gated(const ModelConfig& config, const Layers& layers, const torch::Tensor& grid,
-                     const EncoderState& state) {
+EncodedGrid encode_gated(const ModelConfig& config, const Layers& layers, const torch::Tensor& grid,
+                         const EncoderState& state) {
     const std::vector<torch::Tensor> mask = masks(config, grid);
     const int levels = config.levels();
     EncoderState h;
@@ -99,7 +99,8 @@ Encoded encode_gated(const ModelConfig& config, const Layers& layers, const torc
     return {layers.widen(layers.conv("out", d)), std::move(h)};
 }
 
-Encoded encode_thesis(const Layers& layers, const torch::Tensor& grid, const EncoderState& state) {
+EncodedGrid encode_thesis(const Layers& layers, const torch::Tensor& grid,
+                          const EncoderState& state) {
     const auto x0 =
         F::elu(layers.norm("norm0", layers.conv("in", fused::compressed(grid, layers.type()))));
     const auto x1 = layers.gru("gru.0", x0.to(layers.type()), state[0], {});
@@ -119,8 +120,8 @@ torch::Tensor rectify(const torch::Tensor& x) {
     return x.scalar_type() == torch::kBFloat16 ? torch::leaky_relu(x, 0.0) : torch::relu(x);
 }
 
-Encoded encode(const ModelConfig& config, const Parameters& parameters, const torch::Tensor& grid,
-               const EncoderState& state) {
+EncodedGrid encode(const ModelConfig& config, const Parameters& parameters,
+                   const torch::Tensor& grid, const EncoderState& state) {
     const Layers layers{parameters};
     const torch::Tensor packed = grid.contiguous(torch::MemoryFormat::ChannelsLast);
     return config.encoder == EncoderKind::gated ? encode_gated(config, layers, packed, state)

@@ -11,7 +11,7 @@ namespace eventide {
 /// One hidden map per level (thesis: two), float32 [N][C][h][w]; empty before the first frame.
 using EncoderState = std::vector<torch::Tensor>;
 
-struct Encoded {
+struct EncodedGrid {
     torch::Tensor latent;  ///< [N][D][H / latent_stride][W / latent_stride], float32
     EncoderState state;
 };
@@ -19,8 +19,8 @@ struct Encoded {
 /// One event window. `grid` [N][4B+1][H][W] float32, as the binner gives it. Computes in the type
 /// of `parameters` (float32, double or bfloat16); states and latent codes stay in float32 (double
 /// with double).
-Encoded encode(const ModelConfig& config, const Parameters& parameters, const torch::Tensor& grid,
-               const EncoderState& state);
+EncodedGrid encode(const ModelConfig& config, const Parameters& parameters,
+                   const torch::Tensor& grid, const EncoderState& state);
 
 /// The state before the first frame, for grids of this size.
 EncoderState empty_state(const ModelConfig& config, std::int64_t streams, std::int64_t height,

@@ -17,7 +17,8 @@ TEST(Calibration, BringsTheCoverageToEightTenthsAndIsWrittenIntoTheModel) {
     RecordingSettings what;
     what.recordings = {folder};
     EvaluateSettings how = small_model();
-    const Calibration found = calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
+    const SigmaCalibration found =
+        calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
     EXPECT_NEAR(found.picp80_after, .8, .01);
     const fs::path calibrated = fs::path{testing::TempDir()} / "eventide_calibrated.safetensors";
     write_calibrated(how.model, calibrated, found, true);
@@ -69,7 +70,7 @@ TEST(Calibration, ByLikelihoodIsNeverLessLikely) {
     RecordingSettings what;
     what.recordings = {folder};
     const EvaluateReport report = evaluate_recordings(what, small_model());
-    const Calibration found = calibrate(report, CalibrationRule::likelihood);
+    const SigmaCalibration found = calibrate(report, CalibrationRule::likelihood);
     EXPECT_GE(found.ll_after, found.ll_before);
     EXPECT_GE(found.ll_after, calibrate(report, CalibrationRule::coverage).ll_after);
     EXPECT_THROW(calibrate(EvaluateReport{}, CalibrationRule::coverage), Error);

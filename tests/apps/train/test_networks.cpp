@@ -43,7 +43,7 @@ std::vector<torch::Tensor> torch_latents(const Model& model, const std::vector<V
     std::vector<torch::Tensor> latents;
     for (const VoxelGrid& grid : grids) {
         const Array3<float>* values = &grid.values;
-        Encoded out =
+        EncodedGrid out =
             encode(model.config, parameters, to_torch({&values, 1}, torch::kCPU), memory.state);
         memory.state = out.state;
         latents.push_back(out.latent);
@@ -157,8 +157,9 @@ TEST(Networks, WhereNothingHappensTheStateStaysBitForBit) {
     const Parameters parameters = to_parameters(model.weights, torch::kCPU);
     const auto busy = torch::rand({1, model.config.input_channels(), kHeight, kWidth});
     const auto empty = empty_state(model.config, 1, kHeight, kWidth, torch::kFloat);
-    const Encoded before = encode(model.config, parameters, busy, empty);
-    const Encoded after = encode(model.config, parameters, torch::zeros_like(busy), before.state);
+    const EncodedGrid before = encode(model.config, parameters, busy, empty);
+    const EncodedGrid after =
+        encode(model.config, parameters, torch::zeros_like(busy), before.state);
     EXPECT_TRUE(torch::equal(before.latent, after.latent));
     for (std::size_t l = 0; l < before.state.size(); ++l)
         EXPECT_TRUE(torch::equal(before.state[l], after.state[l])) << "level " << l;

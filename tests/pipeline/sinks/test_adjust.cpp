@@ -100,9 +100,10 @@ TEST(Adjustment, UnsharpLeavesFlatPartsAndLiftsEdges) {
 }
 
 struct Spy : Sink {
-    int frames = 0, closed = 0;
+    int frames = 0, closed = 0, lookahead = 0;
     bool wants = true;
     void write(const Frame&) override { ++frames; }
+    void lookahead_is(int windows) override { lookahead = windows; }
     void close() override { ++closed; }
     bool wants_more() const override { return wants; }
 };
@@ -116,6 +117,8 @@ TEST(AdjustSink, HandsEachFrameToAllAndEndsWithTheFirstThatHasEnough) {
     AdjustSink sink{{.flip = Flip::both}, std::move(behind)};
     sink.write(test::ramp_frame(4, 4, 0, from_us(0)));
     EXPECT_EQ(a.frames + b.frames, 2);
+    sink.lookahead_is(2);
+    EXPECT_EQ(a.lookahead + b.lookahead, 4);
     EXPECT_TRUE(sink.wants_more());
     b.wants = false;
     EXPECT_FALSE(sink.wants_more());

@@ -54,7 +54,7 @@ DavisModel::DavisModel(DavisModelSettings settings) : settings_(std::move(settin
                   {kDvsHasRoi, 1},
                   {kDvsHasSkip, 1},
                   {kDvsHasPolarityFilter, 1},
-                  {kDvsHasStatistics, 1},
+                  {kDvsHasStatistics, settings_.dvs_statistics ? 1U : 0U},
                   {kApsColumns, std::uint32_t(s.aps_columns)},
                   {kApsRows, std::uint32_t(s.aps_rows)},
                   {kApsOrientation, orientation(s.aps_swapped, s.aps_flip_x, s.aps_flip_y)},
@@ -63,7 +63,7 @@ DavisModel::DavisModel(DavisModelSettings settings) : settings_(std::move(settin
                   {kImuType, std::uint32_t(s.imu_type)},
                   {kImuOrientation, orientation(s.imu_flip_x, s.imu_flip_y, s.imu_flip_z)},
                   {kExtHasGenerator, 1},
-                  {kMuxHasStatistics, 1}};
+                  {kMuxHasStatistics, settings_.mux_statistics ? 1U : 0U}};
 }
 
 void DavisModel::show(Batch scene) {
@@ -75,10 +75,19 @@ std::uint32_t DavisModel::read(Register at) const {
     return found == registers_.end() ? 0 : found->second;
 }
 
+/// Of the IMU's registers, and those of the newer chips, as libcaer writes them.
+bool DavisModel::has(Register at) const {
+    constexpr Register kGreyCounter{chip, kChipConfig + 15}, kTestAdc{chip, kChipConfig + 16};
+    const DavisSensor& s = settings_.sensor;
+    if (at.module == imu && s.imu_type == kNoImu) return false;
+    if (at == kImuGyroLowPass) return s.imu_type == kImuMpu6500;
+    return !s.is_davis240() || (at != kGreyCounter && at != kTestAdc);
+}
+
 void DavisModel::write(Write write) {
     const bool time_starts = write == Write{kTimestampRun, 1} && read(kTimestampRun) != 1;
     writes_.push_back(write);
-    registers_[write.at] = write.value;
+    if (has(write.at)) registers_[write.at] = write.value;
     asked_ = 0;
     if (time_starts) begin_time();
     if (write != Write{kTimestampReset, 1}) return;

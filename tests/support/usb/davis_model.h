@@ -25,6 +25,7 @@ struct DavisModelSettings {
     std::uint16_t product = 0x841A;  ///< behind FX3
     std::uint8_t firmware = 6, board_type = 3;
     std::uint32_t logic = 18, patch = 1;
+    bool dvs_statistics = true, mux_statistics = true;  ///< whether the logic says it has them
     /// Of the camera's own memory for words that nobody fetches; 0: endless. Events that find no
     /// room are dropped and counted (MUX 83); images and IMU samples wait.
     std::size_t fifo_bytes = 0;
@@ -36,7 +37,8 @@ struct DavisModelSettings {
     std::function<SensorTime()> now;
 };
 
-/// Registers, and the stream they let flow: words come out only while MUX run, timestamp run and
+/// Registers, and the stream they let flow; those that such a camera has not got read 0 whatever is
+/// written to them. Words come out only while MUX run, timestamp run and
 /// USB run are 1; events only with DVS run and chip run, images only with APS run, IMU samples only
 /// with its accelerometer on. Time begins with timestamp run, and nothing else is needed.
 ///
@@ -71,6 +73,7 @@ public:
     std::uint64_t bytes_sent() const { return bytes_sent_; }
 
 private:
+    bool has(davis::Register at) const;
     bool is_too_early_for_part_of_a_packet();
     SensorTime now() const;
     void begin_time();

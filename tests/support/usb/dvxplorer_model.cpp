@@ -44,7 +44,7 @@ std::uint32_t DvxplorerModel::read(Register at) const {
 
 void DvxplorerModel::write(Write write) {
     writes_.push_back(write);
-    if (write.at == settings_.deaf) return;
+    if (write.at == settings_.deaf || (is_lite() && write.at == dvxplorer::kDualBinning)) return;
     registers_[write.at] = write.value;
     asked_ = 0;
     const Register reset = settings_.mini ? dvxplorer::kTimestampReset : kTimestampReset;
@@ -78,14 +78,25 @@ int DvxplorerModel::two_bytes(Register at) const {
     return int((read(at) << 8) | read({at.module, std::uint16_t(at.address + 1)}));
 }
 
-/// The cropper and the polarity bits of the packet format.
+/// Ratios are one less than the step, of a Lite one less than twice that.
+bool DvxplorerModel::is_left_out(int row_or_column, std::uint32_t ratio) const {
+    const int step = (int(ratio) + 1) / (is_lite() ? 2 : 1);
+    return step > 1 && row_or_column % step != 0;
+}
+
+/// The cropper, subsampling and the polarity bits of the packet format.
 bool DvxplorerModel::sees(const Event& event) const {
     using namespace dvxplorer;
     const auto format = read(kPacketFormat);
     if (event.polarity == Polarity::off && (format & 0x20) != 0) return false;
     if (event.polarity == Polarity::on && (format & 0x10) != 0) return false;
-    if (read(kCropBypass) == 1) return true;
     const auto [column, row] = device_axes(event, settings_.sensor);
+    constexpr std::uint32_t kNoSubsampling = 0x04;
+    const auto ratio = read(kSubsampleRatio);
+    if ((read(kDigitalEnable) & kNoSubsampling) == 0 &&
+        (is_left_out(column, ratio & 7) || is_left_out(row, ratio >> 3)))
+        return false;
+    if (read(kCropBypass) == 1) return true;
     if (column < two_bytes(kCropXStart) || column > two_bytes(kCropXEnd)) return false;
     const auto group = std::uint32_t(row / 8), bit = 1U << (row % 8);
     const auto first = read(kCropYStartGroup), last = read(kCropYEndGroup);

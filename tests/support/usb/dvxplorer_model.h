@@ -29,8 +29,9 @@ struct DvxplorerModelSettings {
 
 /// Registers, and the stream they let flow. The FX3 board sends words while MUX run, timestamp run
 /// and USB run are 1; events with DVS run, chip run and the chip's stream mode, from inside its
-/// cropper and of the polarity asked for; IMU samples with the accelerometer on, in its range;
-/// edges with the detector on. The CX3 board has only the chip and DVS run.
+/// cropper, of the rows and columns and of the polarity asked for; IMU samples with the
+/// accelerometer on, in its range; edges with the detector on. The CX3 board has only the chip and
+/// DVS run.
 ///
 /// The scene begins at a timestamp reset, which drops what was queued; without one, when the board
 /// streams, something that sees is on, and data were asked for kSettled times since the last
@@ -59,6 +60,8 @@ private:
     bool is_streaming() const;
     bool is_set(davis::Register at) const { return read(at) == 1; }
     int two_bytes(davis::Register at) const;
+    bool is_lite() const { return settings_.chip == 19; }
+    bool is_left_out(int row_or_column, std::uint32_t ratio) const;
     bool sees(const Event& event) const;
     std::vector<Event> seen_events() const;
     void begin_scene();

@@ -51,13 +51,25 @@ std::string hex(const Bytes& bytes) {
 
 }  // namespace
 
-std::string device_record(const UsbModelIdentity& identity) {
-    return "P: /devices/usb1\n"
-           "N: bus/usb/001/001\n"
-           "E: BUSNUM=001\nE: DEVNUM=001\nE: DEVNAME=/dev/bus/usb/001/001\n"
-           "E: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: MAJOR=189\nE: MINOR=0\n"
-           "A: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=1\\n\nA: speed=" +
-           std::string{identity.superspeed ? "5000" : "480"} +
+std::string sysfs_path(const UsbPlace& place) {
+    return place.port == 0 ? "/devices/usb1" : "/devices/1-" + std::to_string(place.port);
+}
+
+std::string device_node(const UsbPlace& place) {
+    std::array<char, 32> node{};
+    std::snprintf(node.data(), node.size(), "/dev/bus/usb/001/%03d", place.address);
+    return node.data();
+}
+
+std::string device_record(const UsbModelIdentity& identity, const UsbPlace& place) {
+    const std::string node = device_node(place), number = node.substr(node.size() - 3);
+    return "P: " + sysfs_path(place) + "\nN: " + node.substr(5) +
+           "\nE: BUSNUM=001\nE: DEVNUM=" + number + "\nE: DEVNAME=" + node +
+           "\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: MAJOR=189\nE: MINOR=" +
+           std::to_string(place.address - 1) +
+           "\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=" +
+           std::to_string(place.address) +
+           "\\n\nA: speed=" + std::string{identity.superspeed ? "5000" : "480"} +
            "\\n\n"
            "H: descriptors=" +
            hex(descriptors(identity)) + "\n";

@@ -9,8 +9,16 @@
 
 namespace eventide::testing_support {
 
-/// umockdev's description of the device at bus 1, address 1.
-std::string device_record(const UsbModelIdentity& identity);
+/// Where on bus 1 a device is.
+struct UsbPlace {
+    int port = 0;  ///< 0: none, as the bus's own hub
+    int address = 1;
+};
+std::string sysfs_path(const UsbPlace& place);  ///< below /sys
+std::string device_node(const UsbPlace& place);
+
+/// umockdev's description of the device there.
+std::string device_record(const UsbModelIdentity& identity, const UsbPlace& place);
 
 /// String descriptors by index: 0 languages, 3 the serial number.
 std::vector<std::uint8_t> string_descriptor(const UsbModelIdentity& identity, std::uint8_t index);

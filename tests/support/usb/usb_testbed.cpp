@@ -7,12 +7,6 @@
 #include <string>
 
 namespace eventide::testing_support {
-namespace {
-
-constexpr const char* kSysfsPath = "/sys/devices/usb1";
-constexpr const char* kNode = "/dev/bus/usb/001/001";
-
-}  // namespace
 
 UsbTestbed::UsbTestbed() : parts_(std::make_unique<Parts>()) {
     if (!runs_in_testbed())
@@ -29,24 +23,25 @@ UsbTestbed::~UsbTestbed() {
 
 // ---- plugging ----------------------------------------------------------------------------------
 
-void UsbTestbed::plug_in(std::shared_ptr<UsbModel> camera) {
+void UsbTestbed::plug_in(std::shared_ptr<UsbModel> camera, UsbPlace place) {
     Parts& p = *parts_;
     {
         const std::lock_guard lock{p.mutex};
         p.camera = std::move(camera);
         p.identity = p.camera->identity();
+        p.place = place;
         p.gone = p.halted = false;
         p.requests = p.looks = p.transfers = 0;
     }
     GError* error = nullptr;
-    const std::string record = device_record(p.identity);
+    const std::string record = device_record(p.identity, place), node = device_node(place);
     if (!umockdev_testbed_add_from_string(p.testbed.get(), record.c_str(), &error) ||
-        !umockdev_testbed_attach_ioctl(p.testbed.get(), kNode, p.handler.get(), &error)) {
+        !umockdev_testbed_attach_ioctl(p.testbed.get(), node.c_str(), p.handler.get(), &error)) {
         const Owned<GError> owned{error};
         throw std::runtime_error(std::string{"umockdev: "} + owned->message);
     }
     p.attached = true;
-    umockdev_testbed_uevent(p.testbed.get(), kSysfsPath, "add");
+    umockdev_testbed_uevent(p.testbed.get(), ("/sys" + sysfs_path(place)).c_str(), "add");
 }
 
 void UsbTestbed::unplug() {
@@ -56,9 +51,10 @@ void UsbTestbed::unplug() {
         const std::lock_guard lock{p.mutex};
         p.pull_cable();
     }
-    umockdev_testbed_uevent(p.testbed.get(), kSysfsPath, "remove");
-    umockdev_testbed_detach_ioctl(p.testbed.get(), kNode, nullptr);
-    umockdev_testbed_remove_device(p.testbed.get(), kSysfsPath);
+    const std::string path = "/sys" + sysfs_path(p.place), node = device_node(p.place);
+    umockdev_testbed_uevent(p.testbed.get(), path.c_str(), "remove");
+    umockdev_testbed_detach_ioctl(p.testbed.get(), node.c_str(), nullptr);
+    umockdev_testbed_remove_device(p.testbed.get(), path.c_str());
     p.attached = false;
 }
 

@@ -2,6 +2,7 @@
 // it (umockdev).
 #pragma once
 
+#include "tests/support/usb/usb_descriptors.h"
 #include "tests/support/usb/usb_model.h"
 
 #include <cstddef>
@@ -19,7 +20,7 @@ public:
     UsbTestbed(const UsbTestbed&) = delete;
     UsbTestbed& operator=(const UsbTestbed&) = delete;
 
-    void plug_in(std::shared_ptr<UsbModel> camera);
+    void plug_in(std::shared_ptr<UsbModel> camera, UsbPlace place = {});
     /// As pulling the cable: transfers in flight end, later requests find no device.
     void unplug();
     /// Pulls the cable when so many more requests were made of the device (transfers handed in and

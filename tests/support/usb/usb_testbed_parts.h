@@ -41,6 +41,7 @@ struct UsbTestbed::Parts {
     std::mutex mutex;  // for all below: requests come on umockdev's thread
     std::shared_ptr<UsbModel> camera;
     UsbModelIdentity identity;
+    UsbPlace place;
     bool attached = false, gone = true, halted = false;
     int requests = 0, looks = 0, transfers = 0;
     std::deque<UsbUrb> controls;                      // not yet answered

@@ -47,7 +47,9 @@ gboolean V4l2Testbed::Parts::handle(UMockdevIoctlClient* client) {
     const std::lock_guard lock{mutex};
     const gulong request = umockdev_ioctl_client_get_request(client);
     requests.emplace_back(name_of(request));
-    const int result = answer(request, umockdev_ioctl_client_get_arg(client));
+    const int failure = take_failure(requests.back());
+    const int result =
+        failure != 0 ? failure : answer(request, umockdev_ioctl_client_get_arg(client));
     umockdev_ioctl_client_complete(client, result == 0 ? 0 : -1, result);
     return TRUE;
 }
@@ -64,6 +66,15 @@ gboolean V4l2Testbed::Parts::handle_write(UMockdevIoctlClient* client) {
     written.emplace_back(bytes, bytes + data->data_len);
     umockdev_ioctl_client_complete(client, data->data_len, 0);
     return TRUE;
+}
+
+int V4l2Testbed::Parts::take_failure(const std::string& name) {
+    const auto found = std::find_if(failures.begin(), failures.end(),
+                                    [&](const auto& failure) { return failure.first == name; });
+    if (found == failures.end()) return 0;
+    const int failure = found->second;
+    failures.erase(found);
+    return failure;
 }
 
 int V4l2Testbed::Parts::answer(gulong request, UMockdevIoctlData* arg) {
@@ -120,6 +131,7 @@ int V4l2Testbed::Parts::answer_buffers(gulong request, UMockdevIoctlData* arg) {
     switch (request) {
         case VIDIOC_REQBUFS:
             return with<v4l2_requestbuffers>(arg, [&](v4l2_requestbuffers& r, auto*) {
+                queued.clear();  // buffers that a node closed without streaming had
                 buffers = r.count = std::min<std::uint32_t>(r.count, 4);
                 return ::ftruncate(backing, off_t(buffers * settings.buffer_bytes)) == 0 ? 0
                                                                                          : ENOMEM;

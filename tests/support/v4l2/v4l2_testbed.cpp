@@ -75,6 +75,11 @@ void V4l2Testbed::fail_with(int error) {
     parts_->error = error;
 }
 
+void V4l2Testbed::fail_next(const std::string& request, int error, int times) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->failures.insert(parts_->failures.end(), std::size_t(times), {request, error});
+}
+
 void V4l2Testbed::refuse_writes(int count) {
     const std::lock_guard lock{parts_->mutex};
     parts_->refusals = count;
@@ -88,6 +93,11 @@ std::vector<std::vector<std::byte>> V4l2Testbed::written() const {
 std::vector<std::string> V4l2Testbed::requests() const {
     const std::lock_guard lock{parts_->mutex};
     return parts_->requests;
+}
+
+void V4l2Testbed::take_controls_away() {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->settings.controls.clear();
 }
 
 V4l2NodeSettings::Control V4l2Testbed::control(const std::string& name) const {

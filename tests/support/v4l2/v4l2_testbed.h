@@ -48,6 +48,8 @@ public:
     bool all_taken() const;
     /// From now on DQBUF fails with this errno; 0 works again.
     void fail_with(int error);
+    /// The next so many requests of this name ("STREAMON") fail with this errno.
+    void fail_next(const std::string& request, int error, int times = 1);
 
     /// Output: what was written, and the names of the ioctls in their order.
     std::vector<std::vector<std::byte>> written() const;
@@ -55,6 +57,8 @@ public:
     /// The next so many writes find the device busy (EAGAIN).
     void refuse_writes(int count);
 
+    /// The driver has none any more.
+    void take_controls_away();
     V4l2NodeSettings::Control control(const std::string& name) const;
 
 private:

@@ -11,6 +11,7 @@
 #include <deque>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct v4l2_buffer;
@@ -30,6 +31,7 @@ struct V4l2Testbed::Parts {
     std::deque<Content> contents;
     std::uint32_t sequence = 0, buffers = 0;
     int error = 0, refusals = 0;
+    std::deque<std::pair<std::string, int>> failures;  // of requests by name, with this errno
     std::vector<std::vector<std::byte>> written;
     std::vector<std::string> requests;
 
@@ -44,6 +46,8 @@ struct V4l2Testbed::Parts {
     gboolean handle_write(UMockdevIoctlClient* client);
     /// 0 or an errno. Each part answers ENOTTY to what is not its own.
     int answer(gulong request, UMockdevIoctlData* arg);
+    /// The errno this request is to fail with; 0: none.
+    int take_failure(const std::string& name);
     int answer_format(gulong request, UMockdevIoctlData* arg);
     int answer_buffers(gulong request, UMockdevIoctlData* arg);
     int answer_controls(gulong request, UMockdevIoctlData* arg);
