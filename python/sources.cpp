@@ -108,7 +108,7 @@ void add_reader(py::module_& module) {
             [](Source<EventReader>& s, std::int64_t t) {
                 s.with([&](EventReader& it) { it.seek(from_us(t)); });
             },
-            py::arg("t"), "Goes on from t (us).")
+            py::arg("t"), "Goes on from t (us); does nothing on standard input and on pipes.")
         .def(
             "span",
             [](Source<EventReader>& s) -> py::object {
