@@ -7,9 +7,11 @@
 #include <eventide/pipeline.h>
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -98,9 +100,9 @@ private:
 
 class PipelineOfPython {
 public:
-    PipelineOfPython(const py::object& source, const py::object& sinks, const std::string& model,
-                     int width, int height, double latency, bool sequential,
-                     const py::kwargs& options)
+    PipelineOfPython(const py::object& source, const py::object& sinks,
+                     const std::filesystem::path& model, int width, int height, double latency,
+                     bool sequential, const py::kwargs& options)
         : source_(source, width, height) {
         for (const py::handle sink : py::isinstance<py::sequence>(sinks)
                                          ? py::list(sinks)
@@ -117,7 +119,7 @@ public:
         how.latency = std::chrono::microseconds{std::llround(1e6 * latency)};
         how.sequential = sequential;
         const py::gil_scoped_release released;
-        pipeline_ = std::make_unique<EventPipeline>(source_, all, model, how);
+        pipeline_ = std::make_unique<EventPipeline>(source_, all, model.string(), how);
     }
 
     void run() {
@@ -162,8 +164,8 @@ void add_pipeline(py::module_& module) {
         "them, each called with every Frame on the thread of run(); False ends the run.\n"
         "latency: of a Camera, seconds, what a frame may be late at most; 0: anything.\n"
         "Other options are those of Reconstructor.")
-        .def(py::init<const py::object&, const py::object&, const std::string&, int, int, double,
-                      bool, const py::kwargs&>(),
+        .def(py::init<const py::object&, const py::object&, const std::filesystem::path&, int, int,
+                      double, bool, const py::kwargs&>(),
              py::arg("source"), py::arg("sinks"), py::arg("model") = "default", py::kw_only(),
              py::arg("width") = 0, py::arg("height") = 0, py::arg("latency") = 0.25,
              py::arg("sequential") = false)

@@ -8,7 +8,9 @@
 #include <eventide/writer.h>
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <filesystem>
 #include <string>
 
 namespace eventide::python {
@@ -92,11 +94,12 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
 void add_reader(py::module_& module) {
     add_source<EventReader>(module, "Reader",
                             "A recording; iterate it for structured arrays (t, x, y, on).")
-        .def(py::init([](const std::string& path, std::string format, int width, int height) {
-                 const py::gil_scoped_release released;
-                 return std::make_unique<Source<EventReader>>(
-                     path, ReaderOptions{std::move(format), width, height});
-             }),
+        .def(py::init(
+                 [](const std::filesystem::path& path, std::string format, int width, int height) {
+                     const py::gil_scoped_release released;
+                     return std::make_unique<Source<EventReader>>(
+                         path.string(), ReaderOptions{std::move(format), width, height});
+                 }),
              py::arg("path"), py::arg("format") = "", py::arg("width") = 0, py::arg("height") = 0)
         .def_property_readonly(
             "remarks", [](Source<EventReader>& s) { return s.it.remarks(); },
@@ -123,7 +126,7 @@ void add_camera(py::module_& module) {
     add_source<EventCamera>(module, "Camera",
                             "A camera; iterate it for structured arrays (t, x, y, on).")
         .def(
-            py::init([](const std::string& name, const std::string& settings) {
+            py::init([](const std::string& name, const std::filesystem::path& settings) {
                 const py::gil_scoped_release released;
                 return std::make_unique<Source<EventCamera>>(name, CameraSettings{settings, false});
             }),
@@ -145,10 +148,10 @@ void add_writer(py::module_& module) {
     py::class_<GuardedWriter>(module, "Writer",
                               "A recording being written; it appears whole, with finish() or at "
                               "the end of a with block.")
-        .def(py::init([](const std::string& path, int width, int height, std::string format,
-                         bool overwrite) {
+        .def(py::init([](const std::filesystem::path& path, int width, int height,
+                         std::string format, bool overwrite) {
                  return std::make_unique<GuardedWriter>(
-                     path, SensorInfo{"", "", "", width, height},
+                     path.string(), SensorInfo{"", "", "", width, height},
                      WriterOptions{std::move(format), overwrite});
              }),
              py::arg("path"), py::arg("width"), py::arg("height"), py::arg("format") = "",

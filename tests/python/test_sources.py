@@ -1,5 +1,7 @@
 """Recordings and cameras in Python."""
 
+import os
+import pathlib
 import unittest
 
 import eventide
@@ -69,6 +71,28 @@ class Sources(RecordedTest):
     def test_no_recording_is_refused_in_words(self):
         with self.assertRaisesRegex(eventide.InputError, "/no/such: cannot open"):
             eventide.open("/no/such")
+
+    def test_names_of_files_are_any_bytes(self):
+        name = os.fsencode(self.folder) + b"/caf\xe9.aedat4"
+        events = self.events()
+        for path in (name, os.fsdecode(name), pathlib.Path(os.fsdecode(name))):
+            with eventide.Writer(path, 64, 48, overwrite=True) as writer:
+                writer.write(events)
+            np.testing.assert_array_equal(np.concatenate(list(eventide.open(path))), events)
+            np.testing.assert_array_equal(np.concatenate(list(eventide.Reader(path))), events)
+
+    def test_errors_name_files_of_any_bytes(self):
+        for path in (b"/caf\xe9", os.fsdecode(b"/caf\xe9"), pathlib.Path(os.fsdecode(b"/caf\xe9"))):
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd: cannot open"):
+                eventide.open(path)
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd"):
+                eventide.Reconstructor(path, 64, 48)
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd"):
+                eventide.Pipeline([], print, path, width=64, height=48)
+            with self.assertRaisesRegex(eventide.UsageError, "/caf\ufffd"):
+                eventide.Reconstructor("small", 64, 48, hot_pixels=path)
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd"):
+                eventide.simulate(textures=path)
 
     def test_everything_is_documented(self):
         for kind in (eventide.Reconstructor, eventide.Reader, eventide.Camera, eventide.Writer):
