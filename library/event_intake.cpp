@@ -1,6 +1,8 @@
 // What a caller pushes -> event windows.
 #include "library/event_intake.h"
 
+#include "pipeline/filters/event_filter.h"
+#include "src/binning/noise_filter.h"
 #include "src/core/error.h"
 
 #include <chrono>
@@ -108,6 +110,8 @@ void EventIntake::reset() {
     slicer_.reset();
     newest_.reset();
     finished_ = false;
+    // What noise is around is of the scene; hot pixels that were asked for are of the sensor.
+    if (NoiseFilter* const noise = noise_filter_in(filter_.get())) noise->reset();
 }
 
 void EventIntake::check_open(const char* what) const {

@@ -47,7 +47,9 @@ public:
         return !batch.empty();
     }
 
+    /// What cannot go back stays where it is, and its parser with it.
     void seek(SensorTime t) {
+        if (!can_go_back()) return;
         recording_->seek(t);
         damaged_before_ += parser_->damaged().total();
         parser_ = recording_->make_parser();
@@ -57,10 +59,10 @@ public:
     std::uint64_t damaged() const { return damaged_before_ + parser_->damaged().total(); }
 
     std::optional<Window> span() const {
-        if (path_ == "-")
-            throw Error(ErrorKind::usage,
-                        "span of '-': expected a file that can be read twice, found standard "
-                        "input");
+        if (!can_go_back())
+            throw Error(ErrorKind::usage, "span of '" + path_ +
+                                              "': expected a file that can be read twice, found " +
+                                              (path_ == "-" ? "standard input" : "a pipe"));
         const auto again = open_recording(path_, options_);
         const Summary summary = summarize(*again);
         if (!summary.first) return std::nullopt;
@@ -68,6 +70,9 @@ public:
     }
 
 private:
+    /// A pipe does not tell its size.
+    bool can_go_back() const { return path_ != "-" && recording_->size_bytes() > 0; }
+
     const std::string path_;
     const OpenOptions options_;
     std::unique_ptr<Recording> recording_;

@@ -84,7 +84,7 @@ ReadStatus UserSource::read(RawPacket& into) {
     ended_ = !source_.read(batch_);
     if (ended_) batch_.clear();
     into.arrived = std::chrono::steady_clock::now();
-    into.gap_before = source_.gap_before();
+    into.gap_before = !ended_ && source_.gap_before();  // at the end: told before
     const std::optional<SensorTime> clock = source_.clock();
     if (is_live() && !ended_ && batch_.empty() && clock == clock_ && !into.gap_before)
         return ReadStatus::timeout;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -18,10 +19,23 @@ namespace {
 
 using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
+constexpr std::uint64_t kLargest = std::numeric_limits<std::int64_t>::max();
+
 std::string joined(std::initializer_list<const char*> names) {
     std::string text;
     for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string{name};
     return text;
+}
+
+/// As 64-bit numbers. What is larger becomes the largest, which is no time and on no sensor.
+Numbers numbers_of(const py::array& values) {
+    if (values.dtype().kind() != 'u' || values.itemsize() < 8) return Numbers::ensure(values);
+    const auto whole =
+        py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>::ensure(values);
+    Numbers clamped(whole.size());
+    std::transform(whole.data(), whole.data() + whole.size(), clamped.mutable_data(),
+                   [](std::uint64_t value) { return std::int64_t(std::min(value, kLargest)); });
+    return clamped;
 }
 
 /// The field that has one of these names, as 64-bit numbers.
@@ -34,7 +48,7 @@ Numbers field(const py::array& array, std::initializer_list<const char*> names) 
             throw Error(ErrorKind::usage, std::string{"events, field '"} + name +
                                               "': expected whole numbers, found " +
                                               std::string(py::str(values.dtype())));
-        return Numbers::ensure(values);
+        return numbers_of(values);
     }
     throw Error(ErrorKind::usage, "events: expected a field called " + joined(names) + ", found " +
                                       std::string(py::str(array.dtype().attr("names"))));

@@ -3,6 +3,9 @@
 
 #include <eventide/error.h>
 
+#include <string>
+#include <string_view>
+
 namespace eventide::python {
 
 namespace py = pybind11;
@@ -38,6 +41,14 @@ PyObject* exception_of(ErrorKind kind) {
     return exceptions.error;
 }
 
+/// Names of files in a message may be no UTF-8.
+void raise(const Error& error) {
+    const std::string_view words = error.what();
+    const auto text = py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(words.data(), py::ssize_t(words.size()), "replace"));
+    if (text) PyErr_SetObject(exception_of(error.kind()), text.ptr());  // else: MemoryError is set
+}
+
 }  // namespace
 
 void add_errors(py::module_& module) {
@@ -57,7 +68,7 @@ void add_errors(py::module_& module) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const Error& found) {
-            PyErr_SetString(exception_of(found.kind()), found.what());
+            raise(found);
         }
     });
 }

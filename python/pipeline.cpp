@@ -1,15 +1,17 @@
 // The pipeline of threads for Python: anything that can be iterated is a source, any callable a
 // sink.
 #include "python/arrays.h"
-#include "python/parts.h"
+#include "python/sources.h"
 
 #include <eventide/error.h>
 #include <eventide/pipeline.h>
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,8 +31,69 @@ int size_of(const py::object& source, const char* name, int given) {
                                       ", or the argument " + name + ", found neither");
 }
 
+/// Is told when a run begins and ends, without Python's lock.
+class SourceOfRun : public EventSource {
+public:
+    /// Throws Error (usage) where another run is on.
+    virtual void begin() {}
+    virtual void end() noexcept {}
+};
+
+/// A Reader or Camera itself, with all that it tells beside its events.
+template <typename T>
+class WholeSource final : public SourceOfRun {
+public:
+    /// Without threads run() itself reads: then this is where signals are heard.
+    WholeSource(py::object source, int width, int height, bool hears_signals)
+        : owner_(std::move(source)),
+          source_(owner_.cast<Source<T>&>()),
+          info_(source_.it.info()),
+          hears_signals_(hears_signals) {
+        if (width != 0) info_.width = width;
+        if (height != 0) info_.height = height;
+    }
+
+    const SensorInfo& info() const noexcept override { return info_; }
+    bool is_live() const noexcept override { return source_.it.is_live(); }
+    bool gap_before() const noexcept override { return source_.it.gap_before(); }
+    std::optional<SensorTime> clock() const override { return source_.it.clock(); }
+    void stop() noexcept override { source_.it.stop(); }
+
+    bool read(Batch& batch) override {
+        if (hears_signals_) check_signals();
+        const bool more = source_.it.read(batch);
+        const std::lock_guard lock{source_.mutex};
+        source_.running = source_.now();
+        return more;
+    }
+
+    void begin() override {
+        const std::lock_guard lock{source_.mutex};
+        if (source_.running)
+            throw Error(ErrorKind::usage,
+                        "Pipeline: expected a source of its own, found one that another runs on");
+        source_.running = source_.now();
+        source_.handed_out = true;
+    }
+    void end() noexcept override {
+        const std::lock_guard lock{source_.mutex};
+        source_.running.reset();
+    }
+
+private:
+    static void check_signals() {
+        const py::gil_scoped_acquire locked;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+
+    py::object owner_;
+    Source<T>& source_;
+    SensorInfo info_;
+    const bool hears_signals_;
+};
+
 /// Reads on a thread that is none of Python's: everything here takes Python's lock.
-class IteratedSource final : public EventSource {
+class IteratedSource final : public SourceOfRun {
 public:
     IteratedSource(py::object source, int width, int height)
         : source_(std::move(source)),
@@ -50,6 +113,7 @@ public:
     bool read(Batch& batch) override {
         const py::gil_scoped_acquire locked;
         batch.clear();
+        gap_before_ = false;
         const auto events =
             py::reinterpret_steal<py::object>(PyIter_Next(events_.ptr()));  // null at the end
         if (PyErr_Occurred() != nullptr) throw py::error_already_set();
@@ -82,6 +146,33 @@ private:
     std::optional<SensorTime> clock_;
 };
 
+/// Of a class derived from T in Python the iterator may be another, and is what is meant.
+template <typename T>
+bool is_itself(const py::object& source) {
+    return py::type::of(source).is(py::type::of<Source<T>>());
+}
+
+std::unique_ptr<SourceOfRun> source_of(const py::object& source, int width, int height,
+                                       bool sequential) {
+    if (is_itself<EventReader>(source))
+        return std::make_unique<WholeSource<EventReader>>(source, width, height, sequential);
+    if (is_itself<EventCamera>(source))
+        return std::make_unique<WholeSource<EventCamera>>(source, width, height, sequential);
+    return std::make_unique<IteratedSource>(source, width, height);
+}
+
+/// From here to its end a source is the run's.
+class Run {
+public:
+    explicit Run(SourceOfRun& source) : source_(source) { source_.begin(); }
+    ~Run() { source_.end(); }
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
+
+private:
+    SourceOfRun& source_;
+};
+
 /// Calls with a frame that is the callee's to keep; False ends the run.
 class CalledSink final : public FrameSink {
 public:
@@ -98,10 +189,10 @@ private:
 
 class PipelineOfPython {
 public:
-    PipelineOfPython(const py::object& source, const py::object& sinks, const std::string& model,
-                     int width, int height, double latency, bool sequential,
-                     const py::kwargs& options)
-        : source_(source, width, height) {
+    PipelineOfPython(const py::object& source, const py::object& sinks,
+                     const std::filesystem::path& model, int width, int height, double latency,
+                     bool sequential, const py::kwargs& options)
+        : source_(source_of(source, width, height, sequential)) {
         for (const py::handle sink : py::isinstance<py::sequence>(sinks)
                                          ? py::list(sinks)
                                          : py::list(py::make_tuple(sinks)))
@@ -117,11 +208,12 @@ public:
         how.latency = std::chrono::microseconds{std::llround(1e6 * latency)};
         how.sequential = sequential;
         const py::gil_scoped_release released;
-        pipeline_ = std::make_unique<EventPipeline>(source_, all, model, how);
+        pipeline_ = std::make_unique<EventPipeline>(*source_, all, model.string(), how);
     }
 
     void run() {
         const py::gil_scoped_release released;
+        const Run run{*source_};
         pipeline_->run();
     }
     void stop() {
@@ -145,7 +237,7 @@ public:
     }
 
 private:
-    IteratedSource source_;
+    std::unique_ptr<SourceOfRun> source_;
     std::vector<std::unique_ptr<CalledSink>> sinks_;
     std::unique_ptr<EventPipeline> pipeline_;
 };
@@ -158,12 +250,13 @@ void add_pipeline(py::module_& module) {
         "Reading, cutting, encoding and rendering on a thread each.\n\n"
         "source: a Reader, a Camera, or anything that gives structured arrays of events when it "
         "is\n"
-        "iterated; width and height where it does not have them. sinks: a callable, or a list of\n"
+        "iterated; width and height where it does not have them. Nobody else may read a Reader or\n"
+        "Camera until run() is over. sinks: a callable, or a list of\n"
         "them, each called with every Frame on the thread of run(); False ends the run.\n"
         "latency: of a Camera, seconds, what a frame may be late at most; 0: anything.\n"
         "Other options are those of Reconstructor.")
-        .def(py::init<const py::object&, const py::object&, const std::string&, int, int, double,
-                      bool, const py::kwargs&>(),
+        .def(py::init<const py::object&, const py::object&, const std::filesystem::path&, int, int,
+                      double, bool, const py::kwargs&>(),
              py::arg("source"), py::arg("sinks"), py::arg("model") = "default", py::kw_only(),
              py::arg("width") = 0, py::arg("height") = 0, py::arg("latency") = 0.25,
              py::arg("sequential") = false)

@@ -9,6 +9,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <span>
@@ -44,9 +45,10 @@ struct SizedReconstructor : GuardedReconstructor {
     FrameSize size;
 };
 
-std::unique_ptr<SizedReconstructor> make(const std::string& model, int width, int height,
+std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int width, int height,
                                          std::string window, int lookahead, std::string fps,
-                                         Size size, Roi roi, bool sigma, std::string hot_pixels,
+                                         Size size, Roi roi, bool sigma,
+                                         const std::filesystem::path& hot_pixels,
                                          std::string noise_filter, const std::string& precision,
                                          const std::string& kernels, int threads, bool reset_on_gap,
                                          bool allow_silence) {
@@ -57,14 +59,14 @@ std::unique_ptr<SizedReconstructor> make(const std::string& model, int width, in
         .size = size_of(size, roi),
         .sigma = sigma,
         .noise_filter = std::move(noise_filter),
-        .hot_pixels = std::move(hot_pixels),
+        .hot_pixels = hot_pixels.string(),
         .precision = option_word("precision", precision, kPrecisionWords),
         .kernels = option_word("kernels", kernels, kKernelWords),
         .threads = threads,
         .reset_on_gap = reset_on_gap,
         .allow_silence = allow_silence};
     const py::gil_scoped_release released;
-    return std::make_unique<SizedReconstructor>(model, width, height, options);
+    return std::make_unique<SizedReconstructor>(model.string(), width, height, options);
 }
 
 void push(SizedReconstructor& self, const py::array& events, bool resets) {
@@ -237,7 +239,7 @@ ReconstructorOptions options_of(const py::dict& given) {
         else if (name == "sigma")
             options.sigma = value.cast<bool>();
         else if (name == "hot_pixels")
-            options.hot_pixels = value.cast<std::string>();
+            options.hot_pixels = value.cast<std::filesystem::path>().string();
         else if (name == "noise_filter")
             options.noise_filter = value.cast<std::string>();
         else if (name == "precision")

@@ -5,7 +5,9 @@
 #include <eventide/simulation.h>
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -39,7 +41,7 @@ void add_simulation(py::module_& module) {
                            "10 ms each.")
         .def(py::init([](std::string scene, std::pair<int, int> size, double seconds,
                          std::uint64_t seed, double truths_per_second, double truth_scale,
-                         std::string textures) {
+                         std::filesystem::path textures) {
                  const py::gil_scoped_release released;
                  SimulationOptions options;
                  options.scene = std::move(scene);

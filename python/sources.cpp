@@ -1,15 +1,21 @@
 // Recordings and cameras for Python.
-#include "python/arrays.h"
-#include "python/parts.h"
+#include "python/sources.h"
 
-#include <eventide/camera.h>
+#include "python/arrays.h"
+
+#include <eventide/error.h>
 #include <eventide/pipeline.h>
-#include <eventide/reader.h>
 #include <eventide/writer.h>
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 namespace eventide::python {
 
@@ -17,27 +23,50 @@ namespace py = pybind11;
 
 namespace {
 
-/// A reader or camera with what it read last.
-template <typename T>
-struct Source : Guarded<T> {
-    using Guarded<T>::Guarded;
-    Batch batch;
-};
-
 void check_signals() {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-/// Batches without events are passed over.
+template <typename T>
+void check_free(const Source<T>& source) {
+    if (source.running)
+        throw Error(ErrorKind::usage,
+                    "source: expected one that nothing else reads, found one that a Pipeline runs "
+                    "on");
+}
+
+/// The next batch. What came beside events stays until they were handed out.
+template <typename T>
+bool read_batch(Source<T>& source) {
+    check_free(source);
+    if (std::exchange(source.handed_out, false)) {
+        source.images.clear();
+        source.gap_before = false;
+    }
+    const bool more = source.it.read(source.batch);
+    source.gap_before = source.gap_before || (more && source.it.gap_before());
+    return more;
+}
+
+/// Of readers alone: a camera may go on for ever without events.
+template <typename T>
+void keep_images(Source<T>& source) {
+    if constexpr (std::is_same_v<T, EventReader>)
+        std::ranges::move(source.batch.images, std::back_inserter(source.images));
+}
+
+/// Batches without events are passed over, and their images and gaps are those of the next.
 template <typename T>
 py::array next(Source<T>& source) {
     for (;;) {
         check_signals();
         std::vector<Event> events;
-        const bool more = source.with([&](T& it) {
-            if (!it.read(source.batch)) return false;
+        const bool more = source.with([&](T&) {
+            const bool read = read_batch(source);
+            keep_images(source);
             std::swap(events, source.batch.events);
-            return true;
+            source.handed_out = !read || !events.empty();
+            return read;
         });
         if (!more) throw py::stop_iteration();
         if (!events.empty()) return array_of(std::move(events));
@@ -48,15 +77,18 @@ template <typename T>
 bool read_into(Source<T>& source, GuardedReconstructor& reconstructor) {
     check_signals();
     return source.with([&](T& it) {
-        if (!it.read(source.batch)) return false;
+        const bool more = read_batch(source);
+        source.handed_out = true;
+        if (!more) return false;
         const std::lock_guard lock{reconstructor.mutex};
         push_from(it, source.batch, reconstructor.it);
+        keep_images(source);
         return true;
     });
 }
 
 py::list images(Source<EventReader>& source) {
-    const auto now = source.with([&](EventReader&) { return source.batch.images; });
+    const auto now = source.with([&](EventReader&) { return source.images; });
     py::list all;
     for (const ReferenceImage& image : now)
         all.append(py::make_tuple(to_us(image.t), array_of(image)));
@@ -81,10 +113,10 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
         .def_property_readonly(
             "sensor", [](Source<T>& s) { return s.it.info().name; }, "its name; may be empty")
         .def_property_readonly(
-            "clock", [](Source<T>& s) { return us_of(s.with([](T& it) { return it.clock(); })); },
+            "clock", [](Source<T>& s) { return us_of(s.with([&](T&) { return s.told().clock; })); },
             "us, the newest time told so far, or None")
         .def_property_readonly(
-            "damaged", [](Source<T>& s) { return s.with([](T& it) { return it.damaged(); }); },
+            "damaged", [](Source<T>& s) { return s.with([&](T&) { return s.told().damaged; }); },
             "places where bytes made no sense, so far");
     return made;
 }
@@ -92,23 +124,30 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
 void add_reader(py::module_& module) {
     add_source<EventReader>(module, "Reader",
                             "A recording; iterate it for structured arrays (t, x, y, on).")
-        .def(py::init([](const std::string& path, std::string format, int width, int height) {
-                 const py::gil_scoped_release released;
-                 return std::make_unique<Source<EventReader>>(
-                     path, ReaderOptions{std::move(format), width, height});
-             }),
+        .def(py::init(
+                 [](const std::filesystem::path& path, std::string format, int width, int height) {
+                     const py::gil_scoped_release released;
+                     return std::make_unique<Source<EventReader>>(
+                         path.string(), ReaderOptions{std::move(format), width, height});
+                 }),
              py::arg("path"), py::arg("format") = "", py::arg("width") = 0, py::arg("height") = 0)
         .def_property_readonly(
             "remarks", [](Source<EventReader>& s) { return s.it.remarks(); },
             "what had to be guessed: sentences")
-        .def_property_readonly("images", &images,
-                               "(t, uint16 array) of each image that came with the newest events")
+        .def_property_readonly(
+            "images", &images,
+            "(t, uint16 array) of each image that came with the newest events or "
+            "between them and those before; at the end, after the last events")
         .def(
             "seek",
             [](Source<EventReader>& s, std::int64_t t) {
-                s.with([&](EventReader& it) { it.seek(from_us(t)); });
+                s.with([&](EventReader& it) {
+                    check_free(s);
+                    s.handed_out = true;
+                    it.seek(from_us(t));
+                });
             },
-            py::arg("t"), "Goes on from t (us).")
+            py::arg("t"), "Goes on from t (us); does nothing on standard input and on pipes.")
         .def(
             "span",
             [](Source<EventReader>& s) -> py::object {
@@ -123,7 +162,7 @@ void add_camera(py::module_& module) {
     add_source<EventCamera>(module, "Camera",
                             "A camera; iterate it for structured arrays (t, x, y, on).")
         .def(
-            py::init([](const std::string& name, const std::string& settings) {
+            py::init([](const std::string& name, const std::filesystem::path& settings) {
                 const py::gil_scoped_release released;
                 return std::make_unique<Source<EventCamera>>(name, CameraSettings{settings, false});
             }),
@@ -131,9 +170,9 @@ void add_camera(py::module_& module) {
         .def_property_readonly(
             "gap_before",
             [](Source<EventCamera>& s) {
-                return s.with([](EventCamera& it) { return it.gap_before(); });
+                return s.with([&](EventCamera&) { return s.gap_before; });
             },
-            "whether data were lost before the newest events")
+            "whether data were lost between the newest events and those before")
         .def(
             "stop", [](Source<EventCamera>& s) { s.it.stop(); },
             "From any thread: iteration ends soon.");
@@ -145,10 +184,10 @@ void add_writer(py::module_& module) {
     py::class_<GuardedWriter>(module, "Writer",
                               "A recording being written; it appears whole, with finish() or at "
                               "the end of a with block.")
-        .def(py::init([](const std::string& path, int width, int height, std::string format,
-                         bool overwrite) {
+        .def(py::init([](const std::filesystem::path& path, int width, int height,
+                         std::string format, bool overwrite) {
                  return std::make_unique<GuardedWriter>(
-                     path, SensorInfo{"", "", "", width, height},
+                     path.string(), SensorInfo{"", "", "", width, height},
                      WriterOptions{std::move(format), overwrite});
              }),
              py::arg("path"), py::arg("width"), py::arg("height"), py::arg("format") = "",

@@ -48,7 +48,7 @@ public:
     bool read(Batch& batch) override;
 
     /// Goes on from `t`: the next events are those from then on, and perhaps some before. Does
-    /// nothing on standard input. Throws Error (input).
+    /// nothing on standard input and on pipes. Throws Error (input).
     void seek(SensorTime t);
 
     /// The newest time the recording told so far, which may lie after its newest event; at the end
@@ -59,7 +59,7 @@ public:
     std::uint64_t damaged() const noexcept;
 
     /// Times of the first and the last event; empty where there is none. Reads the whole recording,
-    /// through an opening of its own. Throws Error (usage) for standard input.
+    /// through an opening of its own. Throws Error (usage) for standard input and pipes.
     std::optional<Window> span() const;
 
 private:

@@ -22,7 +22,7 @@ struct SimulationOptions {
     std::uint64_t seed = 0;         ///< another seed, another scene; 0: the preset's own
     int width = 240;                ///< px, of the sensor
     int height = 180;               ///< px, of the sensor
-    double seconds = 4;             ///< length, above 0; 0: without end
+    double seconds = 4;             ///< length, above 0, up to 1e9; 0: without end
     double images_per_second = 0;   ///< images of the camera in Batch::images; 0: none
     double truths_per_second = 25;  ///< 0: none
     double truth_scale = 1;  ///< truth has (width - 1) scale + 1 columns: corners stay corners

@@ -59,7 +59,7 @@ def open(path, format="", width=0, height=0):
 
     format, width and height are for what its bytes do not say. Raises InputError.
     """
-    return Reader(str(path), format, width, height)
+    return Reader(path, format, width, height)
 
 
 def open_camera(name, settings=""):
@@ -69,7 +69,7 @@ def open_camera(name, settings=""):
     "v4l2:/dev/video0", "ros2:/TOPIC", "udp://HOST:PORT?size=640x480" or "sim:demo", settings a
     file. Raises DeviceError, or UsageError for a name that makes no sense.
     """
-    return Camera(name, str(settings))
+    return Camera(name, settings)
 
 
 def simulate(scene="demo", size=(240, 180), seconds=4, **options):
@@ -79,6 +79,4 @@ def simulate(scene="demo", size=(240, 180), seconds=4, **options):
     length, 0 without end. Options: seed (0: the scene's own), truths_per_second (25), truth_scale
     (1), textures (a folder of images). Raises UsageError, InputError.
     """
-    if "textures" in options:
-        options["textures"] = str(options["textures"])
     return Simulation(scene, size, seconds, **options)

@@ -21,6 +21,11 @@ std::size_t HotPixels::count() const {
         std::ranges::count_if(pixels_, [](const Pixel& pixel) { return pixel.hot; }));
 }
 
+void HotPixels::reset() noexcept {
+    std::ranges::fill(pixels_, Pixel{});
+    interval_end_.reset();
+}
+
 HotPixels::State HotPixels::state() const {
     State state{{}, {}, interval_end_};
     for (const Pixel& pixel : pixels_) {

@@ -33,6 +33,8 @@ public:
     /// How many pixels are hot now.
     std::size_t count() const;
 
+    void reset() noexcept;  ///< as constructed
+
     /// All that it has learned, to go on from elsewhere.
     struct State {
         std::vector<std::uint32_t> events;  ///< [y][x], of the open interval

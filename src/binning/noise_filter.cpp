@@ -75,6 +75,17 @@ void NoiseFilter::process(std::vector<Event>& events) noexcept {
     events.erase(kept, events.end());
 }
 
+void NoiseFilter::reset() noexcept {
+    hot_pixels_.reset();
+    std::ranges::fill(newest_, kNever);
+    std::ranges::fill(polarity_, Polarity::off);
+    std::ranges::fill(tiles_, Tile{});
+    interval_.reset();
+    last_.reset();
+    measured_ = false;
+    set_noise(kUsualNoiseHz);
+}
+
 // True where the event's tile is quiet.
 bool NoiseFilter::measure(const Event& event, bool hot, bool supported) noexcept {
     if (!interval_ || event.t < *interval_) begin_stream(event.t);

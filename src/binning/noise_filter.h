@@ -51,6 +51,8 @@ public:
     /// Removes events in place; the order stays.
     void process(std::vector<Event>& events) noexcept;
 
+    void reset() noexcept;  ///< as constructed
+
     /// Noise events per pixel and second, as known at the newest event; before the first 250 ms of
     /// a stream are over, what DVS pixels often have.
     double noise_hz() const { return noise_hz_; }

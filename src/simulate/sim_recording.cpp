@@ -17,7 +17,7 @@ const SimRecordingSettings& checked(const SimRecordingSettings& s) {
     };
     if (s.width < 2 || s.width > 8192) refuse("a width from 2 to 8192 px", s.width);
     if (s.height < 2 || s.height > 8192) refuse("a height from 2 to 8192 px", s.height);
-    if (!(s.seconds >= 0)) refuse("seconds of 0 or more", s.seconds);
+    if (!(s.seconds >= 0 && s.seconds <= 1e9)) refuse("0 to 1000000000 seconds", s.seconds);
     constexpr double kMaxPerSecond = 1e5;
     for (const double rate : {s.images_per_second, s.truths_per_second})
         if (!(rate >= 0 && rate <= kMaxPerSecond)) refuse("0 to 100000 images per second", rate);

@@ -17,7 +17,7 @@ struct SimRecordingSettings {
     SensorSettings sensor;
     int width = 240, height = 180;  ///< px
     std::uint64_t seed = 1;
-    double seconds = 4;             ///< 0: without end
+    double seconds = 4;             ///< up to 1e9; 0: without end
     double images_per_second = 25;  ///< reference images of the sensor's size; 0: none
     double truths_per_second = 0;   ///< truth beside them, of `truth_scale` times the size; 0: none
     double truth_scale = 1;         ///< (width - 1) scale + 1 columns: corners stay corners

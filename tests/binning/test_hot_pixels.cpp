@@ -39,6 +39,16 @@ TEST(HotPixels, AreTakenBackWhenTheyHaveCalmedDown) {
     EXPECT_FALSE(hot.is_hot(at(5'000'000, 7, 9)));
 }
 
+TEST(HotPixels, AreForgottenByAReset) {
+    HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+    const HotPixels::State fresh = hot.state();
+    for (int ms = 0; ms < 1200; ms += 10) hot.is_hot(at(1000 * ms, 7, 9));
+    EXPECT_EQ(hot.count(), 1U);
+    hot.reset();
+    EXPECT_EQ(hot.count(), 0U);
+    EXPECT_TRUE(hot.state() == fresh);
+}
+
 TEST(HotPixels, AreOfAnySensor) {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {9, 1}}) {
         HotPixels hot{width, height, 20, SensorDuration{500'000}};

@@ -185,6 +185,27 @@ TEST(NoiseFilter, LeavesOutHotPixelsAndTheirSupport) {
               0);
 }
 
+TEST(NoiseFilter, KnowsNothingOfWhatWasBeforeAReset) {
+    constexpr int kSide = 32;
+    Events before = random_events(20'000, kSide, kSide, 1e6 / (4. * kSide * kSide));
+    for (int ms = 0; ms < 4000; ms += 5) before.push_back(at(1000 * ms, 10, 20));
+    std::ranges::stable_sort(before, {}, &Event::t);
+    Events after;
+    for (const Event& event : random_events(5000, kSide, kSide, 1e6 / (1. * kSide * kSide)))
+        after.push_back({event.t + SensorDuration{6'000'000}, event.x, event.y, event.polarity});
+    for (const NoiseFilterSettings& settings : {NoiseFilterSettings{}, constant(10'000)}) {
+        NoiseFilter filter{kSide, kSide, settings};
+        const NoiseFilter::State fresh = filter.state();
+        filter.process(before);
+        EXPECT_FALSE(filter.state() == fresh);
+        filter.reset();
+        EXPECT_TRUE(filter.state() == fresh);
+        Events kept = after;
+        filter.process(kept);
+        EXPECT_TRUE(kept == filtered({kSide, kSide, settings}, after));
+    }
+}
+
 TEST(NoiseFilter, TakesSensorsOfAnySize) {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 640}, {17, 13}, {9, 8}})
         EXPECT_LE(filtered({width, height, {}}, random_events(3000, width, height, 300)).size(),

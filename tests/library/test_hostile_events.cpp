@@ -76,6 +76,37 @@ TEST_F(HostileEvents, AfterAResetAreANewStream) {
     EXPECT_TRUE(first == second);
 }
 
+TEST_F(HostileEvents, AfterAResetAreANewStreamAlsoForTheNoiseFilter) {
+    const std::vector<Event> events = events_of(recording());
+    std::vector<Event> later = events;
+    for (Event& event : later) event.t += SensorDuration{1'000'000};
+    ReconstructorOptions options = repeatable("7ms", 1);
+    options.noise_filter = "auto";
+    const auto frames_of = [&](Reconstructor& reconstructor) {
+        reconstructor.push(later);
+        reconstructor.finish();
+        std::string frames;
+        append_frames(reconstructor, frames);
+        return frames;
+    };
+    Reconstructor fresh = reconstructor(options);
+    const std::vector<std::byte> nothing = fresh.state();
+    const std::string expected = frames_of(fresh);
+    ASSERT_GT(fresh.counters().filtered, 0U);
+    for (const bool restores : {false, true}) {
+        Reconstructor used = reconstructor(options);
+        used.push(events);
+        used.newest();
+        const std::uint64_t filtered = used.counters().filtered;
+        if (restores)
+            used.restore(nothing);
+        else
+            used.reset();
+        EXPECT_TRUE(frames_of(used) == expected) << (restores ? "restore()" : "reset()");
+        EXPECT_EQ(used.counters().filtered - filtered, fresh.counters().filtered);
+    }
+}
+
 TEST_F(HostileEvents, FromTheEndsOfTimeGiveNoFramesWithoutEnd) {
     Reconstructor reconstructor = this->reconstructor(repeatable("50ms", 0));
     const std::vector<Event> events{{from_us(-Reconstructor::kFarthestTime), 1, 1},

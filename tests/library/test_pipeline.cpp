@@ -146,6 +146,22 @@ TEST_F(Pipelines, LeaveOutAndCountEventsThatMakeNoSense) {
     EXPECT_EQ(pipeline.counters().events, sound);
 }
 
+/// Says of the newest batch, also after the end, that data were lost before it.
+class EventsAfterAGap final : public EventsInMemory {
+public:
+    using EventsInMemory::EventsInMemory;
+    bool gap_before() const noexcept override { return true; }
+};
+
+TEST_F(Pipelines, CountAGapBeforeTheLastBatchOnce) {
+    const std::vector<Event> events = events_of(recording());
+    EventsAfterAGap source{events, events.size()};
+    Collector sink;
+    EventPipeline pipeline{source, {&sink}, model(), options("7ms", 0, false)};
+    pipeline.run();
+    EXPECT_EQ(pipeline.counters().gaps, 1U);
+}
+
 class Sizeless final : public EventsInMemory {
 public:
     Sizeless() : EventsInMemory({}, 1) { info_.width = 0; }

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include <unistd.h>
+
 namespace eventide::test {
 namespace {
 
@@ -47,6 +49,29 @@ TEST_F(Recordings, AreReadFromATimeOn) {
     ASSERT_FALSE(rest.empty());
     EXPECT_LE(rest.front().t, middle);
     EXPECT_EQ(rest.back(), events.back());
+}
+
+TEST_F(Recordings, ThatCannotGoBackLoseNothingByASeek) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const auto write = [&](const std::string& text) {
+        EXPECT_EQ(::write(ends[1], text.data(), text.size()), ssize_t(text.size()));
+    };
+    write("64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n0.4 7");
+    EventReader reader{"/dev/fd/" + std::to_string(ends[0])};
+    Batch batch;
+    ASSERT_TRUE(reader.read(batch));
+    std::vector<Event> events = batch.events;
+    reader.seek(from_us(0));
+    EXPECT_NE(error_of([&] { reader.span(); }).find("found a pipe"), std::string::npos);
+    write(" 8 1\n0.5 9 10 0\n");
+    ::close(ends[1]);
+    while (reader.read(batch))
+        events.insert(events.end(), batch.events.begin(), batch.events.end());
+    ::close(ends[0]);
+    ASSERT_EQ(events.size(), 5U);
+    EXPECT_EQ(events[3], (Event{from_us(400'000), 7, 8, Polarity::on}));
+    EXPECT_EQ(reader.damaged(), 0U);
 }
 
 TEST_F(Recordings, ComeBackAsTheyWereWritten) {

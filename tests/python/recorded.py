@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import socket
 import subprocess
 import tempfile
 import unittest
@@ -11,6 +12,7 @@ import numpy as np
 
 PROGRAM = os.environ["EVENTIDE_PROGRAM"]
 REPEATABLE = {"window": "7ms", "lookahead": 1, "fps": "100", "precision": "f32", "kernels": "own"}
+DATAGRAM = np.dtype([("t", "<u8"), ("x", "<u2"), ("y", "<u2"), ("on", "u1")])
 DTYPE = np.dtype([("t", "<i8"), ("x", "<u2"), ("y", "<u2"), ("on", "?")])
 
 
@@ -40,6 +42,16 @@ class RecordedTest(unittest.TestCase):
     @staticmethod
     def reconstructor(**options):
         return eventide.Reconstructor("small", 64, 48, **{**REPEATABLE, **options})
+
+    def udp_camera(self):
+        """A camera of 64x48 px, and a function that sends it (t, x, y, on) in a datagram."""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            address = free.getsockname()
+        sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(sender.close)
+        camera = eventide.open_camera(f"udp://127.0.0.1:{address[1]}?size=64x48&format=t64")
+        return camera, lambda events: sender.sendto(np.array(events, DATAGRAM).tobytes(), address)
 
     @classmethod
     def events(cls):

@@ -70,6 +70,18 @@ class Arrays(RecordedTest):
         self.assertEqual(counters["bad_time"], 1)
         self.assertEqual(counters["time_backwards"], 0, "the one at 20 was off the sensor")
 
+    def test_times_that_64_bits_with_a_sign_do_not_hold_are_no_times(self):
+        for wide in ("<u8", ">u8"):
+            events = np.zeros(4, [("t", wide), ("x", wide), ("y", "u1"), ("p", wide)])
+            events["t"] = [2**64 - 1, 10, 2**63, 20]
+            events["x"][1] = 2**64 - 1
+            reconstructor = self.reconstructor()
+            reconstructor.push(events)
+            counters = reconstructor.counters
+            self.assertEqual(counters["bad_time"], 2)
+            self.assertEqual(counters["off_sensor"], 1)
+            self.assertEqual(counters["time_backwards"], 0)
+
     def test_what_are_no_events_is_refused_in_words(self):
         reconstructor = self.reconstructor()
         good = np.zeros(3, DTYPE)

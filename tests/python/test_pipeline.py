@@ -34,6 +34,77 @@ class Pipelines(RecordedTest):
         parts = (events[i : i + 777] for i in range(0, len(events), 777))
         np.testing.assert_array_equal(self.frames_of(parts, width=64, height=48), expected)
 
+    def frames_one_by_one(self, source, **more):
+        reconstructor = self.reconstructor(**more)
+        frames = []
+        while source.read_into(reconstructor):
+            frames += reconstructor.frames()
+        reconstructor.finish(source.clock)
+        frames += reconstructor.frames()
+        return np.array([np.stack([f.intensity, f.sigma]) for f in frames])
+
+    def test_a_reader_tells_the_times_of_its_images(self):
+        expected = self.frames_one_by_one(eventide.open(self.recording), window="aps")
+        frames = self.frames_of(eventide.open(self.recording), window="aps")
+        np.testing.assert_array_equal(frames, expected)
+        events = (events for events in eventide.open(self.recording))
+        otherwise = self.frames_of(events, window="aps", width=64, height=48)
+        self.assertFalse(np.array_equal(otherwise, expected), "the times show")
+
+    def test_a_simulation_as_fast_as_it_can_be_waits_for_its_frames(self):
+        name = "sim:demo?size=64x48&seconds=0.3&speed=max"
+        expected = self.frames_one_by_one(eventide.open_camera(name))
+        frames = self.frames_of(eventide.open_camera(name), latency=1e-6)
+        np.testing.assert_array_equal(frames, expected)
+
+    def test_a_camera_gives_frames_while_nothing_moves(self):
+        for sequential in (False, True):
+            camera, send = self.udp_camera()
+            send([(1000 + i, i % 64, 5, 1) for i in range(100)])
+            seen = []
+
+            def twenty(frame):
+                seen.append(frame.t)
+                return len(seen) < 20
+
+            options = {"window": "10ms", "fps": "100", "noise_filter": "off", "sequential": sequential}
+            eventide.Pipeline(camera, twenty, "small", **options).run()
+            self.assertGreater(seen[-1], 100_000)
+
+    def test_what_a_pipeline_reads_nobody_else_reads(self):
+        for sequential in (False, True):
+            reader, camera = eventide.open(self.recording), eventide.open_camera("sim:demo?size=64x48&speed=max")
+            for source in (reader, camera):
+                others = [
+                    lambda: next(source),
+                    lambda: source.read_into(self.reconstructor()),
+                    lambda: eventide.Pipeline(source, print, "small").run(),
+                ]
+                others += [lambda: reader.seek(0)] if source is reader else []
+                for other in others:
+
+                    def meddle(frame):
+                        self.assertIsNotNone(source.clock)
+                        self.assertEqual(source.damaged, 0)
+                        with self.assertRaisesRegex(eventide.UsageError, "expected .* found one that a"):
+                            other()
+                        return False
+
+                    reader.seek(0)
+                    eventide.Pipeline(source, meddle, "small", sequential=sequential, **REPEATABLE).run()
+            reader.seek(0)
+            self.assertGreater(len(next(reader)), 0, "the run is over")
+
+    def test_a_class_of_ones_own_is_what_it_gives(self):
+        class Mirrored(eventide.Reader):
+            def __next__(self):
+                events = super().__next__().copy()
+                events["x"] = 63 - events["x"]
+                return events
+
+        frames = self.frames_of(Mirrored(self.recording))
+        self.assertFalse(np.array_equal(frames, self.frames_of(eventide.open(self.recording))))
+
     def test_a_sink_that_wants_no_more_ends_a_camera(self):
         camera = eventide.open_camera("sim:demo?size=64x48&speed=1")
         seen = []

@@ -30,6 +30,8 @@ class Simulations(RecordedTest):
             eventide.simulate("nowhere")
         with self.assertRaisesRegex(eventide.UsageError, "width"):
             eventide.simulate(size=(1, 24))
+        with self.assertRaisesRegex(eventide.UsageError, "seconds"):
+            eventide.simulate(seconds=float("inf"))
         with self.assertRaises(eventide.InputError):
             eventide.simulate(textures=self.folder / "missing")
 

@@ -1,10 +1,13 @@
 """Recordings and cameras in Python."""
 
+import os
+import pathlib
+import subprocess
 import unittest
 
 import eventide
 import numpy as np
-from recorded import RecordedTest
+from recorded import PROGRAM, RecordedTest
 
 
 class Sources(RecordedTest):
@@ -24,6 +27,40 @@ class Sources(RecordedTest):
         self.assertEqual(images[0][1].shape, (48, 64))
         reader.seek(int(events["t"][len(events) // 2]))
         self.assertEqual(list(reader)[-1][-1], events[-1])
+
+    def test_images_without_events_are_those_of_the_next_ones(self):
+        file = self.folder / "many_images.aedat4"
+        command = [PROGRAM, "simulate", "--size", "346x260", "--seconds", "0.2", "--images-per-second", "100"]
+        subprocess.run(command + ["--out", file], check=True, capture_output=True)
+        reader, expected = eventide.open(file), []
+        reconstructor = eventide.Reconstructor("small", 346, 260)
+        while reader.read_into(reconstructor):
+            expected += [t for t, _ in reader.images]
+        self.assertEqual(len(expected), 21)
+        reader, found = eventide.open(file), []
+        for _ in reader:
+            found += [t for t, _ in reader.images]
+        found += [t for t, _ in reader.images]
+        self.assertEqual(found, expected)
+
+    def test_a_gap_before_data_without_events_is_one_before_the_next_ones(self):
+        camera, send = self.udp_camera()
+        reconstructor = self.reconstructor()
+        outside = [(1, 1000, 1000, 1)]
+        for _ in range(400):
+            send(outside * 4600)  # the system has no room for all of them
+        damaged = -1
+        while camera.damaged != damaged:  # until one in which nothing came
+            damaged = camera.damaged
+            camera.read_into(reconstructor)
+        self.assertLess(damaged, 400 * 4600)
+        send(outside)
+        send([(1000 + i, i, i, 1) for i in range(40)])
+        self.assertGreater(len(next(camera)), 0)
+        self.assertTrue(camera.gap_before)
+        send([(2000 + i, i, i, 1) for i in range(40)])
+        self.assertGreater(len(next(camera)), 0)
+        self.assertFalse(camera.gap_before)
 
     def test_arrays_outlive_the_reader(self):
         reader = eventide.open(self.recording)
@@ -69,6 +106,28 @@ class Sources(RecordedTest):
     def test_no_recording_is_refused_in_words(self):
         with self.assertRaisesRegex(eventide.InputError, "/no/such: cannot open"):
             eventide.open("/no/such")
+
+    def test_names_of_files_are_any_bytes(self):
+        name = os.fsencode(self.folder) + b"/caf\xe9.aedat4"
+        events = self.events()
+        for path in (name, os.fsdecode(name), pathlib.Path(os.fsdecode(name))):
+            with eventide.Writer(path, 64, 48, overwrite=True) as writer:
+                writer.write(events)
+            np.testing.assert_array_equal(np.concatenate(list(eventide.open(path))), events)
+            np.testing.assert_array_equal(np.concatenate(list(eventide.Reader(path))), events)
+
+    def test_errors_name_files_of_any_bytes(self):
+        for path in (b"/caf\xe9", os.fsdecode(b"/caf\xe9"), pathlib.Path(os.fsdecode(b"/caf\xe9"))):
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd: cannot open"):
+                eventide.open(path)
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd"):
+                eventide.Reconstructor(path, 64, 48)
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd"):
+                eventide.Pipeline([], print, path, width=64, height=48)
+            with self.assertRaisesRegex(eventide.UsageError, "/caf\ufffd"):
+                eventide.Reconstructor("small", 64, 48, hot_pixels=path)
+            with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd"):
+                eventide.simulate(textures=path)
 
     def test_everything_is_documented(self):
         for kind in (eventide.Reconstructor, eventide.Reader, eventide.Camera, eventide.Writer):

@@ -131,6 +131,8 @@ TEST(SimRecording, RefusesSettingsOutOfRangeByName) {
              [](SimRecordingSettings& s) { s.height = 100000; },
              [](SimRecordingSettings& s) { s.seconds = -1; },
              [](SimRecordingSettings& s) { s.seconds = std::numeric_limits<double>::quiet_NaN(); },
+             [](SimRecordingSettings& s) { s.seconds = std::numeric_limits<double>::infinity(); },
+             [](SimRecordingSettings& s) { s.seconds = 1e13; },
              [](SimRecordingSettings& s) { s.images_per_second = 1e9; },
              [](SimRecordingSettings& s) { s.truth_scale = 0; },
              [](SimRecordingSettings& s) { s.chunk = SensorDuration{0}; }}) {
