@@ -35,7 +35,7 @@ TEST(Calibration, IsWrittenWithTheRuleItHoldsFor) {
     EvaluateSettings how = small_model();
     how.sigma_rule = SigmaRule::mixture;
     how.lookahead = 1;  // of one latent map the rules say the same
-    Calibration found = calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
+    SigmaCalibration found = calibrate(evaluate_recordings(what, how), CalibrationRule::coverage);
     found.sigma_rule = how.sigma_rule;
     const fs::path calibrated = fresh_folder("calibrated_rule") / "model.safetensors";
     write_calibrated(how.model, calibrated, found);
