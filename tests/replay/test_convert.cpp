@@ -51,6 +51,44 @@ TEST(Convert, OnlyWhatLiesBetweenTheLimitsIsWritten) {
     EXPECT_TRUE(kept == expected);
 }
 
+std::vector<Event> converted_up_to(SensorTime to, Recording& recording, const std::string& path) {
+    ConvertOptions options;
+    options.to = to;
+    EXPECT_EQ(convert(recording, path, *find_format("text"), options).damaged.total(), 0U);
+    return read_everything(*open_recording(path)).events;
+}
+
+TEST(Convert, RowsThatWaitToBeSortedAreWrittenUpToTheLimit) {
+    const TestFolder folder;
+    const auto events = some_events(60'000, 0, 200);
+    OpenOptions sorting;
+    sorting.text.reorder = std::chrono::seconds(2);
+    const auto recording =
+        open_recording(write_recording(folder.path("a.txt"), "text", events), sorting);
+    const auto kept = converted_up_to(events[20'000].t, *recording, folder.path("b.txt"));
+    EXPECT_GE(kept.size(), 20'001U);
+    EXPECT_TRUE(std::equal(kept.begin(), kept.end(), events.begin()));
+    EXPECT_LT(recording->position_bytes(), recording->size_bytes()) << "the rest is not read";
+}
+
+TEST(Convert, ATriggerFarAheadEndsNothing) {
+    const TestFolder folder;
+    const auto events = some_events(60'000, 0, 200);
+    StreamHeader header;
+    header.width = header.height = 128;
+    RecordingFile file(folder.path("a.aedat4"), false, open_writer("aedat4"), header);
+    for (std::size_t i = 0; i < events.size(); i += 1000) {
+        Batch batch;
+        batch.events.assign(events.begin() + std::ptrdiff_t(i),
+                            events.begin() + std::ptrdiff_t(i + 1000));
+        if (i == 0) batch.triggers = {{from_us(std::int64_t{1} << 33), Trigger::Kind::rising, 0}};
+        file.write(batch);
+    }
+    file.finish();
+    const auto recording = open_recording(folder.path("a.aedat4"));
+    EXPECT_GE(converted_up_to(events[30'000].t, *recording, folder.path("b.txt")).size(), 30'001U);
+}
+
 TEST(Convert, WhatTheTargetCannotHoldIsCounted) {
     const TestFolder folder;
     Batch batch;
