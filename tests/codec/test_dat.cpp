@@ -74,6 +74,18 @@ TEST(Dat, TimeWrapsAndLeapsAreConfirmed) {
     EXPECT_EQ(leapt.damage.total(), 0U);
 }
 
+TEST(Dat, AnEventOutOfOrderAcrossAWrapShiftsNothing) {
+    const Parsed parsed = parse_whole(
+        make(),
+        to_stream({0xFFFFFFF0, place(1, 1, true), 4, place(2, 1, true), 0xFFFFFFFF,
+                   place(3, 1, true), 0xFFFFFFFE, place(4, 1, true), 9, place(5, 1, true)}));
+    const std::vector<Event> expected{event(0xFFFFFFF0, 1, 1, true),
+                                      event((std::int64_t(1) << 32) + 4, 2, 1, true),
+                                      event((std::int64_t(1) << 32) + 9, 5, 1, true)};
+    EXPECT_TRUE(parsed.data.events == expected);
+    EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 2U);
+}
+
 TEST(Dat, SplitsCutsAndFlippedBitsAreBorne) {
     std::vector<std::uint32_t> words;
     for (const Event& e : random_events(1, 500, kWidth, kHeight)) {

@@ -77,11 +77,10 @@ void DatParser::parse(std::span<const std::byte> bytes, Batch& into) {
     words_.feed(bytes, [&](std::span<const std::byte> records) { take(records, into); });
 }
 
-/// A fall by at least half the range is a wrap, a smaller one noise.
+/// The nearest time with these 32 bits: a record out of order across a wrap lies before it.
 std::int64_t DatParser::unwrapped(std::uint32_t stamp) const {
     if (last_us_ == kNoTime) return stamp;
-    const std::int64_t in_range = last_us_ & (kWrap - 1), step = std::int64_t(stamp) - in_range;
-    return last_us_ + step + (step <= -kWrap / 2 ? kWrap : 0);
+    return last_us_ + std::int32_t(stamp - std::uint32_t(last_us_));
 }
 
 void DatParser::take(std::span<const std::byte> records, Batch& into) {
