@@ -6,6 +6,7 @@
 #include "src/codec/prophesee/evt_words.h"
 #include "src/codec/stream.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -21,6 +22,9 @@ public:
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
+    /// Words do not go on in the next message, and a first time is believed: times of ROS are
+    /// counted from a message's first.
+    void end_message(Batch& into);
     void resync() override;
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
@@ -30,7 +34,10 @@ private:
     void take_one(std::uint16_t word, Batch& into);
     void take_vector(unsigned mask, unsigned bits, Batch& into);
     void take_event(unsigned x, bool on, Batch& into);
-    void move_time(std::int64_t t_us);
+    void take_trigger(unsigned content, Batch& into);
+    void take_let_go(const Batch& into, std::size_t before);
+    void end_words();
+    void move_clock();
     void look();
 
     std::uint32_t width_, height_;
