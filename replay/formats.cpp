@@ -165,7 +165,7 @@ constexpr FormatHolds kEventsAndTriggers{true, false, false, true};
 constexpr FormatHolds kEverything{true, true, true, true};
 constexpr FormatHolds kAedat4Holds{true, true, true, true,
                                    [](const Trigger& t) { return aedat4_trigger_number(t) >= 0; }};
-constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds};
+constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds, true};
 
 // Formats that say what they are come first, text last.
 const std::array kFormats{

@@ -132,6 +132,34 @@ TEST(Convert, TriggersOfAKindTheTargetLacksAreLeftOutAndTheOthersKept) {
     EXPECT_EQ(report.not_held, (DataCounts{0, 0, 0, 2}));
 }
 
+TEST(Convert, TriggersAnywhereBetweenTheEventsDoNotEndARunToRaw) {
+    const TestFolder folder;
+    const auto events = some_events(60'000);
+    StreamHeader header;
+    header.width = header.height = 128;
+    RecordingFile file(folder.path("a.aedat4"), false, open_writer("aedat4"), header);
+    for (std::size_t i = 0; i < events.size(); i += 1000) {
+        Batch batch, trigger;
+        batch.events.assign(events.begin() + std::ptrdiff_t(i),
+                            events.begin() + std::ptrdiff_t(i + 1000));
+        file.write(batch);
+        // One ahead of the events of its time, one behind them.
+        if (i == 1000) trigger.triggers = {{events[30'000].t, Trigger::Kind::rising, 0}};
+        if (i == 50'000) trigger.triggers = {{events[5'000].t, Trigger::Kind::falling, 0}};
+        file.write(trigger);
+    }
+    file.finish();
+    const auto report = convert(*open_recording(folder.path("a.aedat4")), folder.path("b.raw"),
+                                *find_format("evt3"));
+    EXPECT_EQ(report.written, (DataCounts{60'000, 0, 0, 2}));
+    EXPECT_EQ(report.late_triggers, 1U);
+    const Batch batch = read_everything(*open_recording(folder.path("b.raw")));
+    EXPECT_TRUE(batch.events == events);
+    ASSERT_EQ(batch.triggers.size(), 2U);
+    EXPECT_EQ(batch.triggers[0].t, events[30'000].t);
+    EXPECT_GT(batch.triggers[1].t, events[40'000].t);
+}
+
 TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {
     const TestFolder folder;
     const std::string source = folder.write("a.txt", "240 180\n0.100000 1 2 1\n");

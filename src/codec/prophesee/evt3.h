@@ -64,8 +64,10 @@ bool evt3_holds(const Trigger& trigger);
 /// Writes RAW files. Events of one row and time go as vectors where that takes fewer words, always
 /// in the order 12, 12, 8 at multiples of 32 as cameras send them and OpenEB demands (openeb#111).
 /// Times beyond 24 bits are kept by a header line "% time_base_us" that other readers ignore.
-/// Throws Error (usage) for coordinates above 2047, triggers other than rising and falling edges of
-/// sources 0 to 15, times that step back or leap by more than 10 days, images and IMU samples.
+/// Triggers wait for the events up to their time; one that comes behind later events has the time
+/// of the last. Throws Error (usage) for coordinates above 2047, triggers other than rising and
+/// falling edges of sources 0 to 15, events that step back, times that leap by more than 10 days,
+/// images and IMU samples.
 class Evt3Writer final : public StreamWriter {
 public:
     void begin(const StreamHeader& header, std::vector<std::byte>& out) override;
@@ -75,6 +77,7 @@ public:
 private:
     void write_header(std::int64_t first_us, std::vector<std::byte>& out);
     void time(SensorTime t, std::vector<std::byte>& out);
+    void wait_for_events(std::span<const Trigger> triggers);
     void trigger(const Trigger& trigger, std::vector<std::byte>& out);
     void row(std::span<const Event> events, std::vector<std::byte>& out);
 
@@ -82,6 +85,7 @@ private:
     bool header_written_ = false, time_written_ = false;
     std::int64_t base_us_ = 0, t_us_ = 0, high_ = 0;
     int y_ = -1;
+    std::vector<Trigger> waiting_;  ///< in time order
 };
 
 }  // namespace eventide
