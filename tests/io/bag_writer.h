@@ -41,9 +41,10 @@ inline BagBytes record(char op, std::vector<std::pair<std::string, BagBytes>> na
     named.emplace_back("op", BagBytes(1, op));
     return block(fields(named)) + block(data);
 }
-inline BagBytes connection(std::uint32_t number, const std::string& type) {
-    return record(7, {{"conn", little(number)}, {"topic", "/dvs/topic"}},
-                  fields({{"topic", "/dvs/topic"}, {"type", type}, {"md5sum", "0"}}));
+inline BagBytes connection(std::uint32_t number, const std::string& type,
+                           const std::string& topic = "/dvs/topic") {
+    return record(7, {{"conn", little(number)}, {"topic", topic}},
+                  fields({{"topic", topic}, {"type", type}, {"md5sum", "0"}}));
 }
 inline BagBytes message(std::uint32_t number, const BagBytes& data) {
     return record(2, {{"conn", little(number)}, {"time", little(std::uint64_t{0})}}, data);

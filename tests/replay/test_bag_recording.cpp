@@ -113,6 +113,25 @@ TEST(BagRecording, ImagesOfAnotherCameraAreLeftOutAndNamed) {
     EXPECT_TRUE(batch.images.empty());
 }
 
+TEST(BagRecording, OfSeveralTopicsWithImagesTheFirstOfTheEventsSizeIsReadAndTheOthersNamed) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const auto at = [&](std::uint32_t number, int width) {
+        return message(number, image(some_image(events[50].t, width, 128)));
+    };
+    const std::string type = "sensor_msgs/Image";
+    const auto recording = open_recording(folder.write(
+        "a.bag",
+        bag(chunk("none", connection(kEvents, "dvs_msgs/EventArray", "/events") +
+                              connection(10, type, "/wide") + connection(11, type, "/same") +
+                              connection(12, type, "/also") + at(10, 200) + at(11, 128) +
+                              at(12, 128) + message(kEvents, event_array(128, 128, events))))));
+    EXPECT_EQ(read_everything(*recording).images.size(), 1U);
+    EXPECT_THAT(recording->remarks(),
+                testing::ElementsAre(AllOf(HasSubstr("/wide"), HasSubstr("200x128")),
+                                     AllOf(HasSubstr("/also"), HasSubstr("those of /same"))));
+}
+
 TEST(BagRecording, WithoutEventsIsRefusedWithWhatItHas) {
     const TestFolder folder;
     const std::string path = folder.write(
