@@ -93,11 +93,11 @@ inline BagBytes chunk(const std::string& packing, const BagBytes& bytes) {
     return record(5, {{"compression", packing}, {"size", little(std::uint32_t(bytes.size()))}},
                   packed(packing, bytes));
 }
-/// `content`: chunks. The bag's header before, an index record after them.
-inline BagBytes bag(const BagBytes& content) {
+/// `content`: chunks. The bag's header before, an index record after them, then connections.
+inline BagBytes bag(const BagBytes& content, const BagBytes& connections = {}) {
     return "#ROSBAG V2.0\n" +
            record(3, {{"conn_count", little(std::uint32_t{2})}}, BagBytes(100, ' ')) + content +
-           record(4, {{"conn", little(std::uint32_t{0})}}, BagBytes(24, '\0'));
+           record(4, {{"conn", little(std::uint32_t{0})}}, BagBytes(24, '\0')) + connections;
 }
 
 }  // namespace eventide::test
