@@ -4,6 +4,8 @@
 #include "replay/recording_file.h"
 #include "src/core/error.h"
 
+#include <algorithm>
+
 namespace eventide {
 
 namespace {
@@ -36,6 +38,12 @@ void add(DataCounts& sum, const DataCounts& more) {
     sum.images += more.images;
     sum.imu += more.imu;
     sum.triggers += more.triggers;
+}
+
+/// Those behind events that were written before.
+std::uint64_t late_triggers(const Batch& batch, std::optional<SensorTime> written) {
+    return std::uint64_t(std::ranges::count_if(
+        batch.triggers, [&](const Trigger& trigger) { return trigger.t < written; }));
 }
 
 /// One file of one format.
@@ -82,11 +90,15 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     if (options.from) recording.seek(*options.from);
     const auto parser = recording.make_parser();
     Batch batch;
+    std::optional<SensorTime> last_event, written;
     const auto pass_on = [&] {
+        if (!batch.events.empty()) last_event = batch.events.back().t;
         keep_inside(batch, options);
         if (options.filter) options.filter(batch);
         add(report.not_held, remove_not_held(batch, target.holds()));
         add(report.written, counts_of(batch));
+        if (target.holds().in_time_order) report.late_triggers += late_triggers(batch, written);
+        if (!batch.events.empty()) written = batch.events.back().t;
         if (!batch.empty()) target.write(batch);
         batch.clear();
     };
@@ -95,9 +107,10 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     while (!enough && recording.read(packet) == ReadStatus::data) {
         parser->parse(packet.bytes, batch);
         pass_on();
-        const auto now = parser->clock();
-        enough = (options.to && now && *now - kLatestData > *options.to) || target.reader_gone() ||
-                 (progress && !progress());
+        // By the events that came out, not by the parser's clock: that may run ahead of them, and
+        // one wrong stamp moves it. Those up to `to` are all out then, and none is still held.
+        const bool past_end = options.to && last_event && *last_event - kLatestData > *options.to;
+        enough = past_end || target.reader_gone() || (progress && !progress());
     }
     // Where nobody wanted more, half a record in hand is no damage of the recording's.
     if (!enough) parser->finish(batch);

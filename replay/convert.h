@@ -20,7 +20,9 @@ struct ConvertOptions {
 struct ConvertReport {
     DataCounts written;
     DataCounts not_held;  ///< left out because the target has no record for them
-    Damage damaged;       ///< found in what was read
+    /// Triggers behind later events, which the target holds with the time of those.
+    std::uint64_t late_triggers = 0;
+    Damage damaged;  ///< found in what was read
     std::uint64_t bytes_written = 0;
     std::uint64_t lost = 0;  ///< ConvertTarget::lost()
 };

@@ -91,7 +91,8 @@ OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
         };
         return find_in_aedat4_table(header, read_at, t);
     };
-    return {header.stream, make_parser, {1, nullptr, look_up}};
+    constexpr SensorDuration kLatestPacket{500'000};  // images come after the events around them
+    return {header.stream, make_parser, {1, nullptr, look_up, kLatestPacket}};
 }
 
 template <const char* kName>
@@ -152,7 +153,7 @@ OpenedStream open_text(Bytes first_bytes, const OpenOptions& options) {
                               reorder = options.text.reorder](const StreamHeader& stream) {
         return std::make_unique<TextParser>(layout, stream.width, stream.height, reorder);
     };
-    return {header.stream, make_parser, {1}, header.remarks};
+    return {header.stream, make_parser, {1, nullptr, {}, options.text.reorder}, header.remarks};
 }
 
 constexpr char kHdf5Magic[] = "\x89HDF\r\n\x1A\n", kBagMagic[] = "#ROSBAG V2.0",
@@ -165,7 +166,7 @@ constexpr FormatHolds kEventsAndTriggers{true, false, false, true};
 constexpr FormatHolds kEverything{true, true, true, true};
 constexpr FormatHolds kAedat4Holds{true, true, true, true,
                                    [](const Trigger& t) { return aedat4_trigger_number(t) >= 0; }};
-constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds};
+constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds, true};
 
 // Formats that say what they are come first, text last.
 const std::array kFormats{

@@ -22,6 +22,8 @@ struct FormatHolds {
     bool events = true, images = false, imu = false, triggers = false;
     /// Where it has records for some kinds of triggers only: which. Null: for all.
     bool (*trigger)(const Trigger&) = nullptr;
+    /// Its records share one clock: a trigger that comes behind later events has their time.
+    bool in_time_order = false;
 };
 
 struct DataCounts {

@@ -15,6 +15,11 @@ namespace {
 
 constexpr std::int64_t kFarthestUs = 1'000'000'000'000'000'000;  // sums of two fit 64 bits
 
+/// Of a row that cannot be read it is not known: what is not known is not passed over.
+bool is_before(std::int64_t row_us, std::int64_t t_us) {
+    return row_us != kNoTimeUs && row_us < t_us;
+}
+
 }  // namespace
 
 std::int64_t us_from_seconds(double seconds) {
@@ -114,7 +119,7 @@ void TableReader::take_images(std::int64_t until_us, Batch& into, Damage& damage
 /// What an index says of a row agrees with the times around it.
 bool TableReader::fits(std::uint64_t row, std::int64_t t_us) const {
     if (row > events_->rows()) return false;
-    return row == 0 || events_->time_us(row - 1) < t_us;
+    return row == 0 || is_before(events_->time_us(row - 1), t_us);
 }
 
 void TableReader::seek(SensorTime t) {
@@ -124,11 +129,12 @@ void TableReader::seek(SensorTime t) {
         next_row_ = *indexed;
     } else {
         if (indexed) ++bad_tables_;
-        next_row_ = partition_row(events_->rows(),
-                                  [&](std::uint64_t row) { return events_->time_us(row) < t_us; });
+        next_row_ = partition_row(events_->rows(), [&](std::uint64_t row) {
+            return is_before(events_->time_us(row), t_us);
+        });
     }
     next_image_ = !images_ ? 0 : partition_row(images_->rows(), [&](std::uint64_t row) {
-        return images_->time_us(row) < t_us;
+        return is_before(images_->time_us(row), t_us);
     });
 }
 

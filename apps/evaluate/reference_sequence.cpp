@@ -25,6 +25,7 @@ public:
 
     void take(Batch& batch) {
         if (!begun_ && !batch.events.empty()) begin(batch);
+        if (!batch.events.empty()) last_event_ = batch.events.back().t;
         for (const Event& event : batch.events)
             if (event.t >= from_ && event.t <= to_) into_.events.push_back(event);
         for (ReferenceImage& image : batch.images) into_.images.push_back(std::move(image));
@@ -32,9 +33,10 @@ public:
         // Images before the first event wait for it to say which are wanted.
         if (begun_) drop_images();
     }
-    bool past_end(std::optional<SensorTime> clock) const {
+    /// By the events that came out: a parser's clock may run ahead of them.
+    bool past_end() const {
         // Images may come a while after the events around them.
-        return begun_ && to_s_ && clock && *clock > to_ + SensorDuration{1'000'000};
+        return begun_ && to_s_ && last_event_ > to_ + SensorDuration{1'000'000};
     }
 
 private:
@@ -55,6 +57,7 @@ private:
     ReferenceSequence& into_;
     std::optional<double> from_s_, to_s_;
     SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
+    SensorTime last_event_ = SensorTime::min();
     bool begun_ = false;
 };
 
@@ -71,11 +74,12 @@ void read_recording(const std::filesystem::path& path, const OpenOptions& input,
     into.height = recording->info().height;
     RawPacket packet;
     Batch batch;
-    while (!keeper.past_end(parser->clock()) && recording->read(packet) != ReadStatus::end) {
+    while (!keeper.past_end() && recording->read(packet) != ReadStatus::end) {
         parser->parse(packet.bytes, batch);
         keeper.take(batch);
     }
-    parser->finish(batch);
+    // Where no more was wanted, half a record in hand is no damage of the recording's.
+    if (!keeper.past_end()) parser->finish(batch);
     keeper.take(batch);
     into.damaged = parser->damaged();
 }

@@ -2,6 +2,7 @@
 #include "replay/hdf5/hdf5_writer.h"
 
 #include "src/core/error.h"
+#include "src/core/whole_sensor.h"
 #include "src/io/hdf5/hdf5_file.h"
 #include "src/io/hdf5/hdf5_library.h"
 #include "src/io/system_words.h"
@@ -106,6 +107,8 @@ class Hdf5Writer final : public FileWriter {
 public:
     Hdf5Writer(OutputFile& file, const StreamHeader& header)
         : name_(file.name()),
+          width_(header.width),
+          height_(header.height),
           lock_(hdf5_mutex()),
           file_(make_file(file)),
           events_(make_group(file_.id(), "events")),
@@ -167,6 +170,11 @@ private:
     }
 
     void write(const ReferenceImage& image) {
+        // A larger one is another camera's, and has no place in the sensor.
+        const bool is_larger =
+            image.pixels.width() > width_ * image.channels || image.pixels.height() > height_;
+        if (!is_larger && !covers_sensor(image, width_, height_))
+            return write(on_whole_sensor(image, width_, height_));
         const Hdf5Library& h5 = hdf5();
         if (!images_.good()) images_ = make_group(file_.id(), "images");
         char name[40];
@@ -211,6 +219,7 @@ private:
     }
 
     std::string name_;
+    int width_, height_;                           // px
     std::unique_lock<std::recursive_mutex> lock_;  // while the columns are made
     Hdf5Handle file_, events_, images_;
     Column<std::uint16_t> x_, y_;

@@ -25,6 +25,7 @@ public:
         begin_anew();
         if (!has_whole_times()) return;
         const std::vector<std::uint64_t> places = places_of_messages();
+        if (!index_is_read_) return begin_anew();  // topics may be told where it does not read
         std::size_t first = 0, count = places.size();
         while (count > 0) {
             const std::size_t half = count / 2;
@@ -70,7 +71,8 @@ private:
                       type->second);
     }
 
-    /// Of chunks, and of messages that lie in none.
+    /// Of chunks, and of messages that lie in none. Takes the topics that the index behind them
+    /// tells: a chunk that is passed over may be the only other place of one.
     std::vector<std::uint64_t> places_of_messages() {
         std::vector<std::uint64_t> places;
         try {
@@ -79,6 +81,10 @@ private:
                 const int op = records_.skip();
                 if (op < 0) break;
                 if (op == BagRecord::chunk || op == BagRecord::message) places.push_back(place);
+                if (op != BagRecord::connection) continue;
+                records_.go_to(place);
+                records_.read([this](const BagRecord& record) { take(record); });
+                index_is_read_ = true;
             }
         } catch (const BagError&) {  // counted by who reads on to there
         }
@@ -101,6 +107,7 @@ private:
 
     BagRecords records_;
     const std::uint64_t begin_;
+    bool index_is_read_ = false;
 };
 
 }  // namespace

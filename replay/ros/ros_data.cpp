@@ -124,6 +124,15 @@ std::optional<SensorTime> first_time_with(Reader reader) {
     return reader.good() ? std::optional(rounded(t)) : std::nullopt;
 }
 
+template <typename Reader>
+std::optional<RosImageSize> image_size_with(Reader reader) {
+    reader.header();
+    const auto height = reader.template number<std::uint32_t>(),
+               width = reader.template number<std::uint32_t>();
+    if (!reader.good() || !is_size(width, height)) return {};
+    return RosImageSize{int(width), int(height)};
+}
+
 }  // namespace
 
 RosKind ros_kind(std::string_view type) {
@@ -164,6 +173,11 @@ bool RosData::take_with(Reader reader, RosKind kind, Batch& into, Damage& damage
 std::optional<SensorTime> RosData::first_time(std::span<const std::byte> message) const {
     return wire_ == RosWire::ros1 ? first_time_with(Ros1Reader{message})
                                   : first_time_with(CdrReader{message});
+}
+
+std::optional<RosImageSize> RosData::image_size(std::span<const std::byte> message) const {
+    return wire_ == RosWire::ros1 ? image_size_with(Ros1Reader{message})
+                                  : image_size_with(CdrReader{message});
 }
 
 bool RosData::take_size(std::uint32_t width, std::uint32_t height) {
@@ -239,10 +253,6 @@ bool RosData::take_image(Reader& reader, Batch& into) {
     if (!reader.good() || kind == kImageKinds.end() || !is_size(width, height)) return false;
     const std::size_t row_bytes = std::size_t{width} * std::size_t(kind->channels * kind->bytes);
     if (step < row_bytes || bytes.size() < step * (height - 1) + row_bytes) return false;
-    if (image_width_ == 0) {
-        image_width_ = int(width);
-        image_height_ = int(height);
-    }
     // Before the first event nobody knows whose image it is; who reads on does.
     if (width_ > 0 && (int(width) != width_ || int(height) != height_)) return false;
     image.channels = kind->channels;

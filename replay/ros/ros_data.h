@@ -28,6 +28,10 @@ enum class RosKind {
 /// Of a type's name, with or without ROS 2's "/msg".
 RosKind ros_kind(std::string_view type);
 
+struct RosImageSize {
+    int width = 0, height = 0;  ///< px
+};
+
 /// The messages of one topic with events and one with images, in order.
 class RosData {
 public:
@@ -41,15 +45,15 @@ public:
     /// px, as the messages with events say; 0 before the first.
     int width() const { return width_; }
     int height() const { return height_; }
-    /// Of the first image; 0 before it. One of another size is not the event camera's.
-    int image_width() const { return image_width_; }
-    int image_height() const { return image_height_; }
 
     /// What comes next is the beginning once more.
     void restart();
 
     /// Of the first event in a message of kind events. Empty where there is none.
     std::optional<SensorTime> first_time(std::span<const std::byte> message) const;
+    /// Of a message of kind images. Empty where it is cut short. One of another size than the
+    /// events' is not the event camera's.
+    std::optional<RosImageSize> image_size(std::span<const std::byte> message) const;
 
 private:
     template <typename Reader>
@@ -63,7 +67,7 @@ private:
     bool take_size(std::uint32_t width, std::uint32_t height);
 
     RosWire wire_;
-    int width_ = 0, height_ = 0, image_width_ = 0, image_height_ = 0;
+    int width_ = 0, height_ = 0;
     std::optional<EventPacketParser> packets_;
     std::string encoding_;
     Damage packet_damage_;  ///< of packets_, what was counted already

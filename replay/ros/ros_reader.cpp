@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace eventide {
@@ -19,22 +20,40 @@ bool has_events(RosKind kind) {
 
 void RosReader::open(std::string_view format, const OpenOptions& options) {
     Damage damage;
-    Batch unused;
     for (int parts = 0; data_.width() == 0 || parts < kPartsToLookAt; ++parts) {
         if (!read_part(damage)) break;
-        for (const Message& message : messages_)
-            if (message.kind == RosKind::images ? data_.image_width() == 0 : data_.width() == 0)
-                data_.take(message.kind, message.bytes, unused, damage);
+        for (const Message& message : messages_) look_at(message, damage);
         messages_.clear();
-        if (data_.width() > 0 && (data_.image_width() > 0 || !images_)) break;
+        if (data_.width() > 0 && has_all_sizes()) break;
     }
     if (data_.width() == 0) refuse(damage);
-    leave_out_other_images();
+    opening_ = false;
+    choose_images();
     name_other_topics();
     header_.format = format;
     header_.width = options.width > 0 ? options.width : data_.width();
     header_.height = options.width > 0 ? options.height : data_.height();
     begin_anew();
+}
+
+void RosReader::look_at(const Message& message, Damage& damage) {
+    Batch unused;
+    auto& size = topics_[message.topic].size;
+    if (message.kind != RosKind::images) {
+        if (data_.width() == 0) data_.take(message.kind, message.bytes, unused, damage);
+    } else if (!size) {
+        size = data_.image_size(message.bytes);
+    }
+}
+
+bool RosReader::has_all_sizes() const {
+    return std::ranges::all_of(topics_, [](const auto& each) {
+        return each.second.kind != RosKind::images || each.second.size;
+    });
+}
+
+bool RosReader::has_size_of_events(const Topic& topic) const {
+    return topic.size && topic.size->width == data_.width() && topic.size->height == data_.height();
 }
 
 bool RosReader::read(Batch& into, Damage& damage) {
@@ -69,8 +88,11 @@ void RosReader::add_topic(std::uint32_t number, std::string_view name, std::stri
 }
 
 void RosReader::add_message(std::uint32_t number, std::span<const std::byte> bytes) {
-    if (is_read(number))
-        messages_.push_back({topics_[number].kind, std::vector(bytes.begin(), bytes.end())});
+    const auto found = topics_.find(number);
+    if (found == topics_.end()) return;
+    const RosKind kind = found->second.kind;
+    if (is_read(number) || (opening_ && kind == RosKind::images))
+        messages_.push_back({kind, number, std::vector(bytes.begin(), bytes.end())});
 }
 
 /// A topic has a number for each of its publishers.
@@ -93,23 +115,41 @@ void RosReader::refuse(const Damage& damage) const {
                     (types.empty() ? "none" : types) + (damage.total() > 0 ? ", and damage" : ""));
 }
 
-void RosReader::leave_out_other_images() {
-    if (data_.image_width() == 0 ||
-        (data_.image_width() == data_.width() && data_.image_height() == data_.height()))
-        return;
-    remarks_.push_back("the images of " + topics_[*images_].name + " are left out: they are " +
-                       std::to_string(data_.image_width()) + "x" +
-                       std::to_string(data_.image_height()) + " px, the events' sensor has " +
-                       std::to_string(data_.width()) + "x" + std::to_string(data_.height()));
+/// The first of the events' size; else the first that did not tell its own.
+void RosReader::choose_images() {
+    if (!images_ || has_size_of_events(topics_[*images_])) return;
+    const auto choose = [&](auto&& is_wanted) {
+        const auto found = std::ranges::find_if(topics_, [&](const auto& each) {
+            return each.second.kind == RosKind::images && is_wanted(each.second);
+        });
+        if (found != topics_.end()) images_ = found->first;
+        return found != topics_.end();
+    };
+    if (choose([&](const Topic& topic) { return has_size_of_events(topic); })) return;
+    if (!topics_[*images_].size || choose([](const Topic& topic) { return !topic.size; })) return;
     images_.reset();
     images_refused_ = true;
 }
 
 void RosReader::name_other_topics() {
-    for (const auto& [number, topic] : topics_)
-        if (!is_read(number) && has_events(topic.kind))
-            remarks_.push_back("the events of " + topic.name + " are left out, those of " +
-                               topics_[*events_].name + " are read");
+    std::set<std::string> named;
+    const auto size_text = [](int width, int height) {
+        return std::to_string(width) + "x" + std::to_string(height);
+    };
+    for (const auto& [number, topic] : topics_) {
+        const bool images = topic.kind == RosKind::images;
+        if (is_read(number) || (!images && !has_events(topic.kind))) continue;
+        const std::string what = (images ? "the images of " : "the events of ") + topic.name;
+        if (!named.insert(what).second) continue;
+        if (images && topic.size && !has_size_of_events(topic))
+            remarks_.push_back(what + " are left out: they are " +
+                               size_text(topic.size->width, topic.size->height) +
+                               " px, the events' sensor has " +
+                               size_text(data_.width(), data_.height()));
+        else
+            remarks_.push_back(what + " are left out, those of " +
+                               topics_[images ? *images_ : *events_].name + " are read");
+    }
 }
 
 }  // namespace eventide

@@ -19,8 +19,8 @@
 namespace eventide {
 
 /// Reads the first topic with events (dvs_msgs/EventArray, prophesee_event_msgs/EventArray,
-/// event_camera_msgs/EventPacket) and the first with images (sensor_msgs/Image), where those are of
-/// the events' size; remarks name what is left out.
+/// event_camera_msgs/EventPacket) and the first with images (sensor_msgs/Image) of the events'
+/// size; remarks name what is left out.
 class RosReader : public DataReader {
 public:
     const StreamHeader& header() const override { return header_; }
@@ -33,6 +33,7 @@ public:
 protected:
     struct Message {
         RosKind kind;
+        std::uint32_t topic;
         std::vector<std::byte> bytes;
     };
 
@@ -61,10 +62,14 @@ private:
     struct Topic {
         std::string name;
         RosKind kind = RosKind::other;
+        std::optional<RosImageSize> size = {};  ///< of images, where one was seen
     };
+    void look_at(const Message& message, Damage& damage);
+    bool has_all_sizes() const;
+    bool has_size_of_events(const Topic& topic) const;
+    void choose_images();
     bool is_read(std::uint32_t number) const;
     [[noreturn]] void refuse(const Damage& damage) const;
-    void leave_out_other_images();
     void name_other_topics();
 
     StreamHeader header_;
@@ -73,6 +78,7 @@ private:
     std::set<std::string> types_;
     std::optional<std::uint32_t> events_, images_;
     bool images_refused_ = false, ended_ = false;
+    bool opening_ = true;  ///< the images of all topics are looked at
 };
 
 }  // namespace eventide

@@ -3,6 +3,7 @@
 
 #include "replay/stream/byte_file.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -94,7 +95,8 @@ SeekPoint find_seek_point(const ByteFile& file, const StreamHeader& header,
     if (means.copy != nullptr) return skim(file, header, make_parser(header), means, t);
     if (means.alignment == 0) return {begin};
     Probe probe(file, header, make_parser);
-    return {bisect(probe, begin, file.size(), means.alignment, t)};
+    const SensorTime earliest = std::max(t, SensorTime::min() + means.slack) - means.slack;
+    return {bisect(probe, begin, file.size(), means.alignment, earliest)};
 }
 
 }  // namespace eventide

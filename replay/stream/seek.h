@@ -24,6 +24,8 @@ struct SeekMeans {
     /// Set where the file may hold an index: the position of a record before which no data at or
     /// after t lie; empty when there is no index or it does not fit the file.
     std::function<std::optional<std::uint64_t>(const ByteFile&, SensorTime t)> look_up{};
+    /// How far before the newest time told up to a place data may lie that come behind it.
+    SensorDuration slack{0};
 };
 
 using MakeParser = std::function<std::unique_ptr<Parser>(const StreamHeader&)>;

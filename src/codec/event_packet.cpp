@@ -199,7 +199,7 @@ void EventPacketParser::shift_to_stamp(std::int64_t t_us) {
 
 /// A whole packet's, as its first time may come after events of the row and time before.
 void EventPacketParser::pass_evt3(Batch& into) {
-    evt3_.finish(evt3_batch_);  // words do not go on in the next message
+    evt3_.end_message(evt3_batch_);
     const Damage now = evt3_.damaged();
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         damage_.count(DamageReason(i), now[DamageReason(i)] - evt3_damage_[DamageReason(i)]);
@@ -248,7 +248,10 @@ void EventPacketParser::take_event(std::int64_t t_us, unsigned x, unsigned y, bo
 
 void EventPacketParser::finish(Batch& into) {
     if (rest_ > 0 || (header_bytes_ > 0 && !lost_)) damage_.count(DamageReason::truncated);
-    if (rest_ > 0 && encoding_ == EventPacketEncoding::evt3) pass_evt3(into);
+    if (encoding_ == EventPacketEncoding::evt3) {
+        evt3_.finish(evt3_batch_);
+        pass_evt3(into);
+    }
     drop();
 }
 

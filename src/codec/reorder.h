@@ -18,7 +18,7 @@ namespace eventide {
 class Reorder {
 public:
     static constexpr std::int64_t kLeap = 100'000;                 // us
-    static constexpr std::size_t kMaxHeld = std::size_t{1} << 20;  // 16 MiB
+    static constexpr std::size_t kMaxHeld = std::size_t{1} << 20;  // 24 MiB at most
 
     explicit Reorder(SensorDuration window)
         : window_(window.count()), leap_(std::max(kLeap, window_)) {}
@@ -28,15 +28,15 @@ public:
     void push(const Event& event, Take&& take) {
         if (window_ == 0) return take(event);
         const std::int64_t t = to_us(event.t);
-        if (head_ == held_.size()) return begin_with(event);
+        if (is_empty()) return begin_with(event);
         const bool late = is_more(t, newest_, window_);
         if (is_more(newest_, t, leap_) || (late && !confirmed_)) {
             flush(take);
             return begin_with(event);
         }
-        if (late || held_.size() - head_ >= next_drain_) drain(take);
+        if (late || n_held() >= next_drain_) drain(take);
         if (late) return take(event);
-        if (held_.size() - head_ >= kMaxHeld) take(held_[head_++]);
+        if (n_held() >= kMaxHeld) take_first(take);
         confirmed_ = true;
         insert(event, t);
     }
@@ -44,24 +44,24 @@ public:
     /// Hands on what is due by now. How often does not change what comes out.
     template <typename Take>
     void drain(Take&& take) {
-        while (is_more(to_us(held_[head_].t), newest_, window_)) take(held_[head_++]);
+        while (!is_empty() && is_more(first_us(), newest_, window_)) take_first(take);
         if (head_ > held_.size() / 2) {
             held_.erase(held_.begin(), held_.begin() + std::ptrdiff_t(head_));
             head_ = 0;
         }
-        next_drain_ = std::clamp(2 * (held_.size() - head_), kFewest, kMaxHeld);
+        next_drain_ = std::clamp(2 * n_held(), kFewest, kMaxHeld);
     }
 
     /// Hands on all.
     template <typename Take>
     void flush(Take&& take) {
-        for (; head_ < held_.size(); ++head_) take(held_[head_]);
+        while (!is_empty()) take_first(take);
         held_.clear();
         head_ = 0;
         next_drain_ = kFewest;
     }
 
-    bool is_empty() const { return head_ == held_.size(); }
+    bool is_empty() const { return n_held() == 0; }
     /// The newest time, where more than one event tells it.
     std::optional<std::int64_t> newest_us() const {
         return !is_empty() && confirmed_ ? std::optional(newest_) : std::nullopt;
@@ -76,14 +76,38 @@ private:
                std::uint64_t(later) - std::uint64_t(earlier) > std::uint64_t(than);
     }
 
+    struct Late {
+        Event event;
+        std::uint64_t number;
+        friend bool operator<(const Late& a, const Late& b) {  // for a heap with the first on top
+            return a.event.t > b.event.t || (a.event.t == b.event.t && a.number > b.number);
+        }
+    };
+
+    std::size_t n_held() const { return held_.size() - head_ + late_.size(); }
+    /// Of one time, those held in order came first: a late one came after a later time.
+    bool late_is_first() const {
+        return !late_.empty() && (head_ == held_.size() || late_.front().event.t < held_[head_].t);
+    }
+    std::int64_t first_us() const {
+        return to_us(late_is_first() ? late_.front().event.t : held_[head_].t);
+    }
+
+    template <typename Take>
+    void take_first(Take&& take) {
+        if (!late_is_first()) return take(held_[head_++]);
+        std::pop_heap(late_.begin(), late_.end());
+        take(late_.back().event);
+        late_.pop_back();
+    }
+
     void insert(const Event& event, std::int64_t t) {
-        const auto earlier = [](const Event& a, const Event& b) { return a.t < b.t; };
         if (t >= newest_) {
             newest_ = t;
             held_.push_back(event);
         } else {
-            const auto first = held_.begin() + std::ptrdiff_t(head_);
-            held_.insert(std::upper_bound(first, held_.end(), event, earlier), event);
+            late_.push_back({event, late_number_++});
+            std::push_heap(late_.begin(), late_.end());
         }
     }
 
@@ -94,7 +118,9 @@ private:
     }
 
     std::int64_t window_, leap_;  // us
-    std::vector<Event> held_;     // from head_ on; sorted
+    std::vector<Event> held_;     // from head_ on; came in order
+    std::vector<Late> late_;      // a heap; came after later ones
+    std::uint64_t late_number_ = 0;
     std::size_t head_ = 0, next_drain_ = kFewest;
     std::int64_t newest_ = 0;  // of the events held, us
     bool confirmed_ = false;   // another event was within the window of the first held

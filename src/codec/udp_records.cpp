@@ -99,12 +99,10 @@ void UdpRecordsParser::take_record(Batch& into) {
     take(t, word >> 16 & 0x7FFF, word & 0x7FFF, (word >> 15 & 1) != 0, into);
 }
 
-/// A fall by more than half of the range is a wrap.
+/// The nearest time with these 32 bits: a record out of order across a wrap lies before it.
 std::int64_t UdpRecordsParser::unwrapped(std::uint32_t stamp) {
-    constexpr std::int64_t kRange = std::int64_t{1} << 32;
     const std::int64_t last = last_stamp_us_.value_or(std::int64_t{stamp});
-    std::int64_t t = last / kRange * kRange + std::int64_t{stamp};
-    if (t < last - kRange / 2) t += kRange;
+    const std::int64_t t = last + std::int32_t(stamp - std::uint32_t(last));
     last_stamp_us_ = std::max(last, t);
     return t;
 }

@@ -117,6 +117,16 @@ inline void expect_bears_damage(const MakeParser& make, const Bytes& bytes, int 
     }
 }
 
+/// A flipped bit of a time costs at most `lost` of the events, and puts at most one elsewhere.
+inline void expect_most_events_kept(const Parsed& parsed, const std::vector<Event>& events,
+                                    std::size_t lost, const std::string& what) {
+    std::size_t kept = 0;
+    for (const Event& event : parsed.data.events)
+        kept += std::size_t(std::count(events.begin(), events.end(), event));
+    EXPECT_GE(kept + lost, events.size()) << what;
+    EXPECT_LE(parsed.data.events.size(), kept + 1) << what;
+}
+
 /// Random events in time order.
 inline std::vector<Event> random_events(unsigned seed, std::size_t n, int width, int height,
                                         std::int64_t first_us = 0, int most_step_us = 50) {

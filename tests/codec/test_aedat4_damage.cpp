@@ -70,6 +70,24 @@ TEST(Aedat4Damage, ASizeThatLiesDoesNotSwallowWhatFollows) {
     }
 }
 
+TEST(Aedat4Damage, ASizeThatTakesInWholePacketsCostsOnlyItsOwn) {
+    const auto events = random_events(4, 500, kWidth, kHeight);
+    const std::vector<Batch> batches = in_packets(events, 5);
+    for (const auto compression : {Aedat4Compression::lz4, Aedat4Compression::zstd}) {
+        File file = split_file(write_file(batches, compression));
+        const auto size_at = [&](std::size_t at) {
+            return load_little<std::uint32_t>(file.data.data() + at + 4);
+        };
+        const std::size_t first = 8 + size_at(0), second = first + 8 + size_at(first);
+        const auto lie = std::uint32_t(second + size_at(second));  // to the end of the third
+        for (std::size_t i = 0; i < 4; ++i) file.data[4 + i] = std::byte(lie >> (8 * i) & 0xFF);
+        const Parsed parsed = parse_whole(file.make(), file.data);
+        EXPECT_TRUE(std::equal(parsed.data.events.begin(), parsed.data.events.end(),
+                               events.begin() + 100, events.end()));
+        EXPECT_EQ(parsed.damage[DamageReason::bad_compression], 1U);
+    }
+}
+
 TEST(Aedat4Damage, EventsOutsideAndBackInTimeAreLeftOut) {
     Batch batch;
     batch.events = {{from_us(1000), 1, 2, Polarity::on},

@@ -68,10 +68,44 @@ TEST(Dat, TimeWrapsAndLeapsAreConfirmed) {
     EXPECT_EQ(flipped.damage[DamageReason::bad_record], 1U);
 
     const Parsed leapt =
-        parse_whole(make(), to_stream({5, place(1, 1, true), 0x40000006, place(2, 1, true),
-                                       0x40000007, place(3, 1, true)}));
-    EXPECT_EQ(leapt.data.events.size(), 3U);
+        parse_whole(make(), to_stream({4, place(0, 1, true), 5, place(1, 1, true), 0x40000006,
+                                       place(2, 1, true), 0x40000007, place(3, 1, true)}));
+    EXPECT_EQ(leapt.data.events.size(), 4U);
     EXPECT_EQ(leapt.damage.total(), 0U);
+}
+
+TEST(Dat, AnEventOutOfOrderAcrossAWrapShiftsNothing) {
+    const Parsed parsed = parse_whole(
+        make(),
+        to_stream({0xFFFFFFF0, place(1, 1, true), 4, place(2, 1, true), 0xFFFFFFFF,
+                   place(3, 1, true), 0xFFFFFFFE, place(4, 1, true), 9, place(5, 1, true)}));
+    const std::vector<Event> expected{event(0xFFFFFFF0, 1, 1, true),
+                                      event((std::int64_t(1) << 32) + 4, 2, 1, true),
+                                      event((std::int64_t(1) << 32) + 9, 5, 1, true)};
+    EXPECT_TRUE(parsed.data.events == expected);
+    EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 2U);
+}
+
+TEST(Dat, AFlippedBitOfAnyStampCostsATenthOfASecond) {
+    for (const std::int64_t first : {std::int64_t(0x5A5A5A5A), (std::int64_t(1) << 32) - 300'000}) {
+        std::vector<Event> events;
+        std::vector<std::uint32_t> words;
+        for (unsigned i = 0; i < 60; ++i) {
+            events.push_back(event(first + 10'000 * i, int(i), 1, true));
+            words.push_back(std::uint32_t(first + 10'000 * i));
+            words.push_back(place(i, 1, true));
+        }
+        EXPECT_TRUE(parse_whole(make(), to_stream(words)).data.events == events);
+        for (std::size_t at = 0; at < words.size(); at += 2)
+            for (unsigned bit = 0; bit < 32; ++bit) {
+                std::vector<std::uint32_t> flipped = words;
+                flipped[at] ^= 1U << bit;
+                expect_most_events_kept(parse_whole(make(), to_stream(flipped)), events, 11,
+                                        std::to_string(at) + ", bit " + std::to_string(bit));
+                const Parsed triggers = parse_whole(make(Record::triggers), to_stream(flipped));
+                EXPECT_GE(triggers.data.triggers.size(), 60U - 11U) << at << ", bit " << bit;
+            }
+    }
 }
 
 TEST(Dat, SplitsCutsAndFlippedBitsAreBorne) {

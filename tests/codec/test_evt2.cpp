@@ -88,6 +88,48 @@ TEST(Evt2, AFlippedHighTimeCostsOnlyWhatFollowsIt) {
     }
 }
 
+TEST(Evt2, AFlippedBitOfAnyHighTimeCostsATenthOfASecond) {
+    std::vector<Event> events;
+    Words words;
+    for (unsigned i = 0; i < 60; ++i) {
+        const unsigned high = 0x0A5A5A5A + 100 * i;  // every 6.4 ms
+        words.push_back(time_high(high));
+        words.push_back(cd(5, i, 1, true));
+        events.push_back(event(high * kHigh + 5, int(i), 1, true));
+    }
+    EXPECT_TRUE(parse(words).data.events == events);
+    for (std::size_t at = 0; at < words.size(); at += 2)
+        for (unsigned bit = 0; bit < 28; ++bit) {
+            Words flipped = words;
+            flipped[at] ^= 1U << bit;
+            expect_most_events_kept(parse(flipped), events, 17,
+                                    std::to_string(at) + ", bit " + std::to_string(bit));
+        }
+}
+
+TEST(Evt2, WhatWaitsForItsTimeToBeSureComesOut) {
+    const std::uint32_t pause = 3'000'000 / 64;
+    const Parsed parsed =
+        parse({time_high(7), cd(1, 1, 1, true), ext_trigger(2, 3, true), time_high(7 + pause),
+               cd(0, 2, 1, true), time_high(7 + 2 * pause), cd(0, 3, 1, true)});
+    const std::vector<Event> expected{event(7 * kHigh + 1, 1, 1, true),
+                                      event((7 + pause) * kHigh, 2, 1, true),
+                                      event((7 + 2 * pause) * kHigh, 3, 1, true)};
+    EXPECT_TRUE(parsed.data.events == expected);
+    EXPECT_EQ(parsed.data.triggers.size(), 1U);
+    EXPECT_EQ(parsed.clock, from_us((7 + 2 * pause) * kHigh));
+    EXPECT_EQ(parsed.damage.total(), 0U);
+}
+
+TEST(Evt2, NoMoreWaitsThanMemoryIsMeantFor) {
+    Words words{time_high(7)};
+    words.resize(EvtTimeHigh::kMaxHeld + 2, cd(1, 1, 1, true));
+    Evt2Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.parse(to_stream(words), batch);
+    EXPECT_EQ(batch.events.size(), EvtTimeHigh::kMaxHeld + 1);
+}
+
 TEST(Evt2, OtherWordsAreNoEvents) {
     const Parsed parsed = parse({cd(0, 9, 9, true), 0x99999999, time_high(1), 0xE0000014,
                                  0xF1234567, 0x99999999, ext_trigger(5, 7, true), 0x50000000,

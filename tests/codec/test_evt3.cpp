@@ -110,6 +110,34 @@ TEST(Evt3, AFlippedHighTimeCostsOnlyWhatFollowsIt) {
     }
 }
 
+TEST(Evt3, AFlippedBitOfAnyHighTimeCostsATenthOfASecond) {
+    for (const unsigned first : {0x5A5U, 0xFFFU - 20U}) {  // the second wraps
+        std::vector<Event> events;
+        Words words;
+        for (unsigned i = 0; i < 60; ++i) {
+            words.insert(words.end(), {time_high((first + i) & 0xFFF), addr_y(1), addr_x(i)});
+            events.push_back(event((first + i) * kHigh, int(i), 1));
+        }
+        expect_events(parse(words), events);
+        for (std::size_t at = 0; at < words.size(); at += 3)
+            for (unsigned bit = 0; bit < 12; ++bit) {
+                Words flipped = words;
+                flipped[at] = std::uint16_t(flipped[at] ^ 1U << bit);
+                expect_most_events_kept(parse(flipped), events, 25,
+                                        std::to_string(at) + ", bit " + std::to_string(bit));
+            }
+    }
+}
+
+TEST(Evt3, ATimeInDoubtDoesNotMoveTheClock) {
+    Evt3Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.parse(to_stream({time_high(100), time_high(100), time_high(612), time_low(5)}), batch);
+    EXPECT_EQ(parser.clock(), from_us(100 * kHigh));
+    parser.parse(to_stream({time_high(612)}), batch);
+    EXPECT_EQ(parser.clock(), from_us(612 * kHigh + 5));
+}
+
 TEST(Evt3, ALeapThatIsConfirmedIsBelieved) {
     const Parsed parsed =
         parse({time_high(100), addr_y(1), addr_x(1), time_high(1500), time_high(1500), addr_x(2)});
@@ -165,6 +193,7 @@ TEST(Evt3, AfterALossItTakesUpAtTheNextTime) {
     parser.parse(to_stream({time_high(4095), addr_y(1), addr_x(1)}), batch);
     parser.resync();
     parser.parse(to_stream({addr_x(2), time_high(2), addr_x(3), addr_y(4), addr_x(5)}), batch);
+    parser.finish(batch);
     const std::vector<Event> expected{event(4095 * kHigh, 1, 1), event(4098 * kHigh, 5, 4)};
     EXPECT_TRUE(batch.events == expected);
 }

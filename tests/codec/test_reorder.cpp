@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -38,6 +39,23 @@ TEST(Reorder, EventsOfOneTimeStayInTheirOrder) {
         reorder.push({from_us(t), std::uint16_t(x), 0, Polarity::on}, take);
     reorder.flush(take);
     EXPECT_EQ(xs, (std::vector{0, 2, 4, 1, 3}));
+}
+
+/// Where each late event moved those behind it, this took longer than a test may.
+TEST(Reorder, AMillionEventsInAnyOrderAreSorted) {
+    constexpr std::size_t kEvents = 1'000'000;
+    static_assert(kEvents < Reorder::kMaxHeld);
+    std::mt19937 random(1);
+    std::vector<Event> events(kEvents), sorted;
+    for (std::size_t i = 0; i < kEvents; ++i)
+        events[i] = {from_us(std::int64_t(random() % 100'000)), std::uint16_t(i & 0x3FFF),
+                     std::uint16_t(i >> 14), Polarity::on};
+    Reorder reorder{SensorDuration{100'000}};
+    const auto take = [&](const Event& event) { sorted.push_back(event); };
+    for (const Event& event : events) reorder.push(event, take);
+    reorder.flush(take);
+    std::ranges::stable_sort(events, {}, &Event::t);
+    EXPECT_TRUE(sorted == events);
 }
 
 TEST(Reorder, WhatIsTooLateComesAtOnceAndChangesNothingElse) {

@@ -32,6 +32,20 @@ TEST(UdpRecords, TimesOf32BitsGoOnWhereTheyWrap) {
     EXPECT_TRUE(parsed.data.events == events);
 }
 
+TEST(UdpRecords, AnEventOutOfOrderAcrossAWrapShiftsNothing) {
+    constexpr std::int64_t kWrap = std::int64_t{1} << 32;
+    std::vector<Event> events;
+    for (const std::int64_t t : {kWrap - 9, kWrap + 5, kWrap - 1, kWrap - 2, kWrap + 7})
+        events.push_back({from_us(t), 1, 2, Polarity::on});
+    Bytes bytes;
+    append_udp_records(UdpRecords::t32, events, bytes);
+    const Parsed parsed = parse_whole(
+        [] { return std::make_unique<UdpRecordsParser>(UdpRecords::t32, 8, 8); }, bytes);
+    events.erase(events.begin() + 2, events.begin() + 4);
+    EXPECT_TRUE(parsed.data.events == events);
+    EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 2U);
+}
+
 TEST(UdpRecords, ASenderThatBeginsAnewIsFollowed) {
     const auto late = random_events(1, 50, 8, 8, 900'000'000, 100);
     const auto early = random_events(2, 50, 8, 8, 1'000'000, 100);

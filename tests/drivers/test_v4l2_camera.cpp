@@ -62,6 +62,7 @@ Batch read_all(V4l2Camera& camera, const V4l2Testbed& bed) {
         if (status == ReadStatus::data) parser->parse(packet.bytes, data);
         if (status == ReadStatus::end || (status == ReadStatus::timeout && bed.all_taken())) break;
     }
+    parser->finish(data);  // a first time waits for the next
     return data;
 }
 

@@ -41,9 +41,10 @@ inline BagBytes record(char op, std::vector<std::pair<std::string, BagBytes>> na
     named.emplace_back("op", BagBytes(1, op));
     return block(fields(named)) + block(data);
 }
-inline BagBytes connection(std::uint32_t number, const std::string& type) {
-    return record(7, {{"conn", little(number)}, {"topic", "/dvs/topic"}},
-                  fields({{"topic", "/dvs/topic"}, {"type", type}, {"md5sum", "0"}}));
+inline BagBytes connection(std::uint32_t number, const std::string& type,
+                           const std::string& topic = "/dvs/topic") {
+    return record(7, {{"conn", little(number)}, {"topic", topic}},
+                  fields({{"topic", topic}, {"type", type}, {"md5sum", "0"}}));
 }
 inline BagBytes message(std::uint32_t number, const BagBytes& data) {
     return record(2, {{"conn", little(number)}, {"time", little(std::uint64_t{0})}}, data);
@@ -92,11 +93,11 @@ inline BagBytes chunk(const std::string& packing, const BagBytes& bytes) {
     return record(5, {{"compression", packing}, {"size", little(std::uint32_t(bytes.size()))}},
                   packed(packing, bytes));
 }
-/// `content`: chunks. The bag's header before, an index record after them.
-inline BagBytes bag(const BagBytes& content) {
+/// `content`: chunks. The bag's header before, an index record after them, then connections.
+inline BagBytes bag(const BagBytes& content, const BagBytes& connections = {}) {
     return "#ROSBAG V2.0\n" +
            record(3, {{"conn_count", little(std::uint32_t{2})}}, BagBytes(100, ' ')) + content +
-           record(4, {{"conn", little(std::uint32_t{0})}}, BagBytes(24, '\0'));
+           record(4, {{"conn", little(std::uint32_t{0})}}, BagBytes(24, '\0')) + connections;
 }
 
 }  // namespace eventide::test

@@ -36,7 +36,8 @@ std::string bag_of(const std::vector<Event>& events, const std::string& packing,
         part += message(kEvents, event_array(128, 128, std::span(events).subspan(i, 100)));
         if (i % 1000 == 900) content += chunk(packing, std::exchange(part, {}));
     }
-    return bag(content + (part.empty() ? "" : chunk(packing, part)));
+    return bag(content + (part.empty() ? "" : chunk(packing, part)),
+               connection(kEvents, type) + connection(kImages, "sensor_msgs/Image"));
 }
 
 class BagRecordings : public testing::TestWithParam<const char*> {
@@ -111,6 +112,47 @@ TEST(BagRecording, ImagesOfAnotherCameraAreLeftOutAndNamed) {
     const Batch batch = read_everything(*recording);
     EXPECT_TRUE(batch.events == events);
     EXPECT_TRUE(batch.images.empty());
+}
+
+TEST(BagRecording, OfSeveralTopicsWithImagesTheFirstOfTheEventsSizeIsReadAndTheOthersNamed) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const auto at = [&](std::uint32_t number, int width) {
+        return message(number, image(some_image(events[50].t, width, 128)));
+    };
+    const std::string type = "sensor_msgs/Image";
+    const auto recording = open_recording(folder.write(
+        "a.bag",
+        bag(chunk("none", connection(kEvents, "dvs_msgs/EventArray", "/events") +
+                              connection(10, type, "/wide") + connection(11, type, "/same") +
+                              connection(12, type, "/also") + at(10, 200) + at(11, 128) +
+                              at(12, 128) + message(kEvents, event_array(128, 128, events))))));
+    EXPECT_EQ(read_everything(*recording).images.size(), 1U);
+    EXPECT_THAT(recording->remarks(),
+                testing::ElementsAre(AllOf(HasSubstr("/wide"), HasSubstr("200x128")),
+                                     AllOf(HasSubstr("/also"), HasSubstr("those of /same"))));
+}
+
+TEST(BagRecording, ATopicThatASeekPassesOverIsKnownFromTheIndex) {
+    const TestFolder folder;
+    const auto events = some_events(100'000);
+    const BagBytes known = connection(kEvents, "dvs_msgs/EventArray"),
+                   late = connection(kImages, "sensor_msgs/Image");
+    BagBytes content;
+    for (std::size_t i = 0; i < events.size(); i += 500) {
+        BagBytes part = i == 0 ? known : i == 45'000 ? late : "";
+        part += message(kEvents, event_array(128, 128, std::span(events).subspan(i, 500)));
+        if (i >= 45'000) part += message(kImages, image(some_image(events[i].t, 128, 128)));
+        content += chunk("none", part);
+    }
+    for (const BagBytes& index : {known + late, BagBytes()}) {
+        const auto recording = open_recording(folder.write("a.bag", bag(content, index)));
+        recording->seek(events[80'000].t);
+        const auto images = read_everything(*recording).images;
+        EXPECT_GE(images.size(), 40U) << (index.empty() ? "no index" : "");
+        recording->seek(events[10'000].t);
+        EXPECT_EQ(read_everything(*recording).images.size(), 110U);
+    }
 }
 
 TEST(BagRecording, WithoutEventsIsRefusedWithWhatItHas) {

@@ -51,6 +51,44 @@ TEST(Convert, OnlyWhatLiesBetweenTheLimitsIsWritten) {
     EXPECT_TRUE(kept == expected);
 }
 
+std::vector<Event> converted_up_to(SensorTime to, Recording& recording, const std::string& path) {
+    ConvertOptions options;
+    options.to = to;
+    EXPECT_EQ(convert(recording, path, *find_format("text"), options).damaged.total(), 0U);
+    return read_everything(*open_recording(path)).events;
+}
+
+TEST(Convert, RowsThatWaitToBeSortedAreWrittenUpToTheLimit) {
+    const TestFolder folder;
+    const auto events = some_events(60'000, 0, 200);
+    OpenOptions sorting;
+    sorting.text.reorder = std::chrono::seconds(2);
+    const auto recording =
+        open_recording(write_recording(folder.path("a.txt"), "text", events), sorting);
+    const auto kept = converted_up_to(events[20'000].t, *recording, folder.path("b.txt"));
+    EXPECT_GE(kept.size(), 20'001U);
+    EXPECT_TRUE(std::equal(kept.begin(), kept.end(), events.begin()));
+    EXPECT_LT(recording->position_bytes(), recording->size_bytes()) << "the rest is not read";
+}
+
+TEST(Convert, ATriggerFarAheadEndsNothing) {
+    const TestFolder folder;
+    const auto events = some_events(60'000, 0, 200);
+    StreamHeader header;
+    header.width = header.height = 128;
+    RecordingFile file(folder.path("a.aedat4"), false, open_writer("aedat4"), header);
+    for (std::size_t i = 0; i < events.size(); i += 1000) {
+        Batch batch;
+        batch.events.assign(events.begin() + std::ptrdiff_t(i),
+                            events.begin() + std::ptrdiff_t(i + 1000));
+        if (i == 0) batch.triggers = {{from_us(std::int64_t{1} << 33), Trigger::Kind::rising, 0}};
+        file.write(batch);
+    }
+    file.finish();
+    const auto recording = open_recording(folder.path("a.aedat4"));
+    EXPECT_GE(converted_up_to(events[30'000].t, *recording, folder.path("b.txt")).size(), 30'001U);
+}
+
 TEST(Convert, WhatTheTargetCannotHoldIsCounted) {
     const TestFolder folder;
     Batch batch;
@@ -92,6 +130,34 @@ TEST(Convert, TriggersOfAKindTheTargetLacksAreLeftOutAndTheOthersKept) {
                                 *find_format("evt3"));
     EXPECT_EQ(report.written, (DataCounts{10, 0, 0, 1}));
     EXPECT_EQ(report.not_held, (DataCounts{0, 0, 0, 2}));
+}
+
+TEST(Convert, TriggersAnywhereBetweenTheEventsDoNotEndARunToRaw) {
+    const TestFolder folder;
+    const auto events = some_events(60'000);
+    StreamHeader header;
+    header.width = header.height = 128;
+    RecordingFile file(folder.path("a.aedat4"), false, open_writer("aedat4"), header);
+    for (std::size_t i = 0; i < events.size(); i += 1000) {
+        Batch batch, trigger;
+        batch.events.assign(events.begin() + std::ptrdiff_t(i),
+                            events.begin() + std::ptrdiff_t(i + 1000));
+        file.write(batch);
+        // One ahead of the events of its time, one behind them.
+        if (i == 1000) trigger.triggers = {{events[30'000].t, Trigger::Kind::rising, 0}};
+        if (i == 50'000) trigger.triggers = {{events[5'000].t, Trigger::Kind::falling, 0}};
+        file.write(trigger);
+    }
+    file.finish();
+    const auto report = convert(*open_recording(folder.path("a.aedat4")), folder.path("b.raw"),
+                                *find_format("evt3"));
+    EXPECT_EQ(report.written, (DataCounts{60'000, 0, 0, 2}));
+    EXPECT_EQ(report.late_triggers, 1U);
+    const Batch batch = read_everything(*open_recording(folder.path("b.raw")));
+    EXPECT_TRUE(batch.events == events);
+    ASSERT_EQ(batch.triggers.size(), 2U);
+    EXPECT_EQ(batch.triggers[0].t, events[30'000].t);
+    EXPECT_GT(batch.triggers[1].t, events[40'000].t);
 }
 
 TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {

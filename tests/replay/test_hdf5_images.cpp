@@ -54,6 +54,33 @@ TEST(Hdf5Images, OfMvsecComeWithTheEvents) {
     EXPECT_EQ(read_everything(*recording).images.size(), 1U);
 }
 
+TEST(Hdf5Images, OfAPartOfTheSensorAreWrittenAtTheirPlace) {
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = 32;
+    header.height = 24;
+    Batch batch;
+    batch.events = some_events(100, 3'000'000, 20, 32, 24);
+    ReferenceImage part;
+    part.t = part.exposure_begin = part.exposure_end = batch.events[50].t;
+    part.x0 = 30;
+    part.y0 = 5;
+    part.pixels = Array2<std::uint16_t>(2, 4);
+    for (std::size_t i = 0; i < 8; ++i) part.pixels.values()[i] = std::uint16_t(257 * (i + 1));
+    batch.images = {part};
+    RecordingFile file(folder.path("a.h5"), false, *find_format("hdf5"), header);
+    file.write(batch);
+    file.finish();
+    const auto images = read_everything(*open_recording(folder.path("a.h5"))).images;
+    ASSERT_EQ(images.size(), 1U);
+    Array2<std::uint16_t> expected(24, 32);
+    expected(5, 30) = 257;
+    expected(5, 31) = 2 * 257;
+    expected(6, 30) = 5 * 257;
+    expected(6, 31) = 6 * 257;
+    EXPECT_TRUE(images[0].pixels == expected);
+}
+
 TEST(Hdf5Images, SurviveTheWayThroughDsecsLayout) {
     const TestFolder folder;
     StreamHeader header;

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <functional>
 
 namespace eventide {
@@ -145,6 +146,25 @@ TEST_P(NumpyLayouts, SeekThenReadIsReadThenSkip) {
         std::erase_if(expected, early);
         EXPECT_TRUE(found == expected) << i;
     }
+}
+
+TEST(Numpy, ARowWithoutATimeHidesNothingFromASeek) {
+    const TestFolder folder;
+    const auto events = some_events(30'000, 2'500'000, 20, 240, 180);
+    const auto seconds = [&](const Event& event) {
+        const bool in_the_middle = &event == &events[15'000] || &event == &events[7'500];
+        return raw(in_the_middle ? std::nan("") : double(to_us(event.t)) / 1e6);
+    };
+    const auto recording = open_recording(folder.write(
+        "a.npz", npz({{"t", column(events, "<f8", seconds)},
+                      {"x", column(events, "<u2", [](const Event& e) { return raw(e.x); })},
+                      {"y", column(events, "<u2", [](const Event& e) { return raw(e.y); })},
+                      {"p", column(events, "|u1", [](const Event& e) { return raw(e.polarity); })}},
+                     false)));
+    recording->seek(events[5'000].t);
+    std::vector<Event> found = read_everything(*recording).events;
+    std::erase_if(found, [&](const Event& event) { return event.t < events[5'000].t; });
+    EXPECT_GE(found.size(), 30'000U - 5'000U - 2U);
 }
 
 std::string refusal(const std::string& path, ErrorKind kind = ErrorKind::input,

@@ -1,5 +1,6 @@
 // Seek then read = read then skip: for every format, real and made, whole and damaged.
 #include "replay/formats.h"
+#include "src/codec/aedat4/aedat4_writer.h"
 #include "src/core/error.h"
 #include "tests/replay/made_formats.h"
 
@@ -115,7 +116,7 @@ TEST_P(Seek, BeyondTheEndsIsSafe) {
 
 TEST(SeekInAedat4, BisectsWhereTheTableIsMissingOrDamaged) {
     const TestFolder folder;
-    const auto events = some_events(kEvents, 3'000'000);
+    const auto events = some_events(kEvents, 3'000'000, 60);
     const std::string whole = read_text(write_as(folder, "aedat4", events));
     std::string flipped = whole;
     flipped[flipped.size() - 200] ^= 0x10;
@@ -126,6 +127,51 @@ TEST(SeekInAedat4, BisectsWhereTheTableIsMissingOrDamaged) {
         EXPECT_TRUE(at_or_after(events_from(path, t, &position), t) == at_or_after(events, t));
         EXPECT_GT(position, 0.25);
     }
+}
+
+TEST(SeekInAedat4, BisectionPassesNoEventsBeforeATriggerOfTheirTime) {
+    const TestFolder folder;
+    const auto events = some_events(kEvents, 3'000'000, 60);
+    StreamHeader header;
+    header.width = header.height = 128;
+    std::vector<std::byte> bytes;
+    Aedat4Writer writer(Aedat4Compression::none);
+    writer.begin(header, bytes);
+    for (std::size_t i = 0; i < events.size(); i += 5000) {
+        Batch batch, trigger;
+        batch.events.assign(events.begin() + std::ptrdiff_t(i),
+                            events.begin() + std::ptrdiff_t(i + 5000));
+        writer.write(batch, bytes);
+        trigger.triggers = {{events[i].t, Trigger::Kind::rising, 0}};
+        writer.write(trigger, bytes);
+    }
+    const std::string path =  // without a table
+        folder.write("a.aedat4", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    for (std::size_t i = 4'000; i < events.size(); i += 3'001)
+        EXPECT_TRUE(at_or_after(events_from(path, events[i].t), events[i].t) ==
+                    at_or_after(events, events[i].t))
+            << i;
+}
+
+TEST(SeekInText, RowsOutOfOrderAreFound) {
+    const TestFolder folder;
+    auto events = some_events(60'000, 3'000'000);
+    std::mt19937 random(1);
+    std::vector<std::pair<SensorTime, Event>> rows;
+    for (const Event& event : events)
+        rows.emplace_back(event.t + SensorDuration(random() % 400 == 0 ? 0 : 9'000), event);
+    std::ranges::stable_sort(rows, {}, [](const auto& row) { return row.first; });
+    std::string text = "128 128\n";
+    for (const auto& [due, e] : rows)
+        text += "3." + std::to_string(to_us(e.t)).substr(1) + " " + std::to_string(e.x) + " " +
+                std::to_string(e.y) + " " + std::to_string(int(e.polarity)) + "\n";
+    const std::string path = folder.write("a.txt", text);
+    const auto all = read_everything(*open_recording(path)).events;
+    ASSERT_EQ(all.size(), events.size());
+    for (std::size_t i = 1'000; i < all.size(); i += 1'003)
+        EXPECT_EQ(at_or_after(events_from(path, all[i].t), all[i].t).size(),
+                  at_or_after(all, all[i].t).size())
+            << i;
 }
 
 TEST(SeekInText, OfTooFewOrNoLinesIsSafe) {

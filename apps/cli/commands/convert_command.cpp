@@ -65,6 +65,9 @@ void say(const std::string& source, const std::string& source_format, const std:
     if (!(report.not_held == DataCounts{}))
         spdlog::warn("{}: its format cannot hold {}, which were left out", file,
                      text_of(report.not_held));
+    if (report.late_triggers > 0)
+        spdlog::warn("{}: {} triggers came behind later events and have the time of those", file,
+                     report.late_triggers);
     if (report.lost > 0) spdlog::warn("{}: lost {}", file, lost_datagrams(report.lost));
     if (const std::string why =
             disorder_text(source, source_format, report.written.events, report.damaged);
@@ -171,8 +174,8 @@ int ConvertCommand::run(Program& program) {
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(from_file_, recording->info().format, to_file_, report);
     if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());
-    const bool incomplete =
-        report.damaged.total() > 0 || report.lost > 0 || !(report.not_held == DataCounts{});
+    const bool incomplete = report.damaged.total() > 0 || report.lost > 0 ||
+                            report.late_triggers > 0 || !(report.not_held == DataCounts{});
     return strict_ && incomplete ? exit_data_lost : exit_done;
 }
 

@@ -3,6 +3,7 @@
 
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/core/whole_sensor.h"
 #include "src/io/image_codecs.h"
 
 #include <cinttypes>
@@ -62,17 +63,13 @@ void EcdWriter::write(const ReferenceImage& image) {
 /// In 8 bits, as the dataset's images are, on black where the image is of a part of the sensor: the
 /// folder has no place for where that part lies.
 cv::Mat EcdWriter::covering_sensor(const ReferenceImage& image) const {
-    const int width = image.pixels.width() / image.channels, height = image.pixels.height();
-    const cv::Mat wide(height, width, CV_MAKETYPE(CV_16U, image.channels),
+    if (!covers_sensor(image, width_, height_))
+        return covering_sensor(on_whole_sensor(image, width_, height_));
+    const cv::Mat wide(height_, width_, CV_MAKETYPE(CV_16U, image.channels),
                        const_cast<std::uint16_t*>(image.pixels.values().data()));
     cv::Mat narrow;
     wide.convertTo(narrow, CV_8U, 1.0 / 257);
-    const cv::Rect sensor{0, 0, width_, height_}, whole{image.x0, image.y0, width, height};
-    if (whole == sensor) return narrow;
-    cv::Mat covering = cv::Mat::zeros(height_, width_, narrow.type());
-    const cv::Rect place = whole & sensor;
-    narrow(place - cv::Point{image.x0, image.y0}).copyTo(covering(place));
-    return covering;
+    return narrow;
 }
 
 void EcdWriter::finish() {

@@ -91,7 +91,8 @@ std::optional<std::size_t> Aedat4Unpacker::unpack_lz4(std::span<const std::byte>
         if (LZ4F_isError(hint)) return {};
         read += n_in;
         written += n_out;
-        if (hint == 0) return written;
+        // What follows the frame is no part of it: the packet's size lies, and may swallow others.
+        if (hint == 0) return read == packed.size() ? std::optional(written) : std::nullopt;
         too_small = written == unpacked_.size();
         if (too_small || (n_in == 0 && n_out == 0)) return {};
     }

@@ -13,9 +13,6 @@ namespace eventide {
 
 namespace {
 
-constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
-constexpr std::int64_t kWrap = std::int64_t(1) << 32;
-
 struct Place {
     std::uint32_t x, y;
     bool on;
@@ -70,18 +67,18 @@ DatHeader read_dat_header(std::span<const std::byte> first_bytes) {
 
 DatParser::DatParser(DatHeader::Record record, int width, int height)
     : record_(record),
-      width_(side(width, record == DatHeader::Record::events_v1 ? 512 : 16384)),
-      height_(side(height, record == DatHeader::Record::events_v1 ? 256 : 16384)) {}
+      validator_(side(width, record == DatHeader::Record::events_v1 ? 512 : 16384),
+                 side(height, record == DatHeader::Record::events_v1 ? 256 : 16384)) {}
 
 void DatParser::parse(std::span<const std::byte> bytes, Batch& into) {
     words_.feed(bytes, [&](std::span<const std::byte> records) { take(records, into); });
 }
 
-/// A fall by at least half the range is a wrap, a smaller one noise.
-std::int64_t DatParser::unwrapped(std::uint32_t stamp) const {
-    if (last_us_ == kNoTime) return stamp;
-    const std::int64_t in_range = last_us_ & (kWrap - 1), step = std::int64_t(stamp) - in_range;
-    return last_us_ + step + (step <= -kWrap / 2 ? kWrap : 0);
+/// The nearest time with these 32 bits: a record out of order across a wrap lies before it. No time
+/// lies before 0: there the stamp itself is meant, and the one before it lied.
+std::int64_t DatParser::unwrapped(std::uint32_t stamp, std::int64_t near_us) {
+    const std::int64_t t = near_us + std::int32_t(stamp - std::uint32_t(near_us));
+    return t < 0 ? std::int64_t(stamp) : t;
 }
 
 void DatParser::take(std::span<const std::byte> records, Batch& into) {
@@ -100,81 +97,64 @@ void DatParser::take(std::span<const std::byte> records, Batch& into) {
             n = 0;
         }
         const Place at = version_1 ? place_of<true>(word) : place_of<false>(word);
-        const std::int64_t t = unwrapped(stamp);
-        if (last_us_ != kNoTime && !held_ && t >= last_us_ && t - last_us_ <= kLongestStep &&
-            at.x < width_ && at.y < height_) {
+        const std::int64_t t = unwrapped(stamp, validator_.newest_us().value_or(stamp));
+        if (validator_.is_plain(t) && validator_.is_inside(at.x, at.y)) {
             out[n++] = {from_us(t), std::uint16_t(at.x), std::uint16_t(at.y), Polarity(at.on)};
-            last_us_ = t;
+            validator_.pass(t);
             continue;
         }
         block_.pass(n, into);
         n = 0;
-        take_event(stamp, at.x, at.y, at.on, into);
+        validator_.add(t, at.x, at.y, at.on, into, damage_);
     }
     block_.pass(n, into);
 }
 
-void DatParser::take_event(std::uint32_t stamp, std::uint32_t x, std::uint32_t y, bool on,
-                           Batch& into) {
-    if (x >= width_ || y >= height_) {
-        damage_.count(DamageReason::out_of_range);
-        return;
+/// Value in bit 0, number of the input in bits 12-8. The first one, and one after a long step,
+/// waits for the next, which lies before it where its time is wrong.
+void DatParser::take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& into) {
+    const std::int64_t near_us = last_trigger_us_ != kNoTime ? last_trigger_us_
+                                 : held_trigger_             ? to_us(held_trigger_->t)
+                                                             : stamp;
+    const std::int64_t t = unwrapped(stamp, near_us);
+    if (last_trigger_us_ != kNoTime && t < last_trigger_us_)
+        return damage_.count(DamageReason::time_backwards);
+    if (held_trigger_ && t < to_us(held_trigger_->t)) {
+        damage_.count(DamageReason::bad_record);
+        held_trigger_.reset();
     }
-    if (held_) {
-        const Event held = *held_;
-        held_.reset();
-        const std::int64_t before = last_us_;
-        last_us_ = to_us(held.t);
-        const std::int64_t after = unwrapped(stamp) - last_us_;
-        if (after >= 0 && after < kWrap / 4) {
-            into.events.push_back(held);
-        } else {
-            last_us_ = before;
-            damage_.count(DamageReason::bad_record);
-        }
-    }
-    const std::int64_t t = unwrapped(stamp);
-    const Event event{from_us(t), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
-    if (last_us_ != kNoTime && t < last_us_) {
-        damage_.count(DamageReason::time_backwards);
-    } else if (last_us_ != kNoTime && t - last_us_ > kLongestStep) {
-        held_ = event;
-    } else {
-        last_us_ = t;
-        into.events.push_back(event);
-    }
+    let_trigger_go(into);
+    held_trigger_ = {from_us(t), (word & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
+                     std::uint8_t(word >> 8 & 0x1F)};
+    const bool is_plain =
+        last_trigger_us_ != kNoTime && t - last_trigger_us_ <= EventValidator::kLongestStep;
+    if (is_plain) let_trigger_go(into);
 }
 
-/// Value in bit 0, number of the input in bits 12-8.
-void DatParser::take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& into) {
-    const std::int64_t t = unwrapped(stamp);
-    if (last_us_ != kNoTime && t < last_us_) {
-        damage_.count(DamageReason::time_backwards);
-        return;
-    }
-    last_us_ = t;
-    into.triggers.push_back({from_us(t),
-                             (word & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
-                             std::uint8_t(word >> 8 & 0x1F)});
+void DatParser::let_trigger_go(Batch& into) {
+    if (!held_trigger_) return;
+    last_trigger_us_ = to_us(held_trigger_->t);
+    into.triggers.push_back(*held_trigger_);
+    held_trigger_.reset();
 }
 
 void DatParser::finish(Batch& into) {
     if (words_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
-    if (!held_) return;
-    last_us_ = to_us(held_->t);
-    into.events.push_back(*held_);
-    held_.reset();
+    validator_.finish(into, damage_);
+    let_trigger_go(into);
 }
 
 void DatParser::resync() {
     words_.drop();
-    held_.reset();
-    last_us_ = kNoTime;
+    validator_.resync(damage_);
+    held_trigger_.reset();
+    last_trigger_us_ = kNoTime;
 }
 
 std::optional<SensorTime> DatParser::clock() const {
-    return last_us_ == kNoTime ? std::nullopt : std::optional(from_us(last_us_));
+    if (const auto newest = validator_.newest_us()) return from_us(*newest);
+    return last_trigger_us_ == kNoTime ? std::nullopt : std::optional(from_us(last_trigger_us_));
 }
 
 }  // namespace eventide

@@ -1,6 +1,7 @@
 // Prophesee's DAT: 8 bytes for each event or trigger (docs/protocols.md D.4).
 #pragma once
 
+#include "src/codec/event_validator.h"
 #include "src/codec/parser.h"
 #include "src/codec/prophesee/evt_words.h"
 #include "src/codec/stream.h"
@@ -37,19 +38,17 @@ public:
 
 private:
     void take(std::span<const std::byte> records, Batch& into);
-    void take_event(std::uint32_t stamp, std::uint32_t x, std::uint32_t y, bool on, Batch& into);
-    std::int64_t unwrapped(std::uint32_t stamp) const;
+    static std::int64_t unwrapped(std::uint32_t stamp, std::int64_t near_us);
     void take_trigger(std::uint32_t stamp, std::uint32_t word, Batch& into);
+    void let_trigger_go(Batch& into);
 
     DatHeader::Record record_;
-    std::uint32_t width_, height_;
+    EventValidator validator_;
     WholeWords<8> words_;
     EventBlock block_;
     Damage damage_;
-    std::int64_t last_us_ = kNoTime;  ///< of the records taken
-    /// A record after a long step, believed when the next one does not lie before it: one flipped
-    /// bit would otherwise put all that follows in the past.
-    std::optional<Event> held_;
+    std::int64_t last_trigger_us_ = kNoTime;  ///< of those taken
+    std::optional<Trigger> held_trigger_;     ///< until the next one agrees with it
 };
 
 }  // namespace eventide

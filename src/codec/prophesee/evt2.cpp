@@ -3,6 +3,7 @@
 
 #include "src/core/byte_order.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace eventide {
@@ -19,7 +20,6 @@ enum Type : unsigned {
 };
 
 constexpr std::uint32_t kPadding = 0x99999999;
-constexpr std::int64_t kLongestLeap = 60'000'000;  // us
 
 constexpr std::uint32_t x_of(std::uint32_t word) {
     return word >> 11 & 0x7FF;
@@ -38,38 +38,45 @@ std::uint32_t side(int px) {
 }  // namespace
 
 Evt2Base::Evt2Base(int width, int height)
-    : width_(side(width)), height_(side(height)), high_(28, 6, kLongestLeap) {}
+    : width_(side(width)), height_(side(height)), high_(28, 6) {}
 
 void Evt2Base::take_event(std::int64_t t_us, std::uint32_t x, std::uint32_t y, bool on,
                           Batch& into) {
     if (!high_.is_known()) return;  // taken up in the middle of the stream
-    if (!high_.is_sure()) {
-        damage_.count(DamageReason::bad_record);
-    } else if (x >= width_ || y >= height_) {
+    const Event event{from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
+    if (x >= width_ || y >= height_) {
         damage_.count(DamageReason::out_of_range);
-    } else if (t_us < last_event_us_) {
+    } else if (t_us < last_event_us_ || high_.holds_later(event.t)) {
         damage_.count(DamageReason::time_backwards);
+    } else if (!high_.is_sure()) {
+        const std::size_t before = into.events.size();
+        high_.hold(event, into, damage_);
+        take_let_go(into, before);
     } else {
         last_event_us_ = t_us;
-        into.events.push_back({from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)});
+        into.events.push_back(event);
     }
+}
+
+/// What waited for its time to be sure, from `before` on.
+void Evt2Base::take_let_go(const Batch& into, std::size_t before) {
+    if (into.events.size() > before) last_event_us_ = to_us(into.events.back().t);
+    move_clock(last_event_us_);
+    if (high_.is_sure()) move_clock(high_.us());
 }
 
 void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
     switch (upper >> 28) {
-        case time_high:
-            high_.push(upper & 0x0FFFFFFF, damage_);
-            if (high_.is_sure()) move_clock(high_.us());
-            break;
-        case trigger: {
-            if (!high_.is_sure()) break;
-            const std::int64_t t = high_.us() + low_time_of(upper);
-            into.triggers.push_back(
-                {from_us(t), (upper & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
-                 std::uint8_t(upper >> 8 & 0x1F)});
-            move_clock(t);
+        case time_high: {
+            const bool first = !high_.is_known();
+            const std::size_t before = into.events.size();
+            high_.push(upper & 0x0FFFFFFF, into, damage_);
+            if (!first) take_let_go(into, before);  // else it was from before a gap
             break;
         }
+        case trigger:
+            if (high_.is_known()) take_trigger(upper, into);
+            break;
         case others:
         case continued:
             break;
@@ -78,8 +85,29 @@ void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
     }
 }
 
+void Evt2Base::take_trigger(std::uint32_t word, Batch& into) {
+    const std::int64_t t = high_.us() + low_time_of(word);
+    const Trigger found{from_us(t),
+                        (word & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
+                        std::uint8_t(word >> 8 & 0x1F)};
+    if (high_.is_sure()) {
+        into.triggers.push_back(found);
+        move_clock(t);
+        return;
+    }
+    const std::size_t before = into.events.size();
+    high_.hold(found, into, damage_);
+    take_let_go(into, before);
+}
+
+void Evt2Base::end(Batch& into) {
+    const std::size_t before = into.events.size();
+    high_.believe(into, damage_);
+    take_let_go(into, before);
+}
+
 void Evt2Base::begin_anew() {
-    high_.gap();
+    high_.gap(damage_);
     newest_us_ = last_event_us_ = kNoTime;
 }
 
@@ -128,9 +156,10 @@ void Evt2Parser::take(std::span<const std::byte> words, Batch& into) {
     move_clock(last_us);
 }
 
-void Evt2Parser::finish(Batch&) {
+void Evt2Parser::finish(Batch& into) {
     if (words_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
+    end(into);
 }
 
 void Evt2Parser::resync() {
@@ -179,9 +208,10 @@ void Evt21Parser::take(std::span<const std::byte> words, Batch& into) {
     move_clock(last_event_us_);
 }
 
-void Evt21Parser::finish(Batch&) {
+void Evt21Parser::finish(Batch& into) {
     if (words_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
+    end(into);
 }
 
 void Evt21Parser::resync() {

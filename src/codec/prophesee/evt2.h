@@ -5,6 +5,7 @@
 #include "src/codec/parser.h"
 #include "src/codec/prophesee/evt_words.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -26,6 +27,8 @@ protected:
     void take_event(std::int64_t t_us, std::uint32_t x, std::uint32_t y, bool on, Batch& into);
     /// All words but events; `upper` is an EVT2 word or the upper half of an EVT2.1 word.
     void take_other(std::uint32_t upper, bool is_padding, Batch& into);
+    /// Nothing contradicts any more what waits for its time to be sure.
+    void end(Batch& into);
     void begin_anew();
     void move_clock(std::int64_t t_us) {
         if (t_us > newest_us_) newest_us_ = t_us;
@@ -37,6 +40,10 @@ protected:
     EvtTimeHigh high_;
     std::int64_t newest_us_ = kNoTime;      ///< told
     std::int64_t last_event_us_ = kNoTime;  ///< of the events taken
+
+private:
+    void take_trigger(std::uint32_t word, Batch& into);
+    void take_let_go(const Batch& into, std::size_t before);
 };
 
 class Evt2Parser final : public Evt2Base {

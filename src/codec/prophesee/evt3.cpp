@@ -25,8 +25,6 @@ enum Type : unsigned {
 
 constexpr std::uint16_t kPadding = 0x9999;
 constexpr unsigned kColumnBits = 0x7FF, kOnBit = 0x800, kTimeBits = 0xFFF;
-// A quarter of the range: longer ones would not be told from wraps.
-constexpr std::int64_t kLongestLeap = std::int64_t(1) << 22;  // us
 
 std::uint32_t side(int px) {
     return px > 0 && px < 2048 ? std::uint32_t(px) : 2048;
@@ -35,10 +33,7 @@ std::uint32_t side(int px) {
 }  // namespace
 
 Evt3Parser::Evt3Parser(int width, int height, std::int64_t time_base_us)
-    : width_(side(width)),
-      height_(side(height)),
-      time_base_us_(time_base_us),
-      high_(12, 12, kLongestLeap) {}
+    : width_(side(width)), height_(side(height)), time_base_us_(time_base_us), high_(12, 12) {}
 
 void Evt3Parser::parse(std::span<const std::byte> bytes, Batch& into) {
     words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
@@ -124,22 +119,22 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             take_vector(content & 0xFF, 8, into);
             break;
         case time_low:
-            if (high_.is_sure()) move_time(high_.us() + content);
+            if (!high_.is_known()) break;
+            t_us_ = high_.us() + content;
+            if (high_.is_sure()) move_clock();
             break;
         case time_high: {
-            const std::int64_t before = high_.us();
+            const std::int64_t high_us = high_.us();
             const bool first = !high_.is_known();
-            high_.push(content, damage_);
+            const std::size_t before = into.events.size();
+            high_.push(content, into, damage_);
             // The low bits follow in their own word and begin anew.
-            if (high_.is_sure() && (first || high_.us() != before)) move_time(high_.us());
+            if (first || high_.us() != high_us) t_us_ = high_.us();
+            if (!first) take_let_go(into, before);  // else it was from before a gap
             break;
         }
         case trigger:
-            if (!high_.is_sure()) break;
-            into.triggers.push_back(
-                {from_us(t_us_ + time_base_us_),
-                 (content & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
-                 std::uint8_t(content >> 8)});
+            if (high_.is_known()) take_trigger(content, into);
             break;
         case continued_4:
         case continued_12:
@@ -155,23 +150,45 @@ void Evt3Parser::look() {
     plain_ = high_.is_sure() && y_ < height_ && t_us_ >= last_event_us_;
 }
 
-void Evt3Parser::move_time(std::int64_t t_us) {
-    t_us_ = t_us;
-    if (t_us > newest_us_) newest_us_ = t_us;
+void Evt3Parser::move_clock() {
+    newest_us_ = std::max(newest_us_, t_us_);
+}
+
+/// What waited for its time to be sure, from `before` on.
+void Evt3Parser::take_let_go(const Batch& into, std::size_t before) {
+    if (into.events.size() > before) last_event_us_ = to_us(into.events.back().t) - time_base_us_;
+    newest_us_ = std::max(newest_us_, last_event_us_);
+    if (high_.is_sure()) move_clock();
+}
+
+void Evt3Parser::take_trigger(unsigned content, Batch& into) {
+    const Trigger found{from_us(t_us_ + time_base_us_),
+                        (content & 1) != 0 ? Trigger::Kind::rising : Trigger::Kind::falling,
+                        std::uint8_t(content >> 8)};
+    if (high_.is_sure()) {
+        into.triggers.push_back(found);
+        return;
+    }
+    const std::size_t before = into.events.size();
+    high_.hold(found, into, damage_);
+    take_let_go(into, before);
 }
 
 void Evt3Parser::take_event(unsigned x, bool on, Batch& into) {
     if (!high_.is_known() || y_ == kNoRow) return;  // taken up in the middle of the stream
-    if (!high_.is_sure()) {
-        damage_.count(DamageReason::bad_record);
-    } else if (x >= width_ || y_ >= height_) {
+    const Event event{from_us(t_us_ + time_base_us_), std::uint16_t(x), std::uint16_t(y_),
+                      Polarity(on)};
+    if (x >= width_ || y_ >= height_) {
         damage_.count(DamageReason::out_of_range);
-    } else if (t_us_ < last_event_us_) {
+    } else if (t_us_ < last_event_us_ || high_.holds_later(event.t)) {
         damage_.count(DamageReason::time_backwards);
+    } else if (!high_.is_sure()) {
+        const std::size_t before = into.events.size();
+        high_.hold(event, into, damage_);
+        take_let_go(into, before);
     } else {
         last_event_us_ = t_us_;
-        into.events.push_back(
-            {from_us(t_us_ + time_base_us_), std::uint16_t(x), std::uint16_t(y_), Polarity(on)});
+        into.events.push_back(event);
     }
 }
 
@@ -182,14 +199,30 @@ void Evt3Parser::take_vector(unsigned mask, unsigned bits, Batch& into) {
     base_x_ = std::min(base_x_ + bits, kNoColumn - 1);
 }
 
-void Evt3Parser::finish(Batch&) {
+void Evt3Parser::finish(Batch& into) {
+    end_words();
+    const std::size_t before = into.events.size();
+    high_.believe(into, damage_);
+    take_let_go(into, before);
+    look();
+}
+
+void Evt3Parser::end_message(Batch& into) {
+    end_words();
+    const std::size_t before = into.events.size();
+    high_.believe_first(into);
+    take_let_go(into, before);
+    look();
+}
+
+void Evt3Parser::end_words() {
     if (words_.is_half_read()) damage_.count(DamageReason::truncated);
     words_.drop();
 }
 
 void Evt3Parser::resync() {
     words_.drop();
-    high_.gap();
+    high_.gap(damage_);
     y_ = kNoRow;
     base_x_ = kNoColumn;
     newest_us_ = last_event_us_ = kNoTime;

@@ -6,6 +6,7 @@
 #include "src/codec/prophesee/evt_words.h"
 #include "src/codec/stream.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -21,6 +22,9 @@ public:
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
+    /// Words do not go on in the next message, and a first time is believed: times of ROS are
+    /// counted from a message's first.
+    void end_message(Batch& into);
     void resync() override;
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
@@ -30,7 +34,10 @@ private:
     void take_one(std::uint16_t word, Batch& into);
     void take_vector(unsigned mask, unsigned bits, Batch& into);
     void take_event(unsigned x, bool on, Batch& into);
-    void move_time(std::int64_t t_us);
+    void take_trigger(unsigned content, Batch& into);
+    void take_let_go(const Batch& into, std::size_t before);
+    void end_words();
+    void move_clock();
     void look();
 
     std::uint32_t width_, height_;
@@ -57,8 +64,10 @@ bool evt3_holds(const Trigger& trigger);
 /// Writes RAW files. Events of one row and time go as vectors where that takes fewer words, always
 /// in the order 12, 12, 8 at multiples of 32 as cameras send them and OpenEB demands (openeb#111).
 /// Times beyond 24 bits are kept by a header line "% time_base_us" that other readers ignore.
-/// Throws Error (usage) for coordinates above 2047, triggers other than rising and falling edges of
-/// sources 0 to 15, times that step back or leap by more than 10 days, images and IMU samples.
+/// Triggers wait for the events up to their time; one that comes behind later events has the time
+/// of the last. Throws Error (usage) for coordinates above 2047, triggers other than rising and
+/// falling edges of sources 0 to 15, events that step back, times that leap by more than 10 days,
+/// images and IMU samples.
 class Evt3Writer final : public StreamWriter {
 public:
     void begin(const StreamHeader& header, std::vector<std::byte>& out) override;
@@ -68,6 +77,7 @@ public:
 private:
     void write_header(std::int64_t first_us, std::vector<std::byte>& out);
     void time(SensorTime t, std::vector<std::byte>& out);
+    void wait_for_events(std::span<const Trigger> triggers);
     void trigger(const Trigger& trigger, std::vector<std::byte>& out);
     void row(std::span<const Event> events, std::vector<std::byte>& out);
 
@@ -75,6 +85,7 @@ private:
     bool header_written_ = false, time_written_ = false;
     std::int64_t base_us_ = 0, t_us_ = 0, high_ = 0;
     int y_ = -1;
+    std::vector<Trigger> waiting_;  ///< in time order
 };
 
 }  // namespace eventide

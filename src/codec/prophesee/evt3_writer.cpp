@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 namespace eventide {
 
@@ -16,6 +17,7 @@ constexpr std::int64_t kLongestGap = std::int64_t(864'000) * 1'000'000;  // us, 
 // Cameras repeat the high time all the time; after a silence it grows in steps that are no leap.
 constexpr std::int64_t kHighStep = 244;  // of 4096 us: 1 s
 constexpr std::uint16_t kColumnLimit = 2048;
+constexpr std::size_t kMostWaiting = std::size_t(1) << 16;  // triggers
 
 Error cannot_hold(const std::string& what) {
     return Error(ErrorKind::usage, "EVT3 cannot hold " + what);
@@ -95,10 +97,7 @@ bool evt3_holds(const Trigger& trigger) {
 }
 
 void Evt3Writer::trigger(const Trigger& trigger, std::vector<std::byte>& out) {
-    if (!evt3_holds(trigger))
-        throw cannot_hold("a trigger of kind " + std::to_string(int(trigger.kind)) +
-                          " from source " + std::to_string(trigger.source));
-    time(trigger.t, out);
+    time(time_written_ ? std::max(trigger.t, from_us(t_us_ + base_us_)) : trigger.t, out);
     append_word(out, 0xA,
                 unsigned(trigger.source) << 8 | unsigned(trigger.kind == Trigger::Kind::rising));
 }
@@ -130,16 +129,16 @@ void Evt3Writer::row(std::span<const Event> events, std::vector<std::byte>& out)
 void Evt3Writer::write(const Batch& batch, std::vector<std::byte>& out) {
     if (!batch.images.empty()) throw cannot_hold("images");
     if (!batch.imu.empty()) throw cannot_hold("IMU samples");
-    std::span<const Trigger> triggers(batch.triggers);
+    wait_for_events(batch.triggers);
+    std::span<const Trigger> triggers(waiting_);
     std::span<const Event> events(batch.events);
-    if (!header_written_ && (!events.empty() || !triggers.empty())) {
-        const SensorTime first = events.empty()     ? triggers[0].t
-                                 : triggers.empty() ? events[0].t
-                                                    : std::min(events[0].t, triggers[0].t);
-        write_header(to_us(first), out);
-    }
-    while (!events.empty() || !triggers.empty()) {
-        if (events.empty() || (!triggers.empty() && triggers[0].t <= events[0].t)) {
+    const auto is_due = [&] {
+        return events.empty() ? triggers.size() > kMostWaiting
+                              : !triggers.empty() && triggers[0].t <= events[0].t;
+    };
+    while (!events.empty() || is_due()) {
+        if (!header_written_) write_header(to_us(is_due() ? triggers[0].t : events[0].t), out);
+        if (is_due()) {
             trigger(triggers[0], out);
             triggers = triggers.subspan(1);
             continue;
@@ -157,10 +156,22 @@ void Evt3Writer::write(const Batch& batch, std::vector<std::byte>& out) {
         row(events.first(n), out);
         events = events.subspan(n);
     }
+    waiting_.erase(waiting_.begin(), waiting_.end() - std::ptrdiff_t(triggers.size()));
+}
+
+/// Events of their time, or before it, may come in the next batch.
+void Evt3Writer::wait_for_events(std::span<const Trigger> triggers) {
+    for (const Trigger& trigger : triggers)
+        if (!evt3_holds(trigger))
+            throw cannot_hold("a trigger of kind " + std::to_string(int(trigger.kind)) +
+                              " from source " + std::to_string(trigger.source));
+    waiting_.insert(waiting_.end(), triggers.begin(), triggers.end());
+    std::ranges::stable_sort(waiting_, {}, &Trigger::t);
 }
 
 void Evt3Writer::finish(std::vector<std::byte>& out) {
-    if (!header_written_) write_header(0, out);
+    if (!header_written_) write_header(waiting_.empty() ? 0 : to_us(waiting_[0].t), out);
+    for (const Trigger& each : std::exchange(waiting_, {})) trigger(each, out);
 }
 
 }  // namespace eventide

@@ -1,6 +1,7 @@
 // What EVT2, EVT2.1 and EVT3 share: high times, events in blocks.
 #pragma once
 
+#include "src/codec/event_validator.h"
 #include "src/codec/whole_words.h"
 #include "src/core/damage.h"
 #include "src/core/event.h"
@@ -10,62 +11,174 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace eventide {
 
-/// The upper bits of the time, which come in words of their own and wrap.
+/// The upper bits of the time, which come in words of their own and wrap, and the data of times
+/// that are in doubt.
 ///
-/// A fall by at least half the range is a wrap, a smaller one noise. A leap forward beyond
-/// `longest_leap_us`, which cameras never make (they send these words all the time), is doubted
-/// until the next such word: if that lies at or after it, time goes on from there.
+/// A fall by at least half the range is a wrap, a smaller one noise. The first such word, and one
+/// that leaps by more than EventValidator::kLongestStep, is doubted until the next: data of that
+/// time wait, come out where the next word does not contradict it, and count as bad_record where
+/// it does. Cameras repeat these words all the time; after a real silence one follows soon.
 class EvtTimeHigh {
 public:
-    EvtTimeHigh(int bits, int shift, std::int64_t longest_leap_us)
-        : range_(std::int64_t(1) << bits), shift_(shift), longest_(longest_leap_us >> shift) {}
+    static constexpr std::size_t kMaxHeld = std::size_t{1} << 20;  // of more the time is believed
 
-    void push(std::int64_t value, Damage& damage) {
-        if (!heard_) {
-            last_ = ever_heard_ ? unwrapped(value) : value;
-            heard_ = ever_heard_ = true;
-            return;
-        }
-        const std::int64_t at = unwrapped(value);
-        const bool leap = at - last_ > longest_;
-        if (in_doubt_ && at >= doubtful_) {
-            last_ = doubtful_;
-            in_doubt_ = at - last_ > longest_;
-            doubtful_ = at;
-            if (!in_doubt_) last_ = at;
-            return;
-        }
-        if (in_doubt_) damage.count(DamageReason::bad_record);
-        in_doubt_ = leap;
-        doubtful_ = at;
-        if (!leap) last_ = at;
+    EvtTimeHigh(int bits, int shift)
+        : range_(std::int64_t(1) << bits),
+          shift_(shift),
+          longest_(EventValidator::kLongestStep >> shift) {}
+
+    void push(std::int64_t value, Batch& into, Damage& damage) {
+        if (!heard_)
+            begin(value, into);
+        else if (leap_)
+            judge_leap(value, into, damage);
+        else if (first_)
+            judge_first(value, into);
+        else
+            go_on_to(unwrapped(value));
     }
 
     bool is_known() const { return heard_; }
-    bool is_sure() const { return heard_ && !in_doubt_; }
-    std::int64_t us() const { return last_ * (std::int64_t(1) << shift_); }
+    bool is_sure() const { return heard_ && !first_ && !leap_; }
+    std::int64_t us() const { return high() * (std::int64_t(1) << shift_); }
+
+    /// Where the time is known and not sure.
+    void hold(const Event& event, Batch& into, Damage& damage) {
+        waiting().events.push_back(event);
+        believe_what_is_too_much(into, damage);
+    }
+    void hold(const Trigger& trigger, Batch& into, Damage& damage) {
+        waiting().triggers.push_back(trigger);
+        believe_what_is_too_much(into, damage);
+    }
+    bool holds_later(SensorTime t) const {
+        const auto is_later = [t](const std::optional<Doubt>& doubt) {
+            return doubt && !doubt->data.events.empty() && t < doubt->data.events.back().t;
+        };
+        return is_later(leap_) || (!leap_ && is_later(first_));
+    }
+
+    /// Nothing comes that could contradict a first time.
+    void believe_first(Batch& into) {
+        if (!first_ || leap_) return;
+        last_ = first_->high;
+        let_go(first_, into);
+    }
+    /// Nor any other.
+    void believe(Batch& into, Damage& damage) {
+        append(before_gap_, into);
+        if (first_ && leap_ && leap_->high < first_->high) drop(first_, damage);
+        last_ = high();
+        let_go(first_, into);
+        let_go(leap_, into);
+    }
 
     /// Words were lost: the time is not known before the next word; that may be any later one.
-    void gap() { heard_ = in_doubt_ = false; }
+    void gap(Damage& damage) {
+        if (leap_) drop(leap_, damage);
+        believe_first(before_gap_);
+        heard_ = false;
+    }
 
 private:
+    struct Doubt {
+        std::int64_t high = 0;
+        Batch data{};
+    };
+
+    std::int64_t high() const { return leap_ ? leap_->high : first_ ? first_->high : last_; }
+    Batch& waiting() { return leap_ ? leap_->data : first_->data; }
+
     std::int64_t unwrapped(std::int64_t value) const {
         const std::int64_t in_range = last_ & (range_ - 1);
         const std::int64_t step = value - in_range;
         return last_ + step + (step <= -range_ / 2 ? range_ : 0);
     }
+    /// From a time with wraps to the nearest with this value.
+    std::int64_t step_from(std::int64_t high, std::int64_t value) const {
+        return ((value - high + range_ / 2) & (range_ - 1)) - range_ / 2;
+    }
+    bool is_near(std::int64_t step) const { return step >= -longest_ && step <= longest_; }
+    std::int64_t first_time(std::int64_t value) const {
+        return ever_heard_ ? unwrapped(value) : value;
+    }
+
+    void begin(std::int64_t value, Batch& into) {
+        append(before_gap_, into);
+        first_ = Doubt{first_time(value)};
+        heard_ = true;
+    }
+
+    void judge_first(std::int64_t value, Batch& into) {
+        const std::int64_t step = step_from(first_->high, value);
+        if (!is_near(step)) {
+            leap_ = Doubt{step > 0 ? first_->high + step : first_time(value)};
+            return;
+        }
+        last_ = first_->high + step;
+        let_go(first_, into);
+    }
+
+    /// One of two times that disagree is wrong where the next word is near the other.
+    void judge_leap(std::int64_t value, Batch& into, Damage& damage) {
+        const std::int64_t step = step_from(leap_->high, value);
+        const std::int64_t before = first_ ? first_->high : last_;
+        const bool is_back = is_near(step_from(before, value)) || leap_->high < before;
+        if (!is_near(step) && (step < 0 || is_back)) {
+            drop(leap_, damage);
+            return push(value, into, damage);
+        }
+        if (first_ && !may_precede(first_->high, leap_->high)) drop(first_, damage);
+        last_ = leap_->high;
+        let_go(first_, into);
+        let_go(leap_, into);
+        go_on_to(last_ + step);
+    }
+
+    void go_on_to(std::int64_t at) {
+        if (is_near(at - last_))
+            last_ = at;
+        else
+            leap_ = Doubt{at};
+    }
+
+    bool may_precede(std::int64_t first, std::int64_t next) const {
+        return next >= first && next - first <= EventValidator::kLongestFirstPause >> shift_;
+    }
+
+    void let_go(std::optional<Doubt>& doubt, Batch& into) {
+        ever_heard_ = true;
+        if (doubt) append(doubt->data, into);
+        doubt.reset();
+    }
+    static void drop(std::optional<Doubt>& doubt, Damage& damage) {
+        const Batch& data = doubt->data;
+        damage.count(DamageReason::bad_record, 1 + data.events.size() + data.triggers.size());
+        doubt.reset();
+    }
+    static void append(Batch& data, Batch& into) {
+        into.events.insert(into.events.end(), data.events.begin(), data.events.end());
+        into.triggers.insert(into.triggers.end(), data.triggers.begin(), data.triggers.end());
+        data.clear();
+    }
+    void believe_what_is_too_much(Batch& into, Damage& damage) {
+        if (waiting().events.size() + waiting().triggers.size() >= kMaxHeld) believe(into, damage);
+    }
 
     std::int64_t range_;
     int shift_;
-    std::int64_t longest_;   ///< leap, in units of this word
-    std::int64_t last_ = 0;  ///< with wraps
-    std::int64_t doubtful_ = 0;
-    bool heard_ = false, ever_heard_ = false, in_doubt_ = false;
+    std::int64_t longest_;        ///< step, in units of this word
+    std::int64_t last_ = 0;       ///< believed, with wraps
+    std::optional<Doubt> first_;  ///< since the beginning or a gap
+    std::optional<Doubt> leap_;
+    Batch before_gap_;  ///< comes out with the next word
+    bool heard_ = false, ever_heard_ = false;
 };
 
 /// A block of events on its way into a batch: written without checks for room, passed on when full.
