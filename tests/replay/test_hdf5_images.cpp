@@ -68,7 +68,7 @@ TEST(Hdf5Images, OfAPartOfTheSensorAreWrittenAtTheirPlace) {
     part.pixels = Array2<std::uint16_t>(2, 4);
     for (std::size_t i = 0; i < 8; ++i) part.pixels.values()[i] = std::uint16_t(257 * (i + 1));
     batch.images = {part};
-    RecordingFile file(folder.path("a.h5"), false, *find_format("hdf5"), header);
+    RecordingFile file(folder.path("a.h5"), OutputOptions{}, *find_format("hdf5"), header);
     file.write(batch);
     file.finish();
     const auto images = read_everything(*open_recording(folder.path("a.h5"))).images;
