@@ -69,8 +69,10 @@ TEST(HttpConnections, CloseEndsAllOfThem) {
 TEST(HttpConnections, APageOpenedAndClosedLeavesNothingBehind) {
     expect_nothing_left([] {
         const auto sink = open_page();
-        sink->write(ramp_frame(64, 48, 0, odd_time(0)));
-        EXPECT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
+        {
+            const Frames frames{*sink};
+            EXPECT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
+        }
         sink->close();
     });
 }
