@@ -17,10 +17,9 @@ class WaitWarnings {
 public:
     explicit WaitWarnings(std::function<void(const std::string&)> warn) : warn_{std::move(warn)} {}
 
-    /// What opening it threw. Throws it again where waiting cannot help: settings that do not fit
-    /// what came back.
+    /// What opening it threw. Settings that do not fit what came back are told, too, and waited
+    /// with: a camera that is half there has neither its size nor its controls yet.
     void tell(const Error& error) {
-        if (error.kind() == ErrorKind::usage) throw error;
         if (told_.size() < kMost && told_.insert(error.what()).second && warn_)
             warn_(std::string{"waiting for the camera: "} + error.what());
     }

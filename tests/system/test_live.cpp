@@ -52,8 +52,11 @@ protected:
     /// About 0.3 s.
     static Batch scene() { return davis_scene(small_camera().sensor, {.events = 20'000}); }
 
-    static void read_frames(Process& process, std::size_t frames) {
-        ASSERT_EQ(process.read_output(frames * kPixels).size(), frames * kPixels);
+    /// False, and a failure with what it said, where it ended before.
+    static bool read_frames(Process& process, std::size_t frames) {
+        if (process.read_output(frames * kPixels).size() == frames * kPixels) return true;
+        ADD_FAILURE() << "ended: " << process.wait().error;
+        return false;
     }
     Json last_stats() {
         std::istringstream lines{read_text(temp_ / "stats.jsonl")};
@@ -72,10 +75,10 @@ TEST_F(Live, RecordsAllThatTheCameraSent) {
         start({"run", "davis:", "--fps", "50", "--record", "raw.aedat4", "--out", "gray8:-"},
               {.output_to_pipe = true});
     for (bool over = false; !over;) {
-        read_frames(process, 1);
+        ASSERT_TRUE(read_frames(process, 1));
         bed_.look([&] { over = camera->is_scene_over(); });
     }
-    read_frames(process, 2);
+    ASSERT_TRUE(read_frames(process, 2));
     process.signal(SIGINT);
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;
@@ -92,7 +95,7 @@ TEST_F(Live, UnpluggedItEndsAsADeviceThatWasLostAndItsFilesAreWhole) {
         start({"run", "davis:", "--fps", "50", "--record", "raw.aedat4", "--out", "gray8:-",
                "--out", "video.mp4", "--out", "frames/", "--overload", "skip"},
               {.output_to_pipe = true});
-    read_frames(process, 8);
+    ASSERT_TRUE(read_frames(process, 8));
     bed_.unplug();
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 4);
@@ -121,18 +124,19 @@ TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
     if (reset) arguments.push_back("--reset-on-gap");
     const SensorTime began = host_time();
     Process process = start(arguments, {.output_to_pipe = true});
-    read_frames(process, 8);
+    ASSERT_TRUE(read_frames(process, 8));
     bed_.unplug();
-    read_frames(process, 5);  // the frame stays, and time goes on
+    ASSERT_TRUE(read_frames(process, 5));  // the frame stays, and time goes on
     const auto again = plug_in(seen, true);
     std::size_t frames = 13;
     for (bool over = false; !over; ++frames) {
-        read_frames(process, 1);
+        ASSERT_TRUE(read_frames(process, 1));
         bed_.look([&] { over = again->is_scene_over() && again->bytes_sent() > 0; });
     }
     // What was fetched last is in the recording once a frame of a later time has come.
     const SensorDuration scene_over = host_time() - began;
-    for (; SensorDuration{20'000} * frames < scene_over; ++frames) read_frames(process, 1);
+    for (; SensorDuration{20'000} * frames < scene_over; ++frames)
+        ASSERT_TRUE(read_frames(process, 1));
     process.signal(SIGINT);
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;
