@@ -66,6 +66,12 @@ EVENTIDE_AMX_INLINE void add_products() {
     if constexpr (kSum == 3 && kNumbers == 5 && kWeights == 7) _tile_dpbf16ps(3, 5, 7);
 }
 
+/// bf16 numbers of two vectors of sums, one behind the other.
+EVENTIDE_AMX_INLINE void put_both(const float* low, const float* high, __m512 floor, void* to) {
+    _mm512_storeu_si512(to,
+                        (__m512i)_mm512_cvtne2ps_pbh(_mm512_max_ps(_mm512_load_ps(high), floor),
+                                                     _mm512_max_ps(_mm512_load_ps(low), floor)));
+}
 /// Stores a tile of sums where its pixels belong.
 template <int kTile>
 EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
@@ -85,7 +91,12 @@ EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
         __mmask16(stored - first >= kTileOutputs ? 0xffffU : (1U << unsigned(stored - first)) - 1U);
     if (r.to_bf16) {
         auto* to = static_cast<std::uint16_t*>(r.out) + 2 * at + first;
-        for (int p = 0; p < work.pixels; ++p, to += 2 * r.out_step)
+        int p = 0;
+        // Pixels of 16 outputs lie one behind the other: two of them at once.
+        if (r.outputs == kTileOutputs && 2 * r.out_step == kTileOutputs)
+            for (; p + 2 <= work.pixels; p += 2, to += 2 * kTileOutputs)
+                put_both(sums + p * kTileOutputs, sums + (p + 1) * kTileOutputs, floor, to);
+        for (; p < work.pixels; ++p, to += 2 * r.out_step)
             _mm256_mask_storeu_epi16(to, mask,
                                      (__m256i)_mm512_cvtneps_pbh(_mm512_max_ps(
                                          _mm512_load_ps(sums + p * kTileOutputs), floor)));
@@ -95,6 +106,27 @@ EVENTIDE_AMX_INLINE void put(const Work& work, Run run, int first) {
             _mm512_mask_storeu_ps(to, mask,
                                   _mm512_max_ps(_mm512_load_ps(sums + p * kTileOutputs), floor));
     }
+}
+
+/// put() of two tiles with the sums of the same pixels: a pixel's 32 outputs are converted at once
+/// where there are so many.
+template <int kLow, int kHigh>
+EVENTIDE_AMX_INLINE void put_two(const Work& work, Run run, int first) {
+    const DotArea& r = work.area;
+    if (!r.to_bf16 || r.outputs - first < 2 * kTileOutputs) {
+        put<kLow>(work, run, first);
+        put<kHigh>(work, run, first + kTileOutputs);
+        return;
+    }
+    alignas(64) float sums[2][kTileRows * kTileOutputs];
+    store_tile<kLow>(sums[0], kTileOutputs * sizeof(float));
+    store_tile<kHigh>(sums[1], kTileOutputs * sizeof(float));
+    const __m512 floor = _mm512_set1_ps(r.relu ? 0.0F : -std::numeric_limits<float>::infinity());
+    auto* to =
+        static_cast<std::uint16_t*>(r.out) + 2 * (run.y * r.out_pitch + run.x * r.out_step) + first;
+    const std::ptrdiff_t step = 2 * r.out_step;
+    for (int p = 0; p < work.pixels; ++p, to += step)
+        put_both(sums[0] + p * kTileOutputs, sums[1] + p * kTileOutputs, floor, to);
 }
 
 /// kRuns runs of pixels x one or two vectors of outputs from `first` on.
@@ -154,10 +186,9 @@ EVENTIDE_AMX void dot_runs(const Work& work, const Run* runs, const std::uint32_
             }
         }
     }
-    put<0>(work, runs[0], first);
-    if constexpr (kTwo) put<1>(work, runs[0], first + kTileOutputs);
-    if constexpr (kTwo && kRuns > 1) put<2>(work, runs[1], first);
-    if constexpr (kTwo && kRuns > 1) put<3>(work, runs[1], first + kTileOutputs);
+    if constexpr (kTwo) put_two<0, 1>(work, runs[0], first);
+    if constexpr (kTwo && kRuns > 1) put_two<2, 3>(work, runs[1], first);
+    if constexpr (!kTwo) put<0>(work, runs[0], first);
     if constexpr (!kTwo && kRuns > 1) put<1>(work, runs[1], first);
     if constexpr (!kTwo && kRuns > 2) put<2>(work, runs[2], first);
     if constexpr (!kTwo && kRuns > 3) put<3>(work, runs[3], first);

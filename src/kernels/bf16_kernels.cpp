@@ -191,8 +191,22 @@ EVENTIDE_BF16 void row_to_bf16(const float* in, std::size_t n, std::uint16_t* ou
     }
 }
 
+/// Of an odd number of channels a pixel at a time, with the zero that `mask` loads.
+EVENTIDE_BF16 void odd_pixels_to_bf16(const float* in, std::size_t pixels, int channels,
+                                      std::uint32_t* out) {
+    const __mmask16 low = first_lanes(channels), high = first_lanes(channels - 16),
+                    stored = first_lanes((channels + 1) / 2);
+    for (std::size_t p = 0; p < pixels; ++p, in += channels, out += (channels + 1) / 2)
+        _mm512_mask_storeu_epi32(out, stored,
+                                 (__m512i)_mm512_cvtne2ps_pbh(_mm512_maskz_loadu_ps(high, in + 16),
+                                                              _mm512_maskz_loadu_ps(low, in)));
+}
+
 void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint32_t* out) {
-    convert_pixels(row_to_bf16, in, pixels, channels, out);
+    constexpr int kTwoVectors = 32;
+    channels % 2 != 0 && channels < kTwoVectors
+        ? odd_pixels_to_bf16(in, pixels, channels, out)
+        : convert_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
 /// 16 bf16 numbers as float32.

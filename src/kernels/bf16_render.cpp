@@ -38,37 +38,83 @@ struct Room {
 EVENTIDE_AMX_INLINE __mmask16 first_lanes(int n) {
     return __mmask16(n >= 16 ? 0xffffU : (1U << unsigned(std::max(n, 0))) - 1U);
 }
-EVENTIDE_AMX_INLINE __m512 widened(__m256i numbers) {
-    return _mm512_castsi512_ps(_mm512_slli_epi32(_mm512_cvtepu16_epi32(numbers), 16));
+/// Of two vectors, one behind the other: the even lanes, the odd ones.
+EVENTIDE_AMX_INLINE __m512i evens() {
+    return _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+}
+EVENTIDE_AMX_INLINE __m512i odds() {
+    return _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
 }
 
-/// Half of the first layer's outputs of a pixel.
-struct Half {
-    __m512 base, slope;
-    __mmask16 mask;
-    EVENTIDE_AMX_INLINE Half(const OffsetRows& r, int from) : mask(first_lanes(r.width - from)) {
-        base = _mm512_maskz_loadu_ps(mask, r.base + from);
-        slope = _mm512_maskz_loadu_ps(mask, r.slope + from);
+/// What the first layer's outputs of a pixel are added to, even ones and odd ones apart: as two
+/// neighbours lie in a unit of 4 bytes, each is float32 again by a shift or a mask alone.
+///
+///     unit i of the sums      c_2i | c_2i+1
+///     even, odd               c_0 c_2 .. c_30, c_1 c_3 .. c_31
+struct Offsets {
+    __m512 base[2], slope[2];  // of even outputs, of odd ones
+    __mmask16 units;
+    EVENTIDE_AMX_INLINE explicit Offsets(const OffsetRows& r) : units(first_lanes(r.width / 2)) {
+        split(r.base, r.width, base);
+        split(r.slope, r.width, slope);
     }
-    EVENTIDE_AMX_INLINE __m512 of(const std::uint16_t* sums, __m512 dx) const {
-        const __m512 sum = widened(_mm256_maskz_loadu_epi16(mask, sums));
-        return _mm512_max_ps(_mm512_add_ps(sum, _mm512_fmadd_ps(dx, slope, base)),
-                             _mm512_setzero_ps());
+    /// As if base held what dx adds.
+    EVENTIDE_AMX_INLINE void move(float dx) {
+        for (int i = 0; i < 2; ++i) base[i] = at(i, _mm512_set1_ps(dx));
+    }
+    EVENTIDE_AMX_INLINE __m512 at(int i, __m512 dx) const {
+        return _mm512_fmadd_ps(dx, slope[i], base[i]);
+    }
+
+private:
+    EVENTIDE_AMX_INLINE static void split(const float* from, int width, __m512 (&to)[2]) {
+        const __m512 low = _mm512_maskz_loadu_ps(first_lanes(width), from),
+                     high = _mm512_maskz_loadu_ps(first_lanes(width - 16), from + 16);
+        to[0] = _mm512_permutex2var_ps(low, evens(), high);
+        to[1] = _mm512_permutex2var_ps(low, odds(), high);
     }
 };
 
-/// relu(sums + base + dx slope) of `count` pixels as bf16, one row of `numbers` each: outputs 0 to
-/// 15 in the row's low half, 16 to 31 in its high half.
-EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Half& low, const Half& high,
-                                       int first, int count, Room& room) {
+/// relu(sums + base + dx slope) of `count` pixels as bf16, one row of `numbers` each. kSame: all
+/// have the same dx, which is in base already.
+template <bool kSame>
+EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Offsets& offsets, int first,
+                                       int count, Room& room) {
+    const __m512i high = _mm512_set1_epi32(int(0xffff0000U));
+    // Number i of the evens, then number i of the odds.
+    const __m512i together =
+        _mm512_set_epi16(31, 15, 30, 14, 29, 13, 28, 12, 27, 11, 26, 10, 25, 9, 24, 8, 23, 7, 22, 6,
+                         21, 5, 20, 4, 19, 3, 18, 2, 17, 1, 16, 0);
+    const __m512 zero = _mm512_setzero_ps();
     for (int p = 0; p < count; ++p) {
         const auto* sums = static_cast<const std::uint16_t*>(r.sums) +
                            std::ptrdiff_t(r.column[first + p]) * r.width;
-        if (r.ahead != 0) __builtin_prefetch(sums + 2 * r.ahead, 0, 2);
-        const __m512 dx = _mm512_set1_ps(r.dx[first + p]);
-        _mm512_store_si512(room.numbers[p],
-                           (__m512i)_mm512_cvtne2ps_pbh(high.of(sums + 16, dx), low.of(sums, dx)));
+        __builtin_prefetch(sums + 2 * r.ahead, 0, 2);
+        const __m512i units = _mm512_maskz_loadu_epi32(offsets.units, sums);
+        __m512 even = offsets.base[0], odd = offsets.base[1];
+        if (!kSame) {
+            const __m512 dx = _mm512_set1_ps(r.dx[first + p]);
+            even = offsets.at(0, dx);
+            odd = offsets.at(1, dx);
+        }
+        even = _mm512_max_ps(_mm512_add_ps((__m512)_mm512_slli_epi32(units, 16), even), zero);
+        odd = _mm512_max_ps(_mm512_add_ps((__m512)_mm512_and_si512(units, high), odd), zero);
+        _mm512_store_si512(room.numbers[p], _mm512_permutexvar_epi16(
+                                                together, (__m512i)_mm512_cvtne2ps_pbh(odd, even)));
     }
+}
+
+/// Whether all pixels lie at the same place beside their samples, as they do where frames are as
+/// large as the sensor.
+EVENTIDE_AMX_INLINE bool all_same(const float* dx, int n) {
+    const __m512 first = _mm512_set1_ps(dx[0]);
+    for (int i = 0; i < n; i += 16) {
+        const __mmask16 mask = first_lanes(n - i);
+        if (_mm512_mask_cmp_ps_mask(mask, _mm512_maskz_loadu_ps(mask, dx + i), first, _CMP_EQ_OQ) !=
+            mask)
+            return false;
+    }
+    return true;
 }
 
 /// The two rows of the last layer.
@@ -88,11 +134,8 @@ struct PairOfSums {
 };
 /// Neighbouring lanes of a, then of b, added to each other.
 EVENTIDE_AMX_INLINE __m512 add_neighbours(__m512 a, __m512 b) {
-    const __m512i even =
-                      _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
-                  odd =
-                      _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
-    return _mm512_add_ps(_mm512_permutex2var_ps(a, even, b), _mm512_permutex2var_ps(a, odd, b));
+    return _mm512_add_ps(_mm512_permutex2var_ps(a, evens(), b),
+                         _mm512_permutex2var_ps(a, odds(), b));
 }
 /// Of kCount pixels from p on, each in its share of the lanes; see two_outputs in
 /// render_kernels-inl.h.
@@ -194,13 +237,16 @@ EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
         r.outputs <= kTileOutputs || r.outputs > 2 * kTileOutputs)
         return false;
     if (kTiles) start_tiles(r);
-    const Half low{offset, 0}, high{offset, 16};
+    Offsets offsets{offset};
+    const bool is_same = offset.pixels > 0 && all_same(offset.dx, offset.pixels);
+    if (is_same) offsets.move(offset.dx[0]);
     const LastLayer last{r};
     Room room;
     for (int first = 0; first < offset.pixels; first += kBoth) {
         // Rows past the last pixel hold what was there before; their sums are not stored.
         const int count = std::min(kBoth, offset.pixels - first);
-        offset_pixels(offset, low, high, first, count, room);
+        is_same ? offset_pixels<true>(offset, offsets, first, count, room)
+                : offset_pixels<false>(offset, offsets, first, count, room);
         kTiles ? multiply_tiles(r, room) : multiply_vectors(r, room);
         two_outputs(r, last, 0, first, count, room);
         if (count > kRun) two_outputs(r, last, 1, first + kRun, count - kRun, room);

@@ -13,8 +13,22 @@
 HWY_BEFORE_NAMESPACE();
 namespace eventide::HWY_NAMESPACE {
 
-void compress(const float* in, float* out, std::size_t n) {
-    map(Compress{}, n, out, in, in, in, in);
+/// A line is fetched while one is worked on: all at once they would wait for each other.
+void compress(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead) {
+    const D d;
+    constexpr std::size_t kLine = 64 / sizeof(float);
+    const std::size_t lanes = hn::Lanes(d);
+    const Compress compressed;
+    std::size_t i = 0;
+    for (; i + kLine <= n; i += kLine) {
+        __builtin_prefetch(in + i + ahead);
+        for (std::size_t k = i; k < i + kLine; k += lanes) {
+            const V v = hn::LoadU(d, in + k);
+            hn::StoreU(compressed(v, v, v, v), d, out + k);
+        }
+    }
+    __builtin_prefetch(in + i + ahead);
+    map(compressed, n - i, out + i, in + i, in + i, in + i, in + i);
 }
 void sigmoid_row(float* g, std::size_t n) {
     map(Sigmoid{}, n, g, g, g, g, g);

@@ -27,8 +27,9 @@ struct VectorKernels {
     bool by_quads;     ///< whether dot_area does layers of 8 and 16 outputs as quad_dots.h says
     /// With fused multiply-adds, so that AVX2 and AVX-512 agree.
     void (*dot_area)(const DotArea&);
-    /// out = sign(v) log1p(|v|)
-    void (*compress)(const float* in, float* out, std::size_t n);
+    /// out = sign(v) log1p(|v|). `ahead`: numbers from here to those wanted soon, which are fetched
+    /// meanwhile; 0: none.
+    void (*compress)(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead);
     /// g <- sigmoid(g)
     void (*sigmoid)(float* g, std::size_t n);
     /// out = r h, for pixels of C channels; r so many numbers from one to the next.

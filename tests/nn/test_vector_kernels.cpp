@@ -49,7 +49,7 @@ TEST_P(Lengths, GatesAndActivationsAgreeWithDouble) {
                     ASSERT_LE(std::abs(out.data()[i] - exact(i)), limit(exact(i), tolerance))
                         << what << " of " << a[i] << ", " << b[i];
             };
-            k.compress(a.data(), out.data(), count);
+            k.compress(a.data(), out.data(), count, 0);
             expect([&](std::size_t i) { return plain::compress(double(a[i])); }, 3e-7, "compress");
             auto gates = a, candidate = b;
             k.sigmoid(gates.data(), count);

@@ -18,10 +18,6 @@ constexpr int kSides[] = {48, 24, 16, 12};
 
 /// Grids are larger than a core's cache, and pieces of rows too short for its own foresight.
 constexpr int kRowsAhead = 2;
-void fetch(const float* numbers, std::size_t n) {
-    constexpr std::size_t kLine = 64 / sizeof(float);
-    for (std::size_t i = 0; i < n; i += kLine) __builtin_prefetch(numbers + i);
-}
 
 /// Enough tiles for all threads, few enough that not every tile's next state is held at once.
 constexpr std::size_t kLeastGroup = 32;
@@ -202,12 +198,12 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
     float* rest = scratch + maps_ * plane;
     const auto pixels = std::size_t(inside.width());
     for (int y = inside.y0; y < inside.y1; ++y) {
-        if (y + kRowsAhead < inside.y1)
-            fetch(grid.pixel(y + kRowsAhead, inside.x0).data(), pixels * std::size_t(channels));
+        const std::ptrdiff_t ahead =
+            y + kRowsAhead < inside.y1 ? kRowsAhead * std::ptrdiff_t(grid.width()) * channels : 0;
         float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
         float* compressed = numbers.bf16() != nullptr || maps_ > 1 ? rest : to;
         numbers.kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
-                                   pixels * std::size_t(channels));
+                                   pixels * std::size_t(channels), ahead);
         if (maps_ > 1)
             numbers.split({compressed, inside.width(), channels, map_channels_, maps_, to, plane});
         else if (compressed != to)

@@ -122,7 +122,7 @@ void ThesisEncoder::feed_in(const Array3<float>& grid) noexcept {
         for (int y = near.y0; y < near.y1; ++y)
             backend_.f32->compress(grid.pixel(y, near.x0).data(),
                                    scratch + (y - tile.y0 + 1) * row + (near.x0 - tile.x0 + 1) * c,
-                                   std::size_t(near.width()) * std::size_t(c));
+                                   std::size_t(near.width()) * std::size_t(c), 0);
         in_.run(into_raw(tile, scratch, row), scratch + (tile.height() + 2) * row);
         keep_sums(i);
     });

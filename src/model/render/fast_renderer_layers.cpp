@@ -81,8 +81,14 @@ void FastRenderer::add(const Member& member, std::size_t begin, int pixels, cons
                                    .pixels = pixels});
     const int* pixel = columns.pixel[member.side].data() + begin;
     const float* const parts[] = {outputs.mu, outputs.log_sigma, outputs.square};
+    // Where each pixel has a sample of its own, as in frames of the sensor's size, all follow each
+    // other.
+    const bool is_dense = pixel[pixels - 1] - pixel[0] == pixels - 1;
     for (const float* part : parts) {
-        if (part != nullptr)
+        float* to = blended + pixel[0];
+        if (part != nullptr && is_dense)
+            for (int j = 0; j < pixels; ++j) to[j] += part[j];
+        else if (part != nullptr)
             for (int j = 0; j < pixels; ++j) blended[pixel[j]] += part[j];
         blended += width;
     }
