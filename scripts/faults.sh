@@ -17,5 +17,7 @@ ctest --test-dir "$build" --output-on-failure \
 
 # What a thousand times opened and closed leaves behind: cameras in software and what goes over networks, then recordings,
 # files and networks.
-EVENTIDE_OPENINGS=1000 ctest --test-dir "$build" --output-on-failure -R 'UsbOpenings\.|LeavesNothingBehind'
+for program in drivers/test_usb_cameras drivers/test_v4l2_camera drivers/test_v4l2_output drivers/test_udp simulate/test_simulate pipeline/sinks/http/test_http_sink ros2/test_ros2; do
+  EVENTIDE_OPENINGS=1000 "$build/tests/$program" --gtest_brief=1 --gtest_filter='UsbOpenings.*:*LeavesNothingBehind'
+done
 "$build/apps/cli/eventide" stress --cases 'open-*'
