@@ -55,10 +55,12 @@ std::unique_ptr<Camera> open_usb(std::string_view which, const CameraOptions& as
     return std::make_unique<OpenedCamera>(std::move(options));
 }
 
+// NOLINTBEGIN(readability-identifier-naming): functions, by other names.
 constexpr auto open_davis = open_usb<DavisCamera, DavisOptions, load_davis_settings>;
 constexpr auto open_dvxplorer =
     open_usb<DvxplorerCamera, DvxplorerOptions, load_dvxplorer_settings>;
 constexpr auto open_dvs128 = open_usb<Dvs128Camera, Dvs128Options, load_dvs128_settings>;
+// NOLINTEND(readability-identifier-naming)
 #else
 constexpr std::nullptr_t open_davis = nullptr, open_dvxplorer = nullptr, open_dvs128 = nullptr;
 constexpr std::nullptr_t list_davis_cameras = nullptr, list_dvxplorer_cameras = nullptr,

@@ -90,22 +90,18 @@ void FrameOutput::present_oldest() {
     if (settings_.live) open_dropper();
     while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
         const DueFrame due = schedule_.next();
-        if (!is_watched()) {
+        const bool is_shown =
+            is_watched() && (settings_.live ? dropper_.keeps_next(waiting_()) : is_wanted(due));
+        if (!is_shown) {
             counters_.present.skipped_frames.add();
-        } else if (!settings_.live) {
-            if (is_wanted(due))
-                present(due, held);
-            else
-                counters_.present.skipped_frames.add();
-        } else if (dropper_.keeps_next(waiting_())) {
-            const HostTime begun = Clock::now();
-            present(due, held);
-            const HostTime::duration work = Clock::now() - begun;
-            dropper_.took(work);
-            keeper_.frame_took(work);
-        } else {
-            counters_.present.skipped_frames.add();
+            continue;
         }
+        const HostTime begun = Clock::now();
+        present(due, held);
+        if (!settings_.live) continue;
+        const HostTime::duration work = Clock::now() - begun;
+        dropper_.took(work);
+        keeper_.frame_took(work);
     }
 }
 

@@ -20,7 +20,7 @@ void quantise(std::span<const float> values, float white, std::span<T> into, flo
         const float scaled = values[i] * scale;
         const float low = scaled > 0.0f ? scaled : 0.0f;
         const float clamped = low < top ? low : top;
-        into[i] = T(clamped + 0.5f);
+        into[i] = T(clamped + 0.5f);  // NOLINT(bugprone-incorrect-roundings): never below 0
     }
 }
 

@@ -90,7 +90,7 @@ WindowSink::WindowSink(WindowSettings settings) : settings_{std::move(settings)}
 }
 
 WindowSink::~WindowSink() {
-    close();
+    WindowSink::close();
 }
 
 void WindowSink::write(const Frame& frame) {

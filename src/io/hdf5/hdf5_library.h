@@ -88,10 +88,12 @@ constexpr unsigned kHdf5ReadOnly = 0, kHdf5Replace = 2;
 
 /// Each under its own name.
 struct Hdf5Library {
+// NOLINTBEGIN(bugprone-macro-parentheses): names of members.
 #define EVENTIDE_HDF5_FUNCTION(name) decltype(&::name) name = nullptr;
     EVENTIDE_HDF5_FUNCTIONS(EVENTIDE_HDF5_FUNCTION)
 #undef EVENTIDE_HDF5_FUNCTION
 #define EVENTIDE_HDF5_ID(name) hid_t name = -1;
+    // NOLINTEND(bugprone-macro-parentheses)
     EVENTIDE_HDF5_IDS(EVENTIDE_HDF5_ID)
 #undef EVENTIDE_HDF5_ID
 };
