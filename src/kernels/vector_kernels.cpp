@@ -1,6 +1,9 @@
 // See vector_kernels.h. This text is compiled once per instruction set (foreach_target.h).
 #include "src/kernels/vector_kernels.h"
 
+#include <array>
+#include <iterator>
+
 // Vectors of unknown length cannot be members of a struct, which the register blocks here are.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -137,11 +140,19 @@ std::int64_t left_out(Instructions most) {
 
 }  // namespace
 
-/// Not HWY_DYNAMIC_DISPATCH(): what that chooses is the whole process's.
+/// Not HWY_DYNAMIC_DISPATCH(): what that chooses is the whole process's. Highway asks the processor
+/// each time, which a virtual machine makes slow: once is enough.
 const VectorKernels& vector_kernels(Instructions most) {
-    hwy::ChosenTarget chosen;
-    chosen.Update(hwy::SupportedTargets() & ~left_out(most));
-    return *HWY_DISPATCH_TABLE(table)[chosen.GetIndex()]();
+    static const auto all = [] {
+        std::array<const VectorKernels*, std::size(kAllInstructions)> tables{};
+        for (const Instructions each : kAllInstructions) {
+            hwy::ChosenTarget chosen;
+            chosen.Update(hwy::SupportedTargets() & ~left_out(each));
+            tables[std::size_t(each)] = HWY_DISPATCH_TABLE(table)[chosen.GetIndex()]();
+        }
+        return tables;
+    }();
+    return *all[std::size_t(most)];
 }
 
 int dot_lanes(const VectorKernels& kernels, int outputs) {
