@@ -5,6 +5,8 @@
 #include "src/kernels/bf16_kernels.h"
 #include "src/kernels/vector_kernels.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -23,6 +25,15 @@ inline std::vector<const VectorKernels*> all_vector_kernels() {
     std::vector<const VectorKernels*> all;
     for (const Instructions most : kAllInstructions) all.push_back(&vector_kernels(most));
     return each_once(all);
+}
+
+/// Runs `body` with the kernels of each instruction set.
+template <typename Body>
+void with_each(const Body& body) {
+    for (const VectorKernels* kernels : all_vector_kernels()) {
+        SCOPED_TRACE(kernels->name);
+        body(*kernels);
+    }
 }
 
 /// Without the emulated ones; none where the processor has no bf16 products.

@@ -14,15 +14,7 @@ namespace eventide {
 namespace {
 
 using test::Fill;
-
-/// Runs `body` with the kernels of each instruction set.
-template <typename Body>
-void with_each(const Body& body) {
-    for (const VectorKernels* kernels : test::all_vector_kernels()) {
-        SCOPED_TRACE(kernels->name);
-        body(*kernels);
-    }
-}
+using test::with_each;
 
 TEST(RenderKernels, TwoOutputsAreTwoSumsOfProducts) {
     with_each([&](const VectorKernels& k) {

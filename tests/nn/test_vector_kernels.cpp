@@ -14,21 +14,13 @@ namespace eventide {
 namespace {
 
 using test::Fill;
+using test::with_each;
 
 /// A few units in the last place of numbers up to 1: exp within 1 ulp, one division, one sum.
 constexpr double kGateTolerance = 4e-7;
 
 double limit(double exact, double tolerance) {
     return tolerance * std::max(1.0, std::abs(exact));
-}
-
-/// Runs `body` with the kernels of each instruction set.
-template <typename Body>
-void with_each(const Body& body) {
-    for (const VectorKernels* kernels : test::all_vector_kernels()) {
-        SCOPED_TRACE(kernels->name);
-        body(*kernels);
-    }
 }
 
 class Lengths : public testing::TestWithParam<int> {};
