@@ -1,6 +1,7 @@
 // Records of UDP datagrams.
 #include "src/codec/udp_records.h"
 
+#include "src/codec/nearest_time.h"
 #include "src/core/byte_order.h"
 
 #include <algorithm>
@@ -99,10 +100,9 @@ void UdpRecordsParser::take_record(Batch& into) {
     take(t, word >> 16 & 0x7FFF, word & 0x7FFF, (word >> 15 & 1) != 0, into);
 }
 
-/// The nearest time with these 32 bits: a record out of order across a wrap lies before it.
 std::int64_t UdpRecordsParser::unwrapped(std::uint32_t stamp) {
     const std::int64_t last = last_stamp_us_.value_or(std::int64_t{stamp});
-    const std::int64_t t = last + std::int32_t(stamp - std::uint32_t(last));
+    const std::int64_t t = nearest_time(stamp, last);
     last_stamp_us_ = std::max(last, t);
     return t;
 }

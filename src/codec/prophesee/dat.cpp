@@ -1,6 +1,7 @@
 // DAT records -> events or triggers.
 #include "src/codec/prophesee/dat.h"
 
+#include "src/codec/nearest_time.h"
 #include "src/codec/prophesee/evt_header.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
@@ -74,10 +75,9 @@ void DatParser::parse(std::span<const std::byte> bytes, Batch& into) {
     words_.feed(bytes, [&](std::span<const std::byte> records) { take(records, into); });
 }
 
-/// The nearest time with these 32 bits: a record out of order across a wrap lies before it. No time
-/// lies before 0: there the stamp itself is meant, and the one before it lied.
+/// No time lies before 0: there the stamp itself is meant, and the one before it lied.
 std::int64_t DatParser::unwrapped(std::uint32_t stamp, std::int64_t near_us) {
-    const std::int64_t t = near_us + std::int32_t(stamp - std::uint32_t(near_us));
+    const std::int64_t t = nearest_time(stamp, near_us);
     return t < 0 ? std::int64_t(stamp) : t;
 }
 
