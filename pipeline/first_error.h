@@ -1,4 +1,5 @@
-// The first error of several threads: the others are its consequences.
+// The first error of several threads, or of things that are all to be done: the others are its
+// consequences.
 #pragma once
 
 #include <exception>
@@ -7,12 +8,23 @@
 
 namespace eventide {
 
-/// Thread: keep() and is_there() any; rethrow_if_any() when the threads have ended.
+/// Thread: keep(), guard() and is_there() any; rethrow_if_any() when the threads have ended.
 class FirstError {
 public:
     void keep(std::exception_ptr error) {
         const std::lock_guard lock{mutex_};
         if (!error_) error_ = std::move(error);
+    }
+    /// False where `body` threw, which is kept.
+    template <typename Body>
+    bool guard(Body&& body) noexcept {
+        try {
+            std::forward<Body>(body)();
+            return true;
+        } catch (...) {
+            keep(std::current_exception());
+            return false;
+        }
     }
     bool is_there() const {
         const std::lock_guard lock{mutex_};

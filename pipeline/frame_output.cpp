@@ -1,13 +1,13 @@
 // latent maps -> frames -> sinks.
 #include "pipeline/frame_output.h"
 
+#include "pipeline/first_error.h"
 #include "src/core/error.h"
 #include "src/core/frame_stamp.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <new>
 #include <ratio>
 #include <string>
@@ -182,13 +182,9 @@ void FrameOutput::check_finite() {
 }
 
 void FrameOutput::close() {
-    std::exception_ptr first;
-    for (Sink* sink : sinks_) try {
-            sink->close();
-        } catch (...) {
-            if (!first) first = std::current_exception();
-        }
-    if (first) std::rethrow_exception(first);
+    FirstError error;
+    for (Sink* sink : sinks_) error.guard([&] { sink->close(); });
+    error.rethrow_if_any();
 }
 
 }  // namespace eventide

@@ -317,14 +317,9 @@ bool Pipeline::for_each(Link<Handle>& link, Body body) {
 /// False where it threw: the error is kept and the source asked to stop.
 template <typename Body>
 bool Pipeline::guarded(Body body) noexcept {
-    try {
-        body();
-        return true;
-    } catch (...) {
-        error_.keep(std::current_exception());
-        parts_.source.stop();
-        return false;
-    }
+    if (error_.guard(body)) return true;
+    parts_.source.stop();
+    return false;
 }
 
 void Pipeline::close_and_report() {

@@ -1,8 +1,9 @@
 // Several sinks behind one.
 #include "pipeline/sinks/fan_out.h"
 
+#include "pipeline/first_error.h"
+
 #include <algorithm>
-#include <exception>
 #include <utility>
 
 namespace eventide {
@@ -18,15 +19,9 @@ void FanOut::lookahead_is(int windows) {
 }
 
 void FanOut::close() {
-    std::exception_ptr first;
-    for (const auto& sink : sinks_) {
-        try {
-            sink->close();
-        } catch (...) {
-            if (!first) first = std::current_exception();
-        }
-    }
-    if (first) std::rethrow_exception(first);
+    FirstError error;
+    for (const auto& sink : sinks_) error.guard([&] { sink->close(); });
+    error.rethrow_if_any();
 }
 
 bool FanOut::wants_more() const {

@@ -154,7 +154,7 @@ Run::Run(Program& program, RunSettings& settings)
             "the network with its buffers (--buffers-grids, --buffers-latents) and "
             "a frame of " +
                 show_size({request.width, request.height}) + " (--size, --roi)",
-            network_bytes(config, sensor_) + frame_bytes(request) +
+            network_bytes(config, sensor_) + frame_bytes(request, sensor_) +
                 buffer_bytes(config, sensor_, pipeline_settings().buffers),
             sensor_);
     }
@@ -279,18 +279,11 @@ int Run::run() {
 /// the other fails.
 void Run::run_pipeline() {
     FirstError error;
-    const auto guarded = [&](const auto& body) {
-        try {
-            body();
-        } catch (...) {
-            error.keep(std::current_exception());
-        }
-    };
-    guarded([&] { settings_.sequential ? pipeline_->run_sequential() : pipeline_->run(); });
-    guarded([&] {
+    error.guard([&] { settings_.sequential ? pipeline_->run_sequential() : pipeline_->run(); });
+    error.guard([&] {
         if (recorded_) recorded_->finish();
     });
-    guarded([&] {
+    error.guard([&] {
         if (events_out_) events_out_->finish();
     });
     error.rethrow_if_any();

@@ -9,7 +9,6 @@
 #include <algorithm>
 
 namespace eventide {
-namespace {
 
 FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height) {
     FrameGeometry geometry;
@@ -25,6 +24,8 @@ FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int se
         request.region.height != 0 ? request.region.height : geometry.height - geometry.y;
     return geometry;
 }
+
+namespace {
 
 void check_side(const char* name, int size) {
     if (size < 1 || size > kLargestFrameSide)

@@ -12,6 +12,7 @@
 
 namespace eventide {
 
+struct FrameGeometry;
 class RendererCore;
 
 struct RenderRequest {
@@ -22,6 +23,9 @@ struct RenderRequest {
     std::optional<SigmaRule> sigma_rule{};  ///< else the model's own
     bool want_sigma = true;
 };
+
+/// What a request asks for, with the sensor's size where it names none; not checked.
+FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height);
 
 /// One thread at a time. Nothing fails after construction; with Engine::fast nothing is allocated
 /// after make_output(), as long as frames come in the size it gave.

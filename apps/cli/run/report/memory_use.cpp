@@ -30,12 +30,10 @@ std::uint64_t buffer_bytes(const ModelConfig& config, const SensorInfo& sensor,
            buffers.latents * latent_pixels(config, sensor) * std::uint64_t(config.latent) * kFloat;
 }
 
-std::uint64_t frame_bytes(const RenderRequest& request) {
-    const Region& part = request.region;
-    const int width = part.width > 0 ? part.width : request.width - part.x;
-    const int height = part.height > 0 ? part.height : request.height - part.y;
+std::uint64_t frame_bytes(const RenderRequest& request, const SensorInfo& sensor) {
+    const FrameGeometry part = geometry_of(request, sensor.width, sensor.height);
     const std::uint64_t numbers = request.want_sigma ? 2 : 1;
-    return std::uint64_t(width) * std::uint64_t(height) * numbers * kFloat;
+    return std::uint64_t(part.part_width) * std::uint64_t(part.part_height) * numbers * kFloat;
 }
 
 Error out_of_memory(const std::string& what, std::uint64_t bytes, const SensorInfo& sensor) {

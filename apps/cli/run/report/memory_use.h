@@ -19,7 +19,7 @@ std::uint64_t buffer_bytes(const ModelConfig& config, const SensorInfo& sensor,
                            const PipelineBuffers& buffers);
 
 /// Of a frame as it is rendered, or the part of it that is wanted.
-std::uint64_t frame_bytes(const RenderRequest& request);
+std::uint64_t frame_bytes(const RenderRequest& request, const SensorInfo& sensor);
 
 /// Of kind failed: what wanted how much, and for which sensor.
 Error out_of_memory(const std::string& what, std::uint64_t bytes, const SensorInfo& sensor);
