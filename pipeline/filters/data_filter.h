@@ -22,7 +22,7 @@ class DataFilter {
 public:
     virtual ~DataFilter() = default;
     virtual void process(Batch& batch) = 0;
-    /// When the recording's first event was, where it is not the first that is processed.
+    /// When the recording's first event was; told before the first events are processed.
     virtual void count_from(SensorTime) {}
     /// Of the sensor as it looks behind the filter.
     virtual SensorPixels size() const = 0;

@@ -30,7 +30,6 @@ bool TimeFilter::is_inside(SensorTime t) const {
 }
 
 void TimeFilter::process(Batch& batch) {
-    if (!first_ && !batch.events.empty()) first_ = batch.events.front().t;  // alone, in no chain
     const auto outside = [this](const auto& item) { return !is_inside(item.t); };
     std::erase_if(batch.events, outside);
     std::erase_if(batch.images, outside);
