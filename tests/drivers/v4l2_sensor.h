@@ -7,13 +7,39 @@
 
 #include <linux/videodev2.h>
 
+#include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace eventide::testing_support::v4l2 {
 
 constexpr std::uint32_t kEvt3 = v4l2_fourcc('P', 'S', 'E', '3');
+
+inline std::vector<std::byte> bytes_of(std::initializer_list<unsigned> words) {
+    std::vector<std::byte> bytes;
+    for (const unsigned w : words) {
+        bytes.push_back(std::byte(w & 0xFF));
+        bytes.push_back(std::byte(w >> 8));
+    }
+    return bytes;
+}
+// EVT3 (docs/protocols.md D.4).
+constexpr unsigned time_high(unsigned t) {
+    return 0x8000 | t;
+}
+constexpr unsigned time_low(unsigned t) {
+    return 0x6000 | t;
+}
+constexpr unsigned row(unsigned y) {
+    return y;
+}
+constexpr unsigned column(unsigned x) {
+    return 0x2800 | x;
+}
+constexpr unsigned kEndOfData = 0xE019;
 
 inline V4l2NodeSettings sensor(std::uint32_t fourcc = kEvt3) {
     V4l2NodeSettings settings;

@@ -1,0 +1,161 @@
+// An event sensor in software behind V4L2 that loses buffers, is silent, stops and comes back.
+#include "tests/drivers/v4l2_sensor.h"
+#include "tests/support/holdings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+using testing::HasSubstr;
+using namespace testing_support::v4l2;
+using testing_support::V4l2NodeSettings;
+using testing_support::V4l2Testbed;
+
+TEST(V4l2Camera, LostBuffersMarkAGap) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open();
+    bed.give({bytes_of({time_high(0)})});
+    bed.give({bytes_of({time_low(1)}), 3});
+    bed.give({bytes_of({time_low(2)}), 0, true});
+    bed.give({bytes_of({time_low(3)})});
+    std::vector<bool> gaps;
+    for (RawPacket packet; gaps.size() < 4;)
+        if (camera.read(packet) == ReadStatus::data) gaps.push_back(packet.gap_before);
+    EXPECT_EQ(gaps, (std::vector<bool>{false, true, false,
+                                       true}));  // after the loss, after the damaged buffer
+    EXPECT_EQ(camera.counters().device_dropped, 3U);
+}
+
+TEST(V4l2Camera, SilenceIsATimeoutAndStopEnds) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open();
+    RawPacket packet;
+    EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+}
+
+TEST(V4l2Camera, OpenedAndClosedLeavesNothingBehind) {
+    V4l2Testbed bed{sensor()};
+    test::expect_nothing_left([&] {
+        auto camera = open();
+        bed.give({bytes_of({time_high(1), time_low(5), row(7), column(3)})});
+        for (RawPacket packet; camera.read(packet) != ReadStatus::data;) continue;
+        camera.stop();
+    });
+}
+
+/// Of the sensor's buffers in this process's memory; the kernel may count several as one.
+std::size_t mapped_buffers() {
+    std::ifstream maps{"/proc/self/maps"};
+    std::size_t count = 0;
+    for (std::string line; std::getline(maps, line);)
+        count += line.ends_with("/dev/video0") ? 1 : 0;
+    return count;
+}
+
+TEST(V4l2Camera, ASensorThatDoesNotStartLeavesNoMemoryMapped) {
+    V4l2Testbed bed{sensor()};
+    for (const auto& [request, words] :
+         {std::pair{"QBUF", "does not take a buffer"}, {"STREAMON", "does not start streaming"}}) {
+        bed.fail_next(request, EIO);
+        EXPECT_THAT(failure_of([] { open(); }), HasSubstr(words));
+        EXPECT_EQ(mapped_buffers(), 0U) << request;
+    }
+    {
+        auto camera = open({}, true);
+        EXPECT_GT(mapped_buffers(), 0U);
+        bed.fail_with(EIO);
+        bed.fail_next("STREAMON", EIO, 5);
+        RawPacket packet;
+        for (int look = 0; look < 5; ++look) {
+            EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+            EXPECT_EQ(mapped_buffers(), 0U) << look;
+        }
+        bed.fail_with(0);
+        bed.give({bytes_of({time_high(0)})});
+        while (camera.read(packet) != ReadStatus::data) continue;
+    }
+    EXPECT_EQ(mapped_buffers(), 0U);
+}
+
+TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
+    V4l2Testbed bed{sensor()};
+    RawPacket packet;
+    {
+        auto camera = open();
+        bed.fail_with(EIO);
+        EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("--reconnect"));
+        bed.fail_with(0);
+    }
+    auto camera = open({}, true);
+    bed.fail_with(EIO);
+    EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    bed.fail_with(0);
+    bed.give({bytes_of({time_high(0)})});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_GE(camera.counters().reconnects, 1U);
+}
+
+TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
+    V4l2Testbed bed{sensor()};
+    for (const bool reconnect : {false, true}) {
+        auto camera = open({}, reconnect);
+        bed.give({bytes_of({time_high(0)})});
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        bed.fail_next("QBUF", ENODEV);
+        if (!reconnect) {
+            EXPECT_THAT(failure_of([&] { camera.read(packet); }),
+                        HasSubstr("stopped (use --reconnect"));
+            continue;
+        }
+        EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+        bed.give({bytes_of({time_high(0)})});
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_TRUE(packet.gap_before);
+        EXPECT_EQ(camera.counters().reconnects, 1U);
+    }
+}
+
+TEST(V4l2Camera, WhyItIsNotBackIsToldOnce) {
+    V4l2NodeSettings settings = sensor();
+    settings.controls = {{"bias_fo", {-10, 10, 0}}};
+    V4l2Testbed bed{settings};
+    V4l2Settings wanted;
+    wanted.controls["bias_fo"] = 5;
+    std::vector<std::string> warnings;
+    auto camera = open(wanted, true, [&](const std::string& text) { warnings.push_back(text); });
+    const auto look = [&](int times) {
+        RawPacket packet;
+        for (int i = 0; i < times; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    };
+    bed.fail_with(EIO);
+    bed.fail_next("STREAMON", EIO, 3);
+    look(3);
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("does not start streaming")));
+    bed.fail_next("STREAMON", EBUSY, 3);
+    look(3);
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_THAT(warnings[1], HasSubstr("in use by another program"));
+    look(1);
+    EXPECT_EQ(camera.counters().reconnects, 1U);
+    bed.fail_next("STREAMON", EIO);
+    look(1);
+    EXPECT_EQ(warnings.size(), 3U) << "gone once more";
+    bed.take_controls_away();
+    look(2);
+    ASSERT_EQ(warnings.size(), 4U);
+    EXPECT_THAT(warnings[3], HasSubstr("no control 'bias_fo'"));
+}
+
+}  // namespace
+}  // namespace eventide
