@@ -10,10 +10,12 @@
 #include <limits>
 #include <utility>
 
-#define EVENTIDE_QUADS                                                              \
-    __attribute__((                                                                 \
-        target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16,prefer-vector-width=" \
-               "512")))
+#define EVENTIDE_QUADS_CAN "avx512f,avx512bw,avx512vl,avx512dq,avx512bf16"
+#if defined(__clang__)  // which does not know this preference, and does not need it
+#define EVENTIDE_QUADS __attribute__((target(EVENTIDE_QUADS_CAN)))
+#else
+#define EVENTIDE_QUADS __attribute__((target(EVENTIDE_QUADS_CAN ",prefer-vector-width=512")))
+#endif
 #define EVENTIDE_QUADS_INLINE EVENTIDE_QUADS __attribute__((always_inline)) inline
 #endif
 
