@@ -142,6 +142,14 @@ std::vector<std::string> flags_of(const CLI::App& app) {
     return flags;
 }
 
+/// "help" and "help COMMAND" are "--help" and "COMMAND --help".
+std::vector<std::string> with_help_as_flag(std::vector<std::string> arguments) {
+    if (arguments.empty() || arguments.front() != "help") return arguments;
+    arguments.erase(arguments.begin());
+    arguments.emplace_back("--help");
+    return arguments;
+}
+
 /// Of all arguments that were not expected, the first says most.
 [[noreturn]] void refuse_extras(const std::vector<std::string>& arguments, const CLI::App& app,
                                 const std::string& command) {
@@ -182,7 +190,8 @@ std::string help_hint(const std::string& command) {
     return "; see eventide " + (command.empty() ? "" : command + " ") + "--help";
 }
 
-Parsed parse_command_line(const std::vector<std::string>& arguments, const SettingTable& common) {
+Parsed parse_command_line(const std::vector<std::string>& given, const SettingTable& common) {
+    const std::vector<std::string> arguments = with_help_as_flag(given);
     CLI::App app{"Video with uncertainty from event cameras, in real time.", "eventide"};
     app.footer(
         footer_of(std::string{"Examples:\n"

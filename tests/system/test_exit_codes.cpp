@@ -11,7 +11,7 @@ namespace {
 class ExitCodes : public ProgramTest {};
 
 TEST_F(ExitCodes, HelpAndVersionAreData) {
-    for (const char* flag : {"--help", "--version"}) {
+    for (const char* flag : {"--help", "--version", "help"}) {
         const Result result = eventide({flag});
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_NE(result.output.find("eventide"), std::string::npos);
@@ -26,6 +26,7 @@ TEST_F(ExitCodes, HelpAndVersionAreData) {
         std::istringstream lines{result.output};
         for (std::string line; std::getline(lines, line);)
             EXPECT_LE(line.size(), 80U) << command << ": " << line;
+        EXPECT_EQ(eventide({"help", command}).output, result.output);
     }
 }
 
