@@ -105,10 +105,10 @@ SensorSettings demo_sensor() {
 
 const std::vector<SimulationPreset>& simulation_presets() {
     static const std::vector<SimulationPreset> kPresets{
-        {"thesis_train", "affine motion of one image, the thesis' training row", thesis_scene(),
-         thesis_sensor()},
-        {"thesis_test", "affine motion of one image, the thesis' test row", thesis_test_scene(),
-         thesis_sensor()},
+        {"thesis_train", "affine motion of one image, as in the thesis' training set",
+         thesis_scene(), thesis_sensor()},
+        {"thesis_test", "affine motion of one image, as in the thesis' test set",
+         thesis_test_scene(), thesis_sensor()},
         {"wide", "everything at once: what networks are trained on", SceneSettings{},
          SensorSettings{}},
         {"demo", "a few recognisable objects before a moving background, with a pause",

@@ -127,9 +127,10 @@ SettingTable BenchCommand::settings() {
                        "With --activity, frames at changing places in the window: a part whose "
                        "codes changed by no more than this is copied.",
                        0, 100));
-    add(number_setting("still_time", settings_.still_time, "WINDOWS",
-                       "And no further than this from the place in the window it is copied from.",
-                       0, 1));
+    add(number_setting(
+        "still_time", settings_.still_time, "WINDOWS",
+        "With --activity: how far the place in the window may be from the one it is copied from.",
+        0, 1));
     add(whole_setting("repetitions", settings_.repetitions, "N", "Of each stage.",
                       bench::kLeastRepetitions, 1'000'000));
     add(text_setting("json", json_, "FILE", "Also as JSON."));

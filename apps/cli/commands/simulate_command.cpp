@@ -93,7 +93,7 @@ std::string SimulateCommand::examples() const {
 SettingTable SimulateCommand::settings() {
     SettingTable table{"simulate", "eventide simulate: recordings whose truth is known.", {}};
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(text_setting("scene", scene_, "NAME", "What is simulated; --list shows the names."));
+    add(text_setting("scene", scene_, "NAME", "Scene to simulate; --list shows the names."));
     add(flag_setting("list", list_, "List the scenes, and exit."));
     Setting out =
         text_setting("out", out_, "FILE|FOLDER/",

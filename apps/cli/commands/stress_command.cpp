@@ -133,9 +133,10 @@ SettingTable StressCommand::settings() {
                      "Only cases with such names, also as '@(ONE|OTHER)'; --list shows them."));
     add(flag_setting("list", list_, "List the cases, and exit."));
     add(list_setting("models", models_, "NAME|FILE", "Models, any number of times."));
-    add(number_setting("minutes", minutes_, "N",
-                       "About how long it may take; what has a natural length takes that long.",
-                       0.1, 1e5));
+    add(number_setting(
+        "minutes", minutes_, "N",
+        "About how long it may take; cases of a fixed length take their time regardless.", 0.1,
+        1e5));
     add(flag_setting("quick", quick_,
                      "The form that tests run: short lengths, the same on every machine."));
     add(number_setting("soak", soak_hours_, "HOURS",

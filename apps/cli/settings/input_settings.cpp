@@ -40,7 +40,7 @@ void InputSettings::add_to(SettingTable& table) {
     table.settings.push_back(choice_setting(
         "input_time_unit", open.text.unit,
         "Unit of the times in a text recording; auto: seconds where there is a decimal point, else "
-        "microseconds, or what makes sense of the rate of events.",
+        "microseconds, or what gives a plausible rate of events.",
         {{TextTimeUnit::automatic, "auto"},
          {TextTimeUnit::seconds, "s"},
          {TextTimeUnit::milliseconds, "ms"},
@@ -48,8 +48,8 @@ void InputSettings::add_to(SettingTable& table) {
          {TextTimeUnit::nanoseconds, "ns"}}));
     table.settings.push_back(parsed_setting<SensorDuration>(
         "reorder", open.text.reorder, "TIME",
-        "Put rows of a text recording in order that come at most so long after a later one; 0s "
-        "takes them as they come. What comes later still is left out.",
+        "Sort rows of a text recording that come at most this much too late; 0s takes them as they "
+        "come. Rows that come later still are left out.",
         [](const std::string& text) { return parse_duration(text); },
         [](const SensorDuration& d) { return show_duration(d); }));
     table.settings.push_back(flag_setting(
@@ -68,9 +68,9 @@ OpenOptions InputSettings::options() const {
 }
 
 Setting filter_setting(std::vector<std::string>& filters) {
-    return list_setting(
-        "filter", filters, "NAME:ARGS",
-        "Filter the events, any number of times, in this order: " + data_filter_names() + ".");
+    return list_setting("filter", filters, "NAME:ARGS",
+                        "Filter the events; several filters apply in the order given. One of " +
+                            data_filter_names() + ".");
 }
 
 std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input,

@@ -30,10 +30,10 @@ void RunSettings::add_network(SettingTable& table) {
                   "model", model, "NAME|FILE",
                   "A name from the models folder (default, small, thesis) or a safetensors file."),
               model_given));
-    add(choice_setting("sigma_rule", sigma_rule,
-                       "How the members of the local ensemble give one sigma; model: as the model "
-                       "says.",
-                       sigma_words()));
+    add(choice_setting(
+        "sigma_rule", sigma_rule,
+        "How the sigmas of the local ensemble are combined; model: as the model says.",
+        sigma_words()));
     add(choice_setting("precision", precision,
                        "Arithmetic precision: auto measures at the start which is faster.",
                        kPrecisionWords));
@@ -48,22 +48,22 @@ void RunSettings::add_network(SettingTable& table) {
                       "Threads the network may use; 0: as many as this process may run on.", 0,
                       kMaxThreads));
     add(text_setting("state_in", state_in, "FILE",
-                     "Go on from the state that an earlier run saved: the network's "
-                     "(--state-out), or all of it (--states-out)."));
+                     "Continue from the state that an earlier run saved: the network's "
+                     "(--state-out) or the complete one (--states-out)."));
     add(text_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
     add(text_setting("states_out", states_out, "FOLDER",
-                     "Save all that a run remembers at each time of --states-at, on one thread: "
-                     "runs with such a file as --state-in give the frames of one run of all. "
-                     "Without --out nothing is rendered."));
+                     "Save the complete state of the run at each time of --states-at, on one "
+                     "thread: a run with such a file as --state-in gives the frames of one "
+                     "uninterrupted run. Without --out nothing is rendered."));
     add(list_setting("states_at", states_at, "TIME...",
-                     "Of a recording, ascending, as --from has them."));
-    add(choice_setting("frames", frames,
-                       "The camera's own images (APS): auto and use correct the frames by them, "
-                       "for as long as what they "
-                       "show holds; use says so where none came; ignore leaves them alone.",
-                       {{CameraFrames::automatic, "auto"},
-                        {CameraFrames::use, "use"},
-                        {CameraFrames::ignore, "ignore"}}));
+                     "Times for --states-out, in a recording, ascending, written as --from."));
+    add(choice_setting(
+        "frames", frames,
+        "The camera's own images (APS): auto and use correct the frames by them, for as long as "
+        "what they show is valid; use warns if none came; ignore does not use them.",
+        {{CameraFrames::automatic, "auto"},
+         {CameraFrames::use, "use"},
+         {CameraFrames::ignore, "ignore"}}));
     add(open_setting<ColourFilter>(
         "bayer", bayer, "none|rggb|grbg|gbrg|bggr",
         "The sensor's colour filter, from its top left corner; auto: what the camera or recording "
@@ -82,24 +82,25 @@ void RunSettings::add_machinery(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(parsed_setting<std::string>(
         "latency", latency, "TIME",
-        "Of a live source: how late frames may be. What does not fit is left out, in this order: "
-        "frames, half of their rate, event windows (merged into one), packets. none: as late as "
-        "the buffers allow; auto: 250ms.",
+        "How late frames of a live source may be. What does not fit is left out, in this order: "
+        "single frames, half of the frame rate, event windows (merged into one), packets. none: as "
+        "late as the buffers allow; auto: 250ms.",
         check_latency, same_text));
-    add(text_setting("camera", camera, "FILE", "Settings of a camera, as in config/cameras."));
+    add(text_setting("camera", camera, "FILE",
+                     "Camera settings: a file as in config/cameras; for v4l2: also a .bias or JSON "
+                     "file of Metavision."));
     add(flag_setting("reconnect", reconnect, "Wait for an unplugged camera to come back."));
-    add(whole_setting(
-        "buffers_packets", buffers_packets, "N",
-        "Packets between reading and binning: the burst a live source may send. Of a recording, "
-        "which waits, at most 8.",
-        1, 1 << 16));
+    add(whole_setting("buffers_packets", buffers_packets, "N",
+                      "Packets between reading and binning: the burst a live source may send. A "
+                      "recording, which waits, uses at most 8.",
+                      1, 1 << 16));
     add(buffers_setting("buffers_grids", buffers_grids,
-                        "Event windows between binning and the network; auto: 3 of a live source, "
-                        "2 of a recording."));
+                        "Event windows between binning and the network; auto: 3 for a live source, "
+                        "2 for a recording."));
     add(buffers_setting(
         "buffers_latents", buffers_latents,
-        "Event windows between the network and rendering: more bridge longer bursts "
-        "and allow more latency. auto: 3 of a live source, 2 of a recording."));
+        "Event windows between the network and rendering: more bridge longer bursts and allow more "
+        "latency. auto: 3 for a live source, 2 for a recording."));
     add(flag_setting("sequential", sequential,
                      "Everything on one thread: the same frames, for comparison."));
 }

@@ -61,8 +61,8 @@ void RunSettings::add_outputs(SettingTable& table) {
                      "Raw streams: 16 bytes before each frame with its number, its time in "
                      "microseconds and what happened (docs/usage.md). Y4M has the time anyway."));
     add(choice_setting("overload", overload,
-                       "What a stream of constant rate has in place of a skipped frame: the one "
-                       "before again, so that it keeps its pace, or nothing.",
+                       "What a stream of constant rate contains in place of a skipped frame: the "
+                       "previous one again, so that it keeps its pace, or nothing.",
                        {{Overload::repeat, "repeat"}, {Overload::skip, "skip"}}));
     add(choice_setting(
         "uncertainty", uncertainty,
@@ -78,14 +78,14 @@ void RunSettings::add_outputs(SettingTable& table) {
     add(number_setting("sigma_white", sigma_white, "SIGMA",
                        "The sigma (of intensity 0 to 1) that is shown as white, full red or clear.",
                        0.001, 100));
-    add(flag_setting("events", events,
-                     "Show the events of each frame's event window: left in the window and in "
-                     "videos, as events/*.png in the folder. The contact sheet and the live page "
-                     "always do."));
+    add(flag_setting(
+        "events", events,
+        "Show the events of each frame's event window: left of the frame in the window and in "
+        "videos, as events/*.png in the folder. The contact sheet and the live page always do."));
     add(parsed_setting<std::string>(
         "http_token", http_token, "TOKEN",
-        "What viewers of the live page have to know. auto: nothing on this machine alone, "
-        "else one that is made and told; none: nothing.",
+        "Token that viewers of the live page must send. auto: no token at an address of this "
+        "machine only, else one that is generated and logged; none: no token.",
         check_token, same_text));
     add(list_setting("http_name", http_name, "NAME",
                      "A name under which browsers reach the live page (of a proxy, for example); "
@@ -93,10 +93,10 @@ void RunSettings::add_outputs(SettingTable& table) {
     add(text_setting("record", record, "FILE",
                      "Also write what the source sends, before anything can be lost: in the format "
                      "of the extension, or untouched bytes as .bin."));
-    add(text_setting("events_out", events_out, "TO",
-                     "Also write the events behind all filters: in the format of the extension, "
-                     "as FORMAT:PATH (a pipe, or - for standard output), folder/, or "
-                     "udp://HOST:PORT."));
+    add(text_setting(
+        "events_out", events_out, "TO",
+        "Also write the events after all filters: in the format of the extension, as FORMAT:PATH "
+        "(a pipe, or - for standard output), folder/, or udp://HOST:PORT."));
     add(text_setting("stats", stats, "FILE",
                      "Counters as JSON, a line each second and a last one with \"final\": true."));
     add(flag_setting("strict", strict, "End with exit code 5 when data were lost or damaged."));
@@ -108,21 +108,21 @@ void RunSettings::add_adjustments(SettingTable& table) {
     add(filter_setting(filter));
     add(parsed_setting<std::string>(
         "hot_pixels", hot_pixels, "off|learn|FILE",
-        "Leave out hot pixels: learn finds them while it runs, a file lists "
-        "them, one x,y a line.",
+        "Remove hot pixels: learn finds them during the run, a file lists them, one x,y a line.",
         check_hot_pixels, same_text));
     add(parsed_setting<std::string>(
         "noise_filter", noise_filter, "model|auto|off|TIME",
-        "Leave out noise: events that fewer than two of the eight pixels around them support "
-        "within TIME. auto: 10 to 500 ms, by the noise that is found, more where nothing moves, "
-        "and hot pixels; model: as the model was trained.",
+        "Remove noise: events that fewer than two of the eight pixels around them support within "
+        "TIME. auto: 10 to 500 ms by the measured noise, more strictly where nothing moves, and "
+        "hot pixels; model: as the model was trained.",
         check_noise_filter, same_text));
     add(text_setting(
         "undistort", undistort, "FILE",
         "Undistort the frames: YAML of ROS' camera_calibration or Kalibr's camchain, for "
         "the whole sensor. The contact sheet stays as the camera sees it."));
-    add(text_setting("undistort_camera", undistort_camera, "NAME",
-                     "Of a Kalibr file with several cameras: cam1; without it, the first."));
+    add(text_setting(
+        "undistort_camera", undistort_camera, "NAME",
+        "Which camera of a Kalibr file with several, such as cam1; empty: the first."));
     add(flag_setting("auto_hdr", adjust.auto_hdr,
                      "Stretch the range the frame uses to black and white, smoothed in time; "
                      "sigma is scaled with it."));

@@ -108,12 +108,11 @@ SettingTable RunSettings::table() {
 /// Which frames of which part of the recording.
 void RunSettings::add_times(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(parsed_setting<FpsChoice>(
-        "fps", fps, "RATE",
-        "Frames per second of the video, which without --slow is sensor time: 120, 29.97, "
-        "30000/1001; frame: one at the end of each event window; auto: frame with --window aps, "
-        "else 30.",
-        parse_fps, show_fps));
+    add(parsed_setting<FpsChoice>("fps", fps, "RATE",
+                                  "Frames per second of the video: 120, 29.97, 30000/1001. Without "
+                                  "--slow, video time is sensor time. frame: one at the end of "
+                                  "each event window; auto: frame with --window aps, else 30.",
+                                  parse_fps, show_fps));
     add(number_setting("slow", slow, "N",
                        "Slow motion: the video takes N times as long as what it shows, with --fps "
                        "frames in each of its seconds.",
@@ -122,9 +121,10 @@ void RunSettings::add_times(SettingTable& table) {
                                          "Size of the frames: a factor of the sensor's, or pixels.",
                                          parse_size_choice, show_size_choice),
               size_given));
-    add(open_setting<Region>("roi", region, "X,Y,WxH",
-                             "Render only this part of the frame, in its pixels; all: everything.",
-                             "all", parse_region, show_region));
+    add(open_setting<Region>(
+        "roi", region, "X,Y,WxH",
+        "Render only this part of the frame, in pixels of the frame; all: everything.", "all",
+        parse_region, show_region));
     add(open_setting<int>(
         "lookahead", lookahead, "0|1|2",
         "Event windows a frame waits for: more give higher quality and more latency. auto: 0 for "
@@ -139,11 +139,11 @@ void RunSettings::add_times(SettingTable& table) {
         "width: 20000ev,200ms. model: what the model was trained for. auto: by content for "
         "recordings, short where much moves and 50 ms at most; model for live sources.",
         check_window, same_text));
-    add(parsed_setting<std::string>("speed", speed, "FACTOR",
-                                    "Of a recording: max (as fast as possible), 1 (as it was "
-                                    "recorded), 0.25, ...; auto: with a window or page as "
-                                    "recorded, or as --slow says, else max.",
-                                    check_speed, same_text));
+    add(parsed_setting<std::string>(
+        "speed", speed, "FACTOR",
+        "Playback speed of a recording: max (as fast as possible), 1 (as it was recorded), 0.25, "
+        "...; auto: with a window or page as recorded, or as --slow says, else max.",
+        check_speed, same_text));
     add(time_point_setting(
         "from", from, "start",
         "First frame: 2.5s or 20ms after the first event, or @MICROSECONDS of the sensor; start: "
@@ -168,14 +168,14 @@ void RunSettings::add_times(SettingTable& table) {
 void RunSettings::add_quality(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(choice_setting("quality", quality,
-                       "auto: of live sources and with --realtime, model, precision, size and rate "
-                       "of frames that are not given are chosen so that they hold the pace, and "
-                       "size and rate changed with the load; each is said. fixed: nothing is "
-                       "changed.",
+                       "auto: for live sources and with --realtime, whichever of model, precision, "
+                       "size and frame rate is not given is chosen to hold the pace; size and rate "
+                       "then follow the load. Every choice is logged. fixed: nothing is changed.",
                        {{QualityMode::automatic, "auto"}, {QualityMode::fixed, "fixed"}}));
-    add(flag_setting("realtime", realtime,
-                     "A recording as if a camera gave it: at its own pace, or --speed, with a live "
-                     "source's --window and --lookahead, and of the quality that holds the pace."));
+    add(flag_setting(
+        "realtime", realtime,
+        "Play a recording as a camera would deliver it: at its own pace, or --speed, with a live "
+        "source's --window and --lookahead, and in a quality that holds the pace."));
     add(parsed_setting<Budget>(
         "budget", budget, "TIME|SHARE%",
         "Processor time the network may take: 8ms for each frame that --fps asks for, or 50% of a "
