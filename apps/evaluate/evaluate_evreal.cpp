@@ -1,4 +1,4 @@
-// The EVREAL protocol (Ercan et al. 2023; docs/accuracy.md, "Where").
+// The EVREAL protocol (Ercan et al. 2023; docs/accuracy.md, "Protocols").
 #include "apps/evaluate/evaluate_recordings.h"
 #include "apps/evaluate/evreal_sequence.h"
 
