@@ -65,7 +65,7 @@ int port_of(int file) {
 }
 
 std::string advice(int error) {
-    if (error == EADDRINUSE) return "; another program has it, http:HOST:0 takes any that is free";
+    if (error == EADDRINUSE) return "; another program has it; http:HOST:0 takes any free port";
     if (error == EACCES) return "; ports below 1024 are the system's";
     if (error == EADDRNOTAVAIL) return "; this machine has no such address";
     return "";
@@ -85,7 +85,7 @@ int listen_at(HttpAddress& address) {
         error = errno;
     }
     throw Error(ErrorKind::failed,
-                name_of(address) + " cannot be had: " + system_words(error) + advice(error));
+                name_of(address) + " cannot be opened: " + system_words(error) + advice(error));
 }
 
 }  // namespace eventide
