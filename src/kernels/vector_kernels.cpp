@@ -12,6 +12,7 @@
 #include "src/kernels/render_kernels-inl.h"
 #include "src/kernels/vector_dots-inl.h"
 #include "src/kernels/vector_maps-inl.h"
+#include "src/kernels/vector_winograd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace eventide::HWY_NAMESPACE {
@@ -100,6 +101,8 @@ const VectorKernels* table() {
                                        .lanes = int(hn::Lanes(D())),
                                        .by_quads = kByQuads,
                                        .dot_area = dot_area,
+                                       .winograd_input = winograd_input,
+                                       .winograd_output = winograd_output,
                                        .compress = compress,
                                        .sigmoid = sigmoid_row,
                                        .reset_state = reset_state,

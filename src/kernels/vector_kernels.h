@@ -5,6 +5,7 @@
 #include "src/core/instructions.h"
 #include "src/kernels/dot_area.h"
 #include "src/kernels/render_kernels.h"
+#include "src/kernels/winograd.h"
 
 #include <cstddef>
 #include <string>
@@ -27,6 +28,8 @@ struct VectorKernels {
     bool by_quads;     ///< whether dot_area does layers of 8 and 16 outputs as quad_dots.h says
     /// With fused multiply-adds, so that AVX2 and AVX-512 agree.
     void (*dot_area)(const DotArea&);
+    void (*winograd_input)(const WinogradInput&);
+    void (*winograd_output)(const WinogradOutput&);
     /// out = sign(v) log1p(|v|). `ahead`: numbers from here to those wanted soon, which are fetched
     /// meanwhile; 0: none.
     void (*compress)(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead);

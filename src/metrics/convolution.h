@@ -4,7 +4,7 @@
 
 #include "src/core/array.h"
 #include "src/io/npz.h"
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_weights.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // What pays: a table for float32, one short measurement for bf16.
 #include "src/nn/backend.h"
 
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_conv.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 namespace eventide {
 namespace {
 
-constexpr int kSide = 24, kChannels = 64;  // of a typical layer's tile
+constexpr int kSide = 48, kChannels = 16;  // of a tile at full resolution, where most products are
 
 /// The shortest of a few runs: whatever else the machine does only adds.
 double seconds_of(const Backend& backend) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/kernels/plain/activations.h"
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_conv.h"
 #include "src/nn/state_map.h"
 #include "src/nn/tiling.h"
 

@@ -71,6 +71,21 @@ inline std::vector<Tile> tiles_of(int height, int width, int side) {
     return tiles;
 }
 
+/// Of each row of each tile the groups of `size` pixels that have a 1 become all 1; the last of a
+/// row may lack pixels.
+///
+///     size 4, a tile of 7     0 0 1 0 | 0 0 0     becomes     1 1 1 1 | 0 0 0
+inline void fill_groups(Mask& mask, const std::vector<Tile>& tiles, int size) {
+    if (size == 1) return;
+    for (const Tile& tile : tiles)
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; x += size) {
+                const auto n = std::size_t(std::min(size, tile.x1 - x));
+                std::uint8_t* group = &mask(y, x);
+                if (std::memchr(group, 1, n) != nullptr) std::memset(group, 1, n);
+            }
+}
+
 /// How a latent map is cut wherever its changes are kept track of (LatentMap::history).
 constexpr int kLatentSide = 32;
 inline std::vector<Tile> latent_tiles(int height, int width) {

@@ -1,7 +1,7 @@
 // Every 3x3 convolution of the shipped default on its own, at its tile's size: our kernels beside
 // oneDNN's, in float32 and bf16, both called as the encoder calls them (oneDNN gathers its input
 // into a dense block and puts its output where it belongs). "peak" is what no kernel can pass.
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_conv.h"
 #include "tests/bench/peak.h"
 
 #include <benchmark/benchmark.h>
@@ -86,7 +86,7 @@ void linear(benchmark::State& state, const Backend& backend) {
 
 int register_all() {
     bench::add_peaks(Instructions::best);
-    std::vector<Backend> kinds{{}};
+    std::vector<Backend> kinds{{}, {&vector_kernels(Instructions::avx2)}};
     if (onednn_available()) kinds.push_back({.onednn = true});
     const Bf16Kernels* bf16 = bf16_kernels();
     if (bf16 != nullptr) kinds.push_back({.bf16 = bf16});
@@ -96,7 +96,7 @@ int register_all() {
             const std::string name = std::string{s.name} + "/" + std::to_string(s.side) + "px/" +
                                      std::to_string(s.in) + "->" + std::to_string(s.out) +
                                      (kind.bf16 != nullptr ? "/bf16" : "/f32") +
-                                     (kind.onednn ? "/onednn" : "/own");
+                                     (kind.onednn ? "/onednn" : "/own") + "/" + kind.f32->name;
             benchmark::RegisterBenchmark(name.c_str(), convolve, s, kind)
                 ->Unit(benchmark::kMicrosecond)
                 ->MinTime(0.1);

@@ -7,7 +7,7 @@
 #include "pipeline/parallel_tbb.h"
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_conv.h"
 #include "tests/bench/peak.h"
 #include "tests/model/streams.h"
 
@@ -171,7 +171,7 @@ int register_all() {
          std::vector<std::pair<int, int>>{{240, 180}, {346, 260}, {640, 480}, {1280, 720}})
         for (const std::string name : {"default", "small", "thesis"})
             for (const Precision precision : {Precision::f32, Precision::bf16}) {
-                if (precision == Precision::bf16 && !bf16_kernels(most) != nullptr) continue;
+                if (precision == Precision::bf16 && bf16_kernels(most) == nullptr) continue;
                 for (const int threads : {1, 2}) {
                     const Setting s{name, shipped(name), width, height, threads, precision, most};
                     add("encode/" + s.text(), encode, s, Kind::everywhere);

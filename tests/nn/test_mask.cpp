@@ -1,5 +1,6 @@
 // Masks against their definition.
 #include "src/kernels/mask.h"
+#include "src/nn/tiling.h"
 
 #include <gtest/gtest.h>
 
@@ -45,6 +46,21 @@ TEST(Mask, HalvingIsTheMaximumAroundEverySecondPixel) {
             for (int x = 0; x < half.width(); ++x)
                 EXPECT_EQ(half(y, x) != 0, any_near(mask, 2 * y, 2 * x, 1));
     }
+}
+
+TEST(Mask, GroupsOfATilesRowsAreFilledWhereOnePixelIsSet) {
+    const std::vector<Tile> tiles = tiles_of(2, 13, 7);  // columns 0 to 5 and 6 to 12
+    Mask mask{2, 13};
+    mask(0, 5) = mask(0, 6) = mask(1, 12) = 1;
+    fill_groups(mask, tiles, 4);
+    const auto row = [&](int y) {
+        std::string text;
+        for (const std::uint8_t v : mask.row(y)) text += v != 0 ? '1' : '.';
+        return text;
+    };
+    EXPECT_EQ(row(0), "....111111...")
+        << "4 and 5 end the first tile's row, 6 to 9 begin the second";
+    EXPECT_EQ(row(1), "..........111");
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // time.
 #include "src/kernels/bf16_kernels.h"
 #include "src/kernels/quad_dots.h"
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_conv.h"
 #include "tests/nn/fills.h"
 
 #include <gtest/gtest.h>
@@ -136,11 +136,11 @@ TEST(Quads, AMapInThreeGivesTheSameBits) {
             std::copy_n(in.data() + p * kChannels, kChannels, padded.data() + p * kPadded);
         layer_numbers.from_float(padded.data(), kSide * kSide, kPadded, whole.data());
         const auto run = [&](const PackedConv& conv, ConvArea area) {
-            std::vector<float> out(49 * kOutputs);
+            std::vector<float> out(49 * kOutputs), scratch(conv.scratch_size(7, 7));
             area.out = out.data();
             area.out_pitch = 7 * kOutputs;
             area.height = area.width = 7;
-            conv.run(area, nullptr);
+            conv.run(area, scratch.data());
             return out;
         };
         const float* first = split.data();

@@ -115,12 +115,14 @@ void GatedDecoder::run_blocks(const GatedLevel& deepest, const PaddedMap& h, boo
                     [&](std::size_t, const Tile& tile, float* scratch) {
                         convolve(block.first, *d, block.inner, true, tile, scratch);
                     });
+        fill_groups(level.touched, deepest.tiles(), block.first.group());
         spread(level);
         runner.over(deepest.tiles(), level.touched,
                     [&](std::size_t, const Tile& tile, float* scratch) {
                         convolve(block.second, block.inner, block.sum, false, tile, scratch);
                         add(*before, is_float, block, tile, scratch);
                     });
+        fill_groups(level.touched, deepest.tiles(), block.second.group());
         d = &block.out;
         before = &block.sum;
         is_float = true;
@@ -152,6 +154,7 @@ void GatedDecoder::join(const GatedLevel& level, const PaddedMap& h, const Padde
     runner.over(level.tiles(), joined.touched, [&](std::size_t, const Tile& tile, float* scratch) {
         join_tile(h, below, l, tile, scratch);
     });
+    fill_groups(joined.touched, level.tiles(), joined.up.group());
 }
 
 /// d_l = relu(up.l * [up2(d_{l+1}); h_l])

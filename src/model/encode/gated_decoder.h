@@ -15,6 +15,9 @@ namespace eventide {
 ///     of level l                        its mask or what up2 reads of level l + 1's, spread by 1
 ///     of the top                        spread by 1 more, for `out`: where codes may have changed
 ///
+/// After a layer whose outputs are rounded by groups (PackedConv::group()), filled up to whole
+/// ones.
+///
 /// A tile without a touched pixel is left out; its numbers are those of the last run().
 class GatedDecoder {
 public:
@@ -38,7 +41,7 @@ public:
 
 private:
     struct Level {
-        Mask touched, room;  // where what d_l is made of has changed; to spread it with
+        Mask touched, room;  // where d_l may have changed; to spread it with
         PackedConv up;
         PaddedMap d;  // d_l; of the deepest level that of the blocks counts
     };

@@ -3,7 +3,7 @@
 
 #include "src/model/model_file.h"
 #include "src/nn/conv_gru.h"
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_conv.h"
 #include "src/nn/state_map.h"
 
 #include <string>

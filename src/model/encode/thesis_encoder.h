@@ -5,7 +5,7 @@
 #include "src/model/encode/latent_tiles.h"
 #include "src/nn/conv_gru.h"
 #include "src/nn/load_weights.h"
-#include "src/nn/packed_layers.h"
+#include "src/nn/packed_conv.h"
 #include "src/nn/padded_map.h"
 #include "src/nn/state_map.h"
 #include "src/nn/tile_runner.h"
