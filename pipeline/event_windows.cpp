@@ -20,7 +20,7 @@ EventWindows::EventWindows(const Source& source, const Settings& settings, Event
       silence_margin_(settings.silence_margin) {}
 
 void EventWindows::take(const RawPacket& packet) {
-    if (packet.gap_before) note_gap();
+    if (packet.gap_before) note_gap(packet.reopened);
     if (packet.bytes.empty()) {
         advance_in_silence(packet.arrived);
         return;
@@ -53,9 +53,9 @@ void EventWindows::finish(End end) {
     counters_.note(parser_->damaged(), slicer_.counters());
 }
 
-void EventWindows::note_gap() {
+void EventWindows::note_gap(bool reopened) {
     counters_.bin.gaps.add();
-    parser_->resync();
+    reopened ? parser_->reopened() : parser_->resync();
     slicer_.mark_gap();
 }
 

@@ -52,7 +52,7 @@ public:
     bool is_past_end() const { return slicer_.is_past_end(); }
 
 private:
-    void note_gap();
+    void note_gap(bool reopened);
     void pass_on(HostTime arrived);
     void leave_out_known();
     void stop(HostTime arrived);

@@ -142,6 +142,7 @@ ReadStatus UsbCamera::read_stream(RawPacket& into) {
     }
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, false);
+    into.reopened = std::exchange(reopened_, false);
     ++counters_.transfers;
     counters_.bytes += into.bytes.size();
     leave_out_half_word(into.bytes);
@@ -171,7 +172,7 @@ ReadStatus UsbCamera::wait_for_return() {
         open();
         start();
         ++counters_.reconnects;
-        gap_ = true;
+        gap_ = reopened_ = true;
         warnings_.is_back();
     } catch (const Error& error) {  // not there yet, or not yet ready: the next look will tell
         close();

@@ -131,6 +131,7 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
     into.bytes.assign(bytes.begin(), bytes.end());
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, filled.damaged);  // a damaged buffer may lack its end
+    into.reopened = std::exchange(reopened_, false);
     ++counters_.transfers;
     counters_.bytes += bytes.size();
     return ReadStatus::data;
@@ -155,7 +156,7 @@ ReadStatus V4l2Camera::lost() {
     try {
         open();
         ++counters_.reconnects;
-        gap_ = true;
+        gap_ = reopened_ = true;
         warnings_.is_back();
     } catch (const Error& error) {  // not there yet: the next look will tell
         device_.reset();

@@ -102,7 +102,12 @@ TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     bed.give({bytes_of({time_high(0)})});
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_TRUE(packet.gap_before);
+    EXPECT_TRUE(packet.reopened) << "its clock may count from elsewhere";
     EXPECT_GE(camera.counters().reconnects, 1U);
+    bed.give({bytes_of({time_high(1)}), 1});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_FALSE(packet.reopened);
 }
 
 TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
