@@ -78,6 +78,7 @@ void Slicer::reset() {
     silent_ = 0;
     gap_ = reset_ = finished_ = past_end_ = false;
     first_stream_ = true;
+    end_ = settings_.end;
     if (settings_.begin) begin_at(*settings_.begin);
 }
 
@@ -114,8 +115,7 @@ void Slicer::restore(const State& state) {
 void Slicer::begin_at(SensorTime begin) {
     begin_ = origin_ = begin;
     newest_ = std::max(newest_, begin);
-    if (first_stream_ && settings_.duration && !settings_.end)
-        settings_.end = begin + *settings_.duration;
+    if (first_stream_ && settings_.duration && !settings_.end) end_ = begin + *settings_.duration;
 }
 
 void Slicer::push(std::span<const Event> events, HostTime arrived) {
@@ -132,8 +132,10 @@ void Slicer::push_one(const Event& event) {
             return;
         }
         ++counters_.time_resets;
-        seams_.push_back({pending_.size(), std::max(newest_, newest_event_)});
+        const SensorTime final = std::max(newest_, newest_event_);
+        seams_.push_back({pending_.size(), final});
         first_stream_ = false;
+        end_ = end_after_reset(final, event.t - kMicrosecond);
         newest_ = newest_event_ = SensorTime::min();
         same_time_ = 0;
     }
@@ -160,10 +162,16 @@ void Slicer::push_one(const Event& event) {
     }
 }
 
+/// A time of the first stream says nothing of the next, but what is left of a duration does.
+std::optional<SensorTime> Slicer::end_after_reset(SensorTime final, SensorTime begin) const {
+    if (settings_.end || !end_) return std::nullopt;
+    return begin + std::max(*end_ - final, kMicrosecond);
+}
+
 void Slicer::note_time(SensorTime t) {
-    if (first_stream_ && settings_.end && t > *settings_.end) {
+    if (end_ && t > *end_) {
         past_end_ = true;
-        t = *settings_.end;
+        t = *end_;
     }
     newest_ = std::max(newest_, t);
 }

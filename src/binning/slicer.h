@@ -94,6 +94,7 @@ private:
     };
     void push_one(const Event& event);
     void begin_at(SensorTime begin);
+    std::optional<SensorTime> end_after_reset(SensorTime final, SensorTime begin) const;
     void note_time(SensorTime t);
     void drop_consumed();
     bool is_ended() const { return finished_ || past_end_ || !seams_.empty(); }
@@ -129,7 +130,8 @@ private:
     int silent_ = 0;               // empty windows in a row
     HostTime arrived_{};
     bool gap_ = false, reset_ = false, finished_ = false, past_end_ = false;
-    bool first_stream_ = true;  // settings_.begin and end are times of the first stream only
+    bool first_stream_ = true;       // settings_.begin and end are times of the first stream only
+    std::optional<SensorTime> end_;  // of this stream
     SlicerCounters counters_;
 };
 
