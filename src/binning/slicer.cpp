@@ -76,7 +76,7 @@ void Slicer::reset() {
     newest_ = newest_event_ = SensorTime::min();
     same_time_ = 0;
     silent_ = 0;
-    gap_ = reset_ = finished_ = past_end_ = false;
+    gap_ = reset_ = anew_ = finished_ = past_end_ = false;
     first_stream_ = true;
     end_ = settings_.end;
     if (settings_.begin) begin_at(*settings_.begin);
@@ -126,7 +126,8 @@ void Slicer::push(std::span<const Event> events, HostTime arrived) {
 }
 
 void Slicer::push_one(const Event& event) {
-    if (event.t < newest_event_) {  // the parser keeps order, so the camera's clock was reset
+    // The parser keeps order, so where time goes back the camera's clock was reset.
+    if (const bool anew = std::exchange(anew_, false); anew || event.t < newest_event_) {
         if (past_end_) {
             ++counters_.after_end;
             return;

@@ -95,6 +95,37 @@ TEST(EventWindows, GoOnByTheHostsClockInSilence) {
     EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
 }
 
+TEST(EventWindows, GoOnWithASourceThatStoodStill) {
+    constexpr std::int64_t kMs = 1000;
+    Beginning b(true, 10 * kMs);
+    b.give(record(ToyKind::event, kMs), 0);
+    for (std::int64_t host = 0; host <= 20'000 * kMs; host += 20 * kMs) b.give({}, host);
+    const std::size_t of_silence = b.edges.size();
+    EXPECT_GT(of_silence, 900U);
+    std::int64_t host = 20'000 * kMs, t = kMs;
+    const auto send = [&](std::int64_t ms) {
+        for (const std::int64_t end = t + ms * kMs; t < end; t += 5 * kMs, host += 5 * kMs)
+            b.give(record(ToyKind::event, t), host);
+    };
+    send(1000);
+    EXPECT_EQ(b.edges.size(), of_silence) << "it may have been on its way for long";
+    send(1000);
+    EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 1U);
+    EXPECT_EQ(b.edges.back().second / kMs, 1990);
+    EXPECT_GT(b.edges.size(), of_silence + 90);
+}
+
+TEST(EventWindows, WaitForWhatWasOnItsWayForLong) {
+    constexpr std::int64_t kMs = 1000;
+    Beginning b(true, 10 * kMs);
+    b.give(record(ToyKind::event, kMs), 0);
+    for (std::int64_t host = 0; host <= 5'000 * kMs; host += 20 * kMs) b.give({}, host);
+    for (std::int64_t t = kMs; t < 7'000 * kMs; t += 5 * kMs)
+        b.give(record(ToyKind::event, t), std::max(t, 5'000 * kMs));
+    EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 0U);
+    EXPECT_EQ(b.edges.back().second / kMs, 6990);
+}
+
 TEST(EventWindows, DoNotBeginByTheHostsClock) {
     Beginning b(true);
     b.give({}, 5'000'000);
