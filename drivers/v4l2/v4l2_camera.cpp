@@ -73,8 +73,10 @@ std::span<const std::byte> before_end_of_data(std::span<const std::byte> bytes,
                                               EvtEncoding encoding) {
     if (encoding == EvtEncoding::evt3)
         return before<std::uint16_t>(bytes, [](std::uint16_t w) { return w == 0xE019; });
+    // The other half of a word is a mask of columns, which may look like anything.
+    const int upper_at = encoding == EvtEncoding::evt21_swapped ? 0 : 32;
     return before<std::uint64_t>(
-        bytes, [](std::uint64_t w) { return (w & 0xE00000FF00000000U) == 0xE000001900000000U; });
+        bytes, [=](std::uint64_t w) { return (w >> upper_at & 0xE00000FFU) == 0xE0000019U; });
 }
 
 V4l2Camera::V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool reconnect,
