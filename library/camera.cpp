@@ -29,14 +29,14 @@ public:
 
     bool read(Batch& batch) {
         batch.clear();
-        gap_before_ = packet_.gap_before = false;
+        gap_before_ = packet_.gap_before = packet_.reopened = false;
         const ReadStatus status = camera_->read(packet_);
         if (status == ReadStatus::end) return read_rest(batch);
         now_ = std::chrono::steady_clock::now();
         if (status == ReadStatus::timeout) return true;
         now_ = packet_.arrived;
         gap_before_ = packet_.gap_before;
-        if (gap_before_) parser_->resync();
+        if (gap_before_) packet_.reopened ? parser_->reopened() : parser_->resync();
         if (camera_->is_live()) parser_->arrives(now_);
         parser_->parse(packet_.bytes, batch);
         note_clock();

@@ -17,10 +17,11 @@ EventWindows::EventWindows(const Source& source, const Settings& settings, Event
       observer_(observer),
       counters_(counters),
       live_(source.is_live()),
-      silence_margin_(settings.silence_margin) {}
+      silence_margin_(settings.silence_margin),
+      most_behind_(settings.most_behind) {}
 
 void EventWindows::take(const RawPacket& packet) {
-    if (packet.gap_before) note_gap();
+    if (packet.gap_before) note_gap(packet.reopened);
     if (packet.bytes.empty()) {
         advance_in_silence(packet.arrived);
         return;
@@ -29,6 +30,7 @@ void EventWindows::take(const RawPacket& packet) {
     counters_.bin.bytes.add(packet.bytes.size());
     if (live_) parser_->arrives(packet.arrived);
     parser_->parse(packet.bytes, batch_);
+    look_behind(packet.arrived);
     pass_on(packet.arrived);
     if (live_) advance_clock(packet.arrived);
     counters_.note(parser_->damaged(), slicer_.counters());
@@ -53,9 +55,9 @@ void EventWindows::finish(End end) {
     counters_.note(parser_->damaged(), slicer_.counters());
 }
 
-void EventWindows::note_gap() {
+void EventWindows::note_gap(bool reopened) {
     counters_.bin.gaps.add();
-    parser_->resync();
+    reopened ? parser_->reopened() : parser_->resync();
     slicer_.mark_gap();
 }
 
@@ -125,7 +127,21 @@ void EventWindows::advance_clock(HostTime arrived) {
 void EventWindows::advance_in_silence(HostTime now) {
     if (!live_ || !clock_) return;
     const auto silent = std::chrono::duration_cast<SensorDuration>(now - clock_arrived_);
-    if (silent > silence_margin_) slicer_.advance(*clock_ + silent - silence_margin_, now);
+    if (silent <= silence_margin_) return;
+    promised_ = *clock_ + silent - silence_margin_;
+    slicer_.advance(*promised_, now);
+}
+
+/// What was only on its way for long (a stalled network) catches up at once.
+void EventWindows::look_behind(HostTime arrived) {
+    const auto clock = parser_->clock();
+    if (!promised_ || !clock) return;
+    if (*promised_ - *clock <= most_behind_) return behind_since_.reset();
+    if (!behind_since_) behind_since_ = arrived;
+    if (arrived - *behind_since_ < most_behind_) return;
+    slicer_.begin_anew();
+    promised_.reset();
+    behind_since_.reset();
 }
 
 }  // namespace eventide

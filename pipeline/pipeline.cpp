@@ -64,7 +64,7 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
 // ---- the pipeline ----------------------------------------------------------------------------
 
 void Pipeline::read() {  // bytes
-    bool gap = false;
+    bool gap = false, reopened = false;
     guarded([&] {
         for (;;) {
             auto packet = packet_to_fill();
@@ -74,9 +74,11 @@ void Pipeline::read() {  // bytes
                 counters_.read.lost_packets.add(spill_.bytes.empty() ? 0 : 1);
                 counters_.read.lost_bytes.add(spill_.bytes.size());
                 gap = gap || spill_.gap_before || !spill_.bytes.empty();
+                reopened = reopened || spill_.reopened;
                 continue;
             }
             packet->gap_before |= std::exchange(gap, false);
+            packet->reopened |= std::exchange(reopened, false);
             packets_.push(std::move(packet));
         }
     });
@@ -132,7 +134,7 @@ void Pipeline::present() {  // latent maps -> frames -> sinks
 // ---- one step of each ------------------------------------------------------------------------
 
 bool Pipeline::read_one(RawPacket& into) {
-    into.gap_before = false;
+    into.gap_before = into.reopened = false;
     const ReadStatus status = parts_.source.read(into);
     if (status == ReadStatus::end) return false;
     if (status == ReadStatus::timeout) {  // an empty packet: only host time passes

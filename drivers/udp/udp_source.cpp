@@ -12,6 +12,9 @@ namespace eventide {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{20};  // how late stop() may be heard
+constexpr std::chrono::milliseconds kGathered{1};      // datagrams of one packet
+constexpr std::size_t kEnoughBytes = 256 << 10;
+constexpr int kMostAtOnce = 1024;
 
 void read_size(const UdpName& name, const std::string& text, SensorInfo& info) {
     const auto [width, height] = size_in(text).value_or(std::pair{0, 0});
@@ -25,7 +28,8 @@ void read_size(const UdpName& name, const std::string& text, SensorInfo& info) {
 
 }  // namespace
 
-UdpSource::UdpSource(const UdpName& name) : socket_(UdpSocket::listening(name)) {
+UdpSource::UdpSource(const UdpName& name)
+    : socket_(UdpSocket::listening(name)), datagram_(kLargestDatagram) {
     info_.name = name.text();
     for (const auto& [key, value] : name.values) {
         const auto named = udp_records_named(value);
@@ -49,26 +53,38 @@ UdpSource::UdpSource(const UdpName& name) : socket_(UdpSocket::listening(name)) 
     info_.format = "udp";
 }
 
+/// What comes within a millisecond is one packet: a fast camera fills thousands of datagrams a
+/// second, and the pipeline's buffers are for as many packets as bridge a burst.
 ReadStatus UdpSource::read(RawPacket& into) {
-    into.gap_before = false;
-    into.bytes.resize(kLargestDatagram);
-    const auto n = socket_.receive(into.bytes, kLongestWait);
+    into.bytes.clear();
+    auto n = socket_.receive(datagram_, kLongestWait);
+    const HostTime until = std::chrono::steady_clock::now() + kGathered;
+    for (int taken = 1; n && !stopped_; ++taken) {
+        take(std::span{datagram_}.first(*n), into);
+        if (taken == kMostAtOnce || into.bytes.size() >= kEnoughBytes) break;
+        n = socket_.receive(datagram_, std::chrono::milliseconds{0});
+        if (!n && std::chrono::steady_clock::now() < until)
+            n = socket_.receive(datagram_, kGathered);
+    }
     into.arrived = std::chrono::steady_clock::now();
     if (stopped_) {
         into.bytes.clear();
         return ReadStatus::end;
     }
-    const std::span<const std::byte> datagram(into.bytes.data(), n.value_or(0));
-    const std::size_t whole = whole_udp_records(records_, datagram);
-    if (whole != datagram.size()) ++counters_.odd_transfers;
-    into.bytes.resize(whole);
-    if (!n || whole == 0) return ReadStatus::timeout;
+    if (into.bytes.empty()) return ReadStatus::timeout;
     const std::uint64_t lost = socket_.take_lost();
     counters_.device_dropped += lost;
     into.gap_before = lost > 0;
-    into.sequence = ++counters_.transfers;
-    counters_.bytes += whole;
+    counters_.bytes += into.bytes.size();
     return ReadStatus::data;
+}
+
+void UdpSource::take(std::span<const std::byte> datagram, RawPacket& into) {
+    const std::size_t whole = whole_udp_records(records_, datagram);
+    if (whole != datagram.size()) ++counters_.odd_transfers;
+    if (whole == 0) return;
+    into.bytes.insert(into.bytes.end(), datagram.begin(), datagram.begin() + std::ptrdiff_t(whole));
+    into.sequence = ++counters_.transfers;
 }
 
 std::unique_ptr<Parser> UdpSource::make_parser() const {

@@ -8,13 +8,15 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
 namespace eventide {
 
-/// A datagram is a packet. None of the formats numbers its datagrams: lost are those that the
-/// system says it had no room for, and a gap is where they would have been.
+/// A packet is the datagrams that come within a millisecond, in their order. None of the formats
+/// numbers them: lost are those that the system says it had no room for, and a gap is before the
+/// packet that they would have been in.
 class UdpSource final : public Camera {
 public:
     /// size=WxH has to be given, format= is t64 unless told otherwise. Throws Error: usage for the
@@ -25,17 +27,20 @@ public:
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override { stopped_ = true; }
     std::unique_ptr<Parser> make_parser() const override;
-    /// odd_transfers: datagrams that ended within a record; device_dropped: datagrams lost.
+    /// transfers: datagrams; odd_transfers: those that ended within a record; device_dropped:
+    /// datagrams lost.
     CameraCounters counters() const override { return counters_; }
 
     std::uint16_t port() const { return socket_.port(); }
 
 private:
     static constexpr std::size_t kLargestDatagram = 65536;
+    void take(std::span<const std::byte> datagram, RawPacket& into);
 
     SensorInfo info_;
     UdpRecords records_ = UdpRecords::t64;
     UdpSocket socket_;
+    std::vector<std::byte> datagram_;
     CameraCounters counters_;
     std::atomic<bool> stopped_{false};
 };

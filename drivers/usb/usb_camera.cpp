@@ -15,6 +15,12 @@ constexpr std::uint8_t kSecondGenerationBoard = 5;
 constexpr auto kReadTimeout = 20ms;
 constexpr auto kBeginTimeout = 1000ms;
 
+/// "DAVIS346B of 346x260 px"
+std::string model_text(const SensorInfo& info) {
+    return info.name + " of " + std::to_string(info.width) + "x" + std::to_string(info.height) +
+           " px";
+}
+
 }  // namespace
 
 UsbCamera::UsbCamera(UsbKind kind, UsbCameraOptions options, UsbStreamSettings transfers)
@@ -57,9 +63,15 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
 void UsbCamera::open() {
     device_ = std::make_unique<UsbDevice>(selector_);
     const UsbIdentity& identity = device_->identity();
-    info_.serial = identity.serial;
-    info_ = set_up(*device_);
-    info_.serial = identity.serial;
+    const bool first = info_.width == 0;
+    if (first) info_.serial = identity.serial;  // for what set_up() may have to say
+    SensorInfo info = set_up(*device_);
+    info.serial = identity.serial;
+    // Of a camera without a serial number only the port is known.
+    if (!first && (info.name != info_.name || info.width != info_.width ||
+                   info.height != info_.height || info.format != info_.format))
+        refuse("is a " + model_text(info_) + ", found a " + model_text(info) + " in its place");
+    info_ = std::move(info);
     // The same camera must come back, not another; one without a serial number to the same port.
     selector_.serial = identity.has_serial ? identity.serial : "";
     selector_.port = identity.has_serial ? "" : identity.port;
@@ -142,6 +154,7 @@ ReadStatus UsbCamera::read_stream(RawPacket& into) {
     }
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, false);
+    into.reopened = std::exchange(reopened_, false);
     ++counters_.transfers;
     counters_.bytes += into.bytes.size();
     leave_out_half_word(into.bytes);
@@ -171,7 +184,7 @@ ReadStatus UsbCamera::wait_for_return() {
         open();
         start();
         ++counters_.reconnects;
-        gap_ = true;
+        gap_ = reopened_ = true;
         warnings_.is_back();
     } catch (const Error& error) {  // not there yet, or not yet ready: the next look will tell
         close();

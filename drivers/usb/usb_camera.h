@@ -110,7 +110,7 @@ private:
     std::unique_ptr<UsbStream> stream_;            ///< after device_: it must end first
     std::optional<std::vector<std::byte>> first_;  ///< bytes from where time began
     std::uint64_t dropped_before_ = 0;             ///< by the device, when it was started
-    bool gap_ = false;
+    bool gap_ = false, reopened_ = false;
     std::atomic<bool> stopped_{false};
 };
 

@@ -76,11 +76,17 @@ UsbStream::~UsbStream() {
     cancel_all();
 }
 
+void UsbStream::cancel(const Pipe& pipe) {
+    for (const auto& transfer : transfers_)
+        if (transfer->pipe == &pipe) libusb_cancel_transfer(transfer->raw);
+}
+
 /// Once is not enough: a transfer may complete just before it is cancelled.
 void UsbStream::cancel_all() {
     stopping_ = true;
-    while (active_ > 0) {
-        for (const auto& transfer : transfers_) libusb_cancel_transfer(transfer->raw);
+    while (data_.active + messages_.active > 0) {
+        cancel(data_);
+        cancel(messages_);
         handle_events(std::chrono::milliseconds{1});
     }
 }
@@ -90,7 +96,7 @@ int UsbStream::submit(Transfer& transfer) {
     transfer.raw->buffer = reinterpret_cast<unsigned char*>(transfer.buffer.data());
     transfer.raw->length = int(transfer.pipe->bytes);
     const int code = libusb_submit_transfer(transfer.raw);
-    active_ += code == 0 ? 1 : 0;
+    transfer.pipe->active += code == 0 ? 1 : 0;
     return code;
 }
 
@@ -113,7 +119,7 @@ void UsbStream::completed(libusb_transfer* raw) {
     auto& transfer = *static_cast<Transfer*>(raw->user_data);
     UsbStream& stream = *transfer.stream;
     Pipe& pipe = *transfer.pipe;
-    --stream.active_;
+    --pipe.active;
     switch (raw->status) {
         case LIBUSB_TRANSFER_COMPLETED:
         case LIBUSB_TRANSFER_TIMED_OUT:
@@ -152,8 +158,10 @@ UsbStream::Status UsbStream::take(std::vector<std::byte>& into) {
 }
 
 /// Nothing comes from a halted endpoint until this was done, and what the device had queued is
-/// lost.
+/// lost. First all its transfers come back: a host controller does not begin an endpoint anew that
+/// has any (xHCI refuses), and where only the device does, they no longer understand each other.
 void UsbStream::clear_halt(Pipe& pipe) {
+    if (pipe.active > 0) return cancel(pipe);
     const bool hopeless = ++pipe.halts_in_a_row > kMaxHaltsInARow;
     if (hopeless && &pipe == &data_)
         throw Error(ErrorKind::device,

@@ -62,7 +62,7 @@ private:
     /// One endpoint, and what became of it.
     struct Pipe {
         std::uint8_t endpoint = 0;
-        int transfers = 0;
+        int transfers = 0, active = 0;  ///< of them: with libusb
         std::size_t bytes = 0;
         bool halted = false, gap = false, given_up = false;
         int halts_in_a_row = 0;
@@ -72,6 +72,7 @@ private:
     void add_transfers(Pipe& pipe);
     int submit(Transfer& transfer);
     void resubmit(Transfer& transfer);
+    void cancel(const Pipe& pipe);
     void cancel_all();
     void give_up(Pipe& pipe);
     void clear_halt(Pipe& pipe);
@@ -83,7 +84,6 @@ private:
     Pipe data_, messages_;
     std::vector<std::unique_ptr<Transfer>> transfers_;
     std::deque<Done> done_;  ///< completed, in order, bytes not yet taken
-    int active_ = 0;         ///< with libusb
     bool stopping_ = false, lost_ = false, gap_before_ = false;
     std::uint64_t halts_ = 0;
 };

@@ -51,6 +51,16 @@ std::span<const std::byte> before(std::span<const std::byte> bytes, Ends ends) {
     return bytes;
 }
 
+const Coding& coding_of(EvtEncoding encoding) {
+    return *std::ranges::find(kCodings, encoding, &Coding::encoding);
+}
+
+/// "PSE3 of 1280x720 px"
+std::string words_text(EvtEncoding encoding, const SensorInfo& info) {
+    return fourcc_text(coding_of(encoding).fourcc) + " of " + std::to_string(info.width) + "x" +
+           std::to_string(info.height) + " px";
+}
+
 }  // namespace
 
 std::optional<EvtEncoding> encoding_of(std::uint32_t fourcc) {
@@ -63,8 +73,10 @@ std::span<const std::byte> before_end_of_data(std::span<const std::byte> bytes,
                                               EvtEncoding encoding) {
     if (encoding == EvtEncoding::evt3)
         return before<std::uint16_t>(bytes, [](std::uint16_t w) { return w == 0xE019; });
+    // The other half of a word is a mask of columns, which may look like anything.
+    const int upper_at = encoding == EvtEncoding::evt21_swapped ? 0 : 32;
     return before<std::uint64_t>(
-        bytes, [](std::uint64_t w) { return (w & 0xE00000FF00000000U) == 0xE000001900000000U; });
+        bytes, [=](std::uint64_t w) { return (w >> upper_at & 0xE00000FFU) == 0xE0000019U; });
 }
 
 V4l2Camera::V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool reconnect,
@@ -93,23 +105,28 @@ void V4l2Camera::open() {
             "the camera " + node_.string() + " gives format '" + fourcc_text(device_->fourcc()) +
                 "', expected PSEE, PSE1, PSE2 or PSE3; where it carries events all the same, "
                 "say encoding = \"evt3\" (and the size) in the camera's settings");
-    encoding_ = *encoding;
-    info_.name = device_->card();
-    info_.format = std::find_if(kCodings.begin(), kCodings.end(), [&](const Coding& c) {
-                       return c.encoding == encoding_;
-                   })->format;
+    SensorInfo info;
+    info.name = device_->card();
+    info.format = coding_of(*encoding).format;
     const auto sensor =
         settings_.subdevice.empty() ? std::nullopt : subdevice_size(settings_.subdevice);
-    info_.width = settings_.width ? settings_.width : sensor ? sensor->first : device_->width();
-    info_.height = settings_.height ? settings_.height
-                   : sensor         ? sensor->second
-                                    : device_->height();
-    if (info_.width < 1 || info_.width > kLargestSensorSide || info_.height < 1 ||
-        info_.height > kLargestSensorSide)
+    info.width = settings_.width ? settings_.width : sensor ? sensor->first : device_->width();
+    info.height = settings_.height ? settings_.height : sensor ? sensor->second : device_->height();
+    if (info.width < 1 || info.width > kLargestSensorSide || info.height < 1 ||
+        info.height > kLargestSensorSide)
         throw Error(ErrorKind::device,
                     "the camera " + node_.string() + " says its sensor is " +
-                        std::to_string(info_.width) + "x" + std::to_string(info_.height) +
+                        std::to_string(info.width) + "x" + std::to_string(info.height) +
                         " px: state size = [width, height] in the camera's settings");
+    const bool first = info_.width == 0;
+    if (!first &&
+        (encoding != encoding_ || info.width != info_.width || info.height != info_.height))
+        throw Error(ErrorKind::device, "the camera " + node_.string() + " came back with " +
+                                           words_text(*encoding, info) + ", expected " +
+                                           words_text(encoding_, info_) +
+                                           " as before: set it up as it was (media-ctl)");
+    if (first) info_ = std::move(info);
+    encoding_ = *encoding;
     last_sequence_.reset();
 }
 
@@ -131,6 +148,7 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
     into.bytes.assign(bytes.begin(), bytes.end());
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, filled.damaged);  // a damaged buffer may lack its end
+    into.reopened = std::exchange(reopened_, false);
     ++counters_.transfers;
     counters_.bytes += bytes.size();
     return ReadStatus::data;
@@ -155,7 +173,7 @@ ReadStatus V4l2Camera::lost() {
     try {
         open();
         ++counters_.reconnects;
-        gap_ = true;
+        gap_ = reopened_ = true;
         warnings_.is_back();
     } catch (const Error& error) {  // not there yet: the next look will tell
         device_.reset();

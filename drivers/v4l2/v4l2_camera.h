@@ -76,7 +76,7 @@ private:
     CameraCounters counters_;
     std::unique_ptr<V4l2Device> device_;
     std::optional<std::uint32_t> last_sequence_;
-    bool gap_ = false;
+    bool gap_ = false, reopened_ = false;
     std::atomic<bool> stopped_{false};
 };
 

@@ -22,6 +22,7 @@ public:
         pass_on(into);
     }
     void resync() override { parser_->resync(); }
+    void reopened() override { parser_->reopened(); }
     void arrives(HostTime t) override { parser_->arrives(t); }
     std::optional<SensorTime> clock() const override { return parser_->clock(); }
     const Damage& damaged() const override { return parser_->damaged(); }

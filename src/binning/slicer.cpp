@@ -76,8 +76,9 @@ void Slicer::reset() {
     newest_ = newest_event_ = SensorTime::min();
     same_time_ = 0;
     silent_ = 0;
-    gap_ = reset_ = finished_ = past_end_ = false;
+    gap_ = reset_ = anew_ = finished_ = past_end_ = false;
     first_stream_ = true;
+    end_ = settings_.end;
     if (settings_.begin) begin_at(*settings_.begin);
 }
 
@@ -114,8 +115,7 @@ void Slicer::restore(const State& state) {
 void Slicer::begin_at(SensorTime begin) {
     begin_ = origin_ = begin;
     newest_ = std::max(newest_, begin);
-    if (first_stream_ && settings_.duration && !settings_.end)
-        settings_.end = begin + *settings_.duration;
+    if (first_stream_ && settings_.duration && !settings_.end) end_ = begin + *settings_.duration;
 }
 
 void Slicer::push(std::span<const Event> events, HostTime arrived) {
@@ -126,14 +126,17 @@ void Slicer::push(std::span<const Event> events, HostTime arrived) {
 }
 
 void Slicer::push_one(const Event& event) {
-    if (event.t < newest_event_) {  // the parser keeps order, so the camera's clock was reset
+    // The parser keeps order, so where time goes back the camera's clock was reset.
+    if (const bool anew = std::exchange(anew_, false); anew || event.t < newest_event_) {
         if (past_end_) {
             ++counters_.after_end;
             return;
         }
         ++counters_.time_resets;
-        seams_.push_back({pending_.size(), std::max(newest_, newest_event_)});
+        const SensorTime final = std::max(newest_, newest_event_);
+        seams_.push_back({pending_.size(), final});
         first_stream_ = false;
+        end_ = end_after_reset(final, event.t - kMicrosecond);
         newest_ = newest_event_ = SensorTime::min();
         same_time_ = 0;
     }
@@ -160,10 +163,16 @@ void Slicer::push_one(const Event& event) {
     }
 }
 
+/// A time of the first stream says nothing of the next, but what is left of a duration does.
+std::optional<SensorTime> Slicer::end_after_reset(SensorTime final, SensorTime begin) const {
+    if (settings_.end || !end_) return std::nullopt;
+    return begin + std::max(*end_ - final, kMicrosecond);
+}
+
 void Slicer::note_time(SensorTime t) {
-    if (first_stream_ && settings_.end && t > *settings_.end) {
+    if (end_ && t > *end_) {
         past_end_ = true;
-        t = *settings_.end;
+        t = *end_;
     }
     newest_ = std::max(newest_, t);
 }

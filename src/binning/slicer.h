@@ -47,6 +47,10 @@ public:
     /// The stream's clock says `now`: no event before it will come any more.
     void advance(SensorTime now, HostTime arrived = {});
 
+    /// What advance() promised was not so: the next event begins a new stream, as where time goes
+    /// back.
+    void begin_anew() { anew_ = true; }
+
     /// Bytes were lost here. The next event window carries gap_before.
     void mark_gap() { gap_ = true; }
 
@@ -94,6 +98,7 @@ private:
     };
     void push_one(const Event& event);
     void begin_at(SensorTime begin);
+    std::optional<SensorTime> end_after_reset(SensorTime final, SensorTime begin) const;
     void note_time(SensorTime t);
     void drop_consumed();
     bool is_ended() const { return finished_ || past_end_ || !seams_.empty(); }
@@ -128,8 +133,9 @@ private:
     std::uint64_t same_time_ = 0;  // events at newest_event_
     int silent_ = 0;               // empty windows in a row
     HostTime arrived_{};
-    bool gap_ = false, reset_ = false, finished_ = false, past_end_ = false;
-    bool first_stream_ = true;  // settings_.begin and end are times of the first stream only
+    bool gap_ = false, reset_ = false, anew_ = false, finished_ = false, past_end_ = false;
+    bool first_stream_ = true;       // settings_.begin and end are times of the first stream only
+    std::optional<SensorTime> end_;  // of this stream
     SlicerCounters counters_;
 };
 

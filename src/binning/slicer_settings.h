@@ -51,7 +51,7 @@ struct SlicerSettings {
     /// Later events are left out and the last window ends here. Empty: at the stream's end.
     std::optional<SensorTime> end{};
     /// Where a live stream's times are not known before: the end is this long after the first
-    /// window's begin, in silence too.
+    /// window's begin, in silence too; what is left of it goes on where the clock was reset.
     std::optional<SensorDuration> duration{};
 };
 

@@ -39,6 +39,10 @@ public:
     virtual std::optional<SensorTime> clock() const = 0;
 
     virtual const Damage& damaged() const = 0;
+
+    /// As resync(), where the device was opened again: its clock may count from elsewhere. Time
+    /// goes on by the host's clock, unless the stream itself says where it begins anew.
+    virtual void reopened() { resync(); }
 };
 
 }  // namespace eventide

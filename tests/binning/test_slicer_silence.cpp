@@ -124,6 +124,31 @@ TEST(Slicer, EndsAStreamOfUnknownTimesAfterADurationInSilenceToo) {
     EXPECT_EQ(edges_of(event_windows), (Edges{{1000, 1100}, {1100, 1200}, {1200, 1250}}));
 }
 
+TEST(Slicer, ADurationGoesOnWhereTheClockBeginsAnew) {
+    SlicerSettings settings = by_duration(100);
+    settings.duration = SensorDuration{250};
+    Slicer slicer{settings, 240, 180};
+    std::vector<Kept> event_windows;
+    for (const auto& [event, advanced] : {std::pair{1001, 1150}, {501, 560}, {31, 50}}) {
+        slicer.push(std::vector{at(event)});
+        slicer.advance(from_us(advanced));
+        take(slicer, event_windows);
+        EXPECT_FALSE(slicer.is_past_end());
+    }
+    slicer.advance(from_us(500));
+    take(slicer, event_windows);
+    EXPECT_TRUE(slicer.is_past_end());
+    EXPECT_EQ(edges_of(event_windows), (Edges{{1000, 1100}, {1100, 1150}, {500, 560}, {30, 70}}))
+        << "150, 60 and 40 of 250";
+    // Nothing is left of it.
+    Slicer ended{settings, 240, 180};
+    event_windows.clear();
+    ended.push(std::vector{at(1001), at(1250), at(7), at(9)});
+    take(ended, event_windows);
+    EXPECT_TRUE(ended.is_past_end());
+    EXPECT_EQ(edges_of(event_windows), (Edges{{1000, 1100}, {1100, 1200}, {1200, 1250}, {6, 7}}));
+}
+
 TEST(Slicer, MovesAnEventThatComesAfterItsFrameWasClosed) {
     Slicer slicer(by_duration(10), 240, 180);
     std::vector<Kept> event_windows;

@@ -112,6 +112,23 @@ TEST(Aedat4, TheTableLeadsToATime) {
     }
 }
 
+TEST(Aedat4, BehindAResetThatATriggerTellsTimeBeginsAnew) {
+    const auto before = random_events(1, 500, kWidth, kHeight, 60'000'000),
+               after = random_events(2, 500, kWidth, kHeight, 1'000);
+    auto all = before;
+    all.insert(all.end(), after.begin(), after.end());
+    for (const bool told : {true, false}) {
+        auto packets = in_packets(all, 1);
+        packets.emplace_back();  // as --record has it: with events from before and behind
+        packets[1].events.assign(all.begin() + 100, all.end());
+        if (told) packets[1].triggers = {{after.front().t, Trigger::Kind::timestamp_reset, 0}};
+        const Parsed parsed = parse_file(write_file(packets, Aedat4Compression::lz4));
+        EXPECT_TRUE(parsed.data.events == (told ? all : before));
+        EXPECT_EQ(parsed.damage[DamageReason::time_backwards], told ? 0U : after.size());
+        EXPECT_EQ(parsed.clock, told ? after.back().t : before.back().t);
+    }
+}
+
 TEST(Aedat4, OfTwoCamerasTheFirstIsRead) {
     const auto streams = read_aedat4_streams(
         "<dv><node name=\"outInfo\">"

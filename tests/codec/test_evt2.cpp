@@ -184,6 +184,18 @@ TEST(Evt2, ARealRecordingGivesItsNumbers) {
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 
+TEST(Evt2, ACameraThatWasOpenedAgainGoesOnByTheHostsClock) {
+    Evt2Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.arrives(HostTime{});
+    parser.parse(to_stream(Words{time_high(900), time_high(900), cd(5, 1, 2, true)}), batch);
+    parser.reopened();
+    parser.arrives(HostTime{std::chrono::seconds{6}});
+    parser.parse(to_stream(Words{time_high(0), cd(3, 1, 2, true), time_high(1)}), batch);
+    EXPECT_EQ(batch.events, (std::vector{event(900 * kHigh + 5, 1, 2, true),
+                                         event(901 * kHigh + 6'000'000 + 3, 1, 2, true)}));
+}
+
 TEST(Evt21, AWordIsUpTo32Columns) {
     for (const Order order : {Order::lower_half_first, Order::upper_half_first}) {
         const Bytes bytes = to_stream({{time_high(3), 0},

@@ -198,6 +198,60 @@ TEST(Evt3, AfterALossItTakesUpAtTheNextTime) {
     EXPECT_TRUE(batch.events == expected);
 }
 
+constexpr HostTime host_at(std::int64_t us) {
+    return HostTime{std::chrono::microseconds{us}};
+}
+
+/// What a camera tells that has seen times up to 10 s, was away for a minute and says these words.
+std::vector<Event> after_coming_back(const Words& words, DamageReason counted,
+                                     std::uint64_t times) {
+    Evt3Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.arrives(host_at(5000));
+    parser.parse(to_stream({time_high(2440), time_high(2441)}), batch);
+    parser.reopened();
+    parser.arrives(host_at(5000 + 60'000'000));
+    parser.parse(to_stream(words), batch);
+    parser.finish(batch);
+    EXPECT_EQ(parser.damaged()[counted], times);
+    EXPECT_EQ(parser.damaged().total(), times);
+    return batch.events;
+}
+
+TEST(Evt3, ACameraThatWasOpenedAgainGoesOnByTheHostsClock) {
+    constexpr std::int64_t kBack = (2442 + 60'000'000 / kHigh) * kHigh;
+    for (const unsigned begin : {0U, 2000U, 2441U, 4095U}) {
+        const unsigned next = (begin + 1) % 4096;
+        EXPECT_EQ(after_coming_back({time_high(begin), time_low(7), addr_y(4), addr_x(5),
+                                     time_high(next), time_low(3), addr_x(6)},
+                                    DamageReason::bad_record, 0),
+                  (std::vector{event(kBack + 7, 5, 4), event(kBack + kHigh + 3, 6, 4)}))
+            << begin;
+    }
+    // One from before its clock was set to zero.
+    EXPECT_EQ(after_coming_back({time_high(1500), time_high(0), time_low(7), addr_y(4), addr_x(5),
+                                 time_high(1), time_low(3), addr_x(6)},
+                                DamageReason::bad_record, 1),
+              (std::vector{event(kBack + 7, 5, 4), event(kBack + kHigh + 3, 6, 4)}));
+}
+
+TEST(Evt3, ACameraThatIsOpenedAgainAtOnceIsNotInThePast) {
+    Evt3Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.arrives(host_at(0));
+    parser.parse(to_stream({time_high(9), time_high(9), time_low(4000), addr_y(1), addr_x(1)}),
+                 batch);
+    for (int times = 0; times < 3; ++times) {
+        parser.reopened();
+        parser.arrives(host_at(0));
+        parser.parse(to_stream({time_high(0), time_high(0), time_low(1), addr_y(1), addr_x(1)}),
+                     batch);
+    }
+    const std::vector<Event> expected{event(9 * kHigh + 4000, 1, 1), event(10 * kHigh + 1, 1, 1),
+                                      event(11 * kHigh + 1, 1, 1), event(12 * kHigh + 1, 1, 1)};
+    EXPECT_EQ(batch.events, expected);
+}
+
 /// Rows full of neighbours, lone events, silences, and triggers between.
 Batch busy_batch(unsigned seed, std::size_t n, std::int64_t t = 1'633'953'690'975'950) {
     std::mt19937 random(seed);

@@ -217,7 +217,10 @@ TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {
         bed.plug_in(model, place);
     };
     plug_in({.port = 2, .address = 5});
-    DavisCamera camera{small_transfers(true)};
+    std::vector<std::string> warnings;
+    DavisOptions options = small_transfers(true);
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DavisCamera camera{options};
     EXPECT_EQ(camera.info().serial, "TMP00261") << "bus 1, address 5";
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;
@@ -227,7 +230,16 @@ TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {
     for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
     EXPECT_EQ(camera.counters().reconnects, 0U);
     bed.unplug();
+    const DavisSensor sensor = std::exchange(settings.sensor, testing_support::davis240());
     plug_in({.port = 2, .address = 7});
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_THAT(warnings[1],
+                HasSubstr("is a DAVIS346B of 346x260 px, found a DAVIS240C of 240x180"))
+        << "another camera at its port";
+    bed.unplug();
+    settings.sensor = sensor;
+    plug_in({.port = 2, .address = 8});
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_TRUE(packet.gap_before);
     EXPECT_EQ(camera.counters().reconnects, 1U);

@@ -104,6 +104,18 @@ TEST(V4l2Camera, Evt21ComesInEitherOrderOfItsHalves) {
     }
 }
 
+TEST(V4l2Camera, NoMaskOfColumnsEndsTheData) {
+    constexpr std::uint64_t kLikeTheMarker = 0xE0000019;
+    for (const std::uint32_t fourcc : {kEvt21, kEvt21Swapped}) {
+        V4l2Testbed bed{sensor(fourcc)};
+        auto camera = open();
+        bed.give({evt21_bytes({evt21_time_high(3), evt21_on(5, 32, 7, kLikeTheMarker),
+                               evt21_on(6, 32, 7, 1), kEvt21EndOfData, evt21_on(7, 32, 7, 1)},
+                              fourcc == kEvt21Swapped)});
+        EXPECT_EQ(read_all(camera, bed).events.size(), 7U);
+    }
+}
+
 TEST(V4l2Camera, TheSubdeviceKnowsTheSensorsSize) {
     V4l2NodeSettings settings = sensor(V4L2_PIX_FMT_GREY);  // of the Raspberry Pi's receiver
     settings.width = 4096;

@@ -102,7 +102,12 @@ TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     bed.give({bytes_of({time_high(0)})});
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_TRUE(packet.gap_before);
+    EXPECT_TRUE(packet.reopened) << "its clock may count from elsewhere";
     EXPECT_GE(camera.counters().reconnects, 1U);
+    bed.give({bytes_of({time_high(1)}), 1});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_FALSE(packet.reopened);
 }
 
 TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
@@ -124,6 +129,29 @@ TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
         EXPECT_TRUE(packet.gap_before);
         EXPECT_EQ(camera.counters().reconnects, 1U);
     }
+}
+
+TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
+    V4l2Testbed bed{sensor()};
+    std::vector<std::string> warnings;
+    auto camera = open({}, true, [&](const std::string& text) { warnings.push_back(text); });
+    constexpr std::uint32_t kEvt21 = v4l2_fourcc('P', 'S', 'E', '2');
+    const auto come_back = [&](std::uint32_t fourcc, int width, int height) {
+        bed.change_format(fourcc, width, height);
+        RawPacket packet;
+        for (int look = 0; look < 3; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    };
+    bed.fail_next("DQBUF", EIO);
+    come_back(kEvt21, 320, 320);
+    come_back(kEvt3, 1280, 720);
+    EXPECT_THAT(
+        warnings,
+        testing::ElementsAre(HasSubstr("PSE2 of 320x320 px, expected PSE3 of 320x320 px as before"),
+                             HasSubstr("PSE3 of 1280x720 px, expected PSE3 of 320x320 px")));
+    EXPECT_EQ(camera.counters().reconnects, 0U);
+    EXPECT_EQ(camera.info().width, 320);
+    come_back(kEvt3, 320, 320);
+    EXPECT_EQ(camera.counters().reconnects, 1U);
 }
 
 TEST(V4l2Camera, WhyItIsNotBackIsToldOnce) {

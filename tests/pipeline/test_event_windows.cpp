@@ -1,5 +1,7 @@
 // What closes event windows: events, the stream's clock, the host's clock in silence; gaps.
 #include "pipeline/event_windows.h"
+#include "src/codec/prophesee/evt3.h"
+#include "src/core/byte_order.h"
 #include "tests/support/toy_stages.h"
 
 #include <gtest/gtest.h>
@@ -93,6 +95,37 @@ TEST(EventWindows, GoOnByTheHostsClockInSilence) {
     EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
 }
 
+TEST(EventWindows, GoOnWithASourceThatStoodStill) {
+    constexpr std::int64_t kMs = 1000;
+    Beginning b(true, 10 * kMs);
+    b.give(record(ToyKind::event, kMs), 0);
+    for (std::int64_t host = 0; host <= 20'000 * kMs; host += 20 * kMs) b.give({}, host);
+    const std::size_t of_silence = b.edges.size();
+    EXPECT_GT(of_silence, 900U);
+    std::int64_t host = 20'000 * kMs, t = kMs;
+    const auto send = [&](std::int64_t ms) {
+        for (const std::int64_t end = t + ms * kMs; t < end; t += 5 * kMs, host += 5 * kMs)
+            b.give(record(ToyKind::event, t), host);
+    };
+    send(1000);
+    EXPECT_EQ(b.edges.size(), of_silence) << "it may have been on its way for long";
+    send(1000);
+    EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 1U);
+    EXPECT_EQ(b.edges.back().second / kMs, 1990);
+    EXPECT_GT(b.edges.size(), of_silence + 90);
+}
+
+TEST(EventWindows, WaitForWhatWasOnItsWayForLong) {
+    constexpr std::int64_t kMs = 1000;
+    Beginning b(true, 10 * kMs);
+    b.give(record(ToyKind::event, kMs), 0);
+    for (std::int64_t host = 0; host <= 5'000 * kMs; host += 20 * kMs) b.give({}, host);
+    for (std::int64_t t = kMs; t < 7'000 * kMs; t += 5 * kMs)
+        b.give(record(ToyKind::event, t), std::max(t, 5'000 * kMs));
+    EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 0U);
+    EXPECT_EQ(b.edges.back().second / kMs, 6990);
+}
+
 TEST(EventWindows, DoNotBeginByTheHostsClock) {
     Beginning b(true);
     b.give({}, 5'000'000);
@@ -119,6 +152,72 @@ TEST(EventWindows, CarryAGapAndTheParserTakesUpAfterIt) {
     EXPECT_EQ(b.counters.snapshot().gaps, 1U);
     EXPECT_EQ(b.counters.snapshot().events, 2U)
         << "half a record is dropped, the next one is whole";
+}
+
+/// A sensor behind V4L2: times of 24 bits.
+struct Evt3Source final : Source {
+    Evt3Source() {
+        info_.width = kToyWidth;
+        info_.height = kToyHeight;
+    }
+    const SensorInfo& info() const override { return info_; }
+    bool is_live() const noexcept override { return true; }
+    ReadStatus read(RawPacket&) override { return ReadStatus::end; }
+    void stop() noexcept override {}
+    std::unique_ptr<Parser> make_parser() const override {
+        return std::make_unique<Evt3Parser>(info_.width, info_.height);
+    }
+
+private:
+    SensorInfo info_;
+};
+
+/// An event in each packet.
+RawPacket evt3_packet(std::int64_t t_us, HostTime arrived) {
+    RawPacket packet;
+    packet.arrived = arrived;
+    for (const std::int64_t word : {0x8000 | (t_us >> 12 & 0xFFF), 0x6000 | (t_us & 0xFFF),
+                                    std::int64_t{1}, std::int64_t{0x2801}})
+        append_little(packet.bytes, std::uint16_t(word));
+    return packet;
+}
+
+TEST(EventWindows, GoOnAtOnceWhereACameraThatCountsAnewWasOpenedAgain) {
+    for (const auto seen : {5s, 12s}) {  // before; 24 bits wrap after 16.8 s
+        const Evt3Source source;
+        Counters counters;
+        EventWindows windows(source, {}, nullptr, nullptr, counters);
+        HostTime host{1s};
+        SensorTime end{};
+        int resets = 0;
+        const auto take = [&](const RawPacket& packet) {
+            windows.take(packet);
+            for (EventWindow window; windows.next(window);) {
+                EXPECT_GT(window.window.end, end);
+                end = window.window.end;
+                resets += window.reset_before ? 1 : 0;
+            }
+        };
+        const auto send = [&](SensorDuration for_so_long, bool reopened) {
+            for (SensorDuration t{0}; t < for_so_long; t += 5ms, host += 5ms) {
+                RawPacket packet = evt3_packet(t.count(), host);
+                packet.gap_before = packet.reopened = reopened && t.count() == 0;
+                take(packet);
+            }
+        };
+        send(seen, false);
+        const HostTime lost = host;
+        for (; host < lost + 60s; host += 20ms) {
+            RawPacket silence;
+            silence.arrived = host;
+            take(silence);
+        }
+        const SensorTime end_of_silence = end;
+        send(1s, true);
+        EXPECT_GT(end, end_of_silence + 900ms);
+        EXPECT_EQ(resets, 0) << "the frame is kept";
+        EXPECT_EQ(counters.snapshot().slicing.late, 0U);
+    }
 }
 
 TEST(EventWindows, EndedOnPurposeHaveNoTruncatedRecord) {

@@ -69,6 +69,77 @@ TEST(Pipeline, ALiveSourceLosesWhatASlowModelCannotTakeAndSaysSo) {
     EXPECT_EQ(line.encoder.resets, 0) << "state is kept over a gap by default";
 }
 
+/// Was opened again before one of its packets; its parser counts how often it is told.
+struct ReopenedSource final : Source {
+    ReopenedSource(ToySource& toy, std::size_t before) : toy_(toy), before_(before) {}
+    const SensorInfo& info() const override { return toy_.info(); }
+    bool is_live() const noexcept override { return toy_.is_live(); }
+    ReadStatus read(RawPacket& into) override {
+        const ReadStatus status = toy_.read(into);
+        into.gap_before = into.reopened = next_++ == before_;
+        return status;
+    }
+    void stop() noexcept override { toy_.stop(); }
+    std::unique_ptr<Parser> make_parser() const override {
+        return std::make_unique<CountingParser>(toy_.make_parser(), told);
+    }
+
+    mutable int told = 0;
+
+private:
+    struct CountingParser final : Parser {
+        CountingParser(std::unique_ptr<Parser> toy, int& told)
+            : toy_(std::move(toy)), told_(told) {}
+        void parse(std::span<const std::byte> bytes, Batch& into) override {
+            toy_->parse(bytes, into);
+        }
+        void finish(Batch& into) override { toy_->finish(into); }
+        void resync() override { toy_->resync(); }
+        void reopened() override {
+            ++told_;
+            resync();
+        }
+        std::optional<SensorTime> clock() const override { return toy_->clock(); }
+        const Damage& damaged() const override { return toy_->damaged(); }
+
+    private:
+        std::unique_ptr<Parser> toy_;
+        int& told_;
+    };
+
+    ToySource& toy_;
+    std::size_t before_, next_ = 0;
+};
+
+TEST(Pipeline, ThatACameraWasOpenedAgainIsNotLostWithAPacket) {
+    constexpr std::size_t kPackets = 400, kReopenedAt = 100, kReleasedAt = 200;
+    PipelineSettings settings = quick_settings();
+    settings.rate = {};
+    settings.buffers = {4, 1, 1};
+    ToySource toy(one_frame_per_packet(kPackets), true);
+    ReopenedSource source(toy, kReopenedAt);
+    ToyEncoder encoder;
+    ToyRenderer renderer;
+    ToySink sink;
+    Pipeline pipeline({source, encoder, renderer, {&sink}}, settings);
+    std::binary_semaphore released{0}, goes_on{0};
+    encoder.before_encode = [&, calls = 0]() mutable {
+        if (++calls == 1) released.acquire();
+        if (calls == 3) goes_on.release();
+    };
+    std::uint64_t lost = 0;
+    toy.before_read = [&](std::size_t packet) {
+        if (packet == kReopenedAt) lost = pipeline.snapshot().lost_packets;
+        if (packet == kReopenedAt + 1) lost = pipeline.snapshot().lost_packets - lost;
+        if (packet != kReleasedAt) return;
+        released.release();
+        goes_on.acquire();
+    };
+    pipeline.run();
+    ASSERT_EQ(lost, 1U) << "the packet itself";
+    EXPECT_EQ(source.told, 1);
+}
+
 TEST(Pipeline, WindowsThatWaitForASlowModelBecomeOneAndNothingIsLost) {
     constexpr std::size_t kPackets = 400, kReleasedAt = 390;
     PipelineSettings settings = quick_settings();

@@ -39,7 +39,7 @@ ReadStatus RecordedSource::read(RawPacket& into) {
 void RecordedSource::write(const RawPacket& packet) {
     if (bytes_) return bytes_->write(packet.bytes);
     // As the pipeline's own parser does it, so that both tell the same times.
-    if (packet.gap_before) parser_->resync();
+    if (packet.gap_before) packet.reopened ? parser_->reopened() : parser_->resync();
     if (is_live()) parser_->arrives(packet.arrived);
     parser_->parse(packet.bytes, batch_);
     write_batch();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <span>
 
 namespace eventide {
 
@@ -173,21 +174,36 @@ bool Aedat4Parser::take_payload(std::int32_t stream, std::span<const std::byte> 
     return true;
 }
 
+/// Most cameras' time goes on where their clock is reset; a sender that began anew is in the past.
+void Aedat4Parser::note_reset(const Trigger& trigger) {
+    const auto newest = validator_.newest_us();
+    if (trigger.kind == Trigger::Kind::timestamp_reset && newest &&
+        to_us(trigger.t) < *newest - kAedat4LeastResetUs)
+        anew_us_ = to_us(trigger.t);
+}
+
 void Aedat4Parser::take_root(Aedat4Kind kind, const FlatTable& table, Batch& into) {
     std::optional<std::int64_t> newest;
     switch (kind) {
-        case Aedat4Kind::events:
-            newest = take_aedat4_events(table, validator_, into, damage_);
+        case Aedat4Kind::events: {
+            const bool is_reset = anew_us_.has_value();
+            newest = take_aedat4_events(table, validator_, anew_us_, into, damage_);
+            if (is_reset && !anew_us_) newest_us_.reset();
             break;
+        }
         case Aedat4Kind::image:
             newest = take_aedat4_image(table, validator_, into, damage_);
             break;
         case Aedat4Kind::imu:
             newest = take_aedat4_imu(table, into, damage_);
             break;
-        case Aedat4Kind::triggers:
+        case Aedat4Kind::triggers: {
+            const std::size_t before = into.triggers.size();
             newest = take_aedat4_triggers(table, into, damage_);
+            for (const Trigger& trigger : std::span(into.triggers).subspan(before))
+                note_reset(trigger);
             break;
+        }
     }
     if (newest && (!newest_us_ || *newest > *newest_us_)) newest_us_ = newest;
 }
@@ -236,6 +252,7 @@ void Aedat4Parser::resync() {
     position_.reset();
     validator_.resync(damage_);
     newest_us_.reset();
+    anew_us_.reset();
 }
 
 std::optional<SensorTime> Aedat4Parser::clock() const {

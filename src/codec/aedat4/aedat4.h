@@ -44,6 +44,7 @@ private:
     bool may_be_table(std::span<const std::byte> bytes, std::size_t at) const;
     bool take_payload(std::int32_t stream, std::span<const std::byte> payload, Batch& into);
     void take_root(Aedat4Kind kind, const FlatTable& table, Batch& into);
+    void note_reset(const Trigger& trigger);
     void check_table();
     void run(std::span<const std::byte>& bytes, Batch& into);
 
@@ -63,6 +64,7 @@ private:
     std::optional<std::uint64_t> position_;  ///< in the file; empty after resync()
     Aedat4PacketTrace trace_;
     std::optional<std::int64_t> newest_us_;
+    std::optional<std::int64_t> anew_us_;  ///< a trigger said that the clock was reset to this
 };
 
 }  // namespace eventide

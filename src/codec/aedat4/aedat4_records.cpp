@@ -59,10 +59,17 @@ bool take_plain(std::span<const std::byte> records, EventValidator& validator, B
     return true;
 }
 
-void take_one_by_one(std::span<const std::byte> records, EventValidator& validator, Batch& into,
-                     Damage& damage) {
+void take_one_by_one(std::span<const std::byte> records, EventValidator& validator,
+                     std::optional<std::int64_t>& anew_us, Batch& into, Damage& damage) {
     for (; !records.empty(); records = records.subspan(kAedat4EventBytes)) {
         const WireEvent event = load_event(records.data());
+        const auto newest = validator.newest_us();
+        if (anew_us && newest && event.t_us >= *anew_us &&
+            event.t_us < *newest - kAedat4LeastResetUs) {
+            validator.finish(into, damage);
+            validator.resync(damage);
+            anew_us.reset();
+        }
         if (is_aedat4_time(event.t_us))
             validator.add(event.t_us, event.x, event.y, event.on, into, damage);
         else
@@ -118,7 +125,8 @@ void keep_newest(std::optional<std::int64_t>& newest, std::int64_t t_us) {
 }  // namespace
 
 std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& validator,
-                                               Batch& into, Damage& damage) {
+                                               std::optional<std::int64_t>& anew_us, Batch& into,
+                                               Damage& damage) {
     const auto elements = packet.vector(0, kAedat4EventBytes);
     if (!elements) {
         damage.count(DamageReason::bad_record);
@@ -127,7 +135,8 @@ std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventVal
     constexpr std::size_t kChunkBytes = 512 * kAedat4EventBytes;
     for (auto records = elements->bytes; !records.empty();) {
         const auto chunk = records.first(std::min(kChunkBytes, records.size()));
-        if (!take_plain(chunk, validator, into)) take_one_by_one(chunk, validator, into, damage);
+        if (!take_plain(chunk, validator, into))
+            take_one_by_one(chunk, validator, anew_us, into, damage);
         records = records.subspan(chunk.size());
     }
     validator.end_packet();

@@ -13,6 +13,9 @@ namespace eventide {
 
 constexpr std::size_t kAedat4EventBytes = 16;
 
+/// Of a time that goes back: less is disorder, whatever triggers say.
+constexpr std::int64_t kAedat4LeastResetUs = 1'000'000;
+
 /// Beyond these (year 75,000) a time is damage; differences of such times do not overflow.
 constexpr std::int64_t kAedat4LatestUs = std::int64_t(1) << 61;
 constexpr bool is_aedat4_time(std::int64_t t_us) {
@@ -20,9 +23,11 @@ constexpr bool is_aedat4_time(std::int64_t t_us) {
 }
 
 /// Each appends what a packet of its kind holds and counts what makes no sense. The result is the
-/// newest time told; empty when there was none.
+/// newest time told; empty when there was none. `anew_us`: the clock was reset to that time, so
+/// that the first event that goes back to it, far from those before, begins anew and empties it.
 std::optional<std::int64_t> take_aedat4_events(const FlatTable& packet, EventValidator& validator,
-                                               Batch& into, Damage& damage);
+                                               std::optional<std::int64_t>& anew_us, Batch& into,
+                                               Damage& damage);
 std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const EventValidator& sensor,
                                               Batch& into, Damage& damage);
 std::optional<std::int64_t> take_aedat4_imu(const FlatTable& packet, Batch& into, Damage& damage);

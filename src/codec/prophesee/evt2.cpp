@@ -111,6 +111,11 @@ void Evt2Base::begin_anew() {
     newest_us_ = last_event_us_ = kNoTime;
 }
 
+void Evt2Base::reopened() {
+    resync();
+    high_.go_on_by_host();
+}
+
 std::optional<SensorTime> Evt2Base::clock() const {
     return newest_us_ == kNoTime ? std::nullopt : std::optional(from_us(newest_us_));
 }

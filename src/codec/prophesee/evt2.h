@@ -16,6 +16,8 @@ namespace eventide {
 /// comes before the first time is passed over.
 class Evt2Base : public Parser {
 public:
+    void reopened() override;
+    void arrives(HostTime at) override { high_.arrives(at); }
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
 

@@ -229,6 +229,11 @@ void Evt3Parser::resync() {
     look();
 }
 
+void Evt3Parser::reopened() {
+    resync();
+    high_.go_on_by_host();
+}
+
 std::optional<SensorTime> Evt3Parser::clock() const {
     return newest_us_ == kNoTime ? std::nullopt
                                  : std::optional(from_us(newest_us_ + time_base_us_));

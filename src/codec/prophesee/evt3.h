@@ -26,6 +26,8 @@ public:
     /// counted from a message's first.
     void end_message(Batch& into);
     void resync() override;
+    void reopened() override;
+    void arrives(HostTime at) override { high_.arrives(at); }
     std::optional<SensorTime> clock() const override;
     const Damage& damaged() const override { return damage_; }
 

@@ -24,6 +24,9 @@ namespace eventide {
 /// that leaps by more than EventValidator::kLongestStep, is doubted until the next: data of that
 /// time wait, come out where the next word does not contradict it, and count as bad_record where
 /// it does. Cameras repeat these words all the time; after a real silence one follows soon.
+///
+/// A camera that was opened again may count from anywhere, and its few bits do not tell how long it
+/// was away: its first word, once the next agrees, is taken to mean what the host's clock says.
 class EvtTimeHigh {
 public:
     static constexpr std::size_t kMaxHeld = std::size_t{1} << 20;  // of more the time is believed
@@ -33,13 +36,17 @@ public:
           shift_(shift),
           longest_(EventValidator::kLongestStep >> shift) {}
 
-    void push(std::int64_t value, Batch& into, Damage& damage) {
+    /// The next words arrived at this time of the host's clock.
+    void arrives(HostTime at) { arrived_ = at; }
+
+    void push(std::int64_t told, Batch& into, Damage& damage) {
+        const std::int64_t value = (told + turn_) & (range_ - 1);
         if (!heard_)
             begin(value, into);
         else if (leap_)
             judge_leap(value, into, damage);
         else if (first_)
-            judge_first(value, into);
+            judge_first(value, into, damage);
         else
             go_on_to(unwrapped(value));
     }
@@ -67,14 +74,14 @@ public:
     /// Nothing comes that could contradict a first time.
     void believe_first(Batch& into) {
         if (!first_ || leap_) return;
-        last_ = first_->high;
+        tell(first_->high);
         let_go(first_, into);
     }
     /// Nor any other.
     void believe(Batch& into, Damage& damage) {
         append(before_gap_, into);
         if (first_ && leap_ && leap_->high < first_->high) drop(first_, damage);
-        last_ = high();
+        tell(high());
         let_go(first_, into);
         let_go(leap_, into);
     }
@@ -85,6 +92,8 @@ public:
         believe_first(before_gap_);
         heard_ = false;
     }
+    /// After gap(): the camera was opened again.
+    void go_on_by_host() { anew_ = true; }
 
 private:
     struct Doubt {
@@ -104,6 +113,10 @@ private:
     std::int64_t step_from(std::int64_t high, std::int64_t value) const {
         return ((value - high + range_ / 2) & (range_ - 1)) - range_ / 2;
     }
+    void tell(std::int64_t high) {
+        last_ = high;
+        told_at_ = arrived_;
+    }
     bool is_near(std::int64_t step) const { return step >= -longest_ && step <= longest_; }
     std::int64_t first_time(std::int64_t value) const {
         return ever_heard_ ? unwrapped(value) : value;
@@ -111,17 +124,31 @@ private:
 
     void begin(std::int64_t value, Batch& into) {
         append(before_gap_, into);
-        first_ = Doubt{first_time(value)};
+        first_ = Doubt{anew_ ? time_by_host(value) : first_time(value)};
         heard_ = true;
     }
 
-    void judge_first(std::int64_t value, Batch& into) {
+    /// What the word means where the camera counts from elsewhere: later than all before, and as
+    /// much as the host's clock says.
+    std::int64_t time_by_host(std::int64_t value) {
+        if (!ever_heard_ || !arrived_ || !told_at_) return first_time(value);
+        const auto away = std::chrono::duration_cast<SensorDuration>(*arrived_ - *told_at_).count();
+        const std::int64_t high = last_ + 1 + (std::max<std::int64_t>(away, 0) >> shift_);
+        turn_ += high - value;
+        return high;
+    }
+
+    void judge_first(std::int64_t value, Batch& into, Damage& damage) {
         const std::int64_t step = step_from(first_->high, value);
+        if (!is_near(step) && anew_) {  // neither is known to be right: this one is the newer
+            drop(first_, damage);
+            return begin(value, into);
+        }
         if (!is_near(step)) {
             leap_ = Doubt{step > 0 ? first_->high + step : first_time(value)};
             return;
         }
-        last_ = first_->high + step;
+        tell(first_->high + step);
         let_go(first_, into);
     }
 
@@ -132,10 +159,10 @@ private:
         const bool is_back = is_near(step_from(before, value)) || leap_->high < before;
         if (!is_near(step) && (step < 0 || is_back)) {
             drop(leap_, damage);
-            return push(value, into, damage);
+            return push(value - turn_, into, damage);
         }
         if (first_ && !may_precede(first_->high, leap_->high)) drop(first_, damage);
-        last_ = leap_->high;
+        tell(leap_->high);
         let_go(first_, into);
         let_go(leap_, into);
         go_on_to(last_ + step);
@@ -143,7 +170,7 @@ private:
 
     void go_on_to(std::int64_t at) {
         if (is_near(at - last_))
-            last_ = at;
+            tell(at);
         else
             leap_ = Doubt{at};
     }
@@ -154,6 +181,7 @@ private:
 
     void let_go(std::optional<Doubt>& doubt, Batch& into) {
         ever_heard_ = true;
+        anew_ = false;
         if (doubt) append(doubt->data, into);
         doubt.reset();
     }
@@ -179,6 +207,9 @@ private:
     std::optional<Doubt> leap_;
     Batch before_gap_;  ///< comes out with the next word
     bool heard_ = false, ever_heard_ = false;
+    std::int64_t turn_ = 0;                      ///< added to what words tell
+    bool anew_ = false;                          ///< until a first word is believed
+    std::optional<HostTime> arrived_, told_at_;  ///< of these words; of those that told last_
 };
 
 /// A block of events on its way into a batch: written without checks for room, passed on when full.

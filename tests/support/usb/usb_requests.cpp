@@ -54,6 +54,12 @@ int UsbTestbed::Parts::clear_halt(UMockdevIoctlData* arg) {
         umockdev_ioctl_data_resolve(arg, 0, sizeof(unsigned), nullptr)};
     if (!endpoint) return EFAULT;
     if (endpoint->data[0] != identity.data_endpoint) return 0;
+    if (!waiting.empty()) {  // as xHCI: "EP not empty, refuse reset"
+        waiting.front().end(-EPIPE);
+        finished.push_back(std::move(waiting.front()));
+        waiting.pop_front();
+        return 0;
+    }
     halted = false;
     camera->clear_endpoint();
     return 0;

@@ -37,7 +37,8 @@ public:
     void delay_control(int looks);
     static constexpr int kNever = -1;
     /// The data endpoint halts: the first transfer in flight ends with a stall, and nothing more
-    /// comes until the halt is cleared. So many times, each as soon as transfers wait.
+    /// comes until the halt is cleared with no transfer in flight. So many times, each as soon as
+    /// transfers wait.
     void halt_data(int times);
     /// Transfers for messages end with this errno (EPIPE: the endpoint halts); 0: they do not.
     void fail_messages(int error);

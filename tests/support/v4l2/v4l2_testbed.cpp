@@ -95,6 +95,13 @@ std::vector<std::string> V4l2Testbed::requests() const {
     return parts_->requests;
 }
 
+void V4l2Testbed::change_format(std::uint32_t fourcc, int width, int height) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->settings.fourcc = fourcc;
+    parts_->settings.width = width;
+    parts_->settings.height = height;
+}
+
 void V4l2Testbed::take_controls_away() {
     const std::lock_guard lock{parts_->mutex};
     parts_->settings.controls.clear();

@@ -57,6 +57,8 @@ public:
     /// The next so many writes find the device busy (EAGAIN).
     void refuse_writes(int count);
 
+    /// As a driver that was loaded again, or media-ctl, leaves it.
+    void change_format(std::uint32_t fourcc, int width, int height);
     /// The driver has none any more.
     void take_controls_away();
     V4l2NodeSettings::Control control(const std::string& name) const;
