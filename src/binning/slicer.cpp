@@ -2,6 +2,7 @@
 #include "src/binning/slicer.h"
 
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <cassert>
@@ -231,14 +232,18 @@ SensorTime Slicer::natural_edge() const {
     return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
 }
 
-/// Whole empty windows in a long silence become one (SlicerSettings::silent_windows). Where the
-/// silence has ended in an event, that alone says how far, whatever else is known by now.
+/// Whole empty windows in a long silence become one (SlicerSettings::silent_windows), but for the
+/// last, which frames of the wide one read. Where the silence has ended in an event, that alone
+/// says how far, whatever else is known by now.
+///
+///     windows    (  ](  ] .. (  ](                         ](  ](  ](  x ]
+///                silent_windows       one wide window      kMaxLookahead, and the event's
 SensorTime Slicer::stretched(SensorTime edge, SensorTime passed, SensorTime limit) const {
     if (silent_ < settings_.silent_windows) return edge;
     const SensorTime silent_upto =
         head_ < segment_end() ? pending_[head_].t - kMicrosecond : passed;
-    const SensorTime upto = std::min(silent_upto, limit);
-    return upto > edge ? edge + (upto - edge) / step_ * step_ : edge;
+    const auto more = (std::min(silent_upto, limit) - edge) / step_ - kMaxLookahead;
+    return more > 0 ? edge + more * step_ : edge;
 }
 
 /// The end of the open window, where it is known.

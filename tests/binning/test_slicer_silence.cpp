@@ -46,15 +46,32 @@ TEST(Slicer, AJumpOfHoursGivesAHandfulOfFrames) {
          {by_duration(1000), by_count(10, 1000), by_reference(1000)}) {
         const auto event_windows =
             event_windows_of(settings, {at(1), at(kHours + 1), at(kHours + 2)});
-        ASSERT_EQ(event_windows.size(), 1U + 16U + 1U + 1U);
+        ASSERT_EQ(event_windows.size(), 1U + 16U + 1U + 2U + 1U);
         EXPECT_EQ(event_windows[0].events.size(), 1U);
         EXPECT_EQ(event_windows[16].end_us - event_windows[16].begin_us, 1000);
         EXPECT_EQ(event_windows[17].end_us % 1000, 0)
             << "later edges stay where they would have been";
         EXPECT_EQ(event_windows[17].end_us, event_windows[18].begin_us);
-        EXPECT_LE(kHours - event_windows[18].begin_us, 1000);
-        EXPECT_EQ(event_windows[18].events.size(), 2U);
+        EXPECT_LE(kHours - event_windows[20].begin_us, 1000);
+        EXPECT_EQ(event_windows[20].events.size(), 2U);
     }
+}
+
+/// Frames of an event window read up to two more, so that with lookahead a wide one would show all
+/// along what comes after it.
+TEST(Slicer, TheLastWindowsOfALongSilenceComeOneByOne) {
+    for (const std::int64_t silence_us : {18'500, 19'500, 20'500, 60'500}) {
+        const auto event_windows =
+            event_windows_of(by_duration(1000), {at(1), at(1 + silence_us), at(2 + silence_us)});
+        ASSERT_GT(event_windows.size(), 3U);
+        for (std::size_t i = event_windows.size() - 3; i + 1 < event_windows.size(); ++i) {
+            EXPECT_TRUE(event_windows[i].events.empty());
+            EXPECT_EQ(event_windows[i].end_us - event_windows[i].begin_us, 1000) << silence_us;
+        }
+    }
+    const auto wide = event_windows_of(by_duration(1000), {at(1), at(60'501), at(60'502)});
+    EXPECT_EQ(wide[17].begin_us, 17'000);
+    EXPECT_EQ(wide[17].end_us, 58'000);
 }
 
 TEST(Slicer, EndsALongSilenceAtAReferenceImage) {
