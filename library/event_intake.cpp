@@ -64,6 +64,7 @@ void EventIntake::take(std::span<const Event> events, StepBack step_back) {
     // Events that are left out tell the time all the same.
     const SensorTime newest = taken_.back().t;
     const std::size_t before = taken_.size();
+    slicer_.hear(taken_);
     filter_->process(taken_);
     counters_.filtered += before - taken_.size();
     slicer_.push(taken_, now);

@@ -99,6 +99,7 @@ void EventWindows::push(std::vector<Event>& events, HostTime arrived) {
     if (filter_ == nullptr || events.empty()) return slicer_.push(events, arrived);
     const SensorTime newest = events.back().t;
     const std::size_t before = events.size();
+    slicer_.hear(events);
     filter_->process(events);
     counters_.bin.filtered_events.add(before - events.size());
     slicer_.push(events, arrived);

@@ -168,6 +168,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("light-changes", o.data.scene.light_change_probability, "share of scenes");
     add("flicker", o.data.scene.flicker_probability, "share of scenes under mains light");
     add("threshold", o.data.sensor.threshold, "ln of the light's change");
+    add("bandwidth-hz", o.data.sensor.bandwidth_hz, "of photoreceptors in bright light");
+    add("bandwidth-hz-per-lux", o.data.sensor.bandwidth_hz_per_lux, "of the same in dim light");
     add("shot-hz", o.data.sensor.shot_hz, "noise events per pixel in the dark");
     add("shot-lux", o.data.sensor.shot_lux, "light in which they are half as many");
     add("leak-hz", o.data.sensor.leak_hz, "ON events per pixel without any change");

@@ -1,9 +1,8 @@
 #include "apps/train/trainer.h"
 
-#include "apps/train/blas.h"
 #include "apps/train/device.h"
 #include "apps/train/network/warm_start.h"
-#include "src/core/error.h"
+#include "apps/train/sound_options.h"
 
 #include <algorithm>
 #include <chrono>
@@ -18,26 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kCheckpoint = "checkpoint.safetensors";
-
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// The options, once what no single one can say of itself holds. Throws Error(usage).
-const TrainOptions& sound(const TrainOptions& options) {
-    if (options.clock != "wall" && options.clock != "cpu")
-        throw Error(ErrorKind::usage,
-                    "--clock: expected wall or cpu, found '" + options.clock + "'");
-    require_blas_for_threads(options.threads);
-    if (!options.initial.empty() && !options.resume.empty())
-        throw Error(ErrorKind::usage, "--initial: expected no --resume, found both");
-    // Hours of training, and the best of them would pass for this run's.
-    const auto other = std::filesystem::path{options.out} / kCheckpoint;
-    if (options.resume.empty() && std::filesystem::exists(other))
-        throw Error(ErrorKind::usage, "--out " + options.out + ": holds another run; --resume " +
-                                          other.string() + " goes on with it");
-    return options;
 }
 
 Parameters first_parameters(const TrainOptions& options, torch::Device device, const LogSink& say) {

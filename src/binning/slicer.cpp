@@ -2,6 +2,7 @@
 #include "src/binning/slicer.h"
 
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <cassert>
@@ -79,6 +80,9 @@ void Slicer::reset() {
     gap_ = reset_ = anew_ = finished_ = past_end_ = false;
     first_stream_ = true;
     end_ = settings_.end;
+    heard_ = SensorTime::min();
+    hushes_.clear();
+    hears_apart_ = false;
     if (settings_.begin) begin_at(*settings_.begin);
 }
 
@@ -106,6 +110,7 @@ void Slicer::restore(const State& state) {
     origin_ = state.origin;
     newest_ = state.newest;
     newest_event_ = state.newest_event;
+    heard_ = state.newest;
     same_time_ = state.same_time;
     silent_ = std::min(state.silent, settings_.silent_windows);
     gap_ = state.gap;
@@ -115,6 +120,7 @@ void Slicer::restore(const State& state) {
 void Slicer::begin_at(SensorTime begin) {
     begin_ = origin_ = begin;
     newest_ = std::max(newest_, begin);
+    heard_ = std::max(heard_, begin);
     if (first_stream_ && settings_.duration && !settings_.end) end_ = begin + *settings_.duration;
 }
 
@@ -125,7 +131,21 @@ void Slicer::push(std::span<const Event> events, HostTime arrived) {
     for (const Event& event : events) push_one(event);
 }
 
+void Slicer::hear(std::span<const Event> events) {
+    hears_apart_ = true;
+    if (!begin_ && !events.empty()) begin_at(events.front().t - kMicrosecond);
+    for (const Event& event : events) note_heard(event.t);
+}
+
+void Slicer::note_heard(SensorTime t) {
+    // Anything shorter leaves no whole window but those that come one by one anyway.
+    if (heard_ != SensorTime::min() && t > heard_ + (kMaxLookahead + 1) * step_)
+        hushes_.push_back({heard_, t});
+    heard_ = t;
+}
+
 void Slicer::push_one(const Event& event) {
+    if (!hears_apart_) note_heard(event.t);
     // The parser keeps order, so where time goes back the camera's clock was reset.
     if (const bool anew = std::exchange(anew_, false); anew || event.t < newest_event_) {
         if (past_end_) {
@@ -182,6 +202,7 @@ void Slicer::advance(SensorTime now, HostTime arrived) {
     if (!begin_) begin_at(now - kMicrosecond);
     if (now <= newest_) return;
     arrived_ = arrived;
+    if (now > heard_) note_heard(now);
     note_time(now);
 }
 
@@ -240,14 +261,26 @@ SensorTime Slicer::natural_edge() const {
     return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
 }
 
-/// Whole empty windows in a long silence become one (SlicerSettings::silent_windows). Where the
-/// silence has ended in an event, that alone says how far, whatever else is known by now.
+/// The first time after `edge` that was told, where it is far from it; else `edge`.
+SensorTime Slicer::told_after(SensorTime edge) const {
+    for (const Hush& hush : hushes_)
+        if (hush.begin <= edge && edge < hush.end) return hush.end;
+    return edge;
+}
+
+/// Whole empty windows in a long silence become one (SlicerSettings::silent_windows), but for the
+/// last, which frames of the wide one read. The first that was heard after the window says how far,
+/// whatever else is known by now.
+///
+///     windows    (  ](  ] .. (  ](                         ](  ](  ](  x ]
+///                silent_windows       one wide window      kMaxLookahead, and the event's
 SensorTime Slicer::stretched(SensorTime edge, SensorTime passed, SensorTime limit) const {
     if (silent_ < settings_.silent_windows) return edge;
     const SensorTime silent_upto =
         head_ < segment_end() ? pending_[head_].t - kMicrosecond : passed;
-    const SensorTime upto = std::min(silent_upto, limit);
-    return upto > edge ? edge + (upto - edge) / step_ * step_ : edge;
+    const SensorTime upto = std::min({silent_upto, limit, told_after(edge) - kMicrosecond});
+    const auto more = (upto - edge) / step_ - kMaxLookahead;
+    return more > 0 ? edge + more * step_ : edge;
 }
 
 /// The end of the open window, where it is known.
@@ -289,6 +322,8 @@ void Slicer::emit(SensorTime end, EventWindow& event_window) {
     silent_ = event_window.events.empty() ? std::min(silent_ + 1, settings_.silent_windows) : 0;
     head_ += event_window.events.size();
     begin_ = end;
+    // Those of a stream after the clock's next reset lie at times of their own.
+    if (seams_.empty()) std::erase_if(hushes_, [end](const Hush& hush) { return hush.end <= end; });
     look_again();
 }
 

@@ -41,6 +41,11 @@ public:
     /// Events in the order of the stream; `arrived` of the packet they came in.
     void push(std::span<const Event> events, HostTime arrived = {});
 
+    /// Events of which a filter leaves out some tell the time all the same: call it with all of
+    /// them before push() with what is left, and advance() after it. Windows in silence are then
+    /// the same however the stream is split, too.
+    void hear(std::span<const Event> events);
+
     /// The time of a reference image; before or after the events around it. Other rules ignore it.
     void push_reference(SensorTime t);
 
@@ -96,6 +101,12 @@ private:
         std::size_t index;
         SensorTime final;
     };
+    /// Between two times that were told one after the other, far enough apart for a wide window.
+    struct Hush {
+        SensorTime begin, end;
+    };
+    void note_heard(SensorTime t);
+    SensorTime told_after(SensorTime edge) const;
     void push_one(const Event& event);
     void begin_at(SensorTime begin);
     std::optional<SensorTime> end_after_reset(SensorTime final, SensorTime begin) const;
@@ -130,8 +141,11 @@ private:
     std::optional<SensorTime> begin_;     // of the open window
     SensorTime origin_{};                 // rule duration: edges are at origin_ + k width
     SensorTime newest_ = SensorTime::min(), newest_event_ = SensorTime::min();
-    std::uint64_t same_time_ = 0;  // events at newest_event_
-    int silent_ = 0;               // empty windows in a row
+    std::uint64_t same_time_ = 0;           // events at newest_event_
+    int silent_ = 0;                        // empty windows in a row
+    SensorTime heard_ = SensorTime::min();  // told last, by whatever
+    std::vector<Hush> hushes_;              // that may concern the open window or later ones
+    bool hears_apart_ = false;              // by hear(), not by what is pushed
     HostTime arrived_{};
     bool gap_ = false, reset_ = false, anew_ = false, finished_ = false, past_end_ = false;
     bool first_stream_ = true;       // settings_.begin and end are times of the first stream only

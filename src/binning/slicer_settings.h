@@ -42,7 +42,8 @@ struct SlicerSettings {
 
     /// After so many empty windows in a row, the rest of a silence that is known to be over (or has
     /// passed at one step) comes as one wide empty window: a jump of hours gives a handful of
-    /// windows. By then every input of the network has stopped changing.
+    /// windows. By then every input of the network has stopped changing. The last few come one by
+    /// one, so that no frame of the wide one reads what comes after the silence.
     int silent_windows = 16;
 
     /// The first window's begin: earlier events are left out. Empty: 1 us before the first event or

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <random>
+#include <span>
 
 namespace eventide {
 namespace {
@@ -46,14 +49,71 @@ TEST(Slicer, AJumpOfHoursGivesAHandfulOfFrames) {
          {by_duration(1000), by_count(10, 1000), by_reference(1000)}) {
         const auto event_windows =
             event_windows_of(settings, {at(1), at(kHours + 1), at(kHours + 2)});
-        ASSERT_EQ(event_windows.size(), 1U + 16U + 1U + 1U);
+        ASSERT_EQ(event_windows.size(), 1U + 16U + 1U + 2U + 1U);
         EXPECT_EQ(event_windows[0].events.size(), 1U);
         EXPECT_EQ(event_windows[16].end_us - event_windows[16].begin_us, 1000);
         EXPECT_EQ(event_windows[17].end_us % 1000, 0)
             << "later edges stay where they would have been";
         EXPECT_EQ(event_windows[17].end_us, event_windows[18].begin_us);
-        EXPECT_LE(kHours - event_windows[18].begin_us, 1000);
-        EXPECT_EQ(event_windows[18].events.size(), 2U);
+        EXPECT_LE(kHours - event_windows[20].begin_us, 1000);
+        EXPECT_EQ(event_windows[20].events.size(), 2U);
+    }
+}
+
+/// Frames of an event window read up to two more, so that with lookahead a wide one would show all
+/// along what comes after it.
+TEST(Slicer, TheLastWindowsOfALongSilenceComeOneByOne) {
+    for (const std::int64_t silence_us : {18'500, 19'500, 20'500, 60'500}) {
+        const auto event_windows =
+            event_windows_of(by_duration(1000), {at(1), at(1 + silence_us), at(2 + silence_us)});
+        ASSERT_GT(event_windows.size(), 3U);
+        for (std::size_t i = event_windows.size() - 3; i + 1 < event_windows.size(); ++i) {
+            EXPECT_TRUE(event_windows[i].events.empty());
+            EXPECT_EQ(event_windows[i].end_us - event_windows[i].begin_us, 1000) << silence_us;
+        }
+    }
+    const auto wide = event_windows_of(by_duration(1000), {at(1), at(60'501), at(60'502)});
+    EXPECT_EQ(wide[17].begin_us, 17'000);
+    EXPECT_EQ(wide[17].end_us, 58'000);
+}
+
+/// Of a stream of which a filter leaves the events of x 0, so many at a time.
+std::vector<Kept> filtered_windows_of(const SlicerSettings& settings,
+                                      const std::vector<Event>& events, std::size_t at_a_time) {
+    Slicer slicer(settings, 240, 180);
+    std::vector<Kept> event_windows;
+    for (std::size_t i = 0; i < events.size(); i += at_a_time) {
+        const auto part = std::span{events}.subspan(i, std::min(at_a_time, events.size() - i));
+        std::vector<Event> left;
+        std::ranges::copy_if(part, std::back_inserter(left),
+                             [](const Event& e) { return e.x == 0; });
+        slicer.hear(part);
+        slicer.push(left);
+        slicer.advance(part.back().t);
+        take(slicer, event_windows);
+    }
+    slicer.finish();
+    take(slicer, event_windows);
+    return event_windows;
+}
+
+TEST(Slicer, CutsTheSameWindowsInSilenceHoweverWhatIsLeftOutIsSplit) {
+    for (const SlicerSettings& settings : {by_duration(1000), by_count(10, 1000)}) {
+        std::mt19937 rng{7};
+        std::vector<Event> events;
+        std::int64_t t = 1;
+        for (int i = 0; i < 400; ++i) {
+            // Noise every other window, now and then nothing for a while, and seldom what is kept.
+            t += std::int64_t(rng() % 10 == 0 ? rng() % 90'000 : rng() % 2'000);
+            events.push_back(at(t, rng() % 60 == 0 ? 0 : 1));
+        }
+        const auto one_by_one = filtered_windows_of(settings, events, 1);
+        EXPECT_GT(one_by_one.size(), 100U);
+        EXPECT_TRUE(std::ranges::any_of(one_by_one, [](const Kept& event_window) {
+            return event_window.end_us - event_window.begin_us > 1000;
+        })) << "silence that nothing breaks is one window still";
+        for (const std::size_t at_a_time : {7, 100, 400})
+            EXPECT_EQ(filtered_windows_of(settings, events, at_a_time), one_by_one) << at_a_time;
     }
 }
 

@@ -111,25 +111,35 @@ TEST(WanderMotion, TremblesAboutOnePlaceWhereAskedFor) {
     EXPECT_LT(way_from_start(settings), 250);
 }
 
+/// Share of the time in which a motion at 100 px/s goes slower than `px_s`.
+double share_below(double px_s, const WanderSettings& settings) {
+    int slow = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const auto motion = wander_motion(settings, 100, 50, {}, {}, Random{seed});
+        motion->prepare(60);
+        for (int i = 0; i < 600; ++i) {
+            const Pose a = motion->at(i * .1), b = motion->at(i * .1 + .01);
+            slow += std::hypot(b.x - a.x, b.y - a.y) < .01 * px_s;
+        }
+    }
+    return slow / 12000.;
+}
+
 TEST(WanderMotion, ChangesItsPaceWhereAskedFor) {
     WanderSettings settings;
     settings.linear_probability = 1;
-    const auto slow_share = [&] {
-        int slow = 0;
-        for (std::uint64_t seed = 0; seed < 20; ++seed) {
-            const auto motion = wander_motion(settings, 100, 50, {}, {}, Random{seed});
-            motion->prepare(60);
-            for (int i = 0; i < 600; ++i) {
-                const Pose a = motion->at(i * .1), b = motion->at(i * .1 + .01);
-                slow += std::hypot(b.x - a.x, b.y - a.y) < .01 * 100 / 10;
-            }
-        }
-        return slow / 12000.;
-    };
-    EXPECT_LT(slow_share(), .01);
+    EXPECT_LT(share_below(10, settings), .01);
     settings.pace = {.02, 1};
     // Log-uniform: ln(.1 / .02) of ln(1 / .02) lies below a tenth of the full speed.
-    EXPECT_NEAR(slow_share(), std::log(5) / std::log(50), .12);
+    EXPECT_NEAR(share_below(10, settings), std::log(5) / std::log(50), .12);
+}
+
+TEST(WanderMotion, MayBecomeFasterToo) {
+    WanderSettings settings;
+    settings.linear_probability = 1;
+    EXPECT_GT(share_below(400, settings), .98);
+    settings.pace = {1, 16};  // a half of the logarithms lie below 4
+    EXPECT_NEAR(share_below(400, settings), .5, .12);
 }
 
 TEST(PauseClock, PausesWithTheProbabilitiesAskedFor) {

@@ -16,11 +16,15 @@ RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t str
 }
 
 RecurrentState begin_segment(const RecurrentState& recurrent, const std::vector<bool>& fresh) {
-    std::vector<float> keep;
-    for (const bool anew : fresh) keep.push_back(anew ? 0.0F : 1.0F);
-    const auto factor = torch::tensor(keep).view({-1, 1, 1, 1}).to(recurrent.latent.options());
-    RecurrentState next{{}, recurrent.latent.detach() * factor};
-    for (const torch::Tensor& map : recurrent.state) next.state.push_back(map.detach() * factor);
+    const std::vector<std::uint8_t> flags(fresh.begin(), fresh.end());
+    const auto anew =
+        torch::tensor(flags).view({-1, 1, 1, 1}).to(recurrent.latent.device(), torch::kBool);
+    // Filled, not multiplied by 0: what is no number would stay none.
+    const auto begun = [&](const torch::Tensor& map) {
+        return map.detach().clone().masked_fill_(anew, 0);
+    };
+    RecurrentState next{{}, begun(recurrent.latent)};
+    for (const torch::Tensor& map : recurrent.state) next.state.push_back(begun(map));
     return next;
 }
 

@@ -92,7 +92,7 @@ public:
         zoom_ = random_.uniform(settings.zoom_share) * speed / radius;
         cubic_ = !random_.chance(settings.linear_probability);
         heading_ = random_.uniform({0, 2 * std::numbers::pi});
-        if (settings.pace.low < 1) {
+        if (settings.pace.low != 1 || settings.pace.high != 1) {
             paces_ = settings.pace;
             pace_change_ = std::min(1.0, leg_s_ / random_.log_uniform(settings.pace_s));
         }

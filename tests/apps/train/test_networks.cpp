@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace eventide {
@@ -164,6 +165,28 @@ TEST(Networks, WhereNothingHappensTheStateStaysBitForBit) {
     for (std::size_t l = 0; l < before.state.size(); ++l)
         EXPECT_TRUE(torch::equal(before.state[l], after.state[l])) << "level " << l;
     EXPECT_FALSE(torch::equal(before.state[0], empty[0])) << "events must change the state";
+}
+
+TEST(Networks, ANewSceneBeginsEmptyWhateverBecameOfTheStateBefore) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN(),
+                    kRunAway = std::numeric_limits<float>::infinity();
+    const auto empty = empty_recurrent_state(test::small_config(), 3, 8, 8, torch::kFloat);
+    RecurrentState before = empty;
+    for (torch::Tensor& map : before.state) {
+        map = torch::full_like(map, 2);
+        map[0].fill_(kNone);
+        map[1].fill_(kRunAway);
+    }
+    before.latent = torch::full_like(before.latent, kNone);
+    before.latent[2].fill_(3);
+    const RecurrentState after = begin_segment(before, {true, true, false});
+    for (std::size_t l = 0; l < after.state.size(); ++l) {
+        EXPECT_TRUE(torch::equal(after.state[l].narrow(0, 0, 2), empty.state[l].narrow(0, 0, 2)));
+        EXPECT_TRUE(torch::equal(after.state[l][2], before.state[l][2])) << "goes on";
+        EXPECT_TRUE(after.state[l].is_contiguous(torch::MemoryFormat::ChannelsLast));
+    }
+    EXPECT_TRUE(torch::equal(after.latent.narrow(0, 0, 2), empty.latent.narrow(0, 0, 2)));
+    EXPECT_TRUE(torch::equal(after.latent[2], before.latent[2]));
 }
 
 TEST(Networks, BrainFloatsStayNearTheFullPrecision) {

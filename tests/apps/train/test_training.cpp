@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -53,6 +54,42 @@ TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
     EXPECT_EQ(model.config.card.find(out.string()), std::string::npos) << "no names of files";
     EXPECT_TRUE(fs::exists(out / "learning_curve.svg"));
     EXPECT_TRUE(fs::exists(out / "best.safetensors"));
+}
+
+TEST(Training, WhatNoRunCanBeMadeOfIsRefusedBeforeItBegins) {
+    const TrainOptions good = tiny_options(empty_folder("refused"));
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"--threads", "0"},
+             {"--streams", "0"},
+             {"--groups", "0"},
+             {"--crop", "1"},
+             {"--patch", "10"},
+             {"--event-windows", "0"},
+             {"--rendered", "0"},
+             {"--rendered", "5"},
+             {"--validation-crop", "10", "--validation-scenes", "2"},
+             {"--validation-windows", "4", "--validation-scenes", "2"},
+             // No model file holds these networks.
+             {"--recurrent", "1,0,0"},
+             {"--recurrent", "1"},
+             {"--gate-radius", "65"},
+             {"--latent-stride", "3"},
+             {"--unfold", "2"}}) {
+        TrainOptions options = good;
+        OptionTable{options}.parse(words);
+        try {
+            trainer(options);
+            ADD_FAILURE() << words[0] << " " << words[1] << " was taken";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            std::string name = words[0].substr(2);
+            std::ranges::replace(name, '-', '_');
+            std::string text = error.what();
+            std::ranges::replace(text, '-', '_');
+            EXPECT_NE(text.find(name), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_TRUE(fs::is_empty(good.out)) << "a run was begun";
 }
 
 TEST(Training, AnInputThatIsNotUsedHasNoWeightInTheModel) {

@@ -1,0 +1,72 @@
+#include "apps/train/sound_options.h"
+
+#include "apps/train/blas.h"
+#include "src/core/error.h"
+#include "src/model/model_metadata.h"
+
+#include <filesystem>
+#include <limits>
+
+namespace eventide {
+namespace {
+
+/// px, of what SSIM's window and the perceptual network's layers still fit into.
+constexpr int kLeastForSsim = 11, kLeastForLpips = 17;
+
+void need(const char* option, int found, int low, int high = std::numeric_limits<int>::max()) {
+    if (found >= low && found <= high) return;
+    const std::string most =
+        high < std::numeric_limits<int>::max() ? " to " + std::to_string(high) : " or more";
+    throw Error(ErrorKind::usage, std::string{option} + ": expected " + std::to_string(low) + most +
+                                      ", found " + std::to_string(found));
+}
+
+/// A model file of such a network could not be written.
+void need_network(const ModelConfig& model) {
+    try {
+        check_config(model, "the network asked for");
+    } catch (const Error& error) {
+        throw Error(ErrorKind::usage, error.what());
+    }
+}
+
+void need_sizes(const TrainOptions& options) {
+    const int least =
+        !options.lpips.empty() && options.loss.lpips > 0 ? kLeastForLpips : kLeastForSsim;
+    need("--threads", options.threads, 1);
+    need("--streams", options.streams, 1);
+    need("--groups", options.groups, 1);
+    need("--crop", options.data.crop, 2);
+    need("--patch", options.data.patch, least);
+    need("--event-windows", options.data.event_windows, 1);
+    need("--rendered", options.data.rendered, 1, options.data.event_windows);
+    if (options.validation_scenes <= 0) return;
+    need("--validation-crop", options.validation_crop, least);
+    // The first of a scene count nothing.
+    need("--validation-windows", options.validation_windows, options.data.warm_windows + 1);
+}
+
+/// Hours of training, and the best of them would pass for this run's.
+void need_own_folder(const TrainOptions& options) {
+    if (!options.initial.empty() && !options.resume.empty())
+        throw Error(ErrorKind::usage, "--initial: expected no --resume, found both");
+    const auto other = std::filesystem::path{options.out} / kCheckpoint;
+    if (options.resume.empty() && std::filesystem::exists(other))
+        throw Error(ErrorKind::usage, "--out " + options.out + ": holds another run; --resume " +
+                                          other.string() + " goes on with it");
+}
+
+}  // namespace
+
+const TrainOptions& sound(const TrainOptions& options) {
+    if (options.clock != "wall" && options.clock != "cpu")
+        throw Error(ErrorKind::usage,
+                    "--clock: expected wall or cpu, found '" + options.clock + "'");
+    need_sizes(options);
+    need_network(options.model);
+    require_blas_for_threads(options.threads);
+    need_own_folder(options);
+    return options;
+}
+
+}  // namespace eventide
