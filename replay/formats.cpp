@@ -72,12 +72,15 @@ OpenedStream open_aedat2(Bytes first_bytes, const OpenOptions& options) {
     return {header.stream, make_parser, by_skimming<Aedat2Parser>()};
 }
 
+/// Of AEDAT 3 and 4: images come after the events around them.
+constexpr SensorDuration kLatestPacket{500'000};
+
 OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
     const Aedat3Header header = read_aedat3_header(first_bytes);
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat3Parser>(header, stream.width, stream.height);
     };
-    return {header.stream, make_parser, {1}};
+    return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}};
 }
 
 OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
@@ -91,7 +94,6 @@ OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
         };
         return find_in_aedat4_table(header, read_at, t);
     };
-    constexpr SensorDuration kLatestPacket{500'000};  // images come after the events around them
     return {header.stream, make_parser, {1, nullptr, look_up, kLatestPacket}};
 }
 
