@@ -165,6 +165,23 @@ TEST(OpenRecording, APipeOfTextIsReadAsItComes) {
     EXPECT_EQ(read_everything(*recording).events.size(), 4U);
 }
 
+TEST(OpenRecording, CommentsInAPipeOfTextAreNoRows) {
+    Pipe pipe;
+    pipe.write("240 180\n# a\n# b\n# c\n");
+    OpenOptions options;
+    int waits = 0;
+    options.give_up = [&] {  // asked before each read
+        if (++waits == 2) {
+            pipe.write("100 1 2 1\n200 3 4 0\n300 5 6 1\n400 7 8 1\n");
+            pipe.close_writing();
+        }
+        return false;
+    };
+    const Batch batch = read_everything(*open_recording(pipe.path(), options));
+    ASSERT_EQ(batch.events.size(), 4U);
+    EXPECT_EQ(batch.events[0].t, from_us(100));
+}
+
 TEST(OpenRecording, APipeOfPacketsIsReadToo) {
     const TestFolder folder;
     const auto events = some_events(50);
