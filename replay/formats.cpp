@@ -57,8 +57,8 @@ constexpr char kAedat2Magic[] = "#!AER-DAT2.", kAedat3Magic[] = "#!AER-DAT3.",
                kAedat4FirstLine[] = "#!AER-DAT4.";
 
 OpenedStream open_aedat1(Bytes first_bytes, const OpenOptions& options) {
-    const auto make_parser = [one_is_on = options.dvs128_one_is_on](const StreamHeader&) {
-        return std::make_unique<Aedat1Parser>(one_is_on);
+    const auto make_parser = [one_is_on = options.dvs128_one_is_on](const StreamHeader& stream) {
+        return std::make_unique<Aedat1Parser>(one_is_on, stream.width, stream.height);
     };
     return {read_aedat1_header(first_bytes), make_parser, by_skimming<Aedat1Parser>()};
 }

@@ -107,6 +107,23 @@ TEST(OpenRecording, AFewDamagedCoordinatesDoNotDecideOnTheSize) {
     EXPECT_EQ(sum.damaged[DamageReason::out_of_range], 2U);
 }
 
+TEST(OpenRecording, NoEventLiesOutsideTheSizeThatIsStated) {
+    const TestFolder folder;
+    const auto events = some_events(500);
+    for (const char* format :
+         {"text", "aedat1", "aedat2", "aedat3", "aedat4", "evt2", "evt21", "evt3", "dat", "es"}) {
+        SCOPED_TRACE(format);
+        const std::string path = write_as(folder, format, events);
+        const OpenOptions stated{.width = 50, .height = 40};
+        const Batch batch = read_everything(*open_recording(path, stated));
+        EXPECT_FALSE(batch.events.empty());
+        EXPECT_TRUE(std::ranges::all_of(
+            batch.events, [](const Event& event) { return event.x < 50 && event.y < 40; }));
+        const Summary sum = summarize(*open_recording(path, stated));
+        EXPECT_EQ(sum.events + sum.damaged[DamageReason::out_of_range], events.size());
+    }
+}
+
 TEST(OpenRecording, ASensorLargerThanAnyKnownHasToBeStated) {
     const TestFolder folder;
     const std::string path = folder.write("a.dat", dat_without_size(300, 2));
