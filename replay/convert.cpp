@@ -93,6 +93,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     std::optional<SensorTime> last_event, written;
     const auto pass_on = [&] {
         if (!batch.events.empty()) last_event = batch.events.back().t;
+        report.events_read += batch.events.size();
         keep_inside(batch, options);
         if (options.filter) options.filter(batch);
         add(report.not_held, remove_not_held(batch, target.holds()));

@@ -18,6 +18,7 @@ struct ConvertOptions {
 };
 
 struct ConvertReport {
+    std::uint64_t events_read = 0;  ///< before limits and filter
     DataCounts written;
     DataCounts not_held;  ///< left out because the target has no record for them
     /// Triggers behind later events, which the target holds with the time of those.

@@ -57,8 +57,8 @@ constexpr char kAedat2Magic[] = "#!AER-DAT2.", kAedat3Magic[] = "#!AER-DAT3.",
                kAedat4FirstLine[] = "#!AER-DAT4.";
 
 OpenedStream open_aedat1(Bytes first_bytes, const OpenOptions& options) {
-    const auto make_parser = [one_is_on = options.dvs128_one_is_on](const StreamHeader&) {
-        return std::make_unique<Aedat1Parser>(one_is_on);
+    const auto make_parser = [one_is_on = options.dvs128_one_is_on](const StreamHeader& stream) {
+        return std::make_unique<Aedat1Parser>(one_is_on, stream.width, stream.height);
     };
     return {read_aedat1_header(first_bytes), make_parser, by_skimming<Aedat1Parser>()};
 }
@@ -72,12 +72,15 @@ OpenedStream open_aedat2(Bytes first_bytes, const OpenOptions& options) {
     return {header.stream, make_parser, by_skimming<Aedat2Parser>()};
 }
 
+/// Of AEDAT 3 and 4: images come after the events around them.
+constexpr SensorDuration kLatestPacket{500'000};
+
 OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
     const Aedat3Header header = read_aedat3_header(first_bytes);
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat3Parser>(header, stream.width, stream.height);
     };
-    return {header.stream, make_parser, {1}};
+    return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}};
 }
 
 OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
@@ -91,7 +94,6 @@ OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
         };
         return find_in_aedat4_table(header, read_at, t);
     };
-    constexpr SensorDuration kLatestPacket{500'000};  // images come after the events around them
     return {header.stream, make_parser, {1, nullptr, look_up, kLatestPacket}};
 }
 

@@ -5,18 +5,31 @@
 #include "replay/stream/aedat4_streams.h"
 #include "replay/stream/scan_geometry.h"
 #include "replay/unsupported_formats.h"
+#include "src/codec/text/text_row.h"
 #include "src/core/error.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 namespace eventide {
 
 namespace {
 
-// A text stream is known from a few rows; waiting for more would hold up whoever types them.
-constexpr std::ptrdiff_t kRowsOfStreamToSee = 3;
+// A text stream is known from a few rows, behind the lines of its size and its columns; waiting for
+// more would hold up whoever types them.
+constexpr int kLinesOfStreamToSee = 4;
+
+bool has_seen_rows(std::span<const std::byte> text) {
+    std::string_view rest(reinterpret_cast<const char*>(text.data()), text.size());
+    int lines = 0;
+    for (std::size_t end = rest.find('\n'); end != rest.npos; end = rest.find('\n')) {
+        lines += is_comment(rest.substr(0, end)) ? 0 : 1;
+        rest.remove_prefix(end + 1);
+    }
+    return lines >= kLinesOfStreamToSee;
+}
 
 /// The beginning of the file. Of a pipe only as much as it takes to know the format.
 std::vector<std::byte> read_head(ByteFile& file, const OpenOptions& options) {
@@ -34,9 +47,7 @@ std::vector<std::byte> read_head(ByteFile& file, const OpenOptions& options) {
         size += n;
         const auto read = std::span(head).first(size);
         const Format* format = detect_format(read);
-        if (format && format->name == "text" &&
-            std::count(read.begin(), read.end(), std::byte{'\n'}) > kRowsOfStreamToSee)
-            break;
+        if (format && format->name == "text" && has_seen_rows(read)) break;
     }
     head.resize(size);
     return head;

@@ -61,14 +61,15 @@ Written write(const Batch& batch) {
     return written;
 }
 
+constexpr std::int64_t kBegin = 1'600'000'000'000'000;  // us
+
 Batch one_of_each() {
+    const auto at = [](std::int64_t us) { return from_us(kBegin + us); };
     Batch batch;
-    batch.events = random_events(1, 100, 346, 260, 1'600'000'000'000'000);
-    batch.imu = {{from_us(5), {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10},
-                 {from_us(6), {-1, -2, -3}, {}, {}, 0}};
-    batch.triggers = {{from_us(7), Trigger::Kind::rising, 0},
-                      {from_us(8), Trigger::Kind::exposure_end, 0}};
-    ReferenceImage image{from_us(50), from_us(40), from_us(61), 3, 4, 1, {}};
+    batch.events = random_events(1, 100, 346, 260, kBegin);
+    batch.imu = {{at(5), {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10}, {at(6), {-1, -2, -3}, {}, {}, 0}};
+    batch.triggers = {{at(7), Trigger::Kind::rising, 0}, {at(8), Trigger::Kind::exposure_end, 0}};
+    ReferenceImage image{at(50), at(40), at(61), 3, 4, 1, {}};
     image.pixels = Array2<std::uint16_t>(5, 7);
     image.pixels(4, 6) = 200 * 257;
     batch.images = {image};
@@ -85,7 +86,7 @@ TEST(Aedat4Strict, EveryPacketIsAsTheLibraryWantsIt) {
     const auto* triggers = verified<strict::TriggerPacket>(written.packets[0], "TRIG");
     ASSERT_TRUE(triggers);
     ASSERT_EQ(triggers->elements()->size(), 2U);
-    EXPECT_EQ(triggers->elements()->Get(1)->timestamp(), 8);
+    EXPECT_EQ(triggers->elements()->Get(1)->timestamp(), kBegin + 8);
     EXPECT_EQ(triggers->elements()->Get(1)->type(), 9);
 
     const auto* events = verified<strict::EventPacket>(written.packets[1], "EVTS");
@@ -99,9 +100,9 @@ TEST(Aedat4Strict, EveryPacketIsAsTheLibraryWantsIt) {
 
     const auto* frame = verified<strict::Frame>(written.packets[2], "FRME");
     ASSERT_TRUE(frame);
-    EXPECT_EQ(frame->timestamp(), 50);
-    EXPECT_EQ(frame->timestamp_start_of_exposure(), 40);
-    EXPECT_EQ(frame->timestamp_end_of_exposure(), 61);
+    EXPECT_EQ(frame->timestamp(), kBegin + 50);
+    EXPECT_EQ(frame->timestamp_start_of_exposure(), kBegin + 40);
+    EXPECT_EQ(frame->timestamp_end_of_exposure(), kBegin + 61);
     EXPECT_EQ(frame->exposure(), 21);
     EXPECT_EQ(frame->format(), 0);
     EXPECT_EQ(frame->size_x(), 7);

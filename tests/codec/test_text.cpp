@@ -92,6 +92,16 @@ TEST(Text, TheSizeLineIsRead) {
     EXPECT_EQ(header.layout.unit, TextTimeUnit::seconds);
 }
 
+TEST(Text, WithoutARowTheSizeOrTheColumnsAreEnough) {
+    for (const char* text : {"346 260\n", "346 260", "# c\n346 260\n# c\n", "t,x,y,p\n"}) {
+        const Parsed parsed = parse_text(text);
+        EXPECT_TRUE(parsed.data.empty()) << text;
+        EXPECT_EQ(parsed.damage.total(), 0U) << text;
+    }
+    EXPECT_EQ(read_text_header(to_bytes("346 260\n"), {}).stream.height, 260);
+    EXPECT_THROW(read_text_header(to_bytes("# c\n"), {}), Error);
+}
+
 TEST(Text, WholeNumbersAreTakenInTheOrderThatMakesMostEvents) {
     // Times too small to stand out: that they never fall tells.
     const Parsed parsed = parse_text("90,3,1,7\n20,9,0,8\n50,1,1,9\n");

@@ -71,6 +71,40 @@ TEST(Convert, RowsThatWaitToBeSortedAreWrittenUpToTheLimit) {
     EXPECT_LT(recording->position_bytes(), recording->size_bytes()) << "the rest is not read";
 }
 
+TEST(Convert, APartOfAQuietRecordingHasItsImages) {
+    // Ten seconds in one batch, as a file of rows gives them.
+    Batch quiet;
+    for (int ms = 0; ms < 10'000; ++ms)
+        quiet.events.push_back({from_us(1000 * ms), std::uint16_t(ms % 128), 5, Polarity::on});
+    for (int ms = 50; ms < 10'000; ms += 100) {
+        ReferenceImage image;
+        image.t = image.exposure_begin = image.exposure_end = from_us(1000 * ms);
+        image.pixels = Array2<std::uint16_t>(128, 128);
+        quiet.images.push_back(image);
+        quiet.imu.push_back({.t = image.t});
+        quiet.triggers.push_back({image.t, Trigger::Kind::rising, 0});
+    }
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = header.height = 128;
+    ConvertOptions part;
+    part.from = from_us(3'000'000);
+    part.to = from_us(3'999'000);
+    for (const std::string_view format : {"aedat4", "aedat3"}) {
+        SCOPED_TRACE(format);
+        const std::string path = folder.path(std::string(format));
+        RecordingFile file(path, false, open_writer(format), header);
+        file.write(quiet);
+        file.finish();
+        const Batch all = read_everything(*open_recording(path));
+        EXPECT_TRUE(all.events == quiet.events);
+        EXPECT_EQ(all.images.size(), 100U);
+        const auto report = convert(*open_recording(path), folder.path("b"), *find_format("aedat4"),
+                                    {part.from, part.to, true});
+        EXPECT_TRUE((report.written == DataCounts{1000, 10, 10, 10}));
+    }
+}
+
 TEST(Convert, ATriggerFarAheadEndsNothing) {
     const TestFolder folder;
     const auto events = some_events(60'000, 0, 200);

@@ -42,6 +42,17 @@ TEST(EcdFolder, GivesItsImagesInTimeOrderWithTheEvents) {
     EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 2U);
 }
 
+TEST(EcdFolder, ImagesAloneAreRead) {
+    const TestFolder folder;
+    folder.write("r/events.txt", "20 10\n");
+    folder.write("r/images/a.pgm", photo(20, 10, 'a'));
+    folder.write("r/images.txt", "0.11 images/a.pgm\n");
+    const Summary summary = summarize(*open_recording(folder.path("r")));
+    EXPECT_EQ(summary.events, 0U);
+    EXPECT_EQ(summary.frames, 1U);
+    EXPECT_EQ(summary.damaged.total(), 0U);
+}
+
 TEST(EcdFolder, ReadsNoImageOutsideTheFolder) {
     const TestFolder folder;
     const std::string secret = folder.write("secret.pgm", photo(20, 10, 's'));

@@ -107,6 +107,23 @@ TEST(OpenRecording, AFewDamagedCoordinatesDoNotDecideOnTheSize) {
     EXPECT_EQ(sum.damaged[DamageReason::out_of_range], 2U);
 }
 
+TEST(OpenRecording, NoEventLiesOutsideTheSizeThatIsStated) {
+    const TestFolder folder;
+    const auto events = some_events(500);
+    for (const char* format :
+         {"text", "aedat1", "aedat2", "aedat3", "aedat4", "evt2", "evt21", "evt3", "dat", "es"}) {
+        SCOPED_TRACE(format);
+        const std::string path = write_as(folder, format, events);
+        const OpenOptions stated{.width = 50, .height = 40};
+        const Batch batch = read_everything(*open_recording(path, stated));
+        EXPECT_FALSE(batch.events.empty());
+        EXPECT_TRUE(std::ranges::all_of(
+            batch.events, [](const Event& event) { return event.x < 50 && event.y < 40; }));
+        const Summary sum = summarize(*open_recording(path, stated));
+        EXPECT_EQ(sum.events + sum.damaged[DamageReason::out_of_range], events.size());
+    }
+}
+
 TEST(OpenRecording, ASensorLargerThanAnyKnownHasToBeStated) {
     const TestFolder folder;
     const std::string path = folder.write("a.dat", dat_without_size(300, 2));
@@ -163,6 +180,23 @@ TEST(OpenRecording, APipeOfTextIsReadAsItComes) {
     pipe.close_writing();
     recording->seek(from_us(1));  // a pipe cannot: nothing is lost
     EXPECT_EQ(read_everything(*recording).events.size(), 4U);
+}
+
+TEST(OpenRecording, CommentsInAPipeOfTextAreNoRows) {
+    Pipe pipe;
+    pipe.write("240 180\n# a\n# b\n# c\n");
+    OpenOptions options;
+    int waits = 0;
+    options.give_up = [&] {  // asked before each read
+        if (++waits == 2) {
+            pipe.write("100 1 2 1\n200 3 4 0\n300 5 6 1\n400 7 8 1\n");
+            pipe.close_writing();
+        }
+        return false;
+    };
+    const Batch batch = read_everything(*open_recording(pipe.path(), options));
+    ASSERT_EQ(batch.events.size(), 4U);
+    EXPECT_EQ(batch.events[0].t, from_us(100));
 }
 
 TEST(OpenRecording, APipeOfPacketsIsReadToo) {

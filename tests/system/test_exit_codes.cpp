@@ -112,14 +112,17 @@ TEST_F(ExitCodes, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
     for (int i = 0; i < 1000; ++i)
         text += std::to_string(1'000'000 + 500 * i - (i % 3 == 2 ? 250'000 : 0)) + " 1 2 1\n";
     write_text(temp_ / "mixed.txt", text);
-    for (const std::vector<std::string>& command : {std::vector<std::string>{"info", "mixed.txt"},
-                                                    {"run", "mixed.txt", "--out", "null"},
-                                                    {"convert", "mixed.txt", "mixed.aedat4"}}) {
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"info", "mixed.txt"},
+          {"run", "mixed.txt", "--out", "null"},
+          {"convert", "mixed.txt", "mixed.aedat4"},
+          {"convert", "mixed.txt", "tenth.aedat4", "--filter", "subsample:10"}}) {
         const Result result = eventide(command);
         EXPECT_EQ(result.exit_code, 0);
         EXPECT_NE(result.error.find("events already read; a larger --reorder"), std::string::npos)
             << command[0] << "\n"
             << result.error;
+        EXPECT_NE(result.error.find("326 events (33 %)"), std::string::npos) << result.error;
     }
     EXPECT_EQ(eventide({"info", "mixed.txt", "--reorder", "1s", "--strict"}).exit_code, 0);
 }

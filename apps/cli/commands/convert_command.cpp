@@ -70,7 +70,7 @@ void say(const std::string& source, const std::string& source_format, const std:
                      report.late_triggers);
     if (report.lost > 0) spdlog::warn("{}: lost {}", file, lost_datagrams(report.lost));
     if (const std::string why =
-            disorder_text(source, source_format, report.written.events, report.damaged);
+            disorder_text(source, source_format, report.events_read, report.damaged);
         !why.empty())
         spdlog::warn("{}", why);
     for (std::size_t i = 0; i < kDamageReasons; ++i)

@@ -21,6 +21,8 @@ void Dvs128Events::take(const AedatRecord& record, std::int64_t t_us, Batch& int
         damage.count(DamageReason::unknown_word);
     } else if (address.external) {
         into.triggers.push_back({from_us(t_us), Trigger::Kind::pulse, 0});
+    } else if (address.x >= width_ || address.y >= height_) {
+        damage.count(DamageReason::out_of_range);
     } else if (last_event_us_ && t_us < *last_event_us_) {
         damage.count(DamageReason::time_backwards);
     } else {

@@ -21,12 +21,15 @@ Dvs128Address read_dvs128_address(std::uint32_t address);
 /// kind pulse: the format does not say which edge.
 class Dvs128Events {
 public:
-    explicit Dvs128Events(bool one_is_on) : one_is_on_(one_is_on) {}
+    /// Of a sensor stated as smaller, px, what lies outside is out_of_range.
+    Dvs128Events(bool one_is_on, int width, int height)
+        : one_is_on_(one_is_on), width_(width), height_(height) {}
     void take(const AedatRecord& record, std::int64_t t_us, Batch& into, Damage& damage);
     void resync() { last_event_us_.reset(); }
 
 private:
     bool one_is_on_;
+    int width_, height_;
     std::optional<std::int64_t> last_event_us_;
 };
 
@@ -37,7 +40,8 @@ StreamHeader read_aedat1_header(std::span<const std::byte> first_bytes);
 class Aedat1Parser final : public Parser {
 public:
     /// `one_is_on`: what bit 0 of the address means (see OpenOptions).
-    explicit Aedat1Parser(bool one_is_on = false) : events_(one_is_on) {}
+    explicit Aedat1Parser(bool one_is_on = false, int width = 128, int height = 128)
+        : events_(one_is_on, width, height) {}
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;

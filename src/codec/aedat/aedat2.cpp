@@ -84,7 +84,7 @@ Aedat2Parser::Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_
     : sensor_(sensor),
       width_(std::uint32_t(width)),
       height_(std::uint32_t(height)),
-      dvs128_(one_is_on),
+      dvs128_(one_is_on, width, height),
       frame_(sensor == Aedat2Sensor::davis ? width : 0,
              sensor == Aedat2Sensor::davis ? height : 0) {}
 

@@ -1,6 +1,7 @@
 // Events, frames, IMU samples, triggers -> AEDAT 3.1 packets.
 #include "src/codec/aedat/aedat3.h"
 #include "src/codec/aedat/aedat3_records.h"
+#include "src/codec/batch_parts.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
 
@@ -42,7 +43,7 @@ void append_header(Aedat3Type type, std::uint32_t record_bytes, std::uint32_t ov
 
 /// The items as packets, each of one overflow and at most kPacketRecords.
 template <typename T, typename Append>
-void append_packets(Aedat3Type type, std::uint32_t record_bytes, const std::vector<T>& items,
+void append_packets(Aedat3Type type, std::uint32_t record_bytes, std::span<const T> items,
                     std::vector<std::byte>& out, Append&& append_record) {
     for (std::size_t begin = 0; begin < items.size();) {
         const std::uint32_t overflow = overflow_of(items[begin].t);
@@ -85,18 +86,17 @@ bool has_magnetometer(const ImuSample& sample) {
 }
 
 /// Runs of samples with and without a magnetometer, each in packets of its type.
-void append_imu(const std::vector<ImuSample>& samples, std::vector<std::byte>& out) {
-    for (auto begin = samples.begin(); begin != samples.end();) {
-        const bool nine = has_magnetometer(*begin);
-        const auto end = std::find_if(begin, samples.end(), [&](const ImuSample& sample) {
-            return has_magnetometer(sample) != nine;
-        });
-        append_packets(nine ? Aedat3Type::imu9 : Aedat3Type::imu6,
-                       nine ? Aedat3Packet::kImu9Bytes : Aedat3Packet::kImu6Bytes,
-                       std::vector<ImuSample>(begin, end), out, [&](const ImuSample& sample) {
-                           write_imu(sample, nine, stamp_of(sample.t), out);
-                       });
-        begin = end;
+void append_imu(std::span<const ImuSample> samples, std::vector<std::byte>& out) {
+    while (!samples.empty()) {
+        const bool nine = has_magnetometer(samples.front());
+        const auto end = std::ranges::find_if(
+            samples, [&](const ImuSample& sample) { return has_magnetometer(sample) != nine; });
+        const auto n = std::size_t(end - samples.begin());
+        append_packets(
+            nine ? Aedat3Type::imu9 : Aedat3Type::imu6,
+            nine ? Aedat3Packet::kImu9Bytes : Aedat3Packet::kImu6Bytes, samples.first(n), out,
+            [&](const ImuSample& sample) { write_imu(sample, nine, stamp_of(sample.t), out); });
+        samples = samples.subspan(n);
     }
 }
 
@@ -115,15 +115,17 @@ void Aedat3Writer::begin(const StreamHeader& header, std::vector<std::byte>& out
 
 void Aedat3Writer::write(const Batch& batch, std::vector<std::byte>& out) {
     out.reserve(out.size() + Aedat3Packet::kPolarityBytes * batch.events.size());
-    append_packets(Aedat3Type::polarity, Aedat3Packet::kPolarityBytes, batch.events, out,
-                   [&](const Event& event) { append_event(event, out); });
-    for (const ReferenceImage& image : batch.images) append_image(image, colours_, out);
-    append_imu(batch.imu, out);
-    append_packets(Aedat3Type::special, Aedat3Packet::kSpecialBytes, batch.triggers, out,
-                   [&](const Trigger& trigger) {
-                       append_little(out, write_special(trigger));
-                       append_little(out, stamp_of(trigger.t));
-                   });
+    in_parts(batch, [&](const BatchPart& part) {
+        append_packets(Aedat3Type::polarity, Aedat3Packet::kPolarityBytes, part.events, out,
+                       [&](const Event& event) { append_event(event, out); });
+        for (const ReferenceImage& image : part.images) append_image(image, colours_, out);
+        append_imu(part.imu, out);
+        append_packets(Aedat3Type::special, Aedat3Packet::kSpecialBytes, part.triggers, out,
+                       [&](const Trigger& trigger) {
+                           append_little(out, write_special(trigger));
+                           append_little(out, stamp_of(trigger.t));
+                       });
+    });
 }
 
 }  // namespace eventide

@@ -4,6 +4,7 @@
 #include "src/codec/aedat4/aedat4_flat_writer.h"
 #include "src/codec/aedat4/aedat4_header.h"
 #include "src/codec/aedat4/aedat4_records.h"
+#include "src/codec/batch_parts.h"
 #include "src/core/bayer.h"
 #include "src/core/error.h"
 
@@ -110,8 +111,8 @@ Aedat4TableEntry entry_for(Aedat4Kind kind, std::span<const T> items) {
 }
 
 template <typename T, typename Write>
-void in_pieces(const std::vector<T>& items, std::size_t most, const Write& write) {
-    for (std::span<const T> rest(items); !rest.empty();) {
+void in_pieces(std::span<const T> rest, std::size_t most, const Write& write) {
+    while (!rest.empty()) {
         const std::size_t n = std::min(most, rest.size());
         write(rest.first(n));
         rest = rest.subspan(n);
@@ -147,10 +148,12 @@ void Aedat4Writer::packet(Aedat4TableEntry entry, FlatWriter& content,
 }
 
 void Aedat4Writer::write(const Batch& batch, std::vector<std::byte>& out) {
-    in_pieces(batch.triggers, kPacketSamples, [&](auto piece) { write_triggers(piece, out); });
-    in_pieces(batch.events, kPacketEvents, [&](auto piece) { write_events(piece, out); });
-    for (const ReferenceImage& image : batch.images) write_image(image, out);
-    in_pieces(batch.imu, kPacketSamples, [&](auto piece) { write_imu(piece, out); });
+    in_parts(batch, [&](const BatchPart& part) {
+        in_pieces(part.triggers, kPacketSamples, [&](auto piece) { write_triggers(piece, out); });
+        in_pieces(part.events, kPacketEvents, [&](auto piece) { write_events(piece, out); });
+        for (const ReferenceImage& image : part.images) write_image(image, out);
+        in_pieces(part.imu, kPacketSamples, [&](auto piece) { write_imu(piece, out); });
+    });
 }
 
 void Aedat4Writer::write_events(std::span<const Event> events, std::vector<std::byte>& out) {

@@ -311,11 +311,13 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
         named = layout_named(split_fields(*line));
         if (named) line = lines.next();
     }
-    if (!line || !is_row(split_fields(*line)))
+    // A recording of no events, as convert writes it, still says its size or its columns.
+    const bool says_something = header.stream.width > 0 || named;
+    if (line ? !is_row(split_fields(*line)) : !says_something)
         throw Error(ErrorKind::input, "text recording: expected rows \"t x y p\", found " +
                                           (line ? "\"" + std::string(line->substr(0, 60)) + "\""
                                                 : std::string("no row of data")));
-    header.stream.data_offset = lines.line_begin();
+    header.stream.data_offset = line ? lines.line_begin() : first_bytes.size();
 
     std::vector<Fields> rows;
     for (; line && rows.size() < kRowsToLookAt; line = lines.next())

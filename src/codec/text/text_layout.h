@@ -52,8 +52,9 @@ struct TextHeader {
 /// header row, a "width height" line, or rows of at least four numbers.
 bool looks_like_text(std::span<const std::byte> first_bytes);
 
-/// Throws Error (input) when no line of data is among the bytes or the
-/// lines are no rows of events; Error (usage) when the options contradict themselves.
+/// Throws Error (input) when the bytes hold neither a line of data nor one that says the size or
+/// the columns, or the lines are no rows of events; Error (usage) when the options contradict
+/// themselves.
 TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOptions& options);
 
 }  // namespace eventide
