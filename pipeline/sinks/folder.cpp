@@ -81,8 +81,10 @@ void FolderSink::write(const Frame& frame) {
                             const_cast<float*>(frame.sigma.values().data()));
         write_image(folder_.next(kUncertainty), sigma, ".tiff", kTiff);
     }
-    draw_events(frame, image_);
-    if (!image_.empty()) write_image(folder_.next(kEvents), image_, ".png", kPng);
+    if (settings_.events && !frame.event_preview.empty()) {
+        draw_events(frame, image_);
+        write_image(folder_.next(kEvents), image_, ".png", kPng);
+    }
     write_times(frame);
     ++frames_;
 }

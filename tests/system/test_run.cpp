@@ -215,6 +215,14 @@ TEST_F(Run, LookAndHotPixelsAreAppliedWhenAskedFor) {
     EXPECT_EQ(probe(temp_ / "a/frames/frame_0000000000.png", "width,height"), "56,40\n");
 }
 
+TEST_F(Run, AFolderHasNoEventsBecauseAContactSheetShowsThem) {
+    const Result result = eventide(
+        {"run", recording(), "--to", "60ms", "--out", "a/", "--out", "contact-sheet:sheet.png"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "a/frames/frame_0000000000.png"));
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "a/events"));
+}
+
 TEST_F(Run, RendersOneRegionOnly) {
     ASSERT_EQ(eventide({"run", recording(), "--size", "2x", "--roi", "10,20,30x16", "--out", "a/",
                         "--to", "60ms"})
