@@ -202,7 +202,9 @@ void HttpAnswers::one_frame(const Request& request, Response& response) {
     const auto shown = newest_.next(nullptr, Clock::now() + kFrameTime);
     if (!shown) return say(response, 503, "no frame came within 5 seconds");
     const bool png = request.path == "/frame.png", tiff = request.path == "/sigma.tiff";
-    const ShownFrame::Bytes& bytes = png ? shown->png() : tiff ? shown->tiff() : shown->jpeg(show);
+    const ShownFrame::Bytes& bytes = png    ? shown->png(show)
+                                     : tiff ? shown->tiff()
+                                            : shown->jpeg(show);
     if (bytes.empty()) return say(response, 404, "these frames have no sigma (--uncertainty none)");
     response.set_header("X-Time-Us", std::to_string(to_us(shown->frame().t)));
     response.set_header("X-Frame-Index", std::to_string(shown->frame().index));

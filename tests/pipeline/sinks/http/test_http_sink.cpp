@@ -54,6 +54,10 @@ TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     EXPECT_EQ(decoded(client.Get("/frame.jpg?show=side")->body).cols, 128);
     EXPECT_EQ(decoded(client.Get("/frame.jpg?show=overlay")->body).channels(), 3);
     EXPECT_EQ(decoded(client.Get("/frame.jpg?show=sigma")->body).channels(), 1);
+    const auto png = client.Get("/frame.png?show=side");
+    cv::Mat expected;
+    draw(frame_of(png), Uncertainty::side, kSigmaWhite, expected);
+    EXPECT_EQ(cv::norm(decoded(png->body), expected, cv::NORM_INF), 0);
     EXPECT_EQ(client.Get("/frame.jpg?show=everything")->status, 400);
     EXPECT_EQ(client.Get("/stream?fps=0")->status, 400);
     EXPECT_EQ(client.Get("/nothing")->status, 404);
