@@ -47,6 +47,16 @@ TEST(HttpSink, GivesAFrameAsPngAndItsSigmaAsTiff) {
         for (int x = 0; x < 64; ++x) ASSERT_EQ(sigma.at<float>(y, x), frame.sigma(y, x));
 }
 
+TEST(HttpSink, PromisesNoPartsOfWhatIsNewEachTime) {
+    const auto sink = open_page();
+    const Frames frames{*sink};
+    auto client = client_of(*sink);
+    EXPECT_EQ(client.Head("/frame.png")->get_header_value("Accept-Ranges"), "none");
+    const auto part = client.Get("/page.js", {httplib::make_range_header({{0, 9}})});
+    EXPECT_EQ(part->status, 200);
+    EXPECT_EQ(part->body, client.Get("/page.js")->body);
+}
+
 TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     const auto sink = open_page();
     const Frames frames{*sink};
