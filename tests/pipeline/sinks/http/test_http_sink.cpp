@@ -73,6 +73,23 @@ TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     EXPECT_EQ(client.Get("/nothing")->status, 404);
 }
 
+TEST(HttpSink, AStreamsTimesKeepTheirSign) {
+    const auto sink = open_page();
+    // The first frame of a recording from 0 shows the microsecond before it.
+    const std::jthread frames{[&sink](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            sink->write(ramp_frame(16, 16, 0, from_us(-1)));
+            std::this_thread::yield();
+        }
+    }};
+    std::string stream;
+    client_of(*sink).Get("/stream", [&](const char* bytes, std::size_t size) {
+        stream.append(bytes, size);
+        return stream.find("\r\n\r\n") == stream.npos;
+    });
+    EXPECT_NE(stream.find("X-Timestamp: -0.000001\r\n"), std::string::npos) << stream;
+}
+
 TEST(HttpSink, StreamsWholeJpegsWithTheirTimes) {
     const auto sink = open_page();
     const Frames frames{*sink};
