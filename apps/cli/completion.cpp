@@ -1,6 +1,8 @@
 // What bash, zsh and fish offer while a command line is typed.
 #include "apps/cli/manual.h"
 
+#include <algorithm>
+#include <sstream>
 #include <utility>
 
 namespace eventide::app {
@@ -9,18 +11,29 @@ namespace {
 
 /// A flag with what a shell says of it.
 struct Flag {
-    std::string flag, short_flag, help;
-    std::string choice;  ///< "auto f32 bf16", of a value that is one of a few words
+    std::string flag, short_flag = {}, help;
+    std::string choice = {};  ///< "auto f32 bf16", of a value that is one of a few words
+    bool or_file = false;     ///< which may also be a file
     bool takes_value = false;
 };
 
-/// The words of a setting that takes one of a few: "auto|f32|bf16".
-std::string words_of(const Setting& setting) {
-    std::string words = setting.value_name;
-    if (words.find('|') == words.npos) return {};
-    for (char& c : words)
-        if (c == '|') c = ' ';
-    return words;
+/// What "off|learn|FILE" says can be typed: "off learn", and a file. Capitals stand for something
+/// else than themselves.
+struct Values {
+    std::string words;
+    bool file = false;
+};
+
+Values values_of(const Setting& setting) {
+    Values values;
+    if (setting.value_name.find('|') == std::string::npos) return values;
+    std::istringstream names{setting.value_name};
+    for (std::string name; std::getline(names, name, '|');) {
+        if (std::ranges::none_of(name, [](char c) { return c >= 'A' && c <= 'Z'; }))
+            values.words += (values.words.empty() ? "" : " ") + name;
+        values.file = values.file || name == "FILE";
+    }
+    return values;
 }
 
 /// The first sentence, without its end.
@@ -34,16 +47,18 @@ std::string first_sentence(const std::string& help) {
 std::vector<Flag> flags_of(Command& command, const SettingTable& common) {
     std::vector<Flag> flags;
     const auto add = [&](const SettingTable& table) {
-        for (const Setting& setting : table.settings)
+        for (const Setting& setting : table.settings) {
+            const Values values = values_of(setting);
             flags.push_back({flag_of(setting), setting.short_flag, first_sentence(setting.help),
-                             words_of(setting), !setting.value_name.empty()});
+                             values.words, values.file, !setting.value_name.empty()});
+        }
     };
     add(command.settings());
     add(common);
-    flags.push_back({"--config", "", "TOML file with settings", "", true});
+    flags.push_back({.flag = "--config", .help = "TOML file with settings", .takes_value = true});
     flags.push_back(
-        {"--print-config", "", "Show each value and where it comes from, and exit", "", false});
-    flags.push_back({"--help", "-h", "Show every option, and exit", "", false});
+        {.flag = "--print-config", .help = "Show each value and where it comes from, and exit"});
+    flags.push_back({.flag = "--help", .short_flag = "-h", .help = "Show every option, and exit"});
     return flags;
 }
 
@@ -115,7 +130,8 @@ std::string zsh_completion(const SettingTable& common, const Commands& commands)
             flags += "            " + for_zsh(flag.flag + ":" + flag.help) + "\n";
             if (!flag.choice.empty())
                 word_cases += "        " + for_zsh(command->name() + " " + flag.flag) +
-                              ") compadd -- " + flag.choice + "; return ;;\n";
+                              ") compadd -- " + flag.choice + (flag.or_file ? "; _files" : "") +
+                              "; return ;;\n";
         }
         names += "            " + for_zsh(command->name() + ":" + command->summary()) + "\n";
         flag_cases += "        " + command->name() + ") choice=(\n" + flags + "        ) ;;\n";
@@ -165,7 +181,7 @@ std::string fish_completion(const SettingTable& common, const Commands& commands
                     flag.flag.substr(2);
             if (!flag.short_flag.empty()) text += " -s " + flag.short_flag.substr(1);
             if (!flag.choice.empty())
-                text += " -x -a " + for_fish(flag.choice);
+                text += (flag.or_file ? " -r -a " : " -x -a ") + for_fish(flag.choice);
             else if (flag.takes_value)
                 text += " -r";
             text += " -d " + for_fish(flag.help) + "\n";

@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace eventide::app {
@@ -63,6 +64,20 @@ void NamedFiles::writes(const std::string& option, const fs::path& path, const s
     }
     add(named(option + " " + (said.empty() ? path.string() : said), path), outputs_);
     refuse_existing(path, overwrite_);
+}
+
+void NamedFiles::writes_when_done(const std::string& option, const fs::path& path) {
+    if (!path.empty() && path != "-") {
+        const fs::path folder = resolved(path).parent_path();
+        std::error_code none;
+        if (!fs::is_directory(folder, none) &&
+            std::ranges::none_of(
+                outputs_, [&](const Named& other) { return other.path.parent_path() == folder; }))
+            throw Error(ErrorKind::usage, option + " " + path.string() +
+                                              ": expected a folder that exists, found no " +
+                                              folder.string());
+    }
+    writes(option, path);
 }
 
 void NamedFiles::writes_folder(const std::string& option, const fs::path& folder) {

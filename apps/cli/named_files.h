@@ -30,6 +30,9 @@ public:
     /// `said` is how the user wrote it, where that is not just the path: "y4m:x".
     void writes(const std::string& option, const std::filesystem::path& path,
                 const std::string& said = {});
+    /// As writes(), of what a command writes when all its work is done: also refused where there
+    /// is no folder for it, and none that another output makes.
+    void writes_when_done(const std::string& option, const std::filesystem::path& path);
     /// A folder, of which the files are named one by one.
     void writes_folder(const std::string& option, const std::filesystem::path& folder);
     /// A folder that is the output's own, with everything in it.

@@ -1,12 +1,11 @@
 // Frames as PNG and sigma as float TIFF in a folder, with their times beside them.
 #include "pipeline/sinks/folder.h"
 
+#include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/io/image_codecs.h"
 #include "src/io/output_file.h"
 
-#include <cinttypes>
-#include <cstdio>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,16 +15,6 @@ namespace eventide {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Sensor time in seconds with all its microseconds: doubles lose them after 1970.
-std::string seconds_of(SensorTime t) {
-    const std::int64_t us = to_us(t);
-    const std::uint64_t size = us < 0 ? std::uint64_t(0) - std::uint64_t(us) : std::uint64_t(us);
-    char text[48];
-    std::snprintf(text, sizeof text, "%s%" PRIu64 ".%06" PRIu64, us < 0 ? "-" : "",
-                  size / 1'000'000, size % 1'000'000);
-    return text;
-}
 
 enum Kind : std::size_t { kFrames, kUncertainty, kEvents };  // as in files()
 
@@ -81,14 +70,16 @@ void FolderSink::write(const Frame& frame) {
                             const_cast<float*>(frame.sigma.values().data()));
         write_image(folder_.next(kUncertainty), sigma, ".tiff", kTiff);
     }
-    draw_events(frame, image_);
-    if (!image_.empty()) write_image(folder_.next(kEvents), image_, ".png", kPng);
+    if (settings_.events && !frame.event_preview.empty()) {
+        draw_events(frame, image_);
+        write_image(folder_.next(kEvents), image_, ".png", kPng);
+    }
     write_times(frame);
     ++frames_;
 }
 
 void FolderSink::write_times(const Frame& frame) {
-    seconds_->write(seconds_of(frame.t) + "\n");
+    seconds_->write(seconds_text(frame.t) + "\n");
     std::string line;
     for (const std::int64_t n :
          {std::int64_t(frames_), std::int64_t(frame.index), to_us(frame.t),

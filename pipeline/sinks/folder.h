@@ -20,6 +20,7 @@ struct FolderSettings {
     /// none leaves out the TIFFs; side, alpha and overlay change the PNGs and keep the TIFFs.
     Uncertainty uncertainty = Uncertainty::automatic;
     float sigma_white = kSigmaWhite;
+    bool events = false;  ///< writes the frames' event previews; other sinks may want them, too
     /// Packets lost until now, for the column `lost`; may be empty. Any thread.
     std::function<std::uint64_t()> lost = {};
     /// A JSON object for run.json, asked for once, at close; may be empty.
@@ -29,7 +30,7 @@ struct FolderSettings {
 /// Writes
 ///   frames/frame_%010d.png        8 bit; numbered by this sink from 0, without holes
 ///   uncertainty/unc_%010d.tiff    sigma, float32, in units of intensity, exact
-///   events/events_%010d.png       of frames with an event preview
+///   events/events_%010d.png       where asked for, of frames with an event preview
 ///   timestamps.txt                seconds of each frame, one a line, as E2VID writes it
 ///   timestamps.csv                frame, index, t_us, window_begin_us, window_end_us, events,
 ///   lost;

@@ -98,6 +98,7 @@ StreamSink::StreamSink(StreamSettings settings) : settings_{std::move(settings)}
                         std::string{name_of(settings_.uncertainty)} +
                         (is_y4m(settings_.format) ? "; expected none, side or (y4m) overlay"
                                                   : "; expected none, side, separate or alpha"));
+    settings_.stamp = settings_.stamp && !is_y4m(settings_.format);  // its frames have headers
     file_.emplace(settings_.path, OutputOptions{.overwrite = settings_.overwrite,
                                                 .appears = Appears::growing,
                                                 .give_up = settings_.give_up});

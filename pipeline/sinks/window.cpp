@@ -105,7 +105,7 @@ void WindowSink::write(const Frame& frame) {
 
 void WindowSink::show(const Frame& frame) {
     draw(frame, controls_.uncertainty, settings_.sigma_white, image_);
-    draw_events_beside(frame, settings_.part, image_);
+    if (settings_.events) draw_events_beside(frame, settings_.part, image_);
     if (!open_) {
         highgui().named_window(settings_.title, cv::WINDOW_NORMAL | cv::WINDOW_KEEPRATIO);
         highgui().resize_window(settings_.title, std::max(640, image_.cols),

@@ -19,6 +19,7 @@ struct WindowSettings {
     double speed = 1;  ///< at the beginning
     /// Asked while paused: true ends the pause, because the run is being stopped. May be empty.
     std::function<bool()> give_up = {};
+    bool events = false;  ///< left of the image; other sinks may want Frame::event_preview, too
     ShownPart part = {};  ///< that frames show
 };
 
@@ -36,7 +37,7 @@ struct WindowControls {
     void press(int key);
 };
 
-/// Frames with an event preview show it left of the image.
+/// Where asked for, frames with an event preview show it left of the image.
 ///
 /// Render thread = the program's main thread, as window systems want it. A pause holds the thread:
 /// a recording waits, a live source goes on and its frames are skipped.

@@ -1,4 +1,4 @@
-// Durations as text: one place reads and writes them.
+// Durations and times as text: one place reads and writes them.
 #pragma once
 
 #include "src/core/sensor_time.h"
@@ -6,6 +6,7 @@
 #include "src/core/number_text.h"
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,16 @@ inline std::string duration_text(SensorDuration duration) {
     if (us % 1'000'000 == 0) return std::to_string(us / 1'000'000) + "s";
     if (us % 1'000 == 0) return std::to_string(us / 1'000) + "ms";
     return std::to_string(us) + "us";
+}
+
+/// Sensor time in seconds with all its microseconds: "1633953690.975951", "-0.000001". Doubles lose
+/// them after 1970.
+inline std::string seconds_text(SensorTime t) {
+    constexpr std::uint64_t kSecond = 1'000'000;
+    const std::int64_t us = to_us(t);
+    const std::uint64_t size = us < 0 ? std::uint64_t(0) - std::uint64_t(us) : std::uint64_t(us);
+    const std::string fraction = std::to_string(kSecond + size % kSecond);  // a 1 in front
+    return (us < 0 ? "-" : "") + std::to_string(size / kSecond) + "." + fraction.substr(1);
 }
 
 }  // namespace eventide

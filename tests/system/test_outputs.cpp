@@ -151,6 +151,18 @@ TEST_F(Outputs, WhatWasAskedForIsReplaced) {
     EXPECT_EQ(eventide({"run", "rec.aedat4", "--out", "null", "--state-in", "state"}).exit_code, 0);
 }
 
+TEST_F(Outputs, WorkIsNotDoneForWhatCannotBeWrittenInTheEnd) {
+    expect_refused({"evaluate", "rec.aedat4", "--json", "nodir/scores"}, "--json nodir/scores",
+                   "expected a folder that exists");
+    expect_refused({"evaluate", "rec.aedat4", "--calibrated", "nodir/model"},
+                   "--calibrated nodir/model", "expected a folder that exists");
+    expect_refused({"run", "rec.aedat4", "--out", "null", "--state-out", "nodir/state"},
+                   "--state-out nodir/state", "expected a folder that exists");
+    EXPECT_EQ(
+        eventide({"run", "rec.aedat4", "--out", "new/", "--state-out", "new/state"}).exit_code, 0);
+    EXPECT_TRUE(fs::exists(temp_ / "new/state"));
+}
+
 /// What another part of the same command is refused for leaves an earlier run as it was.
 TEST_F(Outputs, AnEarlierRunStaysWhereTheNextCannotStart) {
     ASSERT_EQ(eventide({"run", "rec.aedat4", "--out", "k/"}).exit_code, 0);

@@ -215,6 +215,29 @@ TEST_F(Run, LookAndHotPixelsAreAppliedWhenAskedFor) {
     EXPECT_EQ(probe(temp_ / "a/frames/frame_0000000000.png", "width,height"), "56,40\n");
 }
 
+TEST_F(Run, AFolderHasNoEventsBecauseAContactSheetShowsThem) {
+    const Result result = eventide(
+        {"run", recording(), "--to", "60ms", "--out", "a/", "--out", "contact-sheet:sheet.png"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(std::filesystem::exists(temp_ / "a/frames/frame_0000000000.png"));
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "a/events"));
+}
+
+TEST_F(Run, TheRecordOfARunHasNoToken) {
+    const std::vector<std::string> run{"run",   recording(), "--to",  "20ms", "--speed",    "max",
+                                       "--out", "http:0",    "--out", "a/",   "--overwrite"};
+    for (const std::vector<std::string>& token :
+         {std::vector<std::string>{"--http-token", "sesame"}, {"--http-token=sesame"}}) {
+        std::vector<std::string> arguments = run;
+        arguments.insert(arguments.end(), token.begin(), token.end());
+        const Result result = eventide(arguments);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        const std::string record = read_text(temp_ / "a/run.json");
+        EXPECT_EQ(record.find("sesame"), std::string::npos) << record;
+        EXPECT_EQ(Json::parse(record)["settings"]["http_token"], "(given)");
+    }
+}
+
 TEST_F(Run, RendersOneRegionOnly) {
     ASSERT_EQ(eventide({"run", recording(), "--size", "2x", "--roi", "10,20,30x16", "--out", "a/",
                         "--to", "60ms"})

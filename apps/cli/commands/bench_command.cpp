@@ -171,15 +171,15 @@ BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& dat
 void BenchCommand::name_bench_files(NamedFiles& files) const {
     files.may_replace(overwrite_);
     for (const std::string& model : settings_.models) files.reads("--models", find_model(model));
-    files.writes("--json", json_);
     files.reads("--lpips", settings_.lpips);
     files.reads("--peers", peers_);
     if (!report_.empty())
         for (const std::filesystem::path& name : report_files())
             files.writes("--report", std::filesystem::path{report_} / name);
-    if (plots_.empty()) return;
-    for (const char* name : {"bench.svg", "bench.csv"})
-        files.writes("--plots", std::filesystem::path{plots_} / name);
+    if (!plots_.empty())
+        for (const char* name : {"bench.svg", "bench.csv"})
+            files.writes("--plots", std::filesystem::path{plots_} / name);
+    files.writes_when_done("--json", json_);
 }
 
 namespace {

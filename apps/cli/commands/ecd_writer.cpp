@@ -2,13 +2,11 @@
 #include "apps/cli/commands/ecd_writer.h"
 
 #include "replay/formats.h"
+#include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/whole_sensor.h"
 #include "src/io/image_codecs.h"
 
-#include <cinttypes>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -50,11 +48,7 @@ void EcdWriter::write(const ReferenceImage& image) {
     if (!encode_image(".png", covering_sensor(image), png))
         throw Error(ErrorKind::failed, file.string() + ": cannot be encoded");
     // Before the image: what is in the folder is in the list, also after a crash.
-    const std::int64_t us = std::abs(to_us(image.t));
-    char seconds[48];
-    std::snprintf(seconds, sizeof seconds, "%s%" PRId64 ".%06" PRId64 " ",
-                  to_us(image.t) < 0 ? "-" : "", us / 1'000'000, us % 1'000'000);
-    const std::string line = seconds + ("images/" + file.filename().string()) + "\n";
+    const std::string line = seconds_text(image.t) + " images/" + file.filename().string() + "\n";
     list_->write(line);
     write_file(file, std::as_bytes(std::span{png}), false);
     image_bytes_ += line.size() + png.size();

@@ -303,8 +303,8 @@ void EvaluateCommand::name_evaluation_files(const EvaluateSettings& how, NamedFi
     name_files("--images", images_, files);
     for (const auto& [option, file] :
          {std::pair{"--json", &json_}, {"--csv", &csv_}, {"--frame-csv", &frame_csv_}})
-        if (*file != "-") files.writes(option, *file);
-    files.writes("--calibrated", calibrated_);
+        if (*file != "-") files.writes_when_done(option, *file);
+    files.writes_when_done("--calibrated", calibrated_);
     name_plots(files);
 }
 

@@ -156,11 +156,11 @@ SettingTable StressCommand::settings() {
 void StressCommand::name_stress_files(NamedFiles& files) const {
     files.may_replace(overwrite_);
     for (const std::string& model : models_) files.reads("--models", found_model(model));
-    files.writes("--json", json_);
-    if (plots_.empty()) return;
-    for (const Plot& plot : plots_of({}))
-        for (const char* extension : {".svg", ".csv"})
-            files.writes("--plots", std::filesystem::path{plots_} / (plot.name + extension));
+    if (!plots_.empty())
+        for (const Plot& plot : plots_of({}))
+            for (const char* extension : {".svg", ".csv"})
+                files.writes("--plots", std::filesystem::path{plots_} / (plot.name + extension));
+    files.writes_when_done("--json", json_);
 }
 
 std::vector<stress::Case> StressCommand::chosen() const {

@@ -30,7 +30,7 @@ std::unique_ptr<Sink> open_folder(const std::string& path, const RunSettings& se
                                   const SinkPlan& plan) {
     return std::make_unique<FolderSink>(
         FolderSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
-                       plan.questions.lost, plan.questions.run_json});
+                       settings.events, plan.questions.lost, plan.questions.run_json});
 }
 
 ShownPart part_of_sensor(const Region& region, const Size& frame) {
@@ -92,6 +92,7 @@ std::unique_ptr<Sink> open_window(const RunSettings& settings, const SinkPlan& p
     window.speed = plan.speed;
     window.speed_changed = plan.questions.speed_changed;
     window.give_up = plan.questions.stopping;
+    window.events = settings.events;
     window.part = shown_part(settings, plan, false);
     return std::make_unique<WindowSink>(std::move(window));
 }

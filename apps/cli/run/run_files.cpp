@@ -46,7 +46,7 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
     name_events_out(settings.events_out, settings.force, files);
     name_filter_files(settings.filter, files);
     if (settings.stats != "-") files.writes("--stats", settings.stats);  // else standard error
-    files.writes("--state-out", settings.state_out);
+    files.writes_when_done("--state-out", settings.state_out);
     if (settings.states_out.empty()) return;
     files.writes_folder("--states-out", settings.states_out);
     for (std::size_t i = 0; i < settings.states_at.size(); ++i)

@@ -9,6 +9,28 @@
 
 namespace eventide::app {
 
+namespace {
+
+/// Who is given the frames may not look at the page by that: in the record of a run its token is
+/// only said to have been given.
+constexpr const char* kGiven = "(given)";
+
+bool is_secret(const std::string& http_token) {
+    return http_token != "auto" && http_token != "none";
+}
+
+std::vector<std::string> without_token(std::vector<std::string> arguments) {
+    const std::string flag = "--http-token";
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+        if (arguments[i].starts_with(flag + "="))
+            arguments[i] = flag + "=" + kGiven;
+        else if (i > 0 && arguments[i - 1] == flag)
+            arguments[i] = kGiven;
+    return arguments;
+}
+
+}  // namespace
+
 SinkPlan Run::sink_plan() {
     SinkPlan plan;
     plan.fps = nominal_fps(rate_, slicer_, settings_.slow);
@@ -99,7 +121,8 @@ std::string Run::run_json() {
     const RunProgress now = progress();
     nlohmann::ordered_json json;
     json["program"] = "eventide " + version();
-    json["arguments"] = program_.arguments;
+    const bool secret = is_secret(settings_.http_token);
+    json["arguments"] = secret ? without_token(program_.arguments) : program_.arguments;
     // Not stopped, and nothing failed: all that was asked for is there.
     json["complete"] = pipeline_.has_value() && pipeline_->is_whole();
     json["source"] = {{"name", settings_.source}, {"format", sensor_.format},
@@ -118,6 +141,7 @@ std::string Run::run_json() {
         else
             values[setting.key] = texts.back();
     }
+    if (secret) values["http_token"] = kGiven;
     json["settings"] = values;
     json["counters"] = nlohmann::ordered_json::parse(stats_json(counters(), now, true));
     return json_text(json);

@@ -1,10 +1,11 @@
 #include "pipeline/sinks/http/frame_streams.h"
 
+#include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <string>
 #include <utility>
 
 namespace eventide {
@@ -50,14 +51,10 @@ bool write(httplib::DataSink& sink, const ShownFrame::Bytes& bytes) {
 
 bool write_part(httplib::DataSink& sink, const ShownFrame& shown, Show show) {
     const ShownFrame::Bytes& jpeg = shown.jpeg(show);
-    const std::int64_t us = to_us(shown.frame().t);
-    char head[160];
-    const int size = std::snprintf(head, sizeof head,
-                                   "--frame\r\nContent-Type: image/jpeg\r\nContent-Length: %zu\r\n"
-                                   "X-Timestamp: %lld.%06lld\r\n\r\n",
-                                   jpeg.size(), static_cast<long long>(us / 1'000'000),
-                                   static_cast<long long>(std::abs(us % 1'000'000)));
-    return sink.write(head, std::size_t(size)) && write(sink, jpeg) && sink.write("\r\n", 2);
+    const std::string head =
+        "--frame\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(jpeg.size()) +
+        "\r\nX-Timestamp: " + seconds_text(shown.frame().t) + "\r\n\r\n";
+    return sink.write(head.data(), head.size()) && write(sink, jpeg) && sink.write("\r\n", 2);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ void guarded(httplib::Response& response, Body body) {
 }
 
 /// Pages of other sites may neither show nor read any of this, and the page itself loads nothing
-/// from elsewhere.
+/// from elsewhere. Nothing of it is kept or resumed.
 void protect(httplib::Response& response) {
     response.set_header("Content-Security-Policy",
                         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' "
@@ -47,6 +47,8 @@ void protect(httplib::Response& response) {
     response.set_header("Cross-Origin-Resource-Policy", "same-origin");
     response.set_header("Referrer-Policy", "no-referrer");
     response.set_header("Cache-Control", "no-store");
+    // Each request of a frame is answered with another one, of which no part is of use.
+    response.set_header("Accept-Ranges", "none");
 }
 
 RequestHead head_of(const httplib::Request& request) {
@@ -202,7 +204,9 @@ void HttpAnswers::one_frame(const Request& request, Response& response) {
     const auto shown = newest_.next(nullptr, Clock::now() + kFrameTime);
     if (!shown) return say(response, 503, "no frame came within 5 seconds");
     const bool png = request.path == "/frame.png", tiff = request.path == "/sigma.tiff";
-    const ShownFrame::Bytes& bytes = png ? shown->png() : tiff ? shown->tiff() : shown->jpeg(show);
+    const ShownFrame::Bytes& bytes = png    ? shown->png(show)
+                                     : tiff ? shown->tiff()
+                                            : shown->jpeg(show);
     if (bytes.empty()) return say(response, 404, "these frames have no sigma (--uncertainty none)");
     response.set_header("X-Time-Us", std::to_string(to_us(shown->frame().t)));
     response.set_header("X-Frame-Index", std::to_string(shown->frame().index));

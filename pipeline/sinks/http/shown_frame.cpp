@@ -81,9 +81,9 @@ const ShownFrame::Bytes& ShownFrame::jpeg(Show show) const {
     });
 }
 
-const ShownFrame::Bytes& ShownFrame::png() const {
-    return made(png_, [&](Bytes& bytes) {
-        encode(".png", drawn(frame_, Show::intensity, sigma_white_), {}, bytes);
+const ShownFrame::Bytes& ShownFrame::png(Show show) const {
+    return made(pngs_[std::size_t(show)], [&](Bytes& bytes) {
+        encode(".png", drawn(frame_, show, sigma_white_), {}, bytes);
     });
 }
 

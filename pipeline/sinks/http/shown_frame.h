@@ -36,8 +36,8 @@ public:
 
     // Throw Error (failed) where the encoder does; jpeg() of sigma of a frame without is black.
     const Bytes& jpeg(Show show) const;
-    const Bytes& png() const;   ///< intensity, 8 bits
-    const Bytes& tiff() const;  ///< sigma, 32-bit floats; empty where the frame has none
+    const Bytes& png(Show show) const;  ///< exact
+    const Bytes& tiff() const;          ///< sigma, 32-bit floats; empty where the frame has none
     const Bytes& events()
         const;  ///< PNG of bytes: 0 off, 128 none, 255 on; empty without a preview
     /// For the page: a head and the images behind it, as page.js reads them.
@@ -53,7 +53,7 @@ private:
     Frame frame_;
     const float sigma_white_;
     const std::chrono::nanoseconds latency_;
-    mutable Made jpegs_[4], png_, tiff_, events_, message_;
+    mutable Made jpegs_[4], pngs_[4], tiff_, events_, message_;
 };
 
 }  // namespace eventide

@@ -240,7 +240,8 @@ void VideoFile::write(const cv::Mat& image, std::int64_t t_us) {
     check(av_frame_make_writable(frame_.get()), "making a buffer");
     fill_frame(image);
     const std::int64_t tick = av_rescale_q(t_us, kMicroseconds, encoder_->time_base);
-    frame_->pts = last_tick_ = std::max(tick, last_tick_ + 1);
+    frame_->pts = next_tick_ = std::max(tick, next_tick_);
+    next_tick_ += kind_.least_ticks;
     encode(frame_.get());
 }
 

@@ -75,7 +75,7 @@ private:
     std::unique_ptr<AVPacket, Free> packet_;
     AVStream* stream_ = nullptr;  // the container's
     int width_ = 0, height_ = 0, type_ = -1;
-    std::int64_t last_tick_ = -1;  // of the frame before
+    std::int64_t next_tick_ = 0;  // the earliest for the frame that comes
     bool header_written_ = false, finished_ = false;
 };
 

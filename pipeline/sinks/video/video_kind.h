@@ -13,6 +13,7 @@ struct VideoKind {
     int ticks_per_second;   ///< what times are rounded to; 0: each frame is one tick
     double most_fps;        ///< of its video time
     bool colour;
+    int least_ticks;  ///< that players show a frame for, where frames have times of their own
 };
 
 /// Throws Error (usage) for an extension that is none of ours.

@@ -76,7 +76,7 @@ std::string offered_by_fish(const std::string& line) {
     test::write_text(temp / "completion", fish_completion());
     const test::Result result = test::run({"fish", "-N", "-c",
                                            "source " + (temp / "completion") + "; complete -C '" +
-                                               line + "' | string replace -r '\\t.*' ''"},
+                                               line + "' | string replace -r '\\t.*' ''; true"},
                                           {.environment = {{"HOME", temp.path().string()}}});
     EXPECT_EQ(result.exit_code, 0) << result.error;
     return result.output;
@@ -93,6 +93,8 @@ TEST(Completion, ZshOffersCommandsFlagsAndWords) {
     EXPECT_TRUE(has(offered_by_zsh("eventide run --", "--"), "\n--lookahead\n"));
     EXPECT_TRUE(has(offered_by_zsh("eventide info --", "--"), "\n--log-level\n"));
     EXPECT_EQ(offered_by_zsh("eventide run rec", "rec"), "files\n");
+    EXPECT_EQ(offered_by_zsh("eventide run a.raw --model ''", ""), "files\n");
+    EXPECT_EQ(offered_by_zsh("eventide run a.raw --hot-pixels ''", ""), "off learn\nfiles\n");
 }
 
 TEST(Completion, FishOffersCommandsFlagsAndWords) {
@@ -101,6 +103,9 @@ TEST(Completion, FishOffersCommandsFlagsAndWords) {
     EXPECT_EQ(offered_by_fish("eventide run a.raw --precision "), "auto\nbf16\nf32\n");
     EXPECT_EQ(offered_by_fish("eventide run --looka"), "--lookahead\n");
     EXPECT_EQ(offered_by_fish("eventide info --log"), "--log-level\n");
+    EXPECT_EQ(offered_by_fish("eventide run a.raw --noise-filter "), "auto\nmodel\noff\n");
+    EXPECT_TRUE(has(offered_by_fish("eventide run a.raw --model /et"), "/etc/\n"));
+    EXPECT_TRUE(has(offered_by_fish("eventide run a.raw --hot-pixels /et"), "/etc/\n"));
 }
 
 TEST(Completion, OffersCommandsFlagsAndWords) {
@@ -110,6 +115,9 @@ TEST(Completion, OffersCommandsFlagsAndWords) {
     EXPECT_EQ(offered("eventide run a.raw --precision b"), "bf16\n");
     EXPECT_EQ(offered("eventide run rec"), "\n") << "files are bash's own";
     EXPECT_EQ(offered("eventide info --log"), "--log-level\n");
+    EXPECT_EQ(offered("eventide run a.raw --noise-filter ''"), "model auto off\n")
+        << "TIME stands for a time";
+    EXPECT_EQ(offered("eventide run a.raw --model ''"), "\n") << "files are bash's own";
 }
 
 }  // namespace

@@ -63,6 +63,20 @@ TEST_F(NamedFilesTest, NothingElseIsReadOrWrittenInAFolderThatIsTakenWhole) {
     EXPECT_EQ(refusal([&] { files_.writes("--json", temp_ / "scores"); }), "");
 }
 
+TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneHasAFolderFromTheBeginning) {
+    EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "no/scores"); }),
+              "--json " + temp_ / "no/scores" + ": expected a folder that exists, found no " +
+                  fs::canonical(temp_.path()).string() + "/no");
+    EXPECT_NE(refusal([&] { files_.writes_when_done("--json", temp_ / "d/in/scores"); }), "")
+        << "a file is no folder";
+    EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "d/scores"); }), "");
+    EXPECT_EQ(refusal([&] { files_.writes_when_done("--csv", "-"); }), "");
+    EXPECT_EQ(refusal([&] { files_.writes_when_done("--frame-csv", ""); }), "");
+    files_.writes("--plots", temp_ / "plots/figure.svg");
+    EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "plots/scores"); }), "")
+        << "another output makes it";
+}
+
 TEST_F(NamedFilesTest, WhatExistsIsNotReplacedUnasked) {
     files_.may_replace(false);
     EXPECT_NE(refusal([&] { files_.writes("--stats", temp_ / "d/in"); }).find("--overwrite"),

@@ -37,6 +37,15 @@ TEST(RunReport, JsonIsOneLineWithEveryCounter) {
     EXPECT_TRUE(nlohmann::json::parse(stats_json({}, {}, false))["newest_frame_us"].is_null());
 }
 
+TEST(RunReport, JsonNamesAModelWhoseFileNameIsNoUtf8) {
+    RunProgress progress;
+    progress.quality.emplace();
+    progress.quality->model = "./m\xff.safetensors";
+    const std::string line = stats_json(busy(), progress, false);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    EXPECT_EQ(nlohmann::json::parse(line)["quality"]["model"], "./m\uFFFD.safetensors");
+}
+
 TEST(RunReport, SummaryNamesTheReasonsOfDamage) {
     EXPECT_NE(summary_text(busy(), {}).find("unknown_word: 5"), std::string::npos);
 }

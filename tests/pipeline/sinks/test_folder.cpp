@@ -170,6 +170,22 @@ TEST(FolderSink, NegativeTimesKeepTheirSign) {
     EXPECT_EQ(test::read_text(temp / "out/timestamps.txt"), "-0.000001\n");
 }
 
+TEST(FolderSink, WritesEventsWhereTheyAreAskedForAndNotBecauseAnotherSinkWantsThem) {
+    const TempFolder temp;
+    Frame frame = test::ramp_frame(8, 8, 0, test::odd_time(0));
+    frame.event_preview = Array2<float>{8, 8};
+    for (const bool asked : {false, true}) {
+        const std::string name = asked ? "with" : "without";
+        FolderSink sink{{.path = temp / name, .events = asked}};
+        sink.write(frame);
+        sink.close();
+        EXPECT_EQ(std::filesystem::exists(temp / (name + "/events/events_0000000000.png")), asked);
+        EXPECT_EQ(std::filesystem::exists(temp / (name + "/events")), asked);
+        const auto record = nlohmann::json::parse(test::read_text(temp / (name + "/run.json")));
+        EXPECT_EQ(record["files"]["events"], asked ? 1 : 0);
+    }
+}
+
 TEST(FolderSink, LeavesSigmaOutWhenAsked) {
     const TempFolder temp;
     FolderSink sink{{.path = temp / "out", .uncertainty = Uncertainty::none}};

@@ -92,7 +92,9 @@ TEST(StreamSink, AStampTellsNumberTimeAndWhatHappened) {
 TEST(StreamSink, SkippedFramesAreRepeatedSoThatTheStreamKeepsItsPace) {
     const TempFolder temp;
     const auto write = [&](const std::string& name, Overload overload) {
-        StreamSink y4m{{.path = temp / (name + ".y4m"), .fps = 30, .overload = overload}};
+        // --stamp is of the run, so Y4M beside a raw stream has it, too.
+        StreamSink y4m{
+            {.path = temp / (name + ".y4m"), .fps = 30, .stamp = true, .overload = overload}};
         StreamSink raw{{.path = temp / name,
                         .format = StreamFormat::gray8,
                         .stamp = true,

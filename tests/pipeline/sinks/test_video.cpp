@@ -89,6 +89,16 @@ TEST(VideoSink, GifKeepsEveryGreyAndHundredthsOfASecond) {
                   std::lround(frame.intensity.values()[i] * 255));
 }
 
+TEST(VideoSink, AFrameOfAGifStandsAsLongAsPlayersShowItWhenTheNextComesSoon) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.gif", .fps = 30}};
+    // As event windows end with --fps frame; players would show the first for 100 ms.
+    for (const std::int64_t us : {0, 11'000, 24'000, 90'000, 131'000})
+        sink.write(test::ramp_frame(33, 17, 3, from_us(us)));
+    sink.close();
+    EXPECT_EQ(packet_times(temp / "a.gif"), (std::vector<std::int64_t>{0, 2, 4, 9, 13}));
+}
+
 TEST(VideoSink, EventsStandLeftOfTheFrameWhereTheyAreAskedFor) {
     const TempFolder temp;
     Frame frame = test::ramp_frame(32, 16, 3, from_us(0));

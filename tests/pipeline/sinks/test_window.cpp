@@ -50,7 +50,7 @@ TEST(WindowSink, SaysClearlyThatThereIsNoDisplay) {
 
 TEST(WindowSink, ShowsFramesOnAScreenNobodySees) {
     setenv("QT_QPA_PLATFORM", "offscreen", 1);
-    WindowSink sink{{.uncertainty = Uncertainty::overlay}};
+    WindowSink sink{{.uncertainty = Uncertainty::overlay, .events = true}};
     for (int n = 0; n < 3; ++n) {
         Frame frame = test::ramp_frame(64, 48, n, test::odd_time(n));
         frame.event_preview = Array2<float>{24, 32};

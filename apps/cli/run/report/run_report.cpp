@@ -1,6 +1,7 @@
 // The counters of a run as people and programs read them.
 #include "apps/cli/run/report/run_report.h"
 
+#include "apps/cli/printable.h"
 #include "apps/cli/terminal.h"
 #include "src/core/damage.h"
 
@@ -142,7 +143,7 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
                        {"render", json_of(now.render)},
                        {"write", json_of(now.write)}};
     if (progress.quality) json["quality"] = quality_json(*progress.quality, false);
-    return json.dump();
+    return json_text(json, -1);  // on one line
 }
 
 }  // namespace eventide::app

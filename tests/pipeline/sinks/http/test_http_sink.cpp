@@ -47,6 +47,16 @@ TEST(HttpSink, GivesAFrameAsPngAndItsSigmaAsTiff) {
         for (int x = 0; x < 64; ++x) ASSERT_EQ(sigma.at<float>(y, x), frame.sigma(y, x));
 }
 
+TEST(HttpSink, PromisesNoPartsOfWhatIsNewEachTime) {
+    const auto sink = open_page();
+    const Frames frames{*sink};
+    auto client = client_of(*sink);
+    EXPECT_EQ(client.Head("/frame.png")->get_header_value("Accept-Ranges"), "none");
+    const auto part = client.Get("/page.js", {httplib::make_range_header({{0, 9}})});
+    EXPECT_EQ(part->status, 200);
+    EXPECT_EQ(part->body, client.Get("/page.js")->body);
+}
+
 TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     const auto sink = open_page();
     const Frames frames{*sink};
@@ -54,9 +64,30 @@ TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     EXPECT_EQ(decoded(client.Get("/frame.jpg?show=side")->body).cols, 128);
     EXPECT_EQ(decoded(client.Get("/frame.jpg?show=overlay")->body).channels(), 3);
     EXPECT_EQ(decoded(client.Get("/frame.jpg?show=sigma")->body).channels(), 1);
+    const auto png = client.Get("/frame.png?show=side");
+    cv::Mat expected;
+    draw(frame_of(png), Uncertainty::side, kSigmaWhite, expected);
+    EXPECT_EQ(cv::norm(decoded(png->body), expected, cv::NORM_INF), 0);
     EXPECT_EQ(client.Get("/frame.jpg?show=everything")->status, 400);
     EXPECT_EQ(client.Get("/stream?fps=0")->status, 400);
     EXPECT_EQ(client.Get("/nothing")->status, 404);
+}
+
+TEST(HttpSink, AStreamsTimesKeepTheirSign) {
+    const auto sink = open_page();
+    // The first frame of a recording from 0 shows the microsecond before it.
+    const std::jthread frames{[&sink](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            sink->write(ramp_frame(16, 16, 0, from_us(-1)));
+            std::this_thread::yield();
+        }
+    }};
+    std::string stream;
+    client_of(*sink).Get("/stream", [&](const char* bytes, std::size_t size) {
+        stream.append(bytes, size);
+        return stream.find("\r\n\r\n") == stream.npos;
+    });
+    EXPECT_NE(stream.find("X-Timestamp: -0.000001\r\n"), std::string::npos) << stream;
 }
 
 TEST(HttpSink, StreamsWholeJpegsWithTheirTimes) {
