@@ -1,6 +1,7 @@
 // The pipeline of threads for Python: anything that can be iterated is a source, any callable a
 // sink.
 #include "python/arrays.h"
+#include "python/errands.h"
 #include "python/sources.h"
 
 #include <eventide/error.h>
@@ -176,15 +177,26 @@ private:
 /// Calls with a frame that is the callee's to keep; False ends the run.
 class CalledSink final : public FrameSink {
 public:
-    explicit CalledSink(py::object callable) : callable_(std::move(callable)) {}
+    /// `errands` of the thread that calls; null: the one that writes.
+    CalledSink(py::object callable, Errands* errands)
+        : callable_(std::move(callable)), errands_(errands) {}
+
     bool write(const Frame& frame) override {
+        bool wants_more = true;
+        const auto ask = [&] { wants_more = call(frame); };
+        errands_ != nullptr ? errands_->have_done(ask) : ask();
+        return wants_more;
+    }
+
+private:
+    bool call(const Frame& frame) {
         const py::gil_scoped_acquire locked;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         return !callable_(std::make_shared<Frame>(frame)).is(py::bool_(false));
     }
 
-private:
     py::object callable_;
+    Errands* const errands_;
 };
 
 class PipelineOfPython {
@@ -192,12 +204,12 @@ public:
     PipelineOfPython(const py::object& source, const py::object& sinks,
                      const std::filesystem::path& model, int width, int height, double latency,
                      bool sequential, const py::kwargs& options)
-        : source_(source_of(source, width, height, sequential)) {
+        : sequential_(sequential), source_(source_of(source, width, height, sequential)) {
         for (const py::handle sink : py::isinstance<py::sequence>(sinks)
                                          ? py::list(sinks)
                                          : py::list(py::make_tuple(sinks)))
-            sinks_.push_back(
-                std::make_unique<CalledSink>(py::reinterpret_borrow<py::object>(sink)));
+            sinks_.push_back(std::make_unique<CalledSink>(py::reinterpret_borrow<py::object>(sink),
+                                                          sequential ? nullptr : &errands_));
         std::vector<FrameSink*> all;
         for (const auto& sink : sinks_) all.push_back(sink.get());
         if (!(latency >= 0 && latency <= 1e6))
@@ -211,10 +223,12 @@ public:
         pipeline_ = std::make_unique<EventPipeline>(*source_, all, model.string(), how);
     }
 
+    /// Sinks are called here, and signals heard: the library's part of it has a thread of its own.
     void run() {
         const py::gil_scoped_release released;
         const Run run{*source_};
-        pipeline_->run();
+        if (sequential_) return pipeline_->run();
+        errands_.run([this] { pipeline_->run(); }, [this] { pipeline_->stop(); });
     }
     void stop() {
         const py::gil_scoped_release released;
@@ -237,6 +251,8 @@ public:
     }
 
 private:
+    const bool sequential_;
+    Errands errands_;
     std::unique_ptr<SourceOfRun> source_;
     std::vector<std::unique_ptr<CalledSink>> sinks_;
     std::unique_ptr<EventPipeline> pipeline_;

@@ -1,5 +1,6 @@
 """The pipeline of threads with sources and sinks of Python."""
 
+import threading
 import unittest
 
 import eventide
@@ -129,6 +130,14 @@ class Pipelines(RecordedTest):
 
         with self.assertRaisesRegex(OSError, "disk"):
             eventide.Pipeline(eventide.open(self.recording), full, "small").run()
+
+    def test_sinks_are_called_on_the_thread_of_run(self):
+        for sequential in (False, True):
+            threads = []
+            source = eventide.open(self.recording)
+            sinks = [lambda frame: threads.append(threading.current_thread())] * 2
+            eventide.Pipeline(source, sinks, "small", sequential=sequential).run()
+            self.assertEqual(set(threads), {threading.current_thread()})
 
     def test_what_cannot_run_is_refused(self):
         with self.assertRaisesRegex(eventide.UsageError, "width"):
