@@ -10,6 +10,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -35,9 +36,9 @@ int size_of(const py::object& source, const char* name, int given) {
 /// Is told when a run begins and ends, without Python's lock.
 class SourceOfRun : public EventSource {
 public:
-    /// Throws Error (usage) where another run is on.
-    virtual void begin() {}
-    virtual void end() noexcept {}
+    /// Throws Error (usage) where another run is on, or was.
+    virtual void begin() = 0;
+    virtual void end() noexcept = 0;
 };
 
 /// A Reader or Camera itself, with all that it tells beside its events.
@@ -111,6 +112,18 @@ public:
     bool gap_before() const noexcept override { return gap_before_; }
     std::optional<SensorTime> clock() const override { return clock_; }
 
+    void begin() override {
+        if (begun_.exchange(true))
+            throw Error(ErrorKind::usage,
+                        "pipeline: expected one run, found a second; make another pipeline");
+    }
+    /// Lets go of what may know the pipeline: Python does not see such a circle.
+    // NOLINTNEXTLINE(bugprone-exception-escape): as in stop().
+    void end() noexcept override {
+        const py::gil_scoped_acquire locked;
+        events_ = source_ = {};
+    }
+
     bool read(Batch& batch) override {
         const py::gil_scoped_acquire locked;
         batch.clear();
@@ -132,7 +145,7 @@ public:
     void stop() noexcept override {
         const py::gil_scoped_acquire locked;
         try {
-            if (py::hasattr(source_, "stop")) source_.attr("stop")();
+            if (source_ && py::hasattr(source_, "stop")) source_.attr("stop")();
         } catch (py::error_already_set& error) {
             error.discard_as_unraisable("stop()");
         }
@@ -145,6 +158,7 @@ private:
     const SensorInfo info_;
     bool gap_before_ = false;
     std::optional<SensorTime> clock_;
+    std::atomic<bool> begun_{false};
 };
 
 /// Of a class derived from T in Python the iterator may be another, and is what is meant.
@@ -186,6 +200,11 @@ public:
         const auto ask = [&] { wants_more = call(frame); };
         errands_ != nullptr ? errands_->have_done(ask) : ask();
         return wants_more;
+    }
+    /// Lets go of what may know the pipeline.
+    void close() override {
+        const py::gil_scoped_acquire locked;
+        callable_ = {};
     }
 
 private:

@@ -1,7 +1,9 @@
 """The pipeline of threads with sources and sinks of Python."""
 
+import gc
 import threading
 import unittest
+import weakref
 
 import eventide
 import numpy as np
@@ -138,6 +140,40 @@ class Pipelines(RecordedTest):
             sinks = [lambda frame: threads.append(threading.current_thread())] * 2
             eventide.Pipeline(source, sinks, "small", sequential=sequential).run()
             self.assertEqual(set(threads), {threading.current_thread()})
+
+    def test_what_failed_is_freed(self):
+        def full(frame):
+            raise OSError("disk")
+
+        def failed(sequential):
+            pipeline = eventide.Pipeline(eventide.open(self.recording), full, "small", sequential=sequential)
+            try:
+                pipeline.run()
+            except OSError:
+                return weakref.ref(pipeline)
+
+        for sequential in (False, True):
+            self.assertIsNone(failed(sequential)())
+
+    def test_what_its_source_and_sink_know_is_freed(self):
+        def run(sequential):
+            def source():
+                yield self.events()[: 1000 + pipeline.counters["frames"]]
+
+            def sink(frame):
+                pipeline.stop()
+
+            pipeline = eventide.Pipeline(source(), sink, "small", width=64, height=48, sequential=sequential)
+            pipeline.run()
+            pipeline.stop()
+            with self.assertRaisesRegex(eventide.UsageError, "one run"):
+                pipeline.run()
+            return weakref.ref(pipeline)
+
+        for sequential in (False, True):
+            pipeline = run(sequential)
+            gc.collect()
+            self.assertIsNone(pipeline())
 
     def test_what_cannot_run_is_refused(self):
         with self.assertRaisesRegex(eventide.UsageError, "width"):
