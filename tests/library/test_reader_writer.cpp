@@ -2,6 +2,7 @@
 #include "tests/library/library_test.h"
 
 #include <filesystem>
+#include <thread>
 
 #include <unistd.h>
 
@@ -72,6 +73,56 @@ TEST_F(Recordings, ThatCannotGoBackLoseNothingByASeek) {
     ASSERT_EQ(events.size(), 5U);
     EXPECT_EQ(events[3], (Event{from_us(400'000), 7, 8, Polarity::on}));
     EXPECT_EQ(reader.damaged(), 0U);
+}
+
+/// A recording in a pipe that stays open, and in which nothing more comes.
+class OpenPipe {
+public:
+    OpenPipe() {
+        EXPECT_EQ(::pipe(ends_), 0);
+        const std::string text = "64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n0.4 7 8 1\n";
+        EXPECT_EQ(::write(ends_[1], text.data(), text.size()), ssize_t(text.size()));
+    }
+    ~OpenPipe() {
+        for (const int end : ends_) ::close(end);
+    }
+    OpenPipe(const OpenPipe&) = delete;
+    OpenPipe& operator=(const OpenPipe&) = delete;
+    std::string name() const { return "/dev/fd/" + std::to_string(ends_[0]); }
+
+private:
+    int ends_[2];
+};
+
+TEST_F(Recordings, OfAPipeThatWaitsEndWhenTheyAreStopped) {
+    const OpenPipe pipe;
+    EventReader reader{pipe.name()};
+    Batch batch;
+    ASSERT_TRUE(reader.read(batch));
+    std::size_t events = batch.events.size();
+    std::jthread stopper{[&] { reader.stop(); }};
+    while (reader.read(batch)) events += batch.events.size();
+    EXPECT_EQ(events, 4U) << "what was read is given";
+    EXPECT_FALSE(reader.read(batch)) << "for good";
+}
+
+TEST_F(Recordings, OfAPipeThatWaitsEndWithTheirPipeline) {
+    struct OneFrame final : FrameSink {
+        bool write(const Frame&) override { return false; }
+    };
+    const OpenPipe pipe;
+    EventReader reader{pipe.name()};
+    OneFrame sink;
+    EventPipeline pipeline{reader, {&sink}, model(), {.frames = repeatable("7ms", 0)}};
+    pipeline.run();
+    EXPECT_EQ(pipeline.counters().frames, 1U);
+}
+
+TEST_F(Recordings, InAFileAreReadOnAfterAStop) {
+    EventReader reader{recording()};
+    reader.stop();
+    Batch batch;
+    EXPECT_TRUE(reader.read(batch));
 }
 
 TEST_F(Recordings, ComeBackAsTheyWereWritten) {
