@@ -32,7 +32,8 @@ public:
     virtual bool read(Batch& batch) = 0;
 
     /// Every event before this time has been read, where that is known: frames of a live source go
-    /// on by it while nothing moves. At the end of a recording: until when it lasted.
+    /// on by it while nothing moves. At the end of a recording: until when it lasted. One further
+    /// from zero than Reconstructor::kFarthestTime ends a run with Error (usage).
     virtual std::optional<SensorTime> clock() const { return std::nullopt; }
 
     /// Whether data were lost before the newest batch.
