@@ -52,7 +52,16 @@ RenderRequest request_of(const ReconstructorOptions& options) {
     return request;
 }
 
+/// Longer ones are beyond what the clocks count with.
+void check_latency(std::chrono::microseconds latency) {
+    constexpr std::chrono::seconds kLongest{1'000'000};
+    if (latency < latency.zero() || latency > kLongest)
+        throw Error(ErrorKind::usage, "latency: expected 0 to " + std::to_string(kLongest.count()) +
+                                          " s, found " + std::to_string(latency.count()) + " us");
+}
+
 PipelineSettings settings_of(const PipelineOptions& options, const ModelConfig& config, bool live) {
+    check_latency(options.latency);
     PipelineSettings settings;
     settings.bins = config.bins;
     settings.event_windows.slicer = slicer_of(options.frames, config);

@@ -179,6 +179,10 @@ TEST_F(Pipelines, RefuseWhatCannotRun) {
     EXPECT_THAT(made(source, nullptr, {}), testing::HasSubstr("null pointer"));
     EXPECT_THAT(made(source, &sink, {.frames = {.lookahead = 9}}), testing::HasSubstr("lookahead"));
     EXPECT_THAT(made(source, &sink, {.frames = {.fps = "many"}}), testing::HasSubstr("many"));
+    // Unlimited, a user might think; in nanoseconds it would have been less than nothing.
+    for (const auto latency : {std::chrono::microseconds::max(), std::chrono::microseconds{-1}})
+        EXPECT_THAT(made(source, &sink, {.latency = latency}),
+                    testing::HasSubstr("latency: expected 0 to 1000000 s, found"));
 }
 
 /// Tells nanoseconds where microseconds are meant, for example.
