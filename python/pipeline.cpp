@@ -28,7 +28,7 @@ namespace {
 
 int size_of(const py::object& source, const char* name, int given) {
     if (given != 0) return given;
-    if (py::hasattr(source, name)) return source.attr(name).cast<int>();
+    if (py::hasattr(source, name)) return cast_to<int>(name, source.attr(name));
     throw Error(ErrorKind::usage, std::string{"Pipeline: expected a source with a "} + name +
                                       ", or the argument " + name + ", found neither");
 }
@@ -133,10 +133,10 @@ public:
         if (PyErr_Occurred() != nullptr) throw py::error_already_set();
         if (py::hasattr(source_, "clock"))
             if (const py::object clock = source_.attr("clock"); !clock.is_none())
-                clock_ = from_us(clock.cast<std::int64_t>());
+                clock_ = from_us(cast_to<std::int64_t>("clock", clock));
         if (!events) return false;
-        append_events(events.cast<py::array>(), batch.events);
-        gap_before_ = live_ && source_.attr("gap_before").cast<bool>();
+        append_events(cast_to<py::array>("events", events), batch.events);
+        gap_before_ = live_ && cast_to<bool>("gap_before", source_.attr("gap_before"));
         return true;
     }
 

@@ -7,7 +7,7 @@ import weakref
 
 import eventide
 import numpy as np
-from recorded import REPEATABLE, RecordedTest
+from recorded import DTYPE, REPEATABLE, RecordedTest
 
 
 class Pipelines(RecordedTest):
@@ -180,6 +180,30 @@ class Pipelines(RecordedTest):
             eventide.Pipeline([], print, "small")
         with self.assertRaisesRegex(eventide.UsageError, "speed"):
             eventide.Pipeline([], print, "small", width=4, height=4, speed=3)
+
+    def test_values_of_another_type_are_refused_by_name(self):
+        for options, words in [
+            ({"fps": 30}, "fps: expected str, found 30"),
+            ({"window": None}, "window: expected str, found None"),
+            ({"lookahead": 1.5}, "lookahead: expected int, found 1.5"),
+            ({"size": "64x48"}, "size: expected .*, found '64x48'"),
+            ({"roi": (1, 2)}, r"roi: expected .*, found \(1, 2\)"),
+            ({"hot_pixels": 5}, "hot_pixels: expected .*, found 5"),
+            ({"precision": 32}, "precision: expected str, found 32"),
+        ]:
+            with self.assertRaisesRegex(TypeError, words):
+                eventide.Pipeline([], print, "small", width=64, height=48, **options)
+
+        class Source:
+            width, height, clock = 64, "48", "noon"
+
+            def __iter__(self):
+                return iter([np.zeros(0, DTYPE)])
+
+        with self.assertRaisesRegex(TypeError, "height: expected int, found '48'"):
+            eventide.Pipeline(Source(), print, "small")
+        with self.assertRaisesRegex(TypeError, "clock: expected int, found 'noon'"):
+            eventide.Pipeline(Source(), print, "small", height=48).run()
 
 
 if __name__ == "__main__":
