@@ -2,6 +2,7 @@
 #include "src/io/udp_socket.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/io/system_words.h"
 
 #include <netdb.h>
@@ -64,6 +65,10 @@ UdpName UdpName::parse(const std::string& text) {
     UdpName name;
     name.host = address.substr(0, colon);
     name.port = address.substr(colon + 1);
+    // Of a larger number the system takes the lower 16 bits, which are another port.
+    if (!number_in<std::uint16_t>(name.port))
+        throw Error(ErrorKind::usage,
+                    "udp:" + text + ": port: expected 0 to 65535, found '" + name.port + "'");
     if (name.host.starts_with('[') && name.host.ends_with(']'))
         name.host = name.host.substr(1, name.host.size() - 2);
     for (std::size_t at = question + 1; at < text.size();) {

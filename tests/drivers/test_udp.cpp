@@ -114,6 +114,9 @@ TEST(Udp, NamesThatMakeNoSenseAreRefused) {
     };
     EXPECT_THAT(refusal("127.0.0.1:0", ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
     EXPECT_THAT(refusal("//127.0.0.1", ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
+    for (const std::string port : {"99999", "65536", "-1", "5x", "http"})
+        EXPECT_THAT(refusal("//127.0.0.1:" + port + "?size=4x4", ErrorKind::usage),
+                    HasSubstr("port: expected 0 to 65535, found '" + port + "'"));
     EXPECT_THAT(refusal("//127.0.0.1:0", ErrorKind::usage), HasSubstr("?size=640x480"));
     EXPECT_THAT(refusal("//127.0.0.1:0?size=4", ErrorKind::usage), HasSubstr("found '4'"));
     EXPECT_THAT(refusal("//127.0.0.1:0?size=4x4&format=t16", ErrorKind::usage),
