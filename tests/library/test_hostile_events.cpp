@@ -62,6 +62,21 @@ TEST_F(HostileEvents, OfABatchThatGoesBackBeginANewStream) {
     EXPECT_EQ(twice.counters().time_resets, 1U);
 }
 
+TEST_F(HostileEvents, AreCountedWhenTheyArePushed) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    Batch batch;
+    batch.events = {{from_us(0), 1, 1}};
+    reconstructor.push(batch);
+    reconstructor.advance(from_us(100'000));
+    EXPECT_TRUE(reconstructor.newest());
+    batch.events = {{from_us(50'000), 1, 1}};
+    reconstructor.push(batch);
+    EXPECT_EQ(reconstructor.counters().late, 1U);
+    batch.events = {{from_us(30'000), 1, 1}};
+    reconstructor.push(batch);
+    EXPECT_EQ(reconstructor.counters().time_resets, 1U);
+}
+
 TEST_F(HostileEvents, AfterAResetAreANewStream) {
     const std::vector<Event> events = events_of(recording());
     Reconstructor reconstructor = this->reconstructor(repeatable("auto", 1));
