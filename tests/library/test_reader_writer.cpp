@@ -151,6 +151,33 @@ TEST_F(Recordings, ComeBackAsTheyWereWritten) {
     EXPECT_EQ(again.width(), 64);
 }
 
+TEST_F(Recordings, AreWrittenInTheOrderOfTimeOnly) {
+    const auto at = [](std::int64_t t) { return Event{from_us(t), 1, 2, Polarity::on}; };
+    for (const std::string format : {"aedat4", "aedat3", "evt3", "text"}) {
+        const std::string file = temp_ / ("ordered." + format);
+        EventWriter writer{file, {"", "", "", 64, 48}, {format, false}};
+        writer.write(std::vector{at(1000), at(1000), at(2000)});
+        // A reader would leave out the second, or all until 2000 us.
+        EXPECT_NE(error_of([&] {
+                      writer.write(std::vector{at(3000), at(2500)});
+                  }).find("expected events in order of time, found one at 2500 us after one"),
+                  std::string::npos)
+            << format;
+        EXPECT_NE(error_of([&] { writer.write(std::vector{at(1999)}); }).find("2000 us"),
+                  std::string::npos)
+            << format;
+        writer.write(std::vector{at(2000), at(4000)});
+        writer.finish();
+        const ReaderOptions size{"", format == "text" ? 64 : 0, format == "text" ? 48 : 0};
+        EventReader reader{file, size};
+        std::vector<Event> events;
+        for (Batch batch; reader.read(batch);)
+            events.insert(events.end(), batch.events.begin(), batch.events.end());
+        EXPECT_EQ(events, (std::vector{at(1000), at(1000), at(2000), at(2000), at(4000)}))
+            << format << ": what was refused is not in it";
+    }
+}
+
 TEST_F(Recordings, ThatAreNoneAreRefusedInWords) {
     write_text(temp_ / "letter", "Dear Sir or Madam");
     EXPECT_NE(error_of([&] { EventReader{temp_ / "letter"}; }, ErrorKind::input).find("letter"),
