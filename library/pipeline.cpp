@@ -41,8 +41,8 @@ std::vector<std::unique_ptr<UserSink>> wrapped(const std::vector<FrameSink*>& si
     return wrapped;
 }
 
-RenderRequest request_of(const ReconstructorOptions& options) {
-    check_frame_size(options.size);
+RenderRequest request_of(const ReconstructorOptions& options, int width, int height) {
+    check_frame_size(options.size, width, height);
     RenderRequest request;
     request.width = options.size.width;
     request.height = options.size.height;
@@ -91,7 +91,7 @@ public:
           filter_(filter_of(options.frames, model.config, width, height)),
           encoder_(model, width, height, engine_of(options.frames)),
           renderer_(model, width, height, engine_of(options.frames)),
-          render_(renderer_, request_of(options.frames)),
+          render_(renderer_, request_of(options.frames, width, height)),
           pipeline_(parts(), settings_of(options, model.config, source.is_live())) {}
 
     void run() {

@@ -183,6 +183,12 @@ TEST_F(HostileEvents, AndSizesAreRefusedInWords) {
     for (const FrameSize& size : impossible)
         EXPECT_NE(error_of([&] { reconstructor.render(t, size, after); }).find("expected"),
                   std::string::npos);
+    // In words of the library: an option of the program is no argument here.
+    const auto words = error_of([&] { reconstructor.render(t, {64, 48, {60, 0, 5, 5}}, after); });
+    EXPECT_EQ(words, "region: expected a part of the 64x48 frame, found 5x5 from 60,0");
+    error_of([&] {
+        reconstructor.render(t, {64, 48, {std::numeric_limits<int>::min(), 0, 0, 5}}, after);
+    });
     reconstructor.render(t, after);
     EXPECT_EQ(after.intensity, before.intensity) << "what was refused changed nothing";
 }
