@@ -285,8 +285,10 @@ void add_pipeline(py::module_& module) {
         "Reading, cutting, encoding and rendering on a thread each.\n\n"
         "source: a Reader, a Camera, or anything that gives structured arrays of events when it "
         "is\n"
-        "iterated; width and height where it does not have them. Nobody else may read a Reader or\n"
-        "Camera until run() is over. sinks: a callable, or a list of\n"
+        "iterated; width and height where it does not have them. It may have what a Camera has:\n"
+        "clock (us, or None), gap_before (then it is live, and what is late is left out), stop().\n"
+        "Nobody else may read a Reader or Camera until run() is over. sinks: a callable, or a list "
+        "of\n"
         "them, each called with every Frame on the thread of run(); False ends the run.\n"
         "latency: of a Camera, seconds, what a frame may be late at most; 0: anything.\n"
         "Other options are those of Reconstructor.")
