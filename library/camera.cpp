@@ -2,16 +2,24 @@
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_camera.h"
 #include "pipeline/event_windows.h"
+#include "src/core/error.h"
 
 #include <eventide/camera.h>
 
+#include <string>
 #include <utility>
 
 namespace eventide {
 namespace {
 
 std::unique_ptr<Camera> open(const std::string& name, const CameraSettings& settings) {
-    if (names_simulation(name)) return open_simulation(name);
+    if (names_simulation(name)) {
+        if (!settings.file.empty())
+            throw Error(ErrorKind::usage, "camera settings '" + settings.file.string() +
+                                              "': expected a camera that has settings, found " +
+                                              name);
+        return open_simulation(name);
+    }
     return open_camera(name, {settings.file, settings.reconnect, {}});
 }
 

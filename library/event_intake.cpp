@@ -35,6 +35,7 @@ EventIntake::EventIntake(const SlicerSettings& settings, int width, int height,
 void EventIntake::push(std::span<const Event> events) {
     check_open("push");
     take(events, StepBack::is_disorder);
+    note_cut();
 }
 
 void EventIntake::push(const Batch& batch) {
@@ -45,6 +46,7 @@ void EventIntake::push(const Batch& batch) {
         else
             slicer_.push_reference(image.t);
     take(batch.events, StepBack::is_new_clock);
+    note_cut();
 }
 
 void EventIntake::take(std::span<const Event> events, StepBack step_back) {
@@ -98,13 +100,11 @@ void EventIntake::finish(std::optional<SensorTime> end) {
     finished_ = true;
 }
 
-bool EventIntake::next(EventWindow& event_window) {
-    const bool found = slicer_.next(event_window);
+void EventIntake::note_cut() {
     const SlicerCounters& cut = slicer_.counters();
     counters_.late = cut.late;
     counters_.left_out = cut.too_many;
     counters_.time_resets = cut.time_resets;
-    return found;
 }
 
 void EventIntake::reset() {

@@ -26,7 +26,7 @@ public:
     void mark_gap() noexcept { slicer_.mark_gap(); }
     void finish(std::optional<SensorTime> end);
     bool is_finished() const { return finished_; }
-    bool next(EventWindow& event_window);
+    bool next(EventWindow& event_window) { return slicer_.next(event_window); }
     void reset();
 
 private:
@@ -34,6 +34,7 @@ private:
     void take(std::span<const Event> events, StepBack step_back);
     bool is_sound(const Event& event);
     void check_open(const char* what) const;
+    void note_cut();
 
     const unsigned width_, height_;
     Slicer slicer_;

@@ -6,6 +6,10 @@
 
 #include <eventide/simulation.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+
 namespace eventide {
 
 class PerceptualDistance::Impl {
@@ -39,6 +43,11 @@ double PerceptualDistance::between(const Array2<float>& a, const Array2<float>& 
 
 namespace {
 
+void refuse_nan(const Array2<float>& plane, const char* name) {
+    if (std::ranges::any_of(plane.values(), [](float v) { return std::isnan(v); }))
+        throw Error(ErrorKind::usage, std::string{name} + ": expected numbers, found NaN");
+}
+
 void refuse_below_zero(const Array2<float>& sigma) {
     for (const float s : sigma.values())
         if (s < 0)
@@ -50,6 +59,9 @@ void refuse_below_zero(const Array2<float>& sigma) {
 
 FrameMeasures measure(const Array2<float>& intensity, const Array2<float>& sigma,
                       const Array2<float>& truth, const PerceptualDistance* lpips) {
+    refuse_nan(intensity, "intensity");
+    refuse_nan(sigma, "sigma");
+    refuse_nan(truth, "truth");
     refuse_below_zero(sigma);
     const Array2<float> shown = clipped(intensity);
     FrameMeasures measures;

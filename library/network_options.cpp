@@ -7,6 +7,9 @@
 #include "src/model/model_folders.h"
 #include "src/model/model_trial.h"
 
+#include <cstdint>
+#include <string>
+
 namespace eventide {
 namespace {
 
@@ -15,6 +18,16 @@ void check_side(int side, const char* name) {
         throw Error(ErrorKind::usage, std::string{"sensor "} + name + ": expected 1 to " +
                                           std::to_string(kLargestSensorSide) + " px, found " +
                                           std::to_string(side));
+}
+
+/// Of a frame and the region of it that is wanted, px; as wide as sums of any two need.
+struct Side {
+    std::int64_t whole, at, part;
+    bool lies_within() const { return at >= 0 && part >= 1 && at + part <= whole; }
+};
+
+Side side_of(int whole, int at, int part) {
+    return {whole, at, part != 0 ? part : std::int64_t{whole} - at};
 }
 
 }  // namespace
@@ -52,12 +65,21 @@ std::unique_ptr<EventFilter> filter_of(const ReconstructorOptions& options,
     return event_filter({options.hot_pixels, options.noise_filter}, config, width, height);
 }
 
-void check_frame_size(const FrameSize& size) {
+void check_frame_size(const FrameSize& size, int sensor_width, int sensor_height) {
     for (const int side : {size.width, size.height})
         if (side < 0 || side > kLargestFrameSide)
             throw Error(ErrorKind::usage,
                         "frame size: expected 1 to " + std::to_string(kLargestFrameSide) +
                             " px each way, or 0 for the sensor's, found " + std::to_string(side));
+    const Region& r = size.region;
+    const Side width = side_of(size.width != 0 ? size.width : sensor_width, r.x, r.width),
+               height = side_of(size.height != 0 ? size.height : sensor_height, r.y, r.height);
+    if (!width.lies_within() || !height.lies_within())
+        throw Error(ErrorKind::usage,
+                    "region: expected a part of the " + std::to_string(width.whole) + "x" +
+                        std::to_string(height.whole) + " frame, found " +
+                        std::to_string(width.part) + "x" + std::to_string(height.part) + " from " +
+                        std::to_string(r.x) + "," + std::to_string(r.y));
 }
 
 }  // namespace eventide

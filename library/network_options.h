@@ -30,8 +30,8 @@ FrameRate rate_of(const ReconstructorOptions& options);
 std::unique_ptr<EventFilter> filter_of(const ReconstructorOptions& options,
                                        const ModelConfig& config, int width, int height);
 
-/// Throws Error (usage) for a size that no frame has.
-void check_frame_size(const FrameSize& size);
+/// Throws Error (usage) for a size that no frame has, and a region that is no part of it.
+void check_frame_size(const FrameSize& size, int sensor_width, int sensor_height);
 
 /// What `make` gives, and Error (failed) where there is too little memory for it.
 template <typename Make>

@@ -41,8 +41,8 @@ std::vector<std::unique_ptr<UserSink>> wrapped(const std::vector<FrameSink*>& si
     return wrapped;
 }
 
-RenderRequest request_of(const ReconstructorOptions& options) {
-    check_frame_size(options.size);
+RenderRequest request_of(const ReconstructorOptions& options, int width, int height) {
+    check_frame_size(options.size, width, height);
     RenderRequest request;
     request.width = options.size.width;
     request.height = options.size.height;
@@ -52,7 +52,16 @@ RenderRequest request_of(const ReconstructorOptions& options) {
     return request;
 }
 
+/// Longer ones are beyond what the clocks count with.
+void check_latency(std::chrono::microseconds latency) {
+    constexpr std::chrono::seconds kLongest{1'000'000};
+    if (latency < latency.zero() || latency > kLongest)
+        throw Error(ErrorKind::usage, "latency: expected 0 to " + std::to_string(kLongest.count()) +
+                                          " s, found " + std::to_string(latency.count()) + " us");
+}
+
 PipelineSettings settings_of(const PipelineOptions& options, const ModelConfig& config, bool live) {
+    check_latency(options.latency);
     PipelineSettings settings;
     settings.bins = config.bins;
     settings.event_windows.slicer = slicer_of(options.frames, config);
@@ -82,7 +91,7 @@ public:
           filter_(filter_of(options.frames, model.config, width, height)),
           encoder_(model, width, height, engine_of(options.frames)),
           renderer_(model, width, height, engine_of(options.frames)),
-          render_(renderer_, request_of(options.frames)),
+          render_(renderer_, request_of(options.frames, width, height)),
           pipeline_(parts(), settings_of(options, model.config, source.is_live())) {}
 
     void run() {

@@ -30,6 +30,7 @@ public:
         : path_(path),
           options_(open_options(options)),
           recording_(open_recording(path, options_)),
+          can_go_back_(path != "-" && recording_->size_bytes() > 0),
           parser_(recording_->make_parser()) {}
 
     const Recording& recording() const { return *recording_; }
@@ -49,17 +50,21 @@ public:
 
     /// What cannot go back stays where it is, and its parser with it.
     void seek(SensorTime t) {
-        if (!can_go_back()) return;
+        if (!can_go_back_) return;
         recording_->seek(t);
         damaged_before_ += parser_->damaged().total();
         parser_ = recording_->make_parser();
         ended_ = false;
     }
 
+    void stop() noexcept {
+        if (!can_go_back_) recording_->stop();
+    }
+
     std::uint64_t damaged() const { return damaged_before_ + parser_->damaged().total(); }
 
     std::optional<Window> span() const {
-        if (!can_go_back())
+        if (!can_go_back_)
             throw Error(ErrorKind::usage, "span of '" + path_ +
                                               "': expected a file that can be read twice, found " +
                                               (path_ == "-" ? "standard input" : "a pipe"));
@@ -70,12 +75,10 @@ public:
     }
 
 private:
-    /// A pipe does not tell its size.
-    bool can_go_back() const { return path_ != "-" && recording_->size_bytes() > 0; }
-
     const std::string path_;
     const OpenOptions options_;
-    std::unique_ptr<Recording> recording_;
+    const std::unique_ptr<Recording> recording_;
+    const bool can_go_back_;  // a pipe does not tell its size
     std::unique_ptr<Parser> parser_;
     RawPacket packet_;
     std::uint64_t damaged_before_ = 0;  // by parsers before a seek
@@ -108,6 +111,9 @@ void EventReader::seek(SensorTime t) {
 }
 std::optional<SensorTime> EventReader::clock() const {
     return impl_->parser().clock();
+}
+void EventReader::stop() noexcept {
+    impl_->stop();
 }
 std::uint64_t EventReader::damaged() const noexcept {
     return impl_->damaged();

@@ -176,7 +176,7 @@ void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Fr
 /// Throws Error (usage) for an impossible size; rendering cannot fail afterwards.
 void Reconstructor::Impl::make_room(const FrameSize& size) {
     if (room_for_ && same(size, *room_for_)) return;
-    check_frame_size(size);
+    check_frame_size(size, encoder_.width(), encoder_.height());
     RenderRequest request = request_;
     request.width = size.width;
     request.height = size.height;

@@ -13,6 +13,18 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<Event>);
 
+bool is_far(SensorTime t) {
+    return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
+}
+
+/// As Reconstructor::advance() and finish() do: by such a clock a pipeline would go on for ever.
+void refuse_far(SensorTime clock) {
+    if (is_far(clock))
+        throw Error(ErrorKind::usage,
+                    "clock of the source: expected a time of at most 2^60 us from zero, found " +
+                        std::to_string(to_us(clock)) + " us");
+}
+
 /// Of a packet. Image times follow, then events.
 struct Head {
     std::uint64_t images = 0, imu = 0, triggers = 0, events = 0;
@@ -64,10 +76,6 @@ public:
     const Damage& damaged() const override { return damage_; }
 
 private:
-    static bool is_far(SensorTime t) {
-        return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
-    }
-
     const unsigned width_, height_;
     std::optional<SensorTime> clock_;
     Damage damage_;
@@ -86,6 +94,7 @@ ReadStatus UserSource::read(RawPacket& into) {
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = !ended_ && source_.gap_before();  // at the end: told before
     const std::optional<SensorTime> clock = source_.clock();
+    if (clock) refuse_far(*clock);
     if (is_live() && !ended_ && batch_.empty() && clock == clock_ && !into.gap_before)
         return ReadStatus::timeout;
     clock_ = clock;

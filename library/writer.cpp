@@ -72,13 +72,29 @@ private:
             throw Error(ErrorKind::usage, path_ +
                                               ": expected a recording that is being written, "
                                               "found one after finish()");
+        refuse_steps_back();
         if (!held_.empty()) file_.write(held_);
+        if (!held_.events.empty()) newest_ = held_.events.back().t;
+    }
+
+    /// Readers would leave out what comes before the newest event, and all until then.
+    void refuse_steps_back() const {
+        SensorTime newest = newest_;
+        for (const Event& event : held_.events) {
+            if (event.t < newest)
+                throw Error(ErrorKind::usage,
+                            path_ + ": expected events in order of time, found one at " +
+                                std::to_string(to_us(event.t)) + " us after one at " +
+                                std::to_string(to_us(newest)) + " us");
+            newest = event.t;
+        }
     }
 
     const std::string path_;
     const Format& format_;
     RecordingFile file_;
     Batch held_;
+    SensorTime newest_ = SensorTime::min();  // of the events written
     std::uint64_t not_held_ = 0;
     bool finished_ = false;
 };

@@ -13,7 +13,7 @@ class FirstError {
 public:
     void keep(std::exception_ptr error) {
         const std::lock_guard lock{mutex_};
-        if (!error_) error_ = std::move(error);
+        if (!std::exchange(there_, true)) error_ = std::move(error);
     }
     /// False where `body` threw, which is kept.
     template <typename Body>
@@ -28,14 +28,17 @@ public:
     }
     bool is_there() const {
         const std::lock_guard lock{mutex_};
-        return error_ != nullptr;
+        return there_;
     }
-    void rethrow_if_any() const {
-        if (error_) std::rethrow_exception(error_);
+    /// Throws it once, and holds it no longer: an error may hold on to a lot, those of Python to
+    /// all that the functions it went through knew.
+    void rethrow_if_any() {
+        if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
     }
 
 private:
     mutable std::mutex mutex_;
+    bool there_ = false;
     std::exception_ptr error_;
 };
 

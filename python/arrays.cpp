@@ -48,6 +48,11 @@ Numbers field(const py::array& array, std::initializer_list<const char*> names) 
             throw Error(ErrorKind::usage, std::string{"events, field '"} + name +
                                               "': expected whole numbers, found " +
                                               std::string(py::str(values.dtype())));
+        if (values.ndim() != 1)
+            throw Error(ErrorKind::usage, std::string{"events, field '"} + name +
+                                              "': expected one number of each event, found an "
+                                              "array of " +
+                                              std::to_string(values.ndim() - 1) + " dimensions");
         return numbers_of(values);
     }
     throw Error(ErrorKind::usage, "events: expected a field called " + joined(names) + ", found " +

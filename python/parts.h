@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace eventide::python {
@@ -36,8 +37,20 @@ inline std::optional<std::int64_t> us_of(std::optional<SensorTime> t) {
     return t ? std::optional{to_us(*t)} : std::nullopt;
 }
 
+/// Throws TypeError, naming what is wanted and what was found.
+template <typename T>
+T cast_to(const char* name, pybind11::handle value) {
+    try {
+        return value.cast<T>();
+    } catch (const pybind11::cast_error&) {
+        throw pybind11::type_error(std::string{name} + ": expected " +
+                                   pybind11::detail::make_caster<T>::name.text + ", found " +
+                                   std::string(pybind11::repr(value)));
+    }
+}
+
 /// The options of Reconstructor by name, the others as they are. Throws Error (usage) for unknown
-/// ones.
+/// ones, TypeError for values of another type.
 ReconstructorOptions options_of(const pybind11::dict& given);
 
 using FramePointer = std::shared_ptr<Frame>;

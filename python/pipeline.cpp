@@ -1,6 +1,7 @@
 // The pipeline of threads for Python: anything that can be iterated is a source, any callable a
 // sink.
 #include "python/arrays.h"
+#include "python/errands.h"
 #include "python/sources.h"
 
 #include <eventide/error.h>
@@ -9,6 +10,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -26,7 +28,7 @@ namespace {
 
 int size_of(const py::object& source, const char* name, int given) {
     if (given != 0) return given;
-    if (py::hasattr(source, name)) return source.attr(name).cast<int>();
+    if (py::hasattr(source, name)) return cast_to<int>(name, source.attr(name));
     throw Error(ErrorKind::usage, std::string{"Pipeline: expected a source with a "} + name +
                                       ", or the argument " + name + ", found neither");
 }
@@ -34,9 +36,9 @@ int size_of(const py::object& source, const char* name, int given) {
 /// Is told when a run begins and ends, without Python's lock.
 class SourceOfRun : public EventSource {
 public:
-    /// Throws Error (usage) where another run is on.
-    virtual void begin() {}
-    virtual void end() noexcept {}
+    /// Throws Error (usage) where another run is on, or was.
+    virtual void begin() = 0;
+    virtual void end() noexcept = 0;
 };
 
 /// A Reader or Camera itself, with all that it tells beside its events.
@@ -110,6 +112,18 @@ public:
     bool gap_before() const noexcept override { return gap_before_; }
     std::optional<SensorTime> clock() const override { return clock_; }
 
+    void begin() override {
+        if (begun_.exchange(true))
+            throw Error(ErrorKind::usage,
+                        "pipeline: expected one run, found a second; make another pipeline");
+    }
+    /// Lets go of what may know the pipeline: Python does not see such a circle.
+    // NOLINTNEXTLINE(bugprone-exception-escape): as in stop().
+    void end() noexcept override {
+        const py::gil_scoped_acquire locked;
+        events_ = source_ = {};
+    }
+
     bool read(Batch& batch) override {
         const py::gil_scoped_acquire locked;
         batch.clear();
@@ -119,10 +133,10 @@ public:
         if (PyErr_Occurred() != nullptr) throw py::error_already_set();
         if (py::hasattr(source_, "clock"))
             if (const py::object clock = source_.attr("clock"); !clock.is_none())
-                clock_ = from_us(clock.cast<std::int64_t>());
+                clock_ = from_us(cast_to<std::int64_t>("clock", clock));
         if (!events) return false;
-        append_events(events.cast<py::array>(), batch.events);
-        gap_before_ = live_ && source_.attr("gap_before").cast<bool>();
+        append_events(cast_to<py::array>("events", events), batch.events);
+        gap_before_ = live_ && cast_to<bool>("gap_before", source_.attr("gap_before"));
         return true;
     }
 
@@ -131,7 +145,7 @@ public:
     void stop() noexcept override {
         const py::gil_scoped_acquire locked;
         try {
-            if (py::hasattr(source_, "stop")) source_.attr("stop")();
+            if (source_ && py::hasattr(source_, "stop")) source_.attr("stop")();
         } catch (py::error_already_set& error) {
             error.discard_as_unraisable("stop()");
         }
@@ -144,6 +158,7 @@ private:
     const SensorInfo info_;
     bool gap_before_ = false;
     std::optional<SensorTime> clock_;
+    std::atomic<bool> begun_{false};
 };
 
 /// Of a class derived from T in Python the iterator may be another, and is what is meant.
@@ -176,15 +191,31 @@ private:
 /// Calls with a frame that is the callee's to keep; False ends the run.
 class CalledSink final : public FrameSink {
 public:
-    explicit CalledSink(py::object callable) : callable_(std::move(callable)) {}
+    /// `errands` of the thread that calls; null: the one that writes.
+    CalledSink(py::object callable, Errands* errands)
+        : callable_(std::move(callable)), errands_(errands) {}
+
     bool write(const Frame& frame) override {
+        bool wants_more = true;
+        const auto ask = [&] { wants_more = call(frame); };
+        errands_ != nullptr ? errands_->have_done(ask) : ask();
+        return wants_more;
+    }
+    /// Lets go of what may know the pipeline.
+    void close() override {
+        const py::gil_scoped_acquire locked;
+        callable_ = {};
+    }
+
+private:
+    bool call(const Frame& frame) {
         const py::gil_scoped_acquire locked;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         return !callable_(std::make_shared<Frame>(frame)).is(py::bool_(false));
     }
 
-private:
     py::object callable_;
+    Errands* const errands_;
 };
 
 class PipelineOfPython {
@@ -192,12 +223,12 @@ public:
     PipelineOfPython(const py::object& source, const py::object& sinks,
                      const std::filesystem::path& model, int width, int height, double latency,
                      bool sequential, const py::kwargs& options)
-        : source_(source_of(source, width, height, sequential)) {
+        : sequential_(sequential), source_(source_of(source, width, height, sequential)) {
         for (const py::handle sink : py::isinstance<py::sequence>(sinks)
                                          ? py::list(sinks)
                                          : py::list(py::make_tuple(sinks)))
-            sinks_.push_back(
-                std::make_unique<CalledSink>(py::reinterpret_borrow<py::object>(sink)));
+            sinks_.push_back(std::make_unique<CalledSink>(py::reinterpret_borrow<py::object>(sink),
+                                                          sequential ? nullptr : &errands_));
         std::vector<FrameSink*> all;
         for (const auto& sink : sinks_) all.push_back(sink.get());
         if (!(latency >= 0 && latency <= 1e6))
@@ -211,10 +242,12 @@ public:
         pipeline_ = std::make_unique<EventPipeline>(*source_, all, model.string(), how);
     }
 
+    /// Sinks are called here, and signals heard: the library's part of it has a thread of its own.
     void run() {
         const py::gil_scoped_release released;
         const Run run{*source_};
-        pipeline_->run();
+        if (sequential_) return pipeline_->run();
+        errands_.run([this] { pipeline_->run(); }, [this] { pipeline_->stop(); });
     }
     void stop() {
         const py::gil_scoped_release released;
@@ -237,6 +270,8 @@ public:
     }
 
 private:
+    const bool sequential_;
+    Errands errands_;
     std::unique_ptr<SourceOfRun> source_;
     std::vector<std::unique_ptr<CalledSink>> sinks_;
     std::unique_ptr<EventPipeline> pipeline_;
@@ -250,8 +285,10 @@ void add_pipeline(py::module_& module) {
         "Reading, cutting, encoding and rendering on a thread each.\n\n"
         "source: a Reader, a Camera, or anything that gives structured arrays of events when it "
         "is\n"
-        "iterated; width and height where it does not have them. Nobody else may read a Reader or\n"
-        "Camera until run() is over. sinks: a callable, or a list of\n"
+        "iterated; width and height where it does not have them. It may have what a Camera has:\n"
+        "clock (us, or None), gap_before (then it is live, and what is late is left out), stop().\n"
+        "Nobody else may read a Reader or Camera until run() is over. sinks: a callable, or a list "
+        "of\n"
         "them, each called with every Frame on the thread of run(); False ends the run.\n"
         "latency: of a Camera, seconds, what a frame may be late at most; 0: anything.\n"
         "Other options are those of Reconstructor.")

@@ -227,32 +227,33 @@ ReconstructorOptions options_of(const py::dict& given) {
     for (const auto& [key, value] : given) {
         const auto name = key.cast<std::string>();
         if (name == "window")
-            options.window = value.cast<std::string>();
+            options.window = cast_to<std::string>("window", value);
         else if (name == "lookahead")
-            options.lookahead = value.cast<int>();
+            options.lookahead = cast_to<int>("lookahead", value);
         else if (name == "fps")
-            options.fps = value.cast<std::string>();
+            options.fps = cast_to<std::string>("fps", value);
         else if (name == "size")
-            size = value.cast<Size>();
+            size = cast_to<Size>("size", value);
         else if (name == "roi")
-            roi = value.cast<Roi>();
+            roi = cast_to<Roi>("roi", value);
         else if (name == "sigma")
-            options.sigma = value.cast<bool>();
+            options.sigma = cast_to<bool>("sigma", value);
         else if (name == "hot_pixels")
-            options.hot_pixels = value.cast<std::filesystem::path>().string();
+            options.hot_pixels = cast_to<std::filesystem::path>("hot_pixels", value).string();
         else if (name == "noise_filter")
-            options.noise_filter = value.cast<std::string>();
+            options.noise_filter = cast_to<std::string>("noise_filter", value);
         else if (name == "precision")
             options.precision =
-                option_word("precision", value.cast<std::string>(), kPrecisionWords);
+                option_word("precision", cast_to<std::string>("precision", value), kPrecisionWords);
         else if (name == "kernels")
-            options.kernels = option_word("kernels", value.cast<std::string>(), kKernelWords);
+            options.kernels =
+                option_word("kernels", cast_to<std::string>("kernels", value), kKernelWords);
         else if (name == "threads")
-            options.threads = value.cast<int>();
+            options.threads = cast_to<int>("threads", value);
         else if (name == "reset_on_gap")
-            options.reset_on_gap = value.cast<bool>();
+            options.reset_on_gap = cast_to<bool>("reset_on_gap", value);
         else if (name == "allow_silence")
-            options.allow_silence = value.cast<bool>();
+            options.allow_silence = cast_to<bool>("allow_silence", value);
         else
             throw Error(ErrorKind::usage, "expected an option of Reconstructor, found " + name);
     }

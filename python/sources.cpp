@@ -199,7 +199,7 @@ void add_writer(py::module_& module) {
                 append_events(events, all);
                 w.with([&](EventWriter& it) { it.write(std::span<const Event>{all}); });
             },
-            py::arg("events"), "Events that follow the ones before in time.")
+            py::arg("events"), "Events in order of time, which follow the ones before.")
         .def("finish", finish, "Ends the recording and shows the file.")
         .def("__enter__", [](const py::object& self) { return self; })
         .def("__exit__", [finish](GuardedWriter& w, const py::object& type, const py::object&,

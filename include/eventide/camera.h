@@ -17,8 +17,10 @@ namespace eventide {
 
 /// How a camera is opened.
 struct CameraSettings {
-    std::filesystem::path file;  ///< of settings, as in share/eventide/cameras; empty: the defaults
-    bool reconnect = false;      ///< wait for an unplugged camera to come back
+    /// Of settings, as in share/eventide/cameras; empty: the defaults. Simulations and UDP have
+    /// none.
+    std::filesystem::path file;
+    bool reconnect = false;  ///< wait for an unplugged camera to come back
 };
 
 /// A camera that sends events from the first read() on. Thread: one at a time, stop() excepted.

@@ -240,8 +240,8 @@ typedef struct eventide_writer eventide_writer;
 EVENTIDE_API eventide_status eventide_writer_open(const char* path, const char* format, int width,
                                                   int height, int overwrite,
                                                   eventide_writer** opened);
-/** Must follow what was written before in time. EVENTIDE_USAGE for what the format cannot hold,
- * EVENTIDE_FAILED where the disk is full. */
+/** Must follow what was written before in time. EVENTIDE_USAGE for an event earlier than the one
+ * before it and for what the format cannot hold, EVENTIDE_FAILED where the disk is full. */
 EVENTIDE_API eventide_status eventide_write(eventide_writer* writer, const eventide_event* events,
                                             size_t count);
 /** Ends the stream and shows the file; nothing can be written after it. */

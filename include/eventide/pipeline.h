@@ -32,7 +32,8 @@ public:
     virtual bool read(Batch& batch) = 0;
 
     /// Every event before this time has been read, where that is known: frames of a live source go
-    /// on by it while nothing moves. At the end of a recording: until when it lasted.
+    /// on by it while nothing moves. At the end of a recording: until when it lasted. One further
+    /// from zero than Reconstructor::kFarthestTime ends a run with Error (usage).
     virtual std::optional<SensorTime> clock() const { return std::nullopt; }
 
     /// Whether data were lost before the newest batch.
@@ -82,8 +83,8 @@ protected:
 struct PipelineOptions {
     /// As in Reconstructor. `threads` are the network's; the pipeline has four of its own.
     ReconstructorOptions frames{};
-    /// Of a live source: what is left out, and counted, so that frames are no later than this; 0:
-    /// nothing. Any other source waits.
+    /// Of a live source: what is left out, and counted, so that frames are no later than this, at
+    /// most 10^6 s; 0: nothing. Any other source waits.
     std::chrono::microseconds latency{250'000};
     bool sequential = false;  ///< all on the caller's thread; the frames are the same
 };

@@ -55,6 +55,10 @@ public:
     /// it is the end of the recording. Empty before the first.
     std::optional<SensorTime> clock() const override;
 
+    /// Thread: any. Standard input and pipes end here: no read() waits any more, what was read is
+    /// still given, then false. A file never waits, and may be read on.
+    void stop() noexcept override;
+
     /// Places where bytes made no sense, so far.
     std::uint64_t damaged() const noexcept;
 

@@ -109,8 +109,8 @@ struct FrameMeasures {
 };
 
 /// `intensity` is clipped to 0..1 first; `sigma` may be empty and is nowhere below 0, `lpips` may
-/// be null. [y][x], of one size, at least 11 px each way, and what `lpips` wants. Throws Error
-/// (usage) else.
+/// be null. [y][x], without NaN, of one size, at least 11 px each way, and what `lpips` wants.
+/// Throws Error (usage) else.
 EVENTIDE_API FrameMeasures measure(const Array2<float>& intensity, const Array2<float>& sigma,
                                    const Array2<float>& truth,
                                    const PerceptualDistance* lpips = nullptr);

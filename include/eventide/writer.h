@@ -31,8 +31,9 @@ public:
     EventWriter(EventWriter&&) noexcept;             ///< leaves the other empty
     EventWriter& operator=(EventWriter&&) noexcept;  ///< leaves the other empty
 
-    /// Must follow what was written before in time. Throws Error: usage for what the format cannot
-    /// hold (a coordinate too large) and after finish(), failed where the disk is full.
+    /// Must follow what was written before in time. Throws Error: usage for an event earlier than
+    /// the one before it, for what the format cannot hold (a coordinate too large) and after
+    /// finish(), failed where the disk is full.
     void write(std::span<const Event> events);
 
     /// The same with images, inertial samples and triggers. Kinds that the format has no records

@@ -18,11 +18,15 @@ namespace eventide {
 /// The stream's first event is held until another agrees with it. Where the next ones agree only
 /// with each other, before it or more than kLongestFirstPause after it, it counts as bad_record: a
 /// stamp of 0 before times since 1970 would otherwise be 54 years of silence.
+///
+/// A time further from zero than kFarthest counts as bad_record wherever it stands: sums of such
+/// times are beyond 64 bits, and windows until then without end.
 class EventValidator {
 public:
     enum class LeapEnds { with_next_event, with_next_packet };
     static constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
-    static constexpr std::int64_t kLongestFirstPause = 60'000'000;  // us
+    static constexpr std::int64_t kLongestFirstPause = 60'000'000;    // us
+    static constexpr std::int64_t kFarthest = std::int64_t{1} << 60;  // us: 36000 years
 
     /// px
     EventValidator(std::uint64_t width, std::uint64_t height,
@@ -33,6 +37,10 @@ public:
              Damage& damage) {
         if (!is_inside(x, y)) {
             damage.count(DamageReason::out_of_range);
+            return;
+        }
+        if (t_us > kFarthest || t_us < -kFarthest) {
+            damage.count(DamageReason::bad_record);
             return;
         }
         const Event event{from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity(on)};

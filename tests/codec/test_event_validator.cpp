@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace eventide {
 namespace {
 
@@ -30,6 +32,25 @@ TEST(EventValidator, AnEventHeldWhereALossBeginsIsLostAndCounted) {
         Damage damage;
         EXPECT_EQ(times_around_loss(500, after, damage), (std::vector<std::int64_t>{after, after}));
         EXPECT_EQ(damage, expected) << after;
+    }
+}
+
+// Also where nothing follows that contradicts them, at the end and alone.
+TEST(EventValidator, TimesThatAreNoneAreLeftOutWhereverTheyStand) {
+    constexpr std::int64_t kFarthest = EventValidator::kFarthest;
+    constexpr auto kMin = std::numeric_limits<std::int64_t>::min();
+    constexpr auto kMax = std::numeric_limits<std::int64_t>::max();
+    for (const std::int64_t bad : {kFarthest + 1, -kFarthest - 1, kMin, kMax}) {
+        EventValidator validator(10, 10);
+        Batch batch;
+        Damage damage, expected;
+        for (const std::int64_t t : {bad, std::int64_t{100}, std::int64_t{200}, bad, bad})
+            validator.add(t, 1, 1, true, batch, damage);
+        validator.finish(batch, damage);
+        ASSERT_EQ(batch.events.size(), 2U) << bad;
+        EXPECT_EQ(validator.newest_us(), 200);
+        expected.count(DamageReason::bad_record, 3);
+        EXPECT_EQ(damage, expected) << bad;
     }
 }
 

@@ -128,7 +128,7 @@ TEST(Udp, NamesThatMakeNoSenseAreRefused) {
     EXPECT_THAT(refusal("//127.0.0.1", ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
     EXPECT_THAT(refusal("//127.0.0.1:0", ErrorKind::usage), HasSubstr("?size=640x480"));
     EXPECT_THAT(refusal("//127.0.0.1:0?size=4", ErrorKind::usage), HasSubstr("found '4'"));
-    for (const std::string port : {"65536", "99999", "-1", "dns"})
+    for (const std::string port : {"65536", "99999", "-1", "5x", "dns"})
         EXPECT_THAT(refusal("//127.0.0.1:" + port + "?size=4x4", ErrorKind::usage),
                     HasSubstr("from 0 to 65535, found '" + port + "'"));
     EXPECT_THAT(refusal("//127.0.0.1:0?size=4x4&format=t16", ErrorKind::usage),

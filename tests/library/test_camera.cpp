@@ -42,6 +42,10 @@ TEST_F(Cameras, ThatCannotBeOpenedSayWhy) {
     EXPECT_NE(error_of([] { EventCamera{"kodak:"}; }).find("kodak"), std::string::npos);
     EXPECT_NE(error_of([] { EventCamera{"v4l2:/dev/none"}; }, ErrorKind::device).find("/dev/none"),
               std::string::npos);
+    EXPECT_NE(error_of([] {
+                  EventCamera{"sim:demo?size=64x48", {.file = "davis.json"}};
+              }).find("'davis.json': expected a camera that has settings, found sim:demo"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -62,6 +62,21 @@ TEST_F(HostileEvents, OfABatchThatGoesBackBeginANewStream) {
     EXPECT_EQ(twice.counters().time_resets, 1U);
 }
 
+TEST_F(HostileEvents, AreCountedWhenTheyArePushed) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    Batch batch;
+    batch.events = {{from_us(0), 1, 1}};
+    reconstructor.push(batch);
+    reconstructor.advance(from_us(100'000));
+    EXPECT_TRUE(reconstructor.newest());
+    batch.events = {{from_us(50'000), 1, 1}};
+    reconstructor.push(batch);
+    EXPECT_EQ(reconstructor.counters().late, 1U);
+    batch.events = {{from_us(30'000), 1, 1}};
+    reconstructor.push(batch);
+    EXPECT_EQ(reconstructor.counters().time_resets, 1U);
+}
+
 TEST_F(HostileEvents, AfterAResetAreANewStream) {
     const std::vector<Event> events = events_of(recording());
     Reconstructor reconstructor = this->reconstructor(repeatable("auto", 1));
@@ -168,6 +183,12 @@ TEST_F(HostileEvents, AndSizesAreRefusedInWords) {
     for (const FrameSize& size : impossible)
         EXPECT_NE(error_of([&] { reconstructor.render(t, size, after); }).find("expected"),
                   std::string::npos);
+    // In words of the library: an option of the program is no argument here.
+    const auto words = error_of([&] { reconstructor.render(t, {64, 48, {60, 0, 5, 5}}, after); });
+    EXPECT_EQ(words, "region: expected a part of the 64x48 frame, found 5x5 from 60,0");
+    error_of([&] {
+        reconstructor.render(t, {64, 48, {std::numeric_limits<int>::min(), 0, 0, 5}}, after);
+    });
     reconstructor.render(t, after);
     EXPECT_EQ(after.intensity, before.intensity) << "what was refused changed nothing";
 }

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -178,6 +179,36 @@ TEST_F(Pipelines, RefuseWhatCannotRun) {
     EXPECT_THAT(made(source, nullptr, {}), testing::HasSubstr("null pointer"));
     EXPECT_THAT(made(source, &sink, {.frames = {.lookahead = 9}}), testing::HasSubstr("lookahead"));
     EXPECT_THAT(made(source, &sink, {.frames = {.fps = "many"}}), testing::HasSubstr("many"));
+    // Unlimited, a user might think; in nanoseconds it would have been less than nothing.
+    for (const auto latency : {std::chrono::microseconds::max(), std::chrono::microseconds{-1}})
+        EXPECT_THAT(made(source, &sink, {.latency = latency}),
+                    testing::HasSubstr("latency: expected 0 to 1000000 s, found"));
+}
+
+/// Tells nanoseconds where microseconds are meant, for example.
+class EventsWithAFarClock final : public EventsInMemory {
+public:
+    EventsWithAFarClock(std::vector<Event> events, bool live)
+        : EventsInMemory(std::move(events), 1000), live_(live) {}
+    std::optional<SensorTime> clock() const override {
+        return from_us(std::numeric_limits<std::int64_t>::max());
+    }
+    bool is_live() const noexcept override { return live_; }
+
+private:
+    const bool live_;
+};
+
+TEST_F(Pipelines, RefuseAClockThatIsNone) {
+    for (const bool live : {false, true})
+        for (const bool sequential : {false, true}) {
+            EventsWithAFarClock source{events_of(recording()), live};
+            Collector sink;
+            EventPipeline pipeline{source, {&sink}, model(), options("7ms", 0, sequential)};
+            EXPECT_THAT(error_of([&] { pipeline.run(); }),
+                        testing::HasSubstr("clock of the source: expected a time of at most 2^60"));
+            EXPECT_EQ(sink.closed, 1);
+        }
 }
 
 }  // namespace

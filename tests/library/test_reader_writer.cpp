@@ -2,6 +2,7 @@
 #include "tests/library/library_test.h"
 
 #include <filesystem>
+#include <thread>
 
 #include <unistd.h>
 
@@ -74,6 +75,56 @@ TEST_F(Recordings, ThatCannotGoBackLoseNothingByASeek) {
     EXPECT_EQ(reader.damaged(), 0U);
 }
 
+/// A recording in a pipe that stays open, and in which nothing more comes.
+class OpenPipe {
+public:
+    OpenPipe() {
+        EXPECT_EQ(::pipe(ends_), 0);
+        const std::string text = "64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n0.4 7 8 1\n";
+        EXPECT_EQ(::write(ends_[1], text.data(), text.size()), ssize_t(text.size()));
+    }
+    ~OpenPipe() {
+        for (const int end : ends_) ::close(end);
+    }
+    OpenPipe(const OpenPipe&) = delete;
+    OpenPipe& operator=(const OpenPipe&) = delete;
+    std::string name() const { return "/dev/fd/" + std::to_string(ends_[0]); }
+
+private:
+    int ends_[2];
+};
+
+TEST_F(Recordings, OfAPipeThatWaitsEndWhenTheyAreStopped) {
+    const OpenPipe pipe;
+    EventReader reader{pipe.name()};
+    Batch batch;
+    ASSERT_TRUE(reader.read(batch));
+    std::size_t events = batch.events.size();
+    std::jthread stopper{[&] { reader.stop(); }};
+    while (reader.read(batch)) events += batch.events.size();
+    EXPECT_EQ(events, 4U) << "what was read is given";
+    EXPECT_FALSE(reader.read(batch)) << "for good";
+}
+
+TEST_F(Recordings, OfAPipeThatWaitsEndWithTheirPipeline) {
+    struct OneFrame final : FrameSink {
+        bool write(const Frame&) override { return false; }
+    };
+    const OpenPipe pipe;
+    EventReader reader{pipe.name()};
+    OneFrame sink;
+    EventPipeline pipeline{reader, {&sink}, model(), {.frames = repeatable("7ms", 0)}};
+    pipeline.run();
+    EXPECT_EQ(pipeline.counters().frames, 1U);
+}
+
+TEST_F(Recordings, InAFileAreReadOnAfterAStop) {
+    EventReader reader{recording()};
+    reader.stop();
+    Batch batch;
+    EXPECT_TRUE(reader.read(batch));
+}
+
 TEST_F(Recordings, ComeBackAsTheyWereWritten) {
     EventReader reader{recording()};
     EventWriter events_alone{temp_ / "events.raw", reader.info(), {"evt3", false}};
@@ -98,6 +149,33 @@ TEST_F(Recordings, ComeBackAsTheyWereWritten) {
     text.finish();
     EventReader again{temp_ / "events.txt", {"", 64, 48}};
     EXPECT_EQ(again.width(), 64);
+}
+
+TEST_F(Recordings, AreWrittenInTheOrderOfTimeOnly) {
+    const auto at = [](std::int64_t t) { return Event{from_us(t), 1, 2, Polarity::on}; };
+    for (const std::string format : {"aedat4", "aedat3", "evt3", "text"}) {
+        const std::string file = temp_ / ("ordered." + format);
+        EventWriter writer{file, {"", "", "", 64, 48}, {format, false}};
+        writer.write(std::vector{at(1000), at(1000), at(2000)});
+        // A reader would leave out the second, or all until 2000 us.
+        EXPECT_NE(error_of([&] {
+                      writer.write(std::vector{at(3000), at(2500)});
+                  }).find("expected events in order of time, found one at 2500 us after one"),
+                  std::string::npos)
+            << format;
+        EXPECT_NE(error_of([&] { writer.write(std::vector{at(1999)}); }).find("2000 us"),
+                  std::string::npos)
+            << format;
+        writer.write(std::vector{at(2000), at(4000)});
+        writer.finish();
+        const ReaderOptions size{"", format == "text" ? 64 : 0, format == "text" ? 48 : 0};
+        EventReader reader{file, size};
+        std::vector<Event> events;
+        for (Batch batch; reader.read(batch);)
+            events.insert(events.end(), batch.events.begin(), batch.events.end());
+        EXPECT_EQ(events, (std::vector{at(1000), at(1000), at(2000), at(2000), at(4000)}))
+            << format << ": what was refused is not in it";
+    }
 }
 
 TEST_F(Recordings, ThatAreNoneAreRefusedInWords) {

@@ -2,6 +2,7 @@
 #include "tests/library/library_test.h"
 #include "tests/metrics/images.h"
 
+#include <limits>
 #include <vector>
 
 namespace eventide::test {
@@ -60,6 +61,18 @@ TEST(Measures, SayWhatIsWrongWithAFrame) {
     sigma(3, 4) = -.5F;
     EXPECT_NE(error_of([&] { measure(shown, sigma, truth); }).find("sigma: expected 0 or more"),
               std::string::npos);
+}
+
+TEST(Measures, RefuseWhatIsNoNumber) {
+    // Clipped, it would be black, and here as right as can be.
+    const Array2<float> black(20, 30);
+    Array2<float> broken = black;
+    broken(3, 4) = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(error_of([&] { measure(broken, {}, black); }),
+              "intensity: expected numbers, found NaN");
+    EXPECT_EQ(error_of([&] { measure(black, broken, black); }),
+              "sigma: expected numbers, found NaN");
+    EXPECT_EQ(error_of([&] { measure(black, {}, broken); }), "truth: expected numbers, found NaN");
 }
 
 TEST(Measures, OfLpipsAreThoseOfItsWeights) {

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -84,6 +86,25 @@ TEST(Pipeline, KeepsTheFirstErrorOfTwo) {
         ADD_FAILURE();
     } catch (const std::runtime_error& error) {
         EXPECT_STREQ(error.what(), "first");
+    }
+}
+
+/// As an error of Python, which knows the functions that it went through and what they hold.
+struct HoldingError final : std::runtime_error {
+    explicit HoldingError(std::shared_ptr<int> what)
+        : std::runtime_error("full"), held(std::move(what)) {}
+    std::shared_ptr<int> held;
+};
+
+TEST(Pipeline, HoldsNoErrorThatItThrew) {
+    for (const bool threaded : {true, false}) {
+        auto held = std::make_shared<int>();
+        const std::weak_ptr<int> watched = held;
+        PipelineUnderTest line(one_frame_per_packet(20), quick_settings());
+        line.sink.before_write = [&](auto) { throw HoldingError{std::exchange(held, {})}; };
+        EXPECT_THROW(threaded ? line.run() : line.run_sequential(), HoldingError);
+        EXPECT_TRUE(watched.expired()) << (threaded ? "threaded" : "sequential");
+        EXPECT_FALSE(line.made().is_whole()) << "there was one all the same";
     }
 }
 

@@ -70,6 +70,15 @@ class Interrupts(RecordedTest):
             pipeline = eventide.Pipeline(camera, lambda frame: None, "small", window="10ms", sequential=sequential)
             self.interrupt(pipeline.run, lambda: pipeline.counters["frames"] > 3)
 
+    def test_a_pipeline_ends_that_calls_no_sink(self):
+        def nothing():
+            while True:
+                yield np.zeros(0, DTYPE)
+
+        for source in (nothing(), eventide.open_camera(ENDLESS_CAMERA)):
+            pipeline = eventide.Pipeline(source, [], "small", width=64, height=48)
+            self.interrupt(pipeline.run, lambda: pipeline.counters["batches"] > 3)
+
 
 if __name__ == "__main__":
     unittest.main()

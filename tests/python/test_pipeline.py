@@ -1,10 +1,13 @@
 """The pipeline of threads with sources and sinks of Python."""
 
+import gc
+import threading
 import unittest
+import weakref
 
 import eventide
 import numpy as np
-from recorded import REPEATABLE, RecordedTest
+from recorded import DTYPE, REPEATABLE, RecordedTest
 
 
 class Pipelines(RecordedTest):
@@ -130,11 +133,77 @@ class Pipelines(RecordedTest):
         with self.assertRaisesRegex(OSError, "disk"):
             eventide.Pipeline(eventide.open(self.recording), full, "small").run()
 
+    def test_sinks_are_called_on_the_thread_of_run(self):
+        for sequential in (False, True):
+            threads = []
+            source = eventide.open(self.recording)
+            sinks = [lambda frame: threads.append(threading.current_thread())] * 2
+            eventide.Pipeline(source, sinks, "small", sequential=sequential).run()
+            self.assertEqual(set(threads), {threading.current_thread()})
+
+    def test_what_failed_is_freed(self):
+        def full(frame):
+            raise OSError("disk")
+
+        def failed(sequential):
+            pipeline = eventide.Pipeline(eventide.open(self.recording), full, "small", sequential=sequential)
+            try:
+                pipeline.run()
+            except OSError:
+                return weakref.ref(pipeline)
+
+        for sequential in (False, True):
+            self.assertIsNone(failed(sequential)())
+
+    def test_what_its_source_and_sink_know_is_freed(self):
+        def run(sequential):
+            def source():
+                yield self.events()[: 1000 + pipeline.counters["frames"]]
+
+            def sink(frame):
+                pipeline.stop()
+
+            pipeline = eventide.Pipeline(source(), sink, "small", width=64, height=48, sequential=sequential)
+            pipeline.run()
+            pipeline.stop()
+            with self.assertRaisesRegex(eventide.UsageError, "one run"):
+                pipeline.run()
+            return weakref.ref(pipeline)
+
+        for sequential in (False, True):
+            pipeline = run(sequential)
+            gc.collect()
+            self.assertIsNone(pipeline())
+
     def test_what_cannot_run_is_refused(self):
         with self.assertRaisesRegex(eventide.UsageError, "width"):
             eventide.Pipeline([], print, "small")
         with self.assertRaisesRegex(eventide.UsageError, "speed"):
             eventide.Pipeline([], print, "small", width=4, height=4, speed=3)
+
+    def test_values_of_another_type_are_refused_by_name(self):
+        for options, words in [
+            ({"fps": 30}, "fps: expected str, found 30"),
+            ({"window": None}, "window: expected str, found None"),
+            ({"lookahead": 1.5}, "lookahead: expected int, found 1.5"),
+            ({"size": "64x48"}, "size: expected .*, found '64x48'"),
+            ({"roi": (1, 2)}, r"roi: expected .*, found \(1, 2\)"),
+            ({"hot_pixels": 5}, "hot_pixels: expected .*, found 5"),
+            ({"precision": 32}, "precision: expected str, found 32"),
+        ]:
+            with self.assertRaisesRegex(TypeError, words):
+                eventide.Pipeline([], print, "small", width=64, height=48, **options)
+
+        class Source:
+            width, height, clock = 64, "48", "noon"
+
+            def __iter__(self):
+                return iter([np.zeros(0, DTYPE)])
+
+        with self.assertRaisesRegex(TypeError, "height: expected int, found '48'"):
+            eventide.Pipeline(Source(), print, "small")
+        with self.assertRaisesRegex(TypeError, "clock: expected int, found 'noon'"):
+            eventide.Pipeline(Source(), print, "small", height=48).run()
 
 
 if __name__ == "__main__":
