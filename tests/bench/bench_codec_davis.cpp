@@ -1,6 +1,6 @@
 // DAVIS words to events, from memory, on one core.
 #include "src/codec/inivation/davis.h"
-#include "src/codec/inivation/davis_writer.h"
+#include "tests/support/usb/davis_writer.h"
 
 #include <benchmark/benchmark.h>
 
@@ -25,7 +25,7 @@ std::vector<std::byte> words(int per_row) {
                 {from_us(t), x, std::uint16_t(random() % 260), Polarity(random() % 2)});
     }
     std::vector<std::byte> bytes;
-    DavisWriter{sensor}.write(batch, bytes);
+    testing_support::DavisWriter{sensor}.write(batch, bytes);
     return bytes;
 }
 

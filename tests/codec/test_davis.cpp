@@ -1,7 +1,7 @@
 // DAVIS words, spelled out, and read(write(x)) = x.
 #include "src/codec/inivation/davis.h"
-#include "src/codec/inivation/davis_writer.h"
 #include "tests/support/usb/davis_sensors.h"
+#include "tests/support/usb/davis_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing_support::davis240;
+using testing_support::DavisWriter;
 
 // The vocabulary of docs/protocols.md A.9.
 constexpr std::uint16_t time(int low15) {
@@ -272,10 +273,7 @@ TEST_P(DavisRoundTrip, ReadOfWriteIsTheSameForAnyOrientationAndAnySplit) {
     const Batch scene = random_scene(sensor, unsigned(GetParam()));
     std::vector<std::byte> bytes;
     DavisWriter writer{sensor};
-    StreamHeader header;
-    header.width = sensor.width();
-    header.height = sensor.height();
-    writer.begin(header, bytes);
+    DavisWriter::timestamp_reset(bytes);
     writer.write(scene, bytes);
     for (const std::size_t piece :
          {std::size_t{1}, std::size_t{7}, std::size_t{4096}, bytes.size()}) {

@@ -1,4 +1,5 @@
-// The implicit decoder: unfolded against layer 1 computed once against fast, and its geometry.
+// The implicit decoder: its formula against plain against fast, and its geometry.
+#include "apps/cli/stress/double_renderer.h"
 #include "src/core/error.h"
 #include "src/model/render/plain_renderer.h"
 #include "src/model/render/renderer.h"
@@ -66,9 +67,11 @@ FrameGeometry frame_geometry_of(int height, int width, int out_height, int out_w
 const std::vector<std::pair<int, int>> kOutputs{{1, 1},   {9, 13}, {17, 25}, {18, 26},
                                                 {23, 31}, {5, 40}, {9, 1},   {1, 13}};
 
-TEST(Renderer, LayerOneOncePerSampleChangesNothing) {
+TEST(Renderer, PlainAgreesWithTheFormulaAtEverySizeTimeAndLookahead) {
     for (const ModelConfig& config : every_kind()) {
-        const plain::MlpRenderer<double> network{random_model(config, 3)};
+        const Model model = random_model(config, 3);
+        const stress::DoubleRenderer formula{model};
+        const plain::MlpRenderer<double> network{model};
         std::vector<Array3<double>> z;
         for (int k = 1; k <= 4; ++k)
             z.push_back(test::as<double>(random_latent(config, 9, 13, k).values));
@@ -82,7 +85,7 @@ TEST(Renderer, LayerOneOncePerSampleChangesNothing) {
                 for (const double fraction : {0.0, 0.3, 1.0})
                     for (const SigmaRule rule : {SigmaRule::log_blend, SigmaRule::mixture}) {
                         const auto geometry = frame_geometry_of(9, 13, height, width);
-                        const auto a = network.render_unfolded(codes, fraction, geometry, rule);
+                        const auto a = formula.render(codes, fraction, geometry, rule);
                         const auto b = network.render(codes, fraction, geometry, rule);
                         EXPECT_LE(test::worst(a.intensity.values(), b.intensity.values()),
                                   kDoubleTolerance);

@@ -95,7 +95,7 @@ void Judge::rendered(SensorTime t, const Window& window, const RenderRequest& re
     if (!judging_ || rendered_++ % sampling_.frames_every != 0) return;
     const auto here = std::ranges::find(known_, window, &Known::window);
     if (here == known_.end()) return;
-    plain::Codes<double> codes{};
+    DoubleRenderer::Codes codes{};
     for (int n = -2; n <= 2; ++n) {
         const std::ptrdiff_t at = here - known_.begin() + n;
         const bool there = at >= 0 && at < std::ptrdiff_t(known_.size());
@@ -108,8 +108,8 @@ void Judge::rendered(SensorTime t, const Window& window, const RenderRequest& re
     const Array2<float> sigma = frame.sigma.empty() ? Array2<float>{} : cut(frame.sigma, part);
     part.x += request.region.x;
     part.y += request.region.y;
-    const auto exact = renderer_.render_unfolded(codes, width > 0 ? past / width : 1, part,
-                                                 request.sigma_rule.value_or(config_.sigma_rule));
+    const auto exact = renderer_.render(codes, width > 0 ? past / width : 1, part,
+                                        request.sigma_rule.value_or(config_.sigma_rule));
     frames_.add(intensity.values(), exact.intensity.values());
     if (!sigma.empty()) frames_.add(sigma.values(), exact.sigma.values());
 }

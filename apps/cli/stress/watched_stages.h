@@ -2,9 +2,9 @@
 #pragma once
 
 #include "apps/cli/stress/double_network.h"
+#include "apps/cli/stress/double_renderer.h"
 #include "pipeline/model_render_stage.h"
 #include "src/model/encode/encoder.h"
-#include "src/model/render/plain_renderer.h"
 
 #include <deque>
 #include <memory>
@@ -47,7 +47,7 @@ private:
     int width_, height_;
     Sampling sampling_;
     std::unique_ptr<DoubleNetwork> network_;
-    plain::MlpRenderer<double> renderer_;
+    DoubleRenderer renderer_;
     std::deque<Known> known_;  // the newest few event windows
     std::uint64_t windows_ = 0, rendered_ = 0;
     bool judging_ = false;

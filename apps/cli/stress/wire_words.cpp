@@ -2,7 +2,6 @@
 #include "apps/cli/stress/wire_words.h"
 
 #include "src/codec/inivation/davis.h"
-#include "src/codec/inivation/davis_writer.h"
 #include "src/codec/inivation/dvs128.h"
 #include "src/codec/prophesee/dat.h"
 #include "src/codec/prophesee/evt2.h"
@@ -24,17 +23,17 @@ bool is_on(const Event& event) {
     return event.polarity == Polarity::on;
 }
 
-/// Times count from the camera's own beginning.
+/// 15 bits of time, counted from the reset; the rows of a DAVIS346 lie along x.
 std::vector<std::byte> davis_words(Events events) {
-    DavisWriter writer{DavisSensor{}};
     std::vector<std::byte> out;
-    StreamHeader header;
-    header.width = DavisSensor{}.width();
-    header.height = DavisSensor{}.height();
-    writer.begin(header, out);
-    Batch batch;
-    batch.events.assign(events.begin(), events.end());
-    writer.write(batch, out);
+    put(std::uint16_t{1}, out);  // timestamp reset
+    std::int64_t wraps = 0;
+    for (const Event& e : events) {
+        for (; wraps < to_us(e.t) >> 15; ++wraps) put(std::uint16_t(7U << 12 | 1U), out);
+        put(std::uint16_t(8U << 12 | unsigned(to_us(e.t) & 0x7fff)), out);
+        put(std::uint16_t(1U << 12 | e.x), out);
+        put(std::uint16_t((is_on(e) ? 3U : 2U) << 12 | e.y), out);
+    }
     return out;
 }
 

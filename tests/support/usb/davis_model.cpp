@@ -92,10 +92,7 @@ void DavisModel::write(Write write) {
     if (time_starts) begin_time();
     if (write != Write{kTimestampReset, 1}) return;
     begin_time();
-    StreamHeader header;
-    header.width = settings_.sensor.width();
-    header.height = settings_.sensor.height();
-    writer_->begin(header, words_);  // the marker
+    DavisWriter::timestamp_reset(words_);
     begin_scene(SensorDuration{0});
 }
 

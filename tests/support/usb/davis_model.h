@@ -3,8 +3,8 @@
 
 #include "drivers/usb/davis_registers.h"
 #include "src/codec/inivation/davis_sensor.h"
-#include "src/codec/inivation/davis_writer.h"
 #include "src/core/event.h"
+#include "tests/support/usb/davis_writer.h"
 #include "tests/support/usb/usb_model.h"
 
 #include <cstddef>

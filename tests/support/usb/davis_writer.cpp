@@ -1,13 +1,14 @@
-#include "src/codec/inivation/davis_writer.h"
+#include "tests/support/usb/davis_writer.h"
 
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
 
-namespace eventide {
+namespace eventide::testing_support {
 namespace {
 
 constexpr std::int64_t kWrapUs = 1 << 15;
@@ -33,12 +34,7 @@ struct Item {
 
 }  // namespace
 
-void DavisWriter::begin(const StreamHeader& header, std::vector<std::byte>& out) {
-    if (header.width != sensor_.width() || header.height != sensor_.height())
-        throw Error(ErrorKind::usage,
-                    "DAVIS words: the recording is " + std::to_string(header.width) + "x" +
-                        std::to_string(header.height) + ", the camera is " +
-                        std::to_string(sensor_.width()) + "x" + std::to_string(sensor_.height()));
+void DavisWriter::timestamp_reset(std::vector<std::byte>& out) {
     put_special(1, out);
 }
 
@@ -176,4 +172,4 @@ void DavisWriter::trigger(const Trigger& trigger, std::vector<std::byte>& out) {
     }
 }
 
-}  // namespace eventide
+}  // namespace eventide::testing_support

@@ -1,14 +1,15 @@
-// data -> DAVIS USB words: what the software camera sends, what `eventide stress` feeds a parser
-// with, and the inverse that the parser is tested with.
+// data -> DAVIS USB words: what the software camera sends, and the inverse that the parser is
+// tested with.
 #pragma once
 
 #include "src/codec/inivation/davis_sensor.h"
-#include "src/codec/stream.h"
+#include "src/core/event.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-namespace eventide {
+namespace eventide::testing_support {
 
 /// The words of one camera. Times are microseconds since the camera's timestamp reset and must not
 /// step back within or between batches; an image's words go out in two parts, at exposure_begin and
@@ -18,13 +19,13 @@ namespace eventide {
 /// What the wire cannot hold: pixels beyond 10 bits are cut, IMU values are rounded to +-4 g and
 /// +-500 deg/s over 16 bits, there is no magnetometer, images are grey and lie wholly in the
 /// sensor.
-class DavisWriter final : public StreamWriter {
+class DavisWriter {
 public:
     explicit DavisWriter(const DavisSensor& sensor) : sensor_(sensor) {}
 
-    void begin(const StreamHeader& header, std::vector<std::byte>& out) override;
-    void write(const Batch& batch, std::vector<std::byte>& out) override;
-    void finish(std::vector<std::byte>&) override {}
+    /// The marker that comes before anything else where the camera's time was reset.
+    static void timestamp_reset(std::vector<std::byte>& out);
+    void write(const Batch& batch, std::vector<std::byte>& out);
 
     /// Moves the camera's clock without data: the wrap words that a silent camera sends.
     void advance(SensorTime t, std::vector<std::byte>& out) { time_word(to_us(t), out); }
@@ -46,4 +47,4 @@ private:
     int y_ = -1;                            ///< row address sent last
 };
 
-}  // namespace eventide
+}  // namespace eventide::testing_support
