@@ -192,13 +192,13 @@ TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
     EXPECT_TRUE(leap.remarks.empty()) << leap.remarks.front();
     // numpy.savetxt() writes whole microseconds so.
     const auto written = [](const char* format, double step) {
-        std::string text;
+        std::string rows;
         for (int i = 0; i < 500; ++i) {
             char row[64];
             std::snprintf(row, sizeof row, format, 5e6 + step * i);
-            text += row;
+            rows += row;
         }
-        return read_text_header(to_bytes(text), {});
+        return read_text_header(to_bytes(rows), {});
     };
     for (const char* format : {"%.18e 1 2 1\n", "%.1f 1 2 1\n"}) {
         const TextHeader saved = written(format, 10);
