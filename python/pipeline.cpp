@@ -191,14 +191,14 @@ private:
 /// Calls with a frame that is the callee's to keep; False ends the run.
 class CalledSink final : public FrameSink {
 public:
-    /// the run whose caller calls it; null: the one that writes.
+    /// `run`: its caller's thread makes the calls; null: the thread that writes does.
     CalledSink(py::object callable, InterruptibleRun* run)
-        : callable_(std::move(callable)), interruptible_(run) {}
+        : callable_(std::move(callable)), run_(run) {}
 
     bool write(const Frame& frame) override {
         bool wants_more = true;
         const auto ask = [&] { wants_more = call(frame); };
-        interruptible_ != nullptr ? interruptible_->call_there(ask) : ask();
+        run_ != nullptr ? run_->call_there(ask) : ask();
         return wants_more;
     }
     /// Lets go of what may know the pipeline.
@@ -215,7 +215,7 @@ private:
     }
 
     py::object callable_;
-    InterruptibleRun* const interruptible_;
+    InterruptibleRun* const run_;
 };
 
 class PipelineOfPython {
