@@ -1,7 +1,7 @@
 // The pipeline of threads for Python: anything that can be iterated is a source, any callable a
 // sink.
 #include "python/arrays.h"
-#include "python/errands.h"
+#include "python/interruptible_run.h"
 #include "python/sources.h"
 
 #include <eventide/error.h>
@@ -191,14 +191,14 @@ private:
 /// Calls with a frame that is the callee's to keep; False ends the run.
 class CalledSink final : public FrameSink {
 public:
-    /// `errands` of the thread that calls; null: the one that writes.
-    CalledSink(py::object callable, Errands* errands)
-        : callable_(std::move(callable)), errands_(errands) {}
+    /// `run`: its caller's thread makes the calls; null: the thread that writes does.
+    CalledSink(py::object callable, InterruptibleRun* run)
+        : callable_(std::move(callable)), run_(run) {}
 
     bool write(const Frame& frame) override {
         bool wants_more = true;
         const auto ask = [&] { wants_more = call(frame); };
-        errands_ != nullptr ? errands_->have_done(ask) : ask();
+        run_ != nullptr ? run_->call_there(ask) : ask();
         return wants_more;
     }
     /// Lets go of what may know the pipeline.
@@ -215,7 +215,7 @@ private:
     }
 
     py::object callable_;
-    Errands* const errands_;
+    InterruptibleRun* const run_;
 };
 
 class PipelineOfPython {
@@ -228,7 +228,7 @@ public:
                                          ? py::list(sinks)
                                          : py::list(py::make_tuple(sinks)))
             sinks_.push_back(std::make_unique<CalledSink>(py::reinterpret_borrow<py::object>(sink),
-                                                          sequential ? nullptr : &errands_));
+                                                          sequential ? nullptr : &interruptible_));
         std::vector<FrameSink*> all;
         for (const auto& sink : sinks_) all.push_back(sink.get());
         if (!(latency >= 0 && latency <= 1e6))
@@ -247,7 +247,7 @@ public:
         const py::gil_scoped_release released;
         const Run run{*source_};
         if (sequential_) return pipeline_->run();
-        errands_.run([this] { pipeline_->run(); }, [this] { pipeline_->stop(); });
+        interruptible_.run([this] { pipeline_->run(); }, [this] { pipeline_->stop(); });
     }
     void stop() {
         const py::gil_scoped_release released;
@@ -271,7 +271,7 @@ public:
 
 private:
     const bool sequential_;
-    Errands errands_;
+    InterruptibleRun interruptible_;
     std::unique_ptr<SourceOfRun> source_;
     std::vector<std::unique_ptr<CalledSink>> sinks_;
     std::unique_ptr<EventPipeline> pipeline_;

@@ -45,8 +45,16 @@ struct SizedReconstructor : GuardedReconstructor {
     FrameSize size;
 };
 
+/// A number of frames per second, or a text as the library takes it.
+std::string rate_of(const py::handle& fps) {
+    if (py::isinstance<py::str>(fps)) return fps.cast<std::string>();
+    if (PyFloat_Check(fps.ptr()) || (PyIndex_Check(fps.ptr()) && !PyBool_Check(fps.ptr())))
+        return py::str(fps);
+    throw py::type_error("fps: expected int, float or str, found " + std::string(py::repr(fps)));
+}
+
 std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int width, int height,
-                                         std::string window, int lookahead, std::string fps,
+                                         std::string window, int lookahead, const py::object& fps,
                                          Size size, Roi roi, bool sigma,
                                          const std::filesystem::path& hot_pixels,
                                          std::string noise_filter, const std::string& precision,
@@ -55,7 +63,7 @@ std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int
     const ReconstructorOptions options{
         .window = std::move(window),
         .lookahead = lookahead,
-        .fps = std::move(fps),
+        .fps = rate_of(fps),
         .size = size_of(size, roi),
         .sigma = sigma,
         .noise_filter = std::move(noise_filter),
@@ -231,7 +239,7 @@ ReconstructorOptions options_of(const py::dict& given) {
         else if (name == "lookahead")
             options.lookahead = cast_to<int>("lookahead", value);
         else if (name == "fps")
-            options.fps = cast_to<std::string>("fps", value);
+            options.fps = rate_of(value);
         else if (name == "size")
             size = cast_to<Size>("size", value);
         else if (name == "roi")
@@ -270,8 +278,9 @@ void add_reconstructor(py::module_& module) {
         "Events in, frames with uncertainty out.\n\n"
         "model is a name (default, small, thesis) or a file, width and height the sensor's.\n"
         "window: how events are cut (model, auto, 50ms, 20000ev, 0.35epp); lookahead: windows a\n"
-        "frame waits for, 0 to 2; fps: rate of frames() and next(), a text such as '30' or\n"
-        "'30000/1001'; size: (width, height) of the frames; roi: (x, y, width, height) of the "
+        "frame waits for, 0 to 2; fps: rate of frames() and next(), a number or a text such as\n"
+        "'30000/1001' or 'frame'; size: (width, height) of the frames; roi: (x, y, width, height) "
+        "of the "
         "part\n"
         "wanted; hot_pixels: off, learn or a file; noise_filter: model, auto, off or a time "
         "(\"10ms\"); "

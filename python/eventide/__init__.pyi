@@ -38,7 +38,7 @@ class Reconstructor:
         *,
         window: str = "model",
         lookahead: int = 0,
-        fps: str = "30",
+        fps: Union[int, float, str] = "30",
         size: Optional[Tuple[int, int]] = None,
         roi: Optional[Tuple[int, int, int, int]] = None,
         sigma: bool = True,

@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "tests/codec/parser_checks.h"
 
+#include <cstdio>
 #include <string>
 
 namespace eventide {
@@ -189,6 +190,27 @@ TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
     const TextHeader leap = read_text_header(to_bytes(text), {});
     EXPECT_EQ(leap.layout.unit, TextTimeUnit::microseconds);
     EXPECT_TRUE(leap.remarks.empty()) << leap.remarks.front();
+    // numpy.savetxt() writes whole microseconds so.
+    const auto written = [](const char* format, double step) {
+        std::string rows;
+        for (int i = 0; i < 500; ++i) {
+            char row[64];
+            std::snprintf(row, sizeof row, format, 5e6 + step * i);
+            rows += row;
+        }
+        return read_text_header(to_bytes(rows), {});
+    };
+    for (const char* format : {"%.18e 1 2 1\n", "%.1f 1 2 1\n"}) {
+        const TextHeader saved = written(format, 10);
+        EXPECT_EQ(saved.layout.unit, TextTimeUnit::microseconds) << format;
+        EXPECT_EQ(saved.remarks.size(), 1U) << format;
+    }
+    // Fractions are seconds; where no sensor sends so few of them it is said.
+    EXPECT_TRUE(written("%.6f 1 2 1\n", 1e-5).remarks.empty());
+    const TextHeader slow = written("%.3f 1 2 1\n", .5);
+    EXPECT_EQ(slow.layout.unit, TextTimeUnit::seconds);
+    ASSERT_EQ(slow.remarks.size(), 1U);
+    EXPECT_NE(slow.remarks.front().find("which no sensor sends"), std::string::npos);
     // A few rows tell no rate.
     EXPECT_EQ(read_text_header(to_bytes("0 1 2 1\n20000 1 2 1\n"), {}).layout.unit,
               TextTimeUnit::microseconds);

@@ -183,7 +183,7 @@ class Pipelines(RecordedTest):
 
     def test_values_of_another_type_are_refused_by_name(self):
         for options, words in [
-            ({"fps": 30}, "fps: expected str, found 30"),
+            ({"fps": True}, "fps: expected int, float or str, found True"),
             ({"window": None}, "window: expected str, found None"),
             ({"lookahead": 1.5}, "lookahead: expected int, found 1.5"),
             ({"size": "64x48"}, "size: expected .*, found '64x48'"),

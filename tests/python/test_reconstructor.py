@@ -53,6 +53,18 @@ class Frames(RecordedTest):
         part, _ = reconstructor.render(t, size=(100, 80), roi=(10, 20, 30, 40))
         np.testing.assert_array_equal(part, whole[20:60, 10:40])
 
+    def test_come_at_a_rate_that_is_a_number_or_a_text(self):
+        def times(fps):
+            reconstructor = self.reconstructor(fps=fps)
+            reconstructor.push(self.events())
+            return [f.t for f in reconstructor.frames()]
+
+        for fps in (100.0, np.int64(100), "100"):
+            self.assertEqual(times(fps), times(100))
+        for fps in (True, None, [30]):
+            with self.assertRaisesRegex(TypeError, "fps: expected int, float or str"):
+                self.reconstructor(fps=fps)
+
     def test_wait_for_events(self):
         reconstructor = self.reconstructor()
         self.assertIsNone(reconstructor.next())

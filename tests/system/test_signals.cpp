@@ -90,6 +90,18 @@ TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
     }
 }
 
+TEST_F(Signals, SomeHardCasesAreNotTakenForAll) {
+    Process process =
+        start({"stress", "--models", model(), "--soak", "10000", "--json", "all.json"});
+    while (process.running() && !process.catches(SIGTERM)) continue;
+    process.signal(SIGTERM);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.error.find("stopped before all cases had run"), std::string::npos)
+        << result.error;
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "all.json"));
+}
+
 TEST_F(Signals, AClosedTerminalEndsLikeSigtermHoweverOftenItHangsUp) {
     Process process = start({"run", kEndless, "--fps", "100", "--out", "gray8:-", "--out",
                              "video.mp4", "--out", "frames/"},

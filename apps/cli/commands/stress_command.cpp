@@ -203,6 +203,12 @@ EngineOptions engine_with(int threads, Instructions instructions) {
     return engine;
 }
 
+/// Some of the cases say nothing of all.
+void refuse_partial(Program& program) {
+    if (program.signals.stopping())
+        throw Error(ErrorKind::failed, "stress: stopped before all cases had run");
+}
+
 Model load_tried(const std::string& name) {
     const std::filesystem::path file = find_model(name);
     Model model = load_model(file);
@@ -221,7 +227,7 @@ int StressCommand::run_cases(Program& program) {
     print_head();
     Progress progress{program.quiet};
     std::vector<StressRow> rows;
-    for (std::size_t c = 0; c < cases.size(); ++c)
+    for (std::size_t c = 0; c < cases.size() && !program.signals.stopping(); ++c)
         for (std::size_t m = 0; m < (cases[c].of_model ? models.size() : 1); ++m) {
             progress.show(double(c) / double(cases.size()), cases[c].title + ", " + models_[m]);
             StressRow row =
@@ -232,6 +238,7 @@ int StressCommand::run_cases(Program& program) {
             print_row(row);
             rows.push_back(std::move(row));
         }
+    refuse_partial(program);
     if (!json_.empty()) write_file(json_, json_text(json_of(rows)) + "\n", overwrite_);
     const auto failed =
         std::ranges::count_if(rows, [](const StressRow& row) { return !row.result.passed; });
@@ -270,6 +277,7 @@ int StressCommand::run_soak(Program& program) {
         for (const Plot& plot : plots_of(samples))
             spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());
     }
+    refuse_partial(program);
     if (!json_.empty()) write_file(json_, json_text(json_of(rows)) + "\n", overwrite_);
     const bool passed =
         std::ranges::all_of(rows, [](const StressRow& row) { return row.result.passed; });

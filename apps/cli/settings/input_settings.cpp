@@ -39,7 +39,7 @@ void InputSettings::add_to(SettingTable& table) {
         [](const std::string& text) { return text.empty() ? "auto" : text; }));
     table.settings.push_back(choice_setting(
         "input_time_unit", open.text.unit,
-        "Unit of the times in a text recording; auto: seconds where there is a decimal point, else "
+        "Unit of the times in a text recording; auto: seconds where there are fractions, else "
         "microseconds, or what gives a plausible rate of events.",
         {{TextTimeUnit::automatic, "auto"},
          {TextTimeUnit::seconds, "s"},

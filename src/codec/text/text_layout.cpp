@@ -187,17 +187,22 @@ TextLayout layout_guessed(const std::vector<Fields>& rows) {
 
 struct Times {
     std::size_t count = 0;
-    std::int64_t first = 0, last = 0;  ///< the least and the largest, rounded
-    bool fractions = false;
+    double first = 0, last = 0;  ///< the least and the largest
+    bool points = false;         ///< written with a decimal point or an exponent
+    bool fractions = false;      ///< and not whole numbers all the same
 };
+
+bool is_whole(Decimal value) {
+    for (; value.exponent < 0 && value.digits % 10 == 0; ++value.exponent) value.digits /= 10;
+    return value.exponent >= 0;
+}
 
 /// The first time is not of the clock of the others: a 0 before times since 1970, which readers
 /// leave out as a leap.
-bool is_apart(const std::vector<std::int64_t>& times) {
+bool is_apart(const std::vector<double>& times) {
     constexpr double kFar = 1e6;  // times what the others span
     const auto [least, largest] = std::ranges::minmax_element(times.begin() + 1, times.end());
-    const double span = double(*largest) - double(*least) + 1;
-    return std::abs(double(times[1]) - double(times[0])) > kFar * span;
+    return std::abs(times[1] - times[0]) > kFar * (*largest - *least + 1);
 }
 
 Times times_of(const std::vector<Fields>& rows, const TextLayout& layout) {
@@ -205,13 +210,14 @@ Times times_of(const std::vector<Fields>& rows, const TextLayout& layout) {
         std::size_t(std::find(layout.columns.begin(), layout.columns.end(), TextField::time) -
                     layout.columns.begin());
     Times times;
-    std::vector<std::int64_t> all;
+    std::vector<double> all;
     for (const Fields& row : rows) {
         const auto value = column < row.size() ? parse_decimal(row[column]) : std::nullopt;
-        const auto whole = value ? scaled_integer(*value, 0) : std::nullopt;
-        if (!whole) continue;
-        times.fractions |= value->fractional;
-        all.push_back(*whole);
+        if (!value || !scaled_integer(*value, 0)) continue;
+        times.points |= value->fractional;
+        times.fractions |= !is_whole(*value);
+        const double size = double(value->digits) * std::pow(10.0, value->exponent);
+        all.push_back(value->negative ? -size : size);
     }
     if (all.size() > 2 && is_apart(all)) all.erase(all.begin());
     times.count = all.size();
@@ -229,15 +235,15 @@ std::string rate_text(double rate) {
     return text;
 }
 
-/// Whole numbers are microseconds, unless no sensor sends so few or so many events in them and
-/// another unit makes sense; nanoseconds since 1970 stand out by themselves.
+/// Fractions are seconds. Whole numbers are microseconds, unless no sensor sends so few or so many
+/// events in them and another unit makes sense; nanoseconds since 1970 stand out by themselves.
+/// Whole numbers with a decimal point are what numpy.savetxt() writes of microseconds.
 TextTimeUnit guess_unit(const Times& times, std::vector<std::string>& remarks) {
     constexpr std::size_t kFewest = 100;                               // rows that tell a rate
     constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
-    constexpr std::int64_t kNanosecondsIn2001 = 1'000'000'000'000'000'000;
-    if (times.fractions) return TextTimeUnit::seconds;
-    const double span = double(times.last) - double(times.first);
-    if (times.count < kFewest || span <= 0) return TextTimeUnit::microseconds;
+    constexpr double kNanosecondsIn2001 = 1e18;
+    const double span = times.last - times.first;
+    const bool tells_rate = times.count >= kFewest && span > 0;
     struct Unit {
         TextTimeUnit unit;
         const char* name;
@@ -251,15 +257,24 @@ TextTimeUnit guess_unit(const Times& times, std::vector<std::string>& remarks) {
     const auto makes_sense = [&](const Unit& unit) {
         return rate(unit) >= kSlowest && rate(unit) <= kFastest;
     };
+    const auto remark = [&](const std::string& what, const Unit& unit, bool impossible) {
+        remarks.push_back(what + ", taken for " + unit.name + ": " + rate_text(rate(unit)) +
+                          (impossible ? ", which no sensor sends" : "") +
+                          "; --input-time-unit states the unit");
+    };
+    if (times.fractions || (times.points && !tells_rate)) {
+        if (tells_rate && !makes_sense(kUnits.back()))
+            remark("times have a decimal point", kUnits.back(), true);
+        return TextTimeUnit::seconds;
+    }
+    if (!tells_rate) return TextTimeUnit::microseconds;
     const Unit* chosen = times.first >= kNanosecondsIn2001
                              ? &kUnits[1]
                              : std::find_if(kUnits.begin(), kUnits.end(), makes_sense);
     const bool none = chosen == kUnits.end();
     if (none) chosen = kUnits.data();
-    if (none || chosen != kUnits.data() || rate(*chosen) < kDoubtful)
-        remarks.push_back("times are whole numbers, taken for " + std::string(chosen->name) + ": " +
-                          rate_text(rate(*chosen)) + (none ? ", which no sensor sends" : "") +
-                          "; --input-time-unit states the unit");
+    if (none || times.points || chosen != kUnits.data() || rate(*chosen) < kDoubtful)
+        remark("times are whole numbers", *chosen, none);
     return chosen->unit;
 }
 

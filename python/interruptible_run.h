@@ -1,4 +1,5 @@
-// Work for the thread that waits for a run, which hears Python's signals meanwhile.
+// A run that Ctrl-C ends: the thread that waits for it hears Python's signals, and makes its calls
+// into Python.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -15,11 +16,11 @@ namespace eventide::python {
 
 /// Who runs is Python's main thread, mostly, and the only one that can be interrupted. Nobody holds
 /// Python's lock when calling.
-class Errands {
+class InterruptibleRun {
 public:
-    /// Runs `body` on a thread of its own, and does here what that has done by have_done(). Throws
-    /// what `body` threw. Where a signal is raised as an exception, `stop` is called, no work is
-    /// done any more, and once `body` has ended that is thrown.
+    /// Runs `body` on a thread of its own, and makes here the calls that it passes to call_there().
+    /// Throws what `body` threw. Where a signal is raised as an exception, `stop` is called, no
+    /// work is done any more, and once `body` has ended that is thrown.
     template <typename Body, typename Stop>
     void run(Body body, Stop stop) {
         std::exception_ptr error, interruption;
@@ -38,7 +39,7 @@ public:
     }
 
     /// On the thread of `body`: returns when `work` was done. Throws what that threw.
-    void have_done(const std::function<void()>& work) {
+    void call_there(const std::function<void()>& work) {
         std::unique_lock lock{mutex_};
         work_ = &work;
         changed_.notify_all();
