@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -127,10 +128,11 @@ void Reconstructor::Impl::open_next() {
 void Reconstructor::Impl::check_silence() {
     if (silent_ <= FrameOutput::kMaxSilentFrames || options_.allow_silence) return;
     schedule_.skip(schedule_.due());
+    const std::uint64_t found = std::exchange(silent_, 0);  // it is said once
     throw Error(ErrorKind::input,
                 "no events from " + us(open_.window.begin) + " to " + us(open_.window.end) +
                     ": expected at most " + std::to_string(FrameOutput::kMaxSilentFrames) +
-                    " frames in a row without events, found " + std::to_string(silent_) +
+                    " frames in a row without events, found " + std::to_string(found) +
                     "; the option allow_silence, or a lower fps, renders them");
 }
 
