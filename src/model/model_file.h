@@ -38,8 +38,4 @@ std::string encoder_identity(const Model& model);
 /// holds for this one. 16 hexadecimal digits.
 std::string model_identity(const Model& model);
 
-/// A network that has learned nothing but is well scaled (values stay near 1), for tests and
-/// benchmarks. The same seed gives the same network on every machine.
-Model random_model(const ModelConfig& config, std::uint64_t seed);
-
 }  // namespace eventide

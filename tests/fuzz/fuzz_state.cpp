@@ -3,13 +3,14 @@
 #include "src/model/encode/encoder.h"
 #include "src/nn/safetensors.h"
 #include "tests/fuzz/tiny_network.h"
+#include "tests/support/random_model.h"
 
 #include <cstdint>
 #include <cstdlib>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace eventide;
-    static Encoder encoder{random_model(tiny_network(), 1), 8, 8};
+    static Encoder encoder{test::random_model(tiny_network(), 1), 8, 8};
     try {
         const TensorFile state =
             parse_safetensors({reinterpret_cast<const std::byte*>(data), size}, "fuzz");

@@ -4,6 +4,7 @@
 #include "tests/model/engine_choices.h"
 #include "tests/model/streams.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace {
 
 std::int64_t allocations_of(const ModelConfig& config, const EngineOptions& options, int width = 80,
                             Region part = {}) {
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     Encoder encoder{model, width, 60, options};
     Renderer renderer{model, width, 60, options};
     test::GridStream stream{config, 60, width, 2};
@@ -57,7 +58,7 @@ TEST(Allocations, NoneForAPartThatMostTilesLieBeside) {
 TEST(Allocations, TheCounterFires) {
     if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
     test::AllocationCount count;
-    LatentMap latent = Encoder{random_model(test::small_config(), 1), 8, 8}.make_output();
+    LatentMap latent = Encoder{test::random_model(test::small_config(), 1), 8, 8}.make_output();
     EXPECT_GT(count.stop(), 0);
 }
 

@@ -3,6 +3,7 @@
 #include "src/model/encode/encoder.h"
 #include "tests/model/engine_choices.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +48,7 @@ std::vector<Case> cases() {
 TEST(Encoder, FastAgreesWithPlainAtEveryShape) {
     for (const Case& c : cases())
         for (const auto& [height, width] : shapes()) {
-            const Model model = random_model(c.config, 7);
+            const Model model = test::random_model(c.config, 7);
             Encoder plain{model, width, height, with(Engine::plain)};
             std::vector<Encoder> fast;
             for (const test::EngineChoice& choice : test::engine_choices())
@@ -83,7 +84,7 @@ TEST(Encoder, LeavingOutQuietTilesChangesNoBit) {
     for (const Case& c : cases())
         for (const test::EngineChoice& choice : test::engine_choices()) {
             if (choice.name == "emulated bf16") continue;  // slow, and the same code around it
-            const Model model = random_model(c.config, 2);
+            const Model model = test::random_model(c.config, 2);
             EngineOptions all = choice.options;
             all.skip_quiet = false;
             expect_same({model, 150, 131, choice.options}, {model, 150, 131, all}, c.config,
@@ -94,7 +95,7 @@ TEST(Encoder, LeavingOutQuietTilesChangesNoBit) {
 TEST(Encoder, SilenceChangesNoBitOfTheCodes) {
     const ModelConfig config = test::small_config();
     for (const Engine engine : {Engine::fast, Engine::plain}) {
-        Encoder encoder{random_model(config, 4), 61, 45, with(engine)};
+        Encoder encoder{test::random_model(config, 4), 61, 45, with(engine)};
         GridStream stream{config, 45, 61, 8};
         LatentMap z = encoder.make_output();
         for (int i = 0; i < 5; ++i) encoder.encode(stream.next(Kind::patch), z);
@@ -108,7 +109,7 @@ TEST(Encoder, SilenceChangesNoBitOfTheCodes) {
 
 TEST(Encoder, ResetIsTheStateAfterConstruction) {
     for (const Case& c : cases()) {
-        const Model model = random_model(c.config, 2);
+        const Model model = test::random_model(c.config, 2);
         Encoder used{model, 40, 30, with(Engine::fast)};
         GridStream stream{c.config, 30, 40, 1};
         LatentMap z = used.make_output();
@@ -121,7 +122,7 @@ TEST(Encoder, ResetIsTheStateAfterConstruction) {
 TEST(Encoder, GoingOnFromASavedStateIsGoingOn) {
     for (const Case& c : cases())
         for (const Engine engine : {Engine::fast, Engine::plain}) {
-            const Model model = random_model(c.config, 2);
+            const Model model = test::random_model(c.config, 2);
             Encoder first{model, 40, 30, with(engine)};
             GridStream stream{c.config, 30, 40, 1};
             LatentMap z = first.make_output();
@@ -144,9 +145,9 @@ std::string refusal(Encoder& encoder, const TensorFile& state) {
 }
 TEST(Encoder, AStateOfAnotherModelOrSizeIsRefused) {
     const ModelConfig config = test::small_config();
-    Encoder encoder{random_model(config, 1), 40, 30};
-    Encoder other_model{random_model(config, 2), 40, 30};
-    Encoder other_size{random_model(config, 1), 41, 30};
+    Encoder encoder{test::random_model(config, 1), 40, 30};
+    Encoder other_model{test::random_model(config, 2), 40, 30};
+    Encoder other_size{test::random_model(config, 1), 41, 30};
     EXPECT_NE(refusal(encoder, other_model.state()).find("'model'"), std::string::npos);
     EXPECT_NE(refusal(encoder, other_size.state()).find("'width'"), std::string::npos);
     TensorFile cut = encoder.state();
@@ -156,7 +157,7 @@ TEST(Encoder, AStateOfAnotherModelOrSizeIsRefused) {
 }
 
 TEST(Encoder, ImpossibleSizesAreRefused) {
-    const Model model = random_model(test::small_config(), 1);
+    const Model model = test::random_model(test::small_config(), 1);
     EXPECT_THROW(Encoder(model, 0, 10), Error);
     EXPECT_THROW(Encoder(model, 10, 70000), Error);
 }

@@ -3,6 +3,7 @@
 #include "src/model/encode/encoder.h"
 #include "src/model/render/fused_renderer.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -181,7 +182,7 @@ TEST_F(ImageFusionTest, APartOfTheSensorCorrectsThatPart) {
 /// The whole chain, for each lookahead: an image in silence is what frames show from then on.
 TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
     const ModelConfig config = test::small_config();
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     for (const int lookahead : {0, 1, 2}) {
         Encoder encoder{model, kWidth, kHeight};
         Renderer renderer{model, kWidth, kHeight};
@@ -209,7 +210,7 @@ TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
 }
 
 TEST(FusedRenderer, AFloodOfImagesIsBounded) {
-    const Model model = random_model(test::small_config(), 1);
+    const Model model = test::random_model(test::small_config(), 1);
     Renderer renderer{model, kWidth, kHeight};
     FusedRenderer fused{renderer, kWidth, kHeight, 0};
     for (int i = 0; i < 1000; ++i) fused.give(image_of(ramp(), at_ms(i)));

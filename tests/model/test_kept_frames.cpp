@@ -3,6 +3,7 @@
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +54,7 @@ std::vector<RenderRequest> requests(int lookahead) {
 /// `asked`: what is rendered at each time, in turn.
 void expect_same_frames(const ModelConfig& config, int lookahead,
                         const std::vector<RenderRequest>& asked) {
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     Encoder encoder{model, 96, 64};
     Renderer copying{model, 96, 64, with_copies(0, 0)}, judge{model, 96, 64, without_copies()};
     test::GridStream stream{config, 64, 96, 5};
@@ -99,7 +100,7 @@ protected:
     static constexpr int kWidth = 320, kHeight = 256;
 
     explicit KeptFramesOfCodes(const ModelConfig& config = test::small_config())
-        : model_(random_model(config, 1)) {
+        : model_(test::random_model(config, 1)) {
         latent_.values = {kHeight, kWidth, config.latent};
         for (float& v : latent_.values.values()) v = float(random_() % 2001) / 1000 - 1;
     }

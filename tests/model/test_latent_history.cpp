@@ -2,6 +2,7 @@
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ Encoder make_encoder(const Model& model) {
 /// pipeline's do.
 TEST(LatentHistory, BuffersThatTakeTurnsHoldWhatFreshOnesDo) {
     const ModelConfig config = test::small_config();
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     Encoder encoder = make_encoder(model), reference = make_encoder(model);
     GridStream stream{config, kHeight, kWidth, 4};
     std::vector<LatentMap> buffers(5, encoder.make_output());
@@ -44,8 +45,8 @@ TEST(LatentHistory, BuffersThatTakeTurnsHoldWhatFreshOnesDo) {
 
 TEST(LatentHistory, ABufferOfAnotherEncoderIsRenewedWhole) {
     const ModelConfig config = test::small_config();
-    Encoder other = make_encoder(random_model(config, 1)),
-            mine = make_encoder(random_model(config, 2));
+    Encoder other = make_encoder(test::random_model(config, 1)),
+            mine = make_encoder(test::random_model(config, 2));
     GridStream stream{config, kHeight, kWidth, 4};
     LatentMap shared = other.make_output();
     mine.encode(stream.next(Kind::patch), shared);
@@ -60,7 +61,7 @@ TEST(LatentHistory, ABufferOfAnotherEncoderIsRenewedWhole) {
 
 TEST(LatentHistory, OnlyWhatIsTouchedChanges) {
     const ModelConfig config = test::small_config();
-    Encoder encoder = make_encoder(random_model(config, 1));
+    Encoder encoder = make_encoder(test::random_model(config, 1));
     GridStream stream{config, kHeight, kWidth, 4};
     LatentMap z = encoder.make_output();
     encoder.encode(stream.next(Kind::everywhere), z);
@@ -79,7 +80,7 @@ TEST(LatentHistory, OnlyWhatIsTouchedChanges) {
 /// The same latent maps with and without their history give the same frames.
 TEST(LatentHistory, TheRendererRendersAsWithoutIt) {
     const ModelConfig config = test::small_config();
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     Encoder encoder = make_encoder(model);
     EngineOptions options;
     options.precision = Precision::f32;
@@ -111,7 +112,7 @@ TEST(LatentHistory, TheRendererRendersAsWithoutIt) {
 /// Where the grid says which pixels have events, the values are not searched for them.
 TEST(LatentHistory, TouchedPixelsAreTakenAtTheirWord) {
     const ModelConfig config = test::small_config();
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     Encoder told = make_encoder(model), searching = make_encoder(model);
     GridStream stream{config, kHeight, kWidth, 4};
     LatentMap a = told.make_output(), b = searching.make_output();

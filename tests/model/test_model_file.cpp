@@ -3,6 +3,7 @@
 #include "src/model/model_file.h"
 #include "src/model/model_metadata.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,7 +34,7 @@ std::string refusal(const TensorFile& file) {
 }
 
 TensorFile good() {
-    const Model model = random_model(test::small_config(), 1);
+    const Model model = test::random_model(test::small_config(), 1);
     return {format_metadata(model.config), model.weights};
 }
 
@@ -44,7 +45,7 @@ TEST(ModelFile, WhatIsSavedIsLoaded) {
     config.sigma_rule = SigmaRule::mixture;
     config.lookaheads = {0, 2};
     config.card = "trained on shapes,\nfor an hour";
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     const auto path = std::filesystem::path{testing::TempDir()} /
                       ("saved_" + std::to_string(::getpid()) + ".safetensors");
     save_model(path, model);
@@ -53,7 +54,7 @@ TEST(ModelFile, WhatIsSavedIsLoaded) {
     EXPECT_EQ(loaded.weights, model.weights);
     EXPECT_EQ(format_metadata(loaded.config), format_metadata(config));
     EXPECT_EQ(encoder_identity(loaded), encoder_identity(model));
-    EXPECT_NE(encoder_identity(loaded), encoder_identity(random_model(config, 2)));
+    EXPECT_NE(encoder_identity(loaded), encoder_identity(test::random_model(config, 2)));
 }
 
 TEST(ModelFile, MetadataThatMakesNoSenseIsRefusedByItsKey) {
@@ -105,7 +106,7 @@ TEST(ModelFile, TensorsThatDoNotFitAreRefusedByName) {
 }
 
 TEST(ModelFile, AModelThatDoesNotHoldTogetherIsNotSaved) {
-    Model model = random_model(test::small_config(), 1);
+    Model model = test::random_model(test::small_config(), 1);
     model.weights.erase("encoder.in.bias");
     EXPECT_THROW(save_model(testing::TempDir() + "never", model), Error);
 }

@@ -2,6 +2,7 @@
 #include "src/core/error.h"
 #include "src/model/model_trial.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,12 +15,12 @@ namespace {
 TEST(ModelTrial, SoundNetworksPass) {
     for (const ModelConfig& config : {test::small_config(), test::thesis_config()})
         for (const std::uint64_t seed : {1U, 2U, 3U})
-            EXPECT_NO_THROW(try_model(random_model(config, seed), "sound"));
+            EXPECT_NO_THROW(try_model(test::random_model(config, seed), "sound"));
 }
 
 TEST(ModelTrial, WeightsThatAreTooLargeTogetherAreRefused) {
     for (const ModelConfig& config : {test::small_config(), test::thesis_config()}) {
-        Model model = random_model(config, 1);
+        Model model = test::random_model(config, 1);
         for (auto& [name, tensor] : model.weights)
             for (float& value : tensor.values) value *= 1e30F;
         ASSERT_NO_THROW(check_model(model, "huge")) << "each of them is finite";

@@ -6,6 +6,7 @@
 #include "tests/model/engine_choices.h"
 #include "tests/model/streams.h"
 #include "tests/model/threads.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +70,7 @@ const std::vector<std::pair<int, int>> kOutputs{{1, 1},   {9, 13}, {17, 25}, {18
 
 TEST(Renderer, PlainAgreesWithTheFormulaAtEverySizeTimeAndLookahead) {
     for (const ModelConfig& config : every_kind()) {
-        const Model model = random_model(config, 3);
+        const Model model = test::random_model(config, 3);
         const stress::DoubleRenderer formula{model};
         const plain::MlpRenderer<double> network{model};
         std::vector<Array3<double>> z;
@@ -140,7 +141,7 @@ double compare(Renderer a, Renderer b, const ModelConfig& config, int height, in
 
 TEST(Renderer, FastAgreesWithPlainAtEverySizeTimeAndLookahead) {
     for (const ModelConfig& config : every_kind()) {
-        const Model model = random_model(config, 3);
+        const Model model = test::random_model(config, 3);
         for (const test::EngineChoice& choice : test::engine_choices()) {
             if (choice.bf16) continue;
             EXPECT_LE(compare({model, 13, 9, choice.options}, {model, 13, 9, with(Engine::plain)},
@@ -156,7 +157,7 @@ TEST(Renderer, FastAgreesWithPlainAtEverySizeTimeAndLookahead) {
 
 TEST(Renderer, FastAgreesWithPlainForTheDefaultNetwork) {
     const ModelConfig config;
-    const Model model = random_model(config, 3);
+    const Model model = test::random_model(config, 3);
     EXPECT_LE(compare({model, 70, 40, with(Engine::fast)}, {model, 70, 40, with(Engine::plain)},
                       config, 40, 70, {{40, 70}}),
               kFloatTolerance);
@@ -164,7 +165,7 @@ TEST(Renderer, FastAgreesWithPlainForTheDefaultNetwork) {
 
 TEST(Renderer, Bf16StaysNear) {
     const ModelConfig config;
-    const Model model = random_model(config, 3);
+    const Model model = test::random_model(config, 3);
     EngineOptions emulated;
     emulated.emulate_bf16 = true;
     const double error = compare({model, 70, 40, emulated}, {model, 70, 40, with(Engine::fast)},
@@ -175,7 +176,7 @@ TEST(Renderer, Bf16StaysNear) {
 
 TEST(Renderer, ThreadsChangeNoBit) {
     for (const ModelConfig& config : {config_of(1), fading_config()}) {
-        const Model model = random_model(config, 3);
+        const Model model = test::random_model(config, 3);
         for (const test::EngineChoice& choice : test::engine_choices()) {
             EngineOptions many = choice.options;
             many.parallel_for = test::with_threads(3);
@@ -190,7 +191,7 @@ TEST(Renderer, ThreadsChangeNoBit) {
 void expect_carrying_over_changes_no_bit(const ModelConfig& config) {
     EngineOptions all = with(Engine::fast);
     all.skip_quiet = false;
-    const Model model = random_model(config, 3);
+    const Model model = test::random_model(config, 3);
     Renderer a{model, 75, 61, with(Engine::fast)}, b{model, 75, 61, all};
     LatentMap latent = random_latent(config, 61, 75, 1);
     std::mt19937 random{4};
@@ -220,7 +221,7 @@ TEST(Renderer, CarryingOverUnchangedTilesChangesNoBit) {
 /// The largest change of intensity over the first microsecond of an event window, and over all of
 /// it.
 std::pair<double, double> changes_at_the_live_edge(const ModelConfig& config) {
-    Renderer renderer{random_model(config, 3), 13, 9};
+    Renderer renderer{test::random_model(config, 3), 13, 9};
     for (int k = 1; k <= 3; ++k) renderer.push(random_latent(config, 9, 13, k));
     const auto shown = [&](SensorTime t) {
         RenderRequest request;
@@ -247,7 +248,7 @@ TEST(Renderer, ALiveEdgeThatFadesBeginsWithWhatWasShownLast) {
 TEST(Renderer, ARegionIsAPartOfTheWhole) {
     const ModelConfig config = config_of(1);
     for (const Engine engine : {Engine::fast, Engine::plain}) {
-        Renderer renderer{random_model(config, 3), 30, 20, with(engine)};
+        Renderer renderer{test::random_model(config, 3), 30, 20, with(engine)};
         for (int k = 1; k <= 3; ++k) renderer.push(random_latent(config, 20, 30, k));
         RenderRequest whole;
         whole.t = random_latent(config, 1, 1, 2).window.end - SensorDuration{1000};
@@ -301,7 +302,8 @@ TEST(Renderer, WeightsInSpaceAreThoseOfTheModelsBlend) {
 
 TEST(Renderer, FutureCodesAreNotReadEvenWhereTheyAreThere) {
     const ModelConfig config = config_of(1);
-    Renderer early{random_model(config, 3), 13, 9}, late{random_model(config, 3), 13, 9};
+    Renderer early{test::random_model(config, 3), 13, 9},
+        late{test::random_model(config, 3), 13, 9};
     early.push(random_latent(config, 9, 13, 1));
     late.push(random_latent(config, 9, 13, 1));
     late.push(random_latent(config, 9, 13, 2));
@@ -316,7 +318,7 @@ TEST(Renderer, FutureCodesAreNotReadEvenWhereTheyAreThere) {
 
 TEST(Renderer, SaysWhatItCanRender) {
     const ModelConfig config = config_of(1);
-    Renderer renderer{random_model(config, 3), 13, 9};
+    Renderer renderer{test::random_model(config, 3), 13, 9};
     const auto end_of = [&](int k) { return random_latent(config, 1, 1, k).window.end; };
     EXPECT_EQ(renderer.readiness(end_of(1), 0), Readiness::later);
     for (int k = 1; k <= 6; ++k) renderer.push(random_latent(config, 9, 13, k));
@@ -333,7 +335,7 @@ TEST(Renderer, SaysWhatItCanRender) {
 }
 
 TEST(Renderer, ImpossibleRequestsAreRefused) {
-    const Renderer renderer{random_model(config_of(1), 3), 13, 9};
+    const Renderer renderer{test::random_model(config_of(1), 3), 13, 9};
     RenderRequest request;
     request.lookahead = 3;
     EXPECT_THROW(renderer.make_output(request), Error);

@@ -2,6 +2,7 @@
 #include "src/core/error.h"
 #include "src/model/encode/encoder.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -37,12 +38,12 @@ protected:
 
     fs::path folder_;
     ModelConfig config_ = test::small_config();
-    Model model_ = random_model(config_, 2);
+    Model model_ = test::random_model(config_, 2);
 };
 
 TEST_F(StateFile, GoesOnWhereItWasSaved) {
     for (const ModelConfig& config : {test::small_config(), test::thesis_config()}) {
-        const Model model = random_model(config, 2);
+        const Model model = test::random_model(config, 2);
         Encoder first{model, 41, 30}, second{model, 41, 30};
         test::GridStream stream{config, 30, 41, 1};
         LatentMap a = first.make_output(), b = second.make_output();
@@ -81,11 +82,12 @@ TEST_F(StateFile, CutAnywhereItIsRefusedAndTheEncoderIsAsItWas) {
 
 TEST_F(StateFile, OfAnotherModelOrSizeIsRefusedByWhatDiffers) {
     Encoder encoder{model_, 41, 30};
-    write_safetensors(file(), Encoder{random_model(config_, 3), 41, 30}.state());
+    write_safetensors(file(), Encoder{test::random_model(config_, 3), 41, 30}.state());
     EXPECT_NE(refusal(encoder).find("'model'"), std::string::npos);
     write_safetensors(file(), Encoder{model_, 42, 30}.state());
     EXPECT_NE(refusal(encoder).find("'width': expected 41, found 42"), std::string::npos);
-    write_safetensors(file(), Encoder{random_model(test::thesis_config(), 3), 41, 30}.state());
+    write_safetensors(file(),
+                      Encoder{test::random_model(test::thesis_config(), 3), 41, 30}.state());
     EXPECT_NE(refusal(encoder).find("'model'"), std::string::npos);
 }
 

@@ -8,6 +8,7 @@
 #include "tests/model/streams.h"
 #include "tests/model/threads.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -155,10 +156,10 @@ TEST(WholeModel, EveryShippedNetworkStaysWithDoubleOver200Steps) {
     EXPECT_GE(shipped, 1);
 }
 TEST(WholeModel, AnUntrainedThesisNetworkStaysWithDoubleOver200Steps) {
-    compare<Thesis>(random_model(test::thesis_config(), 11), 9, 11, long_run(), 25);
+    compare<Thesis>(test::random_model(test::thesis_config(), 11), 9, 11, long_run(), 25);
 }
 TEST(WholeModel, ManyTilesOfOddSizesStayWithDouble) {
-    compare<Gated>(random_model(test::small_config(), 3), 260, 346, 3, 3, false);
+    compare<Gated>(test::random_model(test::small_config(), 3), 260, 346, 3, 3, false);
 }
 TEST(WholeModel, TheShippedNetworkStaysWithDoubleOverManyTiles) {
     const std::filesystem::path file{EVENTIDE_SOURCE_DIR "/config/models/default.safetensors"};
@@ -196,7 +197,7 @@ TEST(WholeModel, TheNumberOfThreadsChangesNoBit) {
     ModelConfig half = test::small_config();
     half.latent_stride = 2;
     for (const ModelConfig& config : {test::small_config(), half, test::thesis_config()}) {
-        const Model model = random_model(config, 1);
+        const Model model = test::random_model(config, 1);
         for (test::EngineChoice& choice : test::engine_choices()) {
             const Bits alone = bits_of(model, 61, 75, choice.options);
             for (const int threads : {2, 3}) {
@@ -210,7 +211,7 @@ TEST(WholeModel, TheNumberOfThreadsChangesNoBit) {
 
 TEST(WholeModel, ADifferentBackendIsNoticed) {
     if (!onednn_available()) GTEST_SKIP() << "built without oneDNN";
-    const Model model = random_model(test::small_config(), 1);
+    const Model model = test::random_model(test::small_config(), 1);
     EngineOptions own, onednn;
     own.precision = onednn.precision = Precision::f32;
     own.kernels = Kernels::own;

@@ -5,6 +5,7 @@
 #include "src/model/encode/encoder.h"
 #include "tests/model/streams.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/random_model.h"
 #include "tests/support/toy_stages.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +67,7 @@ PipelineSettings settings_for(const Model& model, int lookahead) {
 }
 
 TEST(ModelLine, GivesTheSameFramesThreadedAsSequentialWithAnyNumberOfWorkers) {
-    const Model model = random_model(small_config(), 1);
+    const Model model = test::random_model(small_config(), 1);
     const auto bytes = moving_scene(700);
     for (const int lookahead : {0, 1, 2}) {
         SCOPED_TRACE(lookahead);
@@ -117,7 +118,7 @@ struct FusedRun : DataObserver {
 };
 
 TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
-    const Model model = random_model(small_config(), 1);
+    const Model model = test::random_model(small_config(), 1);
     std::vector<std::byte> bytes = moving_scene(300);
     const auto before = std::ptrdiff_t(bytes.size());
     append_record(bytes, ToyKind::image, 299'990);
@@ -140,7 +141,7 @@ TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
 }
 
 TEST(ModelLine, EveryImageOfARecordingCorrectsAlsoWhereThereAreMoreThanWindowsHold) {
-    const Model model = random_model(small_config(), 1);
+    const Model model = test::random_model(small_config(), 1);
     constexpr int kImages = 900;
     std::vector<std::byte> bytes;
     append_record(bytes, ToyKind::event, 1, 2, 2, true);
@@ -179,7 +180,7 @@ TEST(ImagesOnTheWay, AreAllKeptAndOfALiveSourceCountedWhereTheyAreNot) {
 
 TEST(ModelLine, AllocatesNothingPerEventWindowOnceWarm) {
     if (!can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
-    const Model model = random_model(small_config(), 1);
+    const Model model = test::random_model(small_config(), 1);
     const auto bytes = moving_scene(6000);
     for (const bool threaded : {true, false}) {
         EngineOptions options;

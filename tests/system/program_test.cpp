@@ -2,6 +2,7 @@
 #include "tests/system/program_test.h"
 
 #include "src/model/model_file.h"
+#include "tests/support/random_model.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -31,11 +32,11 @@ struct SharedFiles {
     TempFolder folder;
 
     SharedFiles() {
-        save_model(folder / "random.safetensors", random_model(small_config(), 1));
-        save_model(folder / "default.safetensors", random_model(small_config(), 1));
+        save_model(folder / "random.safetensors", test::random_model(small_config(), 1));
+        save_model(folder / "default.safetensors", test::random_model(small_config(), 1));
         ModelConfig other = small_config();
         other.widths = {16, 32};
-        save_model(folder / "other.safetensors", random_model(other, 2));
+        save_model(folder / "other.safetensors", test::random_model(other, 2));
         const Result made = run({EVENTIDE_PROGRAM, "simulate", "--scene", "demo", "--seconds",
                                  "0.4", "--size", "64x48", "--out", folder / "recording.aedat4"});
         if (made.exit_code != 0)

@@ -2,6 +2,7 @@
 #include "apps/cli/run/quality/measure_profile.h"
 #include "apps/cli/run/quality/profile_cache.h"
 #include "src/core/error.h"
+#include "tests/support/random_model.h"
 #include "tests/system/process.h"
 
 #include <gmock/gmock.h>
@@ -135,7 +136,7 @@ TEST(MeasureProfile, MeasuresEveryStageOfANetwork) {
     config.bins = 2;
     config.latent = 8;
     config.mlp = {16};
-    const Model model = random_model(config, 1);
+    const Model model = test::random_model(config, 1);
     const ProfileKey key = profile_key("random", model, 48, 32, Kernels::automatic);
     MeasureSettings settings;
     settings.time = std::chrono::duration<double>{0};  // once each
@@ -148,7 +149,8 @@ TEST(MeasureProfile, MeasuresEveryStageOfANetwork) {
     expect_same(parse_profile(profile_text(measured), key), measured);
     settings.give_up = [] { return true; };
     EXPECT_THROW(measure_profile(key, model, settings), Error);
-    EXPECT_NE(profile_key("other", random_model(config, 2), 48, 32, {}).identity, key.identity);
+    EXPECT_NE(profile_key("other", test::random_model(config, 2), 48, 32, {}).identity,
+              key.identity);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "apps/evaluate/evaluate.h"
 #include "src/model/model_file.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ inline EvaluateSettings small_model() {
     EvaluateSettings settings;
     settings.model = std::filesystem::path{testing::TempDir()} /
                      ("eventide_evaluate_" + unique + ".safetensors");
-    save_model(settings.model, random_model(config, 1));
+    save_model(settings.model, test::random_model(config, 1));
     settings.engine.engine = Engine::plain;
     return settings;
 }

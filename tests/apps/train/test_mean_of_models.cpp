@@ -1,6 +1,7 @@
 // The mean of several trainings of one network.
 #include "apps/train/mean_of_models.h"
 #include "src/core/error.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@ ModelConfig tiny() {
 }
 
 TEST(MeanOfModels, LiesBetweenThem) {
-    Model one = random_model(tiny(), 1), other = random_model(tiny(), 2);
+    Model one = test::random_model(tiny(), 1), other = test::random_model(tiny(), 2);
     one.config.sigma_scale = 1;
     other.config.sigma_scale = 2;
     const Model mean = mean_of({{one, .75}, {other, .25}});
@@ -32,7 +33,7 @@ TEST(MeanOfModels, LiesBetweenThem) {
 TEST(MeanOfModels, RefusesOtherShapesAndOtherSums) {
     ModelConfig wider = tiny();
     wider.widths = {8, 16};
-    const Model one = random_model(tiny(), 1), other = random_model(wider, 1);
+    const Model one = test::random_model(tiny(), 1), other = test::random_model(wider, 1);
     EXPECT_THROW(mean_of({{one, .5}, {other, .5}}), Error);
     EXPECT_THROW(mean_of({{one, .5}, {one, .4}}), Error);
     EXPECT_THROW(mean_of({}), Error);

@@ -5,6 +5,7 @@
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
 #include "tests/model/streams.h"
+#include "tests/support/random_model.h"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +100,7 @@ class SameNetwork : public testing::TestWithParam<int> {};
 
 TEST_P(SameNetwork, TorchPlainAndFastGiveTheSameLatentCodes) {
     const torch::NoGradGuard none;
-    const Model model = random_model(cases()[std::size_t(GetParam())].config, 5);
+    const Model model = test::random_model(cases()[std::size_t(GetParam())].config, 5);
     const auto grids = stream(model.config);
     const auto judged = torch_latents(model, grids);
     for (const Engine engine : {Engine::plain, Engine::fast}) {
@@ -119,7 +120,7 @@ TEST_P(SameNetwork, TorchPlainAndFastGiveTheSameLatentCodes) {
 TEST_P(SameNetwork, TorchPlainAndFastGiveTheSameImages) {
     const torch::NoGradGuard none;
     const Case c = cases()[std::size_t(GetParam())];
-    const Model model = random_model(c.config, 6);
+    const Model model = test::random_model(c.config, 6);
     const auto grids = stream(model.config);
     const auto z = torch_latents(model, grids);
     const auto latents = engine_latents(model, grids, Engine::plain);
@@ -154,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, SameNetwork, testing::Range(0, int(cases().size(
 
 TEST(Networks, WhereNothingHappensTheStateStaysBitForBit) {
     const torch::NoGradGuard none;
-    const Model model = random_model(test::small_config(), 7);
+    const Model model = test::random_model(test::small_config(), 7);
     const Parameters parameters = to_parameters(model.weights, torch::kCPU);
     const auto busy = torch::rand({1, model.config.input_channels(), kHeight, kWidth});
     const auto empty = empty_state(model.config, 1, kHeight, kWidth, torch::kFloat);
@@ -191,7 +192,7 @@ TEST(Networks, ANewSceneBeginsEmptyWhateverBecameOfTheStateBefore) {
 
 TEST(Networks, BrainFloatsStayNearTheFullPrecision) {
     const torch::NoGradGuard none;
-    const Model model = random_model(test::small_config(), 8);
+    const Model model = test::random_model(test::small_config(), 8);
     const Parameters parameters = to_parameters(model.weights, torch::kCPU);
     const auto grid = torch::rand({1, model.config.input_channels(), kHeight, kWidth});
     const auto state = empty_state(model.config, 1, kHeight, kWidth, torch::kFloat);
