@@ -2,6 +2,7 @@
 
 #include "drivers/udp/udp_source.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #ifdef EVENTIDE_HAS_USB
 #include "drivers/usb/davis_camera.h"
@@ -14,7 +15,6 @@
 
 #ifdef EVENTIDE_HAS_ROS2
 #include "drivers/ros2/ros2_source.h"
-#include "src/core/number_text.h"
 #endif
 
 #include <algorithm>
