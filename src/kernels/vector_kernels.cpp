@@ -39,16 +39,17 @@ void sigmoid_row(float* g, std::size_t n) {
 }
 void reset_state(const float* r, std::ptrdiff_t r_step, const float* h, float* out, int channels,
                  int pixels) {
-    channels <= kNarrowLanes ? reset_pixels(Narrow(), r, r_step, h, out, channels, pixels)
-                             : reset_pixels(D(), r, r_step, h, out, channels, pixels);
+    if (channels <= kNarrowLanes)
+        return reset_pixels(Narrow(), r, r_step, h, out, channels, pixels);
+    reset_pixels(D(), r, r_step, h, out, channels, pixels);
 }
 void update_state(const float* h, const float* u, std::ptrdiff_t u_step, float* candidate,
                   float* out, int channels, int pixels) {
     map(Tanh{}, std::size_t(channels) * std::size_t(pixels), candidate, candidate, candidate,
         candidate, candidate);
-    channels <= kNarrowLanes
-        ? update_pixels(Narrow(), h, u, u_step, candidate, out, channels, pixels)
-        : update_pixels(D(), h, u, u_step, candidate, out, channels, pixels);
+    if (channels <= kNarrowLanes)
+        return update_pixels(Narrow(), h, u, u_step, candidate, out, channels, pixels);
+    update_pixels(D(), h, u, u_step, candidate, out, channels, pixels);
 }
 void add_relu(const float* a, const float* b, float* out, std::size_t n) {
     map(AddRelu{}, n, out, a, b, a, a);

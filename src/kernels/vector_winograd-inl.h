@@ -29,14 +29,10 @@ HWY_INLINE void channel_vectors(Tag d, int channels, const Body& body) {
 template <class Body>
 HWY_INLINE void by_width(int channels, const Body& body) {
     const auto fits = [&](auto d) HWY_ATTR { return channels >= int(hn::Lanes(d)); };
-    if (fits(D()))
-        body(D());
-    else if (fits(hn::CappedTag<float, 8>()))
-        body(hn::CappedTag<float, 8>());
-    else if (fits(hn::CappedTag<float, 4>()))
-        body(hn::CappedTag<float, 4>());
-    else
-        body(hn::CappedTag<float, 1>());
+    if (fits(D())) return body(D());
+    if (fits(hn::CappedTag<float, 8>())) return body(hn::CappedTag<float, 8>());
+    if (fits(hn::CappedTag<float, 4>())) return body(hn::CappedTag<float, 4>());
+    body(hn::CappedTag<float, 1>());
 }
 
 /// at(i): pixel i of the six, of the channels from the vector's first on.

@@ -111,20 +111,17 @@ void check_model(const Model& model, const std::string& file) {
     check_config(model.config, file);
     Tensors surplus = model.weights;
     for (const auto& [name, shape] : expected_tensors(model.config)) {
+        const auto refuse = [&, &name = name](const std::string& what) {
+            throw Error(ErrorKind::input, file + ": tensor '" + name + "': expected " + what);
+        };
+        const std::string wanted = "shape " + shape_text(shape) + ", found ";
         const auto found = surplus.find(name);
-        if (found == surplus.end())
-            throw Error(ErrorKind::input, file + ": tensor '" + name + "': expected shape " +
-                                              shape_text(shape) + ", found no such tensor");
+        if (found == surplus.end()) refuse(wanted + "no such tensor");
         const Tensor& tensor = found->second;
         if (tensor.shape != shape || tensor.values.size() != element_count(shape))
-            throw Error(ErrorKind::input, file + ": tensor '" + name + "': expected shape " +
-                                              shape_text(shape) + ", found " +
-                                              shape_text(tensor.shape));
+            refuse(wanted + shape_text(tensor.shape));
         for (const float value : tensor.values)
-            if (!std::isfinite(value))
-                throw Error(ErrorKind::input, file + ": tensor '" + name +
-                                                  "': expected finite numbers, found " +
-                                                  std::to_string(value));
+            if (!std::isfinite(value)) refuse("finite numbers, found " + std::to_string(value));
         surplus.erase(found);
     }
     if (!surplus.empty())

@@ -67,7 +67,11 @@ std::string info_node(const StreamHeader& header, Aedat4Compression compression)
     for (int id = 0; id < 4; ++id) {
         const StreamText& stream = kStreams[id];
         const std::string number = std::to_string(id), path = base + number + "/";
-        xml += "<node name=\"" + number + "\" path=\"" + path + "\">\n";
+        xml.append("<node name=\"")
+            .append(number)
+            .append("\" path=\"")
+            .append(path)
+            .append("\">\n");
         xml += attr("compression", "string", name_of(compression));
         xml += attr("originalModuleName", "string", "capture");
         xml += attr("originalOutputName", "string", std::string(stream.name));
