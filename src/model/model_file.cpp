@@ -90,6 +90,11 @@ private:
     std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
+[[noreturn]] void refuse(const std::string& file, const std::string& tensor,
+                         const std::string& expected) {
+    throw Error(ErrorKind::input, file + ": tensor '" + tensor + "': expected " + expected);
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, Shape>> expected_tensors(const ModelConfig& config) {
@@ -111,17 +116,15 @@ void check_model(const Model& model, const std::string& file) {
     check_config(model.config, file);
     Tensors surplus = model.weights;
     for (const auto& [name, shape] : expected_tensors(model.config)) {
-        const auto refuse = [&, &name = name](const std::string& what) {
-            throw Error(ErrorKind::input, file + ": tensor '" + name + "': expected " + what);
-        };
         const std::string wanted = "shape " + shape_text(shape) + ", found ";
         const auto found = surplus.find(name);
-        if (found == surplus.end()) refuse(wanted + "no such tensor");
+        if (found == surplus.end()) refuse(file, name, wanted + "no such tensor");
         const Tensor& tensor = found->second;
         if (tensor.shape != shape || tensor.values.size() != element_count(shape))
-            refuse(wanted + shape_text(tensor.shape));
+            refuse(file, name, wanted + shape_text(tensor.shape));
         for (const float value : tensor.values)
-            if (!std::isfinite(value)) refuse("finite numbers, found " + std::to_string(value));
+            if (!std::isfinite(value))
+                refuse(file, name, "finite numbers, found " + std::to_string(value));
         surplus.erase(found);
     }
     if (!surplus.empty())
