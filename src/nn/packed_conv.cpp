@@ -30,12 +30,12 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
       inputs_(weights.in),
       outputs_(weights.out),
       sources_(std::move(sources)),
-      as_one_(as_one) {
+      as_one_(as_one),
+      numbers_(backend) {
     if (sources_.empty()) sources_ = {weights.in};
     assert(std::accumulate(sources_.begin(), sources_.end(), 0) == weights.in);
     assert(sources_.size() <= ConvArea::kMaxSources);
     assert(!as_one || sources_.size() == 1 || !backend.onednn);
-    single_ = packed(weights, 1, relu, backend);
     if (backend.onednn && side_ == 3) {
         onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, backend.bf16,
                                                      std::move(extents));
@@ -45,6 +45,7 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
         winograd_ = std::make_shared<const WinogradConv>(weights, sources_, relu, backend);
         return;
     }
+    single_ = packed(weights, 1, relu, backend);
     const int lanes = backend.bf16 != nullptr ? kBf16Lanes : backend.f32->lanes;
     const bool is_whole = backend.bf16 == nullptr || outputs_ % 2 == 0;
     if (!by_quads() && !as_one_ && side_ > 1 && 2 * outputs_ <= lanes && is_whole)

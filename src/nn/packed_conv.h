@@ -24,7 +24,7 @@ public:
                const Backend& backend, std::vector<Extent> extents = {},
                std::vector<int> sources = {}, bool as_one = false);
 
-    const Numbers& numbers() const { return single_.numbers(); }
+    const Numbers& numbers() const { return numbers_; }
     /// Outputs of a row that are rounded together, counted from a region's first: where what one of
     /// them reads changes, so may the last bits of all.
     int group() const { return winograd_ != nullptr ? kWinogradOutputs : 1; }
@@ -50,8 +50,9 @@ private:
     int stride_ = 1, side_ = 3, inputs_ = 0, outputs_ = 0;
     std::vector<int> sources_;  // channels
     bool as_one_ = false;
-    /// Our own kernels' weights: for one output pixel; and for two beside each other, where the
-    /// outputs of one fill but half a vector.
+    Numbers numbers_;
+    /// The weights of direct sums, empty where one of the two below does them: for one output
+    /// pixel; and for two beside each other, where the outputs of one fill but half a vector.
     PackedWeights single_, pair_;
     // Or null. In float32 the first does layers of 3x3 and stride 1 that are wide enough.
     std::shared_ptr<const WinogradConv> winograd_;
