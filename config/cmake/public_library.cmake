@@ -58,6 +58,10 @@ function(eventide_public_library name)
     target_link_options(eventide_${name}_shared PRIVATE LINKER:--no-undefined)
   endif()
 
+  # GNU's linker, also beside clang, for which CMake finds lld: that cannot dissolve groups.
+  find_program(EVENTIDE_GNU_LINKER NAMES ld.bfd ld DOC "GNU linker, for static libraries" REQUIRED)
+  mark_as_advanced(EVENTIDE_GNU_LINKER)
+
   # One object, in which every name is local but those that the shared library shows. Groups are dissolved, as a
   # consumer's own copy of an inline function would drop a whole one; what gcc made unique in one is weak first, as
   # objcopy makes nothing unique local.
@@ -68,7 +72,7 @@ function(eventide_public_library name)
   set(list_names "${CMAKE_NM} --dynamic --defined-only --format=posix --without-symbol-versions $<TARGET_FILE:eventide_${name}_shared>")
   add_custom_command(OUTPUT ${object} DEPENDS ${objects} $<TARGET_OBJECTS:${objects}> ${archives} eventide_${name}_shared
     VERBATIM COMMAND_EXPAND_LISTS
-    COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:${objects}> --start-group ${files} --end-group
+    COMMAND ${EVENTIDE_GNU_LINKER} -r --force-group-allocation -o ${object} $<TARGET_OBJECTS:${objects}> --start-group ${files} --end-group
     COMMAND sh -c "${CMAKE_NM} --format=posix ${object} | sed -n 's/ u .*//p' > ${names}"
     COMMAND ${CMAKE_OBJCOPY} --weaken-symbols=${names} ${object}
     COMMAND sh -c "${list_names} | cut -d ' ' -f 1 > ${names}"
