@@ -44,7 +44,7 @@ LatentMap ColourEncodeStage::make_output() const {
     LatentMap latent = all_.make_output();
     for (const EncodeStage* stage : channels_) {
         LatentMap codes = stage->make_output();
-        latent.channels.push_back({std::move(codes.values), std::move(codes.history)});
+        latent.channels.push_back(std::move(static_cast<LatentCodes&>(codes)));
     }
     return latent;
 }
@@ -53,11 +53,10 @@ void ColourEncodeStage::step(const VoxelGrid& grid, LatentMap& latent) noexcept 
     all_.encode(grid, latent);
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         take_site(grid, site_of(filter_, kColourChannels[c]), part_);
-        std::swap(codes_.values, latent.channels[c].values);
-        std::swap(codes_.history, latent.channels[c].history);
+        LatentCodes& codes = codes_;
+        std::swap(codes, latent.channels[c]);
         channels_[c]->encode(part_, codes_);
-        std::swap(codes_.values, latent.channels[c].values);
-        std::swap(codes_.history, latent.channels[c].history);
+        std::swap(codes, latent.channels[c]);
     }
 }
 
@@ -77,8 +76,7 @@ ColourRenderStage::ColourRenderStage(RenderStage& all, std::array<RenderStage*, 
       view_(view) {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         parts_[c] = channels_[c]->make_output();
-        codes_[c].values = codes.channels[c].values;
-        codes_[c].history = codes.channels[c].history;
+        static_cast<LatentCodes&>(codes_[c]) = codes.channels[c];
         codes_[c].events_per_pixel = Array2<float>(sensor_height / 2, sensor_width / 2);
     }
     make_taps(all_.make_output());
@@ -118,8 +116,7 @@ void ColourRenderStage::push(const LatentMap& latent) noexcept {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         LatentMap& codes = codes_[c];
         copy_stamp(latent, codes);
-        codes.values = latent.channels[c].values;
-        codes.history = latent.channels[c].history;
+        static_cast<LatentCodes&>(codes) = latent.channels[c];
         if (!latent.events_per_pixel.empty())
             take_site(latent.events_per_pixel, site_of(filter_, kColourChannels[c]),
                       codes.events_per_pixel);

@@ -56,17 +56,18 @@ struct LatentHistory {
     std::vector<std::uint64_t> changed;  ///< per tile (latent_tiles), the step of its last change
 };
 
-/// Values of a LatentMap beside another's.
+/// One code of D numbers per sample.
 struct LatentCodes {
+    /// [y][x][D] of float32, or where is_bf16 [y][x][(D + 1) / 2] units of two bf16 numbers, as
+    /// layers read them (src/nn/numbers.h); codes_in_float() gives float32 of either.
     Array3<float> values;
+    bool is_bf16 = false;
     LatentHistory history;
 };
 
-/// What the encoder knows after one event window, one code per sensor pixel.
-struct LatentMap : WindowStamp {
-    Array3<float> values;            ///< [y][x][D]
+/// What the encoder knows after one event window.
+struct LatentMap : WindowStamp, LatentCodes {
     Array2<float> events_per_pixel;  ///< [y][x]; empty where not asked for
-    LatentHistory history;
     /// Of blue, green and red pixels alone, half as wide and high; empty where not asked for.
     std::vector<LatentCodes> channels;
 };

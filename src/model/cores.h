@@ -17,6 +17,8 @@ class EncoderCore {
 public:
     virtual ~EncoderCore() = default;
     virtual std::string description() const = 0;
+    /// What latent.is_bf16 has to be.
+    virtual bool gives_bf16() const { return false; }
     /// Writes latent.values and says in latent.history what is known of it.
     virtual void step(const VoxelGrid& grid, LatentMap& latent) noexcept = 0;
     virtual void reset() noexcept = 0;

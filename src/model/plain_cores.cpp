@@ -1,6 +1,7 @@
 // The plain networks behind the run-time interfaces.
 #include "src/model/cores.h"
 #include "src/model/encode/plain_encoder.h"
+#include "src/model/latent_codes.h"
 #include "src/model/render/plain_renderer.h"
 
 #include <algorithm>
@@ -42,11 +43,11 @@ private:
 
 class PlainRenderer final : public RendererCore {
 public:
-    explicit PlainRenderer(const Model& model) : network_(model) {}
+    explicit PlainRenderer(const Model& model) : network_(model), depth_(model.config.latent) {}
 
     std::string description() const override { return "plain, f32"; }
     void push(std::int64_t k, const LatentMap& latent) noexcept override {
-        codes_[LatentWindow::slot(k)] = latent.values;
+        codes_[LatentWindow::slot(k)] = codes_in_float(latent, depth_);
     }
     void reset() noexcept override {}
     void render(const CodeChoice& choice, const FrameGeometry& geometry, SigmaRule rule,
@@ -64,6 +65,7 @@ public:
 
 private:
     plain::MlpRenderer<float> network_;
+    int depth_;
     std::array<Array3<float>, LatentWindow::kLatentsKept> codes_;
 };
 

@@ -8,6 +8,16 @@
 
 namespace eventide {
 
+/// Pixels of so many bf16 numbers, with a zero beside the last of an odd number, to float32.
+inline void pixels_from_bf16(const void* in, std::size_t pixels, int channels,
+                             float* out) noexcept {
+    const auto* numbers = static_cast<const std::uint16_t*>(in);
+    const auto count = std::size_t(channels), step = (count + 1) / 2 * 2;
+    for (std::size_t p = 0; p < pixels; ++p)
+        for (std::size_t c = 0; c < count; ++c)
+            out[p * count + c] = from_bf16(numbers[p * step + c]);
+}
+
 /// Maps and rows that layers read count units of 4 bytes: a float32 number, or two bf16 numbers of
 /// the same pixel, with a zero beside the last of an odd number.
 class Numbers {
@@ -31,15 +41,10 @@ public:
             std::memcpy(out, in, pixels * std::size_t(channels) * sizeof(float));
     }
     void to_float(const void* in, std::size_t pixels, int channels, float* out) const noexcept {
-        const auto count = std::size_t(channels), step = 2 * std::size_t(units(channels));
-        if (bf16_ == nullptr) {
-            std::memcpy(out, in, pixels * count * sizeof(float));
-            return;
-        }
-        const auto* numbers = static_cast<const std::uint16_t*>(in);
-        for (std::size_t p = 0; p < pixels; ++p)
-            for (std::size_t c = 0; c < count; ++c)
-                out[p * count + c] = from_bf16(numbers[p * step + c]);
+        if (bf16_ != nullptr)
+            pixels_from_bf16(in, pixels, channels, out);
+        else
+            std::memcpy(out, in, pixels * std::size_t(channels) * sizeof(float));
     }
     /// See SplitRow; where by_quads().
     void split(const avx512::SplitRow& row) const noexcept {

@@ -11,6 +11,7 @@
 #include "src/binning/binner.h"
 #include "src/model/encode/encoder.h"
 #include "src/model/encode/plain_encoder.h"
+#include "src/model/latent_codes.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/scene/textures.h"
 #include "src/simulate/simulated_stream.h"
@@ -155,16 +156,18 @@ private:
             const VoxelGrid& grid = scenes_.next();
             encoder_.encode(grid, latent_);
             events_ += grid.events;
-            for (const float z : latent_.values.values()) {
-                nans_ += std::isfinite(z) ? 0 : 1;
-                most_z_ = std::max(most_z_, std::abs(double(z)));
+            const Array3<float> codes = codes_in_float(latent_, model_.config.latent);
+            const auto z = codes.values();
+            for (const float code : z) {
+                nans_ += std::isfinite(code) ? 0 : 1;
+                most_z_ = std::max(most_z_, std::abs(double(code)));
             }
             if (anew) anew->encode(grid, fresh);
-            const auto z = latent_.values.values();
             if (gated) against_double_.add(z, gated->step(test::as<double>(grid.values)).values());
             if (thesis)
                 against_double_.add(z, thesis->step(test::as<double>(grid.values)).values());
-            if (anew && left <= options_.segment) against_anew_.add(fresh.values.values(), z);
+            if (anew && left <= options_.segment)
+                against_anew_.add(codes_in_float(fresh, model_.config.latent).values(), z);
         }
         return done;
     }

@@ -2,6 +2,7 @@
 // sizes, and with the shipped network.
 #include "src/model/encode/encoder.h"
 #include "src/model/encode/plain_encoder.h"
+#include "src/model/latent_codes.h"
 #include "src/model/render/plain_renderer.h"
 #include "src/model/render/renderer.h"
 #include "tests/model/engine_choices.h"
@@ -112,7 +113,7 @@ void compare(const Model& model, int height, int width, int steps, int render_ev
         for (Run& run : runs) {
             run.encoder.encode(grid, run.latent);
             run.renderer.push(run.latent);
-            run.codes.add(run.latent.values.values(), z.values());
+            run.codes.add(codes_in_float(run.latent, model.config.latent).values(), z.values());
             if (!shown) continue;
             run.renderer.render(request, run.frame);
             run.frames.add(run.frame.intensity.values(), geometry.intensity.values());

@@ -8,6 +8,7 @@
 #include "apps/cli/version.h"
 #include "src/binning/binner.h"
 #include "src/core/instructions.h"
+#include "src/model/latent_codes.h"
 
 #include <spawn.h>
 #include <sys/resource.h>
@@ -48,7 +49,8 @@ double codes_against_double(const Model& model, const std::vector<bench::SceneWi
     for (int i = 0; i < kCompared && i < int(windows.size()); ++i) {
         binner.process(windows[std::size_t(i)].event_window(), grid);
         encoder.encode(grid, map);
-        distance.add(map.values.values(), exact->step(stress::in_double(grid.values)).values());
+        distance.add(codes_in_float(map, model.config.latent).values(),
+                     exact->step(stress::in_double(grid.values)).values());
     }
     return distance.rms_of_range();
 }

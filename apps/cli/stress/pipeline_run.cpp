@@ -67,12 +67,16 @@ PipelineSettings pipeline_settings(const Model& model, const PipelineRunSettings
     how.event_windows.slicer = parse_window(settings.window);
     if (settings.fps != "frame") how.rate = parse_frame_rate(settings.fps);
     how.lookahead = settings.lookahead;
-    how.buffers = {4, 2, 3};
+    how.buffers = run_buffers(settings.threaded);
     how.allow_silence = true;
     return how;
 }
 
 }  // namespace
+
+PipelineBuffers run_buffers(bool threaded) {
+    return threaded ? PipelineBuffers{4, 2, 3} : PipelineBuffers{4, 1, 1};
+}
 
 PipelineOutcome run_pipeline(const Model& model, Source& source,
                              const PipelineRunSettings& settings) {

@@ -41,6 +41,9 @@ struct PipelineOutcome {
     std::string engine;        ///< which kernels and numbers ran
 };
 
+/// What a run holds at once: a single thread has one grid and one latent map at work.
+PipelineBuffers run_buffers(bool threaded);
+
 /// Errors of the run are in the outcome; those of settings are thrown.
 PipelineOutcome run_pipeline(const Model& model, Source& source,
                              const PipelineRunSettings& settings);

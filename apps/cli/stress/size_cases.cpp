@@ -51,7 +51,7 @@ Result large_sensor(const Bench& bench, int width, int height) {
     sensor.width = width;
     sensor.height = height;
     const std::uint64_t bytes = app::network_bytes(bench.model.config, sensor) +
-                                app::buffer_bytes(bench.model.config, sensor, {4, 2, 3});
+                                app::buffer_bytes(bench.model.config, sensor, run_buffers(false));
     Result result;
     if (bytes + bytes / 2 > free_memory()) {
         result.happened = "not run: takes " + counted((bytes + bytes / 2) >> 20, "MiB, ") +

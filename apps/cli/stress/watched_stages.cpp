@@ -1,6 +1,7 @@
 // The model's stages, with double precision walking along.
 #include "apps/cli/stress/watched_stages.h"
 
+#include "src/model/latent_codes.h"
 #include "src/model/latent_window.h"
 
 #include <algorithm>
@@ -37,9 +38,12 @@ void Judge::encoded(const VoxelGrid& grid, const LatentMap& latent) {
         known_.clear();
         return;
     }
-    Array3<double> codes =
-        judging_ ? network_->step(in_double(grid.values)) : in_double(latent.values);
-    if (judging_) codes_.add(latent.values.values(), codes.values());
+    // A copy only where they are bf16: sensors may be large.
+    const Array3<float> decoded =
+        latent.is_bf16 ? codes_in_float(latent, config_.latent) : Array3<float>{};
+    const Array3<float>& given = latent.is_bf16 ? decoded : latent.values;
+    Array3<double> codes = judging_ ? network_->step(in_double(grid.values)) : in_double(given);
+    if (judging_) codes_.add(given.values(), codes.values());
     known_.push_back({grid.window, std::move(codes)});
     if (known_.size() > std::size_t(LatentWindow::kLatentsKept)) known_.pop_front();
 }

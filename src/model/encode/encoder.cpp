@@ -45,7 +45,9 @@ std::string Encoder::description() const {
 
 LatentMap Encoder::make_output() const {
     LatentMap latent;
-    latent.values = {latent_height_, latent_width_, latent_channels_};
+    latent.is_bf16 = core_->gives_bf16();
+    latent.values = {latent_height_, latent_width_,
+                     latent.is_bf16 ? (latent_channels_ + 1) / 2 : latent_channels_};
     latent.history.changed.reserve(latent_tiles(latent_height_, latent_width_).size());
     return latent;
 }

@@ -69,7 +69,7 @@ void GatedDecoder::write_codes(const std::vector<StateMap>& states, const Tile& 
     out_.run(ConvArea{{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
                       codes.pixel(tile.y0, tile.x0).data(),
                       std::ptrdiff_t(codes.width()) * codes.channels(),
-                      false,
+                      true,
                       tile.height(),
                       tile.width()},
              scratch);

@@ -17,6 +17,7 @@ public:
                  const Backend& backend);
 
     std::string description() const override;
+    bool gives_bf16() const override { return backend_.bf16 != nullptr; }
     void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
     void reset() noexcept override;
     Tensors state() const override { return tensors_of(states_); }

@@ -56,8 +56,8 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
     active_.reserve(tiles_.size());
     scratch_.assign(kWorkers, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
                                                     whole_.scratch_size(kLatentSide, kLatentSide),
-                                                    // A row of codes in float32, for is_still().
-                                                    std::size_t(kLatentSide * depth_)})));
+                                                    // Two rows of codes, for is_still().
+                                                    std::size_t(2 * kLatentSide * depth_)})));
 }
 
 void FirstLayerCache::reset() noexcept {
@@ -76,36 +76,46 @@ void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
     const StaleTiles stale{histories_[slot], latent.history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int worker, int n) {
         if (stale(std::size_t(n)))
-            hold_tile(k, tiles_[std::size_t(n)], latent.values,
-                      scratch_[std::size_t(worker)].data());
+            hold_tile(k, tiles_[std::size_t(n)], latent, scratch_[std::size_t(worker)].data());
     });
     histories_[slot] = latent.history;
     note_changes(k, latent.history);
 }
 
-void FirstLayerCache::hold_tile(std::int64_t k, const Tile& tile, const Array3<float>& latent,
-                                float* row) noexcept {
+void FirstLayerCache::hold_tile(std::int64_t k, const Tile& tile, const LatentCodes& latent,
+                                float* rows) noexcept {
     PaddedMap& mine = codes_[LatentWindow::slot(k)];
     const PaddedMap* before = options_.skip_quiet && k > 1 ? code(k - 1) : nullptr;
     const bool is_held =
-        before != nullptr && options_.still_codes > 0 && is_still(*before, tile, latent, row);
+        before != nullptr && options_.still_codes > 0 && is_still(*before, tile, latent, rows);
     const auto width = std::size_t(tile.width());
-    for (int y = tile.y0; y < tile.y1; ++y)
+    const std::size_t bytes = width * std::size_t(mine.channels()) * sizeof(float);
+    const bool is_as_read = latent.is_bf16 == (numbers_.bf16() != nullptr);
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        const float* given = latent.values.pixel(y, tile.x0).data();
+        float* to = mine.at(y, tile.x0);
         if (is_held)
-            std::memcpy(mine.at(y, tile.x0), before->at(y, tile.x0),
-                        width * std::size_t(mine.channels()) * sizeof(float));
+            std::memcpy(to, before->at(y, tile.x0), bytes);
+        else if (is_as_read)
+            std::memcpy(to, given, bytes);
+        else if (latent.is_bf16)
+            pixels_from_bf16(given, width, depth_, to);
         else
-            numbers_.from_float(latent.pixel(y, tile.x0).data(), width, depth_,
-                                mine.at(y, tile.x0));
+            numbers_.from_float(given, width, depth_, to);
+    }
 }
 
-bool FirstLayerCache::is_still(const PaddedMap& before, const Tile& tile,
-                               const Array3<float>& latent, float* row) const noexcept {
-    const auto width = std::size_t(tile.width());
+bool FirstLayerCache::is_still(const PaddedMap& before, const Tile& tile, const LatentCodes& latent,
+                               float* rows) const noexcept {
+    const auto width = std::size_t(tile.width()), count = width * std::size_t(depth_);
+    float* held = rows;
+    float* decoded = rows + count;
     for (int y = tile.y0; y < tile.y1; ++y) {
-        numbers_.to_float(before.at(y, tile.x0), width, depth_, row);
-        if (!numbers_.kernels().are_near(latent.pixel(y, tile.x0).data(), row,
-                                         float(options_.still_codes), width * std::size_t(depth_)))
+        numbers_.to_float(before.at(y, tile.x0), width, depth_, held);
+        const float* given = latent.values.pixel(y, tile.x0).data();
+        if (latent.is_bf16) pixels_from_bf16(given, width, depth_, decoded);
+        if (!numbers_.kernels().are_near(latent.is_bf16 ? decoded : given, held,
+                                         float(options_.still_codes), count))
             return false;
     }
     return true;

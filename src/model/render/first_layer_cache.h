@@ -61,10 +61,10 @@ private:
     bool unchanged(const Sums& from, std::int64_t k, bool whole, std::size_t tile) const noexcept;
     /// Writes a tile of z_k; where still_codes allows, z_{k-1} as it is held in its place, so that
     /// what is held never drifts further off.
-    void hold_tile(std::int64_t k, const Tile& tile, const Array3<float>& latent,
-                   float* row) noexcept;
-    bool is_still(const PaddedMap& before, const Tile& tile, const Array3<float>& latent,
-                  float* row) const noexcept;
+    void hold_tile(std::int64_t k, const Tile& tile, const LatentCodes& latent,
+                   float* rows) noexcept;
+    bool is_still(const PaddedMap& before, const Tile& tile, const LatentCodes& latent,
+                  float* rows) const noexcept;
     void note_changes(std::int64_t k, const LatentHistory& history) noexcept;
     /// z_k as layers read it, which must be kept; null before the first, which reads as zeros.
     const PaddedMap* code(std::int64_t k) const noexcept;
