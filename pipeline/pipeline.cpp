@@ -1,8 +1,7 @@
-// The pipeline: four functions, each one thread.
+// The pipeline: four functions, each one thread (pipeline_steps.cpp: what each does with one item).
 #include "pipeline/pipeline.h"
 
 #include "pipeline/pace/encoder_gate.h"
-#include "src/binning/grid_sums.h"
 #include "src/core/error.h"
 
 #include <pthread.h>
@@ -21,8 +20,8 @@ std::size_t at_least_one(std::size_t n, const char* name) {
     return n;
 }
 
-FrameOutput::Settings presenter_settings(const PipelineParts& parts,
-                                         const PipelineSettings& settings) {
+FrameOutput::Settings output_settings(const PipelineParts& parts,
+                                      const PipelineSettings& settings) {
     FrameOutput::Settings s;
     s.rate = settings.rate;
     s.from = settings.frames_from;
@@ -32,7 +31,7 @@ FrameOutput::Settings presenter_settings(const PipelineParts& parts,
     s.changes = settings.changes;
     s.halvings = settings.halvings;
     // One buffer is being filled; were all the others waiting, the encoder would wait, too, and in
-    // the end the camera lose events.
+    // the end the camera would lose events.
     s.waits_at_most = settings.buffers.latents > 1 ? settings.buffers.latents - 1 : 1;
     return s;
 }
@@ -54,7 +53,7 @@ Pipeline::Pipeline(const PipelineParts& parts, const PipelineSettings& settings)
       grids_(settings.buffers.grids),
       latents_(settings.buffers.latents),
       output_(
-          parts.renderer, parts.sinks, presenter_settings(parts, settings),
+          parts.renderer, parts.sinks, output_settings(parts, settings),
           [this] { return latents_.waiting(); }, stop_, counters_, keeper_) {
     if (settings.resume == nullptr) return;
     event_windows_.resume(settings.resume->t, settings.resume->slicer);
@@ -131,108 +130,6 @@ void Pipeline::present() {  // latent maps -> frames -> sinks
     if (complete) guarded([&] { output_.finish(); });
 }
 
-// ---- one step of each ------------------------------------------------------------------------
-
-bool Pipeline::read_one(RawPacket& into) {
-    into.gap_before = into.reopened = false;
-    const ReadStatus status = parts_.source.read(into);
-    if (status == ReadStatus::end) return false;
-    if (status == ReadStatus::timeout) {  // an empty packet: only host time passes
-        into.bytes.clear();
-        into.arrived = Clock::now();
-        return true;
-    }
-    counters_.read.packets.add();
-    counters_.read.bytes.add(into.bytes.size());
-    into.sequence = counters_.read.packets.value();
-    return true;
-}
-
-/// A recording waits for a buffer; empty where a live source must not.
-Pool<RawPacket>::Handle Pipeline::packet_to_fill() {
-    if (!parts_.source.is_live()) return packet_pool_.acquire();
-    return keeper_.takes_packet(packets_.waiting()) ? packet_pool_.try_acquire()
-                                                    : Pool<RawPacket>::Handle{};
-}
-
-void Pipeline::hand_on(const EventWindow& event_window) {
-    auto grid = grid_pool_.acquire();
-    bin_one(event_window, *grid);
-    grids_.push(std::move(grid));
-}
-
-template <typename Body>
-void Pipeline::for_each_event_window(Body body) {
-    for (EventWindow event_window; event_windows_.next(event_window) && !stop_.is_overdue();)
-        body(event_window);
-    if (event_windows_.is_past_end()) parts_.source.stop();
-}
-
-EventWindows::End Pipeline::ending() const {
-    return stop_.is_set() ? EventWindows::End::asked_for : EventWindows::End::of_source;
-}
-
-void Pipeline::cut(const RawPacket& packet) {
-    if (settings_.changes != nullptr)
-        if (const auto window = settings_.changes->take_window())
-            event_windows_.change_window(*window);
-    event_windows_.take(packet);
-}
-
-void Pipeline::keep_state(SensorTime t) {
-    const auto slicer = event_windows_.state();
-    if (!slicer)
-        throw Error(ErrorKind::input, "the state at " + std::to_string(to_us(t)) +
-                                          " us: expected events before, windows that images do "
-                                          "not cut, and a clock that did not begin anew");
-    settings_.state_stops.keep({t, *slicer, binner_.ages()});
-}
-
-void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
-    const HostTime begun = Clock::now();
-    if (event_window.reset_before || (event_window.gap_before && settings_.reset_on_gap))
-        binner_.reset();
-    binner_.process(event_window, grid);
-    grid.images = counters_.bin.images.value();
-    if (counters_.bin.event_windows.value() == 0)
-        counters_.bin.begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
-    counters_.bin.event_windows.add();
-    counters_.bin.silent_windows.add(event_window.events.empty() ? 1 : 0);
-    counters_.bin.window_begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
-    counters_.bin.window_end_us.set(std::uint64_t(to_us(event_window.window.end)));
-    counters_.bin.work.record(Clock::now() - begun);
-}
-
-void Pipeline::encode_one(const VoxelGrid& grid, Encoded& encoded) {
-    const HostTime begun = Clock::now();
-    if (grid.reset_before || (grid.gap_before && settings_.reset_on_gap)) {
-        parts_.encoder.reset();
-        counters_.encode.state_resets.add();
-    }
-    LatentMap& latent = encoded.latent;
-    parts_.encoder.encode(grid, latent);
-    if (settings_.events_per_pixel) count_events(grid, latent.events_per_pixel);
-    if (settings_.event_preview) sum_polarities(grid, encoded.event_preview);
-    counters_.encode.encoded.add();
-    const HostTime::duration work = Clock::now() - begun;
-    counters_.encode.work.record(work);
-    keeper_.window_took(work);
-}
-
-void Pipeline::present_one(const Encoded& encoded) {
-    if (!output_.take(encoded)) stop();
-}
-
-Encoded Pipeline::make_encoded() const {
-    Encoded encoded;
-    encoded.latent = parts_.encoder.make_output();
-    const SensorInfo& info = parts_.source.info();
-    if (settings_.event_preview) encoded.event_preview = Array2<float>(info.height, info.width);
-    if (settings_.events_per_pixel)
-        encoded.latent.events_per_pixel = Array2<float>(info.height, info.width);
-    return encoded;
-}
-
 // ---- starting, ending, failing ---------------------------------------------------------------
 
 void Pipeline::run() {
@@ -242,7 +139,7 @@ void Pipeline::run() {
         std::jthread reading, binning, encoding;
         start(reading, "eventide-read", &Pipeline::read, packets_);
         // A thread that is not there takes nothing: what is meant for it goes home here, so that
-        // who sends it does not wait for ever.
+        // its sender does not wait for ever.
         if (!start(binning, "eventide-bin", &Pipeline::bin, grids_))
             while (packets_.pop()) continue;
         if (!start(encoding, "eventide-encode", &Pipeline::encode, latents_))
@@ -302,6 +199,13 @@ bool Pipeline::start(std::jthread& thread, const char* name, void (Pipeline::*wo
     });
     if (!started) out.close();
     return started;
+}
+
+template <typename Body>
+void Pipeline::for_each_event_window(Body body) {
+    for (EventWindow event_window; event_windows_.next(event_window) && !stop_.is_overdue();)
+        body(event_window);
+    if (event_windows_.is_past_end()) parts_.source.stop();
 }
 
 /// Runs `body` on every item. After an error it still empties the link, so that buffers go home and

@@ -1,14 +1,12 @@
 // Reconstructor for Python.
 #include "python/arrays.h"
 #include "python/parts.h"
+#include "python/reconstructor_options.h"
 #include "src/core/arithmetic_words.h"
-
-#include <eventide/error.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -22,21 +20,6 @@ namespace py = pybind11;
 
 namespace {
 
-using Size = std::optional<std::pair<int, int>>;
-using Roi = std::optional<std::array<int, 4>>;
-
-FrameSize size_of(const Size& size, const Roi& roi, FrameSize otherwise = {}) {
-    if (size) {
-        otherwise = {size->first, size->second, {}};
-        if (otherwise.width < 1 || otherwise.height < 1)
-            throw Error(ErrorKind::usage, "size: expected (width, height) of at least 1, found (" +
-                                              std::to_string(size->first) + ", " +
-                                              std::to_string(size->second) + ")");
-    }
-    if (roi) otherwise.region = {(*roi)[0], (*roi)[1], (*roi)[2], (*roi)[3]};
-    return otherwise;
-}
-
 /// With the size of its options, which render() starts from.
 struct SizedReconstructor : GuardedReconstructor {
     SizedReconstructor(const std::string& model, int width, int height,
@@ -44,14 +27,6 @@ struct SizedReconstructor : GuardedReconstructor {
         : GuardedReconstructor(model, width, height, options), size(options.size) {}
     FrameSize size;
 };
-
-/// A number of frames per second, or a text as the library takes it.
-std::string rate_of(const py::handle& fps) {
-    if (py::isinstance<py::str>(fps)) return fps.cast<std::string>();
-    if (PyFloat_Check(fps.ptr()) || (PyIndex_Check(fps.ptr()) && !PyBool_Check(fps.ptr())))
-        return py::str(fps);
-    throw py::type_error("fps: expected int, float or str, found " + std::string(py::repr(fps)));
-}
 
 std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int width, int height,
                                          std::string window, int lookahead, const py::object& fps,
@@ -161,14 +136,18 @@ void add_events_in(Class& it) {
         .def(
             "reset",
             [](SizedReconstructor& self) { self.with([](Reconstructor& r) { r.reset(); }); },
-            "As constructed: a new stream begins.")
-        .def(
-            "state",
-            [](SizedReconstructor& self) {
-                const auto state = self.with([](Reconstructor& r) { return r.state(); });
-                return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
-            },
-            "What the network remembers of the scene, as bytes for restore().")
+            "As constructed: a new stream begins.");
+}
+
+template <typename Class>
+void add_state(Class& it) {
+    it.def(
+          "state",
+          [](SizedReconstructor& self) {
+              const auto state = self.with([](Reconstructor& r) { return r.state(); });
+              return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
+          },
+          "What the network remembers of the scene, as bytes for restore().")
         .def(
             "restore",
             [](SizedReconstructor& self, std::string_view state) {
@@ -228,64 +207,21 @@ void add_frames_out(Class& it) {
 
 }  // namespace
 
-ReconstructorOptions options_of(const py::dict& given) {
-    ReconstructorOptions options;
-    Size size;
-    Roi roi;
-    for (const auto& [key, value] : given) {
-        const auto name = key.cast<std::string>();
-        if (name == "window")
-            options.window = cast_to<std::string>("window", value);
-        else if (name == "lookahead")
-            options.lookahead = cast_to<int>("lookahead", value);
-        else if (name == "fps")
-            options.fps = rate_of(value);
-        else if (name == "size")
-            size = cast_to<Size>("size", value);
-        else if (name == "roi")
-            roi = cast_to<Roi>("roi", value);
-        else if (name == "sigma")
-            options.sigma = cast_to<bool>("sigma", value);
-        else if (name == "hot_pixels")
-            options.hot_pixels = cast_to<std::filesystem::path>("hot_pixels", value).string();
-        else if (name == "noise_filter")
-            options.noise_filter = cast_to<std::string>("noise_filter", value);
-        else if (name == "precision")
-            options.precision =
-                option_word("precision", cast_to<std::string>("precision", value), kPrecisionWords);
-        else if (name == "kernels")
-            options.kernels =
-                option_word("kernels", cast_to<std::string>("kernels", value), kKernelWords);
-        else if (name == "threads")
-            options.threads = cast_to<int>("threads", value);
-        else if (name == "reset_on_gap")
-            options.reset_on_gap = cast_to<bool>("reset_on_gap", value);
-        else if (name == "allow_silence")
-            options.allow_silence = cast_to<bool>("allow_silence", value);
-        else
-            throw Error(ErrorKind::usage, "expected an option of Reconstructor, found " + name);
-    }
-    options.size = size_of(size, roi);
-    return options;
-}
-
 void add_reconstructor(py::module_& module) {
     add_frame(module);
     add_iterator(module);
     const py::class_<GuardedReconstructor> guarded(module, "_Guarded");
     py::class_<SizedReconstructor, GuardedReconstructor> it(
         module, "Reconstructor",
-        "Events in, frames with uncertainty out.\n\n"
+        "Events in, frames with uncertainty out.\n"
+        "\n"
         "model is a name (default, small, thesis) or a file, width and height the sensor's.\n"
         "window: how events are cut (model, auto, 50ms, 20000ev, 0.35epp); lookahead: windows a\n"
         "frame waits for, 0 to 2; fps: rate of frames() and next(), a number or a text such as\n"
-        "'30000/1001' or 'frame'; size: (width, height) of the frames; roi: (x, y, width, height) "
-        "of the "
-        "part\n"
+        "'30000/1001' or 'frame'; size: (width, height) of the frames; roi: (x, y, width, "
+        "height) of the part\n"
         "wanted; hot_pixels: off, learn or a file; noise_filter: model, auto, off or a time "
-        "(\"10ms\"); "
-        "precision: auto, f32, bf16; kernels: auto, "
-        "own,\n"
+        "(\"10ms\"); precision: auto, f32, bf16; kernels: auto, own,\n"
         "onednn; threads: 0 for all. For recordings window='auto', lookahead=2 is better.");
     it.def(py::init(&make), py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("window") = "model", py::arg("lookahead") = 0, py::arg("fps") = "30",
@@ -294,6 +230,7 @@ void add_reconstructor(py::module_& module) {
            py::arg("precision") = "auto", py::arg("kernels") = "auto", py::arg("threads") = 0,
            py::arg("reset_on_gap") = false, py::arg("allow_silence") = false);
     add_events_in(it);
+    add_state(it);
     add_frames_out(it);
 }
 

@@ -3,7 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/core/whole_sensor.h"
-#include "src/io/hdf5/hdf5_file.h"
+#include "src/io/hdf5/hdf5_handle.h"
 #include "src/io/hdf5/hdf5_library.h"
 #include "src/io/system_words.h"
 

@@ -1,6 +1,8 @@
 // stream of events -> event windows: consecutive windows (begin, end] without holes.
 #pragma once
 
+#include "src/binning/pending_events.h"
+#include "src/binning/silence_tracker.h"
 #include "src/binning/slicer_settings.h"
 #include "src/binning/tile_activity.h"
 #include "src/core/frame_data.h"
@@ -26,7 +28,7 @@ struct SlicerCounters {
 /// Give it what the stream says, then take event windows until there is none:
 ///
 ///     slicer.push(events);
-///     for (EventWindow event window; slicer.next(event window);) ...
+///     for (EventWindow event_window; slicer.next(event_window);) ...
 ///
 /// A window is cut at T when the stream is past T. However the stream is split into calls, the
 /// event windows are the same (with the exception that SlicerSettings::silent_windows states).
@@ -96,56 +98,37 @@ public:
     void restore(const State& state);
 
 private:
-    /// Where time went back: events from `index` on are a new stream; the old one ends at `final`.
-    struct Seam {
-        std::size_t index;
-        SensorTime final;
-    };
-    /// Between two times that were told one after the other, far enough apart for a wide window.
-    struct Hush {
-        SensorTime begin, end;
-    };
-    void note_heard(SensorTime t);
-    SensorTime told_after(SensorTime edge) const;
+    void adopt(const SlicerSettings& settings);
     void push_one(const Event& event);
     void begin_at(SensorTime begin);
     std::optional<SensorTime> end_after_reset(SensorTime final, SensorTime begin) const;
     void note_time(SensorTime t);
-    void drop_consumed();
-    bool is_ended() const { return finished_ || past_end_ || !seams_.empty(); }
+    void emit(SensorTime end, EventWindow& event_window);
+    void begin_next_segment();
+
+    // Where the open event window ends.
+    bool is_ended() const { return finished_ || past_end_ || pending_.segment_has_ended(); }
     SensorTime passed() const;
-    std::size_t segment_end() const;
     std::optional<SensorTime> cut();
     std::optional<SensorTime> next_reference();
     std::optional<SensorTime> busy_at();
     SensorTime natural_edge() const;
-    SensorTime stretched(SensorTime edge, SensorTime passed, SensorTime limit) const;
-    void emit(SensorTime end, EventWindow& event_window);
-    void cross_seam();
-    void look_again();
-    void adopt(const SlicerSettings& settings);
+    SensorTime widened(SensorTime edge, SensorTime known_until, SensorTime limit) const;
 
     int width_, height_;  // px
     SlicerSettings settings_;
     SensorDuration step_;        // width of a window without events
     std::uint64_t most_events_;  // per window
 
-    TileActivity activity_;  // rule content: of the open window's first scanned_ events
-    std::size_t scanned_ = 0;
-    std::optional<SensorTime> busy_;  // rule content: when the tiles had seen enough
-
-    std::vector<Event> pending_;  // from head_ on not yet in a event window
-    std::size_t head_ = 0;
-    std::vector<Seam> seams_;
+    PendingEvents pending_;
+    TileActivity activity_;  // rule content: of the open window
+    SilenceTracker silence_;
     std::vector<SensorTime> references_;  // ascending
     std::optional<SensorTime> begin_;     // of the open window
     SensorTime origin_{};                 // rule duration: edges are at origin_ + k width
     SensorTime newest_ = SensorTime::min(), newest_event_ = SensorTime::min();
-    std::uint64_t same_time_ = 0;           // events at newest_event_
-    int silent_ = 0;                        // empty windows in a row
-    SensorTime heard_ = SensorTime::min();  // told last, by whatever
-    std::vector<Hush> hushes_;              // that may concern the open window or later ones
-    bool hears_apart_ = false;              // by hear(), not by what is pushed
+    std::uint64_t same_time_ = 0;  // events at newest_event_
+    bool hears_apart_ = false;     // hear() tells the time, not push()
     HostTime arrived_{};
     bool gap_ = false, reset_ = false, anew_ = false, finished_ = false, past_end_ = false;
     bool first_stream_ = true;       // settings_.begin and end are times of the first stream only

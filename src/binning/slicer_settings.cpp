@@ -1,10 +1,11 @@
-// "--window": text <-> settings.
+// What settings mean for a sensor, and "--window": text <-> settings.
 #include "src/binning/slicer_settings.h"
 
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -25,6 +26,12 @@ constexpr double kContentEventsPerPixel = 0.5;
         "window '" + std::string{text} + "': " + why +
             "; expected for example auto, 50ms, 20000ev, 0.35epp, aps, or with a maximum width "
             "20000ev,200ms");
+}
+
+void require(bool good, const char* name, std::int64_t found) {
+    if (!good)
+        throw Error(ErrorKind::usage, std::string{"event windows: "} + name +
+                                          " must be at least 1, found " + std::to_string(found));
 }
 
 struct Quantity {
@@ -85,6 +92,29 @@ void parse_rule(std::string_view rule, std::string_view text, SlicerSettings& se
 }
 
 }  // namespace
+
+void check_slicer_settings(const SlicerSettings& settings, int width, int height) {
+    require(width >= 1 && height >= 1, "the sensor's size", std::min(width, height));
+    const SensorDuration widest = natural_width(settings);
+    require(widest >= SensorDuration{1}, "the (maximum) width in us", widest.count());
+    const std::uint64_t events = events_per_window(settings, width, height);
+    require(events >= 1, "the number of events", std::int64_t(events));
+    require(settings.silent_windows >= 1, "silent_windows", settings.silent_windows);
+}
+
+SensorDuration natural_width(const SlicerSettings& settings) {
+    return settings.rule == WindowRule::duration ? settings.width : settings.max_width;
+}
+
+std::uint64_t events_per_window(const SlicerSettings& settings, int width, int height) {
+    if (settings.rule != WindowRule::count) return settings.max_events;
+    const double pixels = double(width) * double(height);
+    const std::uint64_t wanted =
+        settings.events_per_pixel > 0
+            ? std::uint64_t(std::llround(std::max(1.0, settings.events_per_pixel * pixels)))
+            : settings.events;
+    return std::min(wanted, settings.max_events);
+}
 
 SlicerSettings parse_window(std::string_view text) {
     SlicerSettings settings;

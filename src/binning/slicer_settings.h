@@ -56,6 +56,15 @@ struct SlicerSettings {
     std::optional<SensorDuration> duration{};
 };
 
+/// Throws Error (usage) naming what is out of range, for a sensor of width x height px.
+void check_slicer_settings(const SlicerSettings& settings, int width, int height);
+
+/// The width of an event window that no event, image or end of the stream ends before.
+SensorDuration natural_width(const SlicerSettings& settings);
+
+/// An event window ends early after so many events.
+std::uint64_t events_per_window(const SlicerSettings& settings, int width, int height);
+
 /// "50ms", "20000ev", "0.35epp" (events per pixel) or "aps" (reference images); durations in us,
 /// ms or s; after a comma the maximum width: "20000ev,200ms". Throws Error (usage).
 SlicerSettings parse_window(std::string_view text);

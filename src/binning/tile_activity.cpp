@@ -18,6 +18,13 @@ TileActivity::TileActivity(double events_per_pixel, int width, int height)
     enough_ = std::min(tiles, std::max(2, tiles / 16));
 }
 
+std::optional<SensorTime> TileActivity::busy_at(std::span<const Event> window) noexcept {
+    for (; !busy_at_ && counted_ < window.size(); ++counted_)
+        if (add(window[counted_])) busy_at_ = window[counted_].t;
+    return busy_at_;
+}
+
+/// Whether the sensor is busy with this event.
 bool TileActivity::add(const Event& event) noexcept {
     if (event.x >= width_ || event.y >= height_) return false;
     const auto tile = std::size_t(event.y / kSide * columns_ + event.x / kSide);
@@ -28,6 +35,8 @@ bool TileActivity::add(const Event& event) noexcept {
 void TileActivity::reset() noexcept {
     std::ranges::fill(count_, 0U);
     full_tiles_ = 0;
+    counted_ = 0;
+    busy_at_.reset();
 }
 
 }  // namespace eventide

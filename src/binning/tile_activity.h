@@ -4,7 +4,10 @@
 
 #include "src/core/event.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace eventide {
@@ -19,15 +22,21 @@ public:
     /// Sensor of width x height px.
     TileActivity(double events_per_pixel, int width, int height);
 
-    /// Whether the sensor is busy with this event. Events outside the sensor count nowhere.
-    bool add(const Event& event) noexcept;
+    /// The time of the event with which the sensor became busy; empty: not yet. `window`: the
+    /// events of the open event window, of which those of the calls before are not counted again.
+    /// Events outside the sensor count nowhere.
+    std::optional<SensorTime> busy_at(std::span<const Event> window) noexcept;
 
-    void reset() noexcept;
+    void reset() noexcept;  ///< another event window is open
 
 private:
+    bool add(const Event& event) noexcept;
+
     int width_ = 0, height_ = 0, columns_ = 0;
     int full_tiles_ = 0, enough_ = 1;
     std::vector<std::uint32_t> count_, full_;  // per tile: events so far, events that fill it
+    std::size_t counted_ = 0;                  // of the window's events
+    std::optional<SensorTime> busy_at_;
 };
 
 }  // namespace eventide

@@ -10,7 +10,7 @@
 
 namespace eventide {
 
-/// A event window that outlives the slicer's next call.
+/// An event window that outlives the slicer's next call.
 struct Kept {
     std::int64_t begin_us, end_us;
     std::vector<Event> events;

@@ -2,94 +2,39 @@
 #include "apps/cli/commands/bench_command.h"
 
 #include "apps/bench/stage_table.h"
+#include "apps/cli/bench/bench_table.h"
 #include "apps/cli/bench/report.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/words.h"
 #include "apps/cli/version.h"
-#include "apps/evaluate/plot.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
-#include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
-#include <map>
 
 namespace eventide::app {
 
 namespace {
 
-void print_table(const std::vector<BenchRow>& rows) {
-    std::printf("%-12s %-28s %-10s %11s %9s %9s %7s %16s %8s\n", "model", "engine", "sensor",
-                "events/s", "ms/window", "ms/frame", "x real", "latency p50/p99", "MSE");
-    for (const BenchRow& row : rows)
-        std::printf("%-12s %-28s %-10s %11.0f %9.2f %9.2f %7.2f %8.1f/%-7.1f %8.4f\n",
-                    printable(row.model).c_str(), row.engine.c_str(), show_size(row.sensor).c_str(),
-                    row.event_rate, row.encode_ms, row.render_ms, row.times_real_time,
-                    row.latency_p50_ms, row.latency_p99_ms, row.mse);
-}
-
-std::string json_of(const std::vector<bench::StageRow>& stages,
-                    const std::vector<bench::ActivityRow>& activity, const bench::Peaks& peaks,
-                    const std::vector<BenchRow>& rows) {
-    nlohmann::ordered_json json;
-    json["machine"] = processor_text();
-    json["program"] = "eventide " + version() + ", " + compiler_text();
-    json["stages"] = bench::stages_json(stages, peaks);
-    json["activity"] = bench::activity_json(activity);
-    json["rows"] = nlohmann::ordered_json::array();
-    for (const BenchRow& row : rows)
-        json["rows"].push_back({{"model", row.model},
-                                {"engine", row.engine},
-                                {"width", row.sensor.width},
-                                {"height", row.sensor.height},
-                                {"events_per_s", row.event_rate},
-                                {"encode_ms", row.encode_ms},
-                                {"render_ms", row.render_ms},
-                                {"times_real_time", row.times_real_time},
-                                {"latency_p50_ms", row.latency_p50_ms},
-                                {"latency_p99_ms", row.latency_p99_ms},
-                                {"mse", row.mse}});
-    return json_text(json) + "\n";
-}
-
-/// Error over work, one line per sensor size.
-Plot plot_of(const std::vector<BenchRow>& rows) {
-    Plot plot{.name = "bench",
-              .title = "Error against work per event window and frame",
-              .x_label = "ms",
-              .y_label = "MSE",
-              .log_x = true};
-    std::map<std::string, Series> by_size;
-    for (const BenchRow& row : rows) {
-        Series& series = by_size[show_size(row.sensor)];
-        series.label = show_size(row.sensor);
-        series.x.push_back(row.encode_ms + row.render_ms);
-        series.y.push_back(row.mse);
-    }
-    for (auto& [size, series] : by_size) plot.series.push_back(std::move(series));
-    return plot;
+std::string case_name(const std::string& model, const std::string& precision,
+                      const std::string& size) {
+    return model + " " + precision + " " + size;
 }
 
 }  // namespace
 
 std::string BenchCommand::examples() const {
     return "First the stages alone, one thread, nothing beside them, everything moving: median "
-           "and "
-           "quartiles of processor time; share: useful products a second over the core's own "
-           "peak, "
-           "of encoding, a fresh frame, another frame of the same window. Then the pipeline. "
-           "ms/window: the network per event window of 50 ms, ms/frame: rendering one frame "
-           "(medians); "
-           "x real: sensor time over host time as fast as possible; latency at the pace of the "
-           "camera, "
-           "from the last packet a frame saw to the frame written.\n"
+           "and quartiles of processor time; share: useful products a second over the core's own "
+           "peak, of encoding, a fresh frame, another frame of the same window. Then the "
+           "pipeline. ms/window: the network per event window of 50 ms, ms/frame: rendering one "
+           "frame (medians); x real: sensor time over host time as fast as possible; latency at "
+           "the pace of the camera, from the last packet a frame saw to the frame written.\n"
            "Examples:\n"
            "  eventide bench\n"
            "  eventide bench --stages --sizes 240x180 --lookahead 0\n"
@@ -101,6 +46,12 @@ std::string BenchCommand::examples() const {
 
 SettingTable BenchCommand::settings() {
     SettingTable table{"bench", "eventide bench: speed against error.", {}};
+    add_measured(table);
+    add_outputs(table);
+    return table;
+}
+
+void BenchCommand::add_measured(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(text_setting("scene", settings_.scene, "NAME", "Scene of the simulated recordings."));
     add(list_setting("sizes", settings_.sizes, "WxH", "Sensor sizes, any number of times."));
@@ -133,6 +84,10 @@ SettingTable BenchCommand::settings() {
         0, 1));
     add(whole_setting("repetitions", settings_.repetitions, "N", "Of each stage.",
                       bench::kLeastRepetitions, 1'000'000));
+}
+
+void BenchCommand::add_outputs(SettingTable& table) {
+    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(text_setting("json", json_, "FILE", "Also as JSON."));
     add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
     add(text_setting("report", report_, "FOLDER",
@@ -145,7 +100,6 @@ SettingTable BenchCommand::settings() {
     add(text_setting("peers", peers_, "FILE",
                      "With --report: other networks, as bench_peers --table measured them."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
-    return table;
 }
 
 BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& data,
@@ -182,15 +136,6 @@ void BenchCommand::name_bench_files(NamedFiles& files) const {
     files.writes_when_done("--json", json_);
 }
 
-namespace {
-
-std::string what_of(const std::string& model, const std::string& precision,
-                    const std::string& size) {
-    return model + " " + precision + " " + size;
-}
-
-}  // namespace
-
 template <typename Measure>
 void BenchCommand::for_each_stage(const std::string& what, Program& program,
                                   const Measure& measure) const {
@@ -203,7 +148,7 @@ void BenchCommand::for_each_stage(const std::string& what, Program& program,
         for (const std::string& name : settings_.models)
             for (const std::string& precision : settings_.precisions) {
                 if (program.signals.stopping()) return;
-                progress.show(0, what + " of " + what_of(name, precision, text));
+                progress.show(0, what + " of " + case_name(name, precision, text));
                 const std::filesystem::path file = find_model(name);
                 const bench::StageSettings settings =
                     settings_.stage(size, parse_word(precision, kPrecisionWords));
@@ -244,7 +189,7 @@ std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
         for (const std::string& model : settings_.models)
             for (const std::string& precision : settings_.precisions) {
                 if (program.signals.stopping()) return rows;
-                progress.show(0, what_of(model, precision, size));
+                progress.show(0, case_name(model, precision, size));
                 rows.push_back(
                     measure(data, model, parse_word(precision, kPrecisionWords), program));
             }
@@ -289,10 +234,11 @@ int BenchCommand::run(Program& program) {
                     settings_.threads == 0 ? "all" : std::to_string(settings_.threads).c_str(),
                     settings_.seconds);
         rows = measure_pipelines(program);
-        print_table(rows);
+        print_bench_table(rows);
     }
-    if (!json_.empty()) write_file(json_, json_of(stages, activity, peaks, rows), overwrite_);
-    if (!plots_.empty()) spdlog::info("{}", write_plot(plot_of(rows), plots_, overwrite_).string());
+    if (!json_.empty()) write_file(json_, bench_json(stages, activity, peaks, rows), overwrite_);
+    if (!plots_.empty())
+        spdlog::info("{}", write_plot(bench_plot(rows), plots_, overwrite_).string());
     return exit_done;
 }
 

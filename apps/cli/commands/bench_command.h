@@ -4,6 +4,7 @@
 #include "apps/bench/activity.h"
 #include "apps/bench/stages.h"
 #include "apps/cli/bench/bench_settings.h"
+#include "apps/cli/bench/bench_table.h"
 #include "apps/cli/command.h"
 #include "apps/cli/commands/recording_in_memory.h"
 #include "apps/cli/settings/run_settings.h"
@@ -14,18 +15,6 @@
 #include <vector>
 
 namespace eventide::app {
-
-/// One line of the table.
-struct BenchRow {
-    std::string model, engine;
-    Size sensor;
-    double event_rate = 0;       ///< per second of sensor time
-    double encode_ms = 0;        ///< per event window, median
-    double render_ms = 0;        ///< per frame, median
-    double times_real_time = 0;  ///< sensor time over host time, everything included
-    double latency_p50_ms = 0, latency_p99_ms = 0;  ///< at the pace of the camera
-    double mse = 0;                                 ///< against the truth at the frames' times
-};
 
 class BenchCommand : public Command {
 public:
@@ -38,6 +27,8 @@ public:
     int run(Program& program) override;
 
 private:
+    void add_measured(SettingTable& table);
+    void add_outputs(SettingTable& table);
     /// Calls measure(name, model, windows, settings) for each size, model and precision.
     template <typename Measure>
     void for_each_stage(const std::string& what, Program& program, const Measure& measure) const;

@@ -1,6 +1,7 @@
 // SINK on the command line becomes a sink of frames.
 #include "apps/cli/run/open_sinks.h"
 
+#include "apps/cli/run/sink_geometry.h"
 #include "apps/cli/settings/sink_name.h"
 #include "pipeline/ros2/ros2_sink.h"
 #include "pipeline/sinks/contact_sheet.h"
@@ -33,31 +34,6 @@ std::unique_ptr<Sink> open_folder(const std::string& path, const RunSettings& se
                        settings.events, plan.questions.lost, plan.questions.run_json});
 }
 
-ShownPart part_of_sensor(const Region& region, const Size& frame) {
-    const double width = frame.width, height = frame.height;
-    return {region.x / width, region.y / height,
-            (region.width > 0 ? region.width : frame.width - region.x) / width,
-            (region.height > 0 ? region.height : frame.height - region.y) / height};
-}
-
-/// Of the frames that sinks see: the contact sheet those that are rendered, the others those that
-/// are cropped and flipped, beside events that are only flipped.
-ShownPart shown_part(const RunSettings& settings, const SinkPlan& plan, bool rendered) {
-    const Size frame = settings.size.of(plan.sensor);
-    const Region asked = settings.region.value_or(Region{});
-    if (rendered)
-        return part_of_sensor(
-            plan.undistortion && settings.region ? plan.undistortion->source : asked, frame);
-    ShownPart part = part_of_sensor(asked, frame);
-    const double x = double(settings.adjust.crop_px) / frame.width,
-                 y = double(settings.adjust.crop_px) / frame.height;
-    part = {part.left + x, part.top + y, part.width - 2 * x, part.height - 2 * y};
-    const Flip flip = settings.adjust.flip;
-    if (flip == Flip::horizontal || flip == Flip::both) part.left = 1 - part.left - part.width;
-    if (flip == Flip::vertical || flip == Flip::both) part.top = 1 - part.top - part.height;
-    return part;
-}
-
 std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& settings,
                                  const SinkPlan& plan) {
     if (path.ends_with(".mkv"))
@@ -65,7 +41,7 @@ std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& set
     return std::make_unique<VideoSink>(
         VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
                       settings.video_preset, settings.video_crf, plan.fps, settings.slow,
-                      settings.events, shown_part(settings, plan, false)});
+                      settings.events, shown_part(settings, plan.sensor)});
 }
 
 std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
@@ -93,7 +69,7 @@ std::unique_ptr<Sink> open_window(const RunSettings& settings, const SinkPlan& p
     window.speed_changed = plan.questions.speed_changed;
     window.give_up = plan.questions.stopping;
     window.events = settings.events;
-    window.part = shown_part(settings, plan, false);
+    window.part = shown_part(settings, plan.sensor);
     return std::make_unique<WindowSink>(std::move(window));
 }
 
@@ -141,22 +117,6 @@ std::unique_ptr<Sink> open_page(const std::string& address, const RunSettings& s
     return sink;
 }
 
-/// Crop and flip are made before the sink sees the frame; the contact sheet alone sees it without.
-ImageGeometry geometry_of(const RunSettings& settings, const SinkPlan& plan) {
-    ImageGeometry geometry;
-    const Size whole = settings.size.of(plan.sensor);
-    geometry.width = whole.width;
-    geometry.height = whole.height;
-    if (settings.region) {
-        geometry.left = settings.region->x;
-        geometry.top = settings.region->y;
-    }
-    geometry.left += settings.adjust.crop_px;
-    geometry.top += settings.adjust.crop_px;
-    geometry.flip = settings.adjust.flip;
-    return geometry;
-}
-
 std::unique_ptr<Sink> open_ros2(const std::string& name, const RunSettings& settings,
                                 const SinkPlan& plan) {
     const Uncertainty how = settings.uncertainty;
@@ -178,7 +138,7 @@ std::unique_ptr<Sink> open_ros2(const std::string& name, const RunSettings& sett
         ros2.calibration = undistorted_sensor(*plan.undistortion);
     }
     ros2.with_sigma = how != Uncertainty::none;
-    ros2.geometry = geometry_of(settings, plan);
+    ros2.geometry = image_geometry(settings, plan.sensor);
     ros2.live = plan.live;
     ros2.give_up = plan.questions.stopping;
     ros2.say = [](const std::string& text) { spdlog::info("{}", text); };
@@ -195,7 +155,7 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.sigma_white = float(settings.sigma_white);
     sheet.rows = settings.sheet_rows;
     sheet.truth_caption = plan.reference_caption;
-    sheet.part = shown_part(settings, plan, true);
+    sheet.part = rendered_part(settings, plan.sensor, plan.undistortion);
     if (plan.references != nullptr)
         sheet.draw_truth = [references = plan.references, sensor = plan.sensor](
                                SensorTime t, const Window& window, cv::Mat& image) {

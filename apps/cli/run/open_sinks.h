@@ -46,8 +46,7 @@ bool is_contact_sheet(const std::string& sink);
 bool is_http(const std::string& sink);
 
 /// Opens all of settings.out, with undistortion and the look controls in front of all but the
-/// contact sheet. Throws
-/// Error (usage) for what names no sink or contradicts --uncertainty.
+/// contact sheet. Throws Error (usage) for what names no sink or contradicts --uncertainty.
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan);
 
 }  // namespace eventide::app

@@ -1,19 +1,15 @@
 // One run of the pipeline.
 #include "apps/cli/run/run.h"
 
-#include "apps/cli/commands/disorder.h"
 #include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/state/run_state.h"
-#include "pipeline/filters/event_filter.h"
 #include "pipeline/first_error.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
-
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -83,10 +79,6 @@ std::unique_ptr<OutputFile> stats_of(const RunSettings& settings, OutputOptions 
                                         std::move(options));
 }
 
-std::string dropped_text(std::uint64_t images) {
-    return images == 0 ? "" : "; " + std::to_string(images) + " came too late or were too many";
-}
-
 }  // namespace
 
 Run::Run(Program& program, RunSettings& settings)
@@ -128,22 +120,38 @@ Run::Run(Program& program, RunSettings& settings)
     }
     if (state_) resume();
     if (!settings.states_out.empty()) check_stream_state(settings, "--states-out", live());
-    if (opened_.recording != nullptr && span_.begin) {
+    go_to_begin();
+    open_outputs();
+    make_pipeline();
+}
+
+/// Of a recording: where the asked span begins.
+void Run::go_to_begin() {
+    Recording* const recording = opened_.recording;
+    if (recording == nullptr) return;
+    if (span_.begin) {
         if (!filters_.empty())
-            if (const auto first = first_event_of(settings, live())) filters_.count_from(*first);
-        opened_.recording->seek(*span_.begin);
+            if (const auto first = first_event_of(settings_, live())) filters_.count_from(*first);
+        recording->seek(*span_.begin);
     }
-    if (opened_.recording != nullptr && opened_.recording->size_bytes() > 0)
-        bytes_to_read_ = opened_.recording->size_bytes() - opened_.recording->position_bytes();
-    const OutputOptions growing{.overwrite = settings.overwrite,
-                                .appears = Appears::growing,
-                                .give_up = [&program] { return program.signals.stopping(); }};
-    recorded_ = recorder_of(settings, *opened_.source, growing);
-    events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get(), growing);
+    if (recording->size_bytes() > 0)
+        bytes_to_read_ = recording->size_bytes() - recording->position_bytes();
+}
+
+void Run::open_outputs() {
+    const OutputOptions growing{
+        .overwrite = settings_.overwrite,
+        .appears = Appears::growing,
+        .give_up = [&program = program_] { return program.signals.stopping(); }};
+    recorded_ = recorder_of(settings_, *opened_.source, growing);
+    events_out_ = events_out_of(settings_, sensor_, colour_filter_, span_, filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
-    if (!settings.states_out.empty()) std::filesystem::create_directories(settings.states_out);
-    stats_ = stats_of(settings, growing);  // last: it may lie in a folder that a sink makes
+    if (!settings_.states_out.empty()) std::filesystem::create_directories(settings_.states_out);
+    stats_ = stats_of(settings_, growing);  // last: it may lie in a folder that a sink makes
+}
+
+void Run::make_pipeline() {
     try {
         pipeline_.emplace(parts(), pipeline_settings());
         pipeline_made_ = true;
@@ -188,38 +196,6 @@ Snapshot Run::counters() const {
     return now;
 }
 
-/// Goes on where another run stopped: the networks, and where it was kept also the stream.
-void Run::resume() {
-    restore_state(*std::exchange(state_, std::nullopt), settings_.state_in, network_,
-                  colour_ ? &*colour_ : nullptr);
-    if (!resumed_) return;
-    const auto require = [this](const char* option, const std::string& kept,
-                                const std::string& found) {
-        if (kept != found)
-            throw Error(ErrorKind::input, settings_.state_in +
-                                              ": expected the state of a run with " + option + ' ' +
-                                              found + ", found that of one with " + kept);
-    };
-    require("--window", resumed_->window, window_text(slicer_));
-    require("--noise-filter", resumed_->noise_filter,
-            noise_filter_of(settings_, network_.config()));
-    NoiseFilter* const noise = noise_filter_in(filter_.get());
-    if (resumed_->noise.has_value() != (noise != nullptr))
-        throw Error(ErrorKind::input,
-                    settings_.state_in + ": expected what the noise filter knows");
-    if (noise != nullptr) noise->restore(*resumed_->noise);
-}
-
-void Run::keep_state(const PipelineState& memory) {
-    StreamState state{memory, std::nullopt, window_text(slicer_),
-                      noise_filter_of(settings_, network_.config())};
-    if (const NoiseFilter* const noise = noise_filter_in(filter_.get()))
-        state.noise = noise->state();
-    TensorFile file = state_of(network_, nullptr);
-    put_stream_state(state, sensor_.width, file);
-    write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);
-}
-
 RunProgress Run::progress() const {
     RunProgress progress;
     progress.elapsed = std::chrono::steady_clock::now() - begun_;
@@ -247,35 +223,10 @@ int Run::run() {
     if (!settings_.state_out.empty())
         write_safetensors(settings_.state_out, state_of(network_, colour_ ? &*colour_ : nullptr),
                           settings_.overwrite);
-    const RunProgress end = status.finish();
-    const Snapshot end_counters = counters();
-    const CameraCounters camera = camera_counters();
-    spdlog::info("{}{}", summary_text(end_counters, end), camera_text(camera));
-    if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
-    if (const std::string why = disorder_text(settings_.source, sensor_.format, end_counters.events,
-                                              end_counters.damaged);
-        !why.empty())
-        spdlog::warn("{}", why);
-    if (states_ < states_at_.size() && !program_.signals.stopping())
-        throw Error(ErrorKind::input, "--states-at: expected " + std::to_string(states_at_.size()) +
-                                          " times before the last event, found " +
-                                          std::to_string(states_));
-    if (const std::string why = why_no_frames(end_counters);
-        !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
-        spdlog::warn("{}", why);
-    if (render_.fused() != nullptr && render_.fused()->used() > 0)
-        spdlog::info("frames corrected by {} of the camera's images{}", render_.fused()->used(),
-                     dropped_text(render_.dropped_images()));
-    else if (settings_.frames == CameraFrames::use)
-        spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
-                     end_counters.images);
-    const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
-    if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
-    const bool lost = lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0;
-    return settings_.strict && lost ? exit_data_lost : exit_done;
+    return report(status.finish());
 }
 
-/// Also when it fails, what arrived until then is a whole recording; so is one of two files when
+/// Also when it fails, what has arrived by then is a whole recording; so is one of two files when
 /// the other fails.
 void Run::run_pipeline() {
     FirstError error;
@@ -287,11 +238,6 @@ void Run::run_pipeline() {
         if (events_out_) events_out_->finish();
     });
     error.rethrow_if_any();
-}
-
-CameraCounters Run::camera_counters() const {
-    const auto* camera = dynamic_cast<const Camera*>(opened_.source.get());
-    return camera == nullptr ? CameraCounters{} : camera->counters();
 }
 
 }  // namespace eventide::app

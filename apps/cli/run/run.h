@@ -40,6 +40,10 @@ public:
     int run();
 
 private:
+    void go_to_begin();
+    void open_outputs();
+    void make_pipeline();
+    int report(const RunProgress& end) const;
     Source& source();
     bool live() const { return opened_.source->is_live(); }
     /// A camera, or a recording as if a camera gave it.

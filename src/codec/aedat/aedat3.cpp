@@ -124,48 +124,50 @@ void Aedat3Parser::take_event(const std::byte* record, Batch& into) {
     if (const auto newest = validator_.newest_us()) move_clock(*newest);
 }
 
-/// Like take_event() for each, with one look per record as long as nothing is wrong.
+/// Takes records up to `end`, or up to the first that is not plain, which it returns: like
+/// take_event() for each, with one look per record. The first one's stamp is plain.
+const std::byte* Aedat3Parser::take_plain_events(const std::byte* record, const std::byte* end,
+                                                 Batch& into) {
+    const auto width = std::uint32_t(validator_.width()),
+               height = std::uint32_t(validator_.height());
+    const std::size_t before = into.events.size();
+    into.events.resize(before + std::size_t(end - record) / Aedat3Packet::kPolarityBytes);
+    Event* out = into.events.data() + before;
+    // Above kLastStamp nothing is plain, so stamps need no look of their own.
+    std::int64_t newest = *validator_.newest_us() - base_us_;
+    for (; record < end; record += Aedat3Packet::kPolarityBytes) {
+        const PolarityWord word{load_little<std::uint32_t>(record)};
+        const std::int64_t stamp = load_little<std::uint32_t>(record + 4);
+        // Not &&: six branches a record cost more than six comparisons.
+        const int plain = int(word.is_valid()) & int(word.x() < width) & int(word.y() < height) &
+                          int(stamp >= newest) & int(stamp <= std::int64_t(kLastStamp)) &
+                          int(stamp - newest <= EventValidator::kLongestStep);
+        if (plain == 0) break;
+        *out++ = {from_us(base_us_ + stamp), std::uint16_t(word.x()), std::uint16_t(word.y()),
+                  Polarity(word.is_on())};
+        newest = stamp;
+    }
+    into.events.resize(std::size_t(out - into.events.data()));
+    validator_.pass(base_us_ + newest);
+    move_clock(base_us_ + newest);
+    return record;
+}
+
 void Aedat3Parser::take_many_events(std::span<const std::byte> records, Batch& into) {
     constexpr std::size_t kBytes = Aedat3Packet::kPolarityBytes;
     constexpr std::size_t kBlock = 512;  // records: bounds what a damaged one makes us do again
-    const std::byte* p = records.data();
-    const std::byte* const end = p + records.size();
-    const auto width = std::uint32_t(validator_.width()),
-               height = std::uint32_t(validator_.height());
-    while (p < end) {
-        const auto first_stamp = load_little<std::uint32_t>(p + 4);
-        const bool quick =
-            !lower_left_ && !was_reset_ && validator_.is_plain(base_us_ + first_stamp);
-        if (quick) {
-            const std::size_t before = into.events.size();
-            const std::size_t n = std::min(kBlock, std::size_t(end - p) / kBytes);
-            const std::byte* const block_end = p + n * kBytes;
-            into.events.resize(before + n);
-            Event* out = into.events.data() + before;
-            // Above kLastStamp nothing is plain, so stamps need no look of their own.
-            std::int64_t newest = *validator_.newest_us() - base_us_;
-            for (; p < block_end; p += kBytes) {
-                const PolarityWord word{load_little<std::uint32_t>(p)};
-                const std::int64_t stamp = load_little<std::uint32_t>(p + 4);
-                // Not &&: six branches a record cost more than six comparisons.
-                const int plain = int(word.is_valid()) & int(word.x() < width) &
-                                  int(word.y() < height) & int(stamp >= newest) &
-                                  int(stamp <= std::int64_t(kLastStamp)) &
-                                  int(stamp - newest <= EventValidator::kLongestStep);
-                if (plain == 0) break;
-                *out++ = {from_us(base_us_ + stamp), std::uint16_t(word.x()),
-                          std::uint16_t(word.y()), Polarity(word.is_on())};
-                newest = stamp;
-            }
-            into.events.resize(std::size_t(out - into.events.data()));
-            validator_.pass(base_us_ + newest);
-            move_clock(base_us_ + newest);
-            if (p == block_end) continue;
+    const std::byte* record = records.data();
+    const std::byte* const end = record + records.size();
+    while (record < end) {
+        const auto stamp = load_little<std::uint32_t>(record + 4);
+        if (!lower_left_ && !was_reset_ && validator_.is_plain(base_us_ + stamp)) {
+            const auto left = std::size_t(end - record) / kBytes;
+            const std::byte* const block_end = record + std::min(kBlock, left) * kBytes;
+            record = take_plain_events(record, block_end, into);
+            if (record == block_end) continue;
         }
-        if (p < end) {
-            take_event(p, into);
-            p += kBytes;
-        }
+        take_event(record, into);
+        record += kBytes;
     }
 }
 

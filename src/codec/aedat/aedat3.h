@@ -44,6 +44,7 @@ private:
     std::span<const std::byte> pass_over(std::span<const std::byte> bytes);
     void take(std::span<const std::byte> record, Batch& into);
     void take_many_events(std::span<const std::byte> records, Batch& into);
+    const std::byte* take_plain_events(const std::byte* record, const std::byte* end, Batch& into);
     void take_event(const std::byte* record, Batch& into);
     void take_special(const std::byte* record, Batch& into);
     void take_frame(std::span<const std::byte> record, Batch& into);

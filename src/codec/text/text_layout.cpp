@@ -3,14 +3,13 @@
 
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
+#include "src/codec/text/text_time_unit.h"
 #include "src/core/error.h"
 #include "src/core/lower_case.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -81,6 +80,15 @@ std::optional<std::array<std::int64_t, 2>> geometry_of(const Fields& fields) {
         sides[i] = *side;
     }
     return sides;
+}
+
+void check_geometry(const std::array<std::int64_t, 2>& sides, std::string_view line) {
+    const auto [least, largest] = std::ranges::minmax(sides);
+    if (least < 1 || largest > kLargestRecordedSide)
+        throw Error(ErrorKind::input,
+                    "text recording: expected a sensor's size in the line of two numbers, "
+                    "each from 1 to 65536, found \"" +
+                        std::string(line.substr(0, 60)) + "\"");
 }
 
 struct ColumnName {
@@ -185,97 +193,15 @@ TextLayout layout_guessed(const std::vector<Fields>& rows) {
     return layout_stated(best);
 }
 
-struct Times {
-    std::size_t count = 0;
-    double first = 0, last = 0;  ///< the least and the largest
-    bool points = false;         ///< written with a decimal point or an exponent
-    bool fractions = false;      ///< and not whole numbers all the same
-};
-
-bool is_whole(Decimal value) {
-    for (; value.exponent < 0 && value.digits % 10 == 0; ++value.exponent) value.digits /= 10;
-    return value.exponent >= 0;
-}
-
-/// The first time is not of the clock of the others: a 0 before times since 1970, which readers
-/// leave out as a leap.
-bool is_apart(const std::vector<double>& times) {
-    constexpr double kFar = 1e6;  // times what the others span
-    const auto [least, largest] = std::ranges::minmax_element(times.begin() + 1, times.end());
-    return std::abs(times[1] - times[0]) > kFar * (*largest - *least + 1);
-}
-
-Times times_of(const std::vector<Fields>& rows, const TextLayout& layout) {
+/// What the rows have in the column of the time.
+std::vector<std::string_view> times_in(const std::vector<Fields>& rows, const TextLayout& layout) {
     const auto column =
         std::size_t(std::find(layout.columns.begin(), layout.columns.end(), TextField::time) -
                     layout.columns.begin());
-    Times times;
-    std::vector<double> all;
-    for (const Fields& row : rows) {
-        const auto value = column < row.size() ? parse_decimal(row[column]) : std::nullopt;
-        if (!value || !scaled_integer(*value, 0)) continue;
-        times.points |= value->fractional;
-        times.fractions |= !is_whole(*value);
-        const double size = double(value->digits) * std::pow(10.0, value->exponent);
-        all.push_back(value->negative ? -size : size);
-    }
-    if (all.size() > 2 && is_apart(all)) all.erase(all.begin());
-    times.count = all.size();
-    if (all.empty()) return times;
-    const auto [least, largest] = std::ranges::minmax_element(all);
-    times.first = *least;
-    times.last = *largest;
+    std::vector<std::string_view> times;
+    for (const Fields& row : rows)
+        if (column < row.size()) times.push_back(row[column]);
     return times;
-}
-
-/// "2.5e+06 events/s"
-std::string rate_text(double rate) {
-    char text[48];
-    std::snprintf(text, sizeof text, "%.2g events/s", rate);
-    return text;
-}
-
-/// Fractions are seconds. Whole numbers are microseconds, unless no sensor sends so few or so many
-/// events in them and another unit makes sense; nanoseconds since 1970 stand out by themselves.
-/// Whole numbers with a decimal point are what numpy.savetxt() writes of microseconds.
-TextTimeUnit guess_unit(const Times& times, std::vector<std::string>& remarks) {
-    constexpr std::size_t kFewest = 100;                               // rows that tell a rate
-    constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
-    constexpr double kNanosecondsIn2001 = 1e18;
-    const double span = times.last - times.first;
-    const bool tells_rate = times.count >= kFewest && span > 0;
-    struct Unit {
-        TextTimeUnit unit;
-        const char* name;
-        double seconds;
-    };
-    constexpr std::array<Unit, 4> kUnits{{{TextTimeUnit::microseconds, "microseconds", 1e-6},
-                                          {TextTimeUnit::nanoseconds, "nanoseconds", 1e-9},
-                                          {TextTimeUnit::milliseconds, "milliseconds", 1e-3},
-                                          {TextTimeUnit::seconds, "seconds", 1}}};
-    const auto rate = [&](const Unit& unit) { return double(times.count) / (span * unit.seconds); };
-    const auto makes_sense = [&](const Unit& unit) {
-        return rate(unit) >= kSlowest && rate(unit) <= kFastest;
-    };
-    const auto remark = [&](const std::string& what, const Unit& unit, bool impossible) {
-        remarks.push_back(what + ", taken for " + unit.name + ": " + rate_text(rate(unit)) +
-                          (impossible ? ", which no sensor sends" : "") +
-                          "; --input-time-unit states the unit");
-    };
-    if (times.fractions || (times.points && !tells_rate)) {
-        if (tells_rate && !makes_sense(kUnits.back()))
-            remark("times have a decimal point", kUnits.back(), true);
-        return TextTimeUnit::seconds;
-    }
-    if (!tells_rate) return TextTimeUnit::microseconds;
-    const Unit* chosen = times.first >= kNanosecondsIn2001
-                             ? &kUnits[1]
-                             : std::find_if(kUnits.begin(), kUnits.end(), makes_sense);
-    const bool none = chosen == kUnits.end();
-    if (none) chosen = kUnits.data();
-    if (none || times.points || chosen != kUnits.data() || rate(*chosen) < kDoubtful)
-        remark("times are whole numbers", *chosen, none);
-    return chosen->unit;
 }
 
 bool is_printable(std::string_view text) {
@@ -308,19 +234,13 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     header.stream.format = "text";
     Lines lines(as_text(first_bytes));
     auto line = lines.next();
-    if (line) {
+    if (line)
         if (const auto geometry = geometry_of(split_fields(*line))) {
-            const auto [width, height] = *geometry;
-            if (std::min(width, height) < 1 || std::max(width, height) > kLargestRecordedSide)
-                throw Error(ErrorKind::input,
-                            "text recording: expected a sensor's size in the line of two numbers, "
-                            "each from 1 to 65536, found \"" +
-                                std::string(line->substr(0, 60)) + "\"");
-            header.stream.width = int(width);
-            header.stream.height = int(height);
+            check_geometry(*geometry, *line);
+            header.stream.width = int((*geometry)[0]);
+            header.stream.height = int((*geometry)[1]);
             line = lines.next();
         }
-    }
     std::optional<TextLayout> named;
     if (line && !is_row(split_fields(*line))) {
         named = layout_named(split_fields(*line));
@@ -344,7 +264,7 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
         header.layout = named ? *named : layout_guessed(rows);
     if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
     if (header.layout.unit == TextTimeUnit::automatic)
-        header.layout.unit = guess_unit(times_of(rows, header.layout), header.remarks);
+        header.layout.unit = guess_time_unit(times_in(rows, header.layout), header.remarks);
     return header;
 }
 

@@ -1,0 +1,45 @@
+// What a run takes over from an earlier one, and keeps for later ones.
+#include "apps/cli/run/run.h"
+#include "apps/cli/run/state/run_state.h"
+#include "pipeline/filters/event_filter.h"
+#include "src/core/error.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace eventide::app {
+
+/// Goes on where another run stopped: the networks, and where it was kept also the stream.
+void Run::resume() {
+    restore_state(*std::exchange(state_, std::nullopt), settings_.state_in, network_,
+                  colour_ ? &*colour_ : nullptr);
+    if (!resumed_) return;
+    const auto require = [this](const char* option, const std::string& kept,
+                                const std::string& found) {
+        if (kept != found)
+            throw Error(ErrorKind::input, settings_.state_in +
+                                              ": expected the state of a run with " + option + ' ' +
+                                              found + ", found that of one with " + kept);
+    };
+    require("--window", resumed_->window, window_text(slicer_));
+    require("--noise-filter", resumed_->noise_filter,
+            noise_filter_of(settings_, network_.config()));
+    NoiseFilter* const noise = noise_filter_in(filter_.get());
+    if (resumed_->noise.has_value() != (noise != nullptr))
+        throw Error(ErrorKind::input,
+                    settings_.state_in + ": expected what the noise filter knows");
+    if (noise != nullptr) noise->restore(*resumed_->noise);
+}
+
+void Run::keep_state(const PipelineState& memory) {
+    StreamState state{memory, std::nullopt, window_text(slicer_),
+                      noise_filter_of(settings_, network_.config())};
+    if (const NoiseFilter* const noise = noise_filter_in(filter_.get()))
+        state.noise = noise->state();
+    TensorFile file = state_of(network_, nullptr);
+    put_stream_state(state, sensor_.width, file);
+    write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);
+}
+
+}  // namespace eventide::app

@@ -1,0 +1,78 @@
+// Options of a Reconstructor by name, size and rate.
+#include "python/reconstructor_options.h"
+
+#include "python/parts.h"
+#include "src/core/arithmetic_words.h"
+
+#include <eventide/error.h>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+
+namespace eventide::python {
+
+namespace py = pybind11;
+
+FrameSize size_of(const Size& size, const Roi& roi, FrameSize otherwise) {
+    if (size) {
+        otherwise = {size->first, size->second, {}};
+        if (otherwise.width < 1 || otherwise.height < 1)
+            throw Error(ErrorKind::usage, "size: expected (width, height) of at least 1, found (" +
+                                              std::to_string(size->first) + ", " +
+                                              std::to_string(size->second) + ")");
+    }
+    if (roi) otherwise.region = {(*roi)[0], (*roi)[1], (*roi)[2], (*roi)[3]};
+    return otherwise;
+}
+
+std::string rate_of(const py::handle& fps) {
+    if (py::isinstance<py::str>(fps)) return fps.cast<std::string>();
+    if (PyFloat_Check(fps.ptr()) || (PyIndex_Check(fps.ptr()) && !PyBool_Check(fps.ptr())))
+        return py::str(fps);
+    throw py::type_error("fps: expected int, float or str, found " + std::string(py::repr(fps)));
+}
+
+ReconstructorOptions options_of(const py::dict& given) {
+    ReconstructorOptions options;
+    Size size;
+    Roi roi;
+    for (const auto& [key, value] : given) {
+        const auto name = key.cast<std::string>();
+        if (name == "window")
+            options.window = cast_to<std::string>("window", value);
+        else if (name == "lookahead")
+            options.lookahead = cast_to<int>("lookahead", value);
+        else if (name == "fps")
+            options.fps = rate_of(value);
+        else if (name == "size")
+            size = cast_to<Size>("size", value);
+        else if (name == "roi")
+            roi = cast_to<Roi>("roi", value);
+        else if (name == "sigma")
+            options.sigma = cast_to<bool>("sigma", value);
+        else if (name == "hot_pixels")
+            options.hot_pixels = cast_to<std::filesystem::path>("hot_pixels", value).string();
+        else if (name == "noise_filter")
+            options.noise_filter = cast_to<std::string>("noise_filter", value);
+        else if (name == "precision")
+            options.precision =
+                option_word("precision", cast_to<std::string>("precision", value), kPrecisionWords);
+        else if (name == "kernels")
+            options.kernels =
+                option_word("kernels", cast_to<std::string>("kernels", value), kKernelWords);
+        else if (name == "threads")
+            options.threads = cast_to<int>("threads", value);
+        else if (name == "reset_on_gap")
+            options.reset_on_gap = cast_to<bool>("reset_on_gap", value);
+        else if (name == "allow_silence")
+            options.allow_silence = cast_to<bool>("allow_silence", value);
+        else
+            throw Error(ErrorKind::usage, "expected an option of Reconstructor, found " + name);
+    }
+    options.size = size_of(size, roi);
+    return options;
+}
+
+}  // namespace eventide::python

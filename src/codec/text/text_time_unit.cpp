@@ -1,0 +1,114 @@
+// Times and their rate -> the unit that makes most sense of them.
+#include "src/codec/text/text_time_unit.h"
+
+#include "src/codec/text/text_number.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace eventide {
+namespace {
+
+constexpr std::size_t kFewestRows = 100;                           // that tell a rate
+constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
+constexpr double kNanosecondsIn2001 = 1e18;
+
+struct Unit {
+    TextTimeUnit unit;
+    const char* name;
+    double seconds;
+};
+constexpr Unit kMicroseconds{TextTimeUnit::microseconds, "microseconds", 1e-6};
+constexpr Unit kNanoseconds{TextTimeUnit::nanoseconds, "nanoseconds", 1e-9};
+constexpr Unit kMilliseconds{TextTimeUnit::milliseconds, "milliseconds", 1e-3};
+constexpr Unit kSeconds{TextTimeUnit::seconds, "seconds", 1};
+/// The first that makes sense is meant.
+constexpr std::array kByLikelihood{kMicroseconds, kNanoseconds, kMilliseconds, kSeconds};
+
+struct Times {
+    std::size_t count = 0;
+    double least = 0, largest = 0;
+    bool points = false;     ///< written with a decimal point or an exponent
+    bool fractions = false;  ///< and not whole numbers all the same
+
+    bool tell_rate() const { return count >= kFewestRows && largest > least; }
+    double rate(const Unit& unit) const {  ///< events/s
+        return double(count) / ((largest - least) * unit.seconds);
+    }
+    bool make_sense(const Unit& unit) const {
+        return rate(unit) >= kSlowest && rate(unit) <= kFastest;
+    }
+};
+
+bool is_whole(Decimal value) {
+    for (; value.exponent < 0 && value.digits % 10 == 0; ++value.exponent) value.digits /= 10;
+    return value.exponent >= 0;
+}
+
+/// The first time is not of the clock of the others: a 0 before times since 1970, which readers
+/// leave out as a leap.
+bool is_apart(const std::vector<double>& times) {
+    constexpr double kFar = 1e6;  // times what the others span
+    const auto [least, largest] = std::ranges::minmax_element(times.begin() + 1, times.end());
+    return std::abs(times[1] - times[0]) > kFar * (*largest - *least + 1);
+}
+
+Times read_times(std::span<const std::string_view> texts) {
+    Times times;
+    std::vector<double> all;
+    for (const std::string_view text : texts) {
+        const auto value = parse_decimal(text);
+        if (!value || !scaled_integer(*value, 0)) continue;
+        times.points |= value->fractional;
+        times.fractions |= !is_whole(*value);
+        const double size = double(value->digits) * std::pow(10.0, value->exponent);
+        all.push_back(value->negative ? -size : size);
+    }
+    if (all.size() > 2 && is_apart(all)) all.erase(all.begin());
+    times.count = all.size();
+    if (all.empty()) return times;
+    const auto [least, largest] = std::ranges::minmax_element(all);
+    times.least = *least;
+    times.largest = *largest;
+    return times;
+}
+
+/// "times are whole numbers, taken for seconds: 2.5e+06 events/s; ..."
+std::string remark_on(const std::string& what, const Times& times, const Unit& unit,
+                      bool impossible) {
+    char rate[48];
+    std::snprintf(rate, sizeof rate, "%.2g events/s", times.rate(unit));
+    return what + ", taken for " + unit.name + ": " + rate +
+           (impossible ? ", which no sensor sends" : "") + "; --input-time-unit states the unit";
+}
+
+/// Of whole numbers; null: none makes sense.
+const Unit* likeliest_unit(const Times& times) {
+    if (times.least >= kNanosecondsIn2001) return &kNanoseconds;
+    for (const Unit& unit : kByLikelihood)
+        if (times.make_sense(unit)) return &unit;
+    return nullptr;
+}
+
+}  // namespace
+
+TextTimeUnit guess_time_unit(std::span<const std::string_view> texts,
+                             std::vector<std::string>& remarks) {
+    const Times times = read_times(texts);
+    if (times.fractions || (times.points && !times.tell_rate())) {
+        if (times.tell_rate() && !times.make_sense(kSeconds))
+            remarks.push_back(remark_on("times have a decimal point", times, kSeconds, true));
+        return TextTimeUnit::seconds;
+    }
+    if (!times.tell_rate()) return TextTimeUnit::microseconds;
+    const Unit* const likeliest = likeliest_unit(times);
+    const Unit& unit = likeliest != nullptr ? *likeliest : kMicroseconds;
+    if (likeliest == nullptr || times.points || unit.unit != TextTimeUnit::microseconds ||
+        times.rate(unit) < kDoubtful)
+        remarks.push_back(remark_on("times are whole numbers", times, unit, likeliest == nullptr));
+    return unit.unit;
+}
+
+}  // namespace eventide
