@@ -46,7 +46,9 @@ public:
     bool read(Batch& batch) override;
 
     /// Every event before this time has been read: what Reconstructor::advance() wants, so that
-    /// frames go on while nothing moves. Empty before the first data.
+    /// frames go on while nothing moves. Empty before the first data. In a camera's silence the
+    /// host's clock goes on for it; should it have stood still meanwhile (a sender that was
+    /// paused), this goes back to where it is, and a Reconstructor begins anew a second later.
     std::optional<SensorTime> clock() const override;
 
     /// Whether data were lost before the newest batch: what Reconstructor::mark_gap() wants.
