@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ struct CameraSettings {
     /// none.
     std::filesystem::path file;
     bool reconnect = false;  ///< wait for an unplugged camera to come back
+    /// Called every 20 ms or so while a topic's first message is waited for: what it throws comes
+    /// out of the constructor. May be empty.
+    std::function<void()> while_waiting{};
 };
 
 /// A camera that sends events from the first read() on. Thread: one at a time, stop() excepted.
