@@ -271,7 +271,9 @@ int Run::run() {
                      end_counters.images);
     const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
     if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
-    const bool lost = lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0;
+    const std::uint64_t late_triggers = say_what_was_moved();
+    const bool lost =
+        lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0 || late_triggers > 0;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
 
@@ -287,6 +289,19 @@ void Run::run_pipeline() {
         if (events_out_) events_out_->finish();
     });
     error.rethrow_if_any();
+}
+
+/// Of the files of data that the run wrote. Returns how many triggers are not at their own time.
+std::uint64_t Run::say_what_was_moved() const {
+    std::uint64_t late = 0;
+    const auto say = [&](const std::string& file, const WrittenTimes* times) {
+        if (times == nullptr) return;
+        for (const std::string& remark : times->remarks(file)) spdlog::warn("{}", remark);
+        late += times->late_triggers();
+    };
+    if (recorded_) say(settings_.record, recorded_->times());
+    if (events_out_) say(settings_.events_out, &events_out_->times());
+    return late;
 }
 
 CameraCounters Run::camera_counters() const {
