@@ -185,6 +185,8 @@ Snapshot Run::counters() const {
     Snapshot now = pipeline_->snapshot();
     now.events += filters_.left_out();
     now.filtered_events += filters_.left_out();
+    now.used_images = render_.used_images();
+    now.dropped_images = render_.dropped_images();
     return now;
 }
 
@@ -263,9 +265,9 @@ int Run::run() {
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);
-    if (render_.fused() != nullptr && render_.fused()->used() > 0)
-        spdlog::info("frames corrected by {} of the camera's images{}", render_.fused()->used(),
-                     dropped_text(render_.dropped_images()));
+    if (end_counters.used_images > 0)
+        spdlog::info("frames corrected by {} of the camera's images{}", end_counters.used_images,
+                     dropped_text(end_counters.dropped_images));
     else if (settings_.frames == CameraFrames::use)
         spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
                      end_counters.images);
