@@ -20,7 +20,11 @@ std::unique_ptr<Camera> open(const std::string& name, const CameraSettings& sett
                                               name);
         return open_simulation(name);
     }
-    return open_camera(name, {settings.file, settings.reconnect, {}});
+    const auto give_up = [&] {
+        if (settings.while_waiting) settings.while_waiting();
+        return false;
+    };
+    return open_camera(name, {settings.file, settings.reconnect, give_up});
 }
 
 }  // namespace

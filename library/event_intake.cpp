@@ -5,7 +5,6 @@
 #include "src/binning/noise_filter.h"
 #include "src/core/error.h"
 
-#include <chrono>
 #include <string>
 #include <utility>
 
@@ -32,24 +31,24 @@ EventIntake::EventIntake(const SlicerSettings& settings, int width, int height,
       filter_(std::move(filter)),
       counters_(counters) {}
 
-void EventIntake::push(std::span<const Event> events) {
+void EventIntake::push(std::span<const Event> events, HostTime arrived) {
     check_open("push");
-    take(events, StepBack::is_disorder);
+    take(events, StepBack::is_disorder, arrived);
     note_cut();
 }
 
-void EventIntake::push(const Batch& batch) {
+void EventIntake::push(const Batch& batch, HostTime arrived) {
     check_open("push");
     for (const ReferenceImage& image : batch.images)
         if (is_far(image.t))
             ++counters_.bad_time;
         else
             slicer_.push_reference(image.t);
-    take(batch.events, StepBack::is_new_clock);
+    take(batch.events, StepBack::is_new_clock, arrived);
     note_cut();
 }
 
-void EventIntake::take(std::span<const Event> events, StepBack step_back) {
+void EventIntake::take(std::span<const Event> events, StepBack step_back, HostTime arrived) {
     counters_.events += events.size();
     taken_.clear();
     for (const Event& event : events) {
@@ -61,16 +60,16 @@ void EventIntake::take(std::span<const Event> events, StepBack step_back) {
         newest_ = event.t;
         taken_.push_back(event);
     }
-    const auto now = std::chrono::steady_clock::now();
-    if (!filter_ || taken_.empty()) return slicer_.push(taken_, now);
+    if (!taken_.empty()) slicer_.look_behind(taken_.back().t, arrived);
+    if (!filter_ || taken_.empty()) return slicer_.push(taken_, arrived);
     // Events that are left out tell the time all the same.
     const SensorTime newest = taken_.back().t;
     const std::size_t before = taken_.size();
     slicer_.hear(taken_);
     filter_->process(taken_);
     counters_.filtered += before - taken_.size();
-    slicer_.push(taken_, now);
-    slicer_.advance(newest, now);
+    slicer_.push(taken_, arrived);
+    slicer_.advance(newest, arrived);
 }
 
 bool EventIntake::is_sound(const Event& event) {
@@ -88,14 +87,14 @@ bool EventIntake::is_sound(const Event& event) {
 void EventIntake::advance(SensorTime now) {
     check_open("advance");
     check_time(now, "advance");
-    slicer_.advance(now, std::chrono::steady_clock::now());
+    slicer_.advance(now, Clock::now());
 }
 
 void EventIntake::finish(std::optional<SensorTime> end) {
     if (finished_) return;
     if (end) check_time(*end, "finish");
     // A stream without any event has no frames, even though its clock ran.
-    if (end && slicer_.has_begun()) slicer_.advance(*end, std::chrono::steady_clock::now());
+    if (end && slicer_.has_begun()) slicer_.advance(*end, Clock::now());
     slicer_.finish();
     finished_ = true;
 }

@@ -16,12 +16,16 @@ namespace eventide {
 /// Adds to the counters of whoever owns it; everything is borrowed but the filter.
 class EventIntake {
 public:
+    using Clock = HostTime::clock;
+
     /// `filter` may be null.
     EventIntake(const SlicerSettings& settings, int width, int height,
                 std::unique_ptr<EventFilter> filter, ReconstructorCounters& counters);
 
-    void push(std::span<const Event> events);  ///< a step back in time is disorder
-    void push(const Batch& batch);             ///< a step back in time is a new clock
+    /// A step back in time is disorder.
+    void push(std::span<const Event> events, HostTime arrived = Clock::now());
+    /// A step back in time is a new clock.
+    void push(const Batch& batch, HostTime arrived = Clock::now());
     void advance(SensorTime now);
     void mark_gap() noexcept { slicer_.mark_gap(); }
     void finish(std::optional<SensorTime> end);
@@ -31,7 +35,7 @@ public:
 
 private:
     enum class StepBack { is_disorder, is_new_clock };
-    void take(std::span<const Event> events, StepBack step_back);
+    void take(std::span<const Event> events, StepBack step_back, HostTime arrived);
     bool is_sound(const Event& event);
     void check_open(const char* what) const;
     void note_cut();

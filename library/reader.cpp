@@ -19,6 +19,7 @@ OpenOptions open_options(const ReaderOptions& options) {
     open.format = options.format;
     open.width = options.width;
     open.height = options.height;
+    open.while_waiting = options.while_waiting;
     return open;
 }
 

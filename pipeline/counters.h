@@ -50,7 +50,10 @@ struct Snapshot {
     std::uint64_t frames = 0;          ///< written
     std::uint64_t skipped_frames = 0;  ///< a live source, and rendering could not keep up
     std::uint64_t broken_frames = 0;   ///< not finite, not written; the run ends with the first
-    SensorTime newest_frame{};         ///< t of the last one written; valid where frames > 0
+    /// The camera's images: that corrected frames; that came too late for it, or were too many. Set
+    /// by whoever has the stage (ModelRenderStage).
+    std::uint64_t used_images = 0, dropped_images = 0;
+    SensorTime newest_frame{};  ///< t of the last one written; valid where frames > 0
 
     LatencySummary latency;        ///< from the last packet a frame saw to the frame written
     LatencySummary bin, encode;    ///< work per event window

@@ -17,8 +17,7 @@ EventWindows::EventWindows(const Source& source, const Settings& settings, Event
       observer_(observer),
       counters_(counters),
       live_(source.is_live()),
-      silence_margin_(settings.silence_margin),
-      most_behind_(settings.most_behind) {}
+      silence_margin_(settings.silence_margin) {}
 
 void EventWindows::take(const RawPacket& packet) {
     if (packet.gap_before) note_gap(packet.reopened);
@@ -129,20 +128,12 @@ void EventWindows::advance_in_silence(HostTime now) {
     if (!live_ || !clock_) return;
     const auto silent = std::chrono::duration_cast<SensorDuration>(now - clock_arrived_);
     if (silent <= silence_margin_) return;
-    promised_ = *clock_ + silent - silence_margin_;
-    slicer_.advance(*promised_, now);
+    slicer_.advance(*clock_ + silent - silence_margin_, now);
 }
 
-/// What was only on its way for long (a stalled network) catches up at once.
 void EventWindows::look_behind(HostTime arrived) {
     const auto clock = parser_->clock();
-    if (!promised_ || !clock) return;
-    if (*promised_ - *clock <= most_behind_) return behind_since_.reset();
-    if (!behind_since_) behind_since_ = arrived;
-    if (arrived - *behind_since_ < most_behind_) return;
-    slicer_.begin_anew();
-    promised_.reset();
-    behind_since_.reset();
+    if (live_ && clock) slicer_.look_behind(*clock, arrived);
 }
 
 }  // namespace eventide

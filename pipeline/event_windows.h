@@ -28,10 +28,6 @@ public:
         /// what is still on its way from the camera is not late. Cameras hold back few events for
         /// some milliseconds.
         SensorDuration silence_margin{30'000};
-        /// A source that stood still (a recording somewhere that was paused) never catches up with
-        /// what the host's clock told meanwhile: one that is more than `most_behind` behind it for
-        /// as long goes on where it is, as if its clock had been reset.
-        SensorDuration most_behind{1'000'000};
     };
 
     /// filter and observer may be null; both are borrowed.
@@ -76,12 +72,10 @@ private:
     std::function<void(SensorTime)> at_stop_;
     std::vector<Event> part_;  // of a batch, up to a stop
     const bool live_;
-    const SensorDuration silence_margin_, most_behind_;
-    std::optional<SensorTime> clock_;       // the newest the stream told
-    HostTime clock_arrived_{};              // when it did
-    std::optional<SensorTime> promised_;    // in silence, by the host's clock
-    std::optional<HostTime> behind_since_;  // the stream is far behind that
-    std::optional<HostTime> last_data_;     // when bytes last came
+    const SensorDuration silence_margin_;
+    std::optional<SensorTime> clock_;    // the newest the stream told
+    HostTime clock_arrived_{};           // when it did
+    std::optional<HostTime> last_data_;  // when bytes last came
 };
 
 }  // namespace eventide

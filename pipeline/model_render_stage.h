@@ -2,6 +2,7 @@
 // given.
 #pragma once
 
+#include "pipeline/counters.h"
 #include "pipeline/images_on_the_way.h"
 #include "pipeline/stages.h"
 #include "src/model/render/fused_renderer.h"
@@ -32,19 +33,28 @@ public:
     void push(const LatentMap& latent) noexcept override {
         renderer_.push(latent);
         if (!fused_) return;
-        while (auto image = images_->take(latent.images))
-            if (!latent.reset_before) fused_->give(std::move(*image));  // else of the old clock
+        while (auto image = images_->take(latent.images)) {
+            if (latent.reset_before)
+                of_old_clock_.add();
+            else
+                fused_->give(std::move(*image));
+        }
         fused_->push(latent.window, latent.events_per_pixel);
+        note_images();
     }
     void finish() noexcept override { renderer_.finish(); }
     void reset() noexcept override {
         renderer_.reset();
-        if (fused_) fused_->reset();
+        if (!fused_) return;
+        fused_->reset();
+        note_images();
     }
     void render(SensorTime t, const Window& window, Frame& frame) noexcept override {
         // The stream's first frame may stand at the first window's begin, which is outside it.
         request_.t = std::max(t, window.begin + SensorDuration{1});
-        fused_ ? fused_->render(request_, frame) : renderer_.render(request_, frame);
+        if (!fused_) return renderer_.render(request_, frame);
+        fused_->render(request_, frame);
+        note_images();
     }
     bool change_lookahead(int lookahead) override {
         request_.lookahead = lookahead;
@@ -63,16 +73,24 @@ public:
 
     /// After the run; null where no images are taken.
     const FusedRenderer* fused() const { return fused_ ? &*fused_ : nullptr; }
-    /// After the run: images that corrected nothing.
+    /// Thread: any. Images that corrected frames, and those that came too late for it, or were too
+    /// many to be kept.
+    std::uint64_t used_images() const { return used_.value(); }
     std::uint64_t dropped_images() const {
-        return fused_ ? images_->dropped() + fused_->dropped() : 0;
+        return fused_ ? images_->dropped() + dropped_.value() + of_old_clock_.value() : 0;
     }
 
 private:
+    void note_images() noexcept {
+        used_.set(fused_->used());
+        dropped_.set(fused_->dropped());
+    }
+
     Renderer& renderer_;
     RenderRequest request_;
     ImagesOnTheWay* images_ = nullptr;
     std::optional<FusedRenderer> fused_;
+    Counter used_, dropped_, of_old_clock_;  // images
 };
 
 }  // namespace eventide

@@ -27,6 +27,12 @@ void check_signals() {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
+/// Of a library that waits without Python's lock.
+void hear_signals() {
+    const py::gil_scoped_acquire locked;
+    check_signals();
+}
+
 template <typename T>
 void check_free(const Source<T>& source) {
     if (source.running)
@@ -124,12 +130,12 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
 void add_reader(py::module_& module) {
     add_source<EventReader>(module, "Reader",
                             "A recording; iterate it for structured arrays (t, x, y, on).")
-        .def(py::init(
-                 [](const std::filesystem::path& path, std::string format, int width, int height) {
-                     const py::gil_scoped_release released;
-                     return std::make_unique<Source<EventReader>>(
-                         path.string(), ReaderOptions{std::move(format), width, height});
-                 }),
+        .def(py::init([](const std::filesystem::path& path, std::string format, int width,
+                         int height) {
+                 const py::gil_scoped_release released;
+                 return std::make_unique<Source<EventReader>>(
+                     path.string(), ReaderOptions{std::move(format), width, height, hear_signals});
+             }),
              py::arg("path"), py::arg("format") = "", py::arg("width") = 0, py::arg("height") = 0)
         .def_property_readonly(
             "remarks", [](Source<EventReader>& s) { return s.it.remarks(); },
@@ -161,12 +167,12 @@ void add_reader(py::module_& module) {
 void add_camera(py::module_& module) {
     add_source<EventCamera>(module, "Camera",
                             "A camera; iterate it for structured arrays (t, x, y, on).")
-        .def(
-            py::init([](const std::string& name, const std::filesystem::path& settings) {
-                const py::gil_scoped_release released;
-                return std::make_unique<Source<EventCamera>>(name, CameraSettings{settings, false});
-            }),
-            py::arg("name"), py::arg("settings") = "")
+        .def(py::init([](const std::string& name, const std::filesystem::path& settings) {
+                 const py::gil_scoped_release released;
+                 return std::make_unique<Source<EventCamera>>(
+                     name, CameraSettings{settings, false, hear_signals});
+             }),
+             py::arg("name"), py::arg("settings") = "")
         .def_property_readonly(
             "gap_before",
             [](Source<EventCamera>& s) {

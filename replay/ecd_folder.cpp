@@ -4,6 +4,7 @@
 #include "replay/image_file.h"
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
+#include "src/core/error.h"
 #include "src/io/input_file.h"
 
 #include <algorithm>
@@ -41,6 +42,8 @@ std::vector<std::vector<std::string>> read_table(const fs::path& path) {
     std::vector<std::vector<std::string>> table;
     std::error_code none;
     if (!fs::exists(path, none)) return table;
+    if (!fs::is_regular_file(path, none))
+        throw Error(ErrorKind::input, path.string() + ": expected a file, found something else");
     std::ifstream file = open_to_read(path);
     for (std::string line; std::getline(file, line);) {
         if (is_comment(line)) continue;

@@ -165,9 +165,15 @@ constexpr char kHdf5Magic[] = "\x89HDF\r\n\x1A\n", kBagMagic[] = "#ROSBAG V2.0",
 constexpr FormatHolds kOnlyEvents{};
 constexpr FormatHolds kEventsAndImages{true, true};
 constexpr FormatHolds kEventsAndTriggers{true, false, false, true};
-constexpr FormatHolds kEverything{true, true, true, true};
-constexpr FormatHolds kAedat4Holds{true, true, true, true,
-                                   [](const Trigger& t) { return aedat4_trigger_number(t) >= 0; }};
+constexpr FormatHolds kEverything{
+    .events = true, .images = true, .imu = true, .triggers = true, .clock_resets = true};
+constexpr FormatHolds kAedat4Holds{
+    .events = true,
+    .images = true,
+    .imu = true,
+    .triggers = true,
+    .trigger = [](const Trigger& t) { return aedat4_trigger_number(t) >= 0; },
+    .clock_resets = true};
 constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds, true};
 
 // Formats that say what they are come first, text last.

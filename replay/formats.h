@@ -24,6 +24,8 @@ struct FormatHolds {
     bool (*trigger)(const Trigger&) = nullptr;
     /// Its records share one clock: a trigger that comes behind later events has their time.
     bool in_time_order = false;
+    /// Events may step back where the sensor's clock began anew: its readers see a new stream.
+    bool clock_resets = false;
 };
 
 struct DataCounts {

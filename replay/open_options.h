@@ -17,6 +17,9 @@ struct OpenOptions {
     bool dvs128_one_is_on = false;
     /// Asked every 20 ms while a pipe has no bytes yet: true ends the opening with Error (failed).
     std::function<bool()> give_up{};
+    /// Called every 20 ms while a pipe has no bytes, later ones too: what it throws comes out of
+    /// the opening or of read(), which may then be called again.
+    std::function<void()> while_waiting{};
 };
 
 }  // namespace eventide

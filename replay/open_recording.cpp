@@ -135,7 +135,7 @@ std::unique_ptr<FileRecording> open_as_stream(ByteFile file, std::vector<std::by
 }
 
 std::unique_ptr<Recording> open_file(const std::string& path, const OpenOptions& options) {
-    ByteFile file(path);
+    ByteFile file(path, options.while_waiting);
     std::vector<std::byte> head = read_head(file, options);
     const Format& format = choose_format(file, head, options);
     if (format.open_path != nullptr) return open_by_path(file, format, options);
@@ -144,7 +144,7 @@ std::unique_ptr<Recording> open_file(const std::string& path, const OpenOptions&
 
 std::unique_ptr<FileRecording> open_events_of(const std::string& folder,
                                               const OpenOptions& options) {
-    ByteFile file((std::filesystem::path(folder) / "events.txt").string());
+    ByteFile file((std::filesystem::path(folder) / "events.txt").string(), options.while_waiting);
     std::vector<std::byte> head = read_head(file, options);
     const Format& format = choose_format(file, head, options);
     return open_as_stream(std::move(file), std::move(head), format, options);

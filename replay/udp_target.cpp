@@ -28,7 +28,7 @@ UdpTarget::UdpTarget(const std::string& to, const StreamHeader& header)
 }
 
 const FormatHolds& UdpTarget::holds() const {
-    static const FormatHolds only_events{};
+    static const FormatHolds only_events{.clock_resets = true};
     return only_events;
 }
 

@@ -57,9 +57,9 @@ std::vector<std::size_t> scored_images(const ReferenceSequence& sequence,
 
 SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence sequence,
                                  const std::string& window, const ScoredImages& which) {
+    std::optional<NoiseFilter> filter;
     if (evaluation.noise_filter())
-        NoiseFilter{sequence.width, sequence.height, *evaluation.noise_filter()}.process(
-            sequence.events);
+        filter.emplace(sequence.width, sequence.height, *evaluation.noise_filter());
     const std::vector<std::size_t> scored = scored_images(sequence, which);
     SequenceEvaluation judged{
         evaluation,
@@ -80,10 +80,12 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
         give_until(event_window.window.end);
         judged.run().push(event_window);
     };
-    if (window == "reference")
+    if (window == "reference") {
+        if (filter) filter->process(sequence.events);
         for_each_reference_window(sequence, push);
-    else
-        for_each_cut_window(sequence, window, push);
+    } else {
+        for_each_cut_window(sequence, window, filter ? &*filter : nullptr, push);
+    }
     ask_until(SensorTime::max());
     SequenceResult result = judged.finish();
     if (sequence.damaged.total() > 0)

@@ -2,6 +2,7 @@
 #include "apps/evaluate/reference_sequence.h"
 
 #include "replay/formats.h"
+#include "src/binning/noise_filter.h"
 #include "src/binning/slicer.h"
 #include "src/core/error.h"
 #include "src/core/grey.h"
@@ -150,14 +151,24 @@ void for_each_reference_window(const ReferenceSequence& sequence,
 }
 
 void for_each_cut_window(const ReferenceSequence& sequence, const std::string& window,
-                         const std::function<void(const EventWindow&)>& use) {
+                         NoiseFilter* filter, const std::function<void(const EventWindow&)>& use) {
     Slicer slicer{parse_window(window), sequence.width, sequence.height};
     for (const ReferenceImage& image : sequence.images) slicer.push_reference(image.t);
     constexpr std::size_t kAtATime = 1 << 16;
     const std::span<const Event> events{sequence.events};
+    std::vector<Event> left;
     EventWindow event_window;
     for (std::size_t at = 0; at < events.size(); at += kAtATime) {
-        slicer.push(events.subspan(at, std::min(kAtATime, events.size() - at)));
+        const auto some = events.subspan(at, std::min(kAtATime, events.size() - at));
+        if (filter == nullptr) {
+            slicer.push(some);
+        } else {  // events that are left out tell the time all the same
+            left.assign(some.begin(), some.end());
+            slicer.hear(some);
+            filter->process(left);
+            slicer.push(left);
+            slicer.advance(some.back().t);
+        }
         while (slicer.next(event_window)) use(event_window);
     }
     SensorTime end = sequence.images.back().t;

@@ -16,6 +16,8 @@
 
 namespace eventide {
 
+class NoiseFilter;
+
 struct ReferenceSequence {
     std::string name;  ///< of the folder or file
     int width = 0, height = 0;
@@ -52,8 +54,9 @@ Array2<float> intensity_of(const ReferenceImage& image);
 void for_each_reference_window(const ReferenceSequence& sequence,
                                const std::function<void(const EventWindow&)>& use);
 
-/// Event windows as `window` says (slicer_settings.h).
+/// Event windows as `window` says (slicer_settings.h), of what the filter leaves, as the pipeline
+/// cuts them. Null: of all.
 void for_each_cut_window(const ReferenceSequence& sequence, const std::string& window,
-                         const std::function<void(const EventWindow&)>& use);
+                         NoiseFilter* filter, const std::function<void(const EventWindow&)>& use);
 
 }  // namespace eventide

@@ -1,4 +1,4 @@
-// eventide-mean-models: the mean of models of one shape as a model.
+// eventide-mean-models: the mean of models with the same options as a model.
 #include "apps/train/mean_of_models.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
@@ -14,8 +14,8 @@ using namespace eventide;
 
 constexpr const char* kUsage =
     "eventide-mean-models OUT CARD (MODEL WEIGHT)...\n"
-    "The mean of models of one shape, by weights that add up to 1; CARD is what the new model's\n"
-    "card says.\n";
+    "The mean of models with the same options, by weights that add up to 1; CARD is what the new\n"
+    "model's card says.\n";
 
 double number(const std::string& text) {
     const auto value = number_in<double>(text);

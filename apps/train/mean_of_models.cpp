@@ -1,6 +1,7 @@
 #include "apps/train/mean_of_models.h"
 
 #include "src/core/error.h"
+#include "src/model/model_metadata.h"
 
 #include <cmath>
 #include <cstddef>
@@ -18,18 +19,26 @@ void check_weights(const std::vector<WeightedModel>& models) {
                     "expected weights that add up to 1, found " + std::to_string(sum));
 }
 
-void check_shapes(const std::vector<WeightedModel>& models) {
-    const auto shape = expected_tensors(models.front().model.config);
-    for (const WeightedModel& one : models)
-        if (expected_tensors(one.model.config) != shape)
-            throw Error(ErrorKind::input, "expected models of one shape, found another one");
+/// Weights of one shape mean something else where anything else of the network is not the same.
+void check_options(const std::vector<WeightedModel>& models) {
+    const auto first = format_metadata(models.front().model.config);
+    for (std::size_t i = 1; i < models.size(); ++i)
+        for (const auto& [option, found] : format_metadata(models[i].model.config)) {
+            const std::string& expected = first.at(option);
+            const bool may_differ =
+                option == "sigma_scale" || option == "window" || option == "card";
+            if (found != expected && !may_differ)
+                throw Error(ErrorKind::input, "model " + std::to_string(i + 1) + ": '" + option +
+                                                  "': expected " + expected +
+                                                  " as of the first, found " + found);
+        }
 }
 
 }  // namespace
 
 Model mean_of(const std::vector<WeightedModel>& models) {
     check_weights(models);
-    check_shapes(models);
+    check_options(models);
     Model mean = models.front().model;
     mean.config.sigma_scale = 0;
     for (auto& [name, tensor] : mean.weights) {

@@ -13,9 +13,9 @@ struct WeightedModel {
 };
 
 /// Networks whose weights lie as near to each other as those of one training and its next turn do
-/// about as well as their mean, and usually worse (Wortsman et al. 2022, "Model soups"). Shape,
-/// card and window are the first one's; sigma_scale is the mean, too. Throws Error: usage where
-/// weights do not add up to 1, input for models of another shape.
+/// about as well as their mean, and usually worse (Wortsman et al. 2022, "Model soups"). Card and
+/// window are the first one's; sigma_scale is the mean, too. Throws Error: usage where weights do
+/// not add up to 1, input for models that differ in any other option, by its name.
 Model mean_of(const std::vector<WeightedModel>& models);
 
 }  // namespace eventide

@@ -183,6 +183,7 @@ ReadStatus UsbCamera::wait_for_return() {
     try {
         open();
         start();
+        if (stopped_) return ReadStatus::timeout;  // before it began
         ++counters_.reconnects;
         gap_ = reopened_ = true;
         warnings_.is_back();
@@ -209,7 +210,9 @@ void UsbCamera::stop_device() noexcept {
     if (!device_) return;
     try {
         if (stream_) {
-            counters_.device_dropped += dropped(*device_) - dropped_before_;
+            const std::uint64_t now = dropped(*device_);
+            // Less than before: the logic began to count anew.
+            counters_.device_dropped += now - (now < dropped_before_ ? 0 : dropped_before_);
             make_idle(*device_);
         }
         power_down(*device_);

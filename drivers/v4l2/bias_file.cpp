@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -31,16 +30,7 @@ std::string piece_of(const std::string& text) {
 }
 
 std::string text_in(const std::filesystem::path& file) {
-    std::ifstream stream = open_to_read(file, ErrorKind::usage);
-    std::string text;
-    std::array<char, 4096> part;
-    while (stream && text.size() <= kMaxBytes) {
-        stream.read(part.data(), part.size());
-        text.append(part.data(), std::size_t(stream.gcount()));
-    }
-    if (text.size() > kMaxBytes)
-        refuse(file.string(), "expected at most 1 MiB of biases, found more");
-    return text;
+    return read_text_file(file, ErrorKind::usage, kMaxBytes);
 }
 
 void add(const BiasLine& bias, std::vector<BiasLine>& to) {

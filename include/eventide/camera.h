@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ struct CameraSettings {
     /// none.
     std::filesystem::path file;
     bool reconnect = false;  ///< wait for an unplugged camera to come back
+    /// Called every 20 ms or so while a topic's first message is waited for: what it throws comes
+    /// out of the constructor. May be empty.
+    std::function<void()> while_waiting{};
 };
 
 /// A camera that sends events from the first read() on. Thread: one at a time, stop() excepted.
@@ -46,7 +50,9 @@ public:
     bool read(Batch& batch) override;
 
     /// Every event before this time has been read: what Reconstructor::advance() wants, so that
-    /// frames go on while nothing moves. Empty before the first data.
+    /// frames go on while nothing moves. Empty before the first data. In a camera's silence the
+    /// host's clock goes on for it; should it have stood still meanwhile (a sender that was
+    /// paused), this goes back to where it is, and a Reconstructor begins anew a second later.
     std::optional<SensorTime> clock() const override;
 
     /// Whether data were lost before the newest batch: what Reconstructor::mark_gap() wants.

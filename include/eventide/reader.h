@@ -7,6 +7,7 @@
 #include <eventide/version.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,9 @@ struct ReaderOptions {
     std::string format;  ///< "aedat4", "evt3", "text", ...; empty: found from the content
     int width = 0;       ///< px, of the sensor; 0: what the recording says. Both or neither
     int height = 0;      ///< px, likewise
+    /// Called every 20 ms while standard input or a pipe has no bytes: what it throws comes out of
+    /// the constructor or of read(), which may then be called again. May be empty.
+    std::function<void()> while_waiting{};
 };
 
 /// AEDAT 1 to 4, Prophesee RAW (EVT2, EVT2.1, EVT3) and DAT, HDF5 (of DSEC, MVSEC, M3ED, Prophesee,

@@ -102,8 +102,9 @@ public:
     void push(const Batch& batch);
 
     /// Every event before `now` has been pushed: time goes on where nothing moves. For live
-    /// sources, and only as far as is certain. Throws Error (usage) after finish() and for times
-    /// beyond kFarthestTime.
+    /// sources, and only as far as is certain: events before are late. Where those pushed stay more
+    /// than a second before it for a second on the host's clock, it was wrong, and they begin a new
+    /// stream. Throws Error (usage) after finish() and for times beyond kFarthestTime.
     void advance(SensorTime now);
 
     /// Data were lost here: the next frame carries gap_before.

@@ -7,7 +7,6 @@
 #include <yaml.h>
 
 #include <cstring>
-#include <iterator>
 #include <memory>
 
 namespace eventide {
@@ -73,8 +72,7 @@ const YamlNode* YamlNode::find(std::string_view key) const {
 }
 
 YamlNode read_yaml(const std::filesystem::path& file) {
-    std::ifstream stream = open_to_read(file);
-    const std::string text{std::istreambuf_iterator<char>{stream}, {}};
+    const std::string text = read_text_file(file);
     yaml_parser_t parser;
     if (yaml_parser_initialize(&parser) == 0)
         throw Error(ErrorKind::failed, file.string() + ": no memory to read it");

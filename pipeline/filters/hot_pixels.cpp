@@ -5,7 +5,6 @@
 #include "src/io/input_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -17,7 +16,8 @@ HotPixelFilter::HotPixelFilter(int width, int height) : width_{width} {
 
 HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::path& list)
     : width_{width}, listed_(std::size_t(width) * std::size_t(height)) {
-    std::ifstream file = open_to_read(list, ErrorKind::usage);
+    constexpr std::size_t kLargestList = std::size_t{64} << 20;  // a few million pixels
+    std::istringstream file{read_text_file(list, ErrorKind::usage, kLargestList)};
     int number = 0;
     for (std::string line; std::getline(file, line);) {
         ++number;

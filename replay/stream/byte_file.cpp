@@ -25,7 +25,8 @@ namespace {
 
 }  // namespace
 
-ByteFile::ByteFile(const std::string& path) : path_(path == "-" ? "standard input" : path) {
+ByteFile::ByteFile(const std::string& path, std::function<void()> while_waiting)
+    : path_(path == "-" ? "standard input" : path), while_waiting_(std::move(while_waiting)) {
     owned_ = path != "-";
     // Not blocking: a named pipe would hold the call until someone writes to it.
     fd_ = owned_ ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) : STDIN_FILENO;
@@ -54,6 +55,7 @@ ByteFile::~ByteFile() {
 
 ByteFile::ByteFile(ByteFile&& other) noexcept
     : path_(std::move(other.path_)),
+      while_waiting_(std::move(other.while_waiting_)),
       fd_(std::exchange(other.fd_, -1)),
       owned_(other.owned_),
       seekable_(other.seekable_),
@@ -65,6 +67,7 @@ bool ByteFile::wait_for_bytes(const std::function<bool()>& give_up) const {
     while (!stopped_) {
         if (give_up && give_up())
             throw Error(ErrorKind::failed, path_ + ": stopped while waiting for the first bytes");
+        if (while_waiting_) while_waiting_();
         pollfd watched{fd_, POLLIN, 0};
         const int ready = ::poll(&watched, 1, 20);  // ms: how late stop() may be heard
         if (ready > 0) return true;

@@ -16,7 +16,9 @@ class ByteFile {
 public:
     /// `path` "-" is standard input. Throws Error (input) naming the path when it cannot be opened
     /// or is a directory. A pipe without writer opens at once: its first bytes are waited for.
-    explicit ByteFile(const std::string& path);
+    /// `while_waiting`, where there is one, is called every 20 ms that there are none, and may
+    /// throw.
+    explicit ByteFile(const std::string& path, std::function<void()> while_waiting = {});
     ~ByteFile();
     ByteFile(ByteFile&& other) noexcept;
     ByteFile(const ByteFile&) = delete;
@@ -48,6 +50,7 @@ private:
     bool wait_for_bytes(const std::function<bool()>& give_up) const;
 
     std::string path_;
+    std::function<void()> while_waiting_;
     int fd_ = -1;
     bool owned_ = false, seekable_ = false;
     std::uint64_t size_ = 0, position_ = 0;

@@ -49,6 +49,7 @@ void Slicer::reset() {
     silence_.reset();
     newest_ = newest_event_ = SensorTime::min();
     same_time_ = 0;
+    behind_since_.reset();
     gap_ = reset_ = anew_ = finished_ = past_end_ = false;
     first_stream_ = true;
     end_ = settings_.end;
@@ -137,6 +138,15 @@ void Slicer::advance(SensorTime now, HostTime arrived) {
     arrived_ = arrived;
     if (now > silence_.newest()) silence_.see(now);
     note_time(now);
+}
+
+/// What was only on its way for long (a stalled network) catches up at once.
+void Slicer::look_behind(SensorTime told, HostTime arrived) {
+    if (newest_ <= told + kMostBehind)
+        behind_since_.reset();
+    else if (!behind_since_)
+        behind_since_ = arrived;
+    anew_ = behind_since_ && arrived - *behind_since_ >= kMostBehind;
 }
 
 void Slicer::push_reference(SensorTime t) {

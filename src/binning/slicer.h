@@ -54,9 +54,12 @@ public:
     /// The stream's clock says `now`: no event before it will come any more.
     void advance(SensorTime now, HostTime arrived = {});
 
-    /// What advance() promised was not so: the next event begins a new stream, as where time goes
-    /// back.
-    void begin_anew() { anew_ = true; }
+    /// A source that stood still (a recording somewhere that was paused) never catches up with what
+    /// advance() promised meanwhile by the host's clock. Tell what it says before its events are
+    /// pushed: where it stays more than kMostBehind behind for as long on the host's clock, the
+    /// next event begins a new stream, as where time goes back.
+    static constexpr SensorDuration kMostBehind{1'000'000};
+    void look_behind(SensorTime told, HostTime arrived);
 
     /// Bytes were lost here. The next event window carries gap_before.
     void mark_gap() { gap_ = true; }
@@ -130,6 +133,7 @@ private:
     std::uint64_t same_time_ = 0;  // events at newest_event_
     bool hears_apart_ = false;     // hear() tells the time, not push()
     HostTime arrived_{};
+    std::optional<HostTime> behind_since_;  // the stream is far behind newest_
     bool gap_ = false, reset_ = false, anew_ = false, finished_ = false, past_end_ = false;
     bool first_stream_ = true;       // settings_.begin and end are times of the first stream only
     std::optional<SensorTime> end_;  // of this stream

@@ -9,7 +9,6 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <span>
 #include <string_view>
 
@@ -37,13 +36,8 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-NpzFile::NpzFile(const std::filesystem::path& path) : file_(path.string()) {
-    std::ifstream stream = open_to_read(path);
-    stream.seekg(0, std::ios::end);
-    bytes_.resize(std::size_t(stream.tellg()));
-    stream.seekg(0);
-    stream.read(reinterpret_cast<char*>(bytes_.data()), std::streamsize(bytes_.size()));
-    if (!stream) refuse("cannot be read");
+NpzFile::NpzFile(const std::filesystem::path& path)
+    : file_(path.string()), bytes_(read_bytes_of_file(path)) {
     read_directory();
 }
 

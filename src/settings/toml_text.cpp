@@ -5,8 +5,6 @@
 #include "src/io/input_file.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 namespace eventide {
@@ -102,8 +100,7 @@ void check_table_names(const std::string& path, std::string_view text) {
 }
 
 std::string read_toml_text(const std::filesystem::path& path) {
-    std::ifstream stream = open_to_read(path, ErrorKind::usage);
-    std::string text{std::istreambuf_iterator<char>{stream}, {}};
+    std::string text = read_text_file(path, ErrorKind::usage);
     check_table_names(path.string(), text);
     return text;
 }

@@ -224,6 +224,36 @@ TEST(Slicer, MovesAnEventThatComesAfterItsFrameWasClosed) {
     EXPECT_EQ(event_windows[2].events, (std::vector{at(21), at(29)}));
 }
 
+TEST(Slicer, BeginsAnewWhereASourceStaysBehindWhatWasPromised) {
+    Slicer slicer(by_duration(1'000'000), 240, 180);
+    std::vector<Kept> event_windows;
+    std::int64_t host_us = 0;
+    const auto give = [&](std::int64_t t_us) {
+        const std::vector<Event> one{at(t_us)};
+        const HostTime arrived{std::chrono::microseconds{host_us}};
+        slicer.look_behind(one.back().t, arrived);
+        slicer.push(one, arrived);
+        take(slicer, event_windows);
+    };
+    give(1);
+    slicer.advance(from_us(20'000'001));
+    take(slicer, event_windows);
+    for (const int host_ms : {0, 500, 999}) {
+        host_us = 1000 * host_ms;
+        give(2 + host_us);
+    }
+    EXPECT_EQ(slicer.counters().late, 3U) << "it may catch up";
+    EXPECT_EQ(slicer.counters().time_resets, 0U);
+    host_us = 1'000'000;
+    give(host_us);
+    EXPECT_EQ(slicer.counters().late, 3U);
+    EXPECT_EQ(slicer.counters().time_resets, 1U);
+    host_us = 9'000'000;
+    give(host_us);
+    EXPECT_EQ(slicer.counters().time_resets, 1U);
+    EXPECT_EQ(event_windows.back().end_us, 8'999'999);
+}
+
 TEST(Slicer, BoundsMemoryByEndingFramesAndLeavingOutWhatNoCameraSends) {
     SlicerSettings settings = by_duration(1000);
     settings.max_events = 4;

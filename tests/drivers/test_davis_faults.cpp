@@ -269,6 +269,19 @@ TEST(DavisFaults, WhatTheCameraItselfDropsInABurstIsCountedByItAndTheRestIsWhole
     EXPECT_EQ(parser->damaged().total(), 0U);
 }
 
+TEST(DavisFaults, ACounterOfDropsThatBeganAnewIsNotTakenForALotOfThem) {
+    PluggedIn camera_side;
+    constexpr davis::Register kDroppedLow{davis::mux, 84};
+    camera_side.model->write({kDroppedLow, 1000});  // before it was started
+    DavisCamera camera{at_once()};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    camera_side.bed.look([&] { camera_side.model->write({kDroppedLow, 3}); });
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+    EXPECT_EQ(camera.counters().device_dropped, 3U);
+}
+
 TEST(DavisFaults, DropsAreReadWhereTheMultiplexerCountsThem) {
     for (const bool counts : {true, false}) {
         DavisModelSettings settings;

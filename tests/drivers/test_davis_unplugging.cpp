@@ -42,6 +42,24 @@ TEST(DavisUnplugged, IsAnErrorThatNamesTheWayOut) {
                 HasSubstr("--reconnect"));
 }
 
+TEST(DavisUnplugged, ACameraThatIsStoppedBeforeItBeginsAgainHasNotComeBack) {
+    UsbTestbed bed;
+    bed.plug_in(camera_before(1000));
+    DavisCamera camera{small_transfers(true)};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    DavisModelSettings settings;
+    settings.now = [&camera] {  // asked first where the driver starts time
+        camera.stop();
+        return SensorTime{};
+    };
+    bed.plug_in(std::make_shared<DavisModel>(settings));
+    while (camera.read(packet) != ReadStatus::end) continue;
+    EXPECT_EQ(camera.counters().reconnects, 0U);
+}
+
 /// Opens, starts, streams to the scene's end, stops; the words of the error, or nothing.
 std::string session(UsbTestbed& bed, const DavisModel& model) {
     try {

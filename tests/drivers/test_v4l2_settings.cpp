@@ -143,7 +143,7 @@ TEST_F(BiasFile, WhatNoToolWritesIsRefusedInFewWords) {
                 HasSubstr(":1: expected a name of at most 100 characters"));
     for (const char* name : {"large.bias", "large.json"})
         EXPECT_THAT(refusal(std::string((1 << 20) + 1, ' '), name),
-                    HasSubstr("expected at most 1 MiB of biases, found more"));
+                    HasSubstr("expected at most 1 MiB of text, found more"));
 }
 
 TEST_F(BiasFile, StandsBesideOtherSettings) {

@@ -115,6 +115,74 @@ TEST(EventWindows, GoOnWithASourceThatStoodStill) {
     EXPECT_GT(b.edges.size(), of_silence + 90);
 }
 
+/// Packets are a clock, which may go back, and the time of an event, where it is not below 0.
+class OwnClockParser final : public Parser {
+public:
+    void parse(std::span<const std::byte> bytes, Batch& into) override {
+        clock_ = from_us(load_little<std::int64_t>(bytes.data()));
+        const auto t = load_little<std::int64_t>(bytes.data() + 8);
+        if (t >= 0) into.events.push_back({from_us(t), 1, 1, Polarity::on});
+    }
+    void finish(Batch&) override {}
+    void resync() override {}
+    std::optional<SensorTime> clock() const override { return clock_; }
+    const Damage& damaged() const override { return damage_; }
+
+private:
+    std::optional<SensorTime> clock_;
+    Damage damage_;
+};
+
+struct OwnClockSource final : Source {
+    OwnClockSource() {
+        info_.width = kToyWidth;
+        info_.height = kToyHeight;
+    }
+    const SensorInfo& info() const override { return info_; }
+    bool is_live() const noexcept override { return true; }
+    ReadStatus read(RawPacket&) override { return ReadStatus::end; }
+    void stop() noexcept override {}
+    std::unique_ptr<Parser> make_parser() const override {
+        return std::make_unique<OwnClockParser>();
+    }
+
+private:
+    SensorInfo info_;
+};
+
+TEST(EventWindows, GoOnWithASourceWhoseOwnClockPromisedTooMuch) {
+    constexpr std::int64_t kMs = 1000;
+    const OwnClockSource source;
+    Counters counters;
+    EventWindows windows(source, Beginning::settings(10 * kMs), nullptr, nullptr, counters);
+    std::size_t cut = 0;
+    const auto give = [&](std::int64_t clock_us, std::int64_t event_us, std::int64_t host_us) {
+        RawPacket packet;
+        append_little(packet.bytes, std::uint64_t(clock_us));
+        append_little(packet.bytes, std::uint64_t(event_us));
+        packet.arrived = HostTime{std::chrono::microseconds{host_us}};
+        windows.take(packet);
+        for (EventWindow window; windows.next(window);) ++cut;
+    };
+    give(kMs, kMs, 0);
+    for (std::int64_t t = 20 * kMs; t <= 20'000 * kMs; t += 20 * kMs) give(t, -1, t);  // paused
+    const std::size_t of_silence = cut;
+    for (std::int64_t t = 0; t < 2'000 * kMs; t += 5 * kMs)
+        give(2 * kMs + t, 2 * kMs + t, 20'000 * kMs + t);
+    EXPECT_EQ(counters.snapshot().slicing.time_resets, 1U);
+    EXPECT_GT(cut, of_silence + 90);
+}
+
+TEST(EventWindows, OfACameraThatBeginsAnewInSilenceDoSoOnce) {
+    constexpr std::int64_t kMs = 1000;
+    Beginning b(true, 10 * kMs);
+    b.give(record(ToyKind::event, 500 * kMs), 0);
+    for (std::int64_t host = 0; host <= 20'000 * kMs; host += 20 * kMs) b.give({}, host);
+    for (std::int64_t t = kMs; t < 3'000 * kMs; t += 5 * kMs)
+        b.give(record(ToyKind::event, t), 20'000 * kMs + t);
+    EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 1U);
+}
+
 TEST(EventWindows, WaitForWhatWasOnItsWayForLong) {
     constexpr std::int64_t kMs = 1000;
     Beginning b(true, 10 * kMs);

@@ -117,6 +117,38 @@ struct FusedRun : DataObserver {
     Pipeline pipeline;
 };
 
+TEST(ModelRenderStage, CountsTheImagesThatCorrectNothing) {
+    const Model model = test::random_model(small_config(), 1);
+    Encoder encoder(model, kWidth, kHeight);
+    Renderer renderer(model, kWidth, kHeight);
+    ImagesOnTheWay images;
+    images.keep_at_most(2);
+    ModelRenderStage stage(renderer, ModelRun::request(0), kWidth, kHeight, images);
+    std::vector<ReferenceImage> three(3);
+    for (ReferenceImage& image : three) image.pixels = Array2<std::uint16_t>(kHeight, kWidth);
+    images.put(three);
+    EXPECT_EQ(stage.dropped_images(), 1U) << "more than may be on their way";
+    LatentMap latent = encoder.make_output();
+    latent.window = {from_us(0), from_us(20'000)};
+    latent.events_per_pixel = Array2<float>(kHeight, kWidth);
+    latent.images = 2;
+    latent.reset_before = true;
+    stage.push(latent);
+    EXPECT_EQ(stage.dropped_images(), 2U) << "of a clock that began anew since";
+    three[2].t = from_us(30'000);
+    images.put({three[2]});
+    latent.reset_before = false;
+    latent.images = 3;
+    latent.window = {from_us(20'000), from_us(25'000)};
+    stage.push(latent);
+    EXPECT_EQ(stage.used_images(), 1U);
+    latent.images = 4;
+    latent.window = {from_us(25'000), from_us(29'000)};
+    stage.push(latent);
+    stage.reset();
+    EXPECT_EQ(stage.dropped_images(), 3U) << "it was still waiting for its time";
+}
+
 TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
     const Model model = test::random_model(small_config(), 1);
     std::vector<std::byte> bytes = moving_scene(300);
@@ -129,7 +161,8 @@ TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {
         const PipelineSettings settings = settings_for(model, lookahead);
         FusedRun whole({bytes}, model, settings);
         whole.pipeline.run_sequential();
-        EXPECT_EQ(whole.render.fused()->used(), 1U);
+        EXPECT_EQ(whole.render.used_images(), 1U);
+        EXPECT_EQ(whole.render.dropped_images(), 0U);
         std::mt19937 rng{2};
         FusedRun split(ToySource::packets_of(bytes, 900, &rng), model, settings);
         split.pipeline.run();

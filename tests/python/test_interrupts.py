@@ -1,8 +1,14 @@
 """Ctrl-C ends what would go on for ever, inside of the library too, and what was interrupted goes on."""
 
 import collections
+import contextlib
+import errno
+import fcntl
 import functools
+import os
 import signal
+import tempfile
+import termios
 import threading
 import unittest
 
@@ -38,6 +44,13 @@ class Interrupts(RecordedTest):
             ended.set()
             sender.join()
 
+    @contextlib.contextmanager
+    def pipe(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "pipe")
+            os.mkfifo(path)
+            yield path
+
     def test_frames_end(self):
         reconstructor = self.reconstructor(allow_silence=True)
         far_apart = np.zeros(2, DTYPE)
@@ -57,6 +70,38 @@ class Interrupts(RecordedTest):
         reads = iter(functools.partial(camera.read_into, reconstructor), False)
         self.interrupt(lambda: consume(reads), lambda: reconstructor.counters["events"] > 1000)
         self.assertTrue(camera.read_into(reconstructor))
+
+    def test_waiting_for_the_first_bytes_of_a_pipe_ends(self):
+        with self.pipe() as path:
+            writing = []
+
+            def is_opened():  # by a reader, which only eventide is
+                try:
+                    writing.append(os.open(path, os.O_WRONLY | os.O_NONBLOCK))
+                except OSError as error:
+                    self.assertEqual(error.errno, errno.ENXIO)
+                return len(writing) > 0
+
+            self.interrupt(lambda: eventide.open(path), is_opened)
+            os.close(writing[0])
+
+    def test_waiting_for_more_of_a_pipe_ends_and_goes_on(self):
+        with self.pipe() as path:
+            keeps = os.open(path, os.O_RDWR)
+            os.write(keeps, b"64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n")
+            reader = eventide.open(path)
+
+            def is_read():
+                waiting = bytearray(4)
+                fcntl.ioctl(keeps, termios.FIONREAD, waiting)
+                return not any(waiting)
+
+            self.assertTrue(is_read())
+            os.write(keeps, b"0.4 7 8 1\n")
+            self.interrupt(lambda: consume(reader), is_read)
+            os.write(keeps, b"0.43 7 8 0\n0.45 7 8 1\n")
+            self.assertGreater(next(reader)["t"][-1], 300_000)
+            os.close(keeps)
 
     def test_a_simulation_ends(self):
         simulation = eventide.simulate("demo", size=(32, 24), seconds=1e6)

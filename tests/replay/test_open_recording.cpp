@@ -244,6 +244,28 @@ TEST(OpenRecording, APipeWithoutWriterOrBytesIsGivenUpOnRequest) {
     }
 }
 
+TEST(OpenRecording, AWaitingThatIsInterruptedCanBeTakenUpAgain) {
+    struct Interrupted {};
+    Pipe pipe;
+    bool interrupts = true;
+    OpenOptions options;
+    options.while_waiting = [&] {
+        if (interrupts) throw Interrupted{};
+        pipe.write("0.4 7 8 1\n");
+    };
+    EXPECT_THROW(open_recording(pipe.path(), options), Interrupted);
+    pipe.write("240 180\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n");
+    interrupts = false;
+    const auto recording = open_recording(pipe.path(), options);
+    RawPacket packet;
+    ASSERT_EQ(recording->read(packet), ReadStatus::data);
+    interrupts = true;
+    EXPECT_THROW(recording->read(packet), Interrupted);
+    interrupts = false;
+    ASSERT_EQ(recording->read(packet), ReadStatus::data);
+    EXPECT_EQ(packet.bytes.size(), 10U);
+}
+
 TEST(OpenRecording, ANamedPipeWaitsForItsWriter) {
     const TestFolder folder;
     const std::string named = folder.path("pipe");

@@ -45,6 +45,9 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"run", recording(), "--window", "soon", "--out", "null"}, "--window");
     expect(2, {"run", recording(), "--size", "big", "--out", "null"}, "--size");
     expect(2, {"run", recording(), "--roi", "60,0,30x10", "--out", "null"}, "");
+    for (const char* option : {"--config", "--hot-pixels"})
+        expect(2, {"run", recording(), option, "/dev/zero", "--out", "null"},
+               "/dev/zero: expected at most ");
     expect(2, {"run", recording(), "--out", "frame.bmp"}, "frame.bmp");
     expect(2, {"run", recording(), "--out", "-", "--out", "gray8:-"}, "standard output");
     expect(2, {"run", recording(), "--out", "a.mp4", "--uncertainty", "alpha"}, "alpha");

@@ -2,8 +2,8 @@
 #include "apps/cli/bench/report.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/io/input_file.h"
 
-#include <fstream>
 #include <sstream>
 
 namespace eventide::app {
@@ -35,10 +35,10 @@ bool read_row(const std::string& line, PeerRow& row) {
 std::vector<PeerRow> read_peers(const std::filesystem::path& file) {
     std::vector<PeerRow> rows;
     if (file.empty()) return rows;
-    std::ifstream in{file};
+    std::istringstream in{read_text_file(file)};
     std::string line;
-    if (!in || !std::getline(in, line))
-        throw Error(ErrorKind::input, file.string() + ": cannot be read");
+    if (!std::getline(in, line))
+        throw Error(ErrorKind::input, file.string() + ": expected a table, found an empty file");
     for (int number = 2; std::getline(in, line); ++number)
         if (!read_row(line, rows.emplace_back()))
             throw Error(

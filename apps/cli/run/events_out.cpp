@@ -69,6 +69,7 @@ void EventsOut::process(std::vector<Event>& events) {
     std::erase_if(batch_.imu, outside);
     std::erase_if(batch_.triggers, outside);
     remove_not_held(batch_, target_->holds());
+    times_.put_in_order(batch_);
     if (!batch_.empty()) target_->write(batch_);
     batch_.clear();
 }

@@ -1,6 +1,7 @@
 // The events that a run reconstructs from, written down behind all filters.
 #pragma once
 
+#include "apps/cli/run/written_times.h"
 #include "pipeline/stages.h"
 #include "replay/convert.h"
 
@@ -30,7 +31,11 @@ public:
     /// `filter` may be null; it is borrowed. Events outside of [from, to] are not written.
     EventsOut(EventFilter* filter, std::unique_ptr<ConvertTarget> target,
               std::optional<SensorTime> from, std::optional<SensorTime> to)
-        : filter_(filter), target_(std::move(target)), from_(from), to_(to) {}
+        : filter_(filter),
+          target_(std::move(target)),
+          times_(target_->holds()),
+          from_(from),
+          to_(to) {}
 
     /// Images and the rest, which are written with the events they came with, or at once where
     /// there are none.
@@ -38,10 +43,12 @@ public:
     void process(std::vector<Event>& events) override;
     void finish();
     std::uint64_t lost() const { return target_->lost(); }
+    const WrittenTimes& times() const { return times_; }  ///< after the run
 
 private:
     EventFilter* filter_;
     std::unique_ptr<ConvertTarget> target_;
+    WrittenTimes times_;
     std::optional<SensorTime> from_, to_;
     Batch batch_;
 };

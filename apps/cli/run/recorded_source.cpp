@@ -26,6 +26,7 @@ RecordedSource::RecordedSource(Source& source, const std::string& path, OutputOp
     header.colour_filter = source.info().colour_filter;
     file_ = std::make_unique<RecordingFile>(path, options, *format_, header);
     parser_ = source.make_parser();
+    times_.emplace(format_->holds);
 }
 
 RecordedSource::~RecordedSource() = default;
@@ -47,6 +48,7 @@ void RecordedSource::write(const RawPacket& packet) {
 
 void RecordedSource::write_batch() {
     remove_not_held(batch_, format_->holds);
+    times_->put_in_order(batch_);
     if (!batch_.empty()) file_->write(batch_);
     batch_.clear();
 }

@@ -1,6 +1,7 @@
 // A source whose data are also written down, before anything behind it can lose them.
 #pragma once
 
+#include "apps/cli/run/written_times.h"
 #include "pipeline/source.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
@@ -30,6 +31,8 @@ public:
 
     /// After the run: ends the file.
     void finish();
+    /// After the run; null for untouched bytes.
+    const WrittenTimes* times() const { return times_ ? &*times_ : nullptr; }
 
 private:
     void write(const RawPacket& packet);
@@ -40,6 +43,7 @@ private:
     const Format* format_ = nullptr;   // ... or these
     std::unique_ptr<RecordingFile> file_;
     std::unique_ptr<Parser> parser_;
+    std::optional<WrittenTimes> times_;
     Batch batch_;
 };
 

@@ -193,6 +193,8 @@ Snapshot Run::counters() const {
     Snapshot now = pipeline_->snapshot();
     now.events += filters_.left_out();
     now.filtered_events += filters_.left_out();
+    now.used_images = render_.used_images();
+    now.dropped_images = render_.dropped_images();
     return now;
 }
 

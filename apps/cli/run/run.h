@@ -57,6 +57,7 @@ private:
     void resume();
     void keep_state(const PipelineState& memory);
     void run_pipeline();
+    std::uint64_t say_what_was_moved() const;
     CameraCounters camera_counters() const;
     RunProgress progress() const;
     std::string run_json();

@@ -35,16 +35,31 @@ int Run::report(const RunProgress& end) const {
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);
-    if (render_.fused() != nullptr && render_.fused()->used() > 0)
-        spdlog::info("frames corrected by {} of the camera's images{}", render_.fused()->used(),
-                     dropped_text(render_.dropped_images()));
+    if (end_counters.used_images > 0)
+        spdlog::info("frames corrected by {} of the camera's images{}", end_counters.used_images,
+                     dropped_text(end_counters.dropped_images));
     else if (settings_.frames == CameraFrames::use)
         spdlog::warn("--frames use: no image of the camera could be used, of {} in the stream",
                      end_counters.images);
     const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
     if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
-    const bool lost = lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0;
+    const std::uint64_t late_triggers = say_what_was_moved();
+    const bool lost =
+        lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0 || late_triggers > 0;
     return settings_.strict && lost ? exit_data_lost : exit_done;
+}
+
+/// Of the files of data that the run wrote. Returns how many triggers are not at their own time.
+std::uint64_t Run::say_what_was_moved() const {
+    std::uint64_t late = 0;
+    const auto say = [&](const std::string& file, const WrittenTimes* times) {
+        if (times == nullptr) return;
+        for (const std::string& remark : times->remarks(file)) spdlog::warn("{}", remark);
+        late += times->late_triggers();
+    };
+    if (recorded_) say(settings_.record, recorded_->times());
+    if (events_out_) say(settings_.events_out, &events_out_->times());
+    return late;
 }
 
 CameraCounters Run::camera_counters() const {

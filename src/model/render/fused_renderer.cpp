@@ -35,6 +35,7 @@ void FusedRenderer::reset() noexcept {
     if (fusion_) fusion_->reset();
     active_ = false;
     waiting_count_ = 0;
+    dropped_ += images_.size();
     images_.clear();
 }
 

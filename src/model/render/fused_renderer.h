@@ -38,9 +38,8 @@ public:
     void render(const RenderRequest& request, Frame& frame) noexcept;
 
     std::uint64_t used() const { return used_; }  ///< images that corrected something
-    std::uint64_t dropped() const {
-        return dropped_;
-    }  ///< images that came too late or in too great a number
+    /// Images that came too late, in too great a number, or before a reset.
+    std::uint64_t dropped() const { return dropped_; }
 
     static constexpr std::size_t kMaxWaiting = 64;
     /// Instead of kMaxWaiting. Before the first.

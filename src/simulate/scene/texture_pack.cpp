@@ -30,13 +30,8 @@ Error bad(const std::filesystem::path& file, const std::string& what) {
 
 class PackReader {
 public:
-    explicit PackReader(const std::filesystem::path& file) : file_(file) {
-        std::ifstream stream = open_to_read(file);
-        stream.seekg(0, std::ios::end);
-        bytes_.resize(std::size_t(stream.tellg()));
-        stream.seekg(0);
-        stream.read(reinterpret_cast<char*>(bytes_.data()), std::streamsize(bytes_.size()));
-        if (!stream) throw bad(file, "a file that cannot be read");
+    explicit PackReader(const std::filesystem::path& file)
+        : file_(file), bytes_(read_bytes_of_file(file)) {
         if (bytes_.size() < kMagic.size() ||
             std::memcmp(bytes_.data(), kMagic.data(), kMagic.size()) != 0)
             throw bad(file, "another beginning");

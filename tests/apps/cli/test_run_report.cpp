@@ -15,6 +15,8 @@ Snapshot busy() {
     now.bytes = 500;
     now.frames = 42;
     now.skipped_frames = 3;
+    now.used_images = 30;
+    now.dropped_images = 4;
     now.lost_packets = 2;
     now.damaged.count(DamageReason::unknown_word, 5);
     now.window = {from_us(1'000'000), from_us(1'050'000)};
@@ -30,6 +32,8 @@ TEST(RunReport, JsonIsOneLineWithEveryCounter) {
     EXPECT_EQ(json["final"], true);
     EXPECT_EQ(json["events"], 1'234'567);
     EXPECT_EQ(json["lost_packets"], 2);
+    EXPECT_EQ(json["used_images"], 30);
+    EXPECT_EQ(json["dropped_images"], 4);
     EXPECT_EQ(json["damaged"]["unknown_word"], 5);
     EXPECT_EQ(json["damaged"].size(), kDamageReasons);
     EXPECT_EQ(json["latency_ms"]["p50"], 12.0);

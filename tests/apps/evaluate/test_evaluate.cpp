@@ -1,6 +1,7 @@
 // Whole evaluations: on a small recording made here, on folders, and what is written about them.
 #include "apps/evaluate/evaluate.h"
 #include "apps/evaluate/reference_sequence.h"
+#include "src/binning/noise_filter.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
 #include "tests/apps/evaluate/small_model.h"
@@ -36,6 +37,33 @@ TEST(ReferenceWindows, HoldEachEventBetweenTheImagesExactlyOnce) {
         events += event_windows[i].events.size();
     }
     EXPECT_EQ(events, 400U);  // (0, .4] s, one each millisecond
+}
+
+TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
+    ReferenceSequence sequence{"noise", 64, 48, {}, {}, {}, {}};
+    const auto add = [&](std::int64_t t_us, int x, int y) {
+        sequence.events.push_back(
+            {from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity::on});
+    };
+    const auto move_at = [&](std::int64_t t_us) {  // neighbours, which support each other
+        for (int i = 0; i < 6; ++i) add(t_us + i, 10 + i % 3, 10 + i / 3);
+    };
+    move_at(0);
+    for (int i = 1; i < 500; ++i) add(7000 * i, i * 29 % 64, i * 31 % 48);  // 3.5 s of noise
+    move_at(3'500'000);
+    sequence.images.emplace_back().t = from_us(3'500'006);
+    NoiseFilter filter{64, 48, {SensorDuration{1000}, SensorDuration{1000}}};
+    std::vector<Window> of_all, of_filtered;
+    std::size_t events = 0;
+    for_each_cut_window(sequence, "10ms", nullptr,
+                        [&](const EventWindow& cut) { of_all.push_back(cut.window); });
+    for_each_cut_window(sequence, "10ms", &filter, [&](const EventWindow& cut) {
+        of_filtered.push_back(cut.window);
+        events += cut.events.size();
+    });
+    EXPECT_LT(events, 20U);
+    ASSERT_EQ(of_filtered.size(), of_all.size());
+    for (std::size_t i = 0; i < of_all.size(); ++i) EXPECT_EQ(of_filtered[i].end, of_all[i].end);
 }
 
 TEST(EvaluateRecordings, ScoresEveryImageThatIsNotSkipped) {

@@ -3,7 +3,10 @@
 #include "src/core/error.h"
 #include "tests/support/random_model.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <string>
 
 namespace eventide {
 namespace {
@@ -28,6 +31,34 @@ TEST(MeanOfModels, LiesBetweenThem) {
                 .75 * one.weights.at(name).values[i] + .25 * other.weights.at(name).values[i], 1e-6)
                 << name;
     EXPECT_EQ(mean_of({{one, .5}, {one, .5}}).weights, one.weights) << "bit for bit";
+}
+
+TEST(MeanOfModels, RefusesOtherOptionsByName) {
+    const auto refused = [](const auto& change) -> std::string {
+        ModelConfig other = tiny();
+        change(other);
+        const Model one = test::random_model(tiny(), 1), changed = test::random_model(other, 1);
+        try {
+            mean_of({{one, .5}, {changed, .5}});
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            return error.what();
+        }
+        return "not refused";
+    };
+    EXPECT_EQ(refused([](ModelConfig& c) { c.noise_filter = true; }),
+              "model 2: 'noise_filter': expected off as of the first, found auto");
+    using testing::HasSubstr;
+    EXPECT_THAT(refused([](ModelConfig& c) { c.bins = 6; }), HasSubstr("'bins'"));
+    EXPECT_THAT(refused([](ModelConfig& c) { c.blend = Blend::smooth; }), HasSubstr("'blend'"));
+    EXPECT_THAT(refused([](ModelConfig& c) { c.live_edge = LiveEdge::fade; }),
+                HasSubstr("'live_edge'"));
+    EXPECT_THAT(refused([](ModelConfig& c) { c.sigma_rule = SigmaRule::mixture; }),
+                HasSubstr("'sigma_rule'"));
+    EXPECT_THAT(refused([](ModelConfig& c) { c.log_sigma_min = -5; }),
+                HasSubstr("'log_sigma_min'"));
+    EXPECT_THAT(refused([](ModelConfig& c) { c.gate_radius = 3; }), HasSubstr("'gate_radius'"));
+    EXPECT_EQ(refused([](ModelConfig& c) { c.card = c.window = "auto"; }), "not refused");
 }
 
 TEST(MeanOfModels, RefusesOtherShapesAndOtherSums) {

@@ -136,6 +136,8 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
     json["frames"] = now.frames;
     json["skipped_frames"] = now.skipped_frames;
     json["broken_frames"] = now.broken_frames;
+    json["used_images"] = now.used_images;
+    json["dropped_images"] = now.dropped_images;
     json["newest_frame_us"] = now.frames > 0 ? Json(to_us(now.newest_frame)) : Json(nullptr);
     json["latency_ms"] = json_of(now.latency);
     json["work_ms"] = {{"bin", json_of(now.bin)},

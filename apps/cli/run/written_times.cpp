@@ -1,0 +1,71 @@
+// Times as a format can hold them.
+#include "apps/cli/run/written_times.h"
+
+#include <algorithm>
+
+namespace eventide::app {
+
+namespace {
+
+std::string times_text(std::uint64_t n) {
+    return n == 1 ? "once" : std::to_string(n) + " times";
+}
+
+/// Adds `before` to times of the stream that ended, `after` to those of the one that begins.
+struct Seam {
+    SensorTime last, first;  // event
+    SensorDuration before, after;
+
+    template <typename T>
+    void move(std::vector<T>& items) const {
+        for (T& item : items) {
+            const bool is_of_new =
+                std::chrono::abs(item.t - first) < std::chrono::abs(item.t - last);
+            item.t += is_of_new ? after : before;
+        }
+    }
+};
+
+}  // namespace
+
+void WrittenTimes::put_in_order(Batch& batch) {
+    const SensorTime written = newest_;
+    if (!holds_.clock_resets) move(batch);
+    if (holds_.in_time_order)
+        late_triggers_ += std::uint64_t(std::ranges::count_if(
+            batch.triggers, [&](const Trigger& trigger) { return trigger.t < written; }));
+    if (!batch.events.empty()) newest_ = batch.events.back().t;
+}
+
+void WrittenTimes::move(Batch& batch) {
+    constexpr SensorDuration kMicrosecond{1};
+    SensorTime newest = newest_;
+    Seam seam{newest, newest, later_, later_};
+    for (Event& event : batch.events) {
+        if (event.t + later_ < newest) {
+            seam = {newest - later_, event.t, later_, newest + kMicrosecond - event.t};
+            later_ = seam.after;
+            ++restarts_;
+        }
+        newest = event.t += later_;
+    }
+    if (later_ == SensorDuration{0}) return;
+    seam.move(batch.images);
+    seam.move(batch.imu);
+    seam.move(batch.triggers);
+}
+
+std::vector<std::string> WrittenTimes::remarks(const std::string& file) const {
+    std::vector<std::string> remarks;
+    if (restarts_ > 0)
+        remarks.push_back(file + ": the clock began anew " + times_text(restarts_) +
+                          ", which its format cannot say: the times behind it go on from those "
+                          "before");
+    if (late_triggers_ > 0)
+        remarks.push_back(file + ": " + std::to_string(late_triggers_) +
+                          (late_triggers_ == 1 ? " trigger" : " triggers") +
+                          " came behind later events and have the time of those");
+    return remarks;
+}
+
+}  // namespace eventide::app

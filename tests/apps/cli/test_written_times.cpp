@@ -1,0 +1,146 @@
+// Recordings of a stream whose clock begins anew, and of triggers that come late.
+#include "apps/cli/run/events_out.h"
+#include "apps/cli/run/recorded_source.h"
+#include "apps/cli/run/written_times.h"
+#include "src/codec/udp_records.h"
+#include "tests/replay/recording_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+namespace eventide::app {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Event at(std::int64_t us) {
+    return {from_us(us), 1, 1, Polarity::on};
+}
+
+template <typename T>
+std::vector<std::int64_t> times_of(const std::vector<T>& items) {
+    std::vector<std::int64_t> times;
+    for (const T& item : items) times.push_back(to_us(item.t));
+    return times;
+}
+
+TEST(WrittenTimes, GoOnWhereTheFormatCannotSayThatTheClockBeganAnew) {
+    WrittenTimes times{find_format("evt3")->holds};
+    Batch batch;
+    batch.events = {at(5000), at(6000), at(10), at(30)};
+    batch.triggers = {{from_us(5500), Trigger::Kind::rising, 0},
+                      {from_us(20), Trigger::Kind::rising, 0}};
+    times.put_in_order(batch);
+    EXPECT_THAT(times_of(batch.events), ElementsAre(5000, 6000, 6001, 6021));
+    EXPECT_THAT(times_of(batch.triggers), ElementsAre(5500, 6011));
+    Batch next;
+    next.events = {at(40), at(7)};
+    next.triggers = {{from_us(35), Trigger::Kind::rising, 0}};
+    times.put_in_order(next);
+    EXPECT_THAT(times_of(next.events), ElementsAre(6031, 6032));
+    EXPECT_THAT(times_of(next.triggers), ElementsAre(6026));
+    EXPECT_EQ(times.restarts(), 2U);
+    EXPECT_EQ(times.late_triggers(), 0U);
+    EXPECT_THAT(times.remarks("x.raw"),
+                ElementsAre(HasSubstr("x.raw: the clock began anew 2 times")));
+}
+
+TEST(WrittenTimes, StayWhereTheFormatSaysIt) {
+    WrittenTimes times{find_format("aedat4")->holds};
+    Batch batch;
+    batch.events = {at(5000), at(10)};
+    times.put_in_order(batch);
+    EXPECT_THAT(times_of(batch.events), ElementsAre(5000, 10));
+    EXPECT_THAT(times.remarks("x.aedat4"), IsEmpty());
+}
+
+TEST(WrittenTimes, CountTriggersBehindLaterEvents) {
+    for (const char* const format : {"evt3", "aedat4"}) {
+        WrittenTimes times{find_format(format)->holds};
+        Batch batch;
+        batch.events = {at(100), at(200)};
+        batch.triggers = {{from_us(50), Trigger::Kind::rising, 0}};
+        times.put_in_order(batch);
+        batch.triggers = {{from_us(199), Trigger::Kind::rising, 0},
+                          {from_us(200), Trigger::Kind::rising, 0}};
+        batch.events = {at(300)};
+        times.put_in_order(batch);
+        const bool is_evt3 = std::string_view{format} == "evt3";
+        EXPECT_EQ(times.late_triggers(), is_evt3 ? 1U : 0U) << format;
+        if (is_evt3) {
+            EXPECT_THAT(times.remarks("x.raw"),
+                        ElementsAre(HasSubstr("x.raw: 1 trigger came behind")));
+        }
+    }
+}
+
+/// A UDP sender that counts to 9 s and is then started again.
+class RestartedSender final : public Source {
+public:
+    RestartedSender() {
+        info_.width = 64;
+        info_.height = 48;
+    }
+    const SensorInfo& info() const override { return info_; }
+    bool is_live() const noexcept override { return true; }
+    ReadStatus read(RawPacket& into) override {
+        if (packets_ == 2) return ReadStatus::end;
+        std::vector<Event> events;
+        for (int i = 0; i < 50; ++i) events.push_back(at((packets_ == 0 ? 9'000'000 : 0) + i));
+        ++packets_;
+        into.bytes.clear();
+        append_udp_records(UdpRecords::t64, events, into.bytes);
+        return ReadStatus::data;
+    }
+    void stop() noexcept override {}
+    std::unique_ptr<Parser> make_parser() const override {
+        return std::make_unique<UdpRecordsParser>(UdpRecords::t64, info_.width, info_.height);
+    }
+
+private:
+    SensorInfo info_;
+    int packets_ = 0;
+};
+
+TEST(RecordedSource, GoesOnWhereASenderIsStartedAgain) {
+    for (const std::string name : {"a.raw", "a.aedat4", "a.h5", "a.txt"}) {
+        const TestFolder folder;
+        const std::string file = folder.path(name);
+        RestartedSender sender;
+        RecordedSource recorded{sender, file, {}};
+        for (RawPacket packet; recorded.read(packet) == ReadStatus::data;) continue;
+        recorded.finish();
+        const std::size_t known_as_old = UdpRecordsParser::kEventsOfAnother - 1;
+        EXPECT_EQ(read_everything(*open_recording(file)).events.size(), 100 - known_as_old) << name;
+        EXPECT_EQ(recorded.times()->restarts(), name == "a.aedat4" ? 0U : 1U) << name;
+    }
+}
+
+/// Takes what EVT3 takes.
+struct KeepsTriggers final : ConvertTarget {
+    const FormatHolds& holds() const override { return find_format("evt3")->holds; }
+    void write(const Batch&) override {}
+    void finish() override {}
+    std::uint64_t bytes_written() const override { return 0; }
+};
+
+TEST(EventsOut, CountsTriggersBehindLaterEvents) {
+    EventsOut out{nullptr, std::make_unique<KeepsTriggers>(), {}, {}};
+    Batch batch;
+    batch.events = {at(100)};
+    out.see(batch);
+    out.process(batch.events);
+    Batch late;
+    late.triggers = {{from_us(99), Trigger::Kind::falling, 1}};
+    out.see(late);
+    out.finish();
+    EXPECT_EQ(out.times().late_triggers(), 1U);
+}
+
+}  // namespace
+}  // namespace eventide::app
