@@ -142,7 +142,7 @@ Run::Run(Program& program, RunSettings& settings)
     events_out_ = events_out_of(settings, sensor_, colour_filter_, span_, filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
-    if (!settings.states_out.empty()) std::filesystem::create_directories(settings.states_out);
+    if (!settings.states_out.empty()) create_folder(settings.states_out);
     stats_ = stats_of(settings, growing);  // last: it may lie in a folder that a sink makes
     try {
         pipeline_.emplace(parts(), pipeline_settings());
