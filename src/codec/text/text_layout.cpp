@@ -235,15 +235,27 @@ std::string rate_text(double rate) {
     return text;
 }
 
+constexpr std::size_t kFewestTimes = 100;                 // rows that tell a rate
+constexpr double kSlowestRate = 1e3, kFastestRate = 1e9;  // events/s
+
+/// A stated unit is taken at its word, but seconds stated as microseconds all become one moment.
+void doubt_unit(const Times& times, TextTimeUnit unit, std::vector<std::string>& remarks) {
+    const double seconds = (times.last - times.first) * std::pow(10.0, decimal_shift(unit) - 6);
+    if (times.count < kFewestTimes || seconds <= 0) return;
+    const double rate = double(times.count) / seconds;
+    if (rate > kFastestRate)
+        remarks.push_back("in the stated unit of time these are " + rate_text(rate) +
+                          ", which no sensor sends; --input-time-unit states another");
+}
+
 /// Fractions are seconds. Whole numbers are microseconds, unless no sensor sends so few or so many
 /// events in them and another unit makes sense; nanoseconds since 1970 stand out by themselves.
 /// Whole numbers with a decimal point are what numpy.savetxt() writes of microseconds.
 TextTimeUnit guess_unit(const Times& times, std::vector<std::string>& remarks) {
-    constexpr std::size_t kFewest = 100;                               // rows that tell a rate
-    constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
+    constexpr double kDoubtful = 1e4;  // events/s
     constexpr double kNanosecondsIn2001 = 1e18;
     const double span = times.last - times.first;
-    const bool tells_rate = times.count >= kFewest && span > 0;
+    const bool tells_rate = times.count >= kFewestTimes && span > 0;
     struct Unit {
         TextTimeUnit unit;
         const char* name;
@@ -255,7 +267,7 @@ TextTimeUnit guess_unit(const Times& times, std::vector<std::string>& remarks) {
                                           {TextTimeUnit::seconds, "seconds", 1}}};
     const auto rate = [&](const Unit& unit) { return double(times.count) / (span * unit.seconds); };
     const auto makes_sense = [&](const Unit& unit) {
-        return rate(unit) >= kSlowest && rate(unit) <= kFastest;
+        return rate(unit) >= kSlowestRate && rate(unit) <= kFastestRate;
     };
     const auto remark = [&](const std::string& what, const Unit& unit, bool impossible) {
         remarks.push_back(what + ", taken for " + unit.name + ": " + rate_text(rate(unit)) +
@@ -343,8 +355,11 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     else
         header.layout = named ? *named : layout_guessed(rows);
     if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
+    const Times times = times_of(rows, header.layout);
     if (header.layout.unit == TextTimeUnit::automatic)
-        header.layout.unit = guess_unit(times_of(rows, header.layout), header.remarks);
+        header.layout.unit = guess_unit(times, header.remarks);
+    else if (options.unit != TextTimeUnit::automatic)
+        doubt_unit(times, options.unit, header.remarks);
     return header;
 }
 
