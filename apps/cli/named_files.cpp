@@ -13,19 +13,13 @@ namespace eventide::app {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// From a configuration file, the environment or `--out=~/x`, a shell has not replaced it: the
-/// output would land in a folder of that name.
-void refuse_home_sign(const std::string& text, const fs::path& path) {
+void NamedFiles::refuse_home_sign(const std::string& said, const fs::path& path) {
     if (!path.empty() && *path.begin() == "~")
         throw Error(ErrorKind::usage,
-                    text +
+                    said +
                         ": expected the whole path, found ~, which only a shell replaces by the "
                         "home folder; ./~ is a file or folder of that name");
 }
-
-}  // namespace
 
 NamedFiles::Named NamedFiles::named(std::string text, const fs::path& path) {
     return {std::move(text), resolved(path), FileIdentity::of(path)};

@@ -51,6 +51,7 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"run", recording(), "--out"}, "--out: expected SINK, found none");
     expect(2, {"run", recording(), "--out=~/frames/"}, "--out ~/frames/: ");
     expect(2, {"convert", recording(), "~/a.txt"}, "~/a.txt: ");
+    expect(2, {"evaluate", recording(), "--figure", "sigma", "--plots", "~/plots"}, "~/plots: ");
     expect(2, {"run", recording(), "--roi", "60,0,30x10", "--out", "null"}, "");
     expect(2, {"run", recording(), "--out", "frame.bmp"}, "frame.bmp");
     expect(2, {"run", recording(), "--out", "-", "--out", "gray8:-"}, "standard output");
