@@ -24,7 +24,7 @@ constexpr std::size_t kMaxDigits = 12;  // of numerator and denominator: product
 [[noreturn]] void refuse(std::string_view text) {
     throw Error(ErrorKind::usage, "frame rate '" + std::string{text} +
                                       "': expected more than 0 and at most 1000000 frames per "
-                                      "second, for example 120, 29.97 or 30000/1001");
+                                      "second, in digits, for example 120, 29.97 or 30000/1001");
 }
 
 std::int64_t digits(std::string_view part, std::string_view text) {

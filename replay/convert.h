@@ -39,7 +39,7 @@ public:
     virtual void finish() = 0;                          ///< once, after the last write
     virtual bool reader_gone() const { return false; }  ///< nobody wants more
     virtual std::uint64_t bytes_written() const = 0;
-    virtual std::uint64_t lost() const { return 0; }  ///< datagrams that nobody took
+    virtual std::uint64_t lost() const { return 0; }  ///< datagrams that nobody received
 };
 
 /// What a target is told of where its data come from.

@@ -184,6 +184,16 @@ std::vector<std::string> with_help_as_flag(std::vector<std::string> arguments) {
                 "unexpected argument " + left + (output ? "; did you mean --out?" : "") + help);
 }
 
+/// CLI11's "--fps: 1 required RATE missing" in our words; everything else as it is.
+std::string in_our_words(const std::string& text) {
+    const std::string_view before = ": 1 required ", after = " missing";
+    const std::size_t at = text.find(before);
+    if (at == text.npos || !text.ends_with(after)) return text;
+    const std::size_t value = at + before.size();
+    return text.substr(0, at) + ": expected " +
+           text.substr(value, text.size() - after.size() - value) + ", found none";
+}
+
 }  // namespace
 
 std::string help_hint(const std::string& command) {
@@ -234,7 +244,7 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     } catch (const CLI::ExtrasError&) {
         refuse_extras(arguments, app, command_of(app));
     } catch (const CLI::ParseError& error) {
-        throw Error(ErrorKind::usage, error.what() + help_hint(command_of(app)));
+        throw Error(ErrorKind::usage, in_our_words(error.what()) + help_hint(command_of(app)));
     }
     if (print_defaults) {
         std::cout << default_config();

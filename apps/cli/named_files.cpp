@@ -13,6 +13,14 @@ namespace eventide::app {
 
 namespace fs = std::filesystem;
 
+void NamedFiles::refuse_home_sign(const std::string& said, const fs::path& path) {
+    if (!path.empty() && *path.begin() == "~")
+        throw Error(ErrorKind::usage,
+                    said +
+                        ": expected the whole path, found ~, which only a shell replaces by the "
+                        "home folder; ./~ is a file or folder of that name");
+}
+
 NamedFiles::Named NamedFiles::named(std::string text, const fs::path& path) {
     return {std::move(text), resolved(path), FileIdentity::of(path)};
 }
@@ -62,12 +70,15 @@ void NamedFiles::writes(const std::string& option, const fs::path& path, const s
         standard_output_ = option + " -";
         return add({standard_output_, {}, FileIdentity::of_descriptor(STDOUT_FILENO)}, outputs_);
     }
-    add(named(option + " " + (said.empty() ? path.string() : said), path), outputs_);
+    const std::string text = option + " " + (said.empty() ? path.string() : said);
+    refuse_home_sign(text, path);
+    add(named(text, path), outputs_);
     refuse_existing(path, overwrite_);
 }
 
 void NamedFiles::writes_when_done(const std::string& option, const fs::path& path) {
     if (!path.empty() && path != "-") {
+        refuse_home_sign(option + " " + path.string(), path);
         const fs::path folder = resolved(path).parent_path();
         std::error_code none;
         if (!fs::is_directory(folder, none) &&
@@ -81,10 +92,12 @@ void NamedFiles::writes_when_done(const std::string& option, const fs::path& pat
 }
 
 void NamedFiles::writes_folder(const std::string& option, const fs::path& folder) {
+    refuse_home_sign(option + " " + folder.string(), folder);
     add(named(option + " " + folder.string(), folder), outputs_);
 }
 
 void NamedFiles::writes_all(const std::string& option, const fs::path& folder) {
+    refuse_home_sign(option + " " + folder.string(), folder);
     Named all = named(option + " " + folder.string(), folder);
     all.whole_folder = true;
     add(std::move(all), outputs_);

@@ -38,6 +38,11 @@ public:
     /// A folder that is the output's own, with everything in it.
     void writes_all(const std::string& option, const std::filesystem::path& folder);
 
+    /// From a configuration file, the environment or `--out=~/x`, a shell has not replaced a ~ at
+    /// the beginning: the output would land in a folder of that name. Throws Error (usage);
+    /// `said` is how the user wrote it.
+    static void refuse_home_sign(const std::string& said, const std::filesystem::path& path);
+
 private:
     struct Named {
         std::string text;            ///< "--out x.mp4"

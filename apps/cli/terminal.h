@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -48,5 +49,8 @@ private:
 
 /// 12,345,678 -> "12.3 M"; for rates and counts in lines people read.
 std::string short_count(double n);
+
+/// "1 image", "2 images"
+std::string counted(std::uint64_t n, const std::string& what);
 
 }  // namespace eventide::app

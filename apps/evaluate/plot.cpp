@@ -233,7 +233,7 @@ std::string csv(const Plot& plot) {
 
 std::filesystem::path write_plot(const Plot& plot, const std::filesystem::path& folder,
                                  bool overwrite) {
-    std::filesystem::create_directories(folder);
+    create_folder(folder);
     std::filesystem::path drawing = folder / (plot.name + ".svg");
     write_file(folder / (plot.name + ".csv"), csv(plot), overwrite);
     write_file(drawing, svg(plot), overwrite);

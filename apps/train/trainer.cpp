@@ -3,6 +3,7 @@
 #include "apps/train/device.h"
 #include "apps/train/network/warm_start.h"
 #include "apps/train/sound_options.h"
+#include "src/io/output_file.h"
 
 #include <algorithm>
 #include <chrono>
@@ -49,7 +50,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     }
     options_.data.bins = options.model.bins;
     options_.data.noise_filter = options.model.noise_filter;
-    std::filesystem::create_directories(options.out);
+    create_folder(options.out);
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);

@@ -115,7 +115,7 @@ RunFolder::RunFolder(fs::path folder, bool overwrite, RunFolderFiles files)
         prepare(overwrite);
     } catch (const fs::filesystem_error& error) {
         throw Error(ErrorKind::failed,
-                    folder_.string() + ": cannot be made: " + error.code().message());
+                    folder_.string() + ": cannot be read: " + error.code().message());
     }
     if (::access(folder_.c_str(), W_OK | X_OK) != 0)
         throw Error(ErrorKind::failed, folder_.string() + ": cannot be written to: " +
@@ -149,12 +149,12 @@ void RunFolder::prepare(bool overwrite) {
                             "--overwrite replaces an earlier run");
         earlier_ = earlier_files(folder_, files_);
     }
-    made_ = fs::create_directories(folder_);
+    made_ = create_folder(folder_);
 }
 
 fs::path RunFolder::next(std::size_t kind) {
     const NumberedFiles& files = files_.numbered[kind];
-    if (written_[kind] == 0) fs::create_directories(folder_ / files.folder);
+    if (written_[kind] == 0) create_folder(folder_ / files.folder);
     return folder_ / files.folder / files.name(written_[kind]++);
 }
 

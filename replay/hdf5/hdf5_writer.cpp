@@ -77,7 +77,7 @@ Hdf5Handle make_file(OutputFile& file) {
         h5.H5Fcreate(file.path_to_reopen().c_str(), kHdf5Replace, H5P_DEFAULT, H5P_DEFAULT),
         h5.H5Fclose};
     if (!made.good())
-        throw Error(ErrorKind::failed, file.name() + ": cannot be made: " + system_words(errno));
+        throw Error(ErrorKind::failed, file.name() + ": cannot be created: " + system_words(errno));
     return made;
 }
 

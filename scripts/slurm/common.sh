@@ -7,6 +7,11 @@ refuse() {
   exit 2
 }
 
+# NUMBER THING: "1 task", "2 tasks".
+counted() {
+  echo "$1 $2$([ "$1" = 1 ] || echo s)"
+}
+
 # OPTION TEXT: a whole number above 0.
 whole_number() {
   [[ $2 =~ ^[1-9][0-9]{0,6}$ ]] || refuse "$1: expected whole seconds, found '$2'"
@@ -36,7 +41,7 @@ state_file() {
 # SCRIPT OUT [NUMBER]: what a job of an array begins with. Sets `out`, `number`, and `options`, those of the run.
 take_job() {
   expect_plan "$1" "${2:-}"
-  out=$2
+  out=${2%/}
   number=${3:-${SLURM_ARRAY_TASK_ID:-}}
   [[ $number =~ ^[0-9]{1,9}$ ]] || refuse "$1: expected a whole number or SLURM_ARRAY_TASK_ID, found '$number'"
   number=$((10#$number))

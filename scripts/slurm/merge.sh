@@ -4,7 +4,7 @@
 set -euo pipefail
 . "$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/common.sh"
 expect_plan merge.sh "${1:-}"
-out=$1
+out=${1%/}
 
 missing=()
 number=0
@@ -12,7 +12,7 @@ while IFS=$'\t' read -r _ name _; do
   is_finished "$out/parts/$(part_name "$name" $number)" || missing+=("$number")
   number=$((number + 1))
 done < "$out/plan.tsv"
-[ ${#missing[@]} -eq 0 ] || refuse "merge.sh: $out: tasks ${missing[*]} are not done (task.sh $out NUMBER does one)"
+[ ${#missing[@]} -eq 0 ] || refuse "merge.sh: $out: not done yet: tasks ${missing[*]} (task.sh $out NUMBER does one)"
 
 # PART TO: the lines of timestamps.csv before `to` become lines of the whole, with images under new numbers. Prints how many frames the whole has then,
 # and the last number on its frame clock. In Perl, which links without a process for each image.
@@ -65,5 +65,5 @@ cut -f 2 "$out/plan.tsv" | uniq | while read -r whole; do
   printf '{\n  "program": "scripts/slurm/merge.sh",\n  "frames": %d,\n  "parts": "%s",\n  "finished": true\n}\n' "$count" "parts/$whole.*" > "$work/run.json"
   [ ! -e "$out/$whole" ] || refuse "merge.sh: $out/$whole: something else is there; expected nothing"
   mv -T "$work" "$out/$whole"
-  echo "$out/$whole: $count frames" >&2
+  echo "$out/$whole: $(counted "$count" frame)" >&2
 done

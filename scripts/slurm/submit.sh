@@ -21,7 +21,7 @@ done
 ! $states || [ "$warmup" = all ] || refuse "submit.sh: --states and --warmup $warmup: expected one of them"
 ! $states || [ -n "$segment" ] || refuse "submit.sh: --states: expected --segment SECONDS, found none"
 [ $# -ge 2 ] || refuse "submit.sh: expected OUT and at least one RECORDING"
-out=$1
+out=${1%/}
 shift
 recordings=()
 while [ $# -gt 0 ] && [ "$1" != -- ]; do recordings+=("$1"); shift; done
@@ -50,6 +50,10 @@ for recording in "${recordings[@]}"; do
     continue
   fi
   info=$("$EVENTIDE" info "$recording" --json) || refuse "submit.sh: $recording: cannot be read"
+  # As run says where the states are made, but before there is a plan.
+  if $states && [[ $(number_in "$info" frames) != 0 && " $* " != *" --frames ignore "* && " $* " != *" --frames=ignore "* && ${EVENTIDE_RUN_FRAMES:-} != ignore ]]; then
+    refuse "submit.sh: --states: $recording has images, which would correct frames; expected --frames ignore among the options of run"
+  fi
   # Frames count from just before the first event, as of one run.
   first=$(($(number_in "$info" first_us) - 1)) last=$(number_in "$info" last_us)
   for ((from = first; from <= last; from += segment * 1000000)); do
@@ -74,7 +78,7 @@ else
   cp "$new" "$out/plan.tsv.part" && mv "$out/plan.tsv.part" "$out/plan.tsv"
 fi
 tasks=$(wc -l < "$out/plan.tsv")
-echo "$tasks tasks in $out/plan.tsv" >&2
+echo "$(counted "$tasks" task) in $out/plan.tsv" >&2
 $plan_only && exit 0
 
 out=$(realpath "$out")

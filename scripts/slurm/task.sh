@@ -5,7 +5,7 @@ set -euo pipefail
 . "$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/common.sh"
 take_job task.sh "$@"
 IFS=$'\t' read -r recording name from to before state < <(sed -n "$((number + 1))p" "$out/plan.tsv") ||
-  refuse "task.sh: $out/plan.tsv: expected task $number, found $(wc -l < "$out/plan.tsv") tasks"
+  refuse "task.sh: $out/plan.tsv: expected task $number, found $(counted "$(wc -l < "$out/plan.tsv")" task)"
 part=$out/parts/$(part_name "$name" "$number")
 if is_finished "$part"; then
   echo "$part: done before" >&2

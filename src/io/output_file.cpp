@@ -100,7 +100,7 @@ void OutputFile::open_growing(bool overwrite) {
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
     made_ = file_ >= 0;
     if (made_) return;
-    if (errno != EEXIST) fail("made", errno);
+    if (errno != EEXIST) fail("created", errno);
     file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     struct stat facts {};
     if (file_ < 0 || ::fstat(file_, &facts) != 0) fail("opened", errno);
@@ -123,7 +123,7 @@ void OutputFile::open_beside(bool overwrite) {
         if (file_ >= 0 || (errno == EEXIST && n < kMaxParts)) continue;
         const int error = errno;
         part_.clear();
-        fail("made", error);
+        fail("created", error);
     }
     if (replaces_) ::fchmod(file_, facts.st_mode & 07777);
     replaces_ = replaces_ || overwrite;
@@ -220,6 +220,15 @@ void refuse_existing(const fs::path& path, bool overwrite) {
         throw Error(ErrorKind::usage, path.string() + ": expected a file, found a folder");
     if (overwrite || !fs::is_regular_file(status) || descriptor_named(path)) return;
     if (fs::file_size(path, none) > 0) throw existing_file(path.string());
+}
+
+bool create_folder(const fs::path& path) {
+    std::error_code error;
+    const bool created = fs::create_directories(path, error);
+    if (error)
+        throw Error(ErrorKind::failed,
+                    path.string() + ": cannot be created: " + system_words(error.value()));
+    return created;
 }
 
 void write_file(const fs::path& path, std::span<const std::byte> bytes, bool overwrite) {

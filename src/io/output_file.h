@@ -85,6 +85,10 @@ private:
 /// not set: for a word early in long work, since OutputFile asks again.
 void refuse_existing(const std::filesystem::path& path, bool overwrite);
 
+/// A folder and those above it; false where it exists already. Throws Error (failed) with the
+/// system's words.
+bool create_folder(const std::filesystem::path& path);
+
 /// A whole file at once. Throws as OutputFile.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
                 bool overwrite);

@@ -33,7 +33,12 @@ double parse_number(const std::string& text, double least, double most) {
 }
 
 std::string show_number(double value) {
+    // 100000, not 1e+05, as long as it stays short.
+    constexpr std::size_t kShort = 16;
     std::array<char, 32> text{};
+    const auto fixed =
+        std::to_chars(text.data(), text.data() + kShort, value, std::chars_format::fixed);
+    if (fixed.ec == std::errc{}) return {text.data(), fixed.ptr};
     const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc{} ? std::string{text.data(), end} : "?";
 }

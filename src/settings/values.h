@@ -14,7 +14,7 @@ namespace eventide {
 int parse_whole(const std::string& text, int least, int most);
 double parse_number(const std::string& text, double least, double most);
 
-/// The shortest text that reads back as the same number.
+/// A short text that reads back as the same number, in digits where that is possible.
 std::string show_number(double value);
 
 /// `text`, which is one of `names`.

@@ -162,6 +162,17 @@ TEST(Text, ALoneLeapIsDamageAndAPauseIsNot) {
     EXPECT_EQ(parse_text("0.1 1 1 1\n900000.0 1 1 1\n").data.events.size(), 2U);
 }
 
+TEST(Text, AStatedUnitIsTakenAndAnImpossibleOneIsSaid) {
+    std::string rows;
+    for (int i = 0; i < 500; ++i) rows += std::to_string(5 + 1e-5 * i) + " 1 2 1\n";
+    for (const TextTimeUnit unit : {TextTimeUnit::seconds, TextTimeUnit::milliseconds,
+                                    TextTimeUnit::microseconds, TextTimeUnit::nanoseconds}) {
+        const TextHeader header = read_text_header(to_bytes(rows), {.unit = unit});
+        EXPECT_EQ(header.layout.unit, unit);
+        EXPECT_EQ(header.remarks.empty(), unit <= TextTimeUnit::milliseconds);
+    }
+}
+
 TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
     const auto header_of = [](std::int64_t first, std::int64_t step) {
         std::string text;

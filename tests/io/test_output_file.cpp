@@ -172,7 +172,21 @@ TEST(OutputFile, DevicesAreWrittenToAndNotReplaced) {
 
 TEST(OutputFile, SaysWhyItCannotBeMade) {
     EXPECT_EQ(refusal("/nowhere/a", {}),
-              "failed: /nowhere/a: cannot be made: No such file or directory");
+              "failed: /nowhere/a: cannot be created: No such file or directory");
+}
+
+TEST(OutputFile, AFolderIsCreatedOnceAndWithThoseAboveIt) {
+    const TempFolder temp;
+    EXPECT_TRUE(create_folder(temp / "a/b/"));
+    EXPECT_FALSE(create_folder(temp / "a/b"));
+    write_text(temp / "file", "x");
+    try {
+        create_folder(temp / "file/a");
+        ADD_FAILURE() << "took it";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::failed);
+        EXPECT_EQ(error.what(), temp / "file/a" + ": cannot be created: Not a directory");
+    }
 }
 
 TEST(OutputFile, RunningOutOfDescriptorsIsSaidAsSuch) {

@@ -31,8 +31,14 @@ TEST(Values, ATimeWithoutAUnitIsRefusedWithTheWaysToWriteIt) {
 }
 
 TEST(Values, NumbersReadBack) {
-    for (const double n : {0.1, 1e-9, 2.5, 123456789.0})
-        EXPECT_EQ(parse_number(show_number(n), 0, 1e12), n);
+    for (const double n : {0.1, 1e-9, 1.0 / 3, 2.5, 123456789.0, 1e300})
+        EXPECT_EQ(parse_number(show_number(n), 0, 1e300), n);
+}
+
+TEST(Values, NumbersAreWrittenInDigitsWhereThatIsShort) {
+    EXPECT_EQ(show_number(100'000), "100000");
+    EXPECT_EQ(show_number(1e-5), "0.00001");
+    EXPECT_EQ(show_number(1e300), "1e+300");
 }
 
 TEST(Values, SizesReadBack) {

@@ -132,7 +132,7 @@ TEST_F(Commands, ConvertSendsDatagrams) {
     // Nobody listens any more.
     const Result lost = eventide({"convert", recording(), to, "--strict"});
     EXPECT_EQ(lost.exit_code, 5);
-    EXPECT_NE(lost.error.find("that nobody took"), std::string::npos) << lost.error;
+    EXPECT_NE(lost.error.find("that nobody received"), std::string::npos) << lost.error;
     const Result format = eventide({"convert", recording(), to, "--to-format", "text"});
     EXPECT_EQ(format.exit_code, 2);
     EXPECT_NE(format.error.find("?format=t64"), std::string::npos) << format.error;

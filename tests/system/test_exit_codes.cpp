@@ -44,6 +44,14 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"run", recording(), "--lookahead", "3", "--out", "null"}, "--lookahead");
     expect(2, {"run", recording(), "--window", "soon", "--out", "null"}, "--window");
     expect(2, {"run", recording(), "--size", "big", "--out", "null"}, "--size");
+    for (const char* size : {"2", "0.001x"})
+        expect(2, {"run", recording(), "--size", size, "--out", "null"},
+               "expected a factor from 0.01x to 64x, or pixels");
+    expect(2, {"run", recording(), "--slow", "1e9", "--out", "null"}, "to 100000, found");
+    expect(2, {"run", recording(), "--out"}, "--out: expected SINK, found none");
+    expect(2, {"run", recording(), "--out=~/frames/"}, "--out ~/frames/: ");
+    expect(2, {"convert", recording(), "~/a.txt"}, "~/a.txt: ");
+    expect(2, {"evaluate", recording(), "--figure", "sigma", "--plots", "~/plots"}, "~/plots: ");
     expect(2, {"run", recording(), "--roi", "60,0,30x10", "--out", "null"}, "");
     for (const char* option : {"--config", "--hot-pixels"})
         expect(2, {"run", recording(), option, "/dev/zero", "--out", "null"},

@@ -90,6 +90,20 @@ TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
     }
 }
 
+TEST_F(Signals, SomeMeasurementsAreNotTakenForAll) {
+    std::vector<std::string> command{"bench", "--json", "all.json"};
+    // More than it measures until the signal comes.
+    for (int n = 0; n < 1000; ++n) command.insert(command.end(), {"--sizes", "64x48"});
+    Process process = start(command);
+    while (process.running() && !process.catches(SIGTERM)) continue;
+    process.signal(SIGTERM);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.error.find("stopped before everything was measured"), std::string::npos)
+        << result.error;
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "all.json"));
+}
+
 TEST_F(Signals, SomeHardCasesAreNotTakenForAll) {
     Process process =
         start({"stress", "--models", model(), "--soak", "10000", "--json", "all.json"});

@@ -62,7 +62,7 @@ TEST_F(Slurm, SegmentsAreJoinedToWhatOneRunWrites) {
     }
     const Result early = script("merge.sh", {"out"});
     EXPECT_EQ(early.exit_code, 2);
-    EXPECT_THAT(early.error, HasSubstr("tasks 1 are not done"));
+    EXPECT_THAT(early.error, HasSubstr("not done yet: tasks 1 ("));
     EXPECT_FALSE(fs::exists(temp_ / "out/long"));
 
     // What a killed task and a killed merge leave is in nobody's way.
@@ -135,7 +135,7 @@ TEST_F(Slurm, ATaskThatWasStoppedIsNotDone) {
              .folder = temp_.path().string()});
     EXPECT_EQ(stopped.exit_code, 2) << stopped.error;
     EXPECT_THAT(stopped.error, HasSubstr("expected a finished run"));
-    EXPECT_THAT(script("merge.sh", {"out"}).error, HasSubstr("tasks 0 are not done"));
+    EXPECT_THAT(script("merge.sh", {"out"}).error, HasSubstr("not done yet: tasks 0 ("));
 }
 
 TEST_F(Slurm, OneTaskForEachRecording) {
@@ -158,6 +158,9 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
                        plan({"--states", "--warmup", "2", "--segment", "1", "out", "a.aedat4"}))
                     .error,
                 HasSubstr("expected one of them"));
+    EXPECT_THAT(script("submit.sh", plan({"--states", "--segment", "1", "out", "a.aedat4"})).error,
+                HasSubstr("expected --frames ignore among the options of run"));
+    EXPECT_FALSE(fs::exists(temp_ / "out")) << "a plan that cannot be changed any more";
     EXPECT_THAT(script("submit.sh", plan({"--segment", "1s", "out", "a.aedat4"})).error,
                 HasSubstr("--segment: expected whole seconds, found '1s'"));
     EXPECT_THAT(script("submit.sh", {"--plan", "out", "a.aedat4", "--", "--out", "x/"}).error,
@@ -166,7 +169,8 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
     EXPECT_EQ(script("submit.sh", plan({"out", "a.aedat4"})).exit_code, 0) << "the same again";
     EXPECT_THAT(script("submit.sh", plan({"--segment", "1", "out", "a.aedat4"})).error,
                 HasSubstr("out: holds another plan"));
-    EXPECT_THAT(script("task.sh", {"out", "7"}).error, HasSubstr("expected task 7, found 1 tasks"));
+    EXPECT_THAT(script("task.sh", {"out", "7"}).error,
+                HasSubstr("expected task 7, found 1 task\n"));
     EXPECT_THAT(script("task.sh", {"out"}).error, HasSubstr("SLURM_ARRAY_TASK_ID"));
     EXPECT_THAT(script("task.sh", {"out", "x"}).error, HasSubstr("a whole number"));
     for (const char* name : {"task.sh", "states.sh", "merge.sh", "scaling.sh"}) {

@@ -26,6 +26,12 @@ std::string case_name(const std::string& model, const std::string& precision,
     return model + " " + precision + " " + size;
 }
 
+/// Some of the rows would be taken for all.
+void refuse_partial(Program& program) {
+    if (program.signals.stopping())
+        throw Error(ErrorKind::failed, "bench: stopped before everything was measured");
+}
+
 }  // namespace
 
 std::string BenchCommand::examples() const {
@@ -198,7 +204,9 @@ std::vector<BenchRow> BenchCommand::measure_pipelines(Program& program) const {
 }
 
 int BenchCommand::report(Program& program) const {
-    write_report(measure_report(settings_, read_peers(peers_), program), report_, overwrite_);
+    const Report measured = measure_report(settings_, read_peers(peers_), program);
+    refuse_partial(program);
+    write_report(measured, report_, overwrite_);
     spdlog::info("{}", (std::filesystem::path{report_} / "index.html").string());
     return exit_done;
 }
@@ -229,6 +237,7 @@ int BenchCommand::run(Program& program) {
         stages = measure_stages(peaks, program);
         std::fputs(bench::stages_text(stages).c_str(), stdout);
     }
+    refuse_partial(program);
     if (!stages_ && !activity_) {
         std::printf("\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
                     settings_.threads == 0 ? "all" : std::to_string(settings_.threads).c_str(),
@@ -236,6 +245,7 @@ int BenchCommand::run(Program& program) {
         rows = measure_pipelines(program);
         print_bench_table(rows);
     }
+    refuse_partial(program);
     if (!json_.empty()) write_file(json_, bench_json(stages, activity, peaks, rows), overwrite_);
     if (!plots_.empty())
         spdlog::info("{}", write_plot(bench_plot(rows), plots_, overwrite_).string());

@@ -9,6 +9,7 @@
 #include "apps/cli/run/colour.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/settings/time_point.h"
+#include "apps/cli/terminal.h"
 #include "pipeline/filters/filter_chain.h"
 #include "replay/convert.h"
 #include "replay/formats.h"
@@ -46,28 +47,29 @@ const Format* target_format(const std::string& file, const std::string& name) {
     return format;
 }
 
-/// "3 events, 2 images"; what there is none of goes unsaid.
+/// "3 events, 1 image"; what there is none of goes unsaid.
 std::string text_of(const DataCounts& counts) {
     std::string text;
     const auto add = [&text](std::uint64_t n, const char* what) {
-        if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + what;
+        if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, what);
     };
-    add(counts.events, "events");
-    add(counts.images, "images");
-    add(counts.imu, "imu samples");
-    add(counts.triggers, "triggers");
+    add(counts.events, "event");
+    add(counts.images, "image");
+    add(counts.imu, "IMU sample");
+    add(counts.triggers, "trigger");
     return text.empty() ? "0 events" : text;
 }
 
 void say(const std::string& source, const std::string& source_format, const std::string& file,
          const ConvertReport& report) {
-    spdlog::info("{}: wrote {} ({} bytes)", file, text_of(report.written), report.bytes_written);
+    spdlog::info("{}: wrote {} ({})", file, text_of(report.written),
+                 counted(report.bytes_written, "byte"));
     if (!(report.not_held == DataCounts{}))
-        spdlog::warn("{}: its format cannot hold {}, which were left out", file,
+        spdlog::warn("{}: left out what its format cannot hold: {}", file,
                      text_of(report.not_held));
     if (report.late_triggers > 0)
-        spdlog::warn("{}: {} triggers came behind later events and have the time of those", file,
-                     report.late_triggers);
+        spdlog::warn("{}: {} came after later events and got their time", file,
+                     counted(report.late_triggers, "trigger"));
     if (report.lost > 0) spdlog::warn("{}: lost {}", file, lost_datagrams(report.lost));
     if (const std::string why =
             disorder_text(source, source_format, report.events_read, report.damaged);

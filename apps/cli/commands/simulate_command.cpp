@@ -5,6 +5,7 @@
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/words.h"
+#include "apps/cli/terminal.h"
 #include "pipeline/sinks/folder.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
@@ -231,7 +232,8 @@ int SimulateCommand::run(Program& program) {
     if (truth) truth->close();
     if (program.signals.stopping())
         spdlog::warn("{}: stopped before the end; it holds what was simulated until then", out_);
-    spdlog::info("{}: {} events, {} images, {} truths", out_, events, images, truths);
+    spdlog::info("{}: {}, {}", out_, counted(events, "event"), counted(images, "image"));
+    if (truth) spdlog::info("{}: {}", truth_, counted(truths, "frame"));
     return exit_done;
 }
 

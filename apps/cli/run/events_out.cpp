@@ -2,6 +2,7 @@
 #include "apps/cli/run/events_out.h"
 
 #include "apps/cli/commands/recording_out.h"
+#include "apps/cli/terminal.h"
 #include "replay/udp_target.h"
 #include "src/core/error.h"
 
@@ -42,7 +43,7 @@ std::unique_ptr<ConvertTarget> open_event_target(const std::string& to,
 }
 
 std::string lost_datagrams(std::uint64_t lost) {
-    return std::to_string(lost) + (lost == 1 ? " datagram" : " datagrams") + " that nobody took";
+    return counted(lost, "datagram") + " that nobody received";
 }
 
 void EventsOut::see(const Batch& batch) {

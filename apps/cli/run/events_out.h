@@ -22,7 +22,7 @@ std::unique_ptr<ConvertTarget> open_event_target(const std::string& to,
 /// The file or folder in it; empty for what is none.
 std::string file_of_event_target(const std::string& to);
 
-/// "3 datagrams that nobody took"
+/// "3 datagrams that nobody received"
 std::string lost_datagrams(std::uint64_t lost);
 
 /// The last of the filters. Bin thread; it holds up the pipeline for as long as writing takes.

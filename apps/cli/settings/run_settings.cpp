@@ -13,6 +13,7 @@ namespace eventide::app {
 namespace {
 
 constexpr int kMaxPixels = kLargestFrameSide;  // each way, of an output
+constexpr double kLeastScale = 0.01, kMostScale = 64;
 
 FpsChoice parse_fps(const std::string& text) {
     if (text == "auto") return {};
@@ -28,11 +29,14 @@ std::string show_fps(const FpsChoice& fps) {
 }
 
 SizeChoice parse_size_choice(const std::string& text) {
-    if (!text.ends_with('x')) return {1, parse_size(text)};
     try {
-        return {parse_number(text.substr(0, text.size() - 1), 0.01, 64), {}};
+        if (!text.ends_with('x')) return {1, parse_size(text)};
+        return {parse_number(text.substr(0, text.size() - 1), kLeastScale, kMostScale), {}};
     } catch (const Error&) {
-        throw_usage("a size such as 2x, 2.5x or 640x480", text);
+        throw_usage("a factor from " + show_number(kLeastScale) + "x to " +
+                        show_number(kMostScale) + "x, or pixels such as 640x480, each from 1 to " +
+                        std::to_string(kMaxPixels),
+                    text);
     }
 }
 

@@ -263,8 +263,11 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     else
         header.layout = named ? *named : layout_guessed(rows);
     if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
+    const auto times = times_in(rows, header.layout);
     if (header.layout.unit == TextTimeUnit::automatic)
-        header.layout.unit = guess_time_unit(times_in(rows, header.layout), header.remarks);
+        header.layout.unit = guess_time_unit(times, header.remarks);
+    else if (options.unit != TextTimeUnit::automatic)
+        doubt_time_unit(times, options.unit, header.remarks);
     return header;
 }
 

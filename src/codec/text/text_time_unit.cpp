@@ -75,12 +75,17 @@ Times read_times(std::span<const std::string_view> texts) {
     return times;
 }
 
+/// "2.5e+06 events/s"
+std::string rate_text(double rate) {
+    char text[48];
+    std::snprintf(text, sizeof text, "%.2g events/s", rate);
+    return text;
+}
+
 /// "times are whole numbers, taken for seconds: 2.5e+06 events/s; ..."
 std::string remark_on(const std::string& what, const Times& times, const Unit& unit,
                       bool impossible) {
-    char rate[48];
-    std::snprintf(rate, sizeof rate, "%.2g events/s", times.rate(unit));
-    return what + ", taken for " + unit.name + ": " + rate +
+    return what + ", taken for " + unit.name + ": " + rate_text(times.rate(unit)) +
            (impossible ? ", which no sensor sends" : "") + "; --input-time-unit states the unit";
 }
 
@@ -109,6 +114,15 @@ TextTimeUnit guess_time_unit(std::span<const std::string_view> texts,
         times.rate(unit) < kDoubtful)
         remarks.push_back(remark_on("times are whole numbers", times, unit, likeliest == nullptr));
     return unit.unit;
+}
+
+void doubt_time_unit(std::span<const std::string_view> texts, TextTimeUnit stated,
+                     std::vector<std::string>& remarks) {
+    const Times times = read_times(texts);
+    const auto unit = std::ranges::find(kByLikelihood, stated, &Unit::unit);
+    if (unit == kByLikelihood.end() || !times.tell_rate() || times.rate(*unit) <= kFastest) return;
+    remarks.push_back("in the stated unit of time these are " + rate_text(times.rate(*unit)) +
+                      ", which no sensor sends; --input-time-unit states another");
 }
 
 }  // namespace eventide

@@ -1,4 +1,4 @@
-// The unit of a text recording's times, where neither the user nor a header row states it.
+// The unit of a text recording's times: guessed where nobody states it, doubted where it cannot be.
 #pragma once
 
 #include "src/codec/text/text_layout.h"
@@ -17,5 +17,10 @@ namespace eventide {
 /// `remarks`.
 TextTimeUnit guess_time_unit(std::span<const std::string_view> times,
                              std::vector<std::string>& remarks);
+
+/// A stated unit is taken at its word, but seconds stated as microseconds all become one moment:
+/// adds a remark where no sensor sends so many events.
+void doubt_time_unit(std::span<const std::string_view> times, TextTimeUnit stated,
+                     std::vector<std::string>& remarks);
 
 }  // namespace eventide

@@ -77,6 +77,21 @@ TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneHasAFolderFromTheBeginning) {
         << "another output makes it";
 }
 
+TEST_F(NamedFilesTest, AnOutputBelowTheHomeSignIsRefused) {
+    for (const fs::path path : {"~", "~/video.mp4"}) {
+        EXPECT_NE(refusal([&] { files_.writes("--out", path); }).find("found ~"),
+                  std::string::npos);
+        EXPECT_NE(refusal([&] { files_.writes_when_done("--json", path); }).find("found ~"),
+                  std::string::npos);
+        EXPECT_NE(refusal([&] { files_.writes_folder("--out", path); }).find("found ~"),
+                  std::string::npos);
+        EXPECT_NE(refusal([&] { files_.writes_all("--out", path); }).find("found ~"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(refusal([&] { files_.writes("--out", temp_ / "~"); }), "");
+    EXPECT_EQ(refusal([&] { files_.writes("--out", "~video.mp4"); }), "");
+}
+
 TEST_F(NamedFilesTest, WhatExistsIsNotReplacedUnasked) {
     files_.may_replace(false);
     EXPECT_NE(refusal([&] { files_.writes("--stats", temp_ / "d/in"); }).find("--overwrite"),

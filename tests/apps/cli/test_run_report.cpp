@@ -76,6 +76,10 @@ TEST(RunReport, ARunWithoutFramesSaysWhy) {
     EXPECT_EQ(why_no_frames(busy()), "");
     Snapshot none;
     EXPECT_NE(why_no_frames(none).find("no event was read"), std::string::npos);
+    none.damaged.count(DamageReason::out_of_range, 3);
+    EXPECT_NE(why_no_frames(none).find("--input-size"), std::string::npos);
+    none.damaged.count(DamageReason::bad_record, 1);
+    EXPECT_NE(why_no_frames(none).find("--input-columns"), std::string::npos);
     none.events = none.slicing.before_begin = 7;
     EXPECT_NE(why_no_frames(none).find("before --from"), std::string::npos);
     none.events = 9;
@@ -95,6 +99,15 @@ TEST(RunReport, StrictMeansLossAndDamageAndNotSkippedFrames) {
     now.gaps = 1;
     EXPECT_TRUE(lost_data(now));
     EXPECT_TRUE(lost_data(busy()));
+}
+
+TEST(RunReport, OneIsOneFrame) {
+    Snapshot one;
+    one.frames = one.events = 1;
+    EXPECT_TRUE(summary_text(one, {}).starts_with("1 frame from 1 event in"));
+    EXPECT_TRUE(summary_text({}, {}).starts_with("0 frames from 0 events in"));
+    EXPECT_EQ(counted(1, "IMU sample"), "1 IMU sample");
+    EXPECT_EQ(counted(11, "image"), "11 images");
 }
 
 TEST(RunReport, ShortCountsKeepTheirSize) {

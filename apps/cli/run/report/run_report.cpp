@@ -61,9 +61,8 @@ bool lost_data(const Snapshot& end) {
 
 std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     const double seconds = progress.elapsed.count();
-    std::string text = text_of(
-        "%llu %s from %s events in %.2f s", static_cast<unsigned long long>(end.frames),
-        end.frames == 1 ? "frame" : "frames", short_count(double(end.events)).c_str(), seconds);
+    std::string text = counted(end.frames, "frame") + " from " + short_count(double(end.events)) +
+                       text_of(" %s in %.2f s", end.events == 1 ? "event" : "events", seconds);
     if (seconds > 0) text += text_of(" (%.1f frames/s)", double(end.frames) / seconds);
     if (progress.in_step) text += "; " + latency_text(end) + " (p50/p99)";
     text += "\n" + losses_text(end);
@@ -79,8 +78,14 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress) {
 std::string why_no_frames(const Snapshot& end) {
     if (end.frames > 0 || end.skipped_frames > 0) return {};
     const SlicerCounters& cut = end.slicing;
+    if (end.events == 0 && end.damaged.total() > 0)
+        return end.damaged[DamageReason::out_of_range] == end.damaged.total()
+                   ? "no frame: every event lies outside the sensor (--input-size)"
+                   : "no frame: no event could be read, as everything is damaged or laid out "
+                     "otherwise (--input-format, --input-columns)";
     if (end.events == 0)
-        return "no frame: no event was read; eventide info says from when to when there are any";
+        return "no frame: no event was read; eventide info shows how many the recording holds, "
+               "and their times";
     if (end.filtered_events == end.events)
         return "no frame: filters took every event (--noise-filter, --hot-pixels, --filter)";
     if (cut.before_begin == end.events) return "no frame: all events lie before --from";
