@@ -18,6 +18,7 @@ namespace eventide {
 namespace {
 
 constexpr int kGap = 4, kCaption = 22;  // px
+constexpr int kRowGap = 10;             // a time is seen to belong to the row above it
 const cv::Scalar kPaper{255, 255, 255}, kInk{40, 40, 40};
 
 /// As colour, at the given size; nearest neighbour keeps single events visible.
@@ -98,13 +99,14 @@ cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
             }
     const cv::Size cell = rows.front().intensity.size();
     const int width = int(columns.size()) * (cell.width + kGap) + kGap;
-    const int height = kCaption + int(rows.size()) * (cell.height + kCaption);
+    const int pitch = cell.height + kCaption + kRowGap;
+    const int height = kCaption + int(rows.size()) * pitch - kRowGap;
     cv::Mat sheet(height, width, CV_8UC3, kPaper);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const int x = kGap + int(c) * (cell.width + kGap);
         caption(sheet, columns[c].first, x, 0);
         for (std::size_t r = 0; r < rows.size(); ++r) {
-            const int y = kCaption + int(r) * (cell.height + kCaption);
+            const int y = kCaption + int(r) * pitch;
             const cv::Mat& image = rows[r].*columns[c].second;
             if (!image.empty()) image.copyTo(sheet(cv::Rect({x, y}, cell)));
             char text[32];

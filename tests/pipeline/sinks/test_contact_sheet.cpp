@@ -38,6 +38,10 @@ TEST(ContactSheet, HasARowForEachOfAFewFramesAndAColumnForWhatThereIs) {
     ASSERT_FALSE(two.empty());
     ASSERT_FALSE(four.empty());
     EXPECT_EQ(two.rows, four.rows);
+    EXPECT_EQ(two.rows, 22 + 3 * (30 + 22) + 2 * 10);  // times nearer to the row that they are of
+    double least = 0;
+    cv::minMaxLoc(two.rowRange(74, 84).reshape(1), &least);
+    EXPECT_EQ(least, 255) << "nothing between a time and the row after it";
     EXPECT_EQ(four.cols - two.cols, two.cols - 4);                  // twice the columns, one margin
     EXPECT_EQ(four.at<cv::Vec3b>(30, 20), cv::Vec3b(60, 60, 220));  // ON events
     EXPECT_EQ(four.at<cv::Vec3b>(30, four.cols - 20), cv::Vec3b(200, 200, 200));

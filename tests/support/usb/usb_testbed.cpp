@@ -3,8 +3,10 @@
 #include "tests/support/preload.h"
 #include "tests/support/usb/usb_testbed_parts.h"
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 namespace eventide::testing_support {
 
@@ -35,8 +37,10 @@ void UsbTestbed::plug_in(std::shared_ptr<UsbModel> camera, UsbPlace place) {
     }
     GError* error = nullptr;
     const std::string record = device_record(p.identity, place), node = device_node(place);
-    if (!umockdev_testbed_add_from_string(p.testbed.get(), record.c_str(), &error) ||
-        !umockdev_testbed_attach_ioctl(p.testbed.get(), node.c_str(), p.handler.get(), &error)) {
+    // In this order, as a program may look for its camera at any time: umockdev ends one that opens
+    // a node behind which nobody listens yet.
+    if (!umockdev_testbed_attach_ioctl(p.testbed.get(), node.c_str(), p.handler.get(), &error) ||
+        !umockdev_testbed_add_from_string(p.testbed.get(), record.c_str(), &error)) {
         const Owned<GError> owned{error};
         throw std::runtime_error(std::string{"umockdev: "} + owned->message);
     }
@@ -53,6 +57,11 @@ void UsbTestbed::unplug() {
     }
     const std::string path = "/sys" + sysfs_path(p.place), node = device_node(p.place);
     umockdev_testbed_uevent(p.testbed.get(), path.c_str(), "remove");
+    // Nor is there anything to open, or to connect to, once nobody listens any more; the node
+    // itself would stay.
+    std::error_code none;
+    std::filesystem::remove(p.root() + node, none);
+    std::filesystem::remove(p.root() + "/ioctl" + node, none);
     umockdev_testbed_detach_ioctl(p.testbed.get(), node.c_str(), nullptr);
     umockdev_testbed_remove_device(p.testbed.get(), path.c_str());
     p.attached = false;

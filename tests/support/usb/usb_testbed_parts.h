@@ -14,6 +14,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <string>
 
 namespace eventide::testing_support {
 
@@ -48,6 +49,13 @@ struct UsbTestbed::Parts {
     std::deque<UsbUrb> waiting, listening, finished;  // for data, for messages
     UsbFaults faults;
 
+    /// Below which umockdev keeps its files.
+    std::string root() const {
+        gchar* const path = umockdev_testbed_get_root_dir(testbed.get());
+        const std::string text{path};
+        g_free(path);
+        return text;
+    }
     static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer parts) {
         return static_cast<Parts*>(parts)->handle(client);
     }
