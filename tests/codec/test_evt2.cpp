@@ -184,6 +184,20 @@ TEST(Evt2, ARealRecordingGivesItsNumbers) {
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 
+/// Found by fuzzing: they came with the next word that tells a time, behind what came before that.
+TEST(Evt2, EventsOfAFirstTimeBeforeAGapComeWithTheNextCall) {
+    Evt2Parser parser{kWidth, kHeight};
+    Batch batch;
+    parser.parse(to_stream(Words{time_high(300), cd(0, 5, 4, false)}), batch);
+    EXPECT_TRUE(batch.events.empty()) << "the first time waits for the next to agree";
+    parser.resync();
+    parser.parse({}, batch);
+    EXPECT_EQ(batch.events, std::vector{event(300 * kHigh, 5, 4)});
+    batch.clear();
+    parser.parse(to_stream(Words{time_high(2), cd(1, 5, 4, false), time_high(2)}), batch);
+    EXPECT_EQ(batch.events, std::vector{event(2 * kHigh + 1, 5, 4)});
+}
+
 TEST(Evt2, ACameraThatWasOpenedAgainGoesOnByTheHostsClock) {
     Evt2Parser parser(kWidth, kHeight);
     Batch batch;

@@ -121,6 +121,7 @@ std::optional<SensorTime> Evt2Base::clock() const {
 }
 
 void Evt2Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    high_.hand_out(into);
     words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
 }
 
@@ -173,6 +174,7 @@ void Evt2Parser::resync() {
 }
 
 void Evt21Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    high_.hand_out(into);
     words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
 }
 

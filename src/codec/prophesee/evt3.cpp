@@ -36,6 +36,7 @@ Evt3Parser::Evt3Parser(int width, int height, std::int64_t time_base_us)
     : width_(side(width)), height_(side(height)), time_base_us_(time_base_us), high_(12, 12) {}
 
 void Evt3Parser::parse(std::span<const std::byte> bytes, Batch& into) {
+    high_.hand_out(into);
     words_.feed(bytes, [&](std::span<const std::byte> words) { take(words, into); });
 }
 

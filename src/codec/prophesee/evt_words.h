@@ -42,7 +42,7 @@ public:
     void push(std::int64_t told, Batch& into, Damage& damage) {
         const std::int64_t value = (told + turn_) & (range_ - 1);
         if (!heard_)
-            begin(value, into);
+            begin(value);
         else if (leap_)
             judge_leap(value, into, damage);
         else if (first_)
@@ -50,6 +50,9 @@ public:
         else
             go_on_to(unwrapped(value));
     }
+
+    /// With the next call of a parser, before its words: what was believed at a gap.
+    void hand_out(Batch& into) { append(before_gap_, into); }
 
     bool is_known() const { return heard_; }
     bool is_sure() const { return heard_ && !first_ && !leap_; }
@@ -79,7 +82,7 @@ public:
     }
     /// Nor any other.
     void believe(Batch& into, Damage& damage) {
-        append(before_gap_, into);
+        hand_out(into);
         if (first_ && leap_ && leap_->high < first_->high) drop(first_, damage);
         tell(high());
         let_go(first_, into);
@@ -122,8 +125,7 @@ private:
         return ever_heard_ ? unwrapped(value) : value;
     }
 
-    void begin(std::int64_t value, Batch& into) {
-        append(before_gap_, into);
+    void begin(std::int64_t value) {
         first_ = Doubt{anew_ ? time_by_host(value) : first_time(value)};
         heard_ = true;
     }
@@ -142,7 +144,7 @@ private:
         const std::int64_t step = step_from(first_->high, value);
         if (!is_near(step) && anew_) {  // neither is known to be right: this one is the newer
             drop(first_, damage);
-            return begin(value, into);
+            return begin(value);
         }
         if (!is_near(step)) {
             leap_ = Doubt{step > 0 ? first_->high + step : first_time(value)};
@@ -205,7 +207,7 @@ private:
     std::int64_t last_ = 0;       ///< believed, with wraps
     std::optional<Doubt> first_;  ///< since the beginning or a gap
     std::optional<Doubt> leap_;
-    Batch before_gap_;  ///< comes out with the next word
+    Batch before_gap_;  ///< comes out with the next call
     bool heard_ = false, ever_heard_ = false;
     std::int64_t turn_ = 0;                      ///< added to what words tell
     bool anew_ = false;                          ///< until a first word is believed
