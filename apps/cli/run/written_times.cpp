@@ -37,12 +37,20 @@ void WrittenTimes::put_in_order(Batch& batch) {
     if (!batch.events.empty()) newest_ = batch.events.back().t;
 }
 
+bool WrittenTimes::begins_anew(SensorTime t, SensorTime newest) const {
+    // EVT3's longest; a leap from a clock of its own to one that counts from 1970 is 50 years.
+    constexpr SensorDuration kLongestGap = std::chrono::hours{240};
+    const bool leaps =
+        holds_.in_time_order && newest != SensorTime::min() && t > newest + kLongestGap;
+    return t < newest || leaps;
+}
+
 void WrittenTimes::move(Batch& batch) {
     constexpr SensorDuration kMicrosecond{1};
     SensorTime newest = newest_;
     Seam seam{newest, newest, later_, later_};
     for (Event& event : batch.events) {
-        if (event.t + later_ < newest) {
+        if (begins_anew(event.t + later_, newest)) {
             seam = {newest - later_, event.t, later_, newest + kMicrosecond - event.t};
             later_ = seam.after;
             ++restarts_;

@@ -27,6 +27,7 @@ public:
     std::vector<std::string> remarks(const std::string& file) const;
 
 private:
+    bool begins_anew(SensorTime t, SensorTime newest) const;
     void move(Batch& batch);
 
     const FormatHolds holds_;

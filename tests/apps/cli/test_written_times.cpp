@@ -50,6 +50,20 @@ TEST(WrittenTimes, GoOnWhereTheFormatCannotSayThatTheClockBeganAnew) {
                 ElementsAre(HasSubstr("x.raw: the clock began anew 2 times")));
 }
 
+TEST(WrittenTimes, GoOnWhereTheClockLeapsFurtherThanTheFormatCanSay) {
+    constexpr std::int64_t kSince1970 = 1'700'000'000'000'000;
+    for (const char* const format : {"evt3", "text", "aedat4"}) {
+        WrittenTimes times{find_format(format)->holds};
+        Batch batch;
+        batch.events = {at(5000), at(kSince1970), at(kSince1970 + 7)};
+        times.put_in_order(batch);
+        const bool moves = times.restarts() == 1;
+        EXPECT_EQ(moves, std::string_view{format} == "evt3") << format;
+        const std::int64_t first = moves ? 5001 : kSince1970;
+        EXPECT_THAT(times_of(batch.events), ElementsAre(5000, first, first + 7)) << format;
+    }
+}
+
 TEST(WrittenTimes, StayWhereTheFormatSaysIt) {
     WrittenTimes times{find_format("aedat4")->holds};
     Batch batch;
