@@ -110,9 +110,11 @@ void Slicer::push_one(const Event& event) {
     }
     if (!begin_) begin_at(event.t - kMicrosecond);
     Event kept = event;
-    if (!pending_.segment_has_ended() && kept.t <= *begin_) {  // advance() promised too much
+    // advance() promised too much, or hear() began with the time before a reset of the clock.
+    if (!pending_.segment_has_ended() && kept.t <= *begin_) {
         ++counters_.late;
         kept.t = *begin_ + kMicrosecond;
+        newest_ = std::max(newest_, kept.t);
     }
     pending_.push(kept);
 }
