@@ -130,18 +130,34 @@ function(eventide_bench name)
   target_link_libraries(bench_${name} PRIVATE ${arg_USES} benchmark::benchmark benchmark::benchmark_main)
 endfunction()
 
-# eventide_fuzz(name SOURCES fuzz_a.cpp USES ...): one libFuzzer program (clang only).
+# eventide_fuzz(name SOURCES fuzz_a.cpp USES ... LABELS parsers RUNS 2000): a target that is given any bytes. With EVENTIDE_FUZZ
+# a libFuzzer program (clang only); in tests with the address sanitizer so many changes of its corpus, the same in every run.
 function(eventide_fuzz name)
-  cmake_parse_arguments(arg "" "" "SOURCES;USES" ${ARGN})
-  if(NOT EVENTIDE_FUZZ)
+  cmake_parse_arguments(arg "" "RUNS" "SOURCES;USES;LABELS" ${ARGN})
+  if(EVENTIDE_FUZZ)
+    add_executable(fuzz_${name} ${arg_SOURCES})
+    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  elseif(EVENTIDE_TESTS AND EVENTIDE_SANITIZE MATCHES "address")
+    add_executable(fuzz_${name} ${arg_SOURCES} ${PROJECT_SOURCE_DIR}/tests/fuzz/mutate_corpus.cpp)
+    if(NOT arg_RUNS)
+      set(arg_RUNS 2000)
+    endif()
+    add_test(NAME fuzz_${name} COMMAND fuzz_${name} ${PROJECT_SOURCE_DIR}/tests/fuzz/corpus/${name} ${arg_RUNS})
+    set_tests_properties(fuzz_${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT 600)
+    # For the build preset "parsers".
+    if("parsers" IN_LIST arg_LABELS)
+      if(NOT TARGET fuzz_parsers)
+        add_custom_target(fuzz_parsers)
+      endif()
+      add_dependencies(fuzz_parsers fuzz_${name})
+    endif()
+  else()
     return()
   endif()
-  add_executable(fuzz_${name} ${arg_SOURCES})
   eventide_compile(fuzz_${name})
   target_link_libraries(fuzz_${name} PRIVATE ${arg_USES})
   target_compile_definitions(fuzz_${name} PRIVATE
     EVENTIDE_FUZZ_MODEL="${PROJECT_SOURCE_DIR}/tests/fuzz/corpus/model/tiny")
-  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
 endfunction()
 
 # eventide_feature(EVENTIDE_X "what it gives" CHECK found [DEFAULT ON]): AUTO becomes ON or OFF; ON without the package
