@@ -11,15 +11,18 @@ namespace {
 
 constexpr std::string_view kScheme = "udp:";
 
+[[noreturn]] void refuse(const std::string& to, const std::string& key, const std::string& value) {
+    throw Error(ErrorKind::usage,
+                to + ": expected format=t64, t32 or spif, found '" + key + "=" + value + "'");
+}
+
 }  // namespace
 
 UdpTarget::UdpTarget(const std::string& to, const StreamHeader& header)
     : name_(UdpName::parse(to.substr(kScheme.size()))), socket_(UdpSocket::sending(name_)) {
     for (const auto& [key, value] : name_.values) {
         const auto named = key == "format" ? udp_records_named(value) : std::nullopt;
-        if (!named)
-            throw Error(ErrorKind::usage, to + ": expected format=t64, t32 or spif, found '" + key +
-                                              "=" + value + "'");
+        if (!named) refuse(to, key, value);
         records_ = *named;
     }
     constexpr int kLargest = 32768;  // 15 bits

@@ -45,7 +45,7 @@ void OutputFile::fail(const char* doing, int error) const {
     throw Error(ErrorKind::failed, name_ + ": cannot be " + doing + ": " + system_words(error));
 }
 
-OutputFile::OutputFile(const fs::path& path, OutputOptions options)
+OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
     : name_{path == "-" ? "standard output" : path.string()} {
     struct stat facts {};
     if (const auto descriptor = descriptor_named(path)) {

@@ -33,7 +33,7 @@ public:
     /// "-" is standard output. Pipes and devices are written to, not replaced. Throws Error: usage
     /// for a folder, and for a file with something in it without `overwrite`; failed when it cannot
     /// be made.
-    explicit OutputFile(const std::filesystem::path& path, OutputOptions options = {});
+    explicit OutputFile(const std::filesystem::path& path, const OutputOptions& options = {});
     /// Without publish() or close() what was written beside is removed.
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;

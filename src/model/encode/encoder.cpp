@@ -69,23 +69,29 @@ TensorFile Encoder::state() const {
             core_->state()};
 }
 
+namespace {
+
+[[noreturn]] void refuse_state(const std::string& name, const std::string& what,
+                               const std::string& expected, const std::string& found) {
+    throw Error(ErrorKind::input,
+                name + ": " + what + ": expected " + expected + ", found " + found);
+}
+
+}  // namespace
+
 void Encoder::restore(const TensorFile& state, const std::string& name) {
     const TensorFile mine = this->state();
     for (const auto& [key, expected] : mine.metadata) {
         const auto found = state.metadata.find(key);
         const std::string value = found == state.metadata.end() ? "nothing" : found->second;
-        if (value != expected)
-            throw Error(ErrorKind::input, name + ": state's '" + key + "': expected " + expected +
-                                              ", found " + value);
+        if (value != expected) refuse_state(name, "state's '" + key + "'", expected, value);
     }
     for (const auto& [key, expected] : mine.tensors) {
         const auto found = state.tensors.find(key);
         if (found == state.tensors.end() || found->second.shape != expected.shape)
-            throw Error(ErrorKind::input,
-                        name + ": tensor '" + key + "': expected shape " +
-                            shape_text(expected.shape) + ", found " +
-                            (found == state.tensors.end() ? "no such tensor"
-                                                          : shape_text(found->second.shape)));
+            refuse_state(
+                name, "tensor '" + key + "'", "shape " + shape_text(expected.shape),
+                found == state.tensors.end() ? "no such tensor" : shape_text(found->second.shape));
     }
     if (state.tensors.size() != mine.tensors.size())
         throw Error(ErrorKind::input, name + ": expected " + std::to_string(mine.tensors.size()) +

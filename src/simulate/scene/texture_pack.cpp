@@ -7,6 +7,7 @@
 #include "src/simulate/image_codec.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -115,7 +116,7 @@ std::shared_ptr<TextureLibrary> textures_from_pack(const std::filesystem::path& 
 GreyImage shrunk(const GreyImage& image, int longest) {
     const double factor = double(std::max(image.width(), image.height())) / longest;
     if (factor <= 1) return image;
-    const auto length = [&](int n) { return std::max(2, int(n / factor + .5)); };
+    const auto length = [&](int n) { return std::max(2, int(std::lround(n / factor))); };
     GreyImage out(length(image.height()), length(image.width()));
     // Which pixels of m lie below each of n, with the shares of its area.
     struct Part {
@@ -148,7 +149,7 @@ GreyImage shrunk(const GreyImage& image, int longest) {
             double sum = 0;
             for (std::size_t i = 0; i < column.shares.size(); ++i)
                 sum += column.shares[i] * sums[std::size_t(column.first) + i];
-            out(y, x) = std::uint8_t(sum + .5);
+            out(y, x) = std::uint8_t(std::lround(sum));
         }
     }
     return out;
