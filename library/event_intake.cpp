@@ -3,6 +3,7 @@
 
 #include "pipeline/filters/event_filter.h"
 #include "src/binning/noise_filter.h"
+#include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 
 #include <string>
@@ -61,15 +62,8 @@ void EventIntake::take(std::span<const Event> events, StepBack step_back, HostTi
         taken_.push_back(event);
     }
     if (!taken_.empty()) slicer_.look_behind(taken_.back().t, arrived);
-    if (!filter_ || taken_.empty()) return slicer_.push(taken_, arrived);
-    // Events that are left out tell the time all the same.
-    const SensorTime newest = taken_.back().t;
-    const std::size_t before = taken_.size();
-    slicer_.hear(taken_);
-    filter_->process(taken_);
-    counters_.filtered += before - taken_.size();
-    slicer_.push(taken_, arrived);
-    slicer_.advance(newest, arrived);
+    if (!filter_) return slicer_.push(taken_, arrived);
+    counters_.filtered += push_filtered(slicer_, taken_, *filter_, arrived);
 }
 
 bool EventIntake::is_sound(const Event& event) {

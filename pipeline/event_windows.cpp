@@ -1,6 +1,7 @@
 // packets -> event windows.
 #include "pipeline/event_windows.h"
 
+#include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 
 #include <algorithm>
@@ -93,16 +94,9 @@ void EventWindows::stop(HostTime arrived) {
     at_stop_(t);
 }
 
-/// Events that are left out tell the time all the same.
 void EventWindows::push(std::vector<Event>& events, HostTime arrived) {
-    if (filter_ == nullptr || events.empty()) return slicer_.push(events, arrived);
-    const SensorTime newest = events.back().t;
-    const std::size_t before = events.size();
-    slicer_.hear(events);
-    filter_->process(events);
-    counters_.bin.filtered_events.add(before - events.size());
-    slicer_.push(events, arrived);
-    slicer_.advance(newest, arrived);
+    if (filter_ == nullptr) return slicer_.push(events, arrived);
+    counters_.bin.filtered_events.add(push_filtered(slicer_, events, *filter_, arrived));
 }
 
 void EventWindows::stop_at(std::vector<SensorTime> times, std::function<void(SensorTime)> at) {

@@ -3,7 +3,7 @@
 
 #include "replay/formats.h"
 #include "src/binning/noise_filter.h"
-#include "src/binning/slicer.h"
+#include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 #include "src/core/grey.h"
 #include "src/core/sensor_limits.h"
@@ -162,12 +162,9 @@ void for_each_cut_window(const ReferenceSequence& sequence, const std::string& w
         const auto some = events.subspan(at, std::min(kAtATime, events.size() - at));
         if (filter == nullptr) {
             slicer.push(some);
-        } else {  // events that are left out tell the time all the same
+        } else {
             left.assign(some.begin(), some.end());
-            slicer.hear(some);
-            filter->process(left);
-            slicer.push(left);
-            slicer.advance(some.back().t);
+            push_filtered(slicer, left, *filter);
         }
         while (slicer.next(event_window)) use(event_window);
     }

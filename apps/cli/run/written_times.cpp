@@ -1,6 +1,8 @@
 // Times as a format can hold them.
 #include "apps/cli/run/written_times.h"
 
+#include "apps/cli/terminal.h"
+
 #include <algorithm>
 
 namespace eventide::app {
@@ -70,8 +72,7 @@ std::vector<std::string> WrittenTimes::remarks(const std::string& file) const {
                           ", which its format cannot say: the times behind it go on from those "
                           "before");
     if (late_triggers_ > 0)
-        remarks.push_back(file + ": " + std::to_string(late_triggers_) +
-                          (late_triggers_ == 1 ? " trigger" : " triggers") +
+        remarks.push_back(file + ": " + counted(late_triggers_, "trigger") +
                           " came behind later events and have the time of those");
     return remarks;
 }
