@@ -16,9 +16,9 @@ Optimiser::Optimiser(const OptimiserSettings& given, Parameters start)
 
 double Optimiser::step(const Parameters& gradients, double learning_rate) {
     const torch::NoGradGuard none;
-    double squares = 0;
-    for (const auto& [name, g] : gradients) squares += g.square().sum().item<double>();
-    const double norm = std::sqrt(squares);
+    std::vector<torch::Tensor> squares;
+    for (const auto& [name, g] : gradients) squares.push_back(g.square().sum().to(torch::kDouble));
+    const double norm = std::sqrt(torch::stack(squares).sum().item<double>());
     if (!std::isfinite(norm)) return norm;
 
     ++steps;

@@ -43,6 +43,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
       input_mask_(input_mask(options.model, options.inputs).to(device_)) {
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
+    at::globalContext().setBenchmarkCuDNN(true);
     {
         const torch::NoGradGuard none;
         for (Parameters* weights : {&optimiser_.parameters, &optimiser_.ema})
@@ -61,9 +62,9 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
             ValidationSettings{options.validation_scenes, options.validation_windows,
                                options.validation_crop, 4242},
             options_.data, std::move(validation_textures), device_);
-    feed_ = std::make_unique<DataLoader>(options_.data, std::move(textures),
-                                         options.threads * options.streams, options.groups,
-                                         progress_.segment);
+    feed_ = std::make_unique<DataLoader>(
+        options_.data, std::move(textures), options.threads * options.streams, options.groups,
+        progress_.segment, device_.is_cuda() ? SimulatorPriority::behind : SimulatorPriority::same);
 }
 
 /// A run may go on with other streams or another crop: its states then begin empty.
@@ -98,10 +99,26 @@ double Trainer::learning_rate() const {
            (options_.final_rate + (1 - options_.final_rate) * cosine);
 }
 
-Trainer::Share Trainer::run_share(std::span<const StreamSegment> segments, const SegmentPlan& plan,
+/// Waits for the simulator; one batch per share.
+std::vector<TrainingBatch> Trainer::load() {
+    const std::vector<StreamSegment> segments = feed_->next();
+    const auto streams = std::size_t(options_.streams);
+    std::vector<TrainingBatch> batches;
+    for (std::size_t i = 0; i < segments.size(); i += streams)
+        batches.push_back(to_batch(std::span{segments}.subspan(i, streams), device_));
+    return batches;
+}
+
+/// A GPU computes a step while the processor copies what the next one reads.
+std::vector<TrainingBatch> Trainer::next_batches() {
+    std::vector<TrainingBatch> batches = upcoming_.valid() ? upcoming_.get() : load();
+    if (device_.is_cuda()) upcoming_ = std::async(std::launch::async, [this] { return load(); });
+    return batches;
+}
+
+Trainer::Share Trainer::run_share(const TrainingBatch& batch, const SegmentPlan& plan,
                                   RecurrentState& recurrent) {
     at::set_num_threads(1);  // libgomp keeps the number per thread
-    const TrainingBatch batch = to_batch(segments, device_);
     recurrent = begin_segment(recurrent, batch.fresh);
     const Parameters narrow =
         type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
@@ -126,17 +143,15 @@ void Trainer::step() {
     const auto start = Clock::now();
     const double cpu_start = cpu_seconds();
     const SegmentPlan plan = segment_plan(options_.data, progress_.segment);
-    const std::vector<StreamSegment> segments = feed_->next();
+    const std::vector<TrainingBatch> batches = next_batches();
     std::vector<Share> shares(std::size_t(options_.threads));
     const std::span<RecurrentState> recurrent_states =
         std::span{progress_.recurrent_states}.subspan(
             std::size_t(progress_.segment % options_.groups) * shares.size(), shares.size());
-    const auto streams = std::size_t(options_.streams);
     {
         std::vector<std::jthread> threads;
         const auto work = [&](std::size_t i) {
-            shares[i] = run_share(std::span{segments}.subspan(i * streams, streams), plan,
-                                  recurrent_states[i]);
+            shares[i] = run_share(batches[i], plan, recurrent_states[i]);
         };
         for (std::size_t i = 1; i < shares.size(); ++i) threads.emplace_back(work, i);
         work(0);
@@ -157,7 +172,8 @@ void Trainer::step() {
     if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next segments
         ++skipped_;
         for (RecurrentState& recurrent : recurrent_states)
-            recurrent = begin_segment(recurrent, std::vector<bool>(streams, true));
+            recurrent =
+                begin_segment(recurrent, std::vector<bool>(std::size_t(options_.streams), true));
     }
     ++progress_.segment;
     const double seconds = seconds_since(start);

@@ -7,8 +7,10 @@
 
 #include <atomic>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace eventide {
 
@@ -42,8 +44,9 @@ private:
     bool finished() const;
     double learning_rate() const;
     void step();
-    Share run_share(std::span<const StreamSegment> segments, const SegmentPlan& plan,
-                    RecurrentState& recurrent);
+    std::vector<TrainingBatch> load();
+    std::vector<TrainingBatch> next_batches();
+    Share run_share(const TrainingBatch& batch, const SegmentPlan& plan, RecurrentState& recurrent);
     Mark mark() const { return {progress_.segment, progress_.elapsed_minutes}; }
     void validate();
     void checkpoint();
@@ -58,6 +61,7 @@ private:
     std::unique_ptr<Perceptual> perceptual_;
     std::unique_ptr<Validation> validation_;
     std::unique_ptr<DataLoader> feed_;
+    std::future<std::vector<TrainingBatch>> upcoming_;  // of the next step; read from feed_
     Checkpoint progress_;
     int skipped_ = 0;
 };

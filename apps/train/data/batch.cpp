@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <thread>
 
 namespace eventide {
 
@@ -31,23 +32,41 @@ RecurrentState begin_segment(const RecurrentState& recurrent, const std::vector<
 torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Device device) {
     const Array3<float>& first = *grids[0];
     const auto n = std::int64_t(grids.size());
-    torch::Tensor all = torch::empty({n, first.height(), first.width(), first.channels()});
+    torch::Tensor all = torch::empty({n, first.height(), first.width(), first.channels()},
+                                     torch::TensorOptions{}.pinned_memory(device.is_cuda()));
     float* out = all.data_ptr<float>();
     for (const Array3<float>* grid : grids)
         out = std::copy(grid->values().begin(), grid->values().end(), out);
     // The binner's layout is torch's channels-last, seen through another order of indices.
-    return all.to(device).permute({0, 3, 1, 2});
+    return all.to(device, /*non_blocking=*/true).permute({0, 3, 1, 2});
 }
+
+namespace {
+
+/// A GPU's large batches are copied window beside window.
+template <typename Work>
+void for_each_window(std::size_t count, torch::Device device, const Work& work) {
+    std::vector<std::jthread> threads;
+    for (std::size_t k = 0; k < count; ++k)
+        if (device.is_cuda())
+            threads.emplace_back(work, k);
+        else
+            work(k);
+}
+
+}  // namespace
 
 TrainingBatch to_batch(std::span<const StreamSegment> segments, torch::Device device) {
     TrainingBatch batch;
     const StreamSegment& like = segments[0];
     for (const StreamSegment& segment : segments) batch.fresh.push_back(segment.fresh);
-    for (std::size_t k = 0; k < like.grids.size(); ++k) {
+    batch.grids.resize(like.grids.size());
+    const auto take_window = [&](std::size_t k) {
         std::vector<const Array3<float>*> grids;
         for (const StreamSegment& segment : segments) grids.push_back(&segment.grids[k]);
-        batch.grids.push_back(to_torch(grids, device));
-    }
+        batch.grids[k] = to_torch(grids, device);
+    };
+    for_each_window(like.grids.size(), device, take_window);
     const auto tasks = std::int64_t(like.f.size()), streams = std::int64_t(segments.size());
     const int patch = like.truth[0].height();
     batch.truth = torch::empty({tasks * streams, patch, patch});

@@ -5,6 +5,8 @@
 #include "src/simulate/presets.h"
 #include "src/simulate/simulated_stream.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -206,9 +208,11 @@ StreamSegment SceneStream::next() {
 }
 
 DataLoader::DataLoader(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
-                       int streams, int groups, std::int64_t first_segment)
+                       int streams, int groups, std::int64_t first_segment,
+                       SimulatorPriority priority)
     : settings_(settings),
       textures_(std::move(textures)),
+      priority_(priority),
       streams_(streams),
       groups_(groups),
       segment_(first_segment),
@@ -225,6 +229,7 @@ DataLoader::~DataLoader() = default;
 
 void DataLoader::simulate(std::stop_token stop, StreamPlace place, std::int64_t first_segment) {
     Slot& slot = slots_[std::size_t(place.stream)];
+    if (priority_ == SimulatorPriority::behind) setpriority(PRIO_PROCESS, 0, 19);  // this thread's
     try {
         SceneStream source{settings_, textures_, place, first_segment};
         while (!stop.stop_requested()) {

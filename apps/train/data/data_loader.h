@@ -92,12 +92,17 @@ private:
     std::unique_ptr<Episode> now_;
 };
 
+/// Many streams must not hold up the one thread that feeds a GPU: theirs can be of the lowest
+/// priority.
+enum class SimulatorPriority { same, behind };
+
 /// Streams that simulate ahead on threads of their own, a bounded number of segments.
 class DataLoader {
 public:
     /// `streams` in each of `groups`.
     DataLoader(const DataSettings& settings, std::shared_ptr<const TextureLibrary> textures,
-               int streams, int groups, std::int64_t first_segment);
+               int streams, int groups, std::int64_t first_segment,
+               SimulatorPriority priority = SimulatorPriority::same);
     ~DataLoader();
 
     /// The next segment of the streams whose turn it is; waits. Rethrows what a stream threw.
@@ -112,6 +117,7 @@ private:
 
     DataSettings settings_;
     std::shared_ptr<const TextureLibrary> textures_;
+    SimulatorPriority priority_;
     int streams_, groups_;
     std::int64_t segment_;
     std::mutex mutex_;

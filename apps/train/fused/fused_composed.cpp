@@ -5,17 +5,16 @@
 namespace eventide::fused::composed {
 namespace {
 
-torch::Tensor up2_along(const torch::Tensor& a, int dim, std::int64_t size) {
-    const std::int64_t n = a.size(dim);
-    const auto next = torch::cat({a.narrow(dim, 1, n - 1), a.narrow(dim, n - 1, 1)}, dim);
-    return torch::stack({a, (a + next) * 0.5}, dim + 1).flatten(dim, dim + 1).narrow(dim, 0, size);
+/// The last row or column twice.
+torch::Tensor with_last_twice(const torch::Tensor& a, int dim) {
+    return torch::cat({a, a.narrow(dim, a.size(dim) - 1, 1)}, dim);
 }
 
 }  // namespace
 
 torch::Tensor compressed(const torch::Tensor& grid, torch::ScalarType type) {
     const torch::Tensor wide = grid.to(wide_of(type));
-    return (wide.sign() * wide.abs().log1p()).to(type);
+    return torch::copysign(wide.abs().log1p(), wide).to(type);
 }
 
 torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h) {
@@ -24,14 +23,17 @@ torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h) {
 
 torch::Tensor update_state(const torch::Tensor& gates, const torch::Tensor& candidate,
                            const torch::Tensor& h, const torch::Tensor& mask) {
-    const auto type = h.scalar_type();
-    const torch::Tensor step = gates.chunk(2, 1)[0].to(type) * (candidate.to(type) - h);
-    return h + (mask.defined() ? mask * step : step);
+    // Wide times narrow is wide, without a copy of its own.
+    const torch::Tensor update = gates.chunk(2, 1)[0];
+    const torch::Tensor share = mask.defined() ? mask * update : update.to(h.scalar_type());
+    return torch::lerp(h, candidate.to(h.scalar_type()), share);
 }
 
 torch::Tensor up2(const torch::Tensor& a, std::int64_t height, std::int64_t width) {
-    return up2_along(up2_along(a, 2, height), 3, width)
-        .contiguous(torch::MemoryFormat::ChannelsLast);
+    // Each pixel four times, and the means of neighbours among them.
+    const torch::Tensor four =
+        torch::upsample_nearest2d(with_last_twice(with_last_twice(a, 2), 3), {}, {{2.0, 2.0}});
+    return torch::avg_pool2d(four, 2, 1).narrow(2, 0, height).narrow(3, 0, width);
 }
 
 torch::Tensor offset_layer(const torch::Tensor& first, const torch::Tensor& dt,
@@ -44,11 +46,10 @@ torch::Tensor offset_layer(const torch::Tensor& first, const torch::Tensor& dt,
         return torch::tensor(axis.offset, torch::kDouble).to(options);
     };
     const auto column = [&](int k) { return offsets.select(1, k).to(options).view({1, -1, 1, 1}); };
-    const auto points =
-        first.index_select(2, index(y)).index_select(3, index(x)).to(options.dtype());
-    const auto sum = points + dt.view({-1, 1, 1, 1}) * column(0) +
-                     offset(x).view({1, 1, 1, -1}) * column(1) +
-                     offset(y).view({1, 1, -1, 1}) * column(2);
+    const auto points = first.index_select(2, index(y)).index_select(3, index(x));
+    const auto of_row =
+        dt.view({-1, 1, 1, 1}) * column(0) + offset(y).view({1, 1, -1, 1}) * column(2);
+    const auto sum = points + of_row + offset(x).view({1, 1, 1, -1}) * column(1);
     return rectify(sum.to(first.scalar_type()).contiguous(torch::MemoryFormat::ChannelsLast));
 }
 

@@ -15,7 +15,9 @@ namespace any_processor {
 #include "apps/train/fused/fused_render_loops.inl"
 }  // namespace any_processor
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// GCC 13 no longer inlines what the standard library says is always inline (std::array::data) where
+// a pragma chose the instruction set, and stops.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ < 13
 #define EVENTIDE_WIDER_LOOPS 1
 #pragma GCC push_options
 #pragma GCC target("arch=haswell")

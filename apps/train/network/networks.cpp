@@ -58,9 +58,8 @@ torch::Tensor up2(const torch::Tensor& a, const torch::Tensor& joined) {
 
 /// m_0 .. m_{L-1} of the gated encoder, float32 0 or 1, [N][1][h][w].
 std::vector<torch::Tensor> masks(const ModelConfig& config, const torch::Tensor& grid) {
-    torch::Tensor mask = torch::zeros_like(grid.narrow(1, 0, 1));
-    for (int b = 0; b < config.bins; ++b) mask += grid.narrow(1, 4 * b + 3, 1);
-    mask = (mask > 0).to(grid.scalar_type()).contiguous();
+    const torch::Tensor counts = grid.slice(1, 3, 4 * config.bins, 4).sum(1, /*keepdim=*/true);
+    const torch::Tensor mask = (counts > 0).to(grid.scalar_type()).contiguous();
     const auto widen = [](const torch::Tensor& m, int r) {
         return torch::max_pool2d(torch::max_pool2d(m, {1, 2 * r + 1}, {1, 1}, {0, r}),
                                  {2 * r + 1, 1}, {1, 1}, {r, 0});
@@ -84,8 +83,9 @@ EncodedGrid encode_gated(const ModelConfig& config, const Layers& layers, const 
         const auto L = std::size_t(l);
         const auto a = rectify(l == 0 ? layers.conv("in", fused::compressed(grid, layers.type()))
                                       : layers.conv(numbered("down", l), h.back(), 2));
-        h.push_back(config.recurrent[L] != 0 ? layers.gru(numbered("gru", l), a, state[L], mask[L])
-                                             : state[L] + mask[L] * (layers.widen(a) - state[L]));
+        h.push_back(config.recurrent[L] != 0
+                        ? layers.gru(numbered("gru", l), a, state[L], mask[L])
+                        : torch::where(mask[L] > 0, layers.widen(a), state[L]));
     }
     torch::Tensor d = h.back().to(layers.type());
     for (int i = 0; i < config.res_blocks; ++i) {
