@@ -3,10 +3,13 @@
 
 #include "src/core/error.h"
 #include "src/io/output_file.h"
+#include "src/io/system_words.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <utility>
 
 namespace eventide::app {
@@ -77,18 +80,26 @@ void NamedFiles::writes(const std::string& option, const fs::path& path, const s
 }
 
 void NamedFiles::writes_when_done(const std::string& option, const fs::path& path) {
-    if (!path.empty() && path != "-") {
-        refuse_home_sign(option + " " + path.string(), path);
-        const fs::path folder = resolved(path).parent_path();
-        std::error_code none;
-        if (!fs::is_directory(folder, none) &&
-            std::ranges::none_of(
-                outputs_, [&](const Named& other) { return other.path.parent_path() == folder; }))
-            throw Error(ErrorKind::usage, option + " " + path.string() +
-                                              ": expected a folder that exists, found no " +
-                                              folder.string());
-    }
+    if (!path.empty() && path != "-") expect_room_for(option + " " + path.string(), path);
     writes(option, path);
+}
+
+void NamedFiles::expect_room_for(const std::string& said, const fs::path& path) const {
+    refuse_home_sign(said, path);
+    const fs::path file = resolved(path), folder = file.parent_path();
+    std::error_code none;
+    const bool made_later = std::ranges::any_of(
+        outputs_, [&](const Named& other) { return other.path.parent_path() == folder; });
+    if (!fs::is_directory(folder, none)) {
+        if (made_later) return;
+        throw Error(ErrorKind::usage,
+                    said + ": expected a folder that exists, found no " + folder.string());
+    }
+    // Files are written beside their place; devices and pipes are where they are.
+    const auto status = fs::status(file, none);
+    const bool is_file = !fs::exists(status) || fs::is_regular_file(status);
+    if (is_file && ::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0)
+        throw Error(ErrorKind::failed, said + ": cannot be created: " + system_words(errno));
 }
 
 void NamedFiles::writes_folder(const std::string& option, const fs::path& folder) {

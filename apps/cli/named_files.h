@@ -31,7 +31,8 @@ public:
     void writes(const std::string& option, const std::filesystem::path& path,
                 const std::string& said = {});
     /// As writes(), of what a command writes when all its work is done: also refused where there
-    /// is no folder for it, and none that another output makes.
+    /// is no folder for it, and none that another output makes, or one that cannot be written to
+    /// (kind failed).
     void writes_when_done(const std::string& option, const std::filesystem::path& path);
     /// A folder, of which the files are named one by one.
     void writes_folder(const std::string& option, const std::filesystem::path& folder);
@@ -53,6 +54,7 @@ private:
     static Named named(std::string text, const std::filesystem::path& path);
     static void refuse_overlap(const Named& named, const std::vector<Named>& others);
     void add(Named named, std::vector<Named>& to);
+    void expect_room_for(const std::string& said, const std::filesystem::path& path) const;
 
     bool overwrite_ = false;
     std::string standard_output_;  ///< which output has it

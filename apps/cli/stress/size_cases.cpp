@@ -50,8 +50,10 @@ Result large_sensor(const Bench& bench, int width, int height) {
     SensorInfo sensor;
     sensor.width = width;
     sensor.height = height;
-    const std::uint64_t bytes = app::network_bytes(bench.model.config, sensor) +
-                                app::buffer_bytes(bench.model.config, sensor, run_buffers(false));
+    constexpr std::uint64_t kCode = sizeof(float);  // that takes the most
+    const ModelConfig& config = bench.model.config;
+    const std::uint64_t bytes = app::network_bytes(config, sensor, kCode) +
+                                app::buffer_bytes(config, sensor, run_buffers(false), kCode);
     Result result;
     if (bytes + bytes / 2 > free_memory()) {
         result.happened = "not run: takes " + counted((bytes + bytes / 2) >> 20, "MiB, ") +

@@ -5,6 +5,7 @@
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -75,6 +76,31 @@ TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneHasAFolderFromTheBeginning) {
     files_.writes("--plots", temp_ / "plots/figure.svg");
     EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "plots/scores"); }), "")
         << "another output makes it";
+}
+
+TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneGoesWhereFilesCanBeMade) {
+    const fs::perms look = fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
+                           fs::perms::others_exec;
+    fs::permissions(temp_ / "d", fs::perms::owner_read | fs::perms::owner_exec | look);
+    const uid_t self = geteuid();
+    if (self == 0) {  // who may write anywhere
+        for (const fs::path& part : {temp_.path(), temp_.path().parent_path()})
+            fs::permissions(part, look, fs::perm_options::add);
+        ASSERT_EQ(seteuid(65534), 0);
+    }
+    const auto named = [&](const fs::path& file) -> std::string {
+        try {
+            files_.writes_when_done("--json", file);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::failed);
+            return error.what();
+        }
+        return {};
+    };
+    EXPECT_EQ(named(temp_ / "d/scores.json"),
+              "--json " + temp_ / "d/scores.json" + ": cannot be created: Permission denied");
+    EXPECT_EQ(named("/dev/null"), "") << "a device is there already";
+    EXPECT_EQ(seteuid(self), 0);
 }
 
 TEST_F(NamedFilesTest, AnOutputBelowTheHomeSignIsRefused) {

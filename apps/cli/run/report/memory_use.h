@@ -3,6 +3,7 @@
 
 #include "pipeline/pipeline.h"
 #include "src/core/error.h"
+#include "src/model/engine.h"
 #include "src/model/model_config.h"
 #include "src/model/render/renderer.h"
 
@@ -11,12 +12,17 @@
 
 namespace eventide::app {
 
+/// Of a number of a latent map, and of what is kept of it for rendering: 4, or 2 where `precision`
+/// allows bf16.
+std::uint64_t least_code_bytes(Precision precision);
+
 /// Of the largest maps alone; the network takes this much at least.
-std::uint64_t network_bytes(const ModelConfig& config, const SensorInfo& sensor);
+std::uint64_t network_bytes(const ModelConfig& config, const SensorInfo& sensor,
+                            std::uint64_t code_bytes);
 
 /// Of the event windows and latent maps on their way, without frames.
 std::uint64_t buffer_bytes(const ModelConfig& config, const SensorInfo& sensor,
-                           const PipelineBuffers& buffers);
+                           const PipelineBuffers& buffers, std::uint64_t code_bytes);
 
 /// Of a frame as it is rendered, or the part of it that is wanted.
 std::uint64_t frame_bytes(const RenderRequest& request, const SensorInfo& sensor);
