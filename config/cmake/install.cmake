@@ -20,8 +20,7 @@ if(EVENTIDE_PROGRAM_ENABLED)
     RENAME _eventide COMPONENT program)
   install(FILES ${PROJECT_BINARY_DIR}/manual/fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
     RENAME eventide.fish COMPONENT program)
-  configure_file(config/systemd/eventide@.service.in ${PROJECT_BINARY_DIR}/eventide@.service @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/eventide@.service DESTINATION lib/systemd/system COMPONENT program)
+  install(FILES config/systemd/eventide@.service DESTINATION lib/systemd/system COMPONENT program)
 endif()
 
 # The public libraries, and how CMake and pkg-config find them. Two files of targets with the same names: the shared

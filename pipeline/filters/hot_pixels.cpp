@@ -21,13 +21,13 @@ HotPixelFilter::HotPixelFilter(int width, int height, const std::filesystem::pat
     int number = 0;
     for (std::string line; std::getline(file, line);) {
         ++number;
-        line.resize(std::min(line.find('#'), line.size()));
-        std::ranges::replace(line, ',', ' ');
-        std::istringstream words{line};
+        std::string numbers = line.substr(0, line.find('#'));
+        std::ranges::replace(numbers, ',', ' ');
+        std::istringstream words{numbers};
         int x = 0, y = 0;
         std::string rest;
         if (!(words >> rest)) continue;  // nothing on it
-        words = std::istringstream{line};
+        words = std::istringstream{numbers};
         if (!(words >> x >> y) || words >> rest || x < 0 || y < 0 || x >= width || y >= height)
             throw Error(ErrorKind::usage, list.string() + ":" + std::to_string(number) +
                                               ": expected \"x,y\" inside " + std::to_string(width) +

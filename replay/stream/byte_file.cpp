@@ -38,8 +38,8 @@ ByteFile::ByteFile(const std::string& path, std::function<void()> while_waiting)
         throw Error(
             ErrorKind::input,
             path_ +
-                ": expected a recording, found a directory; of a ROS 2 bag, name the .mcap or "
-                ".db3 file in it");
+                ": expected a recording, found a directory without events.txt; of a ROS 2 bag, "
+                "name the .mcap or .db3 file in it");
     }
     // Standard input redirected from a file is a file too, but it may be shared with others who
     // expect its position to move: it is read as a stream.

@@ -82,7 +82,8 @@ TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {
            "--to: expected");
     expect(2, {"convert", recording(), "a.raw", "--from", "100s"}, "--from 100s: expected a");
     expect(2, {"convert", recording(), "a.raw", "--to", "@-5"}, "--to: expected a time after");
-    expect(2, {"convert", recording(), "a/", "--from", "9ms", "--to", "5ms"}, "lies before --from");
+    expect(2, {"convert", recording(), "a/", "--from", "9ms", "--to", "5ms"},
+           "lies before --from, by 4ms");
     expect(2, {"convert", recording(), "a.raw", "--filter", "time:20ms..10ms"}, "time:");
     EXPECT_FALSE(std::filesystem::exists(temp_ / "a.raw"));
     std::string text = "16 16\n";

@@ -5,6 +5,7 @@
 #include "drivers/simulated/simulated_name.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/settings/values.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -73,7 +74,8 @@ bool can_be_read_twice(const std::string& source) {
 }  // namespace
 
 void check_order(std::optional<SensorTime> from, std::optional<SensorTime> to) {
-    if (from && to && *to < *from) throw Error(ErrorKind::usage, "--to lies before --from");
+    if (from && to && *to < *from)
+        throw Error(ErrorKind::usage, "--to lies before --from, by " + show_duration(*from - *to));
 }
 
 void check_part(const AskedPart& part) {

@@ -77,6 +77,20 @@ TEST(HotPixelFilter, GoesOnAfterTheClockWasReset) {
     EXPECT_EQ(count_of(again, 7, 9, 500'000), 0U);
 }
 
+TEST(HotPixelFilter, QuotesALineThatIsNoPixelAsItStands) {
+    const test::TempFolder temp;
+    test::write_text(temp / "notes.txt", "3,4\nHello, this  is text # said\n");
+    try {
+        HotPixelFilter filter{32, 24, temp / "notes.txt"};
+        FAIL() << "taken for a list";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string{error.what()}.find(
+                      ":2: expected \"x,y\" inside 32x24, found 'Hello, this  is text # said'"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(HotPixelFilter, ReadsAList) {
     const test::TempFolder temp;
     test::write_text(temp / "hot.txt", "# found in the dark\n7,9\n\n3 4  # two\n");
