@@ -215,7 +215,8 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(3, {"info", "empty.raw"}, "the file is empty");
     write_text(temp_ / "letters.raw", "letters and nothing else, for a while, which is no format");
     expect(3, {"info", "letters.raw"}, "unrecognised format");
-    expect(3, {"run", recording(), "--model", "letters.raw", "--out", "null"}, "not a model file");
+    expect(3, {"run", recording(), "--model", "letters.raw", "--out", "null"},
+           "not a model or state");
     const Result typo =
         eventide({"info", recording()}, {.environment = {{"EVENTIDE_RUN_FPSS", "3"}}});
     EXPECT_NE(typo.error.find("unknown variable EVENTIDE_RUN_FPSS in the environment; did you mean "
