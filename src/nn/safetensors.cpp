@@ -191,16 +191,17 @@ std::string shape_text(std::span<const std::int64_t> shape) {
 
 TensorFile parse_safetensors(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.size() < kLengthBytes)
-        refuse(name,
-               "not a model or state (safetensors): only " + std::to_string(bytes.size()) + " bytes");
+        refuse(name, "not a model or state (safetensors): only " + std::to_string(bytes.size()) +
+                         " bytes");
     std::uint64_t header_size = 0;
     std::memcpy(&header_size, bytes.data(), kLengthBytes);
     if (header_size > kMaxHeaderBytes || header_size > bytes.size() - kLengthBytes)
-        refuse(name,
-               "not a model or state (safetensors), or truncated: expected a header that fits, found "
-               "one of " +
-                   std::to_string(header_size) + " bytes in a file of " +
-                   std::to_string(bytes.size()));
+        refuse(
+            name,
+            "not a model or state (safetensors), or truncated: expected a header that fits, found "
+            "one of " +
+                std::to_string(header_size) + " bytes in a file of " +
+                std::to_string(bytes.size()));
     const auto text = bytes.subspan(kLengthBytes, std::size_t(header_size));
     const auto data = bytes.subspan(kLengthBytes + std::size_t(header_size));
     const Json header =

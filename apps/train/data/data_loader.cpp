@@ -219,7 +219,7 @@ DataLoader::DataLoader(const DataSettings& settings, std::shared_ptr<const Textu
       slots_(std::size_t(streams * groups)) {
     for (int stream = 0; stream < streams * groups; ++stream) {
         const StreamPlace place{stream, stream / streams, groups};
-        threads_.emplace_back([this, place, first_segment](std::stop_token stop) {
+        threads_.emplace_back([this, place, first_segment](const std::stop_token& stop) {
             simulate(stop, place, first_segment);
         });
     }
@@ -227,7 +227,8 @@ DataLoader::DataLoader(const DataSettings& settings, std::shared_ptr<const Textu
 
 DataLoader::~DataLoader() = default;
 
-void DataLoader::simulate(std::stop_token stop, StreamPlace place, std::int64_t first_segment) {
+void DataLoader::simulate(const std::stop_token& stop, StreamPlace place,
+                          std::int64_t first_segment) {
     Slot& slot = slots_[std::size_t(place.stream)];
     if (priority_ == SimulatorPriority::behind) setpriority(PRIO_PROCESS, 0, 19);  // this thread's
     try {

@@ -113,7 +113,7 @@ private:
         std::deque<StreamSegment> ready;
         std::exception_ptr failure;
     };
-    void simulate(std::stop_token stop, StreamPlace place, std::int64_t first_segment);
+    void simulate(const std::stop_token& stop, StreamPlace place, std::int64_t first_segment);
 
     DataSettings settings_;
     std::shared_ptr<const TextureLibrary> textures_;
