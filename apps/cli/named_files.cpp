@@ -88,9 +88,9 @@ void NamedFiles::expect_room_for(const std::string& said, const fs::path& path) 
     refuse_home_sign(said, path);
     const fs::path file = resolved(path), folder = file.parent_path();
     std::error_code none;
-    const bool made_later = std::ranges::any_of(
-        outputs_, [&](const Named& other) { return other.path.parent_path() == folder; });
     if (!fs::is_directory(folder, none)) {
+        const bool made_later = std::ranges::any_of(
+            outputs_, [&](const Named& other) { return other.path.parent_path() == folder; });
         if (made_later) return;
         throw Error(ErrorKind::usage,
                     said + ": expected a folder that exists, found no " + folder.string());

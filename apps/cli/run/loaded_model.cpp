@@ -24,9 +24,8 @@ Part made_for(const Model& model, const SensorInfo& sensor, const EngineOptions&
     try {
         return Part{model, sensor.width, sensor.height, engine};
     } catch (const std::bad_alloc&) {
-        const std::uint64_t bytes =
-            network_bytes(model.config, sensor, least_code_bytes(engine.precision));
-        throw out_of_memory("the network", bytes, sensor);
+        throw out_of_memory("the network", network_bytes(model.config, sensor, engine.precision),
+                            sensor);
     }
 }
 

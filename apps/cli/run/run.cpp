@@ -158,13 +158,12 @@ void Run::make_pipeline() {
     } catch (const std::bad_alloc&) {
         const auto& config = network_.config();
         const RenderRequest request = request_of(settings_, sensor_, lookahead_, undistortion_);
-        const std::uint64_t code_bytes = least_code_bytes(settings_.precision);
         throw out_of_memory(
             "the network with its buffers (--buffers-grids, --buffers-latents) and "
             "a frame of " +
                 show_size({request.width, request.height}) + " (--size, --roi)",
-            network_bytes(config, sensor_, code_bytes) + frame_bytes(request, sensor_) +
-                buffer_bytes(config, sensor_, pipeline_settings().buffers, code_bytes),
+            network_bytes(config, sensor_, settings_.precision) + frame_bytes(request, sensor_) +
+                buffer_bytes(config, sensor_, pipeline_settings().buffers, settings_.precision),
             sensor_);
     }
 }

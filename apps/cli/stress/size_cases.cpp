@@ -50,10 +50,10 @@ Result large_sensor(const Bench& bench, int width, int height) {
     SensorInfo sensor;
     sensor.width = width;
     sensor.height = height;
-    constexpr std::uint64_t kCode = sizeof(float);  // that takes the most
+    constexpr Precision kPrecision = Precision::f32;  // that takes the most
     const ModelConfig& config = bench.model.config;
-    const std::uint64_t bytes = app::network_bytes(config, sensor, kCode) +
-                                app::buffer_bytes(config, sensor, run_buffers(false), kCode);
+    const std::uint64_t bytes = app::network_bytes(config, sensor, kPrecision) +
+                                app::buffer_bytes(config, sensor, run_buffers(false), kPrecision);
     Result result;
     if (bytes + bytes / 2 > free_memory()) {
         result.happened = "not run: takes " + counted((bytes + bytes / 2) >> 20, "MiB, ") +

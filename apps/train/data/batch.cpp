@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <thread>
+#include <future>
 
 namespace eventide {
 
@@ -41,32 +41,21 @@ torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Devic
     return all.to(device, /*non_blocking=*/true).permute({0, 3, 1, 2});
 }
 
-namespace {
-
-/// A GPU's large batches are copied window beside window.
-template <typename Work>
-void for_each_window(std::size_t count, torch::Device device, const Work& work) {
-    std::vector<std::jthread> threads;
-    for (std::size_t k = 0; k < count; ++k)
-        if (device.is_cuda())
-            threads.emplace_back(work, k);
-        else
-            work(k);
-}
-
-}  // namespace
-
 TrainingBatch to_batch(std::span<const StreamSegment> segments, torch::Device device) {
     TrainingBatch batch;
     const StreamSegment& like = segments[0];
     for (const StreamSegment& segment : segments) batch.fresh.push_back(segment.fresh);
-    batch.grids.resize(like.grids.size());
-    const auto take_window = [&](std::size_t k) {
+    const auto window = [&](std::size_t k) {
         std::vector<const Array3<float>*> grids;
         for (const StreamSegment& segment : segments) grids.push_back(&segment.grids[k]);
-        batch.grids[k] = to_torch(grids, device);
+        return to_torch(grids, device);
     };
-    for_each_window(like.grids.size(), device, take_window);
+    // A GPU's large batches are copied window beside window.
+    const auto when = device.is_cuda() ? std::launch::async : std::launch::deferred;
+    std::vector<std::future<torch::Tensor>> windows;
+    for (std::size_t k = 0; k < like.grids.size(); ++k)
+        windows.push_back(std::async(when, window, k));
+    for (auto& copied : windows) batch.grids.push_back(copied.get());
     const auto tasks = std::int64_t(like.f.size()), streams = std::int64_t(segments.size());
     const int patch = like.truth[0].height();
     batch.truth = torch::empty({tasks * streams, patch, patch});

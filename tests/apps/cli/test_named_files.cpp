@@ -23,11 +23,11 @@ protected:
     }
     /// What the naming is refused with.
     template <typename Name>
-    std::string refusal(Name name) {
+    std::string refusal(Name name, ErrorKind kind = ErrorKind::usage) {
         try {
             name();
         } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_EQ(error.kind(), kind);
             return error.what();
         }
         return {};
@@ -88,14 +88,8 @@ TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneGoesWhereFilesCanBeMade) {
             fs::permissions(part, look, fs::perm_options::add);
         ASSERT_EQ(seteuid(65534), 0);
     }
-    const auto named = [&](const fs::path& file) -> std::string {
-        try {
-            files_.writes_when_done("--json", file);
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), ErrorKind::failed);
-            return error.what();
-        }
-        return {};
+    const auto named = [&](const fs::path& file) {
+        return refusal([&] { files_.writes_when_done("--json", file); }, ErrorKind::failed);
     };
     EXPECT_EQ(named(temp_ / "d/scores.json"),
               "--json " + temp_ / "d/scores.json" + ": cannot be created: Permission denied");

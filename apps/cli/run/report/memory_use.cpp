@@ -15,25 +15,25 @@ std::uint64_t latent_pixels(const ModelConfig& config, const SensorInfo& sensor)
            std::uint64_t(latent_samples(sensor.height, config.latent_stride));
 }
 
-}  // namespace
-
 std::uint64_t least_code_bytes(Precision precision) {
     return precision == Precision::f32 ? kFloat : kFloat / 2;
 }
 
+}  // namespace
+
 std::uint64_t network_bytes(const ModelConfig& config, const SensorInfo& sensor,
-                            std::uint64_t code_bytes) {
+                            Precision precision) {
     // Per latent pixel: the kept latent maps, and the renderer's first layer for two of them.
     const int numbers = LatentWindow::kLatentsKept * config.latent + 2 * config.mlp[0];
-    return latent_pixels(config, sensor) * std::uint64_t(numbers) * code_bytes;
+    return latent_pixels(config, sensor) * std::uint64_t(numbers) * least_code_bytes(precision);
 }
 
 std::uint64_t buffer_bytes(const ModelConfig& config, const SensorInfo& sensor,
-                           const PipelineBuffers& buffers, std::uint64_t code_bytes) {
+                           const PipelineBuffers& buffers, Precision precision) {
     const std::uint64_t pixels = std::uint64_t(sensor.width) * std::uint64_t(sensor.height);
     const std::uint64_t codes = latent_pixels(config, sensor) * std::uint64_t(config.latent);
     return buffers.grids * pixels * std::uint64_t(config.input_channels()) * kFloat +
-           buffers.latents * codes * code_bytes;
+           buffers.latents * codes * least_code_bytes(precision);
 }
 
 std::uint64_t frame_bytes(const RenderRequest& request, const SensorInfo& sensor) {

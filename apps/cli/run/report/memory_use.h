@@ -12,17 +12,14 @@
 
 namespace eventide::app {
 
-/// Of a number of a latent map, and of what is kept of it for rendering: 4, or 2 where `precision`
-/// allows bf16.
-std::uint64_t least_code_bytes(Precision precision);
-
-/// Of the largest maps alone; the network takes this much at least.
+/// Of the largest maps alone; the network takes this much at least. Latent maps, and what is kept
+/// of them for rendering, count as bf16 where `precision` allows it.
 std::uint64_t network_bytes(const ModelConfig& config, const SensorInfo& sensor,
-                            std::uint64_t code_bytes);
+                            Precision precision);
 
-/// Of the event windows and latent maps on their way, without frames.
+/// Of the event windows and latent maps on their way, without frames; at least, as above.
 std::uint64_t buffer_bytes(const ModelConfig& config, const SensorInfo& sensor,
-                           const PipelineBuffers& buffers, std::uint64_t code_bytes);
+                           const PipelineBuffers& buffers, Precision precision);
 
 /// Of a frame as it is rendered, or the part of it that is wanted.
 std::uint64_t frame_bytes(const RenderRequest& request, const SensorInfo& sensor);
