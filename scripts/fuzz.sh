@@ -3,6 +3,7 @@
 # build/fuzz/corpus/TARGET and used the next time, how often it ran in build/fuzz/runs/TARGET ("in all"); an input that broke something
 # is kept in build/fuzz/findings, and the exit code is 1. runs/s are per second of processor time, coverage is of edges.
 #   scripts/fuzz.sh SECONDS [TARGET...]      scripts/fuzz.sh 60 aedat4 config
+# RUNS=10000000: a target is finished when it has run so often in all, and left out where it already has.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:?"fuzz: expected SECONDS [TARGET...]"}
@@ -33,6 +34,8 @@ export ASAN_OPTIONS=quarantine_size_mb=8:malloc_context_size=6:max_malloc_fill_s
 failed=0
 printf '%-16s %12s %12s %10s %9s %9s %9s\n' target runs 'in all' runs/s coverage inputs findings
 for target in "${targets[@]}"; do
+  had=$(cat "$counts/$target" 2>/dev/null || echo 0)
+  if [ "$had" -ge "${RUNS:-$((had + 1))}" ]; then continue; fi
   kept=build/fuzz/corpus/$target seeds=tests/fuzz/corpus/$target log=$findings/$target.log
   mkdir -p "$kept"
   # Inputs up to twice the largest seed: small ones are quick.
@@ -41,14 +44,14 @@ for target in "${targets[@]}"; do
   began=$(find "$findings" -name "$target-*" ! -name '*-slow-unit-*' | wc -l)
   look_at_processor
   before=$processor_ms
-  "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len="$most" -timeout=10 -print_funcs=0 -print_final_stats=1 \
+  "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" ${RUNS:+-runs=$((RUNS - had))} -max_len="$most" -timeout=10 -print_funcs=0 -print_final_stats=1 \
     -artifact_prefix="$findings/$target-" "$kept" $([ ! -d "$seeds" ] || echo "$seeds") >"$log" 2>&1 </dev/null || failed=1
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   look_at_processor
   rate=$((${runs:-0} * 1000 / (processor_ms - before + 1)))
   found=$(($(find "$findings" -name "$target-*" ! -name '*-slow-unit-*' | wc -l) - began))
   coverage=$({ grep -o 'cov: [0-9]*' "$log" || true; } | tail -1 | cut -d' ' -f2)
-  in_all=$(($(cat "$counts/$target" 2>/dev/null || echo 0) + ${runs:-0}))
+  in_all=$((had + ${runs:-0}))
   echo "$in_all" >"$counts/$target"
   printf '%-16s %12s %12s %10s %9s %9s %9s\n' "$target" "${runs:--}" "$in_all" "$rate" "${coverage:--}" "$(find "$kept" -type f | wc -l)" "$found"
 done

@@ -38,7 +38,7 @@ std::vector<Layer> gated_layers(const ModelConfig& config, int height, int width
             w = half(w);
         }
         if (config.recurrent[l] != 0) {
-            layers.push_back({h, w, 2 * c[l], 2 * c[l], 1});
+            layers.push_back({h, w, 2 * c[l], (config.reset_gate ? 2 : 1) * c[l], 1});
             layers.push_back({h, w, 2 * c[l], c[l], 1});
         }
         const bool is_joined = l + 1 < c.size() && int(l) >= config.latent_stride - 1;
@@ -46,6 +46,7 @@ std::vector<Layer> gated_layers(const ModelConfig& config, int height, int width
     }
     for (int i = 0; i < 2 * config.res_blocks; ++i) layers.push_back({h, w, c.back(), c.back(), 1});
     layers.insert(layers.end(), up.rbegin(), up.rend());
+    if (!config.out_layer) return layers;
     layers.push_back({latent_samples(height, config.latent_stride),
                       latent_samples(width, config.latent_stride),
                       c[std::size_t(config.latent_stride - 1)], config.latent, 1});

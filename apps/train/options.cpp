@@ -119,11 +119,14 @@ OptionTable::OptionTable(TrainOptions& o) {
         "channels of the voxel grid that may be used: polarity,mean,std,count,since");
     add("widths", o.model.widths, "channels per level");
     add("recurrent", o.model.recurrent, "per level: 1 recurrent, 0 held");
+    add("reset-gate", o.model.reset_gate, "of recurrent levels: 1 or 0");
     add("res-blocks", o.model.res_blocks, "at the lowest resolution");
     add("gate-radius", o.model.gate_radius, "px around events in which states change");
     add("noise-filter", o.model.noise_filter, "1: events that no neighbours support are left out");
     add("gate-spread", o.model.gate_spread, "further at the lowest resolution, in its pixels");
     add("latent", o.model.latent, "D");
+    add("out-layer", o.model.out_layer,
+        "1: a linear layer makes the codes; 0: the last map on the way up is the codes");
     add("latent-stride", o.model.latent_stride, "1 or 2");
     add("unfold", o.model.unfold, "codes in y and x that the renderer reads: 3 (3 x 3) or 1");
     add_choice("live-edge", o.model.live_edge, "inside the newest event window: jump or fade",

@@ -51,6 +51,11 @@ void update_state(const float* h, const float* u, std::ptrdiff_t u_step, float* 
         return update_pixels(Narrow(), h, u, u_step, candidate, out, channels, pixels);
     update_pixels(D(), h, u, u_step, candidate, out, channels, pixels);
 }
+void update_light(const float* h, const float* halves, float* out, int channels, int pixels) {
+    if (channels <= kNarrowLanes)
+        return update_light_pixels(Narrow(), h, halves, out, channels, pixels);
+    update_light_pixels(D(), h, halves, out, channels, pixels);
+}
 void add_relu(const float* a, const float* b, float* out, std::size_t n) {
     map(AddRelu{}, n, out, a, b, a, a);
 }
@@ -108,6 +113,7 @@ const VectorKernels* table() {
                                        .sigmoid = sigmoid_row,
                                        .reset_state = reset_state,
                                        .update_state = update_state,
+                                       .update_light = update_light,
                                        .add_relu = add_relu,
                                        .norm_elu = norm_elu,
                                        .elu = elu,

@@ -42,6 +42,9 @@ struct VectorKernels {
     /// overwritten.
     void (*update_state)(const float* h, const float* u, std::ptrdiff_t u_step, float* c,
                          float* out, int channels, int pixels);
+    /// out = h + u (2 s - 1 - h), for pixels of C channels; of `halves` each has u_0 .. u_{C-1},
+    /// s_0 .. s_{C-1}.
+    void (*update_light)(const float* h, const float* halves, float* out, int channels, int pixels);
     /// out = relu(a + b)
     void (*add_relu)(const float* a, const float* b, float* out, std::size_t n);
     /// out = elu(a[c] scale[c] + shift[c] + skip), for n pixels of C channels; skip may be null

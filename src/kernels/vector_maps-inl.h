@@ -180,6 +180,26 @@ HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdif
             store_some(d, hn::MulAdd(load_upto(d, u + c, n), change, old), out + c, n);
         });
 }
+/// out = h + u (2 s - 1 - h): 2 sigmoid(2 v) - 1 is tanh(v).
+template <class Tag>
+HWY_INLINE void update_light_pixels(Tag d, const float* h, const float* halves, float* out,
+                                    int channels, int pixels) {
+    const auto one = hn::Set(d, 1.0F), two = hn::Set(d, 2.0F);
+    const auto updated = [&](auto old, auto u, auto s) HWY_ATTR {
+        return hn::MulAdd(u, hn::Sub(hn::MulSub(two, s, one), old), old);
+    };
+    for (int p = 0; p < pixels; ++p, h += channels, halves += 2 * channels, out += channels) {
+        if (channels == int(hn::Lanes(d))) {
+            const auto u = hn::LoadU(d, halves), s = hn::LoadU(d, halves + channels);
+            hn::StoreU(updated(hn::LoadU(d, h), u, s), d, out);
+            continue;
+        }
+        over_channels(d, channels, [&](int c, int n) HWY_ATTR {
+            const auto u = load_upto(d, halves + c, n), s = load_upto(d, halves + channels + c, n);
+            store_some(d, updated(load_upto(d, h + c, n), u, s), out + c, n);
+        });
+    }
+}
 struct Sigmoid {
     HWY_INLINE V operator()(V v, V, V, V) const { return sigmoid(v); }
 };

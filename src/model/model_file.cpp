@@ -23,8 +23,8 @@ public:
         add(name + ".weight", {out, in});
         add(name + ".bias", {out});
     }
-    void gru(const std::string& name, int in, int state) {
-        conv(name + ".gates", 2 * state, in + state);
+    void gru(const std::string& name, int in, int state, bool reset_gate = true) {
+        conv(name + ".gates", (reset_gate ? 2 : 1) * state, in + state);
         conv(name + ".candidate", state, in + state);
     }
     void norm(const std::string& name, int channels) {
@@ -52,12 +52,13 @@ void list_gated(const ModelConfig& config, TensorList& list) {
     list.conv("encoder.in", width(0), config.input_channels());
     for (int l = 1; l < levels; ++l) list.conv(numbered("down", l), width(l), width(l - 1));
     for (int l = 0; l < levels; ++l)
-        if (config.recurrent[std::size_t(l)] != 0) list.gru(numbered("gru", l), width(l), width(l));
+        if (config.recurrent[std::size_t(l)] != 0)
+            list.gru(numbered("gru", l), width(l), width(l), config.reset_gate);
     for (int i = 0; i < config.res_blocks; ++i)
         for (const char* half : {".0", ".1"}) list.conv(numbered("res", i) + half, top, top);
     for (int l = levels - 2; l >= last; --l)
         list.conv(numbered("up", l), width(l), width(l + 1) + width(l));
-    list.conv("encoder.out", config.latent, width(last));
+    if (config.out_layer) list.conv("encoder.out", config.latent, width(last));
 }
 
 void list_thesis(const ModelConfig& config, TensorList& list) {

@@ -113,6 +113,10 @@ Key choice(const char* name, Enum ModelConfig::*member, const std::vector<Word<E
             }};
 }
 
+Key flag(const char* name, bool ModelConfig::*member) {
+    return choice(name, member, {{false, "0"}, {true, "1"}});
+}
+
 const std::vector<Key>& keys() {
     static const std::vector<Key> kKeys{
         constant("format", "eventide-model"),
@@ -122,9 +126,11 @@ const std::vector<Key>& keys() {
         whole_number("bins", &ModelConfig::bins),
         list("widths", &ModelConfig::widths),
         list("recurrent", &ModelConfig::recurrent),
+        optional(flag("reset_gate", &ModelConfig::reset_gate)),
         whole_number("res_blocks", &ModelConfig::res_blocks),
         whole_number("gate_radius", &ModelConfig::gate_radius),
         optional(whole_number("gate_spread", &ModelConfig::gate_spread)),
+        optional(flag("out_layer", &ModelConfig::out_layer)),
         whole_number("latent", &ModelConfig::latent),
         whole_number("latent_stride", &ModelConfig::latent_stride),
         optional(whole_number("unfold", &ModelConfig::unfold)),
@@ -213,6 +219,8 @@ void check_config(const ModelConfig& config, const std::string& file) {
             refuse(file, "widths", "one width for the thesis encoder", list_text(config.widths));
         if (config.latent_stride != 1)
             refuse(file, "latent_stride", "1 for the thesis encoder", "2");
+        if (!config.reset_gate) refuse(file, "reset_gate", "1 for the thesis encoder", "0");
+        if (!config.out_layer) refuse(file, "out_layer", "1 for the thesis encoder", "0");
         return;
     }
     if (config.recurrent.size() != config.widths.size())
@@ -220,6 +228,11 @@ void check_config(const ModelConfig& config, const std::string& file) {
                list_text(config.recurrent));
     if (config.levels() < config.latent_stride)
         refuse(file, "latent_stride", "a level of that resolution in widths", "2");
+    // The codes are then the map that levels are joined to, as wide as its level.
+    const int last = config.latent_stride - 1;
+    if (!config.out_layer &&
+        (config.levels() - 1 == last || config.latent != config.widths[std::size_t(last)]))
+        refuse(file, "out_layer", "1, or latent as wide as a level that others are joined to", "0");
 }
 
 }  // namespace eventide

@@ -18,6 +18,10 @@
 //     a g t t t t g a
 //     a g g g g g g a     Past the map's edge there is nothing to compute: zeros, which begin()
 //     a a a a a a a a     writes for the tiles that lie there.
+//
+// Without a reset gate u and the candidate read the same: one layer of 2 C outputs over the tile,
+// whose input is the tile and 1 more. With the candidate's weights doubled one function opens both
+// halves, as tanh(v) = 2 sigmoid(2 v) - 1.
 #include "src/nn/conv_gru.h"
 
 #include "src/kernels/vector_kernels.h"
@@ -32,17 +36,31 @@ std::size_t square(int n) {
     return std::size_t(n) * std::size_t(n);
 }
 
+/// [gates; 2 candidate] as one layer.
+plain::ConvWeights<float> with_doubled(const plain::ConvWeights<float>& gates,
+                                       const plain::ConvWeights<float>& candidate) {
+    plain::ConvWeights<float> both = gates;
+    both.out += candidate.out;
+    for (const float w : candidate.weight) both.weight.push_back(2 * w);
+    for (const float b : candidate.bias) both.bias.push_back(2 * b);
+    return both;
+}
+
 }  // namespace
 
 ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
                  const std::vector<Tile>& tiles, int side, const Backend& backend, std::size_t held)
     : channels_(weights.candidate.out),
       side_(side),
+      reach_(weights.gates.out == 2 * channels_ ? 2 : 1),
       tiles_(tiles),
-      gates_(weights.gates, 1, false, backend, extents_of(tiles, 1, map.height, map.width),
-             {channels_, channels_}),
-      candidate_(weights.candidate, 1, false, backend, extents_of(tiles, 0, map.height, map.width),
-                 {channels_, channels_}) {
+      gates_(has_reset() ? weights.gates : with_doubled(weights.gates, weights.candidate), 1, false,
+             backend, extents_of(tiles, reach_ - 1, map.height, map.width),
+             {channels_, channels_}) {
+    if (has_reset())
+        candidate_ = {
+            weights.candidate,     1, false, backend, extents_of(tiles, 0, map.height, map.width),
+            {channels_, channels_}};
     std::size_t largest = 0;
     for (const Tile& tile : tiles_)
         largest = std::max(largest, std::size_t(tile.height()) * std::size_t(tile.width()));
@@ -52,6 +70,8 @@ ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
 
 std::size_t ConvGru::scratch_size() const {
     const auto c = std::size_t(channels_), u = std::size_t(units());
+    if (!has_reset())
+        return square(input_side()) * u + square(side_) * 2 * c + gates_.scratch_size(side_, side_);
     return square(side_ + 4) * u + square(side_ + 2) * (u + 2 * c) + square(side_) * c +
            // What a layer needs, or keep() for a row of r.h in float32: one after the other.
            std::max({gates_.scratch_size(side_ + 2, side_ + 2),
@@ -61,7 +81,8 @@ std::size_t ConvGru::scratch_size() const {
 /// What lies outside the map reads as zero.
 void ConvGru::begin(std::size_t i, float* scratch, const Tile& near) const noexcept {
     const Tile& tile = tiles_[i];
-    clear_outside(tile.widened(2), near, scratch, input_pitch(), units());
+    clear_outside(tile.widened(reach_), near, scratch, input_pitch(), units());
+    if (!has_reset()) return;
     clear_outside(tile.widened(1), tile.widened(1).within(near),
                   scratch + (side_ + 4) * input_pitch(), kept_pitch(), units());
 }
@@ -69,12 +90,13 @@ void ConvGru::begin(std::size_t i, float* scratch, const Tile& near) const noexc
 void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
                      float* input) noexcept {
     const Tile& tile = tiles_[i];
-    float* kept = input + (side_ + 4) * input_pitch();
-    float* gates = kept + (side_ + 2) * kept_pitch();
-    float* candidate = gates + (side_ + 2) * gates_pitch();
-    float* scratch = candidate + std::ptrdiff_t(side_) * side_ * channels_;
+    float* kept = input + input_side() * input_pitch();
+    float* gates = has_reset() ? kept + (side_ + 2) * kept_pitch() : kept;
+    float* candidate = gates + gates_side() * gates_pitch();
+    float* scratch =
+        has_reset() ? candidate + std::ptrdiff_t(side_) * side_ * channels_ : candidate;
 
-    const Tile close = tile.grown(1, state.height(), state.width());
+    const Tile close = tile.grown(reach_ - 1, state.height(), state.width());
     const PaddedMap& h = state.read();
     gates_.run(ConvArea{.in = {{{input_at(input, i, close.y0 - 1, close.x0 - 1), input_pitch()},
                                 {h.at(close.y0 - 1, close.x0 - 1), h.pitch()}}},
@@ -83,6 +105,7 @@ void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
                         .height = close.height(),
                         .width = close.width()},
                scratch);
+    if (!has_reset()) return update_light(state, i, mask, gates);
     keep(state, i, close, gates, kept, scratch);
     candidate_.run(ConvArea{.in = {{{input_at(input, i, tile.y0 - 1, tile.x0 - 1), input_pitch()},
                                     {kept_at(kept, i, tile.y0 - 1, tile.x0 - 1), kept_pitch()}}},
@@ -123,6 +146,20 @@ void ConvGru::update(const StateMap& state, std::size_t i, const Mask* mask, flo
         state.numbers().kernels().update_state(
             state.exact().at(y, tile.x0), gates_at(gates, i, y, tile.x0),
             2 * std::ptrdiff_t(channels_), candidate, next, channels_, tile.width());
+        if (mask != nullptr) keep_unmasked(state.exact(), *mask, y, tile, next);
+    }
+}
+
+/// The same of both halves of one layer: u, and s with 2 s - 1 = tanh(candidate).
+void ConvGru::update_light(const StateMap& state, std::size_t i, const Mask* mask,
+                           float* halves) noexcept {
+    const Tile& tile = tiles_[i];
+    const VectorKernels& kernels = state.numbers().kernels();
+    const std::ptrdiff_t row = std::ptrdiff_t(tile.width()) * channels_;
+    float* next = next_[i % next_.size()].data();
+    for (int y = tile.y0; y < tile.y1; ++y, next += row, halves += gates_pitch()) {
+        kernels.sigmoid(halves, 2 * std::size_t(row));
+        kernels.update_light(state.exact().at(y, tile.x0), halves, next, channels_, tile.width());
         if (mask != nullptr) keep_unmasked(state.exact(), *mask, y, tile, next);
     }
 }

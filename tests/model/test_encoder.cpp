@@ -38,10 +38,14 @@ std::vector<Case> cases() {
     single.widths = {16};
     single.recurrent = {1};
     single.res_blocks = 2;
-    return {{"small", test::small_config()},
-            {"half", half},
-            {"single level", single},
-            {"default", ModelConfig{}},
+    ModelConfig light = test::small_config(), wide = light;
+    light.reset_gate = light.out_layer = false;
+    light.latent = light.widths[0];
+    wide.reset_gate = false;
+    wide.widths = {9, 20};  // not whole vectors
+    wide.recurrent = {1, 1};
+    return {{"small", test::small_config()},  {"half", half},   {"single level", single},
+            {"default", ModelConfig{}},       {"light", light}, {"light, recurrent below", wide},
             {"thesis", test::thesis_config()}};
 }
 

@@ -66,7 +66,8 @@ TEST(ModelFile, MetadataThatMakesNoSenseIsRefusedByItsKey) {
         {"lookaheads", "0,5"}, {"log_sigma_min", "nan"}, {"log_sigma_min", "3"},
         {"sigma_scale", "-1"}, {"sigma_rule", "median"}, {"mlp", ""},
         {"res_blocks", "-1"},  {"gate_radius", "1e9"},   {"gate_spread", "-1"},
-        {"blend", "cubic"},    {"new_key", "1"},
+        {"blend", "cubic"},    {"new_key", "1"},         {"reset_gate", "2"},
+        {"out_layer", "0"},  // its 5 codes are not the 8 channels of the last map
     };
     for (const auto& [key, value] : bad) {
         TensorFile file = good();
@@ -83,9 +84,12 @@ TEST(ModelFile, KeysThatOlderFilesHaveNotGotMayBeMissing) {
     TensorFile file = good();
     file.metadata.erase("gate_spread");
     file.metadata.erase("blend");
+    file.metadata.erase("reset_gate");
+    file.metadata.erase("out_layer");
     const ModelConfig config = parse_metadata(file.metadata, "old");
     EXPECT_EQ(config.gate_spread, 0);
     EXPECT_EQ(config.blend, Blend::linear);
+    EXPECT_TRUE(config.reset_gate && config.out_layer);
     EXPECT_EQ(refusal(file), "accepted");
 }
 

@@ -197,7 +197,10 @@ Bits bits_of(const Model& model, int height, int width, const EngineOptions& opt
 TEST(WholeModel, TheNumberOfThreadsChangesNoBit) {
     ModelConfig half = test::small_config();
     half.latent_stride = 2;
-    for (const ModelConfig& config : {test::small_config(), half, test::thesis_config()}) {
+    ModelConfig light = test::small_config();
+    light.reset_gate = light.out_layer = false;
+    light.latent = light.widths[0];
+    for (const ModelConfig& config : {test::small_config(), half, light, test::thesis_config()}) {
         const Model model = test::random_model(config, 1);
         for (test::EngineChoice& choice : test::engine_choices()) {
             const Bits alone = bits_of(model, 61, 75, choice.options);

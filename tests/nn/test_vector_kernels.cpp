@@ -54,6 +54,16 @@ TEST_P(Lengths, GatesAndActivationsAgreeWithDouble) {
                     return h[i] + plain::sigmoid(double(a[i])) * (std::tanh(double(b[i])) - h[i]);
                 },
                 2 * kGateTolerance, "update");
+            // What one layer gives where there is no reset gate: [a; 2 b].
+            std::vector<float> halves = a;
+            for (const float v : b) halves.push_back(2 * v);
+            k.sigmoid(halves.data(), 2 * count);
+            k.update_light(h.data(), halves.data(), out.data(), n, 1);
+            expect(
+                [&](std::size_t i) {
+                    return h[i] + plain::sigmoid(double(a[i])) * (std::tanh(double(b[i])) - h[i]);
+                },
+                2 * kGateTolerance, "update of halves");
             k.add_relu(a.data(), b.data(), out.data(), count);
             expect([&](std::size_t i) { return plain::relu(double(a[i]) + b[i]); }, 1e-7, "add");
             k.elu(a.data(), out.data(), count);
@@ -87,18 +97,24 @@ TEST(VectorKernels, RowsOfGatesAreTheirPixels) {
             const auto gates = numbers.many(2 * count, Fill::ordinary),
                        candidate = numbers.many(count, Fill::ordinary),
                        h = numbers.many(count, Fill::ordinary);
-            test::Guarded next{count}, one{count}, kept{count}, alone{count};
+            test::Guarded next{count}, one{count}, kept{count}, alone{count}, light{count},
+                light_alone{count};
             auto row = candidate, pixels = candidate;
             k.update_state(h.data(), gates.data(), 2 * channels, row.data(), next.data(), channels,
                            kPixels);
+            k.update_light(h.data(), gates.data(), light.data(), channels, kPixels);
             k.reset_state(gates.data() + c, 2 * channels, h.data(), kept.data(), channels, kPixels);
             for (std::size_t p = 0; p < kPixels; ++p) {
                 k.update_state(h.data() + p * c, gates.data() + 2 * p * c, channels,
                                pixels.data() + p * c, one.data() + p * c, channels, 1);
                 k.reset_state(gates.data() + (2 * p + 1) * c, channels, h.data() + p * c,
                               alone.data() + p * c, channels, 1);
+                k.update_light(h.data() + p * c, gates.data() + 2 * p * c,
+                               light_alone.data() + p * c, channels, 1);
             }
-            EXPECT_TRUE(next.intact() && kept.intact());
+            EXPECT_TRUE(next.intact() && kept.intact() && light.intact());
+            EXPECT_TRUE(std::equal(light.data(), light.data() + count, light_alone.data()))
+                << channels;
             EXPECT_TRUE(std::equal(next.data(), next.data() + count, one.data())) << channels;
             EXPECT_TRUE(std::equal(kept.data(), kept.data() + count, alone.data())) << channels;
         }

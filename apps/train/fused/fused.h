@@ -17,7 +17,8 @@ namespace eventide::fused {
 /// and reset gates second, after the sigmoid; h [N][C][h][w] in W.
 torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h);
 
-/// h + m.u.(c - h) in W. c [N][C][h][w] in T; mask [N][1][h][w] in W, or undefined for 1.
+/// h + m.u.(c - h) in W. `gates` as above, or the update gates alone; c [N][C][h][w] in T; mask
+/// [N][1][h][w] in W, or undefined for 1.
 torch::Tensor update_state(const torch::Tensor& gates, const torch::Tensor& candidate,
                            const torch::Tensor& h, const torch::Tensor& mask);
 

@@ -24,7 +24,7 @@ torch::Tensor reset_state(const torch::Tensor& gates, const torch::Tensor& h) {
 torch::Tensor update_state(const torch::Tensor& gates, const torch::Tensor& candidate,
                            const torch::Tensor& h, const torch::Tensor& mask) {
     // Wide times narrow is wide, without a copy of its own.
-    const torch::Tensor update = gates.chunk(2, 1)[0];
+    const torch::Tensor update = gates.narrow(1, 0, h.size(1));
     const torch::Tensor share = mask.defined() ? mask * update : update.to(h.scalar_type());
     return torch::lerp(h, candidate.to(h.scalar_type()), share);
 }

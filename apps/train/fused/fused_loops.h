@@ -15,6 +15,7 @@ namespace eventide::fused {
 
 struct MapSize {
     std::int64_t pixels = 0, channels = 0;
+    std::int64_t gates = 0;  ///< of a pixel: C update gates, or these and C reset gates
 };
 
 /// out = r h; gates hold 2C channels per pixel.
@@ -43,12 +44,12 @@ EVENTIDE_CLONES void reset_backward(MapSize size, const T* gates, const W* h, co
 template <typename T, typename W>
 EVENTIDE_CLONES void update_forward(MapSize size, const T* gates, const T* candidate, const W* h,
                                     const W* mask, W* out) {
-    const std::int64_t C = size.channels;
+    const std::int64_t C = size.channels, G = size.gates;
     for (std::int64_t p = 0; p < size.pixels; ++p) {
         const W m = mask != nullptr ? mask[p] : W(1);
         for (std::int64_t c = 0; c < C; ++c) {
             const W old = h[p * C + c];
-            out[p * C + c] = old + m * W(gates[p * 2 * C + c]) * (W(candidate[p * C + c]) - old);
+            out[p * C + c] = old + m * W(gates[p * G + c]) * (W(candidate[p * C + c]) - old);
         }
     }
 }
@@ -57,13 +58,13 @@ template <typename T, typename W>
 EVENTIDE_CLONES void update_backward(MapSize size, const T* gates, const T* candidate, const W* h,
                                      const W* mask, const W* g, T* g_gates, T* g_candidate,
                                      W* g_h) {
-    const std::int64_t C = size.channels;
+    const std::int64_t C = size.channels, G = size.gates;
     for (std::int64_t p = 0; p < size.pixels; ++p) {
         const W m = mask != nullptr ? mask[p] : W(1);
+        for (std::int64_t c = C; c < G; ++c) g_gates[p * G + c] = T(0);
         for (std::int64_t c = 0; c < C; ++c) {
-            const W v = g[p * C + c], through = v * m, u = W(gates[p * 2 * C + c]);
-            g_gates[p * 2 * C + c] = T(through * (W(candidate[p * C + c]) - h[p * C + c]));
-            g_gates[p * 2 * C + C + c] = T(0);
+            const W v = g[p * C + c], through = v * m, u = W(gates[p * G + c]);
+            g_gates[p * G + c] = T(through * (W(candidate[p * C + c]) - h[p * C + c]));
             g_candidate[p * C + c] = T(through * u);
             g_h[p * C + c] = v - through * u;
         }

@@ -14,8 +14,8 @@ torch::Tensor map_like(const torch::Tensor& x, std::int64_t channels, torch::Sca
                         torch::MemoryFormat::ChannelsLast);
 }
 
-MapSize size_of(const torch::Tensor& h) {
-    return {h.size(0) * h.size(2) * h.size(3), h.size(1)};
+MapSize size_of(const torch::Tensor& h, const torch::Tensor& gates) {
+    return {h.size(0) * h.size(2) * h.size(3), h.size(1), gates.size(1)};
 }
 
 struct Reset : torch::autograd::Function<Reset> {
@@ -25,7 +25,7 @@ struct Reset : torch::autograd::Function<Reset> {
         ctx->save_for_backward({gates, h});
         const torch::Tensor out = map_like(h, h.size(1), gates.scalar_type());
         for_type(gates.scalar_type(), [&]<typename T, typename W>(T, W) {
-            reset_forward<T, W>(size_of(h), gates.data_ptr<T>(), h.data_ptr<W>(),
+            reset_forward<T, W>(size_of(h, gates), gates.data_ptr<T>(), h.data_ptr<W>(),
                                 out.data_ptr<T>());
         });
         return out;
@@ -35,8 +35,8 @@ struct Reset : torch::autograd::Function<Reset> {
         const torch::Tensor &gates = saved[0], &h = saved[1], g = packed(grads[0]);
         torch::Tensor g_gates = torch::empty_like(gates), g_h = torch::empty_like(h);
         for_type(gates.scalar_type(), [&]<typename T, typename W>(T, W) {
-            reset_backward<T, W>(size_of(h), gates.data_ptr<T>(), h.data_ptr<W>(), g.data_ptr<T>(),
-                                 g_gates.data_ptr<T>(), g_h.data_ptr<W>());
+            reset_backward<T, W>(size_of(h, gates), gates.data_ptr<T>(), h.data_ptr<W>(),
+                                 g.data_ptr<T>(), g_gates.data_ptr<T>(), g_h.data_ptr<W>());
         });
         return {g_gates, g_h};
     }
@@ -51,7 +51,7 @@ struct Update : torch::autograd::Function<Update> {
         ctx->save_for_backward({gates, candidate, h, mask});
         torch::Tensor out = torch::empty_like(h);
         for_type(gates.scalar_type(), [&]<typename T, typename W>(T, W) {
-            update_forward<T, W>(size_of(h), gates.data_ptr<T>(), candidate.data_ptr<T>(),
+            update_forward<T, W>(size_of(h, gates), gates.data_ptr<T>(), candidate.data_ptr<T>(),
                                  h.data_ptr<W>(), mask_of<W>(mask), out.data_ptr<W>());
         });
         return out;
@@ -63,7 +63,7 @@ struct Update : torch::autograd::Function<Update> {
         torch::Tensor g_gates = torch::empty_like(gates), g_h = torch::empty_like(h),
                       g_candidate = torch::empty_like(candidate);
         for_type(gates.scalar_type(), [&]<typename T, typename W>(T, W) {
-            update_backward<T, W>(size_of(h), gates.data_ptr<T>(), candidate.data_ptr<T>(),
+            update_backward<T, W>(size_of(h, gates), gates.data_ptr<T>(), candidate.data_ptr<T>(),
                                   h.data_ptr<W>(), mask_of<W>(mask), g.data_ptr<W>(),
                                   g_gates.data_ptr<T>(), g_candidate.data_ptr<T>(),
                                   g_h.data_ptr<W>());

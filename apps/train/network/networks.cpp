@@ -23,13 +23,28 @@ public:
     torch::Tensor widen(const torch::Tensor& x) const {
         return type_ == torch::kBFloat16 ? x.to(torch::kFloat) : x;
     }
+    /// [of a; of b] * x: two layers that read the same.
+    torch::Tensor both(const std::string& a, const std::string& b, const torch::Tensor& x) const {
+        const auto stacked = [&](const char* part) {
+            return torch::cat({at(a + part), at(b + part)});
+        };
+        return torch::conv2d(x.to(type_), stacked(".weight"), stacked(".bias"), 1, 1);
+    }
     /// h + m.u.(c - h), see docs/model.md.
     torch::Tensor gru(const std::string& name, const torch::Tensor& a, const torch::Tensor& h,
                       const torch::Tensor& mask) const {
+        if (at(name + ".gates.bias").size(0) == h.size(1)) return light_gru(name, a, h, mask);
         const auto gates = conv(name + ".gates", torch::cat({a, h.to(type_)}, 1)).sigmoid();
         const auto candidate =
             conv(name + ".candidate", torch::cat({a, fused::reset_state(gates, h)}, 1)).tanh();
         return fused::update_state(gates, candidate, h, mask);
+    }
+    /// The same without a reset gate: what opens the gate and what goes through it read one map.
+    torch::Tensor light_gru(const std::string& name, const torch::Tensor& a, const torch::Tensor& h,
+                            const torch::Tensor& mask) const {
+        const auto halves =
+            both(name + ".gates", name + ".candidate", torch::cat({a, h.to(type_)}, 1)).chunk(2, 1);
+        return fused::update_state(halves[0].sigmoid(), halves[1].tanh(), h, mask);
     }
     torch::Tensor norm(const std::string& name, const torch::Tensor& x) const;
     torch::ScalarType type() const { return type_; }
@@ -96,7 +111,7 @@ EncodedGrid encode_gated(const ModelConfig& config, const Layers& layers, const 
         const torch::Tensor skip = h[std::size_t(l)].to(layers.type());
         d = rectify(layers.conv(numbered("up", l), torch::cat({up2(d, skip), skip}, 1)));
     }
-    return {layers.widen(layers.conv("out", d)), std::move(h)};
+    return {layers.widen(config.out_layer ? layers.conv("out", d) : d), std::move(h)};
 }
 
 EncodedGrid encode_thesis(const Layers& layers, const torch::Tensor& grid,

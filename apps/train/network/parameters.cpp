@@ -32,7 +32,8 @@ Parameters initial_parameters(const ModelConfig& config, std::uint64_t seed, tor
         if (name.find(".res.") != name.npos && name.ends_with(".1.weight")) values *= 0.1;
     // An update gate near .27 at first: states remember some frames before they learn to.
     for (auto& [name, values] : parameters)
-        if (name.ends_with(".gates.bias")) values.narrow(0, 0, values.size(0) / 2).fill_(-1);
+        if (name.ends_with(".gates.bias"))
+            values.narrow(0, 0, config.reset_gate ? values.size(0) / 2 : values.size(0)).fill_(-1);
     const std::string last = "renderer.mlp." + std::to_string(config.mlp.size());
     parameters.at(last + ".weight") *= 0.1;
     parameters.at(last + ".bias")[0] = 0.45;  // mean grey of auto-exposed images

@@ -40,19 +40,21 @@ Array3<T> each(Array3<T> a, const Array3<T>& b, Function function) {
 
 template <typename T>
 struct GruWeights {
-    ConvWeights<T> gates;      ///< [2 C]: update, then reset
+    ConvWeights<T> gates;      ///< [2 C]: update, then reset; [C] without a reset gate
     ConvWeights<T> candidate;  ///< [C]
 };
 
 /// h <- h + m u (c - h). Where the mask is 0, h is not touched.
 ///
-///     [u; r] = sigmoid(gates * [a; h]),  c = tanh(candidate * [a; r h])
+///     [u; r] = sigmoid(gates * [a; h]),  c = tanh(candidate * [a; r h]); without a reset gate r =
+///     1
 template <typename T>
 void gru(const GruWeights<T>& weights, const Array3<T>& a, const Mask& mask, Array3<T>& h) {
     const Array3<T> gates = each(conv(weights.gates, join<T>({&a, &h})), sigmoid<T>);
     const int channels = h.channels();
+    const bool resets = weights.gates.out == 2 * channels;
     Array3<T> reset = h;
-    for (int y = 0; y < h.height(); ++y)
+    for (int y = 0; resets && y < h.height(); ++y)
         for (int x = 0; x < h.width(); ++x)
             for (int c = 0; c < channels; ++c) reset(y, x, c) *= gates(y, x, channels + c);
     const Array3<T> candidate =

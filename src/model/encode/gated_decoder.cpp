@@ -13,6 +13,7 @@ namespace eventide {
 GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& levels,
                            const Backend& backend)
     : top_(std::size_t(model.config.latent_stride - 1)),
+      has_out_(model.config.out_layer),
       widths_(model.config.widths),
       numbers_(backend),
       latent_size_(levels[top_].size()) {
@@ -50,6 +51,7 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
         need(std::size_t(deepest.side() * widths_.back()), block.first, deepest.side());
         need(0, block.second, deepest.side());
     }
+    if (!has_out_) return;
     out_ = conv("encoder.out", false, latent_tiles(latent_size_.height, latent_size_.width),
                 latent_size_);
     need(0, out_, kLatentSide);
@@ -60,12 +62,18 @@ void GatedDecoder::run(const std::vector<GatedLevel>& levels, const std::vector<
     run_blocks(levels.back(), states.back().read(), everywhere, runner);
     for (std::size_t l = levels.size() - 1; l-- > top_;)
         join(levels[l], states[l].read(), decoded(l + 1, states), l, runner);
-    spread(levels_[top_]);
+    if (has_out_) spread(levels_[top_]);
 }
 
 void GatedDecoder::write_codes(const std::vector<StateMap>& states, const Tile& tile,
                                Array3<float>& codes, float* scratch) const noexcept {
     const PaddedMap& from = decoded(top_, states);
+    if (!has_out_) {
+        const std::size_t bytes = std::size_t(tile.width() * from.channels()) * sizeof(float);
+        for (int y = tile.y0; y < tile.y1; ++y)
+            std::memcpy(codes.pixel(y, tile.x0).data(), from.at(y, tile.x0), bytes);
+        return;
+    }
     out_.run(ConvArea{{{{from.at(tile.y0 - 1, tile.x0 - 1), from.pitch()}}},
                       codes.pixel(tile.y0, tile.x0).data(),
                       std::ptrdiff_t(codes.width()) * codes.channels(),

@@ -13,7 +13,8 @@ namespace eventide {
 ///
 ///     touched, of the deepest level     its mask, spread by 1 px for each layer of the blocks
 ///     of level l                        its mask or what up2 reads of level l + 1's, spread by 1
-///     of the top                        spread by 1 more, for `out`: where codes may have changed
+///     of the top                        spread by 1 more, for `out` where it is: where codes may
+///                                       have changed
 ///
 /// After a layer whose outputs are rounded by groups (PackedConv::group()), filled up to whole
 /// ones.
@@ -66,6 +67,7 @@ private:
     const PaddedMap& decoded(std::size_t l, const std::vector<StateMap>& states) const;
 
     std::size_t top_;  // the level that codes come from
+    bool has_out_;     // else its map is the codes
     std::vector<int> widths_;
     Numbers numbers_;
     std::vector<Level> levels_;

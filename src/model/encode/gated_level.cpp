@@ -60,9 +60,6 @@ plain::ConvWeights<float> with_inputs(const plain::ConvWeights<float>& weights, 
     return wider;
 }
 
-/// What a GRU's step reads of its input reaches 2 further than its tile.
-constexpr int kGruReach = 2;
-
 }  // namespace
 
 std::string encoder_layer(const char* part, std::size_t i) {
@@ -78,6 +75,7 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size, cons
       tiles_(tiles_of(size.height, size.width, side_)),
       recurrent_(model.config.recurrent[number] != 0),
       mask_(size.height, size.width) {
+    make_gru(model, backend);
     const auto weights = plain::conv_weights<float>(
         model.weights, number == 0 ? "encoder.in" : encoder_layer("down", number));
     const InputMaps maps = number == 0 ? input_maps(inputs_, backend) : InputMaps{1, inputs_};
@@ -87,15 +85,18 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size, cons
            number == 0 ? 1 : 2,
            true,
            backend,
-           extents_of(tiles_, recurrent_ ? kGruReach : 0, size.height, size.width),
+           extents_of(tiles_, gru_.reach(), size.height, size.width),
            std::vector<int>(std::size_t(maps_), map_channels_),
            maps_ > 1};
+}
+
+void GatedLevel::make_gru(const Model& model, const Backend& backend) {
     if (!recurrent_) return;
     // 640x480: 14 tiles a row of tiles, so groups of 3 rows, 42 tiles.
     const auto row = std::size_t(std::ranges::count(tiles_, tiles_.front().y0, &Tile::y0));
     group_ = row * ((kLeastGroup + row - 1) / row);
-    gru_ = {plain::gru_weights<float>(model.weights, encoder_layer("gru", number)),
-            size,
+    gru_ = {plain::gru_weights<float>(model.weights, encoder_layer("gru", number_)),
+            size_,
             tiles_,
             side_,
             backend,
@@ -112,7 +113,7 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size, cons
 // Scratch of a level that is not recurrent: a tile's next state, and what feed() needs. Of the top
 // level: the compressed grid as layers read it, then a row of it in float32.
 std::size_t GatedLevel::scratch_size() const {
-    const int side = side_ + (recurrent_ ? 2 * kGruReach : 0);
+    const int side = side_ + 2 * gru_.reach();
     const auto wide = std::size_t(side + 2);
     const std::size_t grid =
         number_ == 0 ? wide * wide * std::size_t(maps_ * in_.numbers().units(map_channels_)) : 0;

@@ -40,6 +40,7 @@ public:
 
 private:
     using Target = ConvGru::Target;
+    void make_gru(const Model& model, const Backend& backend);
     int units() const { return in_.numbers().units(channels_); }
     /// Numbers of a tile's next state.
     std::size_t next_size() const { return std::size_t(side_ * side_ * units()); }
@@ -54,10 +55,10 @@ private:
     int channels_, inputs_, side_;
     int maps_ = 1, map_channels_ = 0;  // that the layer's inputs are cut into; channels of each
     std::vector<Tile> tiles_;
-    PackedConv in_;  // from the grid, or from the level above
     bool recurrent_;
     std::size_t group_ = 0;
     ConvGru gru_;
+    PackedConv in_;  // from the grid, or from the level above
     Mask mask_;
 };
 

@@ -39,7 +39,7 @@ public:
         };
         const int levels = config_.levels();
         in_ = conv_weights<T>(model.weights, "encoder.in");
-        out_ = conv_weights<T>(model.weights, "encoder.out");
+        if (config_.out_layer) out_ = conv_weights<T>(model.weights, "encoder.out");
         for (const auto& [h, w] : level_sizes(height, width, levels))
             states_.emplace_back(h, w, config_.widths[states_.size()]);
         down_.resize(std::size_t(levels));
@@ -109,7 +109,7 @@ private:
             const Array3<T> up = up2(d, h.height(), h.width());
             d = each(conv(up_[std::size_t(l)], join<T>({&up, &h})), relu<T>);
         }
-        return conv(out_, d);
+        return config_.out_layer ? conv(out_, d) : d;
     }
 
     ModelConfig config_;

@@ -81,6 +81,11 @@ TEST_P(Fused, ResetAndUpdateOfAState) {
     expect_same([](const auto& v) { return fused::update_state(v[0], v[1], v[2], {}); },
                 [](const auto& v) { return fused::composed::update_state(v[0], v[1], v[2], {}); },
                 values, tolerance());
+    // Update gates alone.
+    const Tensor light = draw({2, 5, 7, 4}, GetParam()).sigmoid().detach().requires_grad_(true);
+    expect_same([](const auto& v) { return fused::update_state(v[0], v[1], v[2], v[3]); },
+                [](const auto& v) { return fused::composed::update_state(v[0], v[1], v[2], v[3]); },
+                {light, values[1], values[2], values[3]}, tolerance());
 }
 
 TEST_P(Fused, TwiceTheSizeOddOrEven) {

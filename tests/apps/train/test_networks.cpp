@@ -84,7 +84,11 @@ std::vector<Case> cases() {
     fading.unfold = 1;
     fading.live_edge = LiveEdge::fade;
     fading.mlp = {16, 16};
+    ModelConfig light = fading;
+    light.reset_gate = light.out_layer = false;
+    light.latent = light.widths[0];
     return {{test::small_config(), 0, kWidth, kHeight},
+            {light, 0, kWidth, kHeight},
             {fading, 0, kWidth, kHeight},
             {fading, 0, 70, 90},
             {fading, 2, 70, 40},
