@@ -220,7 +220,7 @@ EVENTIDE_AMX void dot_outputs(const Work& work, const std::uint32_t* weight, int
 
 EVENTIDE_AMX void dot_area(const DotArea& r) {
     // Products of fewer pairs, and of half vectors of outputs, are not worth a tile.
-    constexpr int kLeastPairs = 6;
+    constexpr int kLeastPairs = 4;
     const int pairs = pairs_of(r);
     if (pairs < kLeastPairs || bf16_lanes(r.outputs) != kTileOutputs || r.height * r.width == 0) {
         avx512_bf16::bf16_kernels().dot_area(r);

@@ -8,7 +8,7 @@
 
 #if defined(__x86_64__)
 
-#include "src/kernels/amx_tiles.h"
+#include "src/kernels/bf16_lanes.h"
 
 #include <algorithm>
 #include <cstring>
@@ -35,22 +35,8 @@ struct Room {
     }
 };
 
-EVENTIDE_AMX_INLINE __mmask16 first_lanes(int n) {
-    return __mmask16(n >= 16 ? 0xffffU : (1U << unsigned(std::max(n, 0))) - 1U);
-}
-/// Of two vectors, one behind the other: the even lanes, the odd ones.
-EVENTIDE_AMX_INLINE __m512i evens() {
-    return _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-}
-EVENTIDE_AMX_INLINE __m512i odds() {
-    return _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
-}
-
-/// What the first layer's outputs of a pixel are added to, even ones and odd ones apart: as two
-/// neighbours lie in a unit of 4 bytes, each is float32 again by a shift or a mask alone.
-///
-///     unit i of the sums      c_2i | c_2i+1
-///     even, odd               c_0 c_2 .. c_30, c_1 c_3 .. c_31
+/// What the first layer's outputs of a pixel are added to, even ones and odd ones apart
+/// (units_plus()).
 struct Offsets {
     __m512 base[2], slope[2];  // of even outputs, of odd ones
     __mmask16 units;
@@ -80,12 +66,6 @@ private:
 template <bool kSame>
 EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Offsets& offsets, int first,
                                        int count, Room& room) {
-    const __m512i high = _mm512_set1_epi32(int(0xffff0000U));
-    // Number i of the evens, then number i of the odds.
-    const __m512i together =
-        _mm512_set_epi16(31, 15, 30, 14, 29, 13, 28, 12, 27, 11, 26, 10, 25, 9, 24, 8, 23, 7, 22, 6,
-                         21, 5, 20, 4, 19, 3, 18, 2, 17, 1, 16, 0);
-    const __m512 zero = _mm512_setzero_ps();
     for (int p = 0; p < count; ++p) {
         const auto* sums = static_cast<const std::uint16_t*>(r.sums) +
                            std::ptrdiff_t(r.column[first + p]) * r.width;
@@ -97,24 +77,8 @@ EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Offsets& offse
             even = offsets.at(0, dx);
             odd = offsets.at(1, dx);
         }
-        even = _mm512_max_ps(_mm512_add_ps((__m512)_mm512_slli_epi32(units, 16), even), zero);
-        odd = _mm512_max_ps(_mm512_add_ps((__m512)_mm512_and_si512(units, high), odd), zero);
-        _mm512_store_si512(room.numbers[p], _mm512_permutexvar_epi16(
-                                                together, (__m512i)_mm512_cvtne2ps_pbh(odd, even)));
+        _mm512_store_si512(room.numbers[p], units_plus(units, even, odd));
     }
-}
-
-/// Whether all pixels lie at the same place beside their samples, as they do where frames are as
-/// large as the sensor.
-EVENTIDE_AMX_INLINE bool all_same(const float* dx, int n) {
-    const __m512 first = _mm512_set1_ps(dx[0]);
-    for (int i = 0; i < n; i += 16) {
-        const __mmask16 mask = first_lanes(n - i);
-        if (_mm512_mask_cmp_ps_mask(mask, _mm512_maskz_loadu_ps(mask, dx + i), first, _CMP_EQ_OQ) !=
-            mask)
-            return false;
-    }
-    return true;
 }
 
 /// The two rows of the last layer.
@@ -132,11 +96,6 @@ struct LastLayer {
 struct PairOfSums {
     __m512 first, second;
 };
-/// Neighbouring lanes of a, then of b, added to each other.
-EVENTIDE_AMX_INLINE __m512 add_neighbours(__m512 a, __m512 b) {
-    return _mm512_add_ps(_mm512_permutex2var_ps(a, evens(), b),
-                         _mm512_permutex2var_ps(a, odds(), b));
-}
 /// Of kCount pixels from p on, each in its share of the lanes; see two_outputs in
 /// render_kernels-inl.h.
 template <int kCount>
@@ -232,6 +191,7 @@ EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
 template <bool kTiles>
 EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
     const OffsetRows& offset = r.offset;
+    if (r.outputs <= kTileOutputs) return narrow_rows(r, kTiles);
     // One row of A holds a pixel's numbers, in pairs; two tiles of sums its 17 to 32 outputs.
     if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMaxNumbers ||
         r.outputs <= kTileOutputs || r.outputs > 2 * kTileOutputs)

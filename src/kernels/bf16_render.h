@@ -12,6 +12,8 @@ bool hidden_rows(const HiddenRows& rows);
 
 namespace amx {
 bool hidden_rows(const HiddenRows& rows);
+/// Of layers of up to 16 numbers, by AMX or by vectors.
+bool narrow_rows(const HiddenRows& rows, bool by_tiles);
 }  // namespace amx
 
 }  // namespace eventide

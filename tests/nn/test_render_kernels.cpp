@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -112,56 +113,55 @@ TEST(RenderKernels, ASampleIsWeighedByItsShare) {
 /// Offsets, a hidden layer and two outputs at once, against the same in double.
 void expect_hidden_rows(const Bf16Kernels& kernels) {
     constexpr int kColumns = 9;
-    for (const int width : {12, 32})
-        for (const int outputs : {20, 32})
-            for (const int pixels : {1, 16, 17, 32, 61}) {
-                test::Numbers numbers{4};
-                const auto n = std::size_t(width), o = std::size_t(outputs),
-                           count = std::size_t(pixels);
-                const auto sums = numbers.many(kColumns * n, Fill::ordinary),
-                           dx = numbers.many(count, Fill::ordinary),
-                           base = numbers.many(n, Fill::ordinary),
-                           slope = numbers.many(n, Fill::ordinary),
-                           last = numbers.many(2 * o, Fill::ordinary);
-                std::vector<float> hidden = numbers.many(n * o, Fill::ordinary), bias(32);
-                for (float& v : bias) v = numbers.next(Fill::ordinary);
-                const float last_bias[] = {0.25F, -1};
-                std::vector<int> column;
-                for (int p = 0; p < pixels; ++p) column.push_back(p * 5 % kColumns);
-                std::vector<std::uint32_t> narrow(kColumns * n / 2), weight(n / 2 * 32);
-                kernels.pixels_to_bf16(sums.data(), kColumns, width, narrow.data());
-                for (std::size_t k = 0; k < n; ++k)
-                    for (std::size_t i = 0; i < o; ++i)
-                        weight[k / 2 * 32 + i] |= std::uint32_t{to_bf16(hidden[k * o + i])}
-                                                  << (k % 2 * 16);
-                test::Guarded mu{count}, log_sigma{count};
-                ASSERT_TRUE(
-                    kernels.hidden_rows({{narrow.data(), 0, column.data(), dx.data(), base.data(),
-                                          slope.data(), pixels, width, nullptr},
-                                         weight.data(),
-                                         bias.data(),
-                                         outputs,
-                                         last.data(),
-                                         last_bias,
-                                         mu.data(),
-                                         log_sigma.data()}));
-                EXPECT_TRUE(mu.intact() && log_sigma.intact());
-                for (std::size_t p = 0; p < count; ++p) {
-                    double two[] = {last_bias[0], last_bias[1]};
-                    for (std::size_t i = 0; i < o; ++i) {
-                        double sum = bias[i];
-                        for (std::size_t k = 0; k < n; ++k)
-                            sum += hidden[k * o + i] *
-                                   std::max(0.0, double(sums[std::size_t(column[p]) * n + k]) +
-                                                     base[k] + double(dx[p]) * slope[k]);
-                        for (std::size_t w = 0; w < 2; ++w)
-                            two[w] += last[w * o + i] * std::max(0.0, sum);
-                    }
-                    // Of terms that add up to some 20.
-                    EXPECT_NEAR(mu.data()[p], two[0], 0.1) << width << " " << outputs;
-                    EXPECT_NEAR(log_sigma.data()[p], two[1], 0.1) << width << " " << outputs;
+    for (const auto& [width, outputs] :
+         {std::pair{12, 20}, {12, 32}, {32, 20}, {32, 32}, {16, 16}, {6, 16}, {16, 9}})
+        for (const int pixels : {1, 16, 17, 32, 61}) {
+            test::Numbers numbers{4};
+            const auto n = std::size_t(width), o = std::size_t(outputs),
+                       count = std::size_t(pixels), lanes = std::size_t(outputs > 16 ? 32 : 16);
+            const auto sums = numbers.many(kColumns * n, Fill::ordinary),
+                       dx = numbers.many(count, Fill::ordinary),
+                       base = numbers.many(n, Fill::ordinary),
+                       slope = numbers.many(n, Fill::ordinary),
+                       last = numbers.many(2 * o, Fill::ordinary);
+            std::vector<float> hidden = numbers.many(n * o, Fill::ordinary), bias(32);
+            for (float& v : bias) v = numbers.next(Fill::ordinary);
+            const float last_bias[] = {0.25F, -1};
+            std::vector<int> column;
+            for (int p = 0; p < pixels; ++p) column.push_back(p * 5 % kColumns);
+            std::vector<std::uint32_t> narrow(kColumns * n / 2), weight(n / 2 * lanes);
+            kernels.pixels_to_bf16(sums.data(), kColumns, width, narrow.data());
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t i = 0; i < o; ++i)
+                    weight[k / 2 * lanes + i] |= std::uint32_t{to_bf16(hidden[k * o + i])}
+                                                 << (k % 2 * 16);
+            test::Guarded mu{count}, log_sigma{count};
+            ASSERT_TRUE(kernels.hidden_rows({{narrow.data(), 0, column.data(), dx.data(),
+                                              base.data(), slope.data(), pixels, width, nullptr},
+                                             weight.data(),
+                                             bias.data(),
+                                             outputs,
+                                             last.data(),
+                                             last_bias,
+                                             mu.data(),
+                                             log_sigma.data()}));
+            EXPECT_TRUE(mu.intact() && log_sigma.intact());
+            for (std::size_t p = 0; p < count; ++p) {
+                double two[] = {last_bias[0], last_bias[1]};
+                for (std::size_t i = 0; i < o; ++i) {
+                    double sum = bias[i];
+                    for (std::size_t k = 0; k < n; ++k)
+                        sum += hidden[k * o + i] *
+                               std::max(0.0, double(sums[std::size_t(column[p]) * n + k]) +
+                                                 base[k] + double(dx[p]) * slope[k]);
+                    for (std::size_t w = 0; w < 2; ++w)
+                        two[w] += last[w * o + i] * std::max(0.0, sum);
                 }
+                // Of terms that add up to some 20.
+                EXPECT_NEAR(mu.data()[p], two[0], 0.1) << width << " " << outputs;
+                EXPECT_NEAR(log_sigma.data()[p], two[1], 0.1) << width << " " << outputs;
             }
+        }
 }
 TEST(RenderKernels, HiddenRowsAreTheLayersOneByOne) {
     if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
