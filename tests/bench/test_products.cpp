@@ -38,19 +38,19 @@ TEST(Products, OfTheDefault) {
 }
 
 TEST(Products, OfTheSmallOne) {
-    const double expected = kFull * 9 * 9 * 8                              // in
-                            + kFull * 9 * (16 * 16 + 16 * 8)               // gru.0
-                            + kHalf * 9 * 8 * 8 + kQuarter * 9 * 8 * 16    // down
-                            + kEighth * 9 * 16 * 32                        //
-                            + kEighth * 4 * 9 * 32 * 32                    // two blocks
-                            + kQuarter * 9 * 48 * 16 + kHalf * 9 * 24 * 8  // up
-                            + kFull * 9 * 16 * 8                           //
-                            + kFull * 9 * 8 * 8;                           // out
+    const double expected = kFull * 9 * 5 * 8                                   // in
+                            + kFull * 9 * 16 * 16                               // gru.0, both halves
+                            + kHalf * 9 * 8 * 8 + kQuarter * 9 * 8 * 16         // down
+                            + kEighth * 9 * 16 * 16 + kSixteenth * 9 * 16 * 32  //
+                            + kSixteenth * 4 * 9 * 32 * 32                      // two blocks
+                            + kEighth * 9 * 48 * 16 + kQuarter * 9 * 32 * 16    // up
+                            + kHalf * 9 * 24 * 8 + kFull * 9 * 16 * 8;
     EXPECT_EQ(encode_products(shipped("small"), 180, 240), expected);
     EXPECT_EQ(native("small", 0).first, kFull * 2 * 8 * 16);
     EXPECT_EQ(native("small", 0).frame, kFull * 2 * (16 * 16 + 2 * 16));
     EXPECT_EQ(native("small", 1).first, kFull * 5 * 8 * 16) << "this sample's and the next's";
     EXPECT_EQ(native("small", 1).frame, kFull * 2 * (16 * 16 + 2 * 16));
+    EXPECT_LT(expected + native("small", 0).first + native("small", 0).frame, 6000 * kFull);
 }
 
 TEST(Products, OfTheThesis) {
