@@ -13,7 +13,8 @@ namespace eventide::bench {
 struct Layer {
     int height, width, in, out, stride;
     double products() const {
-        return 9.0 * in * out * ((height + stride - 1) / stride) * ((width + stride - 1) / stride);
+        const int rows = (height + stride - 1) / stride, columns = (width + stride - 1) / stride;
+        return 9.0 * in * out * rows * columns;
     }
 };
 

@@ -38,9 +38,9 @@ TEST(Products, OfTheDefault) {
 }
 
 TEST(Products, OfTheSmallOne) {
-    const double expected = kFull * 9 * 5 * 8                                   // in
-                            + kFull * 9 * 16 * 16                               // gru.0, both halves
-                            + kHalf * 9 * 8 * 8 + kQuarter * 9 * 8 * 16         // down
+    const double expected = kFull * 9 * 5 * 8                            // in
+                            + kFull * 9 * 16 * 16                        // gru.0, both halves
+                            + kHalf * 9 * 8 * 8 + kQuarter * 9 * 8 * 16  // down
                             + kEighth * 9 * 16 * 16 + kSixteenth * 9 * 16 * 32  //
                             + kSixteenth * 4 * 9 * 32 * 32                      // two blocks
                             + kEighth * 9 * 48 * 16 + kQuarter * 9 * 32 * 16    // up
