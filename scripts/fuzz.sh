@@ -35,7 +35,7 @@ failed=0
 printf '%-16s %12s %12s %10s %9s %9s %9s\n' target runs 'in all' runs/s coverage inputs findings
 for target in "${targets[@]}"; do
   had=$(cat "$counts/$target" 2>/dev/null || echo 0)
-  if [ "$had" -ge "${RUNS:-$((had + 1))}" ]; then continue; fi
+  if [ -n "${RUNS:-}" ] && [ "$had" -ge "$RUNS" ]; then continue; fi
   kept=build/fuzz/corpus/$target seeds=tests/fuzz/corpus/$target log=$findings/$target.log
   mkdir -p "$kept"
   # Inputs up to twice the largest seed: small ones are quick.

@@ -1,11 +1,16 @@
-// Vectors of 16 float32 lanes as bf16_render*.cpp take them apart and put them together.
+// What bf16_render.cpp and bf16_render_narrow.cpp have in common: vectors of 16 float32 lanes taken
+// apart and put together, offsets, and the last layer.
 #pragma once
 
 #include "src/kernels/amx_tiles.h"
+#include "src/kernels/render_kernels.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace eventide::amx {
+
+constexpr int kRun = kTileRows, kBoth = 2 * kRun;  // pixels of a tile, and that go through together
 
 EVENTIDE_AMX_INLINE __mmask16 first_lanes(int n) {
     return __mmask16(n >= 16 ? 0xffffU : (1U << unsigned(std::max(n, 0))) - 1U);
@@ -37,6 +42,73 @@ EVENTIDE_AMX_INLINE __m512i units_plus(__m512i units, __m512 even, __m512 odd) {
     even = _mm512_max_ps(_mm512_add_ps((__m512)_mm512_slli_epi32(units, 16), even), zero);
     odd = _mm512_max_ps(_mm512_add_ps((__m512)_mm512_and_si512(units, high), odd), zero);
     return _mm512_permutexvar_epi16(together, (__m512i)_mm512_cvtne2ps_pbh(odd, even));
+}
+
+/// The k-th unit of a pixel's numbers.
+EVENTIDE_AMX_INLINE int unit_at(const std::uint16_t* numbers, int k) {
+    int unit;
+    std::memcpy(&unit, numbers + std::ptrdiff_t{2} * k, sizeof(unit));
+    return unit;
+}
+
+/// What the first layer's outputs of a pixel, or of two beside each other, are added to: even ones
+/// and odd ones apart (units_plus()).
+///
+///     one pixel     even    c_0 c_2 .. c_30
+///     two of 16     even    c_0 c_2 .. c_14 of pixel p, then of p + 1
+struct Offsets {
+    __m512 base[2], slope[2];  // of even outputs, of odd ones
+    EVENTIDE_AMX_INLINE Offsets(const OffsetRows& r, bool of_two) {
+        split(r.base, r.width, of_two, base);
+        split(r.slope, r.width, of_two, slope);
+    }
+    /// As if base held what dx adds.
+    EVENTIDE_AMX_INLINE void move(float dx) {
+        for (int i = 0; i < 2; ++i) base[i] = at(i, _mm512_set1_ps(dx));
+    }
+    EVENTIDE_AMX_INLINE __m512 at(int i, __m512 dx) const {
+        return _mm512_fmadd_ps(dx, slope[i], base[i]);
+    }
+
+private:
+    EVENTIDE_AMX_INLINE static void split(const float* from, int width, bool of_two,
+                                          __m512 (&to)[2]) {
+        const __m512 low = _mm512_maskz_loadu_ps(first_lanes(width), from),
+                     high =
+                         of_two ? low : _mm512_maskz_loadu_ps(first_lanes(width - 16), from + 16);
+        to[0] = _mm512_permutex2var_ps(low, evens(), high);
+        to[1] = _mm512_permutex2var_ps(low, odds(), high);
+    }
+};
+
+/// What the two rows of the last layer add up for pixels, still spread over lanes.
+struct PairOfSums {
+    __m512 first, second;
+};
+/// products(p) of kCount pixels from p on, each in its share of the lanes; see two_outputs in
+/// render_kernels-inl.h.
+template <int kCount, typename Products>
+EVENTIDE_AMX_INLINE PairOfSums sums_of(const Products& products, int p) {
+    if constexpr (kCount == 1) {
+        return products(p);
+    } else {
+        const PairOfSums a = sums_of<kCount / 2>(products, p),
+                         b = sums_of<kCount / 2>(products, p + kCount / 2);
+        return {add_neighbours(a.first, b.first), add_neighbours(a.second, b.second)};
+    }
+}
+
+/// mu and log sigma of a run, in 16 lanes: the products of each pixel added up, plus the bias. Only
+/// the first `count` are pixels of the frame.
+template <typename Products>
+EVENTIDE_AMX_INLINE void put_outputs(const HiddenRows& r, const Products& products, int first,
+                                     int count) {
+    const PairOfSums sums = sums_of<kRun>(products, 0);
+    const __mmask16 mask = first_lanes(count);
+    _mm512_mask_storeu_ps(r.mu + first, mask,
+                          _mm512_add_ps(sums.first, _mm512_set1_ps(r.last_bias[0])));
+    _mm512_mask_storeu_ps(r.log_sigma + first, mask,
+                          _mm512_add_ps(sums.second, _mm512_set1_ps(r.last_bias[1])));
 }
 
 /// Whether all of `n` numbers are one: pixels lie at the same place beside their samples where

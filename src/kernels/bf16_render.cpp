@@ -11,12 +11,11 @@
 #include "src/kernels/bf16_lanes.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace eventide::amx {
 namespace {
 
-constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMaxNumbers = 32;
+constexpr int kMaxNumbers = 32;
 
 /// What 32 pixels pass through, 6 KiB:
 ///
@@ -27,38 +26,6 @@ constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMaxNumbers = 32;
 struct Room {
     alignas(64) std::uint16_t numbers[kBoth][kMaxNumbers] = {};
     alignas(64) float sums[4][kRun][kTileOutputs];  // of 16 pixels: outputs 0-15, 16-31
-
-    int pairs(int pixel, int k) const {
-        int pair;
-        std::memcpy(&pair, &numbers[pixel][2 * k], sizeof(pair));
-        return pair;
-    }
-};
-
-/// What the first layer's outputs of a pixel are added to, even ones and odd ones apart
-/// (units_plus()).
-struct Offsets {
-    __m512 base[2], slope[2];  // of even outputs, of odd ones
-    __mmask16 units;
-    EVENTIDE_AMX_INLINE explicit Offsets(const OffsetRows& r) : units(first_lanes(r.width / 2)) {
-        split(r.base, r.width, base);
-        split(r.slope, r.width, slope);
-    }
-    /// As if base held what dx adds.
-    EVENTIDE_AMX_INLINE void move(float dx) {
-        for (int i = 0; i < 2; ++i) base[i] = at(i, _mm512_set1_ps(dx));
-    }
-    EVENTIDE_AMX_INLINE __m512 at(int i, __m512 dx) const {
-        return _mm512_fmadd_ps(dx, slope[i], base[i]);
-    }
-
-private:
-    EVENTIDE_AMX_INLINE static void split(const float* from, int width, __m512 (&to)[2]) {
-        const __m512 low = _mm512_maskz_loadu_ps(first_lanes(width), from),
-                     high = _mm512_maskz_loadu_ps(first_lanes(width - 16), from + 16);
-        to[0] = _mm512_permutex2var_ps(low, evens(), high);
-        to[1] = _mm512_permutex2var_ps(low, odds(), high);
-    }
 };
 
 /// relu(sums + base + dx slope) of `count` pixels as bf16, one row of `numbers` each. kSame: all
@@ -66,11 +33,12 @@ private:
 template <bool kSame>
 EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Offsets& offsets, int first,
                                        int count, Room& room) {
+    const __mmask16 of_pixel = first_lanes(r.width / 2);
     for (int p = 0; p < count; ++p) {
         const auto* sums = static_cast<const std::uint16_t*>(r.sums) +
                            std::ptrdiff_t(r.column[first + p]) * r.width;
         __builtin_prefetch(sums + 2 * r.ahead, 0, 2);
-        const __m512i units = _mm512_maskz_loadu_epi32(offsets.units, sums);
+        const __m512i units = _mm512_maskz_loadu_epi32(of_pixel, sums);
         __m512 even = offsets.base[0], odd = offsets.base[1];
         if (!kSame) {
             const __m512 dx = _mm512_set1_ps(r.dx[first + p]);
@@ -93,36 +61,22 @@ struct LastLayer {
         second_high = _mm512_maskz_loadu_ps(high, second + kTileOutputs);
     }
 };
-struct PairOfSums {
-    __m512 first, second;
-};
-/// Of kCount pixels from p on, each in its share of the lanes; see two_outputs in
-/// render_kernels-inl.h.
-template <int kCount>
-EVENTIDE_AMX_INLINE PairOfSums sums_of(const LastLayer& last, const float (*low)[kTileOutputs],
-                                       const float (*high)[kTileOutputs], int p) {
-    if constexpr (kCount == 1) {
+/// relu(sums) times its rows, of the pixels of a run.
+struct Products {
+    const LastLayer& last;
+    const float (*low)[kTileOutputs];
+    const float (*high)[kTileOutputs];
+    EVENTIDE_AMX_INLINE PairOfSums operator()(int p) const {
         const __m512 a = _mm512_max_ps(_mm512_load_ps(low[p]), _mm512_setzero_ps()),
                      b = _mm512_max_ps(_mm512_load_ps(high[p]), _mm512_setzero_ps());
         return {_mm512_fmadd_ps(a, last.first_low, _mm512_mul_ps(b, last.first_high)),
                 _mm512_fmadd_ps(a, last.second_low, _mm512_mul_ps(b, last.second_high))};
-    } else {
-        const PairOfSums a = sums_of<kCount / 2>(last, low, high, p),
-                         b = sums_of<kCount / 2>(last, low, high, p + kCount / 2);
-        return {add_neighbours(a.first, b.first), add_neighbours(a.second, b.second)};
     }
-}
+};
 
-/// mu and log sigma of a run, in 16 lanes: relu(sums) . last weights, the lanes of each pixel added
-/// up, plus the bias. Only the first `count` are pixels of the frame.
 EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int run, int first,
                               int count, const Room& room) {
-    const PairOfSums sums = sums_of<kRun>(last, room.sums[2 * run], room.sums[2 * run + 1], 0);
-    const __mmask16 mask = first_lanes(count);
-    _mm512_mask_storeu_ps(r.mu + first, mask,
-                          _mm512_add_ps(sums.first, _mm512_set1_ps(r.last_bias[0])));
-    _mm512_mask_storeu_ps(r.log_sigma + first, mask,
-                          _mm512_add_ps(sums.second, _mm512_set1_ps(r.last_bias[1])));
+    put_outputs(r, Products{last, room.sums[2 * run], room.sums[2 * run + 1]}, first, count);
 }
 
 /// sums = bias + numbers x hidden weights:
@@ -165,7 +119,7 @@ EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
                        weight_high = (__m512bh)_mm512_loadu_si512(at + kTileOutputs);
 #pragma GCC unroll 8
             for (int p = 0; p < kPixels; ++p) {
-                const auto pair = (__m512bh)_mm512_set1_epi32(room.pairs(first + p, k));
+                const auto pair = (__m512bh)_mm512_set1_epi32(unit_at(room.numbers[first + p], k));
                 low[p] = _mm512_dpbf16_ps(low[p], pair, weight_low);
                 high[p] = _mm512_dpbf16_ps(high[p], pair, weight_high);
             }
@@ -194,10 +148,10 @@ EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
     if (r.outputs <= kTileOutputs) return narrow_rows(r, kTiles);
     // One row of A holds a pixel's numbers, in pairs; two tiles of sums its 17 to 32 outputs.
     if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMaxNumbers ||
-        r.outputs <= kTileOutputs || r.outputs > 2 * kTileOutputs)
+        r.outputs > 2 * kTileOutputs)
         return false;
     if (kTiles) start_tiles(r);
-    Offsets offsets{offset};
+    Offsets offsets{offset, false};
     const bool is_same = offset.pixels > 0 && all_same(offset.dx, offset.pixels);
     if (is_same) offsets.move(offset.dx[0]);
     const LastLayer last{r};

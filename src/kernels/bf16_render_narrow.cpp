@@ -9,12 +9,12 @@
 
 #include "src/kernels/bf16_lanes.h"
 
-#include <cstring>
+#include <algorithm>
 
 namespace eventide::amx {
 namespace {
 
-constexpr int kRun = kTileRows, kBoth = 2 * kRun, kMaxNumbers = 16;
+constexpr int kMaxNumbers = 16;
 
 /// What 32 pixels pass through, 3 KiB. A row of numbers is one pixel's, 32 bytes, with zeros past
 /// the layer's width.
@@ -23,39 +23,17 @@ struct Room {
     alignas(64) float sums[2][kRun][kTileOutputs];
 };
 
-/// What the first layer's outputs of two pixels are added to, even ones and odd ones apart
-/// (units_plus()).
-///
-///     even    c_0 c_2 .. c_14 of pixel p, then of p + 1
-struct Offsets {
-    __m512 base[2], slope[2];
-    EVENTIDE_AMX_INLINE explicit Offsets(const OffsetRows& r) {
-        split(r.base, r.width, base);
-        split(r.slope, r.width, slope);
-    }
-    EVENTIDE_AMX_INLINE __m512 at(int i, __m512 dx) const {
-        return _mm512_fmadd_ps(dx, slope[i], base[i]);
-    }
-
-private:
-    EVENTIDE_AMX_INLINE static void split(const float* from, int width, __m512 (&to)[2]) {
-        const __m512 all = _mm512_maskz_loadu_ps(first_lanes(width), from);
-        to[0] = _mm512_permutex2var_ps(all, evens(), all);
-        to[1] = _mm512_permutex2var_ps(all, odds(), all);
-    }
-};
-
 EVENTIDE_AMX_INLINE __m512i both(__m256i first, __m256i second) {
     return _mm512_inserti64x4(_mm512_castsi256_si512(first), second, 1);
 }
 
-/// relu(sums + base + dx slope) of `count` pixels as bf16.
+/// relu(sums + base + dx slope) of `count` pixels as bf16. `is_same`: all have the same dx, which
+/// is in base already.
 EVENTIDE_AMX_INLINE void offset_pixels(const OffsetRows& r, const Offsets& offsets, bool is_same,
                                        int first, int count, Room& room) {
     const auto units = __mmask8(first_lanes(r.width / 2));
     const auto* sums = static_cast<const std::uint16_t*>(r.sums);
-    __m512 even = offsets.at(0, _mm512_set1_ps(r.dx[0])),
-           odd = offsets.at(1, _mm512_set1_ps(r.dx[0]));
+    __m512 even = offsets.base[0], odd = offsets.base[1];
     for (int p = 0; p < count; p += 2) {
         const int a = first + p, b = first + std::min(p + 1, count - 1);
         const std::uint16_t *of_a = sums + std::ptrdiff_t(r.column[a]) * r.width,
@@ -97,9 +75,8 @@ EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
             const auto of_pair = (__m512bh)_mm512_loadu_si512(weight + k * kTileOutputs);
 #pragma GCC unroll 8
             for (int p = 0; p < kPixels; ++p) {
-                int pair;
-                std::memcpy(&pair, &room.numbers[first + p][2 * k], sizeof(pair));
-                sums[p] = _mm512_dpbf16_ps(sums[p], (__m512bh)_mm512_set1_epi32(pair), of_pair);
+                const auto pair = (__m512bh)_mm512_set1_epi32(unit_at(room.numbers[first + p], k));
+                sums[p] = _mm512_dpbf16_ps(sums[p], pair, of_pair);
             }
         }
         for (int p = 0; p < kPixels; ++p)
@@ -107,32 +84,23 @@ EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
     }
 }
 
-struct TwoRows {
+/// The two rows of the last layer.
+struct LastLayer {
     __m512 first, second;
 };
-
-/// Of kCount pixels from `sums` on, each in its share of the lanes.
-template <int kCount>
-EVENTIDE_AMX_INLINE TwoRows products_of(const TwoRows& last, const float (*sums)[kTileOutputs]) {
-    if constexpr (kCount == 1) {
-        const __m512 in = _mm512_max_ps(_mm512_load_ps(sums[0]), _mm512_setzero_ps());
+/// relu(sums) times its rows, of the pixels of a run.
+struct Products {
+    const LastLayer& last;
+    const float (*sums)[kTileOutputs];
+    EVENTIDE_AMX_INLINE PairOfSums operator()(int p) const {
+        const __m512 in = _mm512_max_ps(_mm512_load_ps(sums[p]), _mm512_setzero_ps());
         return {_mm512_mul_ps(in, last.first), _mm512_mul_ps(in, last.second)};
-    } else {
-        const TwoRows a = products_of<kCount / 2>(last, sums),
-                      b = products_of<kCount / 2>(last, sums + kCount / 2);
-        return {add_neighbours(a.first, b.first), add_neighbours(a.second, b.second)};
     }
-}
+};
 
-/// mu and log sigma of a run, of which the first `count` are pixels of the frame.
-EVENTIDE_AMX void two_outputs(const HiddenRows& r, const TwoRows& last, int first, int count,
+EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int first, int count,
                               const float (*sums)[kTileOutputs]) {
-    const TwoRows products = products_of<kRun>(last, sums);
-    const __mmask16 mask = first_lanes(count);
-    _mm512_mask_storeu_ps(r.mu + first, mask,
-                          _mm512_add_ps(products.first, _mm512_set1_ps(r.last_bias[0])));
-    _mm512_mask_storeu_ps(r.log_sigma + first, mask,
-                          _mm512_add_ps(products.second, _mm512_set1_ps(r.last_bias[1])));
+    put_outputs(r, Products{last, sums}, first, count);
 }
 
 EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
@@ -145,11 +113,12 @@ template <bool kTiles>
 EVENTIDE_AMX void run_rows(const HiddenRows& r) {
     const OffsetRows& offset = r.offset;
     if (kTiles) start_tiles(r);
-    const Offsets offsets{offset};
+    Offsets offsets{offset, true};
     const bool is_same = all_same(offset.dx, offset.pixels);
+    if (is_same) offsets.move(offset.dx[0]);
     const __mmask16 outputs = first_lanes(r.outputs);
-    const TwoRows last{_mm512_maskz_loadu_ps(outputs, r.last_weight),
-                       _mm512_maskz_loadu_ps(outputs, r.last_weight + r.outputs)};
+    const LastLayer last{_mm512_maskz_loadu_ps(outputs, r.last_weight),
+                         _mm512_maskz_loadu_ps(outputs, r.last_weight + r.outputs)};
     Room room;
     for (int first = 0; first < offset.pixels; first += kBoth) {
         // Rows past the last pixel hold what was there before; their sums are not stored.

@@ -47,14 +47,18 @@ void update_state(const float* h, const float* u, std::ptrdiff_t u_step, float* 
                   float* out, int channels, int pixels) {
     map(Tanh{}, std::size_t(channels) * std::size_t(pixels), candidate, candidate, candidate,
         candidate, candidate);
-    if (channels <= kNarrowLanes)
-        return update_pixels(Narrow(), h, u, u_step, candidate, out, channels, pixels);
-    update_pixels(D(), h, u, u_step, candidate, out, channels, pixels);
+    const auto update = [&](auto d) HWY_ATTR {
+        update_pixels(d, h, u, u_step, candidate, channels, AsItIs{}, out, channels, pixels);
+    };
+    channels <= kNarrowLanes ? update(Narrow()) : update(D());
 }
 void update_light(const float* h, const float* halves, float* out, int channels, int pixels) {
-    if (channels <= kNarrowLanes)
-        return update_light_pixels(Narrow(), h, halves, out, channels, pixels);
-    update_light_pixels(D(), h, halves, out, channels, pixels);
+    const std::ptrdiff_t step = 2 * std::ptrdiff_t{channels};
+    const auto update = [&](auto d) HWY_ATTR {
+        update_pixels(d, h, halves, step, halves + channels, step, TanhOfSigmoid{}, out, channels,
+                      pixels);
+    };
+    channels <= kNarrowLanes ? update(Narrow()) : update(D());
 }
 void add_relu(const float* a, const float* b, float* out, std::size_t n) {
     map(AddRelu{}, n, out, a, b, a, a);

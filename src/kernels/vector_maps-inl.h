@@ -158,48 +158,41 @@ HWY_INLINE void reset_pixels(Tag d, const float* r, std::ptrdiff_t r_step, const
             store_some(d, hn::Mul(load_upto(d, r + c, n), load_upto(d, h + c, n)), out + c, n);
         });
 }
-/// out = h + u (c - h), by one fused multiply-add a number.
-/// `candidate` is tanh(c) already.
-template <class Tag>
+/// out = h + u (c - h), by one fused multiply-add a number, of pixels of C channels whose numbers
+/// lie u_step and step apart; c = candidate(number).
+template <class Tag, class Candidate>
 HWY_INLINE void update_pixels(Tag d, const float* h, const float* u, std::ptrdiff_t u_step,
-                              const float* candidate, float* out, int channels, int pixels) {
-    if (channels == int(hn::Lanes(d))) {
-        for (int p = 0; p < pixels;
-             ++p, u += u_step, h += channels, candidate += channels, out += channels) {
-            const auto old = hn::LoadU(d, h);
-            hn::StoreU(hn::MulAdd(hn::LoadU(d, u), hn::Sub(hn::LoadU(d, candidate), old), old), d,
-                       out);
-        }
-        return;
-    }
-    for (int p = 0; p < pixels;
-         ++p, u += u_step, h += channels, candidate += channels, out += channels)
-        over_channels(d, channels, [&](int c, int n) HWY_ATTR {
-            const auto old = load_upto(d, h + c, n);
-            const auto change = hn::Sub(load_upto(d, candidate + c, n), old);
-            store_some(d, hn::MulAdd(load_upto(d, u + c, n), change, old), out + c, n);
-        });
-}
-/// out = h + u (2 s - 1 - h): 2 sigmoid(2 v) - 1 is tanh(v).
-template <class Tag>
-HWY_INLINE void update_light_pixels(Tag d, const float* h, const float* halves, float* out,
-                                    int channels, int pixels) {
-    const auto one = hn::Set(d, 1.0F), two = hn::Set(d, 2.0F);
-    const auto updated = [&](auto old, auto u, auto s) HWY_ATTR {
-        return hn::MulAdd(u, hn::Sub(hn::MulSub(two, s, one), old), old);
+                              const float* from, std::ptrdiff_t step, const Candidate& candidate,
+                              float* out, int channels, int pixels) {
+    const auto updated = [&](auto old, auto share, auto number) HWY_ATTR {
+        return hn::MulAdd(share, hn::Sub(candidate(number), old), old);
     };
-    for (int p = 0; p < pixels; ++p, h += channels, halves += 2 * channels, out += channels) {
-        if (channels == int(hn::Lanes(d))) {
-            const auto u = hn::LoadU(d, halves), s = hn::LoadU(d, halves + channels);
-            hn::StoreU(updated(hn::LoadU(d, h), u, s), d, out);
+    const bool is_whole = channels == int(hn::Lanes(d));
+    for (int p = 0; p < pixels; ++p, u += u_step, from += step, h += channels, out += channels) {
+        if (is_whole) {
+            hn::StoreU(updated(hn::LoadU(d, h), hn::LoadU(d, u), hn::LoadU(d, from)), d, out);
             continue;
         }
         over_channels(d, channels, [&](int c, int n) HWY_ATTR {
-            const auto u = load_upto(d, halves + c, n), s = load_upto(d, halves + channels + c, n);
-            store_some(d, updated(load_upto(d, h + c, n), u, s), out + c, n);
+            const auto old = load_upto(d, h + c, n), share = load_upto(d, u + c, n);
+            store_some(d, updated(old, share, load_upto(d, from + c, n)), out + c, n);
         });
     }
 }
+struct AsItIs {
+    template <class Vector>
+    HWY_INLINE Vector operator()(Vector v) const {
+        return v;
+    }
+};
+/// 2 s - 1: tanh(v) of s = sigmoid(2 v).
+struct TanhOfSigmoid {
+    template <class Vector>
+    HWY_INLINE Vector operator()(Vector s) const {
+        const hn::DFromV<Vector> d;
+        return hn::MulSub(hn::Set(d, 2.0F), s, hn::Set(d, 1.0F));
+    }
+};
 struct Sigmoid {
     HWY_INLINE V operator()(V v, V, V, V) const { return sigmoid(v); }
 };

@@ -22,11 +22,10 @@ struct ModelConfig {
     std::vector<int> recurrent{1, 1, 1, 1};   ///< per level: 1 ConvGRU, 0 held features
     bool reset_gate = true;                   ///< of recurrent levels
     int res_blocks = 2;
-    int gate_radius = 4;  ///< px
-    int gate_spread = 0;  ///< further, at the deepest level, in its pixels
-    bool out_layer =
-        true;         ///< a linear layer makes the codes; else the last map on the way up is z
-    int latent = 16;  ///< D
+    int gate_radius = 4;    ///< px
+    int gate_spread = 0;    ///< further, at the deepest level, in its pixels
+    bool out_layer = true;  ///< a linear layer makes the codes; else they are the last map
+    int latent = 16;        ///< D
     int latent_stride = 1;  ///< 1 or 2
     int unfold = 3;  ///< codes in y and x that the renderer reads around a sample: 3 x 3, or 1
     std::vector<int> mlp{64, 64, 64};      ///< hidden widths

@@ -46,8 +46,9 @@ struct GruWeights {
 
 /// h <- h + m u (c - h). Where the mask is 0, h is not touched.
 ///
-///     [u; r] = sigmoid(gates * [a; h]),  c = tanh(candidate * [a; r h]); without a reset gate r =
-///     1
+///     [u; r] = sigmoid(gates * [a; h]),  c = tanh(candidate * [a; r h])
+///
+/// Without a reset gate r = 1.
 template <typename T>
 void gru(const GruWeights<T>& weights, const Array3<T>& a, const Mask& mask, Array3<T>& h) {
     const Array3<T> gates = each(conv(weights.gates, join<T>({&a, &h})), sigmoid<T>);
