@@ -122,6 +122,7 @@ bool Reconstructor::Impl::next(Frame& frame) {
 void Reconstructor::Impl::open_next() {
     open_ = seen(opened_++);
     schedule_.open(open_.window);
+    open_.gap_before = gaps_.open(open_.gap_before);
     silent_ = open_.events > 0 ? 0 : silent_ + schedule_.due();
 }
 
@@ -141,6 +142,7 @@ void Reconstructor::Impl::render_due(Frame& frame) {
     // The stream's first frame may stand at the first window's begin, which is outside it.
     render_request(std::max(due.t, open_.window.begin + SensorDuration{1}), options_.size, frame);
     stamp_frame(due.t, due.index, open_, frame);
+    gaps_.tell();
 }
 
 Readiness Reconstructor::Impl::readiness(SensorTime t) {

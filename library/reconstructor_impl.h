@@ -6,6 +6,7 @@
 #include "pipeline/frame_clock.h"
 #include "pipeline/frame_output.h"
 #include "src/binning/binner.h"
+#include "src/core/frame_stamp.h"
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
 #include "src/nn/safetensors.h"
@@ -67,8 +68,9 @@ private:
     std::uint64_t opened_ = 0;   // of those, whose frames next() gave or gives
     WindowStamp open_;           // whose frames are due
     std::uint64_t silent_ = 0;   // frames in a row without events
-    bool ended_ = false;         // the renderer was told that no window follows
-    bool new_clock_ = false;     // grid_ begins another stream, which waits for the frames before
+    GapCarrier gaps_;
+    bool ended_ = false;      // the renderer was told that no window follows
+    bool new_clock_ = false;  // grid_ begins another stream, which waits for the frames before
 };
 
 }  // namespace eventide

@@ -3,7 +3,6 @@
 
 #include "pipeline/first_error.h"
 #include "src/core/error.h"
-#include "src/core/frame_stamp.h"
 
 #include <algorithm>
 #include <chrono>
@@ -86,6 +85,7 @@ void FrameOutput::present_oldest() {
     --held_count_;
     tell_lookahead();
     schedule_.open(held.window);
+    held.gap_before = gaps_.open(held.gap_before);
     check_silence(held);
     if (settings_.live) open_dropper();
     while (schedule_.due() > 0 && wanted_ && !stop_.is_overdue()) {
@@ -152,6 +152,7 @@ void FrameOutput::present(const DueFrame& due, Waiting& from) {
     const HostTime begun = Clock::now();
     renderer_.render(due.t, from.window, frame_);
     stamp_frame(due.t, due.index, from, frame_);
+    gaps_.tell();
     frame_.arrived = arrived_;
     std::swap(frame_.event_preview, from.event_preview);
     check_finite();

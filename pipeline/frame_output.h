@@ -9,6 +9,7 @@
 #include "pipeline/sink.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"
+#include "src/core/frame_stamp.h"
 #include "src/core/sensor_limits.h"
 
 #include <array>
@@ -98,7 +99,8 @@ private:
     std::size_t oldest_ = 0, held_count_ = 0;
     std::optional<std::size_t> told_lookahead_;  // to the sinks
     std::uint64_t silent_ = 0;                   // frames in a row without events
-    HostTime arrived_{};                         // of the newest latent map
+    GapCarrier gaps_;
+    HostTime arrived_{};  // of the newest latent map
     Frame frame_;
     bool wanted_ = true;
 };

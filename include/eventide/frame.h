@@ -24,7 +24,8 @@ struct Frame {
     std::array<Array2<float>, 3> colour;
     HostTime arrived{};       ///< when the newest events the frame saw came in; now minus this is
                               ///< the latency
-    bool gap_before = false;  ///< data were lost before or in that event window
+    bool gap_before = false;  ///< data were lost before or in that event window, or before an
+                              ///< earlier one that no frame shows
     Array2<float> event_preview;  ///< [y][x], sum of polarities of that event window, sensor size;
                                   ///< empty where not asked for
 };

@@ -36,7 +36,7 @@ enum class Overload {
 /// What stands before each frame of a stamped raw stream: 16 bytes, little endian.
 struct FrameStamp {
     static constexpr std::size_t kBytes = 16;
-    static constexpr std::uint8_t kGap = 1;     ///< data were lost before or in the frame's window
+    static constexpr std::uint8_t kGap = 1;     ///< as Frame::gap_before
     static constexpr std::uint8_t kRepeat = 2;  ///< the frame before again, with its time
 
     std::uint8_t flags = 0;

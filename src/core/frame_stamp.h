@@ -27,4 +27,17 @@ inline void stamp_frame(SensorTime t, std::uint64_t index, const WindowStamp& wi
     into.gap_before = window.gap_before;
 }
 
+/// A gap before an event window that no frame shows (none was due, or all were left out) is told by
+/// the frames of the next window that has any. One thread.
+class GapCarrier {
+public:
+    /// A window's frames come next. Whether they tell of a gap.
+    bool open(bool gap_before) noexcept { return untold_ = untold_ || gap_before; }
+    /// One of them was made.
+    void tell() noexcept { untold_ = false; }
+
+private:
+    bool untold_ = false;
+};
+
 }  // namespace eventide

@@ -182,5 +182,26 @@ TEST_F(Frames, CarryTheMarkOfLostData) {
     EXPECT_TRUE(frame.gap_before);
 }
 
+TEST_F(Frames, TellOfLostDataThoughTheirWindowsAreMany) {
+    ReconstructorOptions options = repeatable("2ms", 0);
+    options.fps = "50";  // ten event windows for each frame
+    Reconstructor reconstructor = this->reconstructor(options);
+    const auto events = events_of(recording());
+    const auto half = events.size() / 2;
+    Frame frame;
+    int marked = 0;
+    const auto count = [&] {
+        while (reconstructor.next(frame)) marked += frame.gap_before ? 1 : 0;
+    };
+    reconstructor.push(std::span{events}.first(half));
+    count();
+    EXPECT_EQ(marked, 0);
+    reconstructor.mark_gap();
+    reconstructor.push(std::span{events}.subspan(half));
+    reconstructor.finish();
+    count();
+    EXPECT_EQ(marked, 1);
+}
+
 }  // namespace
 }  // namespace eventide::test

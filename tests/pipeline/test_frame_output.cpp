@@ -28,12 +28,14 @@ struct Ending {
             lookaheads.push_back(sink.lookahead);
         };
     }
-    void give(std::int64_t begin_us, bool reset_before = false) {
+    void give_after_gap(std::int64_t begin_us) { give(begin_us, false, true); }
+    void give(std::int64_t begin_us, bool reset_before = false, bool gap_before = false) {
         Encoded encoded;
         encoded.latent.values = Array3<float>(kToyHeight, kToyWidth, 2);
         encoded.latent.window = {from_us(begin_us), from_us(begin_us + 10)};
         encoded.latent.events = 1;
         encoded.latent.reset_before = reset_before;
+        encoded.latent.gap_before = gap_before;
         output.take(encoded);
     }
     void give_silence(std::int64_t begin_us, std::int64_t end_us) {
@@ -90,6 +92,27 @@ TEST(FrameOutput, GivesNoneOneOrManyFramesPerEventWindow) {
     for (int k = 0; k < 3; ++k) without_rate.give(10 * k);
     without_rate.output.finish();
     EXPECT_EQ(without_rate.times(), (std::vector<std::int64_t>{10, 20, 30}));
+}
+
+TEST(FrameOutput, TellsOfAGapBeforeAWindowWithoutFramesWithTheNextFrame) {
+    Ending e(0, {40'000, 1});  // each 25 us
+    e.give(0);
+    e.give_after_gap(10);
+    for (int k = 2; k < 6; ++k) e.give(10 * k);
+    ASSERT_EQ(e.times(), (std::vector<std::int64_t>{0, 25, 50}));
+    EXPECT_FALSE(e.sink.seen[0].gap);
+    EXPECT_TRUE(e.sink.seen[1].gap) << "the window before had no frame";
+    EXPECT_FALSE(e.sink.seen[2].gap) << "told once";
+}
+
+TEST(FrameOutput, TellsOfAGapWithAllFramesOfItsWindow) {
+    Ending e(0);  // each 5 us
+    e.give(0);
+    e.give_after_gap(10);
+    e.give(20);
+    std::vector<bool> gaps;
+    for (const auto& seen : e.sink.seen) gaps.push_back(seen.gap);
+    EXPECT_EQ(gaps, (std::vector<bool>{false, false, false, true, true, false, false}));
 }
 
 TEST(FrameOutput, FinishesTheOldStreamBeforeANewOne) {
