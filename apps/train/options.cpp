@@ -143,6 +143,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("event-windows", o.data.event_windows, "event windows that gradients flow through");
     add("rendered", o.data.rendered, "of them compared with the truth");
     add("patch", o.data.patch, "px, side of the patches compared");
+    add("on-pixels", o.data.whole_probability, "share of patches whose points are pixels");
+    add("points-per-pixel", o.data.span_scale_max, "of the others at most; at least 1");
     add("episode", o.data.episode, "event windows of one scene");
     add("window-s", o.data.window_s, "s, width of event windows");
     add("content-share", o.data.content_share,
@@ -185,6 +187,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("lpips-frames", o.lpips_frames, "of the rendered ones, the last, that LPIPS looks at");
     add("nll", o.loss.nll, "weight in the loss");
     add("temporal", o.loss.temporal, "weight in the loss");
+    add("train-only", o.train_only,
+        "what the names of the weights that learn begin with, as in renderer.; none: all learn");
     add("rate", o.learning_rate, "largest learning rate");
     add("final-rate", o.final_rate, "last learning rate, as a share of the largest");
     add("constant-share", o.constant_share, "share of the budget before the rate falls");

@@ -38,6 +38,9 @@ void need_sizes(const TrainOptions& options) {
     need("--groups", options.groups, 1);
     need("--crop", options.data.crop, 2);
     need("--patch", options.data.patch, least);
+    if (!(options.data.span_scale_max >= 1))
+        throw Error(ErrorKind::usage, "--points-per-pixel: expected at least 1, found " +
+                                          std::to_string(options.data.span_scale_max));
     need("--event-windows", options.data.event_windows, 1);
     need("--rendered", options.data.rendered, 1, options.data.event_windows);
     if (options.validation_scenes <= 0) return;

@@ -22,6 +22,19 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// What is not named stays as it is, and no gradient is computed for it.
+void choose_what_learns(const std::string& prefix, Parameters& parameters) {
+    std::size_t chosen = 0;
+    for (auto& [name, values] : parameters) {
+        values.set_requires_grad(name.starts_with(prefix));
+        chosen += values.requires_grad() ? 1 : 0;
+    }
+    if (chosen == 0)
+        throw Error(ErrorKind::usage,
+                    "--train-only: expected the beginning of a weight's name, as " +
+                        parameters.begin()->first + ", found " + prefix);
+}
+
 Parameters first_parameters(const TrainOptions& options, torch::Device device, const LogSink& say) {
     Parameters parameters = initial_parameters(options.model, options.data.seed, device);
     if (options.initial.empty()) return parameters;
@@ -55,6 +68,7 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
+    choose_what_learns(options.train_only, optimiser_.parameters);
     progress_.options = OptionTable{options_}.record();
     begin_states();
     if (options.validation_scenes > 0)
@@ -127,14 +141,17 @@ Trainer::Share Trainer::run_share(const TrainingBatch& batch, const SegmentPlan&
     Share share;
     share.terms = loss(images, options_.loss, perceptual_.get(), options_.lpips_frames);
     std::vector<torch::Tensor> leaves;
-    for (const auto& [name, values] : optimiser_.parameters) leaves.push_back(values);
+    std::vector<std::string> names;
+    for (const auto& [name, values] : optimiser_.parameters) {
+        if (!values.requires_grad()) continue;
+        leaves.push_back(values);
+        names.push_back(name);
+    }
     const auto gradients = torch::autograd::grad({share.terms.total}, leaves, {}, {}, false,
                                                  /*allow_unused=*/true);
-    std::size_t i = 0;
-    for (const auto& [name, values] : optimiser_.parameters) {
-        const torch::Tensor& g = gradients[i++];
-        share.gradients[name] = g.defined() ? g : torch::zeros_like(values);
-    }
+    for (std::size_t i = 0; i < names.size(); ++i)
+        share.gradients[names[i]] =
+            gradients[i].defined() ? gradients[i] : torch::zeros_like(leaves[i]);
     recurrent = {detach(recurrent.state), recurrent.latent.detach()};
     return share;
 }
@@ -166,8 +183,8 @@ void Trainer::step() {
         for (std::size_t i = 1; i < shares.size(); ++i) terms.means[k] += shares[i].terms.means[k];
         terms.means[k] /= double(shares.size());
     }
-    torch::Tensor& of_inputs = gradients.at("encoder.in.weight");
-    of_inputs = of_inputs * input_mask_;  // what starts at 0 stays there
+    if (const auto of_inputs = gradients.find("encoder.in.weight"); of_inputs != gradients.end())
+        of_inputs->second = of_inputs->second * input_mask_;  // what starts at 0 stays there
     const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
     if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next segments
         ++skipped_;

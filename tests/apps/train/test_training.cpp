@@ -56,6 +56,18 @@ TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
     EXPECT_TRUE(fs::exists(out / "best.safetensors"));
 }
 
+TEST(Training, OnlyTheWeightsThatAreNamedLearn) {
+    TrainOptions options = tiny_options(empty_folder("part"));
+    options.steps = 4;
+    options.train_only = "renderer.";
+    const auto run = trainer(options);
+    const Tensors before = run->finished_model().weights;
+    train(*run);
+    const Tensors after = run->finished_model().weights;
+    for (const auto& [name, tensor] : before)
+        EXPECT_EQ(tensor.values == after.at(name).values, !name.starts_with("renderer.")) << name;
+}
+
 TEST(Training, WhatNoRunCanBeMadeOfIsRefusedBeforeItBegins) {
     const TrainOptions good = tiny_options(empty_folder("refused"));
     for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
@@ -64,6 +76,8 @@ TEST(Training, WhatNoRunCanBeMadeOfIsRefusedBeforeItBegins) {
              {"--groups", "0"},
              {"--crop", "1"},
              {"--patch", "10"},
+             {"--points-per-pixel", "0.5"},
+             {"--train-only", "rendrer."},
              {"--event-windows", "0"},
              {"--rendered", "0"},
              {"--rendered", "5"},
