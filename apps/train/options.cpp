@@ -188,7 +188,8 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("nll", o.loss.nll, "weight in the loss");
     add("temporal", o.loss.temporal, "weight in the loss");
     add("train-only", o.train_only,
-        "what the names of the weights that learn begin with, as in renderer.; none: all learn");
+        "what the names of the weights that learn begin with, as in renderer.,encoder.out; none: "
+        "all learn");
     add("rate", o.learning_rate, "largest learning rate");
     add("final-rate", o.final_rate, "last learning rate, as a share of the largest");
     add("constant-share", o.constant_share, "share of the budget before the rate falls");

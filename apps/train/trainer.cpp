@@ -23,16 +23,20 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// What is not named stays as it is, and no gradient is computed for it.
-void choose_what_learns(const std::string& prefix, Parameters& parameters) {
-    std::size_t chosen = 0;
-    for (auto& [name, values] : parameters) {
-        values.set_requires_grad(name.starts_with(prefix));
-        chosen += values.requires_grad() ? 1 : 0;
+void choose_what_learns(const std::string& prefixes, Parameters& parameters) {
+    if (prefixes.empty()) return;
+    for (auto& [name, values] : parameters) values.set_requires_grad(false);
+    std::istringstream list{prefixes};
+    for (std::string prefix; std::getline(list, prefix, ',');) {
+        bool any = false;
+        for (auto& [name, values] : parameters)
+            if (!prefix.empty() && name.starts_with(prefix))
+                any = values.set_requires_grad(true).requires_grad();
+        if (!any)
+            throw Error(ErrorKind::usage,
+                        "--train-only: expected beginnings of names of weights, as " +
+                            parameters.begin()->first + ", found '" + prefix + "'");
     }
-    if (chosen == 0)
-        throw Error(ErrorKind::usage,
-                    "--train-only: expected the beginning of a weight's name, as " +
-                        parameters.begin()->first + ", found " + prefix);
 }
 
 Parameters first_parameters(const TrainOptions& options, torch::Device device, const LogSink& say) {

@@ -77,7 +77,7 @@ TEST(Training, WhatNoRunCanBeMadeOfIsRefusedBeforeItBegins) {
              {"--crop", "1"},
              {"--patch", "10"},
              {"--points-per-pixel", "0.5"},
-             {"--train-only", "rendrer."},
+             {"--train-only", "renderer.,rendrer."},
              {"--event-windows", "0"},
              {"--rendered", "0"},
              {"--rendered", "5"},
