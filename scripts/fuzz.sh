@@ -8,6 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:?"fuzz: expected SECONDS [TARGET...]"}
 [[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: expected a whole number of seconds, found $seconds" >&2; exit 2; }
+[[ ${RUNS:-1} =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: RUNS: expected a whole number of runs, found $RUNS" >&2; exit 2; }
 shift
 
 cmake --preset fuzz >/dev/null
