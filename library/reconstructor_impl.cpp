@@ -204,6 +204,7 @@ void Reconstructor::Impl::forget_events() {
     intake_.reset();
     binner_.reset();
     forget_stream();
+    gaps_ = {};
     schedule_ = FrameSchedule{rate_of(options_)};
 }
 

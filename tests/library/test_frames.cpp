@@ -203,5 +203,23 @@ TEST_F(Frames, TellOfLostDataThoughTheirWindowsAreMany) {
     EXPECT_EQ(marked, 1);
 }
 
+TEST_F(Frames, TellOfNoLossBeforeAReset) {
+    ReconstructorOptions options = repeatable("2ms", 0);
+    options.fps = "1";
+    Reconstructor reconstructor = this->reconstructor(options);
+    const auto events = events_of(recording());
+    const auto half = events.size() / 2;
+    Frame frame;
+    reconstructor.push(std::span{events}.first(half));
+    ASSERT_TRUE(reconstructor.next(frame));
+    reconstructor.mark_gap();
+    reconstructor.push(std::span{events}.subspan(half));
+    ASSERT_FALSE(reconstructor.next(frame)) << "no frame has told of the gap";
+    reconstructor.reset();
+    reconstructor.push(events);
+    ASSERT_TRUE(reconstructor.next(frame));
+    EXPECT_FALSE(frame.gap_before);
+}
+
 }  // namespace
 }  // namespace eventide::test
