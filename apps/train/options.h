@@ -24,8 +24,7 @@ struct TrainOptions {
     std::string out = "out/train";
     std::string textures, validation_textures, lpips;
     std::string resume, initial, export_file, keep, card;
-    std::string train_only;  ///< what names of the weights that learn begin with, apart by commas;
-                             ///< empty: all
+    std::vector<std::string> train_only;  ///< beginnings of names of weights that learn; empty: all
     std::string device = "cpu";
     Precision precision = Precision::automatic;  ///< of activations
     double minutes = 60;

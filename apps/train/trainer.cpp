@@ -23,15 +23,16 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// What is not named stays as it is, and no gradient is computed for it.
-void choose_what_learns(const std::string& prefixes, Parameters& parameters) {
+void choose_what_learns(const std::vector<std::string>& prefixes, Parameters& parameters) {
     if (prefixes.empty()) return;
     for (auto& [name, values] : parameters) values.set_requires_grad(false);
-    std::istringstream list{prefixes};
-    for (std::string prefix; std::getline(list, prefix, ',');) {
+    for (const std::string& prefix : prefixes) {
         bool any = false;
-        for (auto& [name, values] : parameters)
-            if (!prefix.empty() && name.starts_with(prefix))
-                any = values.set_requires_grad(true).requires_grad();
+        for (auto& [name, values] : parameters) {
+            if (prefix.empty() || !name.starts_with(prefix)) continue;
+            values.set_requires_grad(true);
+            any = true;
+        }
         if (!any)
             throw Error(ErrorKind::usage,
                         "--train-only: expected beginnings of names of weights, as " +

@@ -59,7 +59,7 @@ TEST(Training, TheFinishedModelIsWholeAndSaysWhatItIs) {
 TEST(Training, OnlyTheWeightsThatAreNamedLearn) {
     TrainOptions options = tiny_options(empty_folder("part"));
     options.steps = 4;
-    options.train_only = "renderer.";
+    options.train_only = {"renderer."};
     const auto run = trainer(options);
     const Tensors before = run->finished_model().weights;
     train(*run);
