@@ -17,7 +17,7 @@ constexpr double kMaxEvents = 1e9;
 /// Images come 5 to 50 times a second; a window between two of them must not be cut in two.
 constexpr SensorDuration kReferenceMaxWidth{1'000'000};
 /// Rule content (docs/accuracy.md, "Windows by content").
-constexpr SensorDuration kContentMaxWidth{50'000};
+constexpr SensorDuration kContentMaxWidth{100'000};
 constexpr double kContentEventsPerPixel = 0.5;
 
 [[noreturn]] void refuse(std::string_view text, const std::string& why) {

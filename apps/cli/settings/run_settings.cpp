@@ -141,7 +141,7 @@ void RunSettings::add_times(SettingTable& table) {
         "How events are cut into event windows: 50ms (constant time), 20000ev (constant number), "
         "0.35epp (events per pixel), aps (between reference images); after a comma the maximum "
         "width: 20000ev,200ms. model: what the model was trained for. auto: by content for "
-        "recordings, short where much moves and 50 ms at most; model for live sources.",
+        "recordings, short where much moves and 100 ms at most; model for live sources.",
         check_window, same_text));
     add(parsed_setting<std::string>(
         "speed", speed, "FACTOR",

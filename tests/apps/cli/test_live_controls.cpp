@@ -134,7 +134,7 @@ TEST_F(LiveControls, MoveTheWindowInTheUnitOfItsRule) {
     const SlicerSettings content = moved("auto", 0.5, 2);
     EXPECT_EQ(content.rule, WindowRule::content);
     EXPECT_EQ(content.events_per_pixel, 2);
-    EXPECT_EQ(content.max_width, SensorDuration{50'000});
+    EXPECT_EQ(content.max_width, SensorDuration{100'000});
     EXPECT_EQ(control("window").unit, "events per pixel where most moves");
 }
 
