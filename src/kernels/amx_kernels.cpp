@@ -267,6 +267,9 @@ const Bf16Kernels* amx_kernels(Instructions most) {
                                       .dot_area = dot_area,
                                       .pixels_to_bf16 = vectors.pixels_to_bf16,
                                       .row_to_bf16 = vectors.row_to_bf16,
+                                      .compress = vectors.compress,
+                                      .keep_row = vectors.keep_row,
+                                      .update_row = vectors.update_row,
                                       .double_row = vectors.double_row,
                                       .offset_rows = vectors.offset_rows,
                                       .hidden_rows = amx::hidden_rows};

@@ -293,6 +293,9 @@ const Bf16Kernels& bf16_kernels() {
                                       .dot_area = dot_area,
                                       .pixels_to_bf16 = pixels_to_bf16,
                                       .row_to_bf16 = row_to_bf16,
+                                      .compress = compress,
+                                      .keep_row = keep_row,
+                                      .update_row = update_row,
                                       .double_row = double_row,
                                       .offset_rows = offset_rows,
                                       .hidden_rows = hidden_rows};

@@ -2,6 +2,7 @@
 // AMX) take two numbers at once, so channels go in pairs.
 #pragma once
 
+#include "src/kernels/bf16_gates.h"
 #include "src/kernels/dot_area.h"
 #include "src/kernels/vector_kernels.h"
 
@@ -28,6 +29,10 @@ struct Bf16Kernels {
     void (*pixels_to_bf16)(const float* in, std::size_t pixels, int channels, std::uint32_t* out);
     /// `n` numbers one after the other.
     void (*row_to_bf16)(const float* in, std::size_t n, std::uint16_t* out);
+    /// As VectorKernels::compress, as right as bf16 asks for.
+    void (*compress)(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead);
+    void (*keep_row)(const KeepRow&);
+    void (*update_row)(const UpdateRow&);
     /// As VectorKernels::double_row, of bf16 numbers; `channels` counts them, and is even.
     void (*double_row)(const DoubleRow&);
     /// As VectorKernels::offset_rows, of bf16 numbers.

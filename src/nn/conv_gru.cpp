@@ -65,7 +65,7 @@ ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
     for (const Tile& tile : tiles_)
         largest = std::max(largest, std::size_t(tile.height()) * std::size_t(tile.width()));
     next_.assign(held == 0 ? tiles_.size() : std::min(held, tiles_.size()),
-                 FloatBuffer(largest * std::size_t(channels_)));
+                 FloatBuffer(largest * std::size_t(units())));
 }
 
 std::size_t ConvGru::scratch_size() const {
@@ -73,9 +73,8 @@ std::size_t ConvGru::scratch_size() const {
     if (!has_reset())
         return square(input_side()) * u + square(side_) * 2 * c + gates_.scratch_size(side_, side_);
     return square(side_ + 4) * u + square(side_ + 2) * (u + 2 * c) + square(side_) * c +
-           // What a layer needs, or keep() for a row of r.h in float32: one after the other.
-           std::max({gates_.scratch_size(side_ + 2, side_ + 2),
-                     candidate_.scratch_size(side_, side_), std::size_t(side_ + 2) * c});
+           std::max(gates_.scratch_size(side_ + 2, side_ + 2),
+                    candidate_.scratch_size(side_, side_));
 }
 
 /// What lies outside the map reads as zero.
@@ -87,7 +86,7 @@ void ConvGru::begin(std::size_t i, float* scratch, const Tile& near) const noexc
                   scratch + (side_ + 4) * input_pitch(), kept_pitch(), units());
 }
 
-void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
+void ConvGru::finish(StateMap& state, std::size_t i, const Mask* mask,
                      float* input) noexcept {
     const Tile& tile = tiles_[i];
     float* kept = input + input_side() * input_pitch();
@@ -105,8 +104,11 @@ void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
                         .height = close.height(),
                         .width = close.width()},
                scratch);
-    if (!has_reset()) return update_light(state, i, mask, gates);
-    keep(state, i, close, gates, kept, scratch);
+    const bool is_rounded = state.has_both();
+    if (!has_reset())
+        return is_rounded ? update_rounded(state, i, mask, gates, nullptr)
+                          : update_light(state, i, mask, gates);
+    keep(state, i, close, gates, kept);
     candidate_.run(ConvArea{.in = {{{input_at(input, i, tile.y0 - 1, tile.x0 - 1), input_pitch()},
                                     {kept_at(kept, i, tile.y0 - 1, tile.x0 - 1), kept_pitch()}}},
                             .out = candidate,
@@ -114,24 +116,31 @@ void ConvGru::finish(const StateMap& state, std::size_t i, const Mask* mask,
                             .height = tile.height(),
                             .width = tile.width()},
                    scratch);
-    update(state, i, mask, gates, candidate);
+    is_rounded ? update_rounded(state, i, mask, gates, candidate)
+               : update(state, i, mask, gates, candidate);
 }
 
-/// Opens the gates, and what they keep of the state.
-/// [u; r] = sigmoid(gates), kept = r.h: h in float32, the product as layers read it.
+/// What the gates keep of the state: kept = r.h. In float32 they are opened on the way, and stay so
+/// for update(): [u; r] = sigmoid(gates).
 void ConvGru::keep(const StateMap& state, std::size_t i, const Tile& close, float* gates,
-                   float* kept, float* row) const noexcept {
-    const VectorKernels& kernels = state.numbers().kernels();
-    const auto width = std::size_t(close.width());
+                   float* kept) const noexcept {
+    const Numbers& numbers = state.numbers();
+    const std::ptrdiff_t step = 2 * std::ptrdiff_t(channels_);
     for (int y = close.y0; y < close.y1; ++y) {
-        float* open = gates_at(gates, i, y, close.x0);
-        kernels.sigmoid(open, width * 2 * std::size_t(channels_));
-        const float* h = state.exact().at(y, close.x0);
+        float* sums = gates_at(gates, i, y, close.x0);
+        const float* h = state.read().at(y, close.x0);
         float* to = kept_at(kept, i, y, close.x0);
-        const bool is_float = state.numbers().bf16() == nullptr;
-        kernels.reset_state(open + channels_, 2 * std::ptrdiff_t(channels_), h, is_float ? to : row,
-                            channels_, close.width());
-        if (!is_float) state.numbers().from_float(row, width, channels_, to);
+        if (numbers.bf16() != nullptr) {
+            numbers.bf16()->keep_row({.r = sums + channels_,
+                                      .r_step = step,
+                                      .h = reinterpret_cast<const std::uint16_t*>(h),
+                                      .kept = reinterpret_cast<std::uint16_t*>(to),
+                                      .channels = channels_,
+                                      .pixels = close.width()});
+            continue;
+        }
+        numbers.kernels().sigmoid(sums, std::size_t(close.width()) * std::size_t(step));
+        numbers.kernels().reset_state(sums + channels_, step, h, to, channels_, close.width());
     }
 }
 
@@ -164,6 +173,43 @@ void ConvGru::update_light(const StateMap& state, std::size_t i, const Mask* mas
     }
 }
 
+/// Both of the above where the state is bf16 to layers: the exact one at once, as no other tile
+/// reads it; what layers read in commit(). Without `candidate` both halves are in `gates`.
+///
+///     mask of a row    1 1 1 0 0 1        updated: pixels 0 to 2, then 5; copied: 3 and 4
+void ConvGru::update_rounded(StateMap& state, std::size_t i, const Mask* mask, float* gates,
+                             const float* candidate) noexcept {
+    const Tile& tile = tiles_[i];
+    const std::ptrdiff_t unit = units(), both = 2 * std::ptrdiff_t(channels_);
+    float* next = next_[i % next_.size()].data();
+    for (int y = tile.y0; y < tile.y1; ++y, next += tile.width() * unit) {
+        const auto is_masked = [&](int x) { return mask == nullptr || (*mask)(y, x) != 0; };
+        for (int x = tile.x0, end = x; x < tile.x1; x = end) {
+            while (end < tile.x1 && is_masked(end) == is_masked(x)) ++end;
+            float* to = next + (x - tile.x0) * unit;
+            if (!is_masked(x)) {
+                std::memcpy(to, state.read().at(y, x),
+                            std::size_t((end - x) * unit) * sizeof(float));
+                continue;
+            }
+            const float* u = gates_at(gates, i, y, x);
+            const float* v =
+                candidate == nullptr
+                    ? u + channels_
+                    : candidate + ((y - tile.y0) * tile.width() + x - tile.x0) * channels_;
+            state.numbers().bf16()->update_row({.u = u,
+                                                .v = v,
+                                                .u_step = both,
+                                                .v_step = candidate == nullptr ? both : channels_,
+                                                .is_doubled = candidate == nullptr,
+                                                .h = state.exact().at(y, x),
+                                                .rounded = reinterpret_cast<std::uint16_t*>(to),
+                                                .channels = channels_,
+                                                .pixels = end - x});
+        }
+    }
+}
+
 /// States outside the mask stay as they are, bit for bit.
 void ConvGru::keep_unmasked(const PaddedMap& state, const Mask& mask, int y, const Tile& tile,
                             float* next) const noexcept {
@@ -176,12 +222,10 @@ void ConvGru::keep_unmasked(const PaddedMap& state, const Mask& mask, int y, con
 
 void ConvGru::commit(StateMap& state, std::size_t i) noexcept {
     const Tile& tile = tiles_[i];
-    const auto width = std::size_t(tile.width()), row = width * std::size_t(channels_);
+    const std::ptrdiff_t row = std::ptrdiff_t(tile.width()) * units();
     const float* next = next_[i % next_.size()].data();
-    for (int y = tile.y0; y < tile.y1; ++y, next += row) {
-        if (state.has_both()) std::memcpy(state.exact().at(y, tile.x0), next, row * sizeof(float));
-        state.numbers().from_float(next, width, channels_, state.read().at(y, tile.x0));
-    }
+    for (int y = tile.y0; y < tile.y1; ++y, next += row)
+        std::memcpy(state.read().at(y, tile.x0), next, std::size_t(row) * sizeof(float));
 }
 
 }  // namespace eventide

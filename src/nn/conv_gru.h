@@ -34,8 +34,9 @@ public:
     std::size_t scratch_size() const;
     /// fill(Target) writes a (C numbers per pixel) into the target's region, which is the tile
     /// grown by reach() within the map.
+    /// A state in bf16 is advanced where it is exact, which no other tile reads.
     template <typename Fill>
-    void step(const StateMap& state, std::size_t i, const Mask* mask, float* scratch,
+    void step(StateMap& state, std::size_t i, const Mask* mask, float* scratch,
               const Fill& fill) noexcept {
         const Tile near = tiles_[i].grown(reach_, state.height(), state.width());
         begin(i, scratch, near);
@@ -69,20 +70,22 @@ private:
                std::ptrdiff_t(x - tiles_[i].x0 + reach_ - 1) * 2 * channels_;
     }
     void begin(std::size_t i, float* scratch, const Tile& near) const noexcept;
-    void finish(const StateMap& state, std::size_t i, const Mask* mask, float* scratch) noexcept;
-    void keep(const StateMap& state, std::size_t i, const Tile& close, float* gates, float* kept,
-              float* row) const noexcept;
+    void finish(StateMap& state, std::size_t i, const Mask* mask, float* scratch) noexcept;
+    void keep(const StateMap& state, std::size_t i, const Tile& close, float* gates,
+              float* kept) const noexcept;
     void update(const StateMap& state, std::size_t i, const Mask* mask, float* gates,
                 float* candidate) noexcept;
     void update_light(const StateMap& state, std::size_t i, const Mask* mask,
                       float* halves) noexcept;
+    void update_rounded(StateMap& state, std::size_t i, const Mask* mask, float* gates,
+                        const float* candidate) noexcept;
     void keep_unmasked(const PaddedMap& state, const Mask& mask, int y, const Tile& tile,
                        float* next) const noexcept;
 
     int channels_ = 0, side_ = 0, reach_ = 0;
     std::vector<Tile> tiles_;
     PackedConv gates_, candidate_;   // without a reset gate the first is both
-    std::vector<FloatBuffer> next_;  // of tile i in i % size, [y][x][C]
+    std::vector<FloatBuffer> next_;  // of tile i in i % size, [y][x][C] as layers read it
 };
 
 }  // namespace eventide

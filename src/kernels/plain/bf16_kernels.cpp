@@ -1,9 +1,11 @@
 // The plain kernels of bf16_kernels.h.
 #include "src/kernels/bf16_kernels.h"
 #include "src/kernels/pixels_to_bf16.h"
+#include "src/kernels/plain/activations.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace eventide::plain {
 namespace {
@@ -68,6 +70,32 @@ void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint
     convert_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
+void compress_row(const float* in, float* out, std::size_t n, std::ptrdiff_t) {
+    std::transform(in, in + n, out, compress<float>);
+}
+void keep_row(const KeepRow& r) {
+    const std::ptrdiff_t step = (r.channels + 1) / 2 * 2;
+    for (int p = 0; p < r.pixels; ++p)
+        for (std::ptrdiff_t c = 0; c < step; ++c)
+            r.kept[p * step + c] =
+                c < r.channels
+                    ? to_bf16(sigmoid(r.r[p * r.r_step + c]) * from_bf16(r.h[p * step + c]))
+                    : std::uint16_t{0};
+}
+void update_row(const UpdateRow& r) {
+    const std::ptrdiff_t step = (r.channels + 1) / 2 * 2;
+    for (int p = 0; p < r.pixels; ++p)
+        for (std::ptrdiff_t c = 0; c < step; ++c) {
+            std::uint16_t& rounded = r.rounded[p * step + c];
+            rounded = 0;
+            if (c == r.channels) continue;
+            const float v = r.v[p * r.v_step + c];
+            float& h = r.h[std::ptrdiff_t{p} * r.channels + c];
+            h += sigmoid(r.u[p * r.u_step + c]) * (std::tanh(r.is_doubled ? v / 2 : v) - h);
+            rounded = to_bf16(h);
+        }
+}
+
 void double_row(const DoubleRow& r) {
     const auto *above = static_cast<const std::uint16_t*>(r.above),
                *under = static_cast<const std::uint16_t*>(r.under);
@@ -101,6 +129,9 @@ const Bf16Kernels& bf16_kernels() {
                                       .dot_area = dot_area,
                                       .pixels_to_bf16 = pixels_to_bf16,
                                       .row_to_bf16 = row_to_bf16,
+                                      .compress = compress_row,
+                                      .keep_row = keep_row,
+                                      .update_row = update_row,
                                       .double_row = double_row,
                                       .offset_rows = offset_rows,
                                       .hidden_rows = nullptr};

@@ -203,8 +203,8 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
             y + kRowsAhead < inside.y1 ? kRowsAhead * std::ptrdiff_t(grid.width()) * channels : 0;
         float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
         float* compressed = numbers.bf16() != nullptr || maps_ > 1 ? rest : to;
-        numbers.kernels().compress(grid.pixel(y, inside.x0).data(), compressed,
-                                   pixels * std::size_t(channels), ahead);
+        numbers.compress(grid.pixel(y, inside.x0).data(), compressed,
+                         pixels * std::size_t(channels), ahead);
         if (maps_ > 1)
             numbers.split({compressed, inside.width(), channels, map_channels_, maps_, to, plane});
         else if (compressed != to)

@@ -1,0 +1,170 @@
+// See bf16_gates.h, by AVX-512.
+#include "src/kernels/bf16_gates.h"
+
+#if defined(__x86_64__)
+
+#include <immintrin.h>
+
+#include <algorithm>
+
+#define EVENTIDE_GATES_CAN "avx512f,avx512bw,avx512vl,avx512dq,avx512bf16"
+#if defined(__clang__)  // which does not know this preference, and does not need it
+#define EVENTIDE_GATES __attribute__((target(EVENTIDE_GATES_CAN)))
+#else
+#define EVENTIDE_GATES __attribute__((target(EVENTIDE_GATES_CAN ",prefer-vector-width=512")))
+#endif
+#define EVENTIDE_GATES_INLINE EVENTIDE_GATES __attribute__((always_inline)) inline
+
+namespace eventide::avx512_bf16 {
+namespace {
+
+constexpr int kLanes = 16, kHalf = 8;
+
+EVENTIDE_GATES_INLINE __mmask16 first_lanes(int n) {
+    return __mmask16(n >= kLanes ? 0xffffU : (1U << unsigned(std::max(n, 0))) - 1U);
+}
+/// c_0 + c_1 x + ... + c_{n-1} x^{n-1}
+template <std::size_t n>
+EVENTIDE_GATES_INLINE __m512 polynomial(const float (&c)[n], __m512 x) {
+    __m512 sum = _mm512_set1_ps(c[n - 1]);
+    for (std::size_t k = n - 1; k-- > 0;) sum = _mm512_fmadd_ps(sum, x, _mm512_set1_ps(c[k]));
+    return sum;
+}
+
+/// 1 / (1 + exp(-scale v)), to within 3e-7. exp(w) = 2^n 2^f, f within +-.5, 2^f by a polynomial
+/// that is nearest in the largest error.
+EVENTIDE_GATES_INLINE __m512 sigmoid(__m512 v, float scale) {
+    static constexpr float kPower[] = {1.0F,          0.693147242F,    0.240222350F,
+                                       0.0555030853F, 0.00967186131F, 0.00134072371F};
+    constexpr float kLog2E = 1.44269504F;
+    constexpr float kMost = 60.0F;  // beyond, nothing but slow denormal numbers would change
+    const __m512 one = _mm512_set1_ps(1.0F), most = _mm512_set1_ps(kMost),
+                 least = _mm512_set1_ps(-kMost);
+    const __m512 w = _mm512_max_ps(
+        _mm512_min_ps(_mm512_mul_ps(v, _mm512_set1_ps(-scale * kLog2E)), most), least);
+    const __m512 whole = _mm512_roundscale_ps(w, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+    const __m512 power =
+        _mm512_scalef_ps(polynomial(kPower, _mm512_sub_ps(w, whole)), whole);
+    const __m512 sum = _mm512_add_ps(one, power);
+    // A step of Newton's from 14 bits.
+    const __m512 near = _mm512_rcp14_ps(sum);
+    return _mm512_mul_ps(near, _mm512_fnmadd_ps(sum, near, _mm512_set1_ps(2.0F)));
+}
+
+/// log(1 + x), x >= 0. 1 + x = 2^e m, m from 1 to 2.
+EVENTIDE_GATES_INLINE __m512 log1p(__m512 x) {
+    static constexpr float kLog[] = {0.999992907F, -0.499426275F, 0.325724274F,
+                                     -0.211494803F, 0.102872327F, -0.0245283619F};
+    constexpr float kLn2 = 0.693147181F;
+    const __m512 one = _mm512_set1_ps(1.0F), y = _mm512_add_ps(x, one),
+                 f = _mm512_sub_ps(_mm512_getmant_ps(y, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_zero),
+                                   one);
+    return _mm512_fmadd_ps(_mm512_getexp_ps(y), _mm512_set1_ps(kLn2),
+                           _mm512_mul_ps(f, polynomial(kLog, f)));
+}
+EVENTIDE_GATES_INLINE __m512 compressed(__m512 v) {
+    const __m512 sign = _mm512_set1_ps(-0.0F);
+    return _mm512_or_ps(log1p(_mm512_andnot_ps(sign, v)), _mm512_and_ps(sign, v));
+}
+
+/// Up to 16 numbers of one pixel, or 8 of each of two beside each other.
+EVENTIDE_GATES_INLINE __m512 load(const float* from, __mmask16 mask) {
+    return _mm512_maskz_loadu_ps(mask, from);
+}
+EVENTIDE_GATES_INLINE __m512 load_two(const float* from, std::ptrdiff_t step) {
+    return _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(from)),
+                              _mm256_loadu_ps(from + step), 1);
+}
+EVENTIDE_GATES_INLINE __m512 load(const std::uint16_t* from, __mmask16 mask) {
+    return _mm512_castsi512_ps(
+        _mm512_slli_epi32(_mm512_cvtepu16_epi32(_mm256_maskz_loadu_epi16(mask, from)), 16));
+}
+EVENTIDE_GATES_INLINE void store(std::uint16_t* to, __mmask16 mask, __m512 v) {
+    _mm256_mask_storeu_epi16(to, mask, (__m256i)_mm512_cvtneps_pbh(v));
+}
+
+EVENTIDE_GATES_INLINE __m512 updated(__m512 h, __m512 u, __m512 v, float scale) {
+    const __m512 c = _mm512_fmsub_ps(_mm512_set1_ps(2.0F), sigmoid(v, scale),
+                                     _mm512_set1_ps(1.0F));
+    return _mm512_fmadd_ps(sigmoid(u, 1.0F), _mm512_sub_ps(c, h), h);
+}
+
+/// body(pixel, first channel, lanes that are there, lanes stored as bf16), 16 channels at a time.
+template <typename Body>
+EVENTIDE_GATES_INLINE void over_pixels(int first, int pixels, int channels, const Body& body) {
+    const int even = (channels + 1) / 2 * 2;
+    for (int p = first; p < pixels; ++p)
+        for (int c = 0; c < channels; c += kLanes)
+            body(p, c, first_lanes(channels - c), first_lanes(even - c));
+}
+
+}  // namespace
+
+EVENTIDE_GATES void keep_row(const KeepRow& r) {
+    int done = 0;
+    // Pixels of 8 channels go in twos, with the same bits.
+    if (r.channels == kHalf)
+        for (; done + 2 <= r.pixels; done += 2) {
+            const std::ptrdiff_t at = std::ptrdiff_t{done} * kHalf;
+            store(r.kept + at, 0xffff,
+                  _mm512_mul_ps(sigmoid(load_two(r.r + done * r.r_step, r.r_step), 1.0F),
+                                load(r.h + at, 0xffff)));
+        }
+    const std::ptrdiff_t step = (r.channels + 1) / 2 * 2;
+    over_pixels(done, r.pixels, r.channels,
+                [&](int p, int c, __mmask16 there, __mmask16 stored) EVENTIDE_GATES {
+                    store(r.kept + p * step + c, stored,
+                          _mm512_mul_ps(sigmoid(load(r.r + p * r.r_step + c, there), 1.0F),
+                                        load(r.h + p * step + c, there)));
+                });
+}
+
+EVENTIDE_GATES void update_row(const UpdateRow& r) {
+    const float scale = r.is_doubled ? 1.0F : 2.0F;
+    int done = 0;
+    if (r.channels == kHalf)
+        for (; done + 2 <= r.pixels; done += 2) {
+            float* h = r.h + std::ptrdiff_t{done} * kHalf;
+            const __m512 next = updated(_mm512_loadu_ps(h),
+                                        load_two(r.u + done * r.u_step, r.u_step),
+                                        load_two(r.v + done * r.v_step, r.v_step), scale);
+            _mm512_storeu_ps(h, next);
+            store(r.rounded + std::ptrdiff_t{done} * kHalf, 0xffff, next);
+        }
+    const std::ptrdiff_t step = (r.channels + 1) / 2 * 2;
+    over_pixels(done, r.pixels, r.channels,
+                [&](int p, int c, __mmask16 there, __mmask16 stored) EVENTIDE_GATES {
+                    float* h = r.h + std::ptrdiff_t{p} * r.channels + c;
+                    const __m512 next = _mm512_maskz_mov_ps(
+                        there, updated(load(h, there), load(r.u + p * r.u_step + c, there),
+                                       load(r.v + p * r.v_step + c, there), scale));
+                    _mm512_mask_storeu_ps(h, there, next);
+                    store(r.rounded + p * step + c, stored, next);
+                });
+}
+
+/// A line is fetched while one is worked on: all at once they would wait for each other.
+EVENTIDE_GATES void compress(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead) {
+    for (std::size_t i = 0; i < n; i += kLanes) {
+        __builtin_prefetch(in + i + ahead);
+        const __mmask16 mask = first_lanes(int(std::min<std::size_t>(n - i, kLanes)));
+        const __m512 v = _mm512_maskz_loadu_ps(mask, in + i);
+        const bool is_zero = _mm512_test_epi32_mask((__m512i)v, (__m512i)v) == 0;
+        // Most of a grid is.
+        _mm512_mask_storeu_ps(out + i, mask, is_zero ? v : compressed(v));
+    }
+}
+
+}  // namespace eventide::avx512_bf16
+
+#else
+
+namespace eventide::avx512_bf16 {
+
+void keep_row(const KeepRow&) {}
+void update_row(const UpdateRow&) {}
+void compress(const float*, float*, std::size_t, std::ptrdiff_t) {}
+
+}  // namespace eventide::avx512_bf16
+
+#endif
