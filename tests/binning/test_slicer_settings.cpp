@@ -37,7 +37,7 @@ TEST(WindowText, NamesReferenceImages) {
 
 TEST(WindowText, NamesContent) {
     EXPECT_EQ(parse_window("auto").rule, WindowRule::content);
-    EXPECT_EQ(parse_window("auto").max_width, 50ms);
+    EXPECT_EQ(parse_window("auto").max_width, 100ms);
     EXPECT_EQ(parse_window("auto").min_width, 1ms);
     EXPECT_EQ(parse_window("auto,20ms").max_width, 20ms);
 }
