@@ -19,6 +19,21 @@ void on_threads(int n, const std::function<void(int)>& body) {
     for (int i = 0; i < n; ++i) threads.emplace_back([&body, i] { body(i); });
 }
 
+TEST(Tiling, TilesCoverTheMapAndAreNoLongerThanTheySay) {
+    for (const int side : {1, 3, 7, 12, 16, 24, 32, 48})
+        for (int width = 1; width <= 700; ++width) {
+            int x = 0;
+            for (const Tile& tile : tiles_of(1, width, side)) {
+                ASSERT_EQ(tile.x0, x);
+                ASSERT_GT(tile.width(), 0) << width;
+                ASSERT_LE(tile.width(), side) << width;
+                ASSERT_TRUE(side % 4 != 0 || x % 4 == 0) << "where a cache line begins";
+                x = tile.x1;
+            }
+            ASSERT_EQ(x, width);
+        }
+}
+
 TEST(Tiling, EachTileIsComputedOnceWhoeverComputesIt) {
     for (const ParallelFor& parallel_for :
          {ParallelFor{sequential_for}, ParallelFor{backwards}, ParallelFor{on_threads}})
