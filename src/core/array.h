@@ -4,12 +4,44 @@
 
 #include <eventide/array.h>
 
+#include <sys/mman.h>
+
 #include <cassert>
 #include <cstddef>
+#include <new>
 #include <span>
 #include <vector>
 
 namespace eventide {
+
+/// As CacheLineAllocator; large blocks in huge pages, as far as they fill them and the system has
+/// some: a tile's rows lie a page or more apart, and a core remembers where only so many pages are.
+template <typename T>
+struct HugePageAllocator : CacheLineAllocator<T> {
+    using value_type = T;
+    static constexpr std::size_t kPage = std::size_t{1} << 21;
+
+    HugePageAllocator() = default;
+    template <typename U>
+    constexpr HugePageAllocator(const HugePageAllocator<U>&) noexcept {}
+    /// Room for `n` values. Throws std::bad_alloc.
+    T* allocate(std::size_t n) {
+        const std::size_t bytes = n * sizeof(T);
+        if (bytes < kPage) return CacheLineAllocator<T>::allocate(n);
+        void* const pages = ::operator new (bytes, std::align_val_t{kPage});
+        // The rest stays in small ones, so that no memory is used up for nothing. A refusal leaves
+        // everything as it is.
+        ::madvise(pages, bytes / kPage * kPage, MADV_HUGEPAGE);
+        return static_cast<T*>(pages);
+    }
+    void deallocate(T* p, std::size_t n) noexcept {
+        if (n * sizeof(T) < kPage)
+            CacheLineAllocator<T>::deallocate(p, n);
+        else
+            ::operator delete (p, std::align_val_t{kPage});
+    }
+    friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) { return true; }
+};
 
 /// [y][x][channel]: all numbers of one pixel are neighbours ("channels last"), because every
 /// consumer of a voxel grid, a feature map or a latent map reads whole pixels.
@@ -44,7 +76,7 @@ private:
         return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(channels_);
     }
     int height_ = 0, width_ = 0, channels_ = 0;
-    std::vector<T, CacheLineAllocator<T>> values_;
+    std::vector<T, HugePageAllocator<T>> values_;
 };
 
 /// No NaN, no infinity.
