@@ -78,7 +78,7 @@ void Reconstructor::Impl::bin(const EventWindow& event_window) {
 void Reconstructor::Impl::encode() {
     if (grid_.gap_before && options_.reset_on_gap) encoder_.reset();
     encoder_.encode(grid_, latent_);
-    renderer_.push(latent_);
+    renderer_.take(latent_);
     ++counters_.event_windows;
     note_window();
 }

@@ -36,7 +36,7 @@ FrameOutput::FrameOutput(RenderStage& renderer, std::vector<Sink*> sinks, const 
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(settings.lookahead));
 }
 
-void FrameOutput::accept(const Encoded& encoded) {
+void FrameOutput::accept(Encoded& encoded) {
     const LatentMap& latent = encoded.latent;
     if (latent.reset_before) {
         finish();
@@ -44,7 +44,7 @@ void FrameOutput::accept(const Encoded& encoded) {
         schedule_.restart();
     }
     if (settings_.changes != nullptr) change();
-    renderer_.push(latent);
+    renderer_.take(encoded.latent);
     arrived_ = latent.arrived;
     Waiting& held = held_[(oldest_ + held_count_++) % held_.size()];
     copy_stamp(latent, held);

@@ -54,12 +54,12 @@ public:
 
     /// Throws what a sink throws, and Error (input) before it writes more than kMaxSilentFrames
     /// in a row or one that is not finite. False when no more frames are wanted.
-    bool take(const Encoded& encoded) {
+    bool take(Encoded& encoded) {
         accept(encoded);
         return present();
     }
-    /// The first half: nothing of `encoded` is needed afterwards.
-    void accept(const Encoded& encoded);
+    /// The first half: nothing of `encoded` is needed afterwards; its codes may be others.
+    void accept(Encoded& encoded);
     /// The second: the frames whose latent maps are there.
     bool present();
 

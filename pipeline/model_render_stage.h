@@ -32,15 +32,11 @@ public:
     Frame make_output() const override { return renderer_.make_output(request_); }
     void push(const LatentMap& latent) noexcept override {
         renderer_.push(latent);
-        if (!fused_) return;
-        while (auto image = images_->take(latent.images)) {
-            if (latent.reset_before)
-                of_old_clock_.add();
-            else
-                fused_->give(std::move(*image));
-        }
-        fused_->push(latent.window, latent.events_per_pixel);
-        note_images();
+        take_images(latent);
+    }
+    void take(LatentMap& latent) noexcept override {
+        renderer_.take(latent);
+        take_images(latent);
     }
     void finish() noexcept override { renderer_.finish(); }
     void reset() noexcept override {
@@ -81,6 +77,18 @@ public:
     }
 
 private:
+    /// Those that came before the map's window was cut.
+    void take_images(const LatentMap& latent) noexcept {
+        if (!fused_) return;
+        while (auto image = images_->take(latent.images)) {
+            if (latent.reset_before)
+                of_old_clock_.add();
+            else
+                fused_->give(std::move(*image));
+        }
+        fused_->push(latent.window, latent.events_per_pixel);
+        note_images();
+    }
     void note_images() noexcept {
         used_.set(fused_->used());
         dropped_.set(fused_->dropped());

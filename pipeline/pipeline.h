@@ -100,7 +100,7 @@ private:
     void keep_state(SensorTime t);
     void bin_one(const EventWindow& event_window, VoxelGrid& grid);
     void encode_one(const VoxelGrid& grid, Encoded& encoded);
-    void present_one(const Encoded& encoded);
+    void present_one(Encoded& encoded);
     template <typename Body>
     void for_each_event_window(Body body);
     EventWindows::End ending() const;

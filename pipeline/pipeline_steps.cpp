@@ -93,7 +93,7 @@ void Pipeline::encode_one(const VoxelGrid& grid, Encoded& encoded) {
     keeper_.window_took(work);
 }
 
-void Pipeline::present_one(const Encoded& encoded) {
+void Pipeline::present_one(Encoded& encoded) {
     if (!output_.take(encoded)) stop();
 }
 

@@ -16,6 +16,8 @@ public:
     virtual Frame make_output() const = 0;
     /// The next event window's latent map; its window follows the one before.
     virtual void push(const LatentMap& latent) noexcept = 0;
+    /// The same; may keep the codes, and leave those of a map before in their place.
+    virtual void take(LatentMap& latent) noexcept { push(latent); }
     /// No latent map will come any more, until reset(): the rest is rendered at the live edge.
     virtual void finish() noexcept = 0;
     /// Fills `frame.intensity` and `frame.sigma`; the pipeline fills the rest. t lies in `window`,

@@ -42,7 +42,8 @@ Timing time_encoding(Encoder& encoder, const std::vector<SceneWindow>& windows,
 /// A fresh frame of one event window after the other, and another of the same.
 void time_rendering(Renderer& renderer, std::vector<LatentMap>& latents, const StageSettings& s,
                     StageRow& row) {
-    // The same maps are given again and again: no history is true of them.
+    // The same maps are given again and again, in turn with those that the renderer leaves: no
+    // history is true of them.
     for (LatentMap& latent : latents) latent.history = {};
     RenderRequest request;
     request.width = int(std::lround(s.width * s.scale));
@@ -52,9 +53,10 @@ void time_rendering(Renderer& renderer, std::vector<LatentMap>& latents, const S
     SensorTime end{};
     const auto push = [&](int i) {
         LatentMap& latent = latents[std::size_t(i) % latents.size()];
+        latent.history = {};
         latent.window = {end, end + kWindow};
         end += kWindow;
-        renderer.push(latent);
+        renderer.take(latent);
     };
     const auto render_at = [&](int thousandths) {
         request.t = end - kWindow * (s.lookahead + 1) + kWindow * thousandths / 1000;

@@ -21,7 +21,7 @@ ModelRun::ModelRun(const Model& model, int width, int height, const Options& opt
 void ModelRun::push(const EventWindow& event_window) {
     binner_.process(event_window, grid_);
     encoder_.encode(grid_, latent_);
-    renderer_.push(latent_);
+    renderer_.take(latent_);
     if (fused_) {
         count_events(grid_, events_);
         fused_->push(grid_.window, events_);

@@ -48,6 +48,9 @@ public:
     /// Takes the memory that rendering such frames needs; until then render() takes it.
     virtual void make_room(const FrameGeometry&) {}
     virtual void push(std::int64_t k, const LatentMap& latent) noexcept = 0;
+    /// The same; may keep the codes themselves, and leave others of the same size with a history
+    /// that is true of them.
+    virtual void take(std::int64_t k, LatentMap& latent) noexcept { push(k, latent); }
     virtual void reset() noexcept = 0;
     /// `sigma` is null where not asked for.
     virtual void render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,

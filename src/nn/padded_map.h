@@ -4,7 +4,9 @@
 #include "src/core/array.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
+#include <utility>
 
 namespace eventide {
 
@@ -17,19 +19,25 @@ namespace eventide {
 class PaddedMap {
 public:
     PaddedMap() = default;
-    PaddedMap(int height, int width, int channels)
-        : height_(height), width_(width), padded_(height + 2, width + 2, channels) {}
+    /// `border`: pixels on each side.
+    PaddedMap(int height, int width, int channels, int border = 1)
+        : height_(height),
+          width_(width),
+          border_(border),
+          padded_(height + 2 * border, width + 2 * border, channels) {}
 
     int height() const { return height_; }
     int width() const { return width_; }
     int channels() const { return padded_.channels(); }
     /// Numbers from one row to the next.
-    std::ptrdiff_t pitch() const { return std::ptrdiff_t(width_ + 2) * channels(); }
-    float* at(int y, int x) {
-        return padded_.values().data() + (y + 1) * pitch() + (x + 1) * channels();
-    }
-    const float* at(int y, int x) const {
-        return padded_.values().data() + (y + 1) * pitch() + (x + 1) * channels();
+    std::ptrdiff_t pitch() const { return std::ptrdiff_t(width_ + 2 * border_) * channels(); }
+    float* at(int y, int x) { return padded_.values().data() + place(y, x); }
+    const float* at(int y, int x) const { return padded_.values().data() + place(y, x); }
+
+    /// Trades numbers with an array of the same size; without a border.
+    void exchange(Array3<float>& other) noexcept {
+        assert(border_ == 0 && other.values().size() == padded_.values().size());
+        std::swap(padded_, other);
     }
 
     void clear() { std::ranges::fill(padded_.values(), 0.0F); }
@@ -42,9 +50,12 @@ public:
     }
 
 private:
+    std::ptrdiff_t place(int y, int x) const {
+        return (y + border_) * pitch() + (x + border_) * std::ptrdiff_t(channels());
+    }
     std::ptrdiff_t row() const { return std::ptrdiff_t(width_) * channels(); }
     std::size_t row_bytes() const { return std::size_t(row()) * sizeof(float); }
-    int height_ = 0, width_ = 0;
+    int height_ = 0, width_ = 0, border_ = 1;
     Array3<float> padded_;
 };
 

@@ -109,6 +109,47 @@ TEST(LatentHistory, TheRendererRendersAsWithoutIt) {
     }
 }
 
+/// Maps whose codes the renderer keeps, and that go back to the encoder with others in their place.
+TEST(LatentHistory, AMapThatIsTakenGivesTheFramesOfOneThatIsCopied) {
+    for (const int unfold : {1, 3})
+        for (const Precision precision : {Precision::f32, Precision::automatic}) {
+            ModelConfig config = test::small_config();
+            config.unfold = unfold;
+            const Model model = test::random_model(config, 1);
+            EngineOptions options;
+            options.precision = precision;
+            Encoder encoder{model, kWidth, kHeight, options},
+                reference{model, kWidth, kHeight, options};
+            Renderer taking{model, kWidth, kHeight, options},
+                copying{model, kWidth, kHeight, options};
+            GridStream stream{config, kHeight, kWidth, 4};
+            std::vector<LatentMap> buffers(3, encoder.make_output());
+            std::mt19937 random{1};
+            for (int k = 1; k <= 60; ++k) {
+                if (k == 35) {
+                    taking.reset();
+                    copying.reset();
+                }
+                const VoxelGrid& grid = stream.next();
+                LatentMap& latent = buffers[random() % buffers.size()];
+                LatentMap fresh = reference.make_output();
+                encoder.encode(grid, latent);
+                reference.encode(grid, fresh);
+                ASSERT_EQ(latent.values, fresh.values) << "codes left in place are renewed, " << k;
+                taking.take(latent);
+                copying.push(fresh);
+                RenderRequest request;
+                request.lookahead = k % 35 > 3 ? k % 3 : 0;
+                request.t = grid.window.end - SensorDuration{50'000 * request.lookahead + 10'000};
+                Frame a = taking.make_output(request), b = copying.make_output(request);
+                taking.render(request, a);
+                copying.render(request, b);
+                ASSERT_EQ(a.intensity, b.intensity) << "event window " << k;
+                ASSERT_EQ(a.sigma, b.sigma);
+            }
+        }
+}
+
 /// Where the grid says which pixels have events, the values are not searched for them.
 TEST(LatentHistory, TouchedPixelsAreTakenAtTheirWord) {
     const ModelConfig config = test::small_config();

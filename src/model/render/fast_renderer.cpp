@@ -71,6 +71,10 @@ void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
     first_layer_.push(k, latent);
 }
 
+void FastRenderer::take(std::int64_t k, LatentMap& latent) noexcept {
+    first_layer_.take(k, latent);
+}
+
 void FastRenderer::lay_out(const FrameGeometry& geometry) {
     if (geometry == laid_out_) return;
     laid_out_ = {};  // until all is there

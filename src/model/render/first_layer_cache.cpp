@@ -46,7 +46,7 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
              std::vector<int>(2, depth_)};
     whole_ = {first_layer_weights(model, 3), 1, false, backend, extents,
               std::vector<int>(3, depth_)};
-    for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_)};
+    for (PaddedMap& map : codes_) map = {height, width, numbers_.units(depth_), reach_};
     // Read again for each row (a pitch of 0): a tile's width and its rim.
     zeros_ = {1, kLatentSide, numbers_.units(depth_)};
     for (LatentHistory& history : histories_) history.changed.reserve(tiles_.size());
@@ -80,6 +80,24 @@ void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
     });
     histories_[slot] = latent.history;
     note_changes(k, latent.history);
+}
+
+/// Whether layers can read the codes where they lie.
+bool FirstLayerCache::is_as_held(const LatentCodes& latent) const noexcept {
+    return reach_ == 0 && options_.still_codes == 0 &&
+           latent.is_bf16 == (numbers_.bf16() != nullptr);
+}
+
+void FirstLayerCache::take(std::int64_t k, LatentMap& latent) noexcept {
+    if (!is_as_held(latent)) {
+        push(k, latent);
+        return;
+    }
+    newest_ = k;
+    const std::size_t slot = LatentWindow::slot(k);
+    codes_[slot].exchange(latent.values);
+    std::swap(histories_[slot], latent.history);
+    note_changes(k, histories_[slot]);
 }
 
 void FirstLayerCache::hold_tile(std::int64_t k, const Tile& tile, const LatentCodes& latent,

@@ -40,6 +40,8 @@ public:
 
     /// Takes z_k; k - 1 before it, unless reset() was.
     void push(std::int64_t k, const LatentMap& latent) noexcept;
+    /// The same; z_{k-5}, which goes, is left in place of z_k where no copy is needed.
+    void take(std::int64_t k, LatentMap& latent) noexcept;
     void reset() noexcept;
 
     /// The sums of event window k; valid until the call after the next.
@@ -54,6 +56,7 @@ public:
     std::vector<int> column_edges() const;
 
 private:
+    bool is_as_held(const LatentCodes& latent) const noexcept;
     const Sums* find(std::int64_t k, bool whole) const noexcept;
     const Sums& bring(std::int64_t k, bool whole, const Sums* keep) noexcept;
     void compute_tile(Sums& to, const Tile& tile, float* scratch) noexcept;

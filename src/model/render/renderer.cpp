@@ -83,6 +83,10 @@ void Renderer::push(const LatentMap& latent) noexcept {
     core_->push(window_.push(latent), latent);
 }
 
+void Renderer::take(LatentMap& latent) noexcept {
+    core_->take(window_.push(latent), latent);
+}
+
 void Renderer::finish() noexcept {
     window_.finish();
 }

@@ -43,6 +43,9 @@ public:
     /// The latent map of the next event window; it is copied. Every frame wanted of event windows
     /// that only LatentWindow::kLatentsKept kept must be rendered before.
     void push(const LatentMap& latent) noexcept;
+    /// The same without a copy where that can be: the codes of a map before are left in its place.
+    /// For maps that go back to the encoder.
+    void take(LatentMap& latent) noexcept;
     /// The stream has ended: what is left is rendered at the live edge.
     void finish() noexcept;
     /// Back to the state after construction: a new stream, a jump in time.
