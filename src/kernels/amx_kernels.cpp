@@ -264,10 +264,11 @@ const Bf16Kernels* amx_kernels(Instructions most) {
     if (most != Instructions::best || !amx_there()) return nullptr;
     const Bf16Kernels& vectors = avx512_bf16::bf16_kernels();
     static const Bf16Kernels kKernels{.name = "AMX",
+                                      .by_lines = true,
                                       .dot_area = dot_area,
                                       .pixels_to_bf16 = vectors.pixels_to_bf16,
                                       .row_to_bf16 = vectors.row_to_bf16,
-                                      .compress = vectors.compress,
+                                      .compress_row = vectors.compress_row,
                                       .keep_row = vectors.keep_row,
                                       .update_row = vectors.update_row,
                                       .double_row = vectors.double_row,

@@ -34,7 +34,7 @@ EVENTIDE_GATES_INLINE __m512 polynomial(const float (&c)[n], __m512 x) {
 /// 1 / (1 + exp(-scale v)), to within 3e-7. exp(w) = 2^n 2^f, f within +-.5, 2^f by a polynomial
 /// that is nearest in the largest error.
 EVENTIDE_GATES_INLINE __m512 sigmoid(__m512 v, float scale) {
-    static constexpr float kPower[] = {1.0F,          0.693147242F,    0.240222350F,
+    static constexpr float kPower[] = {1.0F,          0.693147242F,   0.240222350F,
                                        0.0555030853F, 0.00967186131F, 0.00134072371F};
     constexpr float kLog2E = 1.44269504F;
     constexpr float kMost = 60.0F;  // beyond, nothing but slow denormal numbers would change
@@ -43,8 +43,7 @@ EVENTIDE_GATES_INLINE __m512 sigmoid(__m512 v, float scale) {
     const __m512 w = _mm512_max_ps(
         _mm512_min_ps(_mm512_mul_ps(v, _mm512_set1_ps(-scale * kLog2E)), most), least);
     const __m512 whole = _mm512_roundscale_ps(w, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
-    const __m512 power =
-        _mm512_scalef_ps(polynomial(kPower, _mm512_sub_ps(w, whole)), whole);
+    const __m512 power = _mm512_scalef_ps(polynomial(kPower, _mm512_sub_ps(w, whole)), whole);
     const __m512 sum = _mm512_add_ps(one, power);
     // A step of Newton's from 14 bits.
     const __m512 near = _mm512_rcp14_ps(sum);
@@ -53,8 +52,8 @@ EVENTIDE_GATES_INLINE __m512 sigmoid(__m512 v, float scale) {
 
 /// log(1 + x), x >= 0. 1 + x = 2^e m, m from 1 to 2.
 EVENTIDE_GATES_INLINE __m512 log1p(__m512 x) {
-    static constexpr float kLog[] = {0.999992907F, -0.499426275F, 0.325724274F,
-                                     -0.211494803F, 0.102872327F, -0.0245283619F};
+    static constexpr float kLog[] = {0.999992907F,  -0.499426275F, 0.325724274F,
+                                     -0.211494803F, 0.102872327F,  -0.0245283619F};
     constexpr float kLn2 = 0.693147181F;
     const __m512 one = _mm512_set1_ps(1.0F), y = _mm512_add_ps(x, one),
                  f = _mm512_sub_ps(_mm512_getmant_ps(y, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_zero),
@@ -63,6 +62,7 @@ EVENTIDE_GATES_INLINE __m512 log1p(__m512 x) {
                            _mm512_mul_ps(f, polynomial(kLog, f)));
 }
 EVENTIDE_GATES_INLINE __m512 compressed(__m512 v) {
+    if (_mm512_test_epi32_mask((__m512i)v, (__m512i)v) == 0) return v;  // most of a grid
     const __m512 sign = _mm512_set1_ps(-0.0F);
     return _mm512_or_ps(log1p(_mm512_andnot_ps(sign, v)), _mm512_and_ps(sign, v));
 }
@@ -84,8 +84,7 @@ EVENTIDE_GATES_INLINE void store(std::uint16_t* to, __mmask16 mask, __m512 v) {
 }
 
 EVENTIDE_GATES_INLINE __m512 updated(__m512 h, __m512 u, __m512 v, float scale) {
-    const __m512 c = _mm512_fmsub_ps(_mm512_set1_ps(2.0F), sigmoid(v, scale),
-                                     _mm512_set1_ps(1.0F));
+    const __m512 c = _mm512_fmsub_ps(_mm512_set1_ps(2.0F), sigmoid(v, scale), _mm512_set1_ps(1.0F));
     return _mm512_fmadd_ps(sigmoid(u, 1.0F), _mm512_sub_ps(c, h), h);
 }
 
@@ -125,9 +124,10 @@ EVENTIDE_GATES void update_row(const UpdateRow& r) {
     if (r.channels == kHalf)
         for (; done + 2 <= r.pixels; done += 2) {
             float* h = r.h + std::ptrdiff_t{done} * kHalf;
-            const __m512 next = updated(_mm512_loadu_ps(h),
-                                        load_two(r.u + done * r.u_step, r.u_step),
-                                        load_two(r.v + done * r.v_step, r.v_step), scale);
+            __builtin_prefetch(h + r.ahead, 1);
+            const __m512 next =
+                updated(_mm512_loadu_ps(h), load_two(r.u + done * r.u_step, r.u_step),
+                        load_two(r.v + done * r.v_step, r.v_step), scale);
             _mm512_storeu_ps(h, next);
             store(r.rounded + std::ptrdiff_t{done} * kHalf, 0xffff, next);
         }
@@ -143,15 +143,48 @@ EVENTIDE_GATES void update_row(const UpdateRow& r) {
                 });
 }
 
-/// A line is fetched while one is worked on: all at once they would wait for each other.
-EVENTIDE_GATES void compress(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead) {
-    for (std::size_t i = 0; i < n; i += kLanes) {
+/// Numbers one after the other, as a pixel's channels do not fill vectors. A line is fetched while
+/// one is worked on: all at once they would wait for each other.
+EVENTIDE_GATES_INLINE void compress(const float* in, int n, std::ptrdiff_t ahead, float* out) {
+    for (int i = 0; i < n; i += kLanes) {
         __builtin_prefetch(in + i + ahead);
-        const __mmask16 mask = first_lanes(int(std::min<std::size_t>(n - i, kLanes)));
-        const __m512 v = _mm512_maskz_loadu_ps(mask, in + i);
-        const bool is_zero = _mm512_test_epi32_mask((__m512i)v, (__m512i)v) == 0;
-        // Most of a grid is.
-        _mm512_mask_storeu_ps(out + i, mask, is_zero ? v : compressed(v));
+        _mm512_storeu_ps(out + i, compressed(load(in + i, first_lanes(n - i))));
+    }
+}
+/// Pixels of up to 32 numbers to bf16, in one map or in several.
+EVENTIDE_GATES_INLINE void narrow_pixels(const CompressRow& r, const float* in, int pixels, int c,
+                                         std::uint32_t* out) {
+    const std::ptrdiff_t step = r.size / 2;  // units
+    const __mmask16 low = first_lanes(r.channels - c), high = first_lanes(r.channels - c - kLanes),
+                    stored = first_lanes(int(step) - c / 2);
+    for (int p = 0; p < pixels; ++p, in += r.channels, out += step) {
+        const auto both = (__m512i)_mm512_cvtne2ps_pbh(load(in + kLanes, high), load(in, low));
+        if (r.maps == 1) {
+            _mm512_mask_storeu_epi32(out, stored, both);
+            continue;
+        }
+        const auto put = [&](int map, __m128i quad) EVENTIDE_GATES {
+            if (map < r.maps)
+                _mm_storeu_si128(reinterpret_cast<__m128i*>(out + map * r.plane), quad);
+        };
+        put(0, _mm512_castsi512_si128(both));
+        put(1, _mm512_extracti32x4_epi32(both, 1));
+        put(2, _mm512_extracti32x4_epi32(both, 2));
+        put(3, _mm512_extracti32x4_epi32(both, 3));
+    }
+}
+
+/// A few pixels at a time, which stay in the first-level cache.
+EVENTIDE_GATES void compress_row(const CompressRow& r) {
+    constexpr int kRoom = 1024;
+    alignas(64) float room[kRoom + kLanes];
+    const int most = kRoom / r.channels;
+    auto* out = static_cast<std::uint32_t*>(r.out);
+    for (int p = 0; p < r.pixels; p += most) {
+        const int pixels = std::min(most, r.pixels - p);
+        compress(r.in + std::ptrdiff_t{p} * r.channels, pixels * r.channels, r.ahead, room);
+        for (int c = 0; c < r.size * r.maps; c += 2 * kLanes)
+            narrow_pixels(r, room + c, pixels, c, out + std::ptrdiff_t{p} * r.size / 2 + c / 2);
     }
 }
 
@@ -163,7 +196,7 @@ namespace eventide::avx512_bf16 {
 
 void keep_row(const KeepRow&) {}
 void update_row(const UpdateRow&) {}
-void compress(const float*, float*, std::size_t, std::ptrdiff_t) {}
+void compress_row(const CompressRow&) {}
 
 }  // namespace eventide::avx512_bf16
 

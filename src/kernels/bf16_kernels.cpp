@@ -293,7 +293,7 @@ const Bf16Kernels& bf16_kernels() {
                                       .dot_area = dot_area,
                                       .pixels_to_bf16 = pixels_to_bf16,
                                       .row_to_bf16 = row_to_bf16,
-                                      .compress = compress,
+                                      .compress_row = compress_row,
                                       .keep_row = keep_row,
                                       .update_row = update_row,
                                       .double_row = double_row,

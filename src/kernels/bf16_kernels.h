@@ -21,6 +21,9 @@ namespace eventide {
 struct Bf16Kernels {
     const char* name;       ///< of the instruction set
     bool by_quads = false;  ///< as VectorKernels::by_quads
+    /// Whether dot_area reads rows of up to 64 bytes at once, several times as fast where they lie
+    /// in one cache line each.
+    bool by_lines = false;
     /// Units are pairs of bf16 numbers. Weights: blocks of two vectors of bf16_lanes(outputs), then
     /// one; [s][pair][output][2].
     void (*dot_area)(const DotArea&);
@@ -29,8 +32,7 @@ struct Bf16Kernels {
     void (*pixels_to_bf16)(const float* in, std::size_t pixels, int channels, std::uint32_t* out);
     /// `n` numbers one after the other.
     void (*row_to_bf16)(const float* in, std::size_t n, std::uint16_t* out);
-    /// As VectorKernels::compress, as right as bf16 asks for.
-    void (*compress)(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead);
+    void (*compress_row)(const CompressRow&);
     void (*keep_row)(const KeepRow&);
     void (*update_row)(const UpdateRow&);
     /// As VectorKernels::double_row, of bf16 numbers; `channels` counts them, and is even.

@@ -236,7 +236,7 @@ void dot_quads(const DotArea& r) {
 
 }  // namespace
 
-EVENTIDE_QUADS void split_f32(const SplitRow& r) {
+EVENTIDE_QUADS void split_pixels(const SplitRow& r) {
     for (int map = 0; map < r.maps; ++map) {
         const int first = map * r.size, n = std::clamp(r.channels - first, 0, r.size);
         const auto there = __mmask8((1U << unsigned(n)) - 1U),
@@ -247,25 +247,6 @@ EVENTIDE_QUADS void split_f32(const SplitRow& r) {
             _mm256_mask_storeu_ps(out, stored, _mm256_maskz_loadu_ps(there, in));
     }
 }
-EVENTIDE_QUADS void split_bf16(const SplitRow& r) {
-    const auto mask = [](int n) { return __mmask16((1U << unsigned(std::clamp(n, 0, 16))) - 1U); };
-    const __mmask16 low = mask(r.channels), high = mask(r.channels - 16);
-    const float* in = r.in;
-    auto* out = static_cast<std::uint32_t*>(r.out);
-    for (int p = 0; p < r.pixels; ++p, in += r.channels, out += 4) {
-        const auto v = (__m512i)_mm512_cvtne2ps_pbh(_mm512_maskz_loadu_ps(high, in + 16),
-                                                    _mm512_maskz_loadu_ps(low, in));
-        const auto put = [&](int map, __m128i quad) EVENTIDE_QUADS {
-            if (map < r.maps)
-                _mm_storeu_si128(reinterpret_cast<__m128i*>(out + map * r.plane), quad);
-        };
-        put(0, _mm512_castsi512_si128(v));
-        put(1, _mm512_extracti32x4_epi32(v, 1));
-        put(2, _mm512_extracti32x4_epi32(v, 2));
-        put(3, _mm512_extracti32x4_epi32(v, 3));
-    }
-}
-
 void dot_quads_f32(const DotArea& r) {
     dot_quads<F32>(r);
 }
@@ -275,8 +256,7 @@ void dot_quads_bf16(const DotArea& r) {
 #else
 void dot_quads_f32(const DotArea&) {}
 void dot_quads_bf16(const DotArea&) {}
-void split_f32(const SplitRow&) {}
-void split_bf16(const SplitRow&) {}
+void split_pixels(const SplitRow&) {}
 #endif
 
 }  // namespace eventide::avx512

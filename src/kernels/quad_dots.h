@@ -37,7 +37,6 @@ struct SplitRow {
     void* out = nullptr;       ///< [pixels][size] in the first map
     std::ptrdiff_t plane = 0;  ///< units of 4 bytes from one map to the next
 };
-void split_f32(const SplitRow& row);   ///< size 4 or 8
-void split_bf16(const SplitRow& row);  ///< size 8, at most 4 maps
+void split_pixels(const SplitRow& row);  ///< float32; size 4 or 8. For bf16 see CompressRow.
 
 }  // namespace eventide::avx512

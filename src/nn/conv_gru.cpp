@@ -32,6 +32,9 @@
 namespace eventide {
 namespace {
 
+/// States are larger than a core's cache, and pieces of rows too short for its own foresight.
+constexpr int kRowsAhead = 2;
+
 std::size_t square(int n) {
     return std::size_t(n) * std::size_t(n);
 }
@@ -68,13 +71,18 @@ ConvGru::ConvGru(const plain::GruWeights<float>& weights, Extent map,
                  FloatBuffer(largest * std::size_t(units())));
 }
 
+/// Whole cache lines, so that what lies behind begins with one.
 std::size_t ConvGru::scratch_size() const {
     const auto c = std::size_t(channels_), u = std::size_t(units());
-    if (!has_reset())
-        return square(input_side()) * u + square(side_) * 2 * c + gates_.scratch_size(side_, side_);
-    return square(side_ + 4) * u + square(side_ + 2) * (u + 2 * c) + square(side_) * c +
-           std::max(gates_.scratch_size(side_ + 2, side_ + 2),
-                    candidate_.scratch_size(side_, side_));
+    std::size_t size = square(input_side()) * u + square(gates_side()) * 2 * c;
+    if (has_reset())
+        size += square(side_ + 2) * u + square(side_) * c +
+                std::max(gates_.scratch_size(side_ + 2, side_ + 2),
+                         candidate_.scratch_size(side_, side_));
+    else
+        size += gates_.scratch_size(side_, side_);
+    constexpr std::size_t kLine = 64 / sizeof(float);
+    return (size + kLine - 1) / kLine * kLine;
 }
 
 /// What lies outside the map reads as zero.
@@ -86,8 +94,7 @@ void ConvGru::begin(std::size_t i, float* scratch, const Tile& near) const noexc
                   scratch + (side_ + 4) * input_pitch(), kept_pitch(), units());
 }
 
-void ConvGru::finish(StateMap& state, std::size_t i, const Mask* mask,
-                     float* input) noexcept {
+void ConvGru::finish(StateMap& state, std::size_t i, const Mask* mask, float* input) noexcept {
     const Tile& tile = tiles_[i];
     float* kept = input + input_side() * input_pitch();
     float* gates = has_reset() ? kept + (side_ + 2) * kept_pitch() : kept;
@@ -183,6 +190,8 @@ void ConvGru::update_rounded(StateMap& state, std::size_t i, const Mask* mask, f
     const std::ptrdiff_t unit = units(), both = 2 * std::ptrdiff_t(channels_);
     float* next = next_[i % next_.size()].data();
     for (int y = tile.y0; y < tile.y1; ++y, next += tile.width() * unit) {
+        const std::ptrdiff_t ahead =
+            y + kRowsAhead < tile.y1 ? kRowsAhead * state.exact().pitch() : 0;
         const auto is_masked = [&](int x) { return mask == nullptr || (*mask)(y, x) != 0; };
         for (int x = tile.x0, end = x; x < tile.x1; x = end) {
             while (end < tile.x1 && is_masked(end) == is_masked(x)) ++end;
@@ -205,7 +214,8 @@ void ConvGru::update_rounded(StateMap& state, std::size_t i, const Mask* mask, f
                                                 .h = state.exact().at(y, x),
                                                 .rounded = reinterpret_cast<std::uint16_t*>(to),
                                                 .channels = channels_,
-                                                .pixels = end - x});
+                                                .pixels = end - x,
+                                                .ahead = ahead});
         }
     }
 }

@@ -46,14 +46,6 @@ public:
         else
             std::memcpy(out, in, pixels * std::size_t(channels) * sizeof(float));
     }
-    /// The input's, in float32; see VectorKernels::compress.
-    void compress(const float* in, float* out, std::size_t n, std::ptrdiff_t ahead) const noexcept {
-        bf16_ != nullptr ? bf16_->compress(in, out, n, ahead) : f32_->compress(in, out, n, ahead);
-    }
-    /// See SplitRow; where by_quads().
-    void split(const avx512::SplitRow& row) const noexcept {
-        bf16_ != nullptr ? avx512::split_bf16(row) : avx512::split_f32(row);
-    }
     /// See DoubleRow.
     void double_row(DoubleRow row) const noexcept {
         if (bf16_ == nullptr) {

@@ -20,9 +20,9 @@ namespace {
 using test::Fill;
 
 constexpr int kPixels = 5;
-constexpr double kGate = 1e-6;              // of a gate, which lies between 0 and 1
-constexpr double kRounding = 1.0 / 128;     // to bf16, of the state and of the product
-constexpr std::uint16_t kMark = 0x4d4d;     // past a row: nobody's
+constexpr double kGate = 1e-6;           // of a gate, which lies between 0 and 1
+constexpr double kRounding = 1.0 / 128;  // to bf16, of the state and of the product
+constexpr std::uint16_t kMark = 0x4d4d;  // past a row: nobody's
 
 template <typename Body>
 void with_each_bf16(const Body& body) {
@@ -123,8 +123,8 @@ TEST(Bf16Gates, UpdateTheExactStateAndRoundItOnce) {
                 const Row::Next next = row.updated(k, is_doubled, 0, kPixels);
                 for (std::size_t i = 0; i < row.h.size(); ++i) {
                     const double v = row.sum(1, i) / (is_doubled ? 2 : 1), h = double(row.h[i]);
-                    ASSERT_NEAR(next.h[i],
-                                h + plain::sigmoid(row.sum(0, i)) * (std::tanh(v) - h), 2 * kGate);
+                    ASSERT_NEAR(next.h[i], h + plain::sigmoid(row.sum(0, i)) * (std::tanh(v) - h),
+                                2 * kGate);
                 }
                 auto rounded = as_bf16(next.h, channels);
                 rounded.push_back(kMark);
@@ -172,21 +172,53 @@ TEST(Bf16Gates, SaturateWithoutLosingTheState) {
     });
 }
 
-TEST(Bf16Gates, CompressAsRightAsBf16AsksFor) {
+TEST(Bf16Gates, CompressTheInputIntoOneMap) {
     with_each_bf16([](const Bf16Kernels& k, int channels) {
-        const auto count = std::size_t(channels) * kPixels;
+        const auto c = std::size_t(channels), size = even(channels) + 6;
         for (const Fill fill : test::kFills) {
             test::Numbers numbers{29};
-            const auto in = numbers.many(count, fill);
-            test::Guarded out{count};
-            k.compress(in.data(), out.data(), count, 0);
-            EXPECT_TRUE(out.intact());
-            for (std::size_t i = 0; i < count; ++i) {
-                const double exact = plain::compress(double(in[i]));
-                ASSERT_NEAR(out.data()[i], exact, 1e-5 * std::abs(exact) + 1e-7) << in[i];
-                EXPECT_TRUE(in[i] != 0 || out.data()[i] == 0);
+            const auto in = numbers.many(c * kPixels, fill);
+            std::vector<std::uint16_t> out(size * kPixels + 1, kMark);
+            k.compress_row({.in = in.data(),
+                            .pixels = kPixels,
+                            .channels = channels,
+                            .out = out.data(),
+                            .size = int(size)});
+            EXPECT_EQ(out.back(), kMark);
+            for (std::size_t i = 0; i < size * kPixels; ++i) {
+                const float v = i % size < c ? in[i / size * c + i % size] : 0;
+                const double exact = plain::compress(double(v));
+                ASSERT_NEAR(from_bf16(out[i]), exact, std::abs(exact) / 256 + 1e-7) << v;
+                EXPECT_TRUE(v != 0 || from_bf16(out[i]) == 0) << "nothing happened there";
             }
         }
+    });
+}
+
+TEST(Bf16Gates, CompressTheInputIntoSeveralMaps) {
+    with_each_bf16([](const Bf16Kernels& k, int channels) {
+        constexpr std::size_t kSize = 8;
+        const std::size_t maps = (std::size_t(channels) + kSize - 1) / kSize,
+                          plane = kPixels * kSize;
+        if (maps > 4) return;
+        test::Numbers numbers{31};
+        const auto in = numbers.many(std::size_t(channels) * kPixels, Fill::mixed);
+        std::vector<std::uint16_t> one(maps * plane), several(maps * plane);
+        CompressRow row{.in = in.data(),
+                        .pixels = kPixels,
+                        .channels = channels,
+                        .out = one.data(),
+                        .size = int(maps * kSize)};
+        k.compress_row(row);
+        row.out = several.data();
+        row.size = kSize;
+        row.maps = int(maps);
+        row.plane = std::ptrdiff_t(plane / 2);
+        k.compress_row(row);
+        for (std::size_t p = 0; p < kPixels; ++p)
+            for (std::size_t i = 0; i < maps * kSize; ++i)
+                ASSERT_EQ(several[i / kSize * plane + p * kSize + i % kSize],
+                          one[p * maps * kSize + i]);
     });
 }
 

@@ -129,12 +129,25 @@ TEST(Quads, AMapInThreeGivesTheSameBits) {
         if (!layer_numbers.by_quads() || backend.onednn) continue;
         const int units = layer_numbers.units(8);
         const std::ptrdiff_t plane = std::ptrdiff_t(kSide) * kSide * units;
-        std::vector<float> split(3 * std::size_t(plane), 5), whole(3 * std::size_t(plane), 5);
-        layer_numbers.split({in.data(), kSide * kSide, kChannels, 8, 3, split.data(), plane});
-        std::vector<float> padded(std::size_t(kSide * kSide * kPadded));
-        for (std::size_t p = 0; p < std::size_t(kSide * kSide); ++p)
-            std::copy_n(in.data() + p * kChannels, kChannels, padded.data() + p * kPadded);
-        layer_numbers.from_float(padded.data(), kSide * kSide, kPadded, whole.data());
+        std::vector<float> split(3 * std::size_t(plane), 5), whole(3 * std::size_t(plane));
+        if (const Bf16Kernels* bf16 = layer_numbers.bf16()) {
+            CompressRow row{.in = in.data(),
+                            .pixels = kSide * kSide,
+                            .channels = kChannels,
+                            .out = split.data(),
+                            .size = 8,
+                            .maps = 3,
+                            .plane = plane};
+            bf16->compress_row(row);
+            row.out = whole.data();
+            row.size = kPadded;
+            row.maps = 1;
+            bf16->compress_row(row);
+        } else {
+            avx512::split_pixels({in.data(), kSide * kSide, kChannels, 8, 3, split.data(), plane});
+            for (std::size_t p = 0; p < std::size_t(kSide * kSide); ++p)
+                std::copy_n(in.data() + p * kChannels, kChannels, whole.data() + p * kPadded);
+        }
         const auto run = [&](const PackedConv& conv, ConvArea area) {
             std::vector<float> out(49 * kOutputs), scratch(conv.scratch_size(7, 7));
             area.out = out.data();

@@ -70,8 +70,15 @@ void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint
     convert_pixels(row_to_bf16, in, pixels, channels, out);
 }
 
-void compress_row(const float* in, float* out, std::size_t n, std::ptrdiff_t) {
-    std::transform(in, in + n, out, compress<float>);
+void compress_row(const CompressRow& r) {
+    const std::ptrdiff_t step = r.size;
+    for (int p = 0; p < r.pixels; ++p)
+        for (int c = 0; c < r.size * r.maps; ++c) {
+            auto* map = static_cast<std::uint16_t*>(r.out) + 2 * (c / r.size) * r.plane;
+            const float value =
+                c < r.channels ? compress(r.in[std::ptrdiff_t{p} * r.channels + c]) : 0.0F;
+            map[p * step + c % r.size] = to_bf16(value);
+        }
 }
 void keep_row(const KeepRow& r) {
     const std::ptrdiff_t step = (r.channels + 1) / 2 * 2;
@@ -129,7 +136,7 @@ const Bf16Kernels& bf16_kernels() {
                                       .dot_area = dot_area,
                                       .pixels_to_bf16 = pixels_to_bf16,
                                       .row_to_bf16 = row_to_bf16,
-                                      .compress = compress_row,
+                                      .compress_row = compress_row,
                                       .keep_row = keep_row,
                                       .update_row = update_row,
                                       .double_row = double_row,

@@ -5,6 +5,7 @@
 #include "src/nn/load_weights.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace eventide {
@@ -23,11 +24,13 @@ constexpr int kRowsAhead = 2;
 constexpr std::size_t kLeastGroup = 32;
 
 /// The input layer's channels in maps of one quad of units or two, where layers go by quads and not
-/// too many channels of zeros have to be added; else in one.
+/// too many channels of zeros have to be added; else in one, whose pixels fill a cache line or an
+/// even part of it where layers go by lines.
 ///
-///     channels    21 (5 bins)      9 (2 bins)
-///     float32     3 maps of 8      3 maps of 4
-///     bf16        3 maps of 8      1 of 9, as 2 maps of 8 would add too many
+///     channels         21 (5 bins)      9 (2 bins)
+///     float32          3 maps of 8      3 maps of 4
+///     bf16             3 maps of 8      1 of 9, as 2 maps of 8 would add too many
+///     bf16, by lines   1 of 32          1 of 16
 struct InputMaps {
     int count = 1, size = 0;
 };
@@ -36,7 +39,13 @@ InputMaps input_maps(int channels, const Backend& backend) {
     const Numbers numbers{backend};
     const bool is_bf16 = numbers.bf16() != nullptr;
     InputMaps best{1, channels};
-    if (!numbers.by_quads() || backend.onednn) return best;
+    if (backend.onednn) return best;
+    if (is_bf16 && numbers.bf16()->by_lines) {
+        constexpr unsigned kLine = 32;  // numbers
+        if (channels <= int(kLine)) best.size = int(std::bit_ceil(unsigned(channels)));
+        return best;
+    }
+    if (!numbers.by_quads()) return best;
     for (const int size : {4, 8}) {
         const int count = (channels + size - 1) / size;
         if ((is_bf16 && size == 4) || count > ConvArea::kMaxSources) continue;
@@ -197,18 +206,26 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
     for (int map = 0; map < maps_; ++map)
         clear_outside(wide, inside, scratch + map * plane, row, units);
     float* rest = scratch + maps_ * plane;
-    const auto pixels = std::size_t(inside.width());
     for (int y = inside.y0; y < inside.y1; ++y) {
         const std::ptrdiff_t ahead =
             y + kRowsAhead < inside.y1 ? kRowsAhead * std::ptrdiff_t(grid.width()) * channels : 0;
+        const float* from = grid.pixel(y, inside.x0).data();
         float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
-        float* compressed = numbers.bf16() != nullptr || maps_ > 1 ? rest : to;
-        numbers.compress(grid.pixel(y, inside.x0).data(), compressed,
-                         pixels * std::size_t(channels), ahead);
+        if (numbers.bf16() != nullptr) {
+            numbers.bf16()->compress_row({.in = from,
+                                          .pixels = inside.width(),
+                                          .channels = channels,
+                                          .ahead = ahead,
+                                          .out = to,
+                                          .size = 2 * int(units),
+                                          .maps = maps_,
+                                          .plane = plane});
+            continue;
+        }
+        numbers.kernels().compress(from, maps_ > 1 ? rest : to,
+                                   std::size_t(inside.width()) * std::size_t(channels), ahead);
         if (maps_ > 1)
-            numbers.split({compressed, inside.width(), channels, map_channels_, maps_, to, plane});
-        else if (compressed != to)
-            numbers.from_float(compressed, pixels, channels, to);
+            avx512::split_pixels({rest, inside.width(), channels, map_channels_, maps_, to, plane});
     }
     // Maps past maps_ are named, too, and not read.
     in_.run(ConvArea{.in = {{{scratch, row}, {scratch + plane, row}, {scratch + 2 * plane, row}}},
