@@ -6,6 +6,7 @@
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
 
+#include <array>
 #include <cmath>
 
 namespace eventide::bench {
@@ -25,38 +26,43 @@ Spread time_binning(int bins, const std::vector<SceneWindow>& windows, const Sta
     return {events / (1e3 * ms.median), events / (1e3 * ms.high), events / (1e3 * ms.low)};
 }
 
-/// Encodes the windows again and again; leaves the codes of the last ones in `latents`.
-Timing time_encoding(Encoder& encoder, const std::vector<SceneWindow>& windows,
-                     const StageSettings& s, std::vector<LatentMap>& latents) {
-    Binner binner{encoder.bins(), s.height, s.width};
-    std::vector<VoxelGrid> grids;
-    for (const SceneWindow& window : windows)
-        binner.process(window.event_window(), grids.emplace_back(binner.make_output()));
-    for (LatentMap& latent : latents) latent = encoder.make_output();
-    return timed(s.repetitions, [&](int i) {
-        encoder.encode(grids[std::size_t(i) % grids.size()],
-                       latents[std::size_t(i) % latents.size()]);
-    });
-}
+/// The windows in turn, as an encoder takes them.
+class Encoding {
+public:
+    Encoding(Encoder& encoder, const std::vector<SceneWindow>& windows, const StageSettings& s)
+        : encoder_(encoder) {
+        Binner binner{encoder.bins(), s.height, s.width};
+        for (const SceneWindow& window : windows)
+            binner.process(window.event_window(), grids_.emplace_back(binner.make_output()));
+        for (LatentMap& latent : latents_) latent = encoder.make_output();
+    }
+    LatentMap& step(int i) {
+        LatentMap& latent = latents_[std::size_t(i) % latents_.size()];
+        encoder_.encode(grids_[std::size_t(i) % grids_.size()], latent);
+        return latent;
+    }
 
-/// A fresh frame of one event window after the other, and another of the same.
-void time_rendering(Renderer& renderer, std::vector<LatentMap>& latents, const StageSettings& s,
+private:
+    Encoder& encoder_;
+    std::vector<VoxelGrid> grids_;
+    std::array<LatentMap, 4> latents_;
+};
+
+/// A fresh frame of one event window after the other, each just encoded, and another of the same.
+void time_rendering(Renderer& renderer, Encoding& encoding, const StageSettings& s,
                     StageRow& row) {
-    // The same maps are given again and again, in turn with those that the renderer leaves: no
-    // history is true of them.
-    for (LatentMap& latent : latents) latent.history = {};
     RenderRequest request;
     request.width = int(std::lround(s.width * s.scale));
     request.height = int(std::lround(s.height * s.scale));
     request.lookahead = s.lookahead;
     Frame frame = renderer.make_output(request);
     SensorTime end{};
-    const auto push = [&](int i) {
-        LatentMap& latent = latents[std::size_t(i) % latents.size()];
-        latent.history = {};
+    const auto next = [&](int i) -> LatentMap& {
+        LatentMap& latent = encoding.step(i);
+        latent.history = {};  // all of it is new
         latent.window = {end, end + kWindow};
         end += kWindow;
-        renderer.take(latent);
+        return latent;
     };
     const auto render_at = [&](int thousandths) {
         request.t = end - kWindow * (s.lookahead + 1) + kWindow * thousandths / 1000;
@@ -64,10 +70,11 @@ void time_rendering(Renderer& renderer, std::vector<LatentMap>& latents, const S
     };
     constexpr int kWarm = 6;  // all that a lookahead waits for, and all buffers
     Stopwatch fresh, again;
-    for (int i = 0; i < kWarm; ++i) push(i), render_at(500);
+    for (int i = 0; i < kWarm; ++i) renderer.take(next(i)), render_at(500);
     for (int i = 0; i < s.repetitions; ++i) {
+        LatentMap& latent = next(kWarm + i);
         fresh.start();
-        push(kWarm + i);
+        renderer.take(latent);
         render_at(400);
         fresh.stop();
         again.start();
@@ -105,10 +112,10 @@ StageRow measure_stages(const std::string& name, const Model& model,
     const bool by_amx = row.engine.find("AMX") != std::string::npos;
     row.peak_gflops = by_amx ? peaks.bf16_amx : row.bf16 ? peaks.bf16 : peaks.f32();
     row.bin_mev_s = time_binning(model.config.bins, windows, s);
-    std::vector<LatentMap> latents(4);
-    row.encode.time = time_encoding(encoder, windows, s, latents);
+    Encoding encoding{encoder, windows, s};
+    row.encode.time = timed(s.repetitions, [&](int i) { encoding.step(i); });
     row.encode.products = encode_products(model.config, s.height, s.width);
-    time_rendering(renderer, latents, s, row);
+    time_rendering(renderer, encoding, s, row);
     const RenderProducts products =
         render_products(model.config, frame_geometry_of(s), s.lookahead);
     row.fresh.products = products.first + products.frame;
