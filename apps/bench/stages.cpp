@@ -49,8 +49,7 @@ private:
 };
 
 /// A fresh frame of one event window after the other, each just encoded, and another of the same.
-void time_rendering(Renderer& renderer, Encoding& encoding, const StageSettings& s,
-                    StageRow& row) {
+void time_rendering(Renderer& renderer, Encoding& encoding, const StageSettings& s, StageRow& row) {
     RenderRequest request;
     request.width = int(std::lround(s.width * s.scale));
     request.height = int(std::lround(s.height * s.scale));

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -48,6 +50,19 @@ TEST(Damage, IsCountedByReasonAndEveryReasonHasAName) {
     EXPECT_EQ(damage[DamageReason::unknown_word], 4U);
     EXPECT_EQ(damage.total(), 5U);
     for (std::size_t i = 0; i < kDamageReasons; ++i) EXPECT_FALSE(name_of(DamageReason(i)).empty());
+}
+
+TEST(Array3, ALargeOneBeginsAtAHugePageAndIsZero) {
+    constexpr std::uintptr_t kHugePage = std::uintptr_t{1} << 21;
+    Array3<float> large{1024, 1025, 1};  // two of them, and 4 KiB more
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(large.values().data()) % kHugePage, 0U);
+    EXPECT_EQ(std::ranges::count(large.values(), 0.0F), 1024 * 1025);
+    large(1023, 1024, 0) = 1;
+    Array3<float> copy = large, other{2, 3, 4};
+    EXPECT_EQ(copy, large);
+    std::swap(copy, other);
+    EXPECT_EQ(other, large);
+    EXPECT_EQ(copy, (Array3<float>{2, 3, 4}));
 }
 
 }  // namespace
