@@ -3,29 +3,18 @@
 
 #if defined(__x86_64__)
 
-#include <immintrin.h>
+#include "src/kernels/bf16_vectors.h"
 
 #include <algorithm>
-
-#define EVENTIDE_GATES_CAN "avx512f,avx512bw,avx512vl,avx512dq,avx512bf16"
-#if defined(__clang__)  // which does not know this preference, and does not need it
-#define EVENTIDE_GATES __attribute__((target(EVENTIDE_GATES_CAN)))
-#else
-#define EVENTIDE_GATES __attribute__((target(EVENTIDE_GATES_CAN ",prefer-vector-width=512")))
-#endif
-#define EVENTIDE_GATES_INLINE EVENTIDE_GATES __attribute__((always_inline)) inline
 
 namespace eventide::avx512_bf16 {
 namespace {
 
 constexpr int kLanes = 16, kHalf = 8;
 
-EVENTIDE_GATES_INLINE __mmask16 first_lanes(int n) {
-    return __mmask16(n >= kLanes ? 0xffffU : (1U << unsigned(std::max(n, 0))) - 1U);
-}
 /// c_0 + c_1 x + ... + c_{n-1} x^{n-1}
 template <std::size_t n>
-EVENTIDE_GATES_INLINE __m512 polynomial(const float (&c)[n], __m512 x) {
+EVENTIDE_BF16_INLINE __m512 polynomial(const float (&c)[n], __m512 x) {
     __m512 sum = _mm512_set1_ps(c[n - 1]);
     for (std::size_t k = n - 1; k-- > 0;) sum = _mm512_fmadd_ps(sum, x, _mm512_set1_ps(c[k]));
     return sum;
@@ -33,7 +22,7 @@ EVENTIDE_GATES_INLINE __m512 polynomial(const float (&c)[n], __m512 x) {
 
 /// 1 / (1 + exp(-scale v)), to within 3e-7. exp(w) = 2^n 2^f, f within +-.5, 2^f by a polynomial
 /// that is nearest in the largest error.
-EVENTIDE_GATES_INLINE __m512 sigmoid(__m512 v, float scale) {
+EVENTIDE_BF16_INLINE __m512 sigmoid(__m512 v, float scale) {
     static constexpr float kPower[] = {1.0F,          0.693147242F,   0.240222350F,
                                        0.0555030853F, 0.00967186131F, 0.00134072371F};
     constexpr float kLog2E = 1.44269504F;
@@ -51,7 +40,7 @@ EVENTIDE_GATES_INLINE __m512 sigmoid(__m512 v, float scale) {
 }
 
 /// log(1 + x), x >= 0. 1 + x = 2^e m, m from 1 to 2.
-EVENTIDE_GATES_INLINE __m512 log1p(__m512 x) {
+EVENTIDE_BF16_INLINE __m512 log1p(__m512 x) {
     static constexpr float kLog[] = {0.999992907F,  -0.499426275F, 0.325724274F,
                                      -0.211494803F, 0.102872327F,  -0.0245283619F};
     constexpr float kLn2 = 0.693147181F;
@@ -61,36 +50,32 @@ EVENTIDE_GATES_INLINE __m512 log1p(__m512 x) {
     return _mm512_fmadd_ps(_mm512_getexp_ps(y), _mm512_set1_ps(kLn2),
                            _mm512_mul_ps(f, polynomial(kLog, f)));
 }
-EVENTIDE_GATES_INLINE __m512 compressed(__m512 v) {
+EVENTIDE_BF16_INLINE __m512 compressed(__m512 v) {
     if (_mm512_test_epi32_mask((__m512i)v, (__m512i)v) == 0) return v;  // most of a grid
     const __m512 sign = _mm512_set1_ps(-0.0F);
     return _mm512_or_ps(log1p(_mm512_andnot_ps(sign, v)), _mm512_and_ps(sign, v));
 }
 
 /// Up to 16 numbers of one pixel, or 8 of each of two beside each other.
-EVENTIDE_GATES_INLINE __m512 load(const float* from, __mmask16 mask) {
+EVENTIDE_BF16_INLINE __m512 load(const float* from, __mmask16 mask) {
     return _mm512_maskz_loadu_ps(mask, from);
 }
-EVENTIDE_GATES_INLINE __m512 load_two(const float* from, std::ptrdiff_t step) {
+EVENTIDE_BF16_INLINE __m512 load_two(const float* from, std::ptrdiff_t step) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(from)),
                               _mm256_loadu_ps(from + step), 1);
 }
-EVENTIDE_GATES_INLINE __m512 load(const std::uint16_t* from, __mmask16 mask) {
-    return _mm512_castsi512_ps(
-        _mm512_slli_epi32(_mm512_cvtepu16_epi32(_mm256_maskz_loadu_epi16(mask, from)), 16));
-}
-EVENTIDE_GATES_INLINE void store(std::uint16_t* to, __mmask16 mask, __m512 v) {
+EVENTIDE_BF16_INLINE void store(std::uint16_t* to, __mmask16 mask, __m512 v) {
     _mm256_mask_storeu_epi16(to, mask, (__m256i)_mm512_cvtneps_pbh(v));
 }
 
-EVENTIDE_GATES_INLINE __m512 updated(__m512 h, __m512 u, __m512 v, float scale) {
+EVENTIDE_BF16_INLINE __m512 updated(__m512 h, __m512 u, __m512 v, float scale) {
     const __m512 c = _mm512_fmsub_ps(_mm512_set1_ps(2.0F), sigmoid(v, scale), _mm512_set1_ps(1.0F));
     return _mm512_fmadd_ps(sigmoid(u, 1.0F), _mm512_sub_ps(c, h), h);
 }
 
 /// body(pixel, first channel, lanes that are there, lanes stored as bf16), 16 channels at a time.
 template <typename Body>
-EVENTIDE_GATES_INLINE void over_pixels(int first, int pixels, int channels, const Body& body) {
+EVENTIDE_BF16_INLINE void over_pixels(int first, int pixels, int channels, const Body& body) {
     const int even = (channels + 1) / 2 * 2;
     for (int p = first; p < pixels; ++p)
         for (int c = 0; c < channels; c += kLanes)
@@ -99,7 +84,7 @@ EVENTIDE_GATES_INLINE void over_pixels(int first, int pixels, int channels, cons
 
 }  // namespace
 
-EVENTIDE_GATES void keep_row(const KeepRow& r) {
+EVENTIDE_BF16 void keep_row(const KeepRow& r) {
     int done = 0;
     // Pixels of 8 channels go in twos, with the same bits.
     if (r.channels == kHalf)
@@ -107,18 +92,18 @@ EVENTIDE_GATES void keep_row(const KeepRow& r) {
             const std::ptrdiff_t at = std::ptrdiff_t{done} * kHalf;
             store(r.kept + at, 0xffff,
                   _mm512_mul_ps(sigmoid(load_two(r.r + done * r.r_step, r.r_step), 1.0F),
-                                load(r.h + at, 0xffff)));
+                                widened(r.h + at, 0xffff)));
         }
     const std::ptrdiff_t step = (r.channels + 1) / 2 * 2;
     over_pixels(done, r.pixels, r.channels,
-                [&](int p, int c, __mmask16 there, __mmask16 stored) EVENTIDE_GATES {
+                [&](int p, int c, __mmask16 there, __mmask16 stored) EVENTIDE_BF16 {
                     store(r.kept + p * step + c, stored,
                           _mm512_mul_ps(sigmoid(load(r.r + p * r.r_step + c, there), 1.0F),
-                                        load(r.h + p * step + c, there)));
+                                        widened(r.h + p * step + c, there)));
                 });
 }
 
-EVENTIDE_GATES void update_row(const UpdateRow& r) {
+EVENTIDE_BF16 void update_row(const UpdateRow& r) {
     const float scale = r.is_doubled ? 1.0F : 2.0F;
     int done = 0;
     if (r.channels == kHalf)
@@ -133,7 +118,7 @@ EVENTIDE_GATES void update_row(const UpdateRow& r) {
         }
     const std::ptrdiff_t step = (r.channels + 1) / 2 * 2;
     over_pixels(done, r.pixels, r.channels,
-                [&](int p, int c, __mmask16 there, __mmask16 stored) EVENTIDE_GATES {
+                [&](int p, int c, __mmask16 there, __mmask16 stored) EVENTIDE_BF16 {
                     float* h = r.h + std::ptrdiff_t{p} * r.channels + c;
                     const __m512 next = _mm512_maskz_mov_ps(
                         there, updated(load(h, there), load(r.u + p * r.u_step + c, there),
@@ -145,15 +130,15 @@ EVENTIDE_GATES void update_row(const UpdateRow& r) {
 
 /// Numbers one after the other, as a pixel's channels do not fill vectors. A line is fetched while
 /// one is worked on: all at once they would wait for each other.
-EVENTIDE_GATES_INLINE void compress(const float* in, int n, std::ptrdiff_t ahead, float* out) {
+EVENTIDE_BF16_INLINE void compress(const float* in, int n, std::ptrdiff_t ahead, float* out) {
     for (int i = 0; i < n; i += kLanes) {
         __builtin_prefetch(in + i + ahead);
         _mm512_storeu_ps(out + i, compressed(load(in + i, first_lanes(n - i))));
     }
 }
 /// Pixels of up to 32 numbers to bf16, in one map or in several.
-EVENTIDE_GATES_INLINE void narrow_pixels(const CompressRow& r, const float* in, int pixels, int c,
-                                         std::uint32_t* out) {
+EVENTIDE_BF16_INLINE void narrow_pixels(const CompressRow& r, const float* in, int pixels, int c,
+                                        std::uint32_t* out) {
     const std::ptrdiff_t step = r.size / 2;  // units
     const __mmask16 low = first_lanes(r.channels - c), high = first_lanes(r.channels - c - kLanes),
                     stored = first_lanes(int(step) - c / 2);
@@ -163,7 +148,7 @@ EVENTIDE_GATES_INLINE void narrow_pixels(const CompressRow& r, const float* in, 
             _mm512_mask_storeu_epi32(out, stored, both);
             continue;
         }
-        const auto put = [&](int map, __m128i quad) EVENTIDE_GATES {
+        const auto put = [&](int map, __m128i quad) EVENTIDE_BF16 {
             if (map < r.maps)
                 _mm_storeu_si128(reinterpret_cast<__m128i*>(out + map * r.plane), quad);
         };
@@ -175,7 +160,7 @@ EVENTIDE_GATES_INLINE void narrow_pixels(const CompressRow& r, const float* in, 
 }
 
 /// A few pixels at a time, which stay in the first-level cache.
-EVENTIDE_GATES void compress_row(const CompressRow& r) {
+EVENTIDE_BF16 void compress_row(const CompressRow& r) {
     constexpr int kRoom = 1024;
     alignas(64) float room[kRoom + kLanes];
     const int most = kRoom / r.channels;

@@ -15,19 +15,13 @@
 #include <utility>
 
 #if defined(__x86_64__)
-#include <immintrin.h>
-#define EVENTIDE_BF16 __attribute__((target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16")))
-#define EVENTIDE_BF16_INLINE EVENTIDE_BF16 __attribute__((always_inline)) inline
+#include "src/kernels/bf16_vectors.h"
 #endif
 
 namespace eventide {
 
 #if defined(__x86_64__)
 namespace {
-
-EVENTIDE_BF16_INLINE __mmask16 first_lanes(int n) {
-    return __mmask16(n >= 16 ? 0xffffu : (1u << unsigned(std::max(n, 0))) - 1u);
-}
 
 /// 16 sums in a register, or 8.
 struct Wide {
@@ -207,12 +201,6 @@ void pixels_to_bf16(const float* in, std::size_t pixels, int channels, std::uint
     channels % 2 != 0 && channels < kTwoVectors
         ? odd_pixels_to_bf16(in, pixels, channels, out)
         : convert_pixels(row_to_bf16, in, pixels, channels, out);
-}
-
-/// 16 bf16 numbers as float32.
-EVENTIDE_BF16_INLINE __m512 widened(const std::uint16_t* from, __mmask16 mask) {
-    return _mm512_castsi512_ps(
-        _mm512_slli_epi32(_mm512_cvtepu16_epi32(_mm256_maskz_loadu_epi16(mask, from)), 16));
 }
 
 /// Sample by sample, for the two pixels it is left of: the one on it, and the one before the next.

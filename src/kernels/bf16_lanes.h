@@ -3,6 +3,7 @@
 #pragma once
 
 #include "src/kernels/amx_tiles.h"
+#include "src/kernels/bf16_vectors.h"
 #include "src/kernels/render_kernels.h"
 
 #include <algorithm>
@@ -12,9 +13,6 @@ namespace eventide::amx {
 
 constexpr int kRun = kTileRows, kBoth = 2 * kRun;  // pixels of a tile, and that go through together
 
-EVENTIDE_AMX_INLINE __mmask16 first_lanes(int n) {
-    return __mmask16(n >= 16 ? 0xffffU : (1U << unsigned(std::max(n, 0))) - 1U);
-}
 /// Of two vectors, one behind the other: the even lanes, the odd ones.
 EVENTIDE_AMX_INLINE __m512i evens() {
     return _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);

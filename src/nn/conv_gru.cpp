@@ -32,9 +32,6 @@
 namespace eventide {
 namespace {
 
-/// States are larger than a core's cache, and pieces of rows too short for its own foresight.
-constexpr int kRowsAhead = 2;
-
 std::size_t square(int n) {
     return std::size_t(n) * std::size_t(n);
 }
@@ -190,8 +187,7 @@ void ConvGru::update_rounded(StateMap& state, std::size_t i, const Mask* mask, f
     const std::ptrdiff_t unit = units(), both = 2 * std::ptrdiff_t(channels_);
     float* next = next_[i % next_.size()].data();
     for (int y = tile.y0; y < tile.y1; ++y, next += tile.width() * unit) {
-        const std::ptrdiff_t ahead =
-            y + kRowsAhead < tile.y1 ? kRowsAhead * state.exact().pitch() : 0;
+        const std::ptrdiff_t ahead = to_row_ahead(tile, y, state.exact().pitch());
         const auto is_masked = [&](int x) { return mask == nullptr || (*mask)(y, x) != 0; };
         for (int x = tile.x0, end = x; x < tile.x1; x = end) {
             while (end < tile.x1 && is_masked(end) == is_masked(x)) ++end;

@@ -90,6 +90,14 @@ inline void fill_groups(Mask& mask, const std::vector<Tile>& tiles, int size) {
             }
 }
 
+/// From row y of a tile to the row that is fetched meanwhile, in numbers, rows `pitch` apart; 0
+/// where it is past the tile's last. Maps are larger than a core's cache, and pieces of rows too
+/// short for its own foresight.
+inline std::ptrdiff_t to_row_ahead(const Tile& tile, int y, std::ptrdiff_t pitch) {
+    constexpr int kRows = 2;
+    return y + kRows < tile.y1 ? kRows * pitch : 0;
+}
+
 /// How a latent map is cut wherever its changes are kept track of (LatentMap::history).
 constexpr int kLatentSide = 32;
 inline std::vector<Tile> latent_tiles(int height, int width) {

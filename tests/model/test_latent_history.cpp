@@ -20,6 +20,18 @@ Encoder make_encoder(const Model& model) {
     return {model, kWidth, kHeight, options};
 }
 
+/// Of the newest event window that the lookahead allows.
+void expect_same_frames(Renderer& one, Renderer& other, const VoxelGrid& newest, int lookahead) {
+    RenderRequest request;
+    request.lookahead = lookahead;
+    request.t = newest.window.end - SensorDuration{50'000 * lookahead + 10'000};
+    Frame a = one.make_output(request), b = other.make_output(request);
+    one.render(request, a);
+    other.render(request, b);
+    ASSERT_EQ(a.intensity, b.intensity);
+    ASSERT_EQ(a.sigma, b.sigma);
+}
+
 /// A stream with silence, patches and bursts, step by step into buffers that take turns, as a
 /// pipeline's do.
 TEST(LatentHistory, BuffersThatTakeTurnsHoldWhatFreshOnesDo) {
@@ -98,14 +110,8 @@ TEST(LatentHistory, TheRendererRendersAsWithoutIt) {
         bare.history = {};
         with.push(latent);
         without.push(bare);
-        RenderRequest request;
-        request.lookahead = k % 30 > 3 ? k % 3 : 0;
-        request.t = grid.window.end - SensorDuration{50'000 * request.lookahead + 10'000};
-        Frame a = with.make_output(request), b = without.make_output(request);
-        with.render(request, a);
-        without.render(request, b);
-        ASSERT_EQ(a.intensity, b.intensity) << "event window " << k;
-        ASSERT_EQ(a.sigma, b.sigma);
+        ASSERT_NO_FATAL_FAILURE(expect_same_frames(with, without, grid, k % 30 > 3 ? k % 3 : 0))
+            << "event window " << k;
     }
 }
 
@@ -138,14 +144,9 @@ TEST(LatentHistory, AMapThatIsTakenGivesTheFramesOfOneThatIsCopied) {
                 ASSERT_EQ(latent.values, fresh.values) << "codes left in place are renewed, " << k;
                 taking.take(latent);
                 copying.push(fresh);
-                RenderRequest request;
-                request.lookahead = k % 35 > 3 ? k % 3 : 0;
-                request.t = grid.window.end - SensorDuration{50'000 * request.lookahead + 10'000};
-                Frame a = taking.make_output(request), b = copying.make_output(request);
-                taking.render(request, a);
-                copying.render(request, b);
-                ASSERT_EQ(a.intensity, b.intensity) << "event window " << k;
-                ASSERT_EQ(a.sigma, b.sigma);
+                ASSERT_NO_FATAL_FAILURE(
+                    expect_same_frames(taking, copying, grid, k % 35 > 3 ? k % 3 : 0))
+                    << "event window " << k;
             }
         }
 }

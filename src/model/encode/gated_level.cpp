@@ -17,9 +17,6 @@ namespace {
 /// has tiles of 12, too.
 constexpr int kSides[] = {48, 24, 16, 12};
 
-/// Grids are larger than a core's cache, and pieces of rows too short for its own foresight.
-constexpr int kRowsAhead = 2;
-
 /// Enough tiles for all threads, few enough that not every tile's next state is held at once.
 constexpr std::size_t kLeastGroup = 32;
 
@@ -208,7 +205,7 @@ void GatedLevel::feed_grid(const Array3<float>& grid, const Target& target,
     float* rest = scratch + maps_ * plane;
     for (int y = inside.y0; y < inside.y1; ++y) {
         const std::ptrdiff_t ahead =
-            y + kRowsAhead < inside.y1 ? kRowsAhead * std::ptrdiff_t(grid.width()) * channels : 0;
+            to_row_ahead(inside, y, std::ptrdiff_t(grid.width()) * channels);
         const float* from = grid.pixel(y, inside.x0).data();
         float* to = scratch + (y - wide.y0) * row + (inside.x0 - wide.x0) * units;
         if (numbers.bf16() != nullptr) {
