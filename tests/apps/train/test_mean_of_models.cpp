@@ -1,12 +1,18 @@
-// The mean of several trainings of one network.
+// What is done to trained weights: their mean, and more contrast.
+#include "apps/train/contrast.h"
 #include "apps/train/mean_of_models.h"
 #include "src/core/error.h"
+#include "src/model/encode/encoder.h"
+#include "src/model/render/renderer.h"
+#include "tests/model/streams.h"
 #include "tests/support/random_model.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -68,6 +74,42 @@ TEST(MeanOfModels, RefusesOtherShapesAndOtherSums) {
     EXPECT_THROW(mean_of({{one, .5}, {other, .5}}), Error);
     EXPECT_THROW(mean_of({{one, .5}, {one, .4}}), Error);
     EXPECT_THROW(mean_of({}), Error);
+}
+
+/// At the end of the third event window of one stream.
+Frame frame_of(const Model& model) {
+    Encoder encoder{model, 48, 32};
+    Renderer renderer{model, 48, 32};
+    test::GridStream stream{model.config, 32, 48, 5};
+    LatentMap latent = encoder.make_output();
+    for (int k = 0; k < 3; ++k) {
+        encoder.encode(stream.next(test::GridStream::Kind::patch), latent);
+        renderer.push(latent);
+    }
+    RenderRequest request;
+    request.t = latent.window.end;
+    Frame frame = renderer.make_output(request);
+    renderer.render(request, frame);
+    return frame;
+}
+
+TEST(Contrast, IsThatOfTheFramesAndOfNothingElse) {
+    Model model = test::random_model(tiny(), 1);
+    const Frame before = frame_of(model);
+    stretch_contrast(model, 1.25, .4);
+    const Frame after = frame_of(model);
+    const auto expected = before.intensity.values(), found = after.intensity.values();
+    for (std::size_t i = 0; i < found.size(); ++i)
+        ASSERT_NEAR(found[i], .4 + 1.25 * (expected[i] - .4), 1e-5) << i;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        ASSERT_NEAR(after.sigma.values()[i], before.sigma.values()[i], 1e-6) << i;
+}
+
+TEST(Contrast, IsAGainAboveZeroAroundAnIntensity) {
+    Model model = test::random_model(tiny(), 1);
+    for (const auto& [gain, around] :
+         {std::pair{0., .5}, {-1., .5}, {NAN, .5}, {1., 1.5}, {1., NAN}})
+        EXPECT_THROW(stretch_contrast(model, gain, around), Error) << gain << " " << around;
 }
 
 }  // namespace
