@@ -24,24 +24,24 @@ bool pays_by_winograd(const plain::ConvWeights<float>& weights, int stride,
 
 PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                        const Backend& backend, std::vector<Extent> extents,
-                       std::vector<int> sources, bool as_one)
+                       std::vector<int> sources, Sums sums)
     : stride_(stride),
       side_(weights.side),
       inputs_(weights.in),
       outputs_(weights.out),
       sources_(std::move(sources)),
-      as_one_(as_one),
+      as_one_(sums == Sums::as_one),
       numbers_(backend) {
     if (sources_.empty()) sources_ = {weights.in};
     assert(std::accumulate(sources_.begin(), sources_.end(), 0) == weights.in);
     assert(sources_.size() <= ConvArea::kMaxSources);
-    assert(!as_one || sources_.size() == 1 || !backend.onednn);
+    assert(!as_one_ || sources_.size() == 1 || !backend.onednn);
     if (backend.onednn && side_ == 3) {
         onednn_ = std::make_shared<const OnednnConv>(weights, stride, relu, backend.bf16,
                                                      std::move(extents));
         return;
     }
-    if (pays_by_winograd(weights, stride, backend)) {
+    if (sums != Sums::by_pixel && pays_by_winograd(weights, stride, backend)) {
         winograd_ = std::make_shared<const WinogradConv>(weights, sources_, relu, backend);
         return;
     }

@@ -13,16 +13,22 @@
 
 namespace eventide {
 
+/// How a layer's products are summed up.
+enum class Sums {
+    best,      ///< map by map, or by Winograd's sums of a group of outputs where those pay
+    as_one,    ///< the same, as if all channels lay in one map
+    by_pixel,  ///< map by map: no output's bits hang on what its neighbours read
+};
+
 class PackedConv {
 public:
     PackedConv() = default;
     /// `extents`: of the regions run() is called for. Our own kernels take any region; they run
     /// every layer of 1x1. `sources`: how many of the input's channels lie in which map; all in one
-    /// where it is empty. `as_one`: products are summed up as if all lay in one, whatever `sources`
-    /// says.
+    /// where it is empty.
     PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                const Backend& backend, std::vector<Extent> extents = {},
-               std::vector<int> sources = {}, bool as_one = false);
+               std::vector<int> sources = {}, Sums sums = Sums::best);
 
     const Numbers& numbers() const { return numbers_; }
     /// Outputs of a row that are rounded together, counted from a region's first: where what one of

@@ -1,6 +1,7 @@
 // What a latent map says of its changes: copies that are renewed in part are whole copies.
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
+#include "src/nn/tiling.h"
 #include "tests/model/streams.h"
 #include "tests/support/random_model.h"
 
@@ -87,6 +88,35 @@ TEST(LatentHistory, OnlyWhatIsTouchedChanges) {
     const auto changed = std::ranges::count(z.history.changed, z.history.step);
     EXPECT_GE(changed, 1);
     EXPECT_LT(changed, std::ssize(z.history.changed));
+}
+
+/// Of a network as deep as the default: the gate's 12 px, 16 that a pixel of the deepest level
+/// has, 64 of the blocks' four layers there, and on the way up 5, 5, 5, 5 and 4 pixels (of 8, 4, 2,
+/// 1 and 1 px) of doubling, a layer, and groups of outputs that are rounded together.
+TEST(LatentHistory, AChangeReachesNoFurtherThanTheLayersDo) {
+    constexpr int kFar = 12 + 16 + 64 + 5 * (8 + 4 + 2 + 1) + 4, kWide = 800, kAt = kWide / 2;
+    ModelConfig config = test::small_config();
+    config.widths = {8, 8, 8, 8, 8};
+    config.recurrent = {1, 0, 0, 0, 0};
+    config.res_blocks = 2;
+    config.gate_radius = 12;
+    config.gate_spread = 0;
+    EngineOptions options;
+    options.precision = Precision::f32;
+    Encoder encoder{test::random_model(config, 1), kWide, 48, options};
+    GridStream stream{config, 48, kWide, 4};
+    LatentMap z = encoder.make_output();
+    encoder.encode(stream.next(Kind::everywhere), z);
+    VoxelGrid grid = stream.next(Kind::silence);
+    grid.values(24, kAt, 3) = 1;
+    grid.touched(24, kAt) = 1;
+    encoder.encode(grid, z);
+    const std::vector<Tile> tiles = latent_tiles(48, kWide);
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+        if (z.history.changed[i] == z.history.step) {
+            EXPECT_LE(tiles[i].x0, kAt + kFar);
+            EXPECT_GT(tiles[i].x1, kAt - kFar);
+        }
 }
 
 /// The same latent maps with and without their history give the same frames.

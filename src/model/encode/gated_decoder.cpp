@@ -18,9 +18,10 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
       numbers_(backend),
       latent_size_(levels[top_].size()) {
     const auto conv = [&](const std::string& name, bool relu, const std::vector<Tile>& tiles,
-                          Extent size, const std::vector<int>& sources = {}) {
-        return PackedConv{plain::conv_weights<float>(model.weights, name), 1,      relu, backend,
-                          extents_of(tiles, 0, size.height, size.width),   sources};
+                          Extent size, const std::vector<int>& sources = {},
+                          Sums sums = Sums::best) {
+        return PackedConv{plain::conv_weights<float>(model.weights, name), 1,       relu, backend,
+                          extents_of(tiles, 0, size.height, size.width),   sources, sums};
     };
     // A worker's scratch: what is joined for a layer, then what the layer needs itself.
     const auto need = [&](std::size_t joined, const PackedConv& made, int side) {
@@ -42,11 +43,14 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
     const auto [height, width] = deepest.size();
     const PaddedMap map{height, width, numbers_.units(widths_.back())};
     const PaddedMap sum{height, width, widths_.back()};
+    // By groups of four a change would reach four pixels of the deepest level further in each
+    // layer, 64 of the sensor's; and so small a map gains no time by them.
     for (std::size_t i = 0; i < std::size_t(model.config.res_blocks); ++i) {
         const std::string name = encoder_layer("res", i);
         const Block& block = blocks_.emplace_back(
-            Block{conv(name + ".0", true, deepest.tiles(), deepest.size()),
-                  conv(name + ".1", false, deepest.tiles(), deepest.size()), map, map, sum});
+            Block{conv(name + ".0", true, deepest.tiles(), deepest.size(), {}, Sums::by_pixel),
+                  conv(name + ".1", false, deepest.tiles(), deepest.size(), {}, Sums::by_pixel),
+                  map, map, sum});
         // A row of h in float32, for add().
         need(std::size_t(deepest.side() * widths_.back()), block.first, deepest.side());
         need(0, block.second, deepest.side());
@@ -123,14 +127,12 @@ void GatedDecoder::run_blocks(const GatedLevel& deepest, const PaddedMap& h, boo
                     [&](std::size_t, const Tile& tile, float* scratch) {
                         convolve(block.first, *d, block.inner, true, tile, scratch);
                     });
-        fill_groups(level.touched, deepest.tiles(), block.first.group());
         spread(level);
         runner.over(deepest.tiles(), level.touched,
                     [&](std::size_t, const Tile& tile, float* scratch) {
                         convolve(block.second, block.inner, block.sum, false, tile, scratch);
                         add(*before, is_float, block, tile, scratch);
                     });
-        fill_groups(level.touched, deepest.tiles(), block.second.group());
         d = &block.out;
         before = &block.sum;
         is_float = true;

@@ -93,7 +93,7 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size, cons
            backend,
            extents_of(tiles_, gru_.reach(), size.height, size.width),
            std::vector<int>(std::size_t(maps_), map_channels_),
-           maps_ > 1};
+           maps_ > 1 ? Sums::as_one : Sums::best};
 }
 
 void GatedLevel::make_gru(const Model& model, const Backend& backend) {
