@@ -111,8 +111,7 @@ void ColourRenderStage::make_taps(const Frame& frame) {
     }
 }
 
-void ColourRenderStage::push(const LatentMap& latent) noexcept {
-    all_.push(latent);
+void ColourRenderStage::take(LatentMap& latent) noexcept {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         LatentMap& codes = codes_[c];
         copy_stamp(latent, codes);
@@ -120,8 +119,9 @@ void ColourRenderStage::push(const LatentMap& latent) noexcept {
         if (!latent.events_per_pixel.empty())
             take_site(latent.events_per_pixel, site_of(filter_, kColourChannels[c]),
                       codes.events_per_pixel);
-        channels_[c]->push(codes);
+        channels_[c]->take(codes);
     }
+    all_.take(latent);
 }
 
 void ColourRenderStage::finish() noexcept {

@@ -50,7 +50,7 @@ public:
                       const LatentMap& codes);
 
     Frame make_output() const override;
-    void push(const LatentMap& latent) noexcept override;
+    void take(LatentMap& latent) noexcept override;
     void finish() noexcept override;
     void reset() noexcept override;
     void render(SensorTime t, const Window& window, Frame& frame) noexcept override;

@@ -30,10 +30,6 @@ public:
     }
 
     Frame make_output() const override { return renderer_.make_output(request_); }
-    void push(const LatentMap& latent) noexcept override {
-        renderer_.push(latent);
-        take_images(latent);
-    }
     void take(LatentMap& latent) noexcept override {
         renderer_.take(latent);
         take_images(latent);

@@ -14,15 +14,14 @@ class RenderStage {
 public:
     virtual ~RenderStage() = default;
     virtual Frame make_output() const = 0;
-    /// The next event window's latent map; its window follows the one before.
-    virtual void push(const LatentMap& latent) noexcept = 0;
-    /// The same; may keep the codes, and leave those of a map before in their place.
-    virtual void take(LatentMap& latent) noexcept { push(latent); }
+    /// The next event window's latent map; its window follows the one before. May keep the codes,
+    /// and leave those of a map before in their place.
+    virtual void take(LatentMap& latent) noexcept = 0;
     /// No latent map will come any more, until reset(): the rest is rendered at the live edge.
     virtual void finish() noexcept = 0;
     /// Fills `frame.intensity` and `frame.sigma`; the pipeline fills the rest. t lies in `window`,
-    /// (begin, end] and for the first one also its begin, which is the newest one pushed or at most
-    /// two before it. As many latent maps were pushed as the lookahead says, and not one more.
+    /// (begin, end] and for the first one also its begin, which is the newest one taken or at most
+    /// two before it. As many latent maps were taken as the lookahead says, and not one more.
     virtual void render(SensorTime t, const Window& window, Frame& frame) noexcept = 0;
     virtual void reset() noexcept = 0;  ///< as constructed
 

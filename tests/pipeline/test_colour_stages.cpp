@@ -43,7 +43,7 @@ public:
         frame.intensity = frame.sigma = Array2<float>(out_height_, out_width_);
         return frame;
     }
-    void push(const LatentMap& latent) noexcept override { newest_ = latent.values; }
+    void take(LatentMap& latent) noexcept override { newest_ = latent.values; }
     void finish() noexcept override {}
     void reset() noexcept override {}
     void render(SensorTime, const Window&, Frame& frame) noexcept override {
@@ -104,7 +104,7 @@ TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
                                  kHeight,    {width, height, 0, 0},
                                  latent};
         encode.encode(grid(), latent);
-        render.push(latent);
+        render.take(latent);
         Frame frame = render.make_output();
         render.render({}, {}, frame);
         ASSERT_EQ(frame.colour[0].width(), width);

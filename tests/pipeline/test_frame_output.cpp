@@ -210,7 +210,7 @@ TEST(FrameOutput, ClosesAllSinksThoughOneFails) {
 class BreakingRenderer final : public RenderStage {
 public:
     Frame make_output() const override { return good_.make_output(); }
-    void push(const LatentMap& latent) noexcept override { good_.push(latent); }
+    void take(LatentMap& latent) noexcept override { good_.take(latent); }
     void finish() noexcept override { good_.finish(); }
     void reset() noexcept override { good_.reset(); }
     void render(SensorTime t, const Window& window, Frame& frame) noexcept override {

@@ -133,18 +133,18 @@ TEST(ModelRenderStage, CountsTheImagesThatCorrectNothing) {
     latent.events_per_pixel = Array2<float>(kHeight, kWidth);
     latent.images = 2;
     latent.reset_before = true;
-    stage.push(latent);
+    stage.take(latent);
     EXPECT_EQ(stage.dropped_images(), 2U) << "of a clock that began anew since";
     three[2].t = from_us(30'000);
     images.put({three[2]});
     latent.reset_before = false;
     latent.images = 3;
     latent.window = {from_us(20'000), from_us(25'000)};
-    stage.push(latent);
+    stage.take(latent);
     EXPECT_EQ(stage.used_images(), 1U);
     latent.images = 4;
     latent.window = {from_us(25'000), from_us(29'000)};
-    stage.push(latent);
+    stage.take(latent);
     stage.reset();
     EXPECT_EQ(stage.dropped_images(), 3U) << "it was still waiting for its time";
 }

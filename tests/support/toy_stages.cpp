@@ -174,7 +174,7 @@ Frame ToyRenderer::make_output() const {
     return frame;
 }
 
-void ToyRenderer::push(const LatentMap& latent) noexcept {
+void ToyRenderer::take(LatentMap& latent) noexcept {
     auto kept = kept_[count_++ % kept_.size()].values();
     std::copy(latent.values.values().begin(), latent.values.values().end(), kept.begin());
 }

@@ -136,7 +136,7 @@ public:
         kept_.fill(Array3<float>(height, width, 2));
     }
     Frame make_output() const override;
-    void push(const LatentMap& latent) noexcept override;
+    void take(LatentMap& latent) noexcept override;
     void finish() noexcept override { finished = true; }
     void render(SensorTime t, const Window& window, Frame& frame) noexcept override;
     void reset() noexcept override;

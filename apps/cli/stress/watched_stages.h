@@ -73,7 +73,6 @@ public:
     JudgedRenderStage(Renderer& renderer, const RenderRequest& request, Judge* judge)
         : stage_{renderer, request}, request_{request}, judge_{judge} {}
     Frame make_output() const override { return stage_.make_output(); }
-    void push(const LatentMap& latent) noexcept override { stage_.push(latent); }
     void take(LatentMap& latent) noexcept override { stage_.take(latent); }
     void finish() noexcept override { stage_.finish(); }
     void reset() noexcept override { stage_.reset(); }
