@@ -170,6 +170,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("range", o.data.scene.dynamic_range, "white over black of scenes");
     add("target-mean", o.data.scene.target_mean, "mean of what the exposed camera shows");
     add("target-deviation", o.data.scene.target_deviation, "standard deviation of the same");
+    add("target-black", o.data.scene.target_black,
+        "level darkness is read out as; below 0: cut off");
+    add("saturated", o.data.scene.target_white_below_one, "share of cameras that clip below 1");
     add("light-changes", o.data.scene.light_change_probability, "share of scenes");
     add("flicker", o.data.scene.flicker_probability, "share of scenes under mains light");
     add("threshold", o.data.sensor.threshold, "ln of the light's change");
