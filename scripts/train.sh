@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Trains the default network (MODEL=small: the small one; MODEL=default_up: the default with its way down as it is) on, from its committed checkpoint, and writes the checkpoint anew.
+# Trains the default network (MODEL=small: the small one; MODEL=default_up, small_up: those with their way down as it is) on, from its committed checkpoint, and writes the checkpoint anew.
 #   scripts/train.sh DATA MINUTES [OPTIONS]     DATA as in scripts/accuracy.sh; MINUTES of wall clock, from now on;
 # OPTIONS of eventide-train, which the checkpoint keeps.
 # One thread at low priority, at the full learning rate (CONSTANT=.6: it falls in the last two fifths of all minutes so
