@@ -12,6 +12,7 @@
 namespace eventide::fused {
 
 namespace any_processor {
+constexpr int kVectorBytes = 16, kRegisters = 16;
 #include "apps/train/fused/fused_render_loops.inl"
 }  // namespace any_processor
 
@@ -22,12 +23,14 @@ namespace any_processor {
 #pragma GCC push_options
 #pragma GCC target("arch=haswell")
 namespace avx2 {
+constexpr int kVectorBytes = 32, kRegisters = 16;
 #include "apps/train/fused/fused_render_loops.inl"
 }  // namespace avx2
 #pragma GCC pop_options
 #pragma GCC push_options
 #pragma GCC target("arch=skylake-avx512,prefer-vector-width=512")
 namespace avx512 {
+constexpr int kVectorBytes = 64, kRegisters = 32;
 #include "apps/train/fused/fused_render_loops.inl"
 }  // namespace avx512
 #pragma GCC pop_options

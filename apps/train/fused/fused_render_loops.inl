@@ -1,12 +1,17 @@
 // The loops of the fused renderer: blocks of points through two hidden layers of one width, forward
-// and backward. Included once for each instruction set, in a namespace of its own: vectors wider
-// than what a function is compiled for are taken apart before it is inlined anywhere.
+// and backward. Included once for each instruction set, in a namespace of its own that says how wide
+// its registers are (kVectorBytes) and how many it has (kRegisters): compilers take wider vectors
+// apart through memory.
 
-/// A row of numbers as vectors of 16: compilers keep these in registers where arrays spill.
+/// A row of numbers as vectors: compilers keep these in registers where arrays spill.
 template <int H, typename W>
 struct Row {
-    static constexpr int kCount = H / 16;
-    typedef W V __attribute__((vector_size(16 * sizeof(W))));
+    static constexpr int kLanes = kVectorBytes / int(sizeof(W)), kCount = H / kLanes;
+    /// Rows summed together: three of four registers hold sums, the rest what is multiplied.
+    static constexpr int kTogether = std::clamp(kRegisters * 3 / 4 / kCount / 2 * 2, 1, 4);
+    typedef W V __attribute__((vector_size(kVectorBytes)));
+    /// A vector among numbers. A copy of the whole row by memcpy would go through the stack.
+    typedef W InMemory __attribute__((vector_size(kVectorBytes), aligned(sizeof(W)), may_alias));
     V part[kCount];
 
     EVENTIDE_INLINE static Row zero() {
@@ -16,10 +21,13 @@ struct Row {
     }
     EVENTIDE_INLINE static Row load(const W* from) {
         Row row;
-        std::memcpy(&row, from, sizeof row);
+        for (int j = 0; j < kCount; ++j)
+            row.part[j] = reinterpret_cast<const InMemory*>(from)[j];
         return row;
     }
-    EVENTIDE_INLINE void store(W* to) const { std::memcpy(to, this, sizeof *this); }
+    EVENTIDE_INLINE void store(W* to) const {
+        for (int j = 0; j < kCount; ++j) reinterpret_cast<InMemory*>(to)[j] = part[j];
+    }
     EVENTIDE_INLINE void add(W factor, const Row& other) {
         for (int j = 0; j < kCount; ++j) part[j] += factor * other.part[j];
     }
@@ -35,9 +43,9 @@ struct Row {
     EVENTIDE_INLINE W dot(const Row& other) const {
         V sum = part[0] * other.part[0];
         for (int j = 1; j < kCount; ++j) sum += part[j] * other.part[j];
-        W stream[16];
+        W stream[kLanes];
         std::memcpy(stream, &sum, sizeof stream);
-        for (int step = 8; step > 0; step /= 2)
+        for (int step = kLanes / 2; step > 0; step /= 2)
             for (int k = 0; k < step; ++k) stream[k] += stream[k + step];
         return stream[0];
     }
@@ -46,7 +54,7 @@ struct Row {
 /// y = x w, [kPoints][H] each, w [H][H] as [in][out]; every row begins as `start`.
 template <int H, typename W>
 EVENTIDE_INLINE void product(const W* x, const W* w, const Row<H, W>& start, W* y) {
-    constexpr int kTogether = 4;
+    constexpr int kTogether = Row<H, W>::kTogether;
     for (int p = 0; p < kPoints; p += kTogether) {
         Row<H, W> sum[kTogether];
         for (int q = 0; q < kTogether; ++q) sum[q] = start;
@@ -61,7 +69,7 @@ EVENTIDE_INLINE void product(const W* x, const W* w, const Row<H, W>& start, W* 
 /// sum[i][o] += over points x[p][i] g[p][o].
 template <int H, typename W>
 EVENTIDE_INLINE void outer_product(const W* x, const W* g, W* sum) {
-    constexpr int kTogether = 4;
+    constexpr int kTogether = Row<H, W>::kTogether;
     for (int i = 0; i < H; i += kTogether) {
         Row<H, W> part[kTogether];
         for (int q = 0; q < kTogether; ++q) part[q] = Row<H, W>::load(sum + (i + q) * H);
