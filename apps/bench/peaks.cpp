@@ -16,7 +16,8 @@
 namespace eventide::bench {
 namespace {
 
-constexpr int kRounds = 100'000, kRepetitions = 30;
+// Some .2 s of each kind: in its first tens of milliseconds a process may get half of a core.
+constexpr int kRounds = 100'000, kRepetitions = 1'000, kCopies = 30;
 
 /// Keeps the compiler from doing a loop once, or never.
 template <typename T>
@@ -126,7 +127,7 @@ double rate_of(float (*loop)(int), double products) {
 double copy_rate() {
     constexpr std::size_t kBytes = std::size_t{64} << 20;
     std::vector<char> from(kBytes, 1), to(kBytes, 2);
-    const Timing timing = timed(kRepetitions, [&](int) {
+    const Timing timing = timed(kCopies, [&](int) {
         std::memcpy(to.data(), from.data(), kBytes);
         use(to[0]);
     });

@@ -17,8 +17,8 @@ struct Peaks {
     double f32() const;  ///< the best of them
 };
 
-/// Medians of some 30 short runs, in processor time, on the caller's thread. Which kinds: those
-/// that the kernels may use.
+/// The best of many short runs, in processor time, on the caller's thread: a second in all. Which
+/// kinds: those that the kernels may use.
 Peaks measure_peaks(Instructions most);
 
 }  // namespace eventide::bench

@@ -52,6 +52,12 @@ struct Sums {
         a = hn::MulAdd(value, weight_a, a);
         if (kTwo) b = hn::MulAdd(value, weight_b, b);
     }
+    /// visit(pixel, a, b) from pixel 0 on.
+    template <typename Visit>
+    HWY_INLINE void each(const Visit& visit) const {
+        before.each(visit);
+        visit(P - 1, a, b);
+    }
     HWY_INLINE void store(float* out, std::ptrdiff_t step, int outputs, Vector floor) const {
         before.store(out, step, outputs, floor);
         const int lanes = int(hn::Lanes(Tag()));
@@ -65,6 +71,8 @@ struct Sums<Tag, 0, kTwo> {
     using Vector = hn::Vec<Tag>;
     HWY_INLINE void start(Vector, Vector) {}
     HWY_INLINE void add(const float*, std::ptrdiff_t, Vector, Vector) {}
+    template <typename Visit>
+    HWY_INLINE void each(const Visit&) const {}
     HWY_INLINE void store(float*, std::ptrdiff_t, int, Vector) const {}
 };
 

@@ -9,6 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/kernels/vector_kernels.cpp"
 #include <hwy/foreach_target.h>
+#include "src/kernels/hidden_rows-inl.h"
 #include "src/kernels/render_kernels-inl.h"
 #include "src/kernels/vector_dots-inl.h"
 #include "src/kernels/vector_maps-inl.h"
@@ -125,6 +126,7 @@ const VectorKernels* table() {
                                        .are_near = are_near,
                                        .offset_rows = offset_rows,
                                        .two_outputs = two_outputs,
+                                       .hidden_rows = hidden_rows,
                                        .weigh_rows = weigh_rows,
                                        .scaled_exp = scaled_exp};
     return &kernels;

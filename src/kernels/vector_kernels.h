@@ -56,6 +56,8 @@ struct VectorKernels {
     bool (*are_near)(const float* a, const float* b, float bound, std::size_t n);
     void (*offset_rows)(const OffsetRows&);
     void (*two_outputs)(const TwoOutputs&);
+    /// False, and nothing done, for layers it is not made for.
+    bool (*hidden_rows)(const HiddenRows&);
     void (*weigh_rows)(const WeighRows&);
     /// out = scale exp(in), |in| up to 40
     void (*scaled_exp)(const float* in, float scale, float* out, std::size_t n);

@@ -84,12 +84,15 @@ void PackedWeights::run(DotArea area) const noexcept {
 }
 
 bool PackedWeights::run(HiddenRows rows) const noexcept {
-    const Bf16Kernels* bf16 = numbers_.bf16();
-    if (bf16 == nullptr || bf16->hidden_rows == nullptr || !relu_) return false;
-    rows.weight = pairs_.data();
+    if (!relu_) return false;
     rows.bias = bias_.data();
     rows.outputs = outputs_;
-    return bf16->hidden_rows(rows);
+    if (const Bf16Kernels* bf16 = numbers_.bf16()) {
+        rows.weight = pairs_.data();
+        return bf16->hidden_rows != nullptr && bf16->hidden_rows(rows);
+    }
+    rows.weight = weight_.data();
+    return lanes_ == numbers_.kernels().lanes && numbers_.kernels().hidden_rows(rows);
 }
 
 void PackedWeights::run(const void* in, std::ptrdiff_t pitch, std::ptrdiff_t step, int count,

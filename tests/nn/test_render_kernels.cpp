@@ -168,5 +168,115 @@ TEST(RenderKernels, HiddenRowsAreTheLayersOneByOne) {
     for (const Bf16Kernels* kernels : test::all_bf16_kernels()) expect_hidden_rows(*kernels);
 }
 
+/// Numbers for layers of `width` and `outputs` at `pixels` pixels, and the same as HiddenRows.
+struct FloatRows {
+    static constexpr int kColumns = 9;
+    std::vector<float> sums, dx, base, slope, hidden, weight, bias, last;
+    float last_bias[2] = {0.25F, -1};
+    std::vector<int> column;
+    int pixels, width, outputs;
+
+    FloatRows(const VectorKernels& kernels, int pixel_count, int inputs, int output_count,
+              bool is_alike)
+        : pixels(pixel_count), width(inputs), outputs(output_count) {
+        test::Numbers numbers{4};
+        const auto n = std::size_t(width), o = std::size_t(outputs), count = std::size_t(pixels),
+                   lanes = std::size_t(kernels.lanes);
+        sums = numbers.many(kColumns * n, Fill::ordinary);
+        dx = is_alike ? std::vector<float>(count, 0.25F) : numbers.many(count, Fill::ordinary);
+        base = numbers.many(n, Fill::ordinary);
+        slope = numbers.many(n, Fill::ordinary);
+        last = numbers.many(2 * o, Fill::ordinary);
+        hidden = numbers.many(n * o, Fill::ordinary);
+        bias = numbers.many(o, Fill::ordinary);
+        bias.resize((o + lanes - 1) / lanes * lanes);
+        for (int p = 0; p < pixels; ++p) column.push_back(p * 5 % kColumns);
+        // As packed_size() says.
+        weight.resize(packed_size(1, width, outputs, kernels.lanes));
+        auto to = weight.begin();
+        for (std::size_t first = 0; first < o;) {
+            const std::size_t block = o - first > lanes ? 2 * lanes : lanes;
+            for (std::size_t k = 0; k < n; ++k)
+                for (std::size_t i = first; i < first + block; ++i)
+                    *to++ = i < o ? hidden[k * o + i] : 0;
+            first += block;
+        }
+    }
+    HiddenRows rows(std::size_t begin, int count, float* mu, float* log_sigma) const {
+        return {{sums.data(), 0, column.data() + begin, dx.data() + begin, base.data(),
+                 slope.data(), count, width, nullptr},
+                weight.data(),
+                bias.data(),
+                outputs,
+                last.data(),
+                last_bias,
+                mu,
+                log_sigma};
+    }
+    double expected(std::size_t p, std::size_t which) const {
+        const auto n = std::size_t(width), o = std::size_t(outputs);
+        double result = last_bias[which];
+        for (std::size_t i = 0; i < o; ++i) {
+            double sum = bias[i];
+            for (std::size_t k = 0; k < n; ++k)
+                sum +=
+                    hidden[k * o + i] * std::max(0.0, double(sums[std::size_t(column[p]) * n + k]) +
+                                                          base[k] + double(dx[p]) * slope[k]);
+            result += last[which * o + i] * std::max(0.0, sum);
+        }
+        return result;
+    }
+};
+
+TEST(RenderKernels, HiddenRowsOfFloatsAreTheLayersOneByOne) {
+    with_each([&](const VectorKernels& k) {
+        for (const auto& [width, outputs] :
+             {std::pair{32, 32}, {16, 16}, {64, 64}, {32, 20}, {16, 40}, {48, 9}})
+            for (const int pixels : {0, 1, 6, 13, 48, 61, 240})
+                for (const bool is_alike : {false, true}) {
+                    const FloatRows r{k, pixels, width, outputs, is_alike};
+                    const auto count = std::size_t(pixels);
+                    test::Guarded mu{count}, log_sigma{count};
+                    ASSERT_TRUE(k.hidden_rows(r.rows(0, pixels, mu.data(), log_sigma.data())));
+                    EXPECT_TRUE(mu.intact() && log_sigma.intact());
+                    for (std::size_t p = 0; p < count; ++p) {
+                        ASSERT_NEAR(mu.data()[p], r.expected(p, 0), 1e-4) << width << outputs;
+                        ASSERT_NEAR(log_sigma.data()[p], r.expected(p, 1), 1e-4);
+                    }
+                }
+    });
+}
+
+TEST(RenderKernels, WhatAPixelGetsDoesNotDependOnThoseBesideIt) {
+    with_each([&](const VectorKernels& k) {
+        const FloatRows r{k, 101, 32, 32, false};
+        std::vector<float> mu(101), log_sigma(101);
+        ASSERT_TRUE(k.hidden_rows(r.rows(0, 101, mu.data(), log_sigma.data())));
+        // Alone, all have the same dx.
+        for (std::size_t p = 0; p < mu.size(); ++p) {
+            float one = 0, other = 0;
+            ASSERT_TRUE(k.hidden_rows(r.rows(p, 1, &one, &other)));
+            ASSERT_EQ(one, mu[p]);
+            ASSERT_EQ(other, log_sigma[p]);
+        }
+    });
+}
+
+TEST(RenderKernels, HiddenRowsRefuseLayersTheyAreNotMadeFor) {
+    with_each([&](const VectorKernels& k) {
+        float mu = 7, log_sigma = 7;
+        for (const auto& [width, outputs] : {std::pair{96, 32}, {32, 96}}) {
+            const FloatRows r{k, 1, width, outputs, true};
+            EXPECT_FALSE(k.hidden_rows(r.rows(0, 1, &mu, &log_sigma)));
+        }
+        if (k.lanes > 1) {
+            const FloatRows r{k, 1, k.lanes + 1, 32, true};
+            EXPECT_FALSE(k.hidden_rows(r.rows(0, 1, &mu, &log_sigma)));
+        }
+        EXPECT_EQ(mu, 7);
+        EXPECT_EQ(log_sigma, 7);
+    });
+}
+
 }  // namespace
 }  // namespace eventide
