@@ -52,7 +52,8 @@ void update_state(const float* h, const float* u, std::ptrdiff_t u_step, float* 
     const auto update = [&](auto d) HWY_ATTR {
         update_pixels(d, h, u, u_step, candidate, channels, AsItIs{}, out, channels, pixels);
     };
-    channels <= kNarrowLanes ? update(Narrow()) : update(D());
+    if (channels <= kNarrowLanes) return update(Narrow());
+    update(D());
 }
 void update_light(const float* h, const float* halves, float* out, int channels, int pixels) {
     const std::ptrdiff_t step = 2 * std::ptrdiff_t{channels};
@@ -60,7 +61,8 @@ void update_light(const float* h, const float* halves, float* out, int channels,
         update_pixels(d, h, halves, step, halves + channels, step, TanhOfSigmoid{}, out, channels,
                       pixels);
     };
-    channels <= kNarrowLanes ? update(Narrow()) : update(D());
+    if (channels <= kNarrowLanes) return update(Narrow());
+    update(D());
 }
 void add_relu(const float* a, const float* b, float* out, std::size_t n) {
     map(AddRelu{}, n, out, a, b, a, a);
