@@ -9,6 +9,8 @@
 #include "src/kernels/render_kernels-inl.h"
 #include "src/kernels/vector_dots-inl.h"
 
+#include <algorithm>
+
 HWY_BEFORE_NAMESPACE();
 namespace eventide::HWY_NAMESPACE {
 
