@@ -5,7 +5,7 @@
 #include <iterator>
 
 // Vectors of unknown length cannot be members of a struct, which the register blocks here are.
-// SSSE3: processors that have it and not SSE4 are of 2006; they run the plain text.
+// SSSE3: processors that have it and not SSE4 are of 2006; they run scalar kernels.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/kernels/vector_kernels.cpp"
