@@ -33,10 +33,11 @@ protected:
             GTEST_SKIP() << "chromium is not installed (scripts/install-packages.sh --tests)";
     }
 
-    /// A camera in software, shown at a free port, or at one that was free just now.
+    /// A camera in software, shown at a free port, or at one that was free just now. Its size is
+    /// its own on a busy machine, too.
     Process serve(const std::string& port = "0") const {
-        return start(
-            {"run", "sim:demo?size=64x48", "--model", model(), "--out", "http:127.0.0.1:" + port});
+        return start({"run", "sim:demo?size=64x48", "--model", model(), "--quality", "fixed",
+                      "--out", "http:127.0.0.1:" + port});
     }
 };
 
