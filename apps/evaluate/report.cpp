@@ -52,7 +52,8 @@ Json json_of(const SequenceScores& scores) {
             {"mean_sigma", number(scores.mean_sigma)},
             {"picp80", number(scores.picp80)},
             {"ll", number(scores.ll)},
-            {"lpips_corr", number(scores.lpips_corr)}};
+            {"lpips_corr", number(scores.lpips_corr)},
+            {"correlation", number(scores.correlation)}};
 }
 
 std::string text_row(const SequenceScores& s, std::size_t name_width) {
@@ -71,12 +72,12 @@ std::string csv_row(const SequenceScores& s) {
     for (const ImageScores& p : {s.raw, s.affine})
         row += "," + exact(p.mse) + "," + exact(p.ssim) + "," + exact(p.lpips);
     return row + "," + exact(s.mean_sigma) + "," + exact(s.picp80) + "," + exact(s.ll) + "," +
-           exact(s.lpips_corr) + "\n";
+           exact(s.lpips_corr) + "," + exact(s.correlation) + "\n";
 }
 
 constexpr const char* kCsvScores =
     "raw_mse,raw_ssim,raw_lpips,affine_mse,affine_ssim,affine_lpips,mean_sigma,picp80,ll,"
-    "lpips_corr\n";
+    "lpips_corr,correlation\n";
 
 }  // namespace
 
@@ -121,7 +122,7 @@ std::string frame_csv(const EvaluateReport& report) {
             for (const ImageScores& p : {f.raw, f.affine})
                 out += "," + exact(p.mse) + "," + exact(p.ssim) + "," + exact(p.lpips);
             out += "," + exact(f.mean_sigma) + "," + exact(f.picp80) + "," + exact(f.ll) + "," +
-                   exact(f.lpips_corr) + "\n";
+                   exact(f.lpips_corr) + "," + exact(f.correlation) + "\n";
         }
     return out;
 }

@@ -38,8 +38,8 @@ std::string csv(const EvaluateReport& report);
 std::string frame_csv(const EvaluateReport& report);
 
 /// One object with the keys sequence, frames, raw: {mse, ssim, lpips}, affine: {mse, ssim, lpips},
-/// picp80, ll, lpips_corr over everything, and the same keys per sequence in "sequences". What was
-/// not measured is null. No line break at the end.
+/// picp80, ll, lpips_corr, correlation over everything, and the same keys per sequence in
+/// "sequences". What was not measured is null. No line break at the end.
 std::string json(const EvaluateReport& report);
 
 }  // namespace eventide

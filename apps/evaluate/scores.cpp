@@ -93,6 +93,7 @@ FrameScores Judge::judge(const Array2<float>& intensity, const Array2<float>& si
     FrameScores out;
     out.raw = scored(mu, truth, lpips_, seen_mu, seen_truth);
     out.affine = scored(fitted, truth, lpips_, seen_fitted, seen_truth);
+    out.correlation = correlation(mu, truth);
     if (sigma.empty()) return out;
     out.mean_sigma = mean(sigma);
     out.picp80 = coverage_80(mu, sigma, truth);
@@ -147,6 +148,7 @@ SequenceScores mean_scores(const std::string& sequence, const std::vector<FrameS
             .frames = int(frames.size()),
             .raw = mean_images(frames, [](const FrameScores& f) { return f.raw; }),
             .affine = mean_images(frames, [](const FrameScores& f) { return f.affine; }),
+            .correlation = mean_of(frames, [](const FrameScores& f) { return f.correlation; }),
             .mean_sigma = mean_of(frames, [](const FrameScores& f) { return f.mean_sigma; }),
             .picp80 = mean_of(frames, [](const FrameScores& f) { return f.picp80; }),
             .ll = mean_of(frames, [](const FrameScores& f) { return f.ll; }),

@@ -23,6 +23,7 @@ struct FrameScores {
     double events_per_pixel = 0;  ///< of the event window
     ImageScores raw;
     ImageScores affine;  ///< after the gain and offset that bring it nearest to the truth
+    std::optional<double> correlation;             ///< with the truth; nothing where either is flat
     std::optional<double> mean_sigma, picp80, ll;  ///< where there is a sigma
     std::optional<double> lpips_corr;              ///< where there are sigma and LPIPS
 };
@@ -32,7 +33,7 @@ struct SequenceScores {
     std::string sequence;
     int frames = 0;
     ImageScores raw, affine;
-    std::optional<double> mean_sigma, picp80, ll, lpips_corr;
+    std::optional<double> correlation, mean_sigma, picp80, ll, lpips_corr;
 };
 
 /// Sums over all pixels and patches, for figures and for calibration.

@@ -60,6 +60,23 @@ auto flat(const Array2<float>& image) {
         .cast<double>();
 }
 
+/// Of all pixels of two images of one size.
+struct Spread {
+    double mean_a = 0, mean_b = 0, var_a = 0, var_b = 0, covariance = 0;
+};
+
+/// An image of less variance is flat but for rounding, and its gain would be noise.
+constexpr double kFlat = 1e-12;
+
+Spread spread(const Array2<float>& a, const Array2<float>& b) {
+    need_same_size(a, b);
+    Spread s{.mean_a = flat(a).mean(), .mean_b = flat(b).mean()};
+    s.var_a = (flat(a) - s.mean_a).square().mean();
+    s.var_b = (flat(b) - s.mean_b).square().mean();
+    s.covariance = ((flat(a) - s.mean_a) * (flat(b) - s.mean_b)).mean();
+    return s;
+}
+
 }  // namespace
 
 Array2<float> clipped(const Array2<float>& image) {
@@ -71,6 +88,12 @@ Array2<float> clipped(const Array2<float>& image) {
 double mean_squared_error(const Array2<float>& a, const Array2<float>& b) {
     need_same_size(a, b);
     return (flat(a) - flat(b)).square().mean();
+}
+
+std::optional<double> correlation(const Array2<float>& a, const Array2<float>& b) {
+    const Spread s = spread(a, b);
+    if (s.var_a <= kFlat || s.var_b <= kFlat) return std::nullopt;
+    return s.covariance / std::sqrt(s.var_a * s.var_b);
 }
 
 double structural_similarity(const Array2<float>& a, const Array2<float>& b) {
@@ -104,13 +127,9 @@ double structural_similarity(const Array2<float>& a, const Array2<float>& b) {
 }
 
 AffineFit affine_fit(const Array2<float>& image, const Array2<float>& reference) {
-    need_same_size(image, reference);
-    const double mean = flat(image).mean(), reference_mean = flat(reference).mean();
-    const double variance = (flat(image) - mean).square().mean();
-    const double covariance = ((flat(image) - mean) * (flat(reference) - reference_mean)).mean();
-    // Below this the image is flat but for rounding, and its gain would be noise.
-    const double gain = variance > 1e-12 ? covariance / variance : 0;
-    return {gain, reference_mean - gain * mean};
+    const Spread s = spread(image, reference);
+    const double gain = s.var_a > kFlat ? s.covariance / s.var_a : 0;
+    return {gain, s.mean_b - gain * s.mean_a};
 }
 
 Array2<float> applied(const AffineFit& fit, const Array2<float>& image) {

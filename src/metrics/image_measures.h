@@ -1,8 +1,10 @@
-// How far one image is from another: mean squared error, structural similarity, and the gain
-// and offset that would bring them together.
+// How far one image is from another: mean squared error, structural similarity, correlation, and
+// the gain and offset that would bring them together.
 #pragma once
 
 #include "src/core/array.h"
+
+#include <optional>
 
 namespace eventide {
 
@@ -17,6 +19,10 @@ double mean_squared_error(const Array2<float>& a, const Array2<float>& b);
 /// constants .01^2 and .03^2, the mean over all but 5 px at each border. Both of one size, at least
 /// 11 x 11 px, else Error(usage).
 double structural_similarity(const Array2<float>& a, const Array2<float>& b);
+
+/// Pearson's, over all pixels, -1 to 1; nothing where either image does not vary. Both of one size,
+/// else Error(usage).
+std::optional<double> correlation(const Array2<float>& a, const Array2<float>& b);
 
 /// image * gain + offset.
 struct AffineFit {

@@ -227,7 +227,7 @@ TEST(Report, IsJsonWithTheAgreedKeysAndNullForWhatWasNotMeasured) {
     const EvaluateReport report = evaluate_recordings(what, small_model());
     const auto parsed = nlohmann::json::parse(json(report));
     for (const auto* object : {&parsed, &parsed.at("sequences").at(0)}) {
-        for (const char* key : {"sequence", "frames", "picp80", "ll", "lpips_corr"})
+        for (const char* key : {"sequence", "frames", "picp80", "ll", "lpips_corr", "correlation"})
             EXPECT_TRUE(object->contains(key)) << key;
         for (const char* group : {"raw", "affine"})
             for (const char* key : {"mse", "ssim", "lpips"})
