@@ -18,7 +18,7 @@ constexpr double kMaxEvents = 1e9;
 constexpr SensorDuration kReferenceMaxWidth{1'000'000};
 /// Rule content (docs/accuracy.md, "Windows by content").
 constexpr SensorDuration kContentMaxWidth{100'000};
-constexpr double kContentEventsPerPixel = 0.5;
+constexpr double kContentEventsPerPixel = 0.4;
 
 [[noreturn]] void refuse(std::string_view text, const std::string& why) {
     throw Error(

@@ -22,7 +22,7 @@ struct SlicerSettings {
     SensorDuration width{50'000};   ///< of each window, rule duration; >= 1 us
     std::uint64_t events = 20'000;  ///< per window, rule count; >= 1
     /// Rule count: where > 0, `events` is this times the pixels. Rule content: of the busiest
-    /// tiles.
+    /// tiles, where a pixel counts for TileActivity::kMostOfAPixel at most.
     double events_per_pixel = 0;
     SensorDuration min_width{1'000};  ///< rule content: no event ends a window before
 

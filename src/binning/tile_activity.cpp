@@ -14,6 +14,7 @@ TileActivity::TileActivity(double events_per_pixel, int width, int height)
             full_.push_back(std::uint32_t(std::max(1.0, std::ceil(events_per_pixel * pixels))));
         }
     count_.resize(full_.size());
+    of_pixel_.resize(std::size_t(width) * std::size_t(height));
     const int tiles = int(full_.size());
     enough_ = std::min(tiles, std::max(2, tiles / 16));
 }
@@ -27,6 +28,9 @@ std::optional<SensorTime> TileActivity::busy_at(std::span<const Event> window) n
 /// Whether the sensor is busy with this event.
 bool TileActivity::add(const Event& event) noexcept {
     if (event.x >= width_ || event.y >= height_) return false;
+    std::uint8_t& of_pixel = of_pixel_[std::size_t(event.y) * std::size_t(width_) + event.x];
+    if (of_pixel == kMostOfAPixel) return false;
+    ++of_pixel;
     const auto tile = std::size_t(event.y / kSide * columns_ + event.x / kSide);
     if (++count_[tile] == full_[tile]) ++full_tiles_;
     return full_tiles_ >= enough_;
@@ -34,6 +38,7 @@ bool TileActivity::add(const Event& event) noexcept {
 
 void TileActivity::reset() noexcept {
     std::ranges::fill(count_, 0U);
+    std::ranges::fill(of_pixel_, std::uint8_t{0});
     full_tiles_ = 0;
     counted_ = 0;
     busy_at_.reset();

@@ -12,11 +12,14 @@
 
 namespace eventide {
 
-/// Counts events per tile of kSide x kSide px. Busy once a sixteenth of the tiles (two at least,
-/// where there are two: one may hold a hot pixel) have `events_per_pixel` of their own pixels each.
+/// Counts events per tile of kSide x kSide px, of each pixel no more than kMostOfAPixel: a contour
+/// of high contrast gives many where it passes, and moves no further for that. Busy once a
+/// sixteenth of the tiles (two at least, where there are two) have `events_per_pixel` of their own
+/// pixels each.
 class TileActivity {
 public:
     static constexpr int kSide = 32;
+    static constexpr int kMostOfAPixel = 2;
 
     TileActivity() = default;
     /// Sensor of width x height px.
@@ -34,6 +37,7 @@ private:
 
     int width_ = 0, height_ = 0, columns_ = 0;
     int full_tiles_ = 0, enough_ = 1;
+    std::vector<std::uint8_t> of_pixel_;       // [y][x]: events so far, up to kMostOfAPixel
     std::vector<std::uint32_t> count_, full_;  // per tile: events so far, events that fill it
     std::size_t counted_ = 0;                  // of the window's events
     std::optional<SensorTime> busy_at_;

@@ -57,6 +57,28 @@ TEST(SlicerContent, OneHotPixelEndsNoWindow) {
                     event_window.end_us - event_window.begin_us == 50'000);
 }
 
+/// A contour as high as the sensor that passes a pixel in `us_per_px`, each with `each` events.
+std::vector<Event> passing(int each, int us_per_px) {
+    std::vector<Event> events;
+    for (int x = 0; x < 200; ++x)
+        for (int i = 0; i < each; ++i)
+            for (int y = 0; y < 180; ++y)
+                events.push_back({from_us(1 + x * us_per_px + i * us_per_px / each),
+                                  std::uint16_t(x), std::uint16_t(y), Polarity::on});
+    return events;
+}
+
+TEST(SlicerContent, AContourOfHighContrastMovesAsFarAsAFainterOne) {
+    // Two events of each pixel fill a tile after 6.4 of its 32 columns, twenty as well.
+    const auto windows = [](int each) {
+        return double(event_windows_of(by_content(.4), passing(each, 500)).size());
+    };
+    EXPECT_NEAR(windows(2), 200 / 6.4, 10);
+    EXPECT_NEAR(windows(20), windows(2), 10);
+    EXPECT_GT(windows(1), 9) << "12.8 columns and more";
+    EXPECT_LT(windows(1), windows(2));
+}
+
 TEST(SlicerContent, NoEventEndsAWindowBeforeAMillisecond) {
     const auto event_windows = event_windows_of(by_content(.5), moving(7, 5, 100'000, 20));
     for (std::size_t i = 0; i + 1 < event_windows.size(); ++i)

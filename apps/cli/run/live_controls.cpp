@@ -1,6 +1,7 @@
 #include "apps/cli/run/live_controls.h"
 
 #include "apps/cli/settings/sink_name.h"
+#include "src/binning/tile_activity.h"
 
 #include <algorithm>
 #include <atomic>
@@ -114,8 +115,12 @@ WindowRange window_range(const SlicerSettings& slicer) {
                 to.width = SensorDuration{std::max(1LL, std::llround(ms * 1e3))};
             }};
     if (slicer.rule == WindowRule::content)
-        return {
-            "events per pixel where most moves", 0.05, 5, 0.05, slicer.events_per_pixel, put_epp};
+        return {"events per pixel where most moves",
+                0.05,
+                double(TileActivity::kMostOfAPixel),
+                0.05,
+                slicer.events_per_pixel,
+                put_epp};
     if (slicer.events_per_pixel > 0)
         return {"events per pixel", 0.01, 10, 0.01, slicer.events_per_pixel, put_epp};
     return {"events", 100, 1'000'000, 100, double(slicer.events), [](SlicerSettings& to, double n) {

@@ -131,7 +131,7 @@ TEST_F(LiveControls, MoveTheWindowInTheUnitOfItsRule) {
     EXPECT_EQ(window_text(moved("2s", 2000, 1)), "1ms");
     EXPECT_EQ(window_text(moved("20000ev,200ms", 20'000, 500)), "500ev,200ms");
     EXPECT_EQ(window_text(moved("0.35epp", 0.35, 1)), "1epp,100ms");
-    const SlicerSettings content = moved("auto", 0.5, 2);
+    const SlicerSettings content = moved("auto", 0.4, 2);
     EXPECT_EQ(content.rule, WindowRule::content);
     EXPECT_EQ(content.events_per_pixel, 2);
     EXPECT_EQ(content.max_width, SensorDuration{100'000});
