@@ -67,17 +67,24 @@ std::string text_row(const SequenceScores& s, std::size_t name_width) {
            "\n";
 }
 
-std::string csv_row(const SequenceScores& s) {
-    std::string row = csv_field(s.sequence) + "," + std::to_string(s.frames);
-    for (const ImageScores& p : {s.raw, s.affine})
-        row += "," + exact(p.mse) + "," + exact(p.ssim) + "," + exact(p.lpips);
-    return row + "," + exact(s.mean_sigma) + "," + exact(s.picp80) + "," + exact(s.ll) + "," +
-           exact(s.lpips_corr) + "," + exact(s.correlation) + "\n";
-}
-
 constexpr const char* kCsvScores =
     "raw_mse,raw_ssim,raw_lpips,affine_mse,affine_ssim,affine_lpips,mean_sigma,picp80,ll,"
     "lpips_corr,correlation\n";
+
+/// The columns of kCsvScores and a comma before them, of a frame or of a sequence.
+template <typename Scores>
+std::string csv_scores(const Scores& s) {
+    std::string row;
+    for (const ImageScores& p : {s.raw, s.affine})
+        row += "," + exact(p.mse) + "," + exact(p.ssim) + "," + exact(p.lpips);
+    for (const auto& each : {s.mean_sigma, s.picp80, s.ll, s.lpips_corr, s.correlation})
+        row += "," + exact(each);
+    return row + "\n";
+}
+
+std::string csv_row(const SequenceScores& s) {
+    return csv_field(s.sequence) + "," + std::to_string(s.frames) + csv_scores(s);
+}
 
 }  // namespace
 
@@ -116,14 +123,9 @@ std::string csv(const EvaluateReport& report) {
 std::string frame_csv(const EvaluateReport& report) {
     std::string out = std::string("sequence,time_s,events_per_pixel,") + kCsvScores;
     for (const SequenceReport& s : report.sequences)
-        for (const FrameScores& f : s.frames) {
+        for (const FrameScores& f : s.frames)
             out += csv_field(s.scores.sequence) + "," + exact(f.time_s) + "," +
-                   exact(f.events_per_pixel);
-            for (const ImageScores& p : {f.raw, f.affine})
-                out += "," + exact(p.mse) + "," + exact(p.ssim) + "," + exact(p.lpips);
-            out += "," + exact(f.mean_sigma) + "," + exact(f.picp80) + "," + exact(f.ll) + "," +
-                   exact(f.lpips_corr) + "," + exact(f.correlation) + "\n";
-        }
+                   exact(f.events_per_pixel) + csv_scores(f);
     return out;
 }
 

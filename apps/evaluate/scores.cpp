@@ -83,7 +83,8 @@ Observations& Observations::operator+=(const Observations& other) {
 FrameScores Judge::judge(const Array2<float>& intensity, const Array2<float>& sigma,
                          const Array2<float>& truth) {
     const Array2<float> mu = clipped(intensity);
-    const Array2<float> fitted = clipped(applied(affine_fit(mu, truth), mu));
+    const Spread both = spread(mu, truth);
+    const Array2<float> fitted = clipped(applied(affine_fit(both), mu));
     Lpips::Features seen_truth, seen_mu, seen_fitted;
     if (lpips_) {
         seen_truth = lpips_->features(truth);
@@ -93,7 +94,7 @@ FrameScores Judge::judge(const Array2<float>& intensity, const Array2<float>& si
     FrameScores out;
     out.raw = scored(mu, truth, lpips_, seen_mu, seen_truth);
     out.affine = scored(fitted, truth, lpips_, seen_fitted, seen_truth);
-    out.correlation = correlation(mu, truth);
+    out.correlation = correlation(both);
     if (sigma.empty()) return out;
     out.mean_sigma = mean(sigma);
     out.picp80 = coverage_80(mu, sigma, truth);

@@ -14,8 +14,8 @@ namespace eventide {
 
 /// Counts events per tile of kSide x kSide px, of each pixel no more than kMostOfAPixel: a contour
 /// of high contrast gives many where it passes, and moves no further for that. Busy once a
-/// sixteenth of the tiles (two at least, where there are two) have `events_per_pixel` of their own
-/// pixels each.
+/// sixteenth of the tiles (two at least, where there are two: one of a few pixels, at the sensor's
+/// edge, may be full of a hot one) have `events_per_pixel` of their own pixels each.
 class TileActivity {
 public:
     static constexpr int kSide = 32;

@@ -60,22 +60,8 @@ auto flat(const Array2<float>& image) {
         .cast<double>();
 }
 
-/// Of all pixels of two images of one size.
-struct Spread {
-    double mean_a = 0, mean_b = 0, var_a = 0, var_b = 0, covariance = 0;
-};
-
 /// An image of less variance is flat but for rounding, and its gain would be noise.
 constexpr double kFlat = 1e-12;
-
-Spread spread(const Array2<float>& a, const Array2<float>& b) {
-    need_same_size(a, b);
-    Spread s{.mean_a = flat(a).mean(), .mean_b = flat(b).mean()};
-    s.var_a = (flat(a) - s.mean_a).square().mean();
-    s.var_b = (flat(b) - s.mean_b).square().mean();
-    s.covariance = ((flat(a) - s.mean_a) * (flat(b) - s.mean_b)).mean();
-    return s;
-}
 
 }  // namespace
 
@@ -90,8 +76,16 @@ double mean_squared_error(const Array2<float>& a, const Array2<float>& b) {
     return (flat(a) - flat(b)).square().mean();
 }
 
-std::optional<double> correlation(const Array2<float>& a, const Array2<float>& b) {
-    const Spread s = spread(a, b);
+Spread spread(const Array2<float>& a, const Array2<float>& b) {
+    need_same_size(a, b);
+    Spread s{.mean_a = flat(a).mean(), .mean_b = flat(b).mean()};
+    s.var_a = (flat(a) - s.mean_a).square().mean();
+    s.var_b = (flat(b) - s.mean_b).square().mean();
+    s.covariance = ((flat(a) - s.mean_a) * (flat(b) - s.mean_b)).mean();
+    return s;
+}
+
+std::optional<double> correlation(const Spread& s) {
     if (s.var_a <= kFlat || s.var_b <= kFlat) return std::nullopt;
     return s.covariance / std::sqrt(s.var_a * s.var_b);
 }
@@ -126,10 +120,13 @@ double structural_similarity(const Array2<float>& a, const Array2<float>& b) {
     return sum / (double(height - 2 * kRadius) * double(width - 2 * kRadius));
 }
 
-AffineFit affine_fit(const Array2<float>& image, const Array2<float>& reference) {
-    const Spread s = spread(image, reference);
+AffineFit affine_fit(const Spread& s) {
     const double gain = s.var_a > kFlat ? s.covariance / s.var_a : 0;
     return {gain, s.mean_b - gain * s.mean_a};
+}
+
+AffineFit affine_fit(const Array2<float>& image, const Array2<float>& reference) {
+    return affine_fit(spread(image, reference));
 }
 
 Array2<float> applied(const AffineFit& fit, const Array2<float>& image) {

@@ -20,14 +20,24 @@ double mean_squared_error(const Array2<float>& a, const Array2<float>& b);
 /// 11 x 11 px, else Error(usage).
 double structural_similarity(const Array2<float>& a, const Array2<float>& b);
 
-/// Pearson's, over all pixels, -1 to 1; nothing where either image does not vary. Both of one size,
-/// else Error(usage).
-std::optional<double> correlation(const Array2<float>& a, const Array2<float>& b);
+/// Means, variances and covariance over all pixels of two images.
+struct Spread {
+    double mean_a = 0, mean_b = 0, var_a = 0, var_b = 0, covariance = 0;
+};
+
+/// Both of one size, else Error(usage).
+Spread spread(const Array2<float>& a, const Array2<float>& b);
+
+/// Pearson's, -1 to 1; nothing where either image does not vary.
+std::optional<double> correlation(const Spread& spread);
 
 /// image * gain + offset.
 struct AffineFit {
     double gain = 1, offset = 0;
 };
+
+/// That of the first image to the second.
+AffineFit affine_fit(const Spread& spread);
 
 /// The gain and offset that bring `image` nearest to `reference` in the mean square. A constant
 /// image has gain 0 and the reference's mean.

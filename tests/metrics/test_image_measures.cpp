@@ -95,15 +95,17 @@ TEST(AffineFit, GivesAFlatImageTheMean) {
 
 TEST(Correlation, IsOneForGainAndOffsetAndNothingForAFlatImage) {
     const auto truth = test_image(30, 40, 3);
-    EXPECT_NEAR(*correlation(mapped(truth, [](float v) { return .1F + .3F * v; }), truth), 1, 1e-6);
-    EXPECT_NEAR(*correlation(mapped(truth, [](float v) { return 1 - v; }), truth), -1, 1e-6);
-    EXPECT_EQ(correlation(mapped(truth, [](float) { return .9F; }), truth), std::nullopt);
-    EXPECT_THROW(correlation(test_image(20, 20, 1), test_image(20, 21, 1)), Error);
+    EXPECT_NEAR(*correlation(spread(mapped(truth, [](float v) { return .1F + .3F * v; }), truth)),
+                1, 1e-6);
+    EXPECT_NEAR(*correlation(spread(mapped(truth, [](float v) { return 1 - v; }), truth)), -1,
+                1e-6);
+    EXPECT_EQ(correlation(spread(mapped(truth, [](float) { return .9F; }), truth)), std::nullopt);
+    EXPECT_THROW(spread(test_image(20, 20, 1), test_image(20, 21, 1)), Error);
 }
 
 TEST(Correlation, SaysWhatAnAffineFitLeaves) {
     const auto a = test_image(30, 40, 3), b = test_image(30, 40, 9);
-    const double r = *correlation(a, b);
+    const double r = *correlation(spread(a, b));
     const auto mean = applied(affine_fit(mapped(b, [](float) { return 0.F; }), b), b);
     EXPECT_NEAR(mean_squared_error(applied(affine_fit(a, b), a), b),
                 (1 - r * r) * mean_squared_error(mean, b), 1e-8);

@@ -1,27 +1,19 @@
 // What became of a frame.
 #include "apps/cli/stress/frame_change.h"
 
+#include "src/metrics/image_measures.h"
+
 #include <cmath>
 #include <cstdio>
 
 namespace eventide::stress {
 
 FrameChange change_between(const Array2<float>& then, const Array2<float>& now) {
-    const auto n = double(then.values().size());
-    double sum_a = 0, sum_b = 0, aa = 0, bb = 0, ab = 0;
-    for (std::size_t i = 0; i < then.values().size(); ++i) {
-        const double a = then.values()[i], b = now.values()[i];
-        sum_a += a;
-        sum_b += b;
-        aa += a * a;
-        bb += b * b;
-        ab += a * b;
-    }
-    const double var_a = aa / n - sum_a / n * sum_a / n, var_b = bb / n - sum_b / n * sum_b / n;
+    const Spread both = spread(then, now);
     FrameChange change;
-    change.mean = (sum_b - sum_a) / n;
-    change.contrast = std::sqrt(var_b / var_a);
-    change.correlation = (ab / n - sum_a / n * sum_b / n) / std::sqrt(var_a * var_b);
+    change.mean = both.mean_b - both.mean_a;
+    change.contrast = std::sqrt(both.var_b / both.var_a);
+    change.correlation = correlation(both).value_or(NAN);
     return change;
 }
 
