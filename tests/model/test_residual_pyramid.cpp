@@ -1,6 +1,8 @@
 // What a correction of frames keeps while the scene stands still, and loses where it moves.
 #include "src/model/render/residual_pyramid.h"
 
+#include "src/model/render/half_maps.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,16 +28,17 @@ Array2<float> noise(int height, int width, std::uint32_t seed) {
 struct Expectation {
     Array2<float> correction, variance;
 };
-Expectation expect(ResidualPyramid& pyramid, int height, int width) {
+Expectation expect(ResidualPyramid& pyramid, const Array2<float>& residual) {
+    const int height = residual.height(), width = residual.width();
     Expectation e{Array2<float>(height, width), Array2<float>(height, width)};
-    pyramid.expect(e.correction, e.variance);
+    pyramid.correct(residual, e.correction);
+    pyramid.variance(e.variance);
     return e;
 }
 
-ResidualPyramid observed(const Array2<float>& residual, float trust = 1) {
-    const int height = residual.height(), width = residual.width();
+ResidualPyramid observed(int height, int width, float trust = 1) {
     ResidualPyramid pyramid{width, height};
-    pyramid.observe(residual, constant(height, width, trust), constant(height, width, 0));
+    pyramid.observe(constant(height, width, trust), constant(height, width, 0));
     return pyramid;
 }
 
@@ -60,7 +63,7 @@ TEST(ResidualPyramid, DoublingARampGivesARampBetweenTheOutermostCentres) {
 TEST(ResidualPyramid, KnowsNothingBeforeTheFirstObservation) {
     ResidualPyramid pyramid{20, 10};
     pyramid.forget(constant(10, 20, 3));
-    const Expectation e = expect(pyramid, 10, 20);
+    const Expectation e = expect(pyramid, constant(10, 20, 0));
     for (const float v : e.correction.values()) EXPECT_EQ(v, 0);
     for (const float v : e.variance.values()) EXPECT_NEAR(v, 1, 1e-6);
 }
@@ -68,9 +71,9 @@ TEST(ResidualPyramid, KnowsNothingBeforeTheFirstObservation) {
 TEST(ResidualPyramid, GivesBackWhatWasSeenWhileNothingHappens) {
     for (const auto& [height, width] : {std::pair{1, 1}, {1, 33}, {31, 17}, {96, 120}}) {
         const Array2<float> residual = noise(height, width, 1);
-        ResidualPyramid pyramid = observed(residual);
+        ResidualPyramid pyramid = observed(height, width);
         for (int i = 0; i < 1000; ++i) pyramid.forget(constant(height, width, 0));
-        const Expectation e = expect(pyramid, height, width);
+        const Expectation e = expect(pyramid, residual);
         for (std::size_t i = 0; i < residual.values().size(); ++i) {
             ASSERT_NEAR(e.correction.values()[i], residual.values()[i], 1e-5) << width;
             ASSERT_NEAR(e.variance.values()[i], 0, 1e-6);
@@ -87,9 +90,9 @@ TEST(ResidualPyramid, FineStructureIsForgottenBeforeCoarse) {
             coarse(y, x) = x < size / 2 ? 1.F : -1.F;
         }
     const auto left = [&](const Array2<float>& residual) {
-        ResidualPyramid pyramid = observed(residual);
+        ResidualPyramid pyramid = observed(size, size);
         pyramid.forget(constant(size, size, 1.5F));
-        return expect(pyramid, size, size).correction(20, 10) / residual(20, 10);
+        return expect(pyramid, residual).correction(20, 10) / residual(20, 10);
     };
     EXPECT_LT(left(fine), .1);
     EXPECT_GT(left(coarse), .8);
@@ -98,12 +101,12 @@ TEST(ResidualPyramid, FineStructureIsForgottenBeforeCoarse) {
 TEST(ResidualPyramid, IsForgottenWhereThingsMoveAlone) {
     const int size = 64;
     const Array2<float> residual = noise(size, size, 2);
-    ResidualPyramid pyramid = observed(residual);
+    ResidualPyramid pyramid = observed(size, size);
     Array2<float> events = constant(size, size, 0);
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < 8; ++x) events(y, x) = 5;
     pyramid.forget(events);
-    const Expectation e = expect(pyramid, size, size);
+    const Expectation e = expect(pyramid, residual);
     double here = 0, there = 0;
     for (int y = 0; y < size; ++y) {
         here += e.variance(y, 3);
@@ -115,11 +118,11 @@ TEST(ResidualPyramid, IsForgottenWhereThingsMoveAlone) {
 
 TEST(ResidualPyramid, VarianceOnlyGrowsWithEventsAndNeverBeyondTheModels) {
     const int size = 40;
-    ResidualPyramid pyramid = observed(noise(size, size, 3));
+    ResidualPyramid pyramid = observed(size, size);
     float before = 0;
     for (int i = 0; i < 60; ++i) {
         pyramid.forget(constant(size, size, 1));
-        const float now = expect(pyramid, size, size).variance(20, 20);
+        const float now = expect(pyramid, constant(size, size, 0)).variance(20, 20);
         EXPECT_GE(now, before - 1e-6F);
         EXPECT_LE(now, 1 + 1e-5F);
         before = now;
@@ -130,15 +133,30 @@ TEST(ResidualPyramid, VarianceOnlyGrowsWithEventsAndNeverBeyondTheModels) {
 TEST(ResidualPyramid, WhatCannotBeTrustedLeavesTheOldKnowledge) {
     const int size = 32;
     const Array2<float> residual = noise(size, size, 4);
-    ResidualPyramid pyramid = observed(residual);
-    const Array2<float> said = expect(pyramid, size, size).correction;
-    pyramid.observe(said, constant(size, size, 0), constant(size, size, 100));
-    const Expectation e = expect(pyramid, size, size);
+    ResidualPyramid pyramid = observed(size, size);
+    pyramid.observe(constant(size, size, 0), constant(size, size, 100));
+    const Expectation e = expect(pyramid, residual);
     // Known as before, but with the events that came since: fine bands are gone, the mean is not.
     for (const float v : e.variance.values()) EXPECT_GT(v, .3F);
-    ResidualPyramid ignorant = observed(residual, 0);
-    const Expectation nothing = expect(ignorant, size, size);
+    ResidualPyramid ignorant = observed(size, size, 0);
+    const Expectation nothing = expect(ignorant, residual);
     for (const float v : nothing.variance.values()) EXPECT_NEAR(v, 1, 1e-5);
+}
+
+TEST(ResidualPyramid, WhereNothingIsKnownWhatIsKnownAroundGoesOn) {
+    const int size = 64;
+    Array2<float> residual = constant(size, size, .2F), trust = constant(size, size, 1);
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < 20; ++x) {
+            residual(y, x) = 9;  // wrong, and known to be
+            trust(y, x) = 0;
+        }
+    ResidualPyramid pyramid = observed(size, size);
+    pyramid.know(trust);
+    const Expectation e = expect(pyramid, residual);
+    for (const float v : e.correction.values()) EXPECT_NEAR(v, .2F, 1e-4);
+    pyramid.know(constant(size, size, 0));
+    for (const float v : expect(pyramid, residual).correction.values()) EXPECT_EQ(v, 0);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ void FusedRenderer::begin() {
 
 void FusedRenderer::reset() noexcept {
     if (fusion_) fusion_->reset();
-    active_ = false;
+    active_ = silent_before_ = false;
     waiting_count_ = 0;
     dropped_ += images_.size();
     images_.clear();
@@ -70,9 +70,20 @@ void FusedRenderer::settle_oldest() noexcept {
     const Waiting& settled = waiting_[oldest_];
     oldest_ = (oldest_ + 1) % waiting_.size();
     --waiting_count_;
-    fusion_->advance(settled.window, settled.events);
+    const bool silent =
+        std::ranges::all_of(settled.events.values(), [](float n) { return n == 0; });
+    // From the second silent window on frames stay as they are, and nothing needs to be looked for.
+    const bool follow =
+        !(silent && silent_before_) && renderer_.ready(settled.window.end, lookahead_);
+    silent_before_ = silent;
+    if (follow) show(settled.window.end);
+    fusion_->advance(settled.window, settled.events, follow ? &shown_ : nullptr);
     for (; !images_.empty() && images_.front().t <= settled.window.end; images_.pop_front())
         use(images_.front(), settled.window);
+}
+
+void FusedRenderer::show(SensorTime t) noexcept {
+    renderer_.render({.t = t, .lookahead = lookahead_, .want_sigma = false}, shown_);
 }
 
 void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexcept {
@@ -81,7 +92,7 @@ void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexc
     SensorTime t = image.t;
     if (!renderer_.ready(t, lookahead_)) t = window.begin + SensorDuration{1};
     if (!renderer_.ready(t, lookahead_)) t = window.end;
-    renderer_.render({.t = t, .lookahead = lookahead_, .want_sigma = false}, shown_);
+    show(t);
     ++(fusion_->correct(image, shown_) ? used_ : dropped_);
 }
 
@@ -91,7 +102,10 @@ void FusedRenderer::render(const RenderRequest& request, Frame& frame) noexcept 
     renderer_.render(request, frame);
     if (!active_) return;
     frame.t = request.t;
-    fusion_->apply(request, frame);
+    const bool is_sensors = request.region.width == 0 && frame.intensity.width() == width_ &&
+                            frame.intensity.height() == height_;
+    if (!is_sensors) show(request.t);
+    fusion_->apply(request, is_sensors ? frame.intensity : shown_.intensity, frame);
 }
 
 }  // namespace eventide

@@ -12,7 +12,7 @@ namespace eventide {
 /// Stands beside a Renderer, which it borrows, and sees the same event windows. Frames of a
 /// window know the images that were given before the window was pushed, or before those that its
 /// lookahead waits for. One thread at a time; nothing fails after construction. What corrections
-/// take (some 140 bytes a pixel) is taken with the first image: most sensors give none.
+/// take (some 190 bytes a pixel) is taken with the first image: most sensors give none.
 class FusedRenderer {
 public:
     /// Throws Error (usage) for a lookahead that is not 0, 1 or 2.
@@ -54,6 +54,7 @@ private:
     };
     void begin();
     void settle_oldest() noexcept;
+    void show(SensorTime t) noexcept;
     void use(const ReferenceImage& image, const Window& window) noexcept;
 
     Renderer& renderer_;
@@ -63,7 +64,8 @@ private:
     RenderRequest prepared_;
     bool active_ = false;                // since the first image's window; before, nothing is spent
     std::optional<ImageFusion> fusion_;  // none: before the first image
-    Frame shown_;                        // by the model alone, at an image's time
+    Frame shown_;                        // by the model alone, at the time asked last
+    bool silent_before_ = false;         // the window settled last
     std::array<Waiting, 3> waiting_;     // windows that the lookahead holds back
     std::size_t oldest_ = 0, waiting_count_ = 0;
     std::deque<ReferenceImage> images_;

@@ -1,7 +1,7 @@
 // A camera's own images beside its events.
 #include "src/model/render/image_fusion.h"
 
-#include "src/core/grey.h"
+#include "src/model/render/half_maps.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,12 +10,10 @@
 namespace eventide {
 namespace {
 
-// Each slot of the past takes at least this long: 12 of them reach back 200 ms and more.
-// 11 whole ones, 200.2 ms, beside the one that is being filled.
-constexpr SensorDuration kPastSlot{18'200};
 // Standard deviation of a camera's own images.
 constexpr float kImageNoise = .02F;
-
+// Events of what was followed count so much, against those of what was not.
+constexpr float kFollowed = .1F;
 /// Where row or column `out` of a frame lies on the sensor (docs/model.md: corners lie on corners).
 LinearTap tap(int out, int out_size, int size) {
     const double at = out_size > 1 ? double(out) * (size - 1) / (out_size - 1) : 0;
@@ -26,87 +24,83 @@ LinearTap tap(int out, int out_size, int size) {
 }  // namespace
 
 ImageFusion::ImageFusion(int sensor_width, int sensor_height)
-    : width_(sensor_width), height_(sensor_height), pyramid_(sensor_width, sensor_height) {
+    : width_(sensor_width),
+      height_(sensor_height),
+      pyramid_(sensor_width, sensor_height),
+      image_(sensor_width, sensor_height),
+      past_(sensor_width, sensor_height) {
     for (Expected& expected : expected_) {
         expected.correction = Array2<float>(height_, width_);
         expected.variance = Array2<float>(height_, width_);
+        expected.since_before = MotionField(width_, height_);
     }
-    for (Past& past : past_) past.events = Array2<float>(height_, width_);
-    row_.resize(std::size_t(width_));
-    for (Array2<float>* map : {&residual_, &trust_, &since_}) *map = Array2<float>(height_, width_);
+    for (Array2<float>* map :
+         {&shown_, &residual_, &trust_, &since_, &residual_within_, &correction_})
+        *map = Array2<float>(height_, width_);
+    for (std::vector<float>* row : {&row_, &dx_, &dy_, &scratch_}) row->resize(std::size_t(width_));
     reset();
 }
 
 void ImageFusion::reset() noexcept {
     pyramid_.reset();
+    image_.reset();
+    past_.reset();
+    fill(residual_, 0);
     windows_ = 0;
     for (Expected& expected : expected_) {
         expected.window = {};
         fill(expected.correction, 0);
         fill(expected.variance, 1);
+        expected.followed = expected.new_image = false;
     }
-    for (Past& past : past_) past.window = {};
+    knows_shown_ = false;
 }
 
-void ImageFusion::advance(const Window& window, const Array2<float>& events) noexcept {
+void ImageFusion::advance(const Window& window, const Array2<float>& events,
+                          const Frame* at_end) noexcept {
     ++windows_;
-    newest().window = window;
-    pyramid_.forget(events);
-    remember(window, events);
-    pyramid_.expect(newest().correction, newest().variance);
+    Expected& now = newest();
+    now.window = window;
+    knows_shown_ = at_end != nullptr;
+    now.followed = image_.there() && knows_shown_;
+    now.new_image = false;
+    past_.remember(window, events);
+    if (knows_shown_) copy(at_end->intensity, shown_);
+    const float weight = now.followed ? kFollowed : 1;
+    for (std::size_t i = 0; i < since_.values().size(); ++i)
+        since_.values()[i] = weight * events.values()[i];
+    pyramid_.forget(since_);
+    if (now.followed) image_.follow(shown_, now.since_before);
+    expect_at_end();
 }
 
-void ImageFusion::remember(const Window& window, const Array2<float>& events) noexcept {
-    if (past_[past_newest_].window.width() >= kPastSlot || windows_ == 1) {
-        past_newest_ = (past_newest_ + 1) % past_.size();
-        past_[past_newest_].window = {window.begin, window.begin};
-        fill(past_[past_newest_].events, 0);
+/// What is expected at the newest window's end, to which the image has been followed; where it has
+/// not, of what was lacking when it was last.
+void ImageFusion::expect_at_end() noexcept {
+    Expected& now = newest();
+    if (now.followed || now.new_image) {
+        image_.tell_trust(trust_);
+        pyramid_.know(trust_);
+        image_.residual(shown_, now.since_before, 0, residual_);
     }
-    Past& past = past_[past_newest_];
-    past.window.end = window.end;
-    for (std::size_t i = 0; i < past.events.values().size(); ++i)
-        past.events.values()[i] += events.values()[i];
-}
-
-/// Events per pixel since t, as if each slot's had come evenly.
-void ImageFusion::collect_since(SensorTime t) noexcept {
-    fill(since_, 0);
-    for (const Past& past : past_) {
-        const double width = double(past.window.width().count());
-        if (width <= 0 || past.window.end <= t) continue;
-        const float share = float(std::min(1., double((past.window.end - t).count()) / width));
-        for (std::size_t i = 0; i < since_.values().size(); ++i)
-            since_.values()[i] += share * past.events.values()[i];
-    }
+    pyramid_.correct(residual_, now.correction);
+    pyramid_.variance(now.variance);
 }
 
 bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) noexcept {
     Expected& now = newest();
     if (windows_ == 0 || image.t > now.window.end || image.t < now.window.end - kRemembered)
         return false;
-    // Things that move while the shutter is open are as blurred as if they had moved since.
-    collect_since(std::min(image.t, image.exposure_begin));
-    std::ranges::copy(now.correction.values(), residual_.values().begin());
-    fill(trust_, 0);
-    const int columns = image.pixels.width() / image.channels;
-    // Image pixel (y, x) is sensor pixel (y + y0, x + x0), as far as there is one.
-    for (int y = std::max(0, -image.y0); y < std::min(image.pixels.height(), height_ - image.y0);
-         ++y)
-        for (int x = std::max(0, -image.x0); x < std::min(columns, width_ - image.x0); ++x) {
-            const float seen = grey_at(image, y, x);
-            const int v = y + image.y0, u = x + image.x0;
-            const float shown = rendered.intensity(v, u);
-            // A residual is image - mu; where the image tells nothing, what is expected already.
-            const float before = shown + residual_(v, u);
-            // Beyond the ends of the image's range the truth is at least as dark or bright.
-            const bool beyond =
-                (seen >= kBrightest && before >= seen) || (seen <= kDarkest && before <= seen);
-            if (beyond) continue;
-            residual_(v, u) = seen - shown;
-            trust_(v, u) = 1;
-        }
-    pyramid_.observe(residual_, trust_, since_);
-    pyramid_.expect(now.correction, now.variance);
+    // What moves while the shutter is open is as blurred as if it had moved unfollowed since.
+    fill(since_, 0);
+    past_.add_since(std::min(image.t, image.exposure_begin), 1, since_);
+    past_.add_since(image.t, knows_shown_ ? kFollowed - 1 : 0, since_);
+    image_.take(image, rendered.intensity, now.correction, trust_);
+    pyramid_.observe(trust_, since_);
+    if (!knows_shown_) copy(rendered.intensity, shown_);
+    image_.follow(shown_);
+    now.new_image = true;
+    expect_at_end();
     return true;
 }
 
@@ -127,9 +121,11 @@ void ImageFusion::prepare(const RenderRequest& request) {
     first_column_ = region.x;
 }
 
+namespace {
+
 /// One row of a map as it is between two windows' ends, at the sensor's columns.
-void ImageFusion::mix_row(const Array2<float>& before, const Array2<float>& after, float at,
-                          const LinearTap& y, std::vector<float>& row) noexcept {
+void mix_row(const Array2<float>& before, const Array2<float>& after, float at, const LinearTap& y,
+             std::vector<float>& row) noexcept {
     const auto a = before.row(y.first), b = before.row(y.second);
     const auto c = after.row(y.first), d = after.row(y.second);
     for (std::size_t x = 0; x < row.size(); ++x) {
@@ -138,9 +134,55 @@ void ImageFusion::mix_row(const Array2<float>& before, const Array2<float>& afte
     }
 }
 
+float sample(const std::vector<float>& row, const LinearTap& x) {
+    const float first = row[std::size_t(x.first)];
+    return first + x.weight * (row[std::size_t(x.second)] - first);
+}
+
+}  // namespace
+
+/// What was added at the end of the window before, where it is now: to row_. What is in the window
+/// at `at` at x was at x + at d then.
+void ImageFusion::row_before(const Expected& before, const Expected& after, float at,
+                             int y) noexcept {
+    for (std::vector<float>* row : {&dx_, &dy_}) std::ranges::fill(*row, 0);
+    if (after.followed) add_motion_row(after.since_before, y, at, dx_, dy_, scratch_);
+    displaced_row(before.correction, y, dx_, dy_, row_);
+}
+
+/// Between the ends of a window: what is at x was at x + at d at the end of the one before, and
+/// will be at x - (1 - at) d at its own.
+void ImageFusion::mix_ends(float at, const Expected& before, const Expected& after) noexcept {
+    for (int y = 0; y < height_; ++y) {
+        const auto out = correction_.row(y);
+        for (std::vector<float>* row : {&dx_, &dy_}) std::ranges::fill(*row, 0);
+        if (after.followed) add_motion_row(after.since_before, y, at - 1, dx_, dy_, scratch_);
+        displaced_row(after.correction, y, dx_, dy_, out);
+        row_before(before, after, at, y);
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + at * (out[x] - row_[x]);
+    }
+}
+
+/// Of a frame within a window at `at`, which is 1 at its end.
+void ImageFusion::correct_within(std::uint64_t window, float at,
+                                 const Array2<float>& shown) noexcept {
+    const Expected &after = at_end_of(window), &before = at_end_of(window - 1);
+    if (window != windows_ || !after.followed) return mix_ends(at, before, after);
+    image_.residual(shown, after.since_before, 1 - at, residual_within_);
+    pyramid_.correct(residual_within_, correction_);
+    if (!after.new_image) return;
+    // The image before is gone, but not what it said at the end of the window before.
+    for (int y = 0; y < height_; ++y) {
+        const auto out = correction_.row(y);
+        row_before(before, after, at, y);
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + at * (out[x] - row_[x]);
+    }
+}
+
 /// intensity += correction, sigma^2 = v sigma^2 + (1 - v) .02^2 with v = variance: both linear in
 /// time between the ends of two windows, and in place between the sensor's pixels.
-void ImageFusion::apply(const RenderRequest& request, Frame& frame) noexcept {
+void ImageFusion::apply(const RenderRequest& request, const Array2<float>& shown,
+                        Frame& frame) noexcept {
     assert(frame.intensity.width() == int(columns_.size()));
     std::uint64_t k = windows_;
     // The window that the frame is in: the newest or one of the two before it.
@@ -149,14 +191,11 @@ void ImageFusion::apply(const RenderRequest& request, Frame& frame) noexcept {
     const double width = double(after.window.width().count());
     const double since = double((frame.t - after.window.begin).count());
     const float at = width > 0 ? float(std::clamp(since / width, 0., 1.)) : 1.F;
+    correct_within(k, at, shown);
     const int out_height = request.height > 0 ? request.height : height_;
-    const auto sample = [&](const std::vector<float>& row, const LinearTap& x) {
-        const float first = row[std::size_t(x.first)];
-        return first + x.weight * (row[std::size_t(x.second)] - first);
-    };
     for (int y = 0; y < frame.intensity.height(); ++y) {
         const LinearTap v = tap(y + request.region.y, out_height, height_);
-        mix_row(before.correction, after.correction, at, v, row_);
+        mix_row(correction_, correction_, 0, v, row_);
         const auto intensity = frame.intensity.row(y);
         for (std::size_t x = 0; x < columns_.size(); ++x) intensity[x] += sample(row_, columns_[x]);
         if (frame.sigma.empty()) continue;

@@ -1,8 +1,10 @@
 // A camera's own images beside its events: what they show that the network missed is added to every
-// frame, for as long as it holds.
+// frame, moves with the scene, and is kept for as long as it holds.
 #pragma once
 
 #include "src/core/frame_data.h"
+#include "src/model/render/followed_image.h"
+#include "src/model/render/past_events.h"
 #include "src/model/render/renderer.h"
 #include "src/model/render/residual_pyramid.h"
 
@@ -11,9 +13,6 @@
 #include <vector>
 
 namespace eventide {
-
-/// Where intensity lies between these, the image is neither black nor saturated.
-inline constexpr float kDarkest = .02F, kBrightest = .98F;
 
 /// Two neighbours along one axis, and the weight of the second.
 struct LinearTap {
@@ -25,8 +24,13 @@ struct LinearTap {
 /// to the window's frames or to those of the two before. One thread at a time; nothing is allocated
 /// after construction, nothing fails.
 ///
-/// Between the edges of a window the correction goes over linearly from what it was at the end of
-/// the window before to what it is now, so that an image does not make frames jump.
+/// The last image follows the scene: at each window's end, optical flow between what the model
+/// shows then and what it showed when the image was taken says where each pixel was in the image,
+/// within a window what lies between the flow at its edges. The image, so displaced, less what the
+/// model shows is what is added, as far as the bands of a ResidualPyramid still hold.
+///
+/// Over a window in which an image came the correction goes over linearly from the one that was, so
+/// that an image does not make frames jump.
 ///
 ///     event windows    n - 3  |  n - 2  |  n - 1  |  n  |
 ///     expected_        at each of these four ends, that of window n in slot n % 4
@@ -37,8 +41,9 @@ public:
 
     void reset() noexcept;
 
-    /// The next event window, and its events per pixel, [y][x] of the sensor.
-    void advance(const Window& window, const Array2<float>& events) noexcept;
+    /// The next event window, its events per pixel, [y][x] of the sensor, and what the model shows
+    /// at its end, at the sensor's size; where that is not known, nothing is taken to have moved.
+    void advance(const Window& window, const Array2<float>& events, const Frame* at_end) noexcept;
 
     /// An image of the sensor, and what the model shows at that time (or as near as it can), at the
     /// sensor's size. Of the part that the image covers. Images of times after the newest window's
@@ -46,42 +51,45 @@ public:
     bool correct(const ReferenceImage& image, const Frame& rendered) noexcept;
 
     /// To a frame as it was rendered for `request`, at frame.t within one of the last three
-    /// windows.
+    /// windows. `shown`: what the model shows then at the sensor's size, which may be the frame's
+    /// own intensity, as it was rendered.
     /// prepare() was called for requests of this geometry last.
-    void apply(const RenderRequest& request, Frame& frame) noexcept;
+    void apply(const RenderRequest& request, const Array2<float>& shown, Frame& frame) noexcept;
 
     /// The memory that apply() needs for frames of this size and region.
     void prepare(const RenderRequest& request);
 
-    static constexpr SensorDuration kRemembered{200'000};
+    static constexpr SensorDuration kRemembered = PastEvents::kRemembered;
 
 private:
+    /// At the end of a window.
     struct Expected {
         Window window{};
-        Array2<float> correction, variance;  // at its end
+        Array2<float> correction, variance;
+        MotionField since_before;  // what is at x was at x + this at the end of the window before
+        bool followed = false;     // it is known how things moved
+        bool new_image = false;    // an image came
     };
-    /// Events per pixel of some time, so that an image that comes late can be told what came since.
-    struct Past {
-        Window window{};
-        Array2<float> events;
-    };
-    void remember(const Window& window, const Array2<float>& events) noexcept;
-    void collect_since(SensorTime t) noexcept;
     const Expected& at_end_of(std::uint64_t window) const;
-    static void mix_row(const Array2<float>& before, const Array2<float>& after, float at,
-                        const LinearTap& y, std::vector<float>& row) noexcept;
+    void expect_at_end() noexcept;
+    void correct_within(std::uint64_t window, float at, const Array2<float>& shown) noexcept;
+    void mix_ends(float at, const Expected& before, const Expected& after) noexcept;
+    void row_before(const Expected& before, const Expected& after, float at, int y) noexcept;
     Expected& newest() { return expected_[std::size_t(windows_ % 4)]; }
 
     int width_, height_;
     ResidualPyramid pyramid_;
+    FollowedImage image_;
+    PastEvents past_;
     std::uint64_t windows_ = 0;         // so many came
     std::array<Expected, 4> expected_;  // that of window n at n % 4
-    // A ring: the newest slot is filled until it is 18.2 ms wide, then the oldest begins anew.
-    std::array<Past, 12> past_;
-    std::size_t past_newest_ = 0;
-    Array2<float> residual_, trust_, since_;
-    std::vector<float> row_;          // scratch of apply(), at the sensor's columns
-    std::vector<LinearTap> columns_;  // of the frames that apply() saw last
+    Array2<float> shown_;               // at the newest window's end
+    bool knows_shown_ = false;
+    Array2<float> residual_;                      // there
+    Array2<float> trust_, since_;                 // scratch
+    Array2<float> residual_within_, correction_;  // of the frame at hand
+    std::vector<float> row_, dx_, dy_, scratch_;  // at the sensor's columns
+    std::vector<LinearTap> columns_;              // of the frames that apply() saw last
     int out_width_ = 0, first_column_ = 0;
 };
 

@@ -1,6 +1,8 @@
 // A correction of frames, band by band.
 #include "src/model/render/residual_pyramid.h"
 
+#include "src/model/render/half_maps.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,55 +13,16 @@ namespace {
 constexpr float kForgottenPerEvent = 2;
 constexpr int kMaxBands = 7;
 
-/// Where a fine pixel lies between two coarse ones: the first of them, and the weight of the
-/// second.
-///
-///     fine      0     1     2     3     4     5
-///     coarse       0           1           2         fine 1: .75 of 0, .25 of 1
-struct Between {
-    int first, second;
-    float weight;
-};
-Between between(int fine, int coarse_size) {
-    const int first = (fine + 1) / 2 - 1;  // weights .75 and .25
-    const float weight = fine % 2 == 0 ? .75F : .25F;
-    return {std::max(first, 0), std::min(first + 1, coarse_size - 1), weight};
+/// Between two numbers.
+float mix(float a, float b, float weight) {
+    return a + weight * (b - a);
 }
 
 }  // namespace
 
-void fill(Array2<float>& map, float value) noexcept {
-    std::ranges::fill(map.values(), value);
-}
-
-void halve(const Array2<float>& from, Array2<float>& to) noexcept {
-    for (int y = 0; y < to.height(); ++y) {
-        const auto upper = from.row(2 * y),
-                   lower = from.row(std::min(2 * y + 1, from.height() - 1));
-        for (int x = 0; x < to.width(); ++x) {
-            const auto a = std::size_t(2 * x), b = std::min(a + 1, std::size_t(from.width() - 1));
-            to(y, x) = .25F * (upper[a] + upper[b] + lower[a] + lower[b]);
-        }
-    }
-}
-
-void add_doubled(const Array2<float>& from, Array2<float>& to) noexcept {
-    for (int y = 0; y < to.height(); ++y) {
-        const Between v = between(y, from.height());
-        const auto upper = from.row(v.first), lower = from.row(v.second);
-        const auto out = to.row(y);
-        for (int x = 0; x < to.width(); ++x) {
-            const Between u = between(x, from.width());
-            const auto i = std::size_t(u.first), j = std::size_t(u.second);
-            const float a = upper[i] + v.weight * (lower[i] - upper[i]);
-            const float b = upper[j] + v.weight * (lower[j] - upper[j]);
-            out[std::size_t(x)] += a + u.weight * (b - a);
-        }
-    }
-}
-
-float ResidualPyramid::Band::rho(std::size_t i) const {
-    return std::exp(-reach * events.values()[i]);
+void ResidualPyramid::Band::fade() noexcept {
+    for (std::size_t i = 0; i < rho.values().size(); ++i)
+        rho.values()[i] = std::exp(-reach * events.values()[i]);
 }
 
 /// Bands as long as a side can be halved, at most 7; each answers for the same share of variance.
@@ -67,7 +30,7 @@ ResidualPyramid::ResidualPyramid(int width, int height) {
     for (int k = 0; k < kMaxBands && (k == 0 || std::min(width, height) > 1); ++k) {
         Band band;
         for (Array2<float>* map :
-             {&band.residual, &band.events, &band.known, &band.sum, &band.left})
+             {&band.events, &band.rho, &band.known, &band.where, &band.mean, &band.part, &band.sum})
             *map = Array2<float>(height, width);
         band.reach = kForgottenPerEvent / float(1 << k);
         bands_.push_back(std::move(band));
@@ -75,11 +38,14 @@ ResidualPyramid::ResidualPyramid(int width, int height) {
         height = (height + 1) / 2;
     }
     for (Band& band : bands_) band.share = 1 / float(bands_.size());
+    reset();
 }
 
 void ResidualPyramid::reset() noexcept {
-    for (Band& band : bands_)
-        for (Array2<float>* map : {&band.residual, &band.events, &band.known}) fill(*map, 0);
+    for (Band& band : bands_) {
+        for (Array2<float>* map : {&band.events, &band.known}) fill(*map, 0);
+        for (Array2<float>* map : {&band.rho, &band.where}) fill(*map, 1);
+    }
 }
 
 void ResidualPyramid::forget(const Array2<float>& events) noexcept {
@@ -90,53 +56,78 @@ void ResidualPyramid::forget(const Array2<float>& events) noexcept {
         if (k > 0) now = &band.sum;
         for (std::size_t i = 0; i < band.events.values().size(); ++i)
             band.events.values()[i] += now->values()[i];
+        band.fade();
     }
 }
 
-void ResidualPyramid::observe(const Array2<float>& residual, const Array2<float>& trust,
-                              const Array2<float>& events) noexcept {
-    // r_k = mean_k(residual) - up(mean_{k+1}(residual)); the last band is the mean itself.
-    const auto copy = [](const Array2<float>& from, Array2<float>& to) {
-        std::ranges::copy(from.values(), to.values().begin());
-    };
-    // Up: what is known of each band, and the means that the bands are differences of.
+void ResidualPyramid::observe(const Array2<float>& trust, const Array2<float>& events) noexcept {
     for (std::size_t k = 0; k < bands_.size(); ++k) {
         Band& band = bands_[k];
-        k == 0 ? copy(trust, band.left) : halve(bands_[k - 1].left, band.left);
+        k == 0 ? copy(trust, band.sum) : halve(bands_[k - 1].sum, band.sum);
         for (std::size_t i = 0; i < band.known.values().size(); ++i) {
-            const float sure = band.left.values()[i];
+            const float sure = band.sum.values()[i];
             // u <- trust + (1 - trust) u rho: rho by the events since the image before, which are
             // replaced after this.
-            band.known.values()[i] = sure + (1 - sure) * band.known.values()[i] * band.rho(i);
+            band.known.values()[i] = mix(band.known.values()[i] * band.rho.values()[i], 1, sure);
         }
         k == 0 ? copy(events, band.events) : halve(bands_[k - 1].events, band.events);
-        k == 0 ? copy(residual, band.residual) : halve(bands_[k - 1].residual, band.residual);
-    }
-    // Each less the doubled one above; from the finest on, so that the one above is still whole.
-    for (std::size_t k = 0; k + 1 < bands_.size(); ++k) {
-        fill(bands_[k].sum, 0);
-        add_doubled(bands_[k + 1].residual, bands_[k].sum);
-        for (std::size_t i = 0; i < bands_[k].sum.values().size(); ++i)
-            bands_[k].residual.values()[i] -= bands_[k].sum.values()[i];
+        band.fade();
     }
 }
 
-/// correction = sum over k of up(rho_k r_k), variance = sum over k of up(s_k (1 - (u_k rho_k)^2)):
-/// from the coarsest on each band is added to the doubled sum of those above it.
-void ResidualPyramid::expect(Array2<float>& correction, Array2<float>& variance) noexcept {
+void ResidualPyramid::know(const Array2<float>& where) noexcept {
+    for (std::size_t k = 0; k < bands_.size(); ++k)
+        k == 0 ? copy(where, bands_[k].where) : halve(bands_[k - 1].where, bands_[k].where);
+}
+
+/// m_k: mean of the residual over 2^k x 2^k px, weighted by where it is known, whose own mean is
+/// w_k; from the coarsest on
+///
+///     r_k = c_k (m_k - up(m'_{k+1})),    m'_k = up(m'_{k+1}) + r_k,    c_k = min(1, 4 w_k), c_0 =
+///     w_0 correction = sum over k of up(rho_k r_k)
+void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& correction) noexcept {
+    copy(residual, bands_.front().mean);
+    for (std::size_t k = 1; k < bands_.size(); ++k) {
+        Band &band = bands_[k], &finer = bands_[k - 1];
+        for (std::size_t i = 0; i < finer.sum.values().size(); ++i)
+            finer.sum.values()[i] = finer.mean.values()[i] * finer.where.values()[i];
+        halve(finer.sum, band.mean);
+        for (std::size_t i = 0; i < band.mean.values().size(); ++i) {
+            const float weight = band.where.values()[i];
+            band.mean.values()[i] /= weight > 0 ? weight : 1;
+        }
+    }
     for (std::size_t k = bands_.size(); k-- > 0;) {
         Band& band = bands_[k];
-        Array2<float>& sum = k == 0 ? correction : band.sum;
-        Array2<float>& left = k == 0 ? variance : band.left;
-        for (std::size_t i = 0; i < band.residual.values().size(); ++i) {
-            const float rho = band.rho(i);
-            sum.values()[i] = rho * band.residual.values()[i];
-            const float known = rho * band.known.values()[i];
-            left.values()[i] = band.share * (1 - known * known);
+        const Band* coarser = k + 1 < bands_.size() ? &bands_[k + 1] : nullptr;
+        fill(band.sum, 0);
+        if (coarser) add_doubled(coarser->mean, band.sum);
+        const float whole = k == 0 ? 1 : 4;
+        for (std::size_t i = 0; i < band.mean.values().size(); ++i) {
+            const float weight = std::min(1.F, whole * band.where.values()[i]);
+            const float around = band.sum.values()[i];
+            band.part.values()[i] = weight * (band.mean.values()[i] - around);
+            band.mean.values()[i] = around + band.part.values()[i];
         }
-        if (k + 1 == bands_.size()) continue;
-        add_doubled(bands_[k + 1].sum, sum);
-        add_doubled(bands_[k + 1].left, left);
+        Array2<float>& sum = k == 0 ? correction : band.sum;
+        fill(sum, 0);
+        if (coarser) add_doubled(coarser->sum, sum);
+        for (std::size_t i = 0; i < sum.values().size(); ++i)
+            sum.values()[i] += band.rho.values()[i] * band.part.values()[i];
+    }
+}
+
+/// left = sum over k of up(s_k (1 - (u_k rho_k)^2)).
+void ResidualPyramid::variance(Array2<float>& left) noexcept {
+    for (std::size_t k = bands_.size(); k-- > 0;) {
+        Band& band = bands_[k];
+        Array2<float>& sum = k == 0 ? left : band.sum;
+        fill(sum, 0);
+        if (k + 1 < bands_.size()) add_doubled(bands_[k + 1].sum, sum);
+        for (std::size_t i = 0; i < sum.values().size(); ++i) {
+            const float known = band.rho.values()[i] * band.known.values()[i];
+            sum.values()[i] += band.share * (1 - known * known);
+        }
     }
 }
 

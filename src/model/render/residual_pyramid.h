@@ -7,18 +7,10 @@
 
 namespace eventide {
 
-void fill(Array2<float>& map, float value) noexcept;
-
-/// Mean of each block of 2 x 2 pixels (of fewer at the edge): [h][w] -> [(h + 1) / 2][(w + 1) / 2].
-void halve(const Array2<float>& from, Array2<float>& to) noexcept;
-
-/// Bilinear between the centres of blocks, the edge's value beyond: adds to `to`, which is up to
-/// twice as large.
-void add_doubled(const Array2<float>& from, Array2<float>& to) noexcept;
-
-/// What a model's frames lacked when the sensor took an image, as a Laplacian pyramid: band k
-/// holds structure of about 2^k px. Since then each band fades on its own: where n events per pixel
-/// have come, the correlation with what is lacking now is taken to be
+/// How much of what a model's frames lacked when the sensor took an image still holds, band by band
+/// of a Laplacian pyramid: band k holds structure of about 2^k px. Since then each band fades on
+/// its own: where n events per pixel have come, the correlation with what is lacking now is taken
+/// to be
 ///
 ///     rho_k = exp(-a n / 2^k),
 ///
@@ -40,24 +32,30 @@ public:
     /// Time passes: events per pixel, [y][x].
     void forget(const Array2<float>& events) noexcept;
 
-    /// A new residual, [y][x] of the sensor, and how far it can be trusted, 0 to 1. `events`:
-    /// events per pixel that have come since, which count as if forget() had been told. Where it
-    /// can't be trusted, `residual` should repeat what expect() said.
-    void observe(const Array2<float>& residual, const Array2<float>& trust,
-                 const Array2<float>& events) noexcept;
+    /// An image was taken: how far it can be trusted, 0 to 1, [y][x] of the sensor. `events`:
+    /// events per pixel that have come since, which count as if forget() had been told.
+    void observe(const Array2<float>& trust, const Array2<float>& events) noexcept;
 
-    /// What to add to a frame now, and which share of the model's variance is left; [y][x].
-    void expect(Array2<float>& correction, Array2<float>& variance) noexcept;
+    /// Where residuals are known from now on, 0 to 1; elsewhere the coarser bands of what is around
+    /// go on. All of them, after reset().
+    void know(const Array2<float>& where) noexcept;
+
+    /// What to add to a frame that lacks `residual`; [y][x]. Not the same array.
+    void correct(const Array2<float>& residual, Array2<float>& correction) noexcept;
+
+    /// Which share of the model's variance is left; [y][x].
+    void variance(Array2<float>& left) noexcept;
 
 private:
     struct Band {
-        Array2<float> residual;   // of this band alone
-        Array2<float> events;     // per pixel, since the residual was seen
-        Array2<float> known;      // rho when it was seen
-        Array2<float> sum, left;  // scratch
-        float reach = 1;          // a / 2^k
-        float share = 0;          // s_k
-        float rho(std::size_t i) const;
+        Array2<float> events;           // per pixel, since the image
+        Array2<float> rho;              // by these
+        Array2<float> known;            // rho when the image was taken
+        Array2<float> where;            // residuals are known
+        Array2<float> mean, part, sum;  // scratch of correct()
+        float reach = 1;                // a / 2^k
+        float share = 0;                // s_k
+        void fade() noexcept;
     };
     std::vector<Band> bands_;
 };

@@ -1,0 +1,57 @@
+// A patch of a frame that looks for its place in another one.
+#pragma once
+
+#include "src/core/array.h"
+
+#include <array>
+#include <cstddef>
+
+namespace eventide {
+
+struct FlowVector {
+    float x = 0, y = 0;  ///< px
+};
+
+/// One patch of the frame at hand, and how well a place in the other fits it.
+class FlowPatch {
+public:
+    static constexpr int kSide = 8;  ///< px
+    static constexpr int kRim =
+        16;  ///< px that frames repeat their edges: so far a patch may reach
+    using Pixels = std::array<float, std::size_t(kSide* kSide)>;
+
+    /// A place in a map with a rim, and the weights of the four pixels around it.
+    struct Corner {
+        int row, column;   ///< of the map
+        float a, b, c, d;  ///< upper left, upper right, lower left, lower right
+
+        /// `size`: px of what is read there; it stays within the rim.
+        Corner(float y, float x, int size, const Array2<float>& rimmed) noexcept;
+    };
+
+    /// Frames with a rim, gradients without one; they are borrowed. The patch's upper left corner.
+    FlowPatch(const Array2<float>& now, const Array2<float>& gradient_x,
+              const Array2<float>& gradient_y, const Array2<float>& then, int top,
+              int left) noexcept;
+
+    int top() const { return y0_; }
+    int left() const { return x0_; }
+    /// Of the direction that has less of it: some half of the sum of the squares of its gradients.
+    float texture() const { return texture_; }
+
+    /// The other frame, displaced by v, less this one; the means are left out. Returns the sum of
+    /// squares.
+    float differences(FlowVector v, Pixels& difference) const noexcept;
+
+    /// Where Lucas-Kanade steps lead from `from`, as long as they help.
+    FlowVector descend(FlowVector from) const noexcept;
+
+private:
+    const Array2<float>* then_;
+    int x0_, y0_;
+    Pixels gx_, gy_, seen_;
+    float xx_ = 0, xy_ = 0, yy_ = 0;  // the inverse of the squares of the gradients
+    float texture_ = 0;
+};
+
+}  // namespace eventide

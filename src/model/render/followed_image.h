@@ -1,0 +1,63 @@
+// The last image of the camera, displaced to where things are now.
+#pragma once
+
+#include "src/core/event.h"
+#include "src/model/render/patch_flow.h"
+
+#include <span>
+#include <vector>
+
+namespace eventide {
+
+/// Where intensity lies between these, the image is neither black nor saturated.
+inline constexpr float kDarkest = .02F, kBrightest = .98F;
+
+/// Row y of a motion field, at the frames' columns, times a factor: adds it.
+void add_motion_row(const MotionField& motion, int y, float times, std::span<float> dx,
+                    std::span<float> dy, std::span<float> scratch) noexcept;
+
+/// Row y of a map, each pixel from where it is when displaced: [y + dy][x + dx], bilinear, beyond
+/// the edge the edge's.
+void displaced_row(const Array2<float>& map, int y, std::span<const float> dx,
+                   std::span<const float> dy, std::span<float> row) noexcept;
+
+/// One thread at a time; nothing is allocated after construction, nothing fails. Maps are [y][x] of
+/// the sensor.
+class FollowedImage {
+public:
+    FollowedImage(int sensor_width, int sensor_height);
+
+    void reset() noexcept;
+    bool there() const { return there_; }
+
+    /// A new image instead of the last: the scene as it has it, where it tells something; elsewhere
+    /// what the model showed when it was taken, and what was added to that. `trust`: 1 where it
+    /// tells something, else 0.
+    void take(const ReferenceImage& image, const Array2<float>& shown,
+              const Array2<float>& correction, Array2<float>& trust) noexcept;
+
+    /// To what the model shows now, from where it was followed to before. `since_before`: what is
+    /// at x now was at x + this then.
+    void follow(const Array2<float>& shown, MotionField& since_before) noexcept;
+    /// The same for the first time after take().
+    void follow(const Array2<float>& shown) noexcept;
+
+    /// Where the image tells something of what is shown where it was followed to, 0 to 1.
+    void tell_trust(Array2<float>& trust) noexcept;
+
+    /// The image, displaced, less what is shown. `back`: so many times `since_before` earlier than
+    /// where it was followed to.
+    void residual(const Array2<float>& shown, const MotionField& since_before, float back,
+                  Array2<float>& residual) noexcept;
+
+private:
+    int width_, height_;
+    bool there_ = false, covers_all_ = false;
+    Array2<float> image_, then_;  // and what the model showed when it was taken
+    Array2<float> covered_;       // 1 where an image has been, else 0
+    PatchFlow flow_;
+    MotionField motion_;  // to where the image has what is there now
+    std::vector<float> dx_, dy_, row_, scratch_;
+};
+
+}  // namespace eventide

@@ -1,0 +1,57 @@
+// Maps of half the size, and back.
+#include "src/model/render/half_maps.h"
+
+#include <algorithm>
+
+namespace eventide {
+namespace {
+
+float mix(float a, float b, float weight) {
+    return a + weight * (b - a);
+}
+
+}  // namespace
+
+void copy(const Array2<float>& from, Array2<float>& to) noexcept {
+    std::ranges::copy(from.values(), to.values().begin());
+}
+
+void fill(Array2<float>& map, float value) noexcept {
+    std::ranges::fill(map.values(), value);
+}
+
+void halve(const Array2<float>& from, Array2<float>& to) noexcept {
+    const auto pairs = std::size_t(from.width() / 2);
+    for (int y = 0; y < to.height(); ++y) {
+        const auto upper = from.row(2 * y),
+                   lower = from.row(std::min(2 * y + 1, from.height() - 1));
+        const auto out = to.row(y);
+        for (std::size_t x = 0; x < pairs; ++x)
+            out[x] = .25F * (upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]);
+        if (out.size() > pairs) out[pairs] = .5F * (upper[2 * pairs] + lower[2 * pairs]);
+    }
+}
+
+/// Where fine pixels lie between coarse ones: .75 and .25.
+///
+///     fine      0     1     2     3     4     5
+///     coarse       0           1           2         fine 1: .75 of 0, .25 of 1
+void add_doubled_row(const Array2<float>& from, int y, std::span<float> to) noexcept {
+    const int near = y / 2, other = y % 2 == 0 ? near - 1 : near + 1;
+    const auto a = from.row(near), b = from.row(std::clamp(other, 0, from.height() - 1));
+    const auto at = [&](std::size_t x) { return mix(a[x], b[x], .25F); };
+    float left = at(0), middle = left;
+    for (std::size_t x = 0; 2 * x < to.size(); ++x) {
+        const float right = x + 1 < a.size() ? at(x + 1) : middle;
+        to[2 * x] += mix(middle, left, .25F);
+        if (2 * x + 1 < to.size()) to[2 * x + 1] += mix(middle, right, .25F);
+        left = middle;
+        middle = right;
+    }
+}
+
+void add_doubled(const Array2<float>& from, Array2<float>& to) noexcept {
+    for (int y = 0; y < to.height(); ++y) add_doubled_row(from, y, to.row(y));
+}
+
+}  // namespace eventide

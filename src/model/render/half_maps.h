@@ -1,0 +1,25 @@
+// Maps of half the size, and back.
+#pragma once
+
+#include "src/core/array.h"
+
+#include <span>
+
+namespace eventide {
+
+void fill(Array2<float>& map, float value) noexcept;
+
+/// Of the same size.
+void copy(const Array2<float>& from, Array2<float>& to) noexcept;
+
+/// Mean of each block of 2 x 2 pixels (of fewer at the edge): [h][w] -> [(h + 1) / 2][(w + 1) / 2].
+void halve(const Array2<float>& from, Array2<float>& to) noexcept;
+
+/// Bilinear between the centres of blocks, the edge's value beyond: adds to `to`, which is up to
+/// twice as large.
+void add_doubled(const Array2<float>& from, Array2<float>& to) noexcept;
+
+/// Row y of that.
+void add_doubled_row(const Array2<float>& from, int y, std::span<float> to) noexcept;
+
+}  // namespace eventide
