@@ -111,6 +111,20 @@ TEST_F(ImageFusionTest, AnImageComesInOverItsWindowWithoutAJump) {
     EXPECT_NEAR(shown(75).intensity(9, 9), .6F, 1e-4) << "of the window before, too";
 }
 
+TEST_F(ImageFusionTest, FromItsTimeOnAnImageCountsWhole) {
+    advance(50);
+    advance(100);
+    ASSERT_TRUE(correct(constant(.8F), 75));
+    EXPECT_NEAR(shown(50.001).intensity(9, 9), .4F, 1e-3);
+    EXPECT_NEAR(shown(62.5).intensity(9, 9), .6F, 1e-4);
+    for (const double ms : {75., 90., 100.})
+        EXPECT_NEAR(shown(ms).intensity(9, 9), .8F, 1e-4) << ms;
+    advance(150);
+    ASSERT_TRUE(correct(constant(.6F), 90)) << "late";
+    EXPECT_NEAR(shown(100.001).intensity(9, 9), .8F, 1e-4) << "no jump, all the same";
+    EXPECT_NEAR(shown(112.5).intensity(9, 9), .6F, 1e-4);
+}
+
 TEST_F(ImageFusionTest, OtherSizesAndPartsAreOfTheSameFrame) {
     advance(50);
     ASSERT_TRUE(correct(ramp(), 50));

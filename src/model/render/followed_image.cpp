@@ -45,7 +45,8 @@ FollowedImage::FollowedImage(int sensor_width, int sensor_height)
       height_(sensor_height),
       flow_(sensor_width, sensor_height),
       motion_(sensor_width, sensor_height) {
-    for (Array2<float>* map : {&image_, &then_, &covered_}) *map = Array2<float>(height_, width_);
+    for (Array2<float>* map : {&image_, &then_, &covered_, &events_})
+        *map = Array2<float>(height_, width_);
     for (std::vector<float>* row : {&dx_, &dy_, &row_, &scratch_}) row->resize(std::size_t(width_));
 }
 
@@ -55,8 +56,10 @@ void FollowedImage::reset() noexcept {
 }
 
 void FollowedImage::take(const ReferenceImage& image, const Array2<float>& shown,
-                         const Array2<float>& correction, Array2<float>& trust) noexcept {
+                         const Array2<float>& correction, const Array2<float>& since,
+                         Array2<float>& trust) noexcept {
     copy(shown, then_);
+    copy(since, events_);
     for (std::size_t i = 0; i < image_.values().size(); ++i)
         image_.values()[i] = shown.values()[i] + correction.values()[i];
     fill(trust, 0);
@@ -80,16 +83,21 @@ void FollowedImage::take(const ReferenceImage& image, const Array2<float>& shown
     there_ = true;
 }
 
+void FollowedImage::pass(const Array2<float>& events) noexcept {
+    for (std::size_t i = 0; i < events_.values().size(); ++i)
+        events_.values()[i] += events.values()[i];
+}
+
 void FollowedImage::follow(const Array2<float>& shown) noexcept {
     fill(motion_.dx, 0);
     fill(motion_.dy, 0);
-    flow_.find(shown, then_, motion_);
+    flow_.find(shown, then_, events_, motion_);
 }
 
 void FollowedImage::follow(const Array2<float>& shown, MotionField& since_before) noexcept {
     copy(motion_.dx, since_before.dx);
     copy(motion_.dy, since_before.dy);
-    flow_.find(shown, then_, motion_);
+    flow_.find(shown, then_, events_, motion_);
     const auto less = [](const Array2<float>& now, Array2<float>& before) {
         for (std::size_t i = 0; i < before.values().size(); ++i)
             before.values()[i] = now.values()[i] - before.values()[i];

@@ -32,9 +32,13 @@ public:
 
     /// A new image instead of the last: the scene as it has it, where it tells something; elsewhere
     /// what the model showed when it was taken, and what was added to that. `trust`: 1 where it
-    /// tells something, else 0.
+    /// tells something, else 0. `since`: events per pixel that have come since it was taken.
     void take(const ReferenceImage& image, const Array2<float>& shown,
-              const Array2<float>& correction, Array2<float>& trust) noexcept;
+              const Array2<float>& correction, const Array2<float>& since,
+              Array2<float>& trust) noexcept;
+
+    /// Time passes: events per pixel.
+    void pass(const Array2<float>& events) noexcept;
 
     /// To what the model shows now, from where it was followed to before. `since_before`: what is
     /// at x now was at x + this then.
@@ -55,6 +59,7 @@ private:
     bool there_ = false, covers_all_ = false;
     Array2<float> image_, then_;  // and what the model showed when it was taken
     Array2<float> covered_;       // 1 where an image has been, else 0
+    Array2<float> events_;        // per pixel, since it was taken
     PatchFlow flow_;
     MotionField motion_;  // to where the image has what is there now
     std::vector<float> dx_, dy_, row_, scratch_;

@@ -14,6 +14,8 @@ namespace {
 constexpr float kImageNoise = .02F;
 // Events of what was followed count so much, against those of what was not.
 constexpr float kFollowed = .1F;
+// Share of its window over which an image comes in at least.
+constexpr float kFastest = .25F;
 /// Where row or column `out` of a frame lies on the sensor (docs/model.md: corners lie on corners).
 LinearTap tap(int out, int out_size, int size) {
     const double at = out_size > 1 ? double(out) * (size - 1) / (out_size - 1) : 0;
@@ -64,12 +66,14 @@ void ImageFusion::advance(const Window& window, const Array2<float>& events,
     knows_shown_ = at_end != nullptr;
     now.followed = image_.there() && knows_shown_;
     now.new_image = false;
+    now.whole_from = 1;
     past_.remember(window, events);
     if (knows_shown_) copy(at_end->intensity, shown_);
     const float weight = now.followed ? kFollowed : 1;
     for (std::size_t i = 0; i < since_.values().size(); ++i)
         since_.values()[i] = weight * events.values()[i];
     pyramid_.forget(since_);
+    image_.pass(events);
     if (now.followed) image_.follow(shown_, now.since_before);
     expect_at_end();
 }
@@ -91,15 +95,20 @@ bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) no
     Expected& now = newest();
     if (windows_ == 0 || image.t > now.window.end || image.t < now.window.end - kRemembered)
         return false;
+    fill(since_, 0);
+    past_.add_since(image.t, 1, since_);
+    image_.take(image, rendered.intensity, now.correction, since_, trust_);
     // What moves while the shutter is open is as blurred as if it had moved unfollowed since.
     fill(since_, 0);
     past_.add_since(std::min(image.t, image.exposure_begin), 1, since_);
     past_.add_since(image.t, knows_shown_ ? kFollowed - 1 : 0, since_);
-    image_.take(image, rendered.intensity, now.correction, trust_);
     pyramid_.observe(trust_, since_);
     if (!knows_shown_) copy(rendered.intensity, shown_);
     image_.follow(shown_);
     now.new_image = true;
+    const double width = double(now.window.width().count());
+    const double since = double((image.t - now.window.begin).count());
+    now.whole_from = width > 0 ? std::max(kFastest, float(since / width)) : 1;
     expect_at_end();
     return true;
 }
@@ -152,22 +161,23 @@ void ImageFusion::row_before(const Expected& before, const Expected& after, floa
 
 /// Between the ends of a window: what is at x was at x + at d at the end of the one before, and
 /// will be at x - (1 - at) d at its own.
-void ImageFusion::mix_ends(float at, const Expected& before, const Expected& after) noexcept {
+void ImageFusion::mix_ends(float at, float weight, const Expected& before,
+                           const Expected& after) noexcept {
     for (int y = 0; y < height_; ++y) {
         const auto out = correction_.row(y);
         for (std::vector<float>* row : {&dx_, &dy_}) std::ranges::fill(*row, 0);
         if (after.followed) add_motion_row(after.since_before, y, at - 1, dx_, dy_, scratch_);
         displaced_row(after.correction, y, dx_, dy_, out);
         row_before(before, after, at, y);
-        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + at * (out[x] - row_[x]);
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + weight * (out[x] - row_[x]);
     }
 }
 
-/// Of a frame within a window at `at`, which is 1 at its end.
-void ImageFusion::correct_within(std::uint64_t window, float at,
+/// Of a frame within a window at `at`, which is 1 at its end. `weight`: of what is known there.
+void ImageFusion::correct_within(std::uint64_t window, float at, float weight,
                                  const Array2<float>& shown) noexcept {
     const Expected &after = at_end_of(window), &before = at_end_of(window - 1);
-    if (window != windows_ || !after.followed) return mix_ends(at, before, after);
+    if (window != windows_ || !after.followed) return mix_ends(at, weight, before, after);
     image_.residual(shown, after.since_before, 1 - at, residual_within_);
     pyramid_.correct(residual_within_, correction_);
     if (!after.new_image) return;
@@ -175,12 +185,12 @@ void ImageFusion::correct_within(std::uint64_t window, float at,
     for (int y = 0; y < height_; ++y) {
         const auto out = correction_.row(y);
         row_before(before, after, at, y);
-        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + at * (out[x] - row_[x]);
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + weight * (out[x] - row_[x]);
     }
 }
 
-/// intensity += correction, sigma^2 = v sigma^2 + (1 - v) .02^2 with v = variance: both linear in
-/// time between the ends of two windows, and in place between the sensor's pixels.
+/// intensity += correction, sigma^2 = v sigma^2 + (1 - v) .02^2 with v = variance, which is linear
+/// in time between the ends of two windows; both linear between the sensor's pixels.
 void ImageFusion::apply(const RenderRequest& request, const Array2<float>& shown,
                         Frame& frame) noexcept {
     assert(frame.intensity.width() == int(columns_.size()));
@@ -191,7 +201,8 @@ void ImageFusion::apply(const RenderRequest& request, const Array2<float>& shown
     const double width = double(after.window.width().count());
     const double since = double((frame.t - after.window.begin).count());
     const float at = width > 0 ? float(std::clamp(since / width, 0., 1.)) : 1.F;
-    correct_within(k, at, shown);
+    const float weight = std::min(1.F, at / after.whole_from);
+    correct_within(k, at, weight, shown);
     const int out_height = request.height > 0 ? request.height : height_;
     for (int y = 0; y < frame.intensity.height(); ++y) {
         const LinearTap v = tap(y + request.region.y, out_height, height_);
@@ -199,7 +210,7 @@ void ImageFusion::apply(const RenderRequest& request, const Array2<float>& shown
         const auto intensity = frame.intensity.row(y);
         for (std::size_t x = 0; x < columns_.size(); ++x) intensity[x] += sample(row_, columns_[x]);
         if (frame.sigma.empty()) continue;
-        mix_row(before.variance, after.variance, at, v, row_);
+        mix_row(before.variance, after.variance, weight, v, row_);
         const auto sigma = frame.sigma.row(y);
         for (std::size_t x = 0; x < columns_.size(); ++x) {
             const float left = sample(row_, columns_[x]);

@@ -29,8 +29,8 @@ struct LinearTap {
 /// within a window what lies between the flow at its edges. The image, so displaced, less what the
 /// model shows is what is added, as far as the bands of a ResidualPyramid still hold.
 ///
-/// Over a window in which an image came the correction goes over linearly from the one that was, so
-/// that an image does not make frames jump.
+/// Where an image comes within a window the correction goes over linearly from the one that was,
+/// from the window's begin to the image's time, so that an image does not make frames jump.
 ///
 ///     event windows    n - 3  |  n - 2  |  n - 1  |  n  |
 ///     expected_        at each of these four ends, that of window n in slot n % 4
@@ -69,11 +69,13 @@ private:
         MotionField since_before;  // what is at x was at x + this at the end of the window before
         bool followed = false;     // it is known how things moved
         bool new_image = false;    // an image came
+        float whole_from = 1;      // where in the window it counts whole, 1 at the end
     };
     const Expected& at_end_of(std::uint64_t window) const;
     void expect_at_end() noexcept;
-    void correct_within(std::uint64_t window, float at, const Array2<float>& shown) noexcept;
-    void mix_ends(float at, const Expected& before, const Expected& after) noexcept;
+    void correct_within(std::uint64_t window, float at, float weight,
+                        const Array2<float>& shown) noexcept;
+    void mix_ends(float at, float weight, const Expected& before, const Expected& after) noexcept;
     void row_before(const Expected& before, const Expected& after, float at, int y) noexcept;
     Expected& newest() { return expected_[std::size_t(windows_ % 4)]; }
 

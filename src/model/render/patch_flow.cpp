@@ -14,6 +14,8 @@ constexpr int kStride = 4;         // px from patch to patch
 constexpr int kSmallestSide = 16;  // px, of the coarsest level
 // Patches of less contrast than this (grey levels a px) count for less where several overlap.
 constexpr float kTexture = 64 * .003F * .003F;
+// Events per pixel that double what a patch must gain to be taken to have moved.
+constexpr float kStill = 1;
 // Differences that count as one grey level of 256 or less count alike.
 constexpr float kGreyLevel = 1 / 255.F;
 
@@ -62,8 +64,8 @@ PatchFlow::PatchFlow(int width, int height)
         level.patches.resize(std::size_t(level.columns) * std::size_t(level.rows));
         for (Array2<float>* map : {&level.now, &level.then})
             *map = Array2<float>(height + 2 * FlowPatch::kRim, width + 2 * FlowPatch::kRim);
-        for (Array2<float>* map :
-             {&level.gradient_x, &level.gradient_y, &level.dx, &level.dy, &level.weight})
+        for (Array2<float>* map : {&level.gradient_x, &level.gradient_y, &level.events, &level.dx,
+                                   &level.dy, &level.weight})
             *map = Array2<float>(height, width);
         levels_.push_back(std::move(level));
     }
@@ -141,6 +143,26 @@ void PatchFlow::search(Level& level, bool backward) noexcept {
     }
 }
 
+/// A patch that fits nearly as well where it was has not moved: within a factor of 1 + kStill / n
+/// in squares, n events per pixel, without which nothing moves.
+void PatchFlow::keep_still(Level& level) noexcept {
+    FlowPatch::Pixels scratch;
+    for (int row = 0; row < level.rows; ++row)
+        for (int column = 0; column < level.columns; ++column) {
+            FlowVector& motion = level.patches[std::size_t(row * level.columns + column)];
+            if (motion.x == 0 && motion.y == 0) continue;
+            const FlowPatch patch = patch_at(level, row, column);
+            float events = 0;
+            for (int y = 0; y < FlowPatch::kSide; ++y)
+                for (int x = 0; x < FlowPatch::kSide; ++x)
+                    events += level.events(patch.top() + y, patch.left() + x);
+            events /= FlowPatch::kSide * FlowPatch::kSide;
+            const float there = patch.differences({}, scratch),
+                        here = patch.differences(motion, scratch);
+            if (events * there <= (events + kStill) * here) motion = {};
+        }
+}
+
 /// The motion of each pixel: the mean of the patches over it and near it, each weighted by its
 /// contrast and by how well it fits there.
 void PatchFlow::spread(Level& level) noexcept {
@@ -188,7 +210,12 @@ void PatchFlow::compare() noexcept {
 }
 
 void PatchFlow::find(const Array2<float>& now, const Array2<float>& then,
-                     MotionField& motion) noexcept {
+                     const Array2<float>& events, MotionField& motion) noexcept {
+    const Array2<float>* finer_events = &events;
+    for (Level& level : levels_) {
+        halve(*finer_events, level.events);
+        finer_events = &level.events;
+    }
     for (const bool other : {false, true}) {
         const Array2<float>& frame = other ? then : now;
         std::ranges::transform(frame.values(), clipped_.values().begin(),
@@ -209,6 +236,7 @@ void PatchFlow::find(const Array2<float>& now, const Array2<float>& then,
             begin_at(levels_[k + 1].dx, levels_[k + 1].dy, 2, level);
         search(level, false);
         search(level, true);
+        keep_still(level);
         spread(level);
     }
     compare();

@@ -30,8 +30,11 @@ class PatchFlow {
 public:
     PatchFlow(int width, int height);
 
-    /// Intensities, [y][x], clipped to [0, 1]. `motion`: where to begin, and what was found.
-    void find(const Array2<float>& now, const Array2<float>& then, MotionField& motion) noexcept;
+    /// Intensities, [y][x], clipped to [0, 1]. `events`: per pixel since then; the fewer there
+    /// were, the better a patch must fit elsewhere before it is taken to have moved. `motion`:
+    /// where to begin, and what was found.
+    void find(const Array2<float>& now, const Array2<float>& then, const Array2<float>& events,
+              MotionField& motion) noexcept;
 
     /// How far the frames differ around each pixel, the motion found last taken into account: means
     /// of |difference|, 0 to 1, in the size of a motion field.
@@ -43,6 +46,7 @@ private:
         int columns = 0, rows = 0;             // patches
         Array2<float> now, then;               // with a rim that repeats the edge
         Array2<float> gradient_x, gradient_y;  // of now, without a rim
+        Array2<float> events;                  // per pixel of the frames, without a rim
         std::vector<FlowVector> patches;       // px of this level
         Array2<float> dx, dy, weight;          // dense
     };
@@ -54,11 +58,12 @@ private:
     static void begin_at(const Array2<float>& dx, const Array2<float>& dy, float scale,
                          Level& level) noexcept;
     static void search(Level& level, bool backward) noexcept;
+    static void keep_still(Level& level) noexcept;
     static void spread(Level& level) noexcept;
     void compare() noexcept;
 
-    std::vector<Level> levels_;  // from half of the frames' size on
-    std::vector<Array2<float>> halves_;
+    std::vector<Level> levels_;          // from half of the frames' size on
+    std::vector<Array2<float>> halves_;  // scratch
     Array2<float> clipped_, mismatch_, quarter_;
 };
 
