@@ -99,7 +99,7 @@ TEST(PatchFlow, NoiseDoesNotMovePlainSurfaces) {
     PatchFlow flow{120, 90};
     MotionField motion{120, 90};
     const Array2<float> plain = events(120, 90, .5F);
-    flow.find(noisy(plain, .01F, 5), noisy(plain, .01F, 6), events(120, 90, 1), motion);
+    flow.find(noisy(plain, .01F, 5), noisy(plain, .01F, 6), events(120, 90, .3F), motion);
     EXPECT_EQ(largest_error(motion, 0, 0, 0), 0);
     flow.find(noisy(plain, .01F, 5), noisy(plain, .01F, 6), events(120, 90, 50), motion);
     EXPECT_LT(largest_error(motion, 0, 0, 0), 2) << "a px of half size";
