@@ -7,7 +7,6 @@
 #include <atomic>
 #include <mutex>
 #include <semaphore>
-#include <thread>
 
 namespace eventide {
 namespace {
@@ -122,13 +121,20 @@ TEST(Pipeline, ThatACameraWasOpenedAgainIsNotLostWithAPacket) {
     ToyRenderer renderer;
     ToySink sink;
     Pipeline pipeline({source, encoder, renderer, {&sink}}, settings);
-    std::binary_semaphore released{0}, goes_on{0};
+    std::binary_semaphore begun{0}, released{0}, goes_on{0};
     encoder.before_encode = [&, calls = 0]() mutable {
-        if (++calls == 1) released.acquire();
+        if (++calls == 1) {
+            begun.release();
+            released.acquire();
+        }
         if (calls == 3) goes_on.release();
     };
     std::uint64_t lost = 0;
     toy.before_read = [&](std::size_t packet) {
+        // From here on the encoder holds its window, and the queues fill.
+        if (packet == kReopenedAt / 2) {
+            begun.acquire();
+        }
         if (packet == kReopenedAt) lost = pipeline.snapshot().lost_packets;
         if (packet == kReopenedAt + 1) lost = pipeline.snapshot().lost_packets - lost;
         if (packet != kReleasedAt) return;
