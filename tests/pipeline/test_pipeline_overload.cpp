@@ -7,6 +7,7 @@
 #include <atomic>
 #include <mutex>
 #include <semaphore>
+#include <thread>
 
 namespace eventide {
 namespace {
@@ -131,9 +132,10 @@ TEST(Pipeline, ThatACameraWasOpenedAgainIsNotLostWithAPacket) {
     };
     std::uint64_t lost = 0;
     toy.before_read = [&](std::size_t packet) {
-        // From here on the encoder holds its window, and the queues fill.
+        // The encoder holds its window, and the binner has the next: nothing is taken any more.
         if (packet == kReopenedAt / 2) {
             begun.acquire();
+            while (pipeline.snapshot().events < 3) std::this_thread::yield();
         }
         if (packet == kReopenedAt) lost = pipeline.snapshot().lost_packets;
         if (packet == kReopenedAt + 1) lost = pipeline.snapshot().lost_packets - lost;
