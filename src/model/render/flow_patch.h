@@ -16,8 +16,8 @@ struct FlowVector {
 class FlowPatch {
 public:
     static constexpr int kSide = 8;  ///< px
-    static constexpr int kRim =
-        16;  ///< px that frames repeat their edges: so far a patch may reach
+    /// px that frames repeat their edges: so far a patch may reach.
+    static constexpr int kRim = 16;
     using Pixels = std::array<float, std::size_t(kSide* kSide)>;
 
     /// A place in a map with a rim, and the weights of the four pixels around it.

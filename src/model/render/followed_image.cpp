@@ -15,13 +15,9 @@ constexpr float kMismatch = .1F;
 }  // namespace
 
 void add_motion_row(const MotionField& motion, int y, float times, std::span<float> dx,
-                    std::span<float> dy, std::span<float> scratch) noexcept {
-    for (const bool down : {false, true}) {
-        const std::span<float> to = down ? dy : dx;
-        std::ranges::fill(scratch, 0);
-        add_doubled_row(down ? motion.dy : motion.dx, y, scratch);
-        for (std::size_t x = 0; x < to.size(); ++x) to[x] += times * scratch[x];
-    }
+                    std::span<float> dy) noexcept {
+    add_doubled_row(motion.dx, y, dx, times);
+    add_doubled_row(motion.dy, y, dy, times);
 }
 
 void displaced_row(const Array2<float>& map, int y, std::span<const float> dx,
@@ -34,9 +30,8 @@ void displaced_row(const Array2<float>& map, int y, std::span<const float> dx,
         const auto upper = map.row(y0), lower = map.row(std::min(y0 + 1, last_y));
         const auto left = std::size_t(x0), right = std::size_t(std::min(x0 + 1, last_x));
         const float across = u - float(x0);
-        const float a = upper[left] + across * (upper[right] - upper[left]);
-        const float b = lower[left] + across * (lower[right] - lower[left]);
-        row[i] = a + (v - float(y0)) * (b - a);
+        row[i] = mix(mix(upper[left], upper[right], across), mix(lower[left], lower[right], across),
+                     v - float(y0));
     }
 }
 
@@ -47,7 +42,7 @@ FollowedImage::FollowedImage(int sensor_width, int sensor_height)
       motion_(sensor_width, sensor_height) {
     for (Array2<float>* map : {&image_, &then_, &covered_, &events_})
         *map = Array2<float>(height_, width_);
-    for (std::vector<float>* row : {&dx_, &dy_, &row_, &scratch_}) row->resize(std::size_t(width_));
+    for (std::vector<float>* row : {&dx_, &dy_, &row_}) row->resize(std::size_t(width_));
 }
 
 void FollowedImage::reset() noexcept {
@@ -109,7 +104,7 @@ void FollowedImage::follow(const Array2<float>& shown, MotionField& since_before
 void FollowedImage::tell_trust(Array2<float>& trust) noexcept {
     for (int y = 0; y < height_; ++y) {
         for (std::vector<float>* row : {&dx_, &dy_, &row_}) std::ranges::fill(*row, 0);
-        add_motion_row(motion_, y, 1, dx_, dy_, scratch_);
+        add_motion_row(motion_, y, 1, dx_, dy_);
         add_doubled_row(flow_.mismatch(), y, row_);
         const auto out = trust.row(y);
         for (std::size_t x = 0; x < out.size(); ++x) {
@@ -126,8 +121,8 @@ void FollowedImage::residual(const Array2<float>& shown, const MotionField& sinc
                              float back, Array2<float>& residual) noexcept {
     for (int y = 0; y < height_; ++y) {
         for (std::vector<float>* row : {&dx_, &dy_}) std::ranges::fill(*row, 0);
-        add_motion_row(motion_, y, 1, dx_, dy_, scratch_);
-        if (back != 0) add_motion_row(since_before, y, -back, dx_, dy_, scratch_);
+        add_motion_row(motion_, y, 1, dx_, dy_);
+        if (back != 0) add_motion_row(since_before, y, -back, dx_, dy_);
         const auto out = residual.row(y);
         const auto there = shown.row(y);
         displaced_row(image_, y, dx_, dy_, out);

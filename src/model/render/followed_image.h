@@ -12,9 +12,9 @@ namespace eventide {
 /// Where intensity lies between these, the image is neither black nor saturated.
 inline constexpr float kDarkest = .02F, kBrightest = .98F;
 
-/// Row y of a motion field, at the frames' columns, times a factor: adds it.
+/// Row y of a motion field, at the frames' columns, so many times: adds it.
 void add_motion_row(const MotionField& motion, int y, float times, std::span<float> dx,
-                    std::span<float> dy, std::span<float> scratch) noexcept;
+                    std::span<float> dy) noexcept;
 
 /// Row y of a map, each pixel from where it is when displaced: [y + dy][x + dx], bilinear, beyond
 /// the edge the edge's.
@@ -62,7 +62,7 @@ private:
     Array2<float> events_;        // per pixel, since it was taken
     PatchFlow flow_;
     MotionField motion_;  // to where the image has what is there now
-    std::vector<float> dx_, dy_, row_, scratch_;
+    std::vector<float> dx_, dy_, row_;
 };
 
 }  // namespace eventide

@@ -4,13 +4,6 @@
 #include <algorithm>
 
 namespace eventide {
-namespace {
-
-float mix(float a, float b, float weight) {
-    return a + weight * (b - a);
-}
-
-}  // namespace
 
 void copy(const Array2<float>& from, Array2<float>& to) noexcept {
     std::ranges::copy(from.values(), to.values().begin());
@@ -36,15 +29,15 @@ void halve(const Array2<float>& from, Array2<float>& to) noexcept {
 ///
 ///     fine      0     1     2     3     4     5
 ///     coarse       0           1           2         fine 1: .75 of 0, .25 of 1
-void add_doubled_row(const Array2<float>& from, int y, std::span<float> to) noexcept {
+void add_doubled_row(const Array2<float>& from, int y, std::span<float> to, float times) noexcept {
     const int near = y / 2, other = y % 2 == 0 ? near - 1 : near + 1;
     const auto a = from.row(near), b = from.row(std::clamp(other, 0, from.height() - 1));
     const auto at = [&](std::size_t x) { return mix(a[x], b[x], .25F); };
     float left = at(0), middle = left;
     for (std::size_t x = 0; 2 * x < to.size(); ++x) {
         const float right = x + 1 < a.size() ? at(x + 1) : middle;
-        to[2 * x] += mix(middle, left, .25F);
-        if (2 * x + 1 < to.size()) to[2 * x + 1] += mix(middle, right, .25F);
+        to[2 * x] += times * mix(middle, left, .25F);
+        if (2 * x + 1 < to.size()) to[2 * x + 1] += times * mix(middle, right, .25F);
         left = middle;
         middle = right;
     }

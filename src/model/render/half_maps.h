@@ -7,6 +7,11 @@
 
 namespace eventide {
 
+/// Between two numbers: a at 0, b at 1.
+inline float mix(float a, float b, float weight) {
+    return a + weight * (b - a);
+}
+
 void fill(Array2<float>& map, float value) noexcept;
 
 /// Of the same size.
@@ -19,7 +24,8 @@ void halve(const Array2<float>& from, Array2<float>& to) noexcept;
 /// twice as large.
 void add_doubled(const Array2<float>& from, Array2<float>& to) noexcept;
 
-/// Row y of that.
-void add_doubled_row(const Array2<float>& from, int y, std::span<float> to) noexcept;
+/// Row y of that, so many times.
+void add_doubled_row(const Array2<float>& from, int y, std::span<float> to,
+                     float times = 1) noexcept;
 
 }  // namespace eventide

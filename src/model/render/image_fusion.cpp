@@ -39,7 +39,7 @@ ImageFusion::ImageFusion(int sensor_width, int sensor_height)
     for (Array2<float>* map :
          {&shown_, &residual_, &trust_, &since_, &residual_within_, &correction_})
         *map = Array2<float>(height_, width_);
-    for (std::vector<float>* row : {&row_, &dx_, &dy_, &scratch_}) row->resize(std::size_t(width_));
+    for (std::vector<float>* row : {&row_, &dx_, &dy_}) row->resize(std::size_t(width_));
     reset();
 }
 
@@ -138,14 +138,12 @@ void mix_row(const Array2<float>& before, const Array2<float>& after, float at, 
     const auto a = before.row(y.first), b = before.row(y.second);
     const auto c = after.row(y.first), d = after.row(y.second);
     for (std::size_t x = 0; x < row.size(); ++x) {
-        const float old = a[x] + y.weight * (b[x] - a[x]), now = c[x] + y.weight * (d[x] - c[x]);
-        row[x] = old + at * (now - old);
+        row[x] = mix(mix(a[x], b[x], y.weight), mix(c[x], d[x], y.weight), at);
     }
 }
 
 float sample(const std::vector<float>& row, const LinearTap& x) {
-    const float first = row[std::size_t(x.first)];
-    return first + x.weight * (row[std::size_t(x.second)] - first);
+    return mix(row[std::size_t(x.first)], row[std::size_t(x.second)], x.weight);
 }
 
 }  // namespace
@@ -155,7 +153,7 @@ float sample(const std::vector<float>& row, const LinearTap& x) {
 void ImageFusion::row_before(const Expected& before, const Expected& after, float at,
                              int y) noexcept {
     for (std::vector<float>* row : {&dx_, &dy_}) std::ranges::fill(*row, 0);
-    if (after.followed) add_motion_row(after.since_before, y, at, dx_, dy_, scratch_);
+    if (after.followed) add_motion_row(after.since_before, y, at, dx_, dy_);
     displaced_row(before.correction, y, dx_, dy_, row_);
 }
 
@@ -166,10 +164,10 @@ void ImageFusion::mix_ends(float at, float weight, const Expected& before,
     for (int y = 0; y < height_; ++y) {
         const auto out = correction_.row(y);
         for (std::vector<float>* row : {&dx_, &dy_}) std::ranges::fill(*row, 0);
-        if (after.followed) add_motion_row(after.since_before, y, at - 1, dx_, dy_, scratch_);
+        if (after.followed) add_motion_row(after.since_before, y, at - 1, dx_, dy_);
         displaced_row(after.correction, y, dx_, dy_, out);
         row_before(before, after, at, y);
-        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + weight * (out[x] - row_[x]);
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = mix(row_[x], out[x], weight);
     }
 }
 
@@ -185,7 +183,7 @@ void ImageFusion::correct_within(std::uint64_t window, float at, float weight,
     for (int y = 0; y < height_; ++y) {
         const auto out = correction_.row(y);
         row_before(before, after, at, y);
-        for (std::size_t x = 0; x < out.size(); ++x) out[x] = row_[x] + weight * (out[x] - row_[x]);
+        for (std::size_t x = 0; x < out.size(); ++x) out[x] = mix(row_[x], out[x], weight);
     }
 }
 

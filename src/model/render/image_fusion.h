@@ -90,7 +90,7 @@ private:
     Array2<float> residual_;                      // there
     Array2<float> trust_, since_;                 // scratch
     Array2<float> residual_within_, correction_;  // of the frame at hand
-    std::vector<float> row_, dx_, dy_, scratch_;  // at the sensor's columns
+    std::vector<float> row_, dx_, dy_;            // at the sensor's columns
     std::vector<LinearTap> columns_;              // of the frames that apply() saw last
     int out_width_ = 0, first_column_ = 0;
 };

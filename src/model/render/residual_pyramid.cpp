@@ -13,11 +13,6 @@ namespace {
 constexpr float kForgottenPerEvent = 2;
 constexpr int kMaxBands = 7;
 
-/// Between two numbers.
-float mix(float a, float b, float weight) {
-    return a + weight * (b - a);
-}
-
 }  // namespace
 
 void ResidualPyramid::Band::fade() noexcept {
