@@ -64,7 +64,7 @@ std::string FastRenderer::description() const {
 
 void FastRenderer::reset() noexcept {
     first_layer_.reset();
-    kept_.reset();
+    for (Size& size : sizes_) size.kept.reset();
 }
 
 void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
@@ -76,17 +76,21 @@ void FastRenderer::take(std::int64_t k, LatentMap& latent) noexcept {
 }
 
 void FastRenderer::lay_out(const FrameGeometry& geometry) {
-    if (geometry == laid_out_) return;
-    laid_out_ = {};  // until all is there
-    layout_.make(geometry, config_.latent_stride, config_.blend, first_layer_.row_edges(),
-                 first_layer_.column_edges());
-    kept_.make_room(geometry, layout_.tiles());
+    if (geometry == sizes_[size_].geometry) return;
+    size_ = 1 - size_;
+    Size& size = sizes_[size_];
+    if (geometry == size.geometry) return;
+    size.geometry = {};  // until all is there
+    size.layout.make(geometry, config_.latent_stride, config_.blend, first_layer_.row_edges(),
+                     first_layer_.column_edges());
+    size.kept.make_room(geometry, size.layout.tiles());
     spans_.reserve(std::size_t(geometry.part_height) *
-                   std::size_t(layout_.columns.count() / 2 + 1));
+                   std::size_t(size.layout.columns.count() / 2 + 1));
     // Six rows of part_width numbers: mu, ln sigma and square, twice.
     // What members have given together, and what one gives.
-    for (FloatBuffer& sums : row_sums_) sums.resize(6 * std::size_t(geometry.part_width));
-    laid_out_ = geometry;
+    for (FloatBuffer& sums : row_sums_)
+        sums.resize(std::max(sums.size(), 6 * std::size_t(geometry.part_width)));
+    size.geometry = geometry;
 }
 
 AxisSamples FastRenderer::time_samples(const CodeChoice& codes) const noexcept {
@@ -115,12 +119,12 @@ void FastRenderer::render(const CodeChoice& codes, const FrameGeometry& geometry
     if (!options_.skip_quiet) {
         spans_.clear();
         for (int row = 0; row < geometry.part_height; ++row)
-            spans_.push_back({row, 0, layout_.columns.count()});
+            spans_.push_back({row, 0, layout().columns.count()});
         render_spans(job, out);
         return;
     }
-    KeptFrame& kept =
-        kept_.choose(kind_of(codes, job, sigma != nullptr), codes.fraction, options_.still_time);
+    KeptFrame& kept = sizes_[size_].kept.choose(kind_of(codes, job, sigma != nullptr),
+                                                codes.fraction, options_.still_time);
     find_outdated(codes, kept);
     render_spans(job, {kept.intensity.data(), sigma != nullptr ? kept.sigma.data() : nullptr});
     std::ranges::copy(kept.intensity, out.intensity);
@@ -150,12 +154,14 @@ FrameKind FastRenderer::kind_of(const CodeChoice& codes, const Job& job,
 bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
                                  const CodeChoice& codes) const noexcept {
     const auto r = std::size_t(row), c = std::size_t(column);
-    const auto columns = std::size_t(layout_.columns.count());
+    const auto columns = std::size_t(layout().columns.count());
     const KeptFrame::Stamp& stamp = kept.tiles[r * columns + c];
     if (stamp.k < 1 || stamp.k > codes.k) return false;
+    // The same time again: of the event window the same codes are known, or its kind would differ.
+    if (stamp.k == codes.k && stamp.fraction == codes.fraction) return true;
     if (std::abs(stamp.fraction - codes.fraction) > options_.still_time) return false;
-    for (std::size_t y = r; y <= r + layout_.rows.reads_next[r]; ++y)
-        for (std::size_t x = c; x <= c + layout_.columns.reads_next[c]; ++x)
+    for (std::size_t y = r; y <= r + layout().rows.reads_next[r]; ++y)
+        for (std::size_t x = c; x <= c + layout().columns.reads_next[c]; ++x)
             if (!first_layer_.still(y * columns + x, stamp.k + kept.kind.oldest,
                                     codes.k + kept.kind.newest))
                 return false;
@@ -168,11 +174,11 @@ bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
 ///               o    o         o         spans {10, 0, 2}, {10, 3, 4}, then {11, 0, 2}, ...
 void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept {
     spans_.clear();
-    const int columns = layout_.columns.count();
-    for (int r = 0; r < layout_.rows.count(); ++r) {
+    const int columns = layout().columns.count();
+    for (int r = 0; r < layout().rows.count(); ++r) {
         const auto begin = spans_.size();
-        const int first_row = layout_.rows.begin[std::size_t(r)],
-                  last_row = layout_.rows.begin[std::size_t(r) + 1];
+        const int first_row = layout().rows.begin[std::size_t(r)],
+                  last_row = layout().rows.begin[std::size_t(r) + 1];
         for (int c = 0; c < columns; ++c) {
             KeptFrame::Stamp& stamp = kept.tiles[std::size_t(r * columns + c)];
             const bool is_kept = is_up_to_date(kept, r, c, codes);
@@ -195,8 +201,8 @@ void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexc
 
 void FastRenderer::render_spans(const Job& job, const Target& target) noexcept {
     for (const Span& span : spans_)
-        pixels_rendered_ += std::uint64_t(layout_.columns.begin[std::size_t(span.last)] -
-                                          layout_.columns.begin[std::size_t(span.first)]);
+        pixels_rendered_ += std::uint64_t(layout().columns.begin[std::size_t(span.last)] -
+                                          layout().columns.begin[std::size_t(span.first)]);
     for_each_tile(options_.parallel_for, int(spans_.size()), [&](int worker, int i) {
         render_span(job, spans_[std::size_t(i)], target, std::size_t(worker));
     });
@@ -212,8 +218,8 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
                                std::size_t worker) noexcept {
     const int width = job.geometry.part_width;
     const auto count = std::size_t(width);
-    const auto begin = std::size_t(layout_.columns.begin[std::size_t(span.first)]),
-               end = std::size_t(layout_.columns.begin[std::size_t(span.last)]);
+    const auto begin = std::size_t(layout().columns.begin[std::size_t(span.first)]),
+               end = std::size_t(layout().columns.begin[std::size_t(span.last)]);
     const AxisSamples y =
         sample_axis(job.geometry.y + span.row, job.geometry.height, job.geometry.sensor_height,
                     config_.latent_stride, config_.blend);

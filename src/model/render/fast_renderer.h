@@ -56,7 +56,17 @@ private:
         std::size_t side;      // left or right
     };
 
+    /// A size of frames: how they lie among the samples, and what was rendered of it. Two are held,
+    /// so that nothing is rendered anew because frames of another size came between
+    /// (FusedRenderer).
+    struct Size {
+        FrameGeometry geometry;
+        FrameLayout layout;
+        KeptFrames kept;
+    };
+
     AxisSamples time_samples(const CodeChoice& codes) const noexcept;
+    const FrameLayout& layout() const { return sizes_[size_].layout; }
     void lay_out(const FrameGeometry& geometry);
     std::array<const FirstLayerCache::Sums*, 2> bring_sums(const CodeChoice& codes,
                                                            const AxisSamples& t) noexcept;
@@ -94,9 +104,8 @@ private:
     std::array<std::vector<float>, 3> slope_;     // layer 1's columns for t, x, y
     std::vector<float> last_weight_, last_bias_;  // [2][H], [2]
 
-    FrameLayout layout_;
-    FrameGeometry laid_out_;
-    KeptFrames kept_;
+    std::array<Size, 2> sizes_;  // the two asked for last
+    std::size_t size_ = 0;       // the one at hand
     std::vector<Span> spans_;
     std::uint64_t pixels_rendered_ = 0;
     bool needs_squares_ = false;

@@ -13,7 +13,7 @@ namespace eventide {
 ///                                       blended        1   3   5     (FrameColumns::pixel)
 void FastRenderer::evaluate(const Member& member, const Span& span, float* blended, int width,
                             float* scratch) const noexcept {
-    const FrameColumns& columns = layout_.pixels;
+    const FrameColumns& columns = layout().pixels;
     const std::size_t begin = columns.tile[member.side][std::size_t(span.first)],
                       pixels = columns.tile[member.side][std::size_t(span.last)] - begin;
     if (pixels == 0) return;
@@ -70,7 +70,7 @@ void FastRenderer::run_blocks(const OffsetRows& all, const Outputs& out,
 
 void FastRenderer::add(const Member& member, std::size_t begin, int pixels, const Outputs& outputs,
                        float* blended, int width) const noexcept {
-    const FrameColumns& columns = layout_.pixels;
+    const FrameColumns& columns = layout().pixels;
     numbers_.kernels().weigh_rows({.mu = outputs.mu,
                                    .log_sigma = outputs.log_sigma,
                                    .square = outputs.square,

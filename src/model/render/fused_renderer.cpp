@@ -2,6 +2,7 @@
 #include "src/model/render/fused_renderer.h"
 
 #include "src/core/error.h"
+#include "src/model/render/sampling.h"
 
 #include <algorithm>
 #include <new>
@@ -18,15 +19,17 @@ FusedRenderer::FusedRenderer(Renderer& renderer, int sensor_width, int sensor_he
 }
 
 void FusedRenderer::prepare(const RenderRequest& request) {
-    if (fusion_) fusion_->prepare(request);
     prepared_ = request;
+    if (!fusion_) return;
+    fusion_->prepare(request);
+    shown_ = renderer_.make_output(request_at({}));
 }
 
 /// All or nothing.
 void FusedRenderer::begin() {
     ImageFusion fusion{width_, height_};
     fusion.prepare(prepared_);
-    shown_ = renderer_.make_output({.lookahead = lookahead_, .want_sigma = false});
+    shown_ = renderer_.make_output(request_at({}));
     for (Waiting& waiting : waiting_) waiting.events = Array2<float>(height_, width_);
     fusion_.emplace(std::move(fusion));
 }
@@ -82,8 +85,21 @@ void FusedRenderer::settle_oldest() noexcept {
         use(images_.front(), settled.window);
 }
 
+/// With the sigma that frames have: the renderer keeps what it rendered, and a frame asked for at
+/// that time is a copy.
+RenderRequest FusedRenderer::request_at(SensorTime t) const {
+    return {.t = t,
+            .lookahead = lookahead_,
+            .sigma_rule = prepared_.sigma_rule,
+            .want_sigma = prepared_.want_sigma};
+}
+
+bool FusedRenderer::is_sensors(const RenderRequest& request) const {
+    return geometry_of(request, width_, height_) == geometry_of({}, width_, height_);
+}
+
 void FusedRenderer::show(SensorTime t) noexcept {
-    renderer_.render({.t = t, .lookahead = lookahead_, .want_sigma = false}, shown_);
+    renderer_.render(request_at(t), shown_);
 }
 
 void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexcept {
@@ -102,10 +118,9 @@ void FusedRenderer::render(const RenderRequest& request, Frame& frame) noexcept 
     renderer_.render(request, frame);
     if (!active_) return;
     frame.t = request.t;
-    const bool is_sensors = request.region.width == 0 && frame.intensity.width() == width_ &&
-                            frame.intensity.height() == height_;
-    if (!is_sensors) show(request.t);
-    fusion_->apply(request, is_sensors ? frame.intensity : shown_.intensity, frame);
+    const bool shows_it = is_sensors(request);
+    if (!shows_it) show(request.t);
+    fusion_->apply(request, shows_it ? frame.intensity : shown_.intensity, frame);
 }
 
 }  // namespace eventide

@@ -53,6 +53,8 @@ private:
         Array2<float> events;
     };
     void begin();
+    RenderRequest request_at(SensorTime t) const;
+    bool is_sensors(const RenderRequest& request) const;
     void settle_oldest() noexcept;
     void show(SensorTime t) noexcept;
     void use(const ReferenceImage& image, const Window& window) noexcept;
