@@ -2,6 +2,7 @@
 #include "library/c_call.h"
 #include "library/c_handles.h"
 #include "src/core/arithmetic_words.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <cstring>
@@ -46,7 +47,26 @@ ReconstructorOptions options_of(const eventide_options* given_options) {
     options.reset_on_gap = c.reset_on_gap != 0;
     options.allow_silence = c.allow_silence != 0;
     options.noise_filter = &given(c.noise_filter, "options.noise_filter");
+    options.images = c.images != 0;
     return options;
+}
+
+ReferenceImage image_of(const eventide_image& image) {
+    const auto largest = [](int side) { return side >= 1 && side <= kLargestSensorSide; };
+    if (!largest(image.width) || !largest(image.height))
+        throw Error(ErrorKind::usage, "image: expected 1 to " + std::to_string(kLargestSensorSide) +
+                                          " px each way, found " + std::to_string(image.width) +
+                                          "x" + std::to_string(image.height));
+    ReferenceImage made;
+    made.t = from_us(image.t);
+    made.exposure_begin = from_us(image.exposure_begin);
+    made.exposure_end = from_us(image.exposure_end);
+    made.x0 = image.x;
+    made.y0 = image.y;
+    made.pixels = {image.height, image.width};
+    std::copy_n(&given(image.pixels, "pixels of an image"), made.pixels.values().size(),
+                made.pixels.values().begin());
+    return made;
 }
 
 Reconstructor& it(eventide_reconstructor* reconstructor) {
@@ -71,7 +91,8 @@ void eventide_options_init(eventide_options* options, size_t struct_size) {
                                     .threads = 0,
                                     .reset_on_gap = 0,
                                     .allow_silence = 0,
-                                    .noise_filter = "model"};
+                                    .noise_filter = "model",
+                                    .images = 1};
     std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
     if (struct_size >= sizeof options->struct_size) options->struct_size = struct_size;
 }
@@ -97,6 +118,16 @@ eventide_status eventide_push(eventide_reconstructor* reconstructor, const event
     return c_call([&] {
         Reconstructor& into = it(reconstructor);
         into.push(events_of(events, count, reconstructor->events));
+        return EVENTIDE_OK;
+    });
+}
+
+eventide_status eventide_push_image(eventide_reconstructor* reconstructor,
+                                    const eventide_image* image) {
+    return c_call([&] {
+        Batch batch;
+        batch.images.push_back(image_of(given(image, "an image")));
+        it(reconstructor).push(batch);
         return EVENTIDE_OK;
     });
 }
@@ -215,7 +246,9 @@ eventide_status eventide_count(const eventide_reconstructor* reconstructor,
                                        .left_out = c.left_out,
                                        .time_resets = c.time_resets,
                                        .event_windows = c.event_windows,
-                                       .frames = c.frames};
+                                       .frames = c.frames,
+                                       .used_images = c.used_images,
+                                       .dropped_images = c.dropped_images};
         return EVENTIDE_OK;
     });
 }

@@ -1,6 +1,7 @@
 // Cameras behind the public face.
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_camera.h"
+#include "library/pushed_images.h"
 #include "pipeline/event_windows.h"
 #include "src/core/error.h"
 
@@ -51,6 +52,7 @@ public:
         if (gap_before_) packet_.reopened ? parser_->reopened() : parser_->resync();
         if (camera_->is_live()) parser_->arrives(now_);
         parser_->parse(packet_.bytes, batch);
+        tell_filter(camera_->info().colour_filter, batch.images);
         note_clock();
         return true;
     }
@@ -66,6 +68,7 @@ public:
 private:
     bool read_rest(Batch& batch) {
         if (!std::exchange(ended_, true)) parser_->finish(batch);
+        tell_filter(camera_->info().colour_filter, batch.images);
         return !batch.empty();
     }
 

@@ -1,6 +1,7 @@
 // What a caller pushes -> event windows.
 #include "library/event_intake.h"
 
+#include "library/pushed_images.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/binning/noise_filter.h"
 #include "src/binning/push_filtered.h"
@@ -40,13 +41,29 @@ void EventIntake::push(std::span<const Event> events, HostTime arrived) {
 
 void EventIntake::push(const Batch& batch, HostTime arrived) {
     check_open("push");
-    for (const ReferenceImage& image : batch.images)
-        if (is_far(image.t))
-            ++counters_.bad_time;
-        else
-            slicer_.push_reference(image.t);
+    for (const ReferenceImage& image : batch.images) check_image(image);
+    hold(batch.images);
     take(batch.events, StepBack::is_new_clock, arrived);
     note_cut();
+}
+
+void EventIntake::hold(const std::vector<ReferenceImage>& images) {
+    const Slicer::Position since = slicer_.heard();
+    for (const ReferenceImage& image : images) {
+        if (is_far(image.t)) {
+            ++counters_.bad_time;
+            continue;
+        }
+        if (holds_images_) images_.push_back({without_mosaic(image), since});
+        slicer_.push_reference(image.t);
+    }
+}
+
+std::optional<ReferenceImage> EventIntake::next_image() {
+    if (images_.empty() || slicer_.ended_before(images_.front().since)) return std::nullopt;
+    std::optional<ReferenceImage> image{std::move(images_.front().image)};
+    images_.pop_front();
+    return image;
 }
 
 void EventIntake::take(std::span<const Event> events, StepBack step_back, HostTime arrived) {
@@ -102,6 +119,7 @@ void EventIntake::note_cut() {
 
 void EventIntake::reset() {
     slicer_.reset();
+    images_.clear();
     newest_.reset();
     finished_ = false;
     // What noise is around is of the scene; hot pixels that were asked for are of the sensor.

@@ -6,6 +6,7 @@
 
 #include <eventide/reconstructor.h>
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,10 +32,18 @@ public:
     void finish(std::optional<SensorTime> end);
     bool is_finished() const { return finished_; }
     bool next(EventWindow& event_window) { return slicer_.next(event_window); }
+
+    /// From now on the images pushed are held, for next_image().
+    void hold_images() { holds_images_ = true; }
+    /// The next of those that the stream had told when the event window given last could first be
+    /// cut: however late it was taken, the same. In grey.
+    std::optional<ReferenceImage> next_image();
+
     void reset();
 
 private:
     enum class StepBack { is_disorder, is_new_clock };
+    void hold(const std::vector<ReferenceImage>& images);
     void take(std::span<const Event> events, StepBack step_back, HostTime arrived);
     bool is_sound(const Event& event);
     void check_open(const char* what) const;
@@ -46,7 +55,12 @@ private:
     ReconstructorCounters& counters_;
     std::vector<Event> taken_;
     std::optional<SensorTime> newest_;
-    bool finished_ = false;
+    struct Image {
+        ReferenceImage image;
+        Slicer::Position since;  // what was known before it came
+    };
+    std::deque<Image> images_;
+    bool holds_images_ = false, finished_ = false;
 };
 
 }  // namespace eventide

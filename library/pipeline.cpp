@@ -2,6 +2,7 @@
 #include "pipeline/pipeline.h"
 
 #include "library/network_options.h"
+#include "library/pushed_images.h"
 #include "library/user_source.h"
 #include "pipeline/model_render_stage.h"
 #include "src/core/error.h"
@@ -29,6 +30,21 @@ public:
 private:
     FrameSink& sink_;
     bool wants_more_ = true;
+};
+
+/// Bin thread.
+class ImagesSeen final : public DataObserver {
+public:
+    explicit ImagesSeen(ImagesOnTheWay& images) : images_(images) {}
+    void see(const Batch& batch) override {
+        grey_.clear();
+        for (const ReferenceImage& image : batch.images) grey_.push_back(without_mosaic(image));
+        images_.put(grey_);
+    }
+
+private:
+    ImagesOnTheWay& images_;
+    std::vector<ReferenceImage> grey_;
 };
 
 std::vector<std::unique_ptr<UserSink>> wrapped(const std::vector<FrameSink*>& sinks) {
@@ -70,6 +86,7 @@ PipelineSettings settings_of(const PipelineOptions& options, const ModelConfig& 
     if (live && options.latency.count() > 0) settings.latency = options.latency;
     settings.reset_on_gap = options.frames.reset_on_gap;
     settings.allow_silence = options.frames.allow_silence;
+    settings.events_per_pixel = options.frames.images;
     // A recording waits: it needs no more than one being filled and one being read.
     if (!live) settings.buffers = {.packets = 8, .grids = 2, .latents = 2};
     return settings;
@@ -86,12 +103,15 @@ public:
     Impl(EventSource& source, const std::vector<FrameSink*>& sinks, const Model& model,
          const PipelineOptions& options, int width, int height)
         : sequential_(options.sequential),
-          source_(source),
+          source_(source, options.frames.images),
           sinks_(wrapped(sinks)),
           filter_(filter_of(options.frames, model.config, width, height)),
           encoder_(model, width, height, engine_of(options.frames)),
           renderer_(model, width, height, engine_of(options.frames)),
-          render_(renderer_, request_of(options.frames, width, height)),
+          render_(options.frames.images
+                      ? ModelRenderStage{renderer_, request_of(options.frames, width, height),
+                                         width, height, kept(source)}
+                      : ModelRenderStage{renderer_, request_of(options.frames, width, height)}),
           pipeline_(parts(), settings_of(options, model.config, source.is_live())) {}
 
     void run() {
@@ -102,10 +122,17 @@ public:
     }
     void stop() noexcept { pipeline_.stop(); }
     Snapshot snapshot() const { return pipeline_.snapshot(); }
+    const ModelRenderStage& render() const { return render_; }
 
 private:
+    /// A recording waits for the network, so that none are too many.
+    ImagesOnTheWay& kept(const EventSource& source) {
+        if (source.is_live()) images_.keep_at_most(ImagesOnTheWay::kKeptLive);
+        return images_;
+    }
     PipelineParts parts() {
-        PipelineParts parts{source_, encoder_, render_, {}, filter_.get()};
+        DataObserver* observer = render_.fused() != nullptr ? &images_seen_ : nullptr;
+        PipelineParts parts{source_, encoder_, render_, {}, filter_.get(), observer};
         for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
         return parts;
     }
@@ -116,6 +143,8 @@ private:
     std::unique_ptr<EventFilter> filter_;
     Encoder encoder_;
     Renderer renderer_;
+    ImagesOnTheWay images_;
+    ImagesSeen images_seen_{images_};
     ModelRenderStage render_;
     Pipeline pipeline_;
     bool ran_ = false;
@@ -152,6 +181,8 @@ PipelineCounters EventPipeline::counters() const {
             .merged_windows = now.merged_windows,
             .frames = now.frames,
             .skipped_frames = now.skipped_frames,
+            .used_images = impl_->render().used_images(),
+            .dropped_images = impl_->render().dropped_images(),
             .latency_p50 = us(now.latency.p50),
             .latency_p99 = us(now.latency.p99)};
 }

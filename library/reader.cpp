@@ -1,4 +1,5 @@
 // Recordings behind the public face.
+#include "library/pushed_images.h"
 #include "replay/formats.h"
 #include "replay/summary.h"
 #include "src/core/error.h"
@@ -42,10 +43,12 @@ public:
         if (ended_) return false;
         if (recording_->read(packet_) == ReadStatus::data) {
             parser_->parse(packet_.bytes, batch);
+            tell_filter(recording_->info().colour_filter, batch.images);
             return true;
         }
         ended_ = true;
         parser_->finish(batch);
+        tell_filter(recording_->info().colour_filter, batch.images);
         return !batch.empty();
     }
 

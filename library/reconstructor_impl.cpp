@@ -2,10 +2,12 @@
 #include "library/reconstructor_impl.h"
 
 #include "library/network_options.h"
+#include "src/binning/grid_sums.h"
 #include "src/core/error.h"
 #include "src/core/frame_stamp.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -38,6 +40,12 @@ Reconstructor::Impl::Impl(const Model& model, int width, int height,
       schedule_(rate_of(options)) {
     request_.lookahead = options.lookahead;
     request_.want_sigma = options.sigma;
+    if (options.images) {
+        fused_.emplace(renderer_, width, height, options.lookahead);
+        fused_->keep_at_most(std::numeric_limits<std::size_t>::max());
+        latent_.events_per_pixel = Array2<float>(height, width);
+        intake_.hold_images();
+    }
     make_room(options.size);
 }
 
@@ -79,8 +87,30 @@ void Reconstructor::Impl::encode() {
     if (grid_.gap_before && options_.reset_on_gap) encoder_.reset();
     encoder_.encode(grid_, latent_);
     renderer_.take(latent_);
+    take_images();
     ++counters_.event_windows;
     note_window();
+}
+
+/// Those that the stream had told when the window at hand was cut.
+void Reconstructor::Impl::take_images() {
+    if (!fused_) return;
+    while (auto image = intake_.next_image()) {
+        has_images_ = true;
+        if (grid_.reset_before)
+            ++of_old_clock_;
+        else
+            fused_->give(std::move(*image));
+    }
+    if (!has_images_) return;
+    count_events(grid_, latent_.events_per_pixel);
+    fused_->push(grid_.window, latent_.events_per_pixel);
+    note_images();
+}
+
+void Reconstructor::Impl::note_images() noexcept {
+    counters_.used_images = fused_->used();
+    counters_.dropped_images = fused_->dropped() + of_old_clock_;
 }
 
 /// Where render() went ahead of next(), the frames of windows that the network cannot show any more
@@ -96,6 +126,7 @@ void Reconstructor::Impl::note_window() {
 
 void Reconstructor::Impl::forget_stream() {
     renderer_.reset();
+    if (fused_) fused_->reset();
     seen_.fill({});
     encoded_ = opened_ = silent_ = 0;
     new_clock_ = ended_ = false;
@@ -168,7 +199,12 @@ void Reconstructor::Impl::render(SensorTime t, const FrameSize& size, Frame& fra
 void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Frame& frame) {
     make_room(size);
     request_.t = t;
-    renderer_.render(request_, frame);
+    if (fused_) {
+        fused_->render(request_, frame);
+        note_images();
+    } else {
+        renderer_.render(request_, frame);
+    }
     ++counters_.frames;
     if (is_finite(frame.intensity) && is_finite(frame.sigma)) return;
     throw Error(ErrorKind::input,
@@ -186,6 +222,7 @@ void Reconstructor::Impl::make_room(const FrameSize& size) {
     request.height = size.height;
     request.region = size.region;
     renderer_.make_output(request);
+    if (fused_) fused_->prepare(request);
     request_ = request;
     room_for_ = size;
 }

@@ -8,7 +8,7 @@
 #include "src/binning/binner.h"
 #include "src/core/frame_stamp.h"
 #include "src/model/encode/encoder.h"
-#include "src/model/render/renderer.h"
+#include "src/model/render/fused_renderer.h"
 #include "src/nn/safetensors.h"
 
 #include <array>
@@ -39,6 +39,8 @@ private:
     bool step();
     void bin(const EventWindow& event_window);
     void encode();
+    void take_images();
+    void note_images() noexcept;
     void note_window();
     void forget_stream();
     void forget_events();
@@ -56,6 +58,9 @@ private:
     Binner binner_;
     Encoder encoder_;
     Renderer renderer_;
+    std::optional<FusedRenderer> fused_;  // none: images do not correct frames
+    std::uint64_t of_old_clock_ = 0;      // images
+    bool has_images_ = false;             // one has come
     VoxelGrid grid_;
     LatentMap latent_;
     RenderRequest request_;

@@ -1,12 +1,15 @@
 #include "library/user_source.h"
 
+#include "library/pushed_images.h"
 #include "src/core/error.h"
 
 #include <eventide/reconstructor.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -25,7 +28,14 @@ void refuse_far(SensorTime clock) {
                         std::to_string(to_us(clock)) + " us");
 }
 
-/// Of a packet. Image times follow, then events.
+/// Of an image in a packet; its pixels follow, row by row.
+struct ImageHead {
+    SensorTime t{}, exposure_begin{}, exposure_end{};
+    int x0 = 0, y0 = 0, channels = 1, width = 0, height = 0;
+    ColourFilter filter = ColourFilter::none;
+};
+
+/// Of a packet. Images follow, then events.
 struct Head {
     std::uint64_t images = 0, imu = 0, triggers = 0, events = 0;
     bool has_clock = false;
@@ -46,6 +56,36 @@ T taken_from(std::span<const std::byte>& bytes) {
     return value;
 }
 
+void append_image(const ReferenceImage& image, bool whole, std::vector<std::byte>& out) {
+    const ImageHead head{.t = image.t,
+                         .exposure_begin = image.exposure_begin,
+                         .exposure_end = image.exposure_end,
+                         .x0 = image.x0,
+                         .y0 = image.y0,
+                         .channels = image.channels,
+                         .width = whole ? image.pixels.width() : 0,
+                         .height = whole ? image.pixels.height() : 0,
+                         .filter = image.filter};
+    append(&head, 1, out);
+    if (whole) append(image.pixels.values().data(), image.pixels.values().size(), out);
+}
+
+ReferenceImage image_taken_from(std::span<const std::byte>& bytes) {
+    const auto head = taken_from<ImageHead>(bytes);
+    ReferenceImage image{.t = head.t,
+                         .exposure_begin = head.exposure_begin,
+                         .exposure_end = head.exposure_end,
+                         .x0 = head.x0,
+                         .y0 = head.y0,
+                         .channels = head.channels,
+                         .filter = head.filter,
+                         .pixels = {head.height, head.width}};
+    const std::span pixels = std::as_writable_bytes(std::span{image.pixels.values()});
+    std::ranges::copy(bytes.first(pixels.size()), pixels.begin());
+    bytes = bytes.subspan(pixels.size());
+    return image;
+}
+
 /// Reads whole packets of UserSource, which nobody splits.
 class UserParser final : public Parser {
 public:
@@ -55,8 +95,8 @@ public:
         const Head head = taken_from<Head>(bytes);
         if (head.has_clock) clock_ = head.clock;
         for (std::uint64_t i = 0; i < head.images; ++i) {
-            const auto t = taken_from<SensorTime>(bytes);
-            if (!is_far(t)) into.images.emplace_back().t = t;
+            ReferenceImage image = image_taken_from(bytes);
+            if (!is_far(image.t)) into.images.push_back(std::move(image));
         }
         into.imu.resize(into.imu.size() + head.imu);
         into.triggers.resize(into.triggers.size() + head.triggers);
@@ -83,7 +123,8 @@ private:
 
 }  // namespace
 
-UserSource::UserSource(EventSource& source) : source_(source) {}
+UserSource::UserSource(EventSource& source, bool with_images)
+    : source_(source), with_images_(with_images) {}
 
 /// The end is a packet of its own: a recording's clock may have gone on since the last data.
 ReadStatus UserSource::read(RawPacket& into) {
@@ -91,6 +132,7 @@ ReadStatus UserSource::read(RawPacket& into) {
     if (ended_ || stopped_.load(std::memory_order_relaxed)) return ReadStatus::end;
     ended_ = !source_.read(batch_);
     if (ended_) batch_.clear();
+    for (const ReferenceImage& image : batch_.images) check_image(image);
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = !ended_ && source_.gap_before();  // at the end: told before
     const std::optional<SensorTime> clock = source_.clock();
@@ -105,7 +147,7 @@ ReadStatus UserSource::read(RawPacket& into) {
                     .has_clock = clock.has_value(),
                     .clock = clock.value_or(SensorTime{})};
     append(&head, 1, into.bytes);
-    for (const ReferenceImage& image : batch_.images) append(&image.t, 1, into.bytes);
+    for (const ReferenceImage& image : batch_.images) append_image(image, with_images_, into.bytes);
     append(batch_.events.data(), batch_.events.size(), into.bytes);
     return ReadStatus::data;
 }

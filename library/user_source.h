@@ -11,11 +11,11 @@
 namespace eventide {
 
 /// What a batch says of the stream goes from the read thread to the bin thread as bytes: a packet
-/// is the clock, the times of images, and the events as they lie in memory.
+/// is the clock, the images (or their times alone), and the events as they lie in memory.
 class UserSource final : public Source {
 public:
-    /// Borrowed. Throws Error (usage) where it has no size.
-    explicit UserSource(EventSource& source);
+    /// Borrowed. `with_images`: else their times alone are handed on.
+    UserSource(EventSource& source, bool with_images);
 
     const SensorInfo& info() const override { return source_.info(); }
     bool is_live() const noexcept override { return source_.is_live(); }
@@ -25,6 +25,7 @@ public:
 
 private:
     EventSource& source_;
+    const bool with_images_;
     Batch batch_;                       // source thread
     std::optional<SensorTime> clock_;   // source thread: what was handed on
     bool ended_ = false;                // source thread

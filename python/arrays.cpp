@@ -1,6 +1,8 @@
 // Between NumPy's arrays and the library's types.
 #include "python/arrays.h"
 
+#include "src/core/sensor_limits.h"
+
 #include <eventide/error.h>
 
 #include <algorithm>
@@ -135,6 +137,29 @@ py::array array_of(const ReferenceImage& image) {
     std::vector<py::ssize_t> shape{height, width};
     if (channels > 1) shape.push_back(channels);
     return py::array_t<std::uint16_t>(shape, image.pixels.values().data());
+}
+
+ReferenceImage image_of(const py::array& array) {
+    const char kind = array.dtype().kind();
+    const auto size = array.dtype().itemsize();
+    const bool is_grey = array.ndim() == 2, is_colour = array.ndim() == 3 && array.shape(2) == 3;
+    if (kind != 'u' || size > 2 || !(is_grey || is_colour) || array.shape(0) > kLargestSensorSide ||
+        array.shape(1) > kLargestSensorSide)
+        throw Error(ErrorKind::usage,
+                    "image: expected uint8 or uint16 [y, x] or [y, x, 3] of at most " +
+                        std::to_string(kLargestSensorSide) + " px each way, found " +
+                        std::string(py::str(array.dtype())) + " of shape " +
+                        std::string(py::str(array.attr("shape"))));
+    const auto values =
+        py::array_t<std::uint16_t, py::array::c_style | py::array::forcecast>::ensure(array);
+    ReferenceImage image;
+    image.channels = is_colour ? 3 : 1;
+    image.pixels = {int(array.shape(0)), int(array.shape(1)) * image.channels};
+    const unsigned scale = size == 1 ? 257 : 1;
+    std::ranges::transform(values.data(), values.data() + values.size(),
+                           image.pixels.values().begin(),
+                           [scale](unsigned v) { return std::uint16_t(scale * v); });
+    return image;
 }
 
 }  // namespace eventide::python

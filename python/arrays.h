@@ -30,4 +30,8 @@ Array2<float> plane_of(const pybind11::array& array, const char* what);
 /// [y][x] or [y][x][channel].
 pybind11::array array_of(const ReferenceImage& image);
 
+/// The reverse, of uint8 or uint16; its times and place are not set. Throws Error (usage) for other
+/// arrays.
+ReferenceImage image_of(const pybind11::array& array);
+
 }  // namespace eventide::python

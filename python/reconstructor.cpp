@@ -34,7 +34,7 @@ std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int
                                          const std::filesystem::path& hot_pixels,
                                          std::string noise_filter, const std::string& precision,
                                          const std::string& kernels, int threads, bool reset_on_gap,
-                                         bool allow_silence) {
+                                         bool allow_silence, bool images) {
     const ReconstructorOptions options{
         .window = std::move(window),
         .lookahead = lookahead,
@@ -42,6 +42,7 @@ std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int
         .size = size_of(size, roi),
         .sigma = sigma,
         .noise_filter = std::move(noise_filter),
+        .images = images,
         .hot_pixels = hot_pixels.string(),
         .precision = option_word("precision", precision, kPrecisionWords),
         .kernels = option_word("kernels", kernels, kKernelWords),
@@ -61,6 +62,20 @@ void push(SizedReconstructor& self, const py::array& events, bool resets) {
         else
             it.push(std::span<const Event>{batch.events});
     });
+}
+
+void push_image(SizedReconstructor& self, std::int64_t t, const py::array& pixels,
+                const std::optional<std::pair<std::int64_t, std::int64_t>>& exposure,
+                std::pair<int, int> at) {
+    Batch batch;
+    ReferenceImage image = image_of(pixels);
+    image.t = from_us(t);
+    image.exposure_begin = from_us(exposure ? exposure->first : t);
+    image.exposure_end = from_us(exposure ? exposure->second : t);
+    image.x0 = at.first;
+    image.y0 = at.second;
+    batch.images.push_back(std::move(image));
+    self.with([&](Reconstructor& it) { it.push(batch); });
 }
 
 FramePointer next(SizedReconstructor& self) {
@@ -87,7 +102,9 @@ std::map<std::string, std::uint64_t> counters(SizedReconstructor& self) {
             {"left_out", c.left_out},
             {"time_resets", c.time_resets},
             {"event_windows", c.event_windows},
-            {"frames", c.frames}};
+            {"frames", c.frames},
+            {"used_images", c.used_images},
+            {"dropped_images", c.dropped_images}};
 }
 
 /// What `for frame in reconstructor.frames()` goes through.
@@ -114,6 +131,13 @@ void add_events_in(Class& it) {
           "Events in order of time: a structured array with the fields t (us), x, y and p, on, pol "
           "or polarity. One earlier than the one before is left out and counted or, with resets, "
           "begins a new stream, as after a reset of the camera's clock.")
+        .def(
+            "push_image", &push_image, py::arg("t"), py::arg("image"),
+            py::arg("exposure") = py::none(), py::arg("at") = std::pair{0, 0},
+            "An image that the camera took beside its events, before the events that follow it: "
+            "uint8 or uint16 [y, x], or [y, x, 3] in BGR. t (us) is the middle of its exposure, "
+            "exposure its begin and end, at (x, y) its upper left corner in the sensor. Frames are "
+            "corrected by it. read_into() of a Reader or Camera does this by itself.")
         .def(
             "advance",
             [](SizedReconstructor& self, std::int64_t now) {
@@ -222,13 +246,15 @@ void add_reconstructor(py::module_& module) {
         "height) of the part\n"
         "wanted; hot_pixels: off, learn or a file; noise_filter: model, auto, off or a time "
         "(\"10ms\"); precision: auto, f32, bf16; kernels: auto, own,\n"
-        "onednn; threads: 0 for all. For recordings window='auto', lookahead=2 is better.");
+        "onednn; threads: 0 for all; images: frames are corrected by the camera's images that are\n"
+        "pushed. For recordings window='auto', lookahead=2 is better.");
     it.def(py::init(&make), py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("window") = "model", py::arg("lookahead") = 0, py::arg("fps") = "30",
            py::arg("size") = py::none(), py::arg("roi") = py::none(), py::arg("sigma") = true,
            py::arg("hot_pixels") = "off", py::arg("noise_filter") = "model",
            py::arg("precision") = "auto", py::arg("kernels") = "auto", py::arg("threads") = 0,
-           py::arg("reset_on_gap") = false, py::arg("allow_silence") = false);
+           py::arg("reset_on_gap") = false, py::arg("allow_silence") = false,
+           py::arg("images") = true);
     add_events_in(it);
     add_state(it);
     add_frames_out(it);

@@ -66,6 +66,8 @@ ReconstructorOptions options_of(const py::dict& given) {
             options.threads = cast_to<int>("threads", value);
         else if (name == "reset_on_gap")
             options.reset_on_gap = cast_to<bool>("reset_on_gap", value);
+        else if (name == "images")
+            options.images = cast_to<bool>("images", value);
         else if (name == "allow_silence")
             options.allow_silence = cast_to<bool>("allow_silence", value);
         else

@@ -108,7 +108,7 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
     made.def("__iter__", [](const py::object& self) { return self; })
         .def("__next__", &next<T>)
         .def("read_into", &read_into<T>, py::arg("reconstructor"),
-             "Reads on and pushes what came, with the times of images and of lost data; False at "
+             "Reads on and pushes what came, with images and marks of lost data; False at "
              "the end.")
         .def_property_readonly(
             "width", [](Source<T>& s) { return s.it.width(); }, "px, of the sensor")

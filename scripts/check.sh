@@ -104,7 +104,7 @@ packages() {
     DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends gcc libc6-dev pkg-config ./*.deb
     eventide simulate --scene demo --seconds 1 --size 96x72 --out recording.aedat4
     eventide run recording.aedat4 --out video.mp4 --uncertainty side
-    eventide run recording.aedat4 --frames ignore --precision f32 --out grayf32:theirs --uncertainty separate --sigma-white 1
+    eventide run recording.aedat4 --precision f32 --out grayf32:theirs --uncertainty separate --sigma-white 1
     cc -std=c11 reconstruct.c -o reconstruct $(pkg-config --cflags --libs eventide)
     ./reconstruct recording.aedat4 in_c
     python3 reconstruct.py recording.aedat4 in_python

@@ -80,6 +80,7 @@ typedef struct eventide_options {
     int reset_on_gap;         /**< forget the scene where data were lost */
     int allow_silence;        /**< any number of frames in a row without events */
     const char* noise_filter; /**< "model", "auto", "off", or a time such as "10ms" */
+    int images;               /**< frames are corrected by the camera's images that are pushed */
 } eventide_options;
 
 /** The defaults, those of ReconstructorOptions. `struct_size` is sizeof(eventide_options). */
@@ -116,6 +117,23 @@ EVENTIDE_API void eventide_reconstructor_close(eventide_reconstructor* reconstru
  * out and counted. */
 EVENTIDE_API eventide_status eventide_push(eventide_reconstructor* reconstructor,
                                            const eventide_event* events, size_t count);
+
+/** An image that the camera took beside its events, for options.images and window "aps". */
+typedef struct eventide_image {
+    int64_t t;              /**< us, the middle of its exposure */
+    int64_t exposure_begin; /**< us; equal to t where it is not known */
+    int64_t exposure_end;   /**< us; likewise */
+    int x;                  /**< px, its left edge in the sensor */
+    int y;                  /**< px, its top edge */
+    int width;              /**< px, at least 1 */
+    int height;             /**< px, at least 1 */
+    const uint16_t* pixels; /**< grey, 0 to 65535: `height` rows of `width` without gaps; copied */
+} eventide_image;
+
+/** Images in order of time, each before the events that follow its exposure. eventide_read_into()
+ * does this by itself. */
+EVENTIDE_API eventide_status eventide_push_image(eventide_reconstructor* reconstructor,
+                                                 const eventide_image* image);
 
 /** Every event before `now` has been pushed: time goes on where nothing moves. */
 EVENTIDE_API eventide_status eventide_advance(eventide_reconstructor* reconstructor, int64_t now);
@@ -172,8 +190,10 @@ typedef struct eventide_counters {
     uint64_t late;        /**< moved later: eventide_advance() had promised that none would come */
     uint64_t left_out;    /**< more in one microsecond than memory is meant to hold */
     uint64_t time_resets; /**< the sensor's clock began anew */
-    uint64_t event_windows; /**< steps of the network */
-    uint64_t frames;        /**< rendered */
+    uint64_t event_windows;  /**< steps of the network */
+    uint64_t frames;         /**< rendered */
+    uint64_t used_images;    /**< corrected frames */
+    uint64_t dropped_images; /**< came too late for it, or before the clock began anew */
 } eventide_counters;
 
 /** The counters so far. */
@@ -215,7 +235,7 @@ EVENTIDE_API eventide_status eventide_reconstructor_open_for(const eventide_sour
 EVENTIDE_API eventide_status eventide_read(eventide_source* source, const eventide_event** events,
                                            size_t* count);
 
-/** Reads on and pushes what came: events, times of images, marks of lost data, a camera's clock.
+/** Reads on and pushes what came: events, images, marks of lost data, a camera's clock.
  * EVENTIDE_NONE at the end, which eventide_finish() is told with the recording's last time. */
 EVENTIDE_API eventide_status eventide_read_into(eventide_source* source,
                                                 eventide_reconstructor* reconstructor);

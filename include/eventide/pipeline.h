@@ -52,7 +52,7 @@ protected:
 };
 
 /// Pushes what `source` has just read into `batch`: the gap before it, where data were lost, its
-/// events and times of images, and a live source's clock. Throws what Reconstructor::push() throws.
+/// events and images, and a live source's clock. Throws what Reconstructor::push() throws.
 EVENTIDE_API void push_from(const EventSource& source, const Batch& batch,
                             Reconstructor& reconstructor);
 
@@ -101,14 +101,15 @@ struct PipelineCounters {
     std::uint64_t merged_windows = 0;  ///< became one with the one before, to keep the latency
     std::uint64_t frames = 0;          ///< written
     std::uint64_t skipped_frames = 0;  ///< left out, to keep the latency
+    std::uint64_t used_images = 0;     ///< of the camera, corrected frames
+    std::uint64_t dropped_images = 0;  ///< came too late for it, or were too many
     std::chrono::microseconds latency_p50{0};  ///< from read() to write(), median
     std::chrono::microseconds latency_p99{0};  ///< from read() to write(), 99th percentile
 };
 
 /// Reading, cutting, encoding and rendering on a thread each, with bounded memory in between. Made
 /// once for each run. With the same model, window, lookahead, precision and kernels (not automatic
-/// ones) the frames of a recording are those of Reconstructor and of `eventide run --frames
-/// ignore`, bit for bit.
+/// ones) the frames of a recording are those of Reconstructor and of `eventide run`, bit for bit.
 class EVENTIDE_API EventPipeline {
 public:
     /// Source and sinks are borrowed until after run(). Throws Error: usage for a source without a

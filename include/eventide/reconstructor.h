@@ -37,6 +37,10 @@ struct ReconstructorOptions {
     /// support within some time: "10ms", for example; "auto": 10 to 500 ms, by the noise that is
     /// found; "off"; "model": as the model was trained.
     std::string noise_filter = "model";
+    /// Frames are corrected by the images that a camera takes beside its events, where they are
+    /// pushed with them (push(const Batch&)), as `eventide run` does. Memory: some 190 bytes a
+    /// pixel of the sensor, from the first image on.
+    bool images = true;
     std::string hot_pixels = "off";  ///< "off", "learn", or a file that lists pixels, "x,y" a line
     Precision precision = Precision::automatic;  ///< of the network's products
     Kernels kernels = Kernels::automatic;        ///< whose convolutions
@@ -57,10 +61,13 @@ struct ReconstructorCounters {
     std::uint64_t time_resets = 0;     ///< the sensor's clock began anew
     std::uint64_t event_windows = 0;   ///< steps of the network
     std::uint64_t frames = 0;          ///< rendered
+    std::uint64_t used_images = 0;     ///< corrected frames
+    std::uint64_t dropped_images = 0;  ///< came too late for it, or before the clock began anew
 };
 
 /// Events of one sensor are pushed as they come, in order of time; frames are asked for. The
-/// network works where frames are asked for, not in push(): until then events wait, 16 bytes each.
+/// network works where frames are asked for, not in push(): until then events wait, 16 bytes each,
+/// and images, 2 bytes a pixel.
 ///
 /// Frames are found in two ways, which may be mixed: next() gives those at a constant rate, one
 /// after the other; render() gives any time, as long as ready() says so. The network remembers some
@@ -68,7 +75,8 @@ struct ReconstructorCounters {
 ///
 /// How the events are split into calls changes nothing. With the same model, window, lookahead,
 /// precision and kernels (not automatic ones, which are measured anew in each process) frames are
-/// those of `eventide run --frames ignore`, bit for bit, with any number of threads.
+/// those of `eventide run`, bit for bit, with any number of threads (without images: those of
+/// `--frames ignore`; where the images are of a colour camera, nearly).
 ///
 /// Thread: one at a time; several objects may work side by side. Once warm (the same batch sizes
 /// and frame sizes as before), nothing here allocates memory with Kernels::own and one thread. All
@@ -96,9 +104,10 @@ public:
     /// at an impossible time is left out and counted. Throws Error (usage) after finish().
     void push(std::span<const Event> events);
 
-    /// The same with images (window "aps" is cut at their times). An event earlier than the one
-    /// before means here that the sensor's clock began anew, as readers and cameras tell it: the
-    /// frames of the time before are finished, and a new stream begins.
+    /// The same with images, of all of the sensor or a part of it: they correct frames
+    /// (ReconstructorOptions::images), and window "aps" is cut at their times. An event earlier
+    /// than the one before means here that the sensor's clock began anew, as readers and cameras
+    /// tell it: the frames of the time before are finished, and a new stream begins.
     void push(const Batch& batch);
 
     /// Every event before `now` has been pushed: time goes on where nothing moves. For live

@@ -48,7 +48,7 @@ void Slicer::reset() {
     activity_.reset();
     silence_.reset();
     newest_ = newest_event_ = SensorTime::min();
-    same_time_ = 0;
+    same_time_ = clocks_heard_ = clocks_given_ = 0;
     behind_since_.reset();
     gap_ = reset_ = anew_ = finished_ = past_end_ = false;
     first_stream_ = true;
@@ -86,6 +86,7 @@ void Slicer::push_one(const Event& event) {
             return;
         }
         ++counters_.time_resets;
+        ++clocks_heard_;
         const SensorTime final = std::max(newest_, newest_event_);
         pending_.end_segment(final);
         first_stream_ = false;
@@ -176,6 +177,7 @@ void Slicer::emit(SensorTime end, EventWindow& event_window) {
 /// Goes on where the camera's clock was reset.
 void Slicer::begin_next_segment() {
     pending_.next_segment();
+    ++clocks_given_;
     references_.clear();
     activity_.reset();
     silence_.begin_anew();

@@ -75,6 +75,18 @@ public:
     /// The next complete event window, borrowed until the next call of anything here.
     bool next(EventWindow& event_window);
 
+    /// A place in the stream: how often its clock had begun anew, and until when all was known
+    /// then.
+    struct Position {
+        std::uint64_t clocks = 0;
+        std::optional<SensorTime> until{};  ///< empty: nothing was
+    };
+    /// Of all that was said so far.
+    Position heard() const;
+    /// The end of the event window given last. It could have been cut before what came when the
+    /// stream stood at `position`.
+    bool ended_before(const Position& position) const;
+
     bool has_begun() const { return begin_.has_value(); }
     bool is_past_end() const { return past_end_; }  ///< SlicerSettings::end was reached
     const SlicerCounters& counters() const { return counters_; }
@@ -131,7 +143,9 @@ private:
     SensorTime origin_{};                 // rule duration: edges are at origin_ + k width
     SensorTime newest_ = SensorTime::min(), newest_event_ = SensorTime::min();
     std::uint64_t same_time_ = 0;  // events at newest_event_
-    bool hears_apart_ = false;     // hear() tells the time, not push()
+    // Clocks that began anew: in what was pushed, in the windows given.
+    std::uint64_t clocks_heard_ = 0, clocks_given_ = 0;
+    bool hears_apart_ = false;  // hear() tells the time, not push()
     HostTime arrived_{};
     std::optional<HostTime> behind_since_;  // the stream is far behind newest_
     bool gap_ = false, reset_ = false, anew_ = false, finished_ = false, past_end_ = false;

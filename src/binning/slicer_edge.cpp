@@ -17,6 +17,16 @@ SensorTime Slicer::passed() const {
     return newest_ - kMicrosecond;  // more events of the newest microsecond may come
 }
 
+Slicer::Position Slicer::heard() const {
+    if (!begin_ || newest_ == SensorTime::min()) return {clocks_heard_, std::nullopt};
+    return {clocks_heard_, past_end_ ? newest_ : newest_ - kMicrosecond};
+}
+
+bool Slicer::ended_before(const Position& position) const {
+    if (position.clocks != clocks_given_) return position.clocks > clocks_given_;
+    return position.until && begin_ && *position.until >= *begin_;
+}
+
 std::optional<SensorTime> Slicer::next_reference() {
     const auto first = std::upper_bound(references_.begin(), references_.end(), *begin_);
     references_.erase(references_.begin(), first);

@@ -1,5 +1,5 @@
-// The C interface: any bytes as events, in batches of any size, with frames, instants and resets in
-// between.
+// The C interface: any bytes as events, in batches of any size, with frames, images, instants and
+// resets in between.
 #include <eventide/eventide.h>
 
 #include <cstdint>
@@ -20,6 +20,23 @@ eventide_reconstructor* opened() {
                                     &reconstructor) != EVENTIDE_OK)
         std::abort();
     return reconstructor;
+}
+
+/// Some size and place in and beside the sensor, at some time before or after.
+void push_image(eventide_reconstructor* reconstructor, std::int64_t t, const std::uint8_t* bytes) {
+    constexpr int kMost = 15;
+    std::uint16_t pixels[kMost * kMost];
+    for (std::size_t i = 0; i < kMost * kMost; ++i)
+        pixels[i] = std::uint16_t(bytes[i % 4] * (i + 1));
+    const eventide_image image{.t = t + 100 * std::int8_t(bytes[0]),
+                               .exposure_begin = t - 50 * std::int8_t(bytes[1]),
+                               .exposure_end = t,
+                               .x = std::int8_t(bytes[1]) / 8,
+                               .y = std::int8_t(bytes[2]) / 8,
+                               .width = bytes[3] % (kMost + 1),
+                               .height = bytes[0] % (kMost + 1),
+                               .pixels = pixels};
+    eventide_push_image(reconstructor, &image);
 }
 
 }  // namespace
@@ -52,6 +69,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 break;
             case 3:
                 eventide_finish(reconstructor, nullptr);
+                break;
+            case 4:
+                push_image(reconstructor, t, data + at);
                 break;
             default:
                 break;

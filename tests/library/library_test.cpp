@@ -14,13 +14,15 @@ ReconstructorOptions LibraryTest::repeatable(const std::string& window, int look
     return options;
 }
 
-std::vector<std::string> LibraryTest::repeatable_arguments(const std::string& window,
-                                                           int lookahead) {
-    // The library gives events alone to the network, not the camera's images.
-    return {"--window",  window,  "--lookahead", std::to_string(lookahead),
-            "--fps",     "100",   "--precision", "f32",
-            "--kernels", "own",   "--threads",   "1",
-            "--frames",  "ignore"};
+std::vector<std::string> LibraryTest::repeatable_arguments(const std::string& window, int lookahead,
+                                                           bool images) {
+    return {"--window",    window,
+            "--lookahead", std::to_string(lookahead),
+            "--fps",       "100",
+            "--precision", "f32",
+            "--kernels",   "own",
+            "--threads",   "1",
+            "--frames",    images ? "auto" : "ignore"};
 }
 
 Reconstructor LibraryTest::reconstructor(const ReconstructorOptions& options) {

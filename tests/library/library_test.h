@@ -14,8 +14,10 @@ class LibraryTest : public ProgramTest {
 protected:
     /// Numbers that are the same in every process.
     static ReconstructorOptions repeatable(const std::string& window, int lookahead);
-    /// The same for the program.
-    static std::vector<std::string> repeatable_arguments(const std::string& window, int lookahead);
+    /// The same for the program. `images`: the camera's correct frames, as where batches are
+    /// pushed.
+    static std::vector<std::string> repeatable_arguments(const std::string& window, int lookahead,
+                                                         bool images = true);
 
     static Reconstructor reconstructor(const ReconstructorOptions& options);
 

@@ -65,7 +65,7 @@ TEST_F(CInterface, GivesTheFramesOfTheOneInCpp) {
     EXPECT_EQ(eventide_finish(reconstructor_, &end), EVENTIDE_OK);
     take_frames();
     eventide_source_close(source);
-    EXPECT_TRUE(frames == frames_of_run(repeatable_arguments("7ms", 1)));
+    EXPECT_TRUE(frames == frames_of_run(repeatable_arguments("7ms", 1, false)));
     eventide_counters counters;
     EXPECT_EQ(eventide_count(reconstructor_, &counters), EVENTIDE_OK);
     EXPECT_EQ(counters.frames * 64 * 48 * 8, frames.size());
@@ -114,6 +114,44 @@ TEST_F(CInterface, KeepsAStateInMemory) {
     EXPECT_EQ(eventide_restore(reconstructor_, state.data(), 5), EVENTIDE_INPUT);
     EXPECT_EQ(eventide_restore(reconstructor_, nullptr, 5), EVENTIDE_USAGE);
     EXPECT_EQ(eventide_state(reconstructor_, nullptr, &size), EVENTIDE_USAGE);
+}
+
+TEST_F(CInterface, ImagesCorrectFrames) {
+    open();
+    const eventide_event before{1000, 3, 4, 1}, after{60'000, 5, 6, 0};
+    const std::vector<std::uint16_t> grey(64 * 48, 52'428);
+    const eventide_image image{.t = 15'000,
+                               .exposure_begin = 12'000,
+                               .exposure_end = 18'000,
+                               .x = 0,
+                               .y = 0,
+                               .width = 64,
+                               .height = 48,
+                               .pixels = grey.data()};
+    ASSERT_EQ(eventide_push(reconstructor_, &before, 1), EVENTIDE_OK);
+    ASSERT_EQ(eventide_push_image(reconstructor_, &image), EVENTIDE_OK) << eventide_error_message();
+    ASSERT_EQ(eventide_push(reconstructor_, &after, 1), EVENTIDE_OK);
+    std::int64_t t = 0;
+    eventide_frame frame;
+    ASSERT_EQ(eventide_newest(reconstructor_, &t), EVENTIDE_OK);
+    ASSERT_EQ(eventide_render(reconstructor_, t, nullptr, &frame), EVENTIDE_OK);
+    for (int i = 0; i < 64 * 48; ++i) ASSERT_NEAR(frame.intensity[i], .8F, .02F) << i;
+    eventide_counters counters;
+    ASSERT_EQ(eventide_count(reconstructor_, &counters), EVENTIDE_OK);
+    EXPECT_EQ(counters.used_images, 1U);
+    EXPECT_EQ(counters.dropped_images, 0U);
+
+    eventide_image wrong = image;
+    wrong.height = 0;
+    EXPECT_EQ(eventide_push_image(reconstructor_, &wrong), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("expected 1 to 4096 px each way, found 64x0")) << eventide_error_message();
+    wrong = image;
+    wrong.x = 5000;
+    EXPECT_EQ(eventide_push_image(reconstructor_, &wrong), EVENTIDE_USAGE);
+    wrong = image;
+    wrong.pixels = nullptr;
+    EXPECT_EQ(eventide_push_image(reconstructor_, &wrong), EVENTIDE_USAGE);
+    EXPECT_EQ(eventide_push_image(reconstructor_, nullptr), EVENTIDE_USAGE);
 }
 
 TEST_F(CInterface, RendersAnyReadyTimeInAnySize) {

@@ -1,7 +1,12 @@
-// What a caller pushes of a source that stood still while its clock was promised to go on.
+// What a caller pushes: of a source that stood still while its clock was promised to go on, and
+// images among events.
 #include "library/event_intake.h"
 
 #include <gtest/gtest.h>
+
+#include <random>
+#include <utility>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -49,6 +54,96 @@ TEST(EventIntake, GoesOnWithASourceThatStoodStill) {
         EXPECT_LE(counters.late, 200U) << "of the first second";
         EXPECT_EQ(counters.time_backwards, 0U);
     }
+}
+
+/// Batches with images that come late, and a clock that begins anew now and then.
+std::vector<Batch> batches_with_images(std::uint32_t seed) {
+    std::mt19937 random{seed};
+    std::vector<Batch> batches(60);
+    std::int64_t t = 1'000'000;
+    std::uint16_t number = 0;
+    for (Batch& batch : batches) {
+        if (random() % 20 == 0) t -= 400 * kMs;
+        for (auto i = random() % 9; i > 0; --i)
+            batch.events.push_back({from_us(t += 1 + random() % (4 * kMs)), 1, 1, Polarity::on});
+        for (auto i = random() % 3; i > 0; --i) {
+            ReferenceImage& image = batch.images.emplace_back();
+            image.t = from_us(t - std::int64_t(random() % (20 * kMs)));
+            image.pixels = Array2<std::uint16_t>(1, 1);
+            image.pixels(0, 0) = ++number;
+        }
+    }
+    return batches;
+}
+
+using WindowAndImages = std::pair<Window, std::vector<int>>;
+
+/// The windows, and the images new to each. `taken(i)`: whether windows are taken after batch i.
+template <typename Taken>
+std::vector<WindowAndImages> windows_of(const std::vector<Batch>& batches, WindowRule rule,
+                                        Taken taken) {
+    SlicerSettings settings = windows_of_10_ms();
+    settings.rule = rule;
+    if (rule == WindowRule::count) settings.events = 7;
+    ReconstructorCounters counters;
+    EventIntake intake{settings, 64, 48, nullptr, counters};
+    intake.hold_images();
+    std::vector<WindowAndImages> windows;
+    const auto take = [&] {
+        for (EventWindow window; intake.next(window);) {
+            windows.push_back({window.window, {}});
+            while (const auto image = intake.next_image())
+                windows.back().second.push_back(image->pixels(0, 0));
+        }
+    };
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+        intake.push(batches[i]);
+        if (taken(i)) take();
+    }
+    intake.finish({});
+    take();
+    return windows;
+}
+
+/// A window knows the images that had come when it could first be cut, however late it is taken.
+TEST(EventIntake, WhichImagesAWindowKnowsDoesNotHangOnWhenItIsTaken) {
+    for (const WindowRule rule : {WindowRule::duration, WindowRule::count})
+        for (std::uint32_t seed = 0; seed < 40; ++seed) {
+            const std::vector<Batch> batches = batches_with_images(seed);
+            const auto at_once = windows_of(batches, rule, [](std::size_t) { return true; });
+            std::size_t images = 0;
+            for (const WindowAndImages& window : at_once) images += window.second.size();
+            ASSERT_GT(images, 20U);
+            std::mt19937 random{seed};
+            EXPECT_EQ(windows_of(batches, rule, [&](std::size_t) { return random() % 5 == 0; }),
+                      at_once)
+                << seed;
+            EXPECT_EQ(windows_of(batches, rule, [](std::size_t) { return false; }), at_once)
+                << seed;
+        }
+}
+
+/// What the windows above know hangs on it if it is asked of the newest event alone.
+TEST(EventIntake, AnImageIsNewToTheWindowThatWasOpenWhenItCame) {
+    ReconstructorCounters counters;
+    EventIntake intake{windows_of_10_ms(), 64, 48, nullptr, counters};
+    intake.hold_images();
+    const auto push = [&](std::int64_t t, bool image) {
+        Batch batch;
+        batch.events = {{from_us(t), 1, 1, Polarity::on}};
+        if (image) batch.images.emplace_back().t = from_us(2 * kMs);
+        intake.push(batch);
+    };
+    push(kMs, false);
+    push(25 * kMs, false);
+    push(26 * kMs, true);
+    push(55 * kMs, false);
+    int known_to = 0, number = 0;
+    for (EventWindow window; intake.next(window);) {
+        ++number;
+        while (intake.next_image()) known_to = number;
+    }
+    EXPECT_EQ(known_to, 3) << "the first two had been cut";
 }
 
 }  // namespace

@@ -40,7 +40,79 @@ INSTANTIATE_TEST_SUITE_P(Windows, FramesOfTheLibrary,
                              return name;
                          });
 
-class Frames : public LibraryTest {};
+class Frames : public LibraryTest {
+protected:
+    /// All of the recording, frames asked for after every `per_take` batches.
+    std::string frames_of(Reconstructor& reconstructor, std::size_t per_take) const {
+        EventReader reader{recording()};
+        std::string frames;
+        std::size_t batches = 0;
+        for (Batch batch; reader.read(batch);) {
+            reconstructor.push(batch);
+            if (++batches % per_take == 0) append_frames(reconstructor, frames);
+        }
+        reconstructor.finish(reader.clock());
+        append_frames(reconstructor, frames);
+        return frames;
+    }
+};
+
+TEST_F(Frames, AreCorrectedByImagesUnlessTheyMayNotBe) {
+    ReconstructorOptions options = repeatable("7ms", 1);
+    Reconstructor with = reconstructor(options);
+    const std::string corrected = frames_of(with, 1);
+    EXPECT_GT(with.counters().used_images, 5U);
+    options.images = false;
+    Reconstructor without = reconstructor(options);
+    const std::string alone = frames_of(without, 1);
+    EXPECT_EQ(without.counters().used_images, 0U);
+    EXPECT_TRUE(alone == frames_of_run(repeatable_arguments("7ms", 1, false)));
+    EXPECT_FALSE(alone == corrected);
+}
+
+TEST_F(Frames, AreTheSameHoweverLateTheyAreAskedFor) {
+    for (const char* window : {"7ms", "auto"}) {
+        Reconstructor at_once = reconstructor(repeatable(window, 1));
+        const std::string expected = frames_of(at_once, 1);
+        for (const std::size_t per_take : {3, 1000}) {
+            Reconstructor later = reconstructor(repeatable(window, 1));
+            EXPECT_TRUE(frames_of(later, per_take) == expected) << window << ", " << per_take;
+            EXPECT_EQ(later.counters().used_images, at_once.counters().used_images);
+        }
+    }
+}
+
+TEST_F(Frames, AfterAResetAreThoseOfAFreshReconstructor) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 1));
+    const std::string fresh = frames_of(reconstructor, 1);
+    reconstructor.reset();
+    EXPECT_TRUE(frames_of(reconstructor, 1) == fresh);
+}
+
+TEST_F(Frames, OfOtherSizesAreCorrectedToo) {
+    EventReader reader{recording()};
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 0));
+    for (Batch batch; reader.read(batch);) reconstructor.push(batch);
+    reconstructor.finish(reader.clock());
+    const SensorTime t = *reconstructor.newest();
+    ASSERT_GT(reconstructor.counters().used_images, 5U);
+    Frame native, part;
+    reconstructor.render(t, native);
+    reconstructor.render(t, {.width = 0, .height = 0, .region = {10, 20, 30, 15}}, part);
+    for (int y = 0; y < 15; ++y)
+        for (int x = 0; x < 30; ++x) {
+            ASSERT_EQ(part.intensity(y, x), native.intensity(20 + y, 10 + x));
+            ASSERT_EQ(part.sigma(y, x), native.sigma(20 + y, 10 + x));
+        }
+}
+
+TEST_F(Frames, OfImagesThatMakeNoSenseAreNone) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 0));
+    Batch batch;
+    batch.images.emplace_back().channels = 2;
+    EXPECT_NE(error_of([&] { reconstructor.push(batch); }).find("expected 1, 3 or 4 channels"),
+              std::string::npos);
+}
 
 TEST_F(Frames, AreTheSameHoweverTheEventsAreSplit) {
     const std::vector<Event> events = events_of(recording());
@@ -118,10 +190,7 @@ TEST_F(Frames, HaveTheSizeAndTheRegionThatWereAskedFor) {
     ReconstructorOptions options = repeatable("7ms", 0);
     options.size = {160, 120, {16, 8, 100, 90}};
     Reconstructor reconstructor = this->reconstructor(options);
-    reconstructor.push(events_of(recording()));
-    reconstructor.finish(EventReader{recording()}.clock());
-    std::string frames;
-    append_frames(reconstructor, frames);
+    const std::string frames = frames_of(reconstructor, 1);
     auto arguments = repeatable_arguments("7ms", 0);
     arguments.insert(arguments.end(), {"--size", "160x120", "--roi", "16,8,100x90"});
     EXPECT_TRUE(frames == frames_of_run(arguments));

@@ -60,11 +60,10 @@ protected:
     void expect_ours_of_run(const std::vector<std::string>& source) const {
         std::vector<std::string> arguments{"run"};
         arguments.insert(arguments.end(), source.begin(), source.end());
-        arguments.insert(
-            arguments.end(),
-            {"--frames", "ignore", "--model",
-             prefix() + "/share/eventide/models/default.safetensors", "--precision", "f32", "--out",
-             "grayf32:theirs", "--overwrite", "--uncertainty", "separate", "--sigma-white", "1"});
+        arguments.insert(arguments.end(),
+                         {"--model", prefix() + "/share/eventide/models/default.safetensors",
+                          "--precision", "f32", "--out", "grayf32:theirs", "--overwrite",
+                          "--uncertainty", "separate", "--sigma-white", "1"});
         const Result theirs = eventide(arguments);
         ASSERT_EQ(theirs.exit_code, 0) << theirs.error;
         const std::string frames = read_text(temp_ / "ours");

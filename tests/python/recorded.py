@@ -29,11 +29,11 @@ class RecordedTest(unittest.TestCase):
         subprocess.run(command + ["--out", cls.recording], check=True, capture_output=True)
 
     @classmethod
-    def frames_of_run(cls):
-        """Intensity and sigma of each frame."""
+    def frames_of_run(cls, frames="auto"):
+        """Intensity and sigma of each frame; frames: whether the camera's images correct them."""
         options = [x for k, v in REPEATABLE.items() for x in ("--" + k, str(v))]
         out = cls.folder / "frames"
-        command = [PROGRAM, "run", cls.recording, "--model", "small", "--overwrite", "--frames", "ignore"]
+        command = [PROGRAM, "run", cls.recording, "--model", "small", "--overwrite", "--frames", frames]
         command += options
         command += ["--uncertainty", "separate", "--sigma-white", "1", "--out", f"grayf32:{out}"]
         subprocess.run(command, check=True, capture_output=True)

@@ -23,7 +23,7 @@ class Frames(RecordedTest):
         self.assertEqual(reconstructor.counters["frames"], len(expected))
 
     def test_are_the_same_from_arrays(self):
-        expected = self.frames_of_run()
+        expected = self.frames_of_run("ignore")
         reader = eventide.open(self.recording)
         reconstructor = self.reconstructor()
         for events in reader:
@@ -31,6 +31,33 @@ class Frames(RecordedTest):
         reconstructor.finish(reader.clock)
         frames = [[f.intensity, f.sigma] for f in reconstructor.frames()]
         np.testing.assert_array_equal(frames, expected)
+
+    def test_are_not_corrected_by_images_that_may_not(self):
+        reader = eventide.open(self.recording)
+        reconstructor = self.reconstructor(images=False)
+        while reader.read_into(reconstructor):
+            pass
+        reconstructor.finish(reader.clock)
+        frames = [[f.intensity, f.sigma] for f in reconstructor.frames()]
+        np.testing.assert_array_equal(frames, self.frames_of_run("ignore"))
+        self.assertEqual(reconstructor.counters["used_images"], 0)
+
+    def test_are_corrected_by_images_of_ones_own(self):
+        still = np.full((48, 64), 200, np.uint8)
+        still[10:20, 30:40] = 20
+        events = np.zeros(3, [("t", "<i8"), ("x", "<u2"), ("y", "<u2"), ("on", "?")])
+        events["t"] = 1000, 20_000, 60_000
+        for image in (still, still.astype(np.uint16) * 257, np.stack(3 * [still], axis=2)):
+            reconstructor = self.reconstructor()
+            reconstructor.push(events[:2])
+            reconstructor.push_image(15_000, image, exposure=(12_000, 18_000))
+            reconstructor.push(events[2:])
+            intensity, _ = reconstructor.render(reconstructor.newest())
+            np.testing.assert_allclose(intensity, still / 255, atol=0.02)
+            self.assertEqual(reconstructor.counters["used_images"], 1)
+        for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2)):
+            with self.assertRaisesRegex(eventide.UsageError, "expected uint8 or uint16"):
+                reconstructor.push_image(70_000, image)
 
     def test_outlive_what_made_them(self):
         reconstructor = self.reconstructor()

@@ -43,6 +43,7 @@ void FusedRenderer::reset() noexcept {
 }
 
 void FusedRenderer::give(ReferenceImage image) noexcept {
+    if (image.pixels.empty()) return;
     try {
         if (!fusion_) begin();
         images_.push_back(std::move(image));

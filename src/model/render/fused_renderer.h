@@ -21,7 +21,7 @@ public:
     void reset() noexcept;
 
     /// In order of time. Of more images whose time has not come than may wait the oldest are
-    /// dropped; so are those that there is no memory for.
+    /// dropped; so are those that there is no memory for. One without pixels tells nothing.
     void give(ReferenceImage image) noexcept;
 
     /// After Renderer::push() of the same window; events per pixel, [y][x] of the sensor.

@@ -1,0 +1,85 @@
+// Images before they correct frames: mosaics in grey, and those that make no sense.
+#include "library/pushed_images.h"
+#include "src/core/bayer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <eventide/error.h>
+
+#include <climits>
+
+namespace eventide {
+namespace {
+
+using testing::HasSubstr;
+
+/// What a sensor with this filter sees of one colour.
+ReferenceImage mosaic_of(ColourFilter filter, int height, int width) {
+    ReferenceImage image;
+    image.filter = filter;
+    image.pixels = Array2<std::uint16_t>(height, width);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const ColourChannel channel = channel_at(filter, x, y);
+            image.pixels(y, x) = channel == ColourChannel::red     ? 60000
+                                 : channel == ColourChannel::green ? 20000
+                                                                   : 4000;
+        }
+    return image;
+}
+
+TEST(Mosaic, OfOneColourIsOneGreyUpToTheEdges) {
+    for (const ColourFilter filter :
+         {ColourFilter::rggb, ColourFilter::grbg, ColourFilter::gbrg, ColourFilter::bggr})
+        for (const auto& [height, width] : {std::pair{2, 2}, {3, 5}, {8, 7}}) {
+            const ReferenceImage grey = without_mosaic(mosaic_of(filter, height, width));
+            EXPECT_EQ(grey.filter, ColourFilter::none);
+            for (const std::uint16_t value : grey.pixels.values())
+                EXPECT_EQ(value, 26000) << height << "x" << width;
+        }
+}
+
+TEST(Mosaic, WhatIsNoneStaysAsItIs) {
+    ReferenceImage image = mosaic_of(ColourFilter::rggb, 4, 4);
+    image.filter = ColourFilter::none;
+    EXPECT_EQ(without_mosaic(image), image);
+    image = mosaic_of(ColourFilter::rggb, 1, 4);
+    EXPECT_EQ(without_mosaic(image), image) << "nothing to mix with";
+}
+
+TEST(Mosaic, APartOfTheSensorBeginsWithTheColourThatIsThere) {
+    std::vector<ReferenceImage> images(3);
+    images[1].x0 = 1;
+    images[2].channels = 3;
+    tell_filter(ColourFilter::rggb, images);
+    EXPECT_EQ(images[0].filter, ColourFilter::rggb);
+    EXPECT_EQ(images[1].filter, ColourFilter::grbg);
+    EXPECT_EQ(images[2].filter, ColourFilter::none) << "has colours of its own";
+}
+
+std::string refusal_of(const ReferenceImage& image) {
+    try {
+        check_image(image);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+TEST(PushedImages, ThatMakeNoSenseAreRefused) {
+    ReferenceImage image;
+    image.pixels = Array2<std::uint16_t>(4, 6);
+    EXPECT_EQ(refusal_of(image), "none");
+    EXPECT_EQ(refusal_of({}), "none") << "a time alone";
+    image.channels = 4;
+    EXPECT_THAT(refusal_of(image), HasSubstr("found 4 channels and rows of 6 numbers"));
+    image.channels = 0;
+    EXPECT_THAT(refusal_of(image), HasSubstr("found 0 channels"));
+    image.channels = 1;
+    image.y0 = INT_MIN;
+    EXPECT_THAT(refusal_of(image), HasSubstr("found one at 0,-2147483648"));
+}
+
+}  // namespace
+}  // namespace eventide
