@@ -39,12 +39,12 @@ FlowPatch::FlowPatch(const Array2<float>& now, const Array2<float>& gradient_x,
             mean_y += gy_[i] = gradient_y(y0_ + y, x0_ + x);
             mean += seen_[i] = now(y0_ + y + kRim, x0_ + x + kRim);
         }
-    constexpr float share = 1.F / (kSide * kSide);
+    constexpr float kShare = 1.F / (kSide * kSide);
     float a = kPlain, b = 0, c = kPlain;
     for (std::size_t i = 0; i < seen_.size(); ++i) {
-        gx_[i] -= share * mean_x;
-        gy_[i] -= share * mean_y;
-        seen_[i] -= share * mean;
+        gx_[i] -= kShare * mean_x;
+        gy_[i] -= kShare * mean_y;
+        seen_[i] -= kShare * mean;
         a += gx_[i] * gx_[i];
         b += gx_[i] * gy_[i];
         c += gy_[i] * gy_[i];

@@ -68,7 +68,7 @@ void ImageFusion::advance(const Window& window, const Array2<float>& events,
     now.new_image = false;
     now.whole_from = 1;
     past_.remember(window, events);
-    if (knows_shown_) copy(at_end->intensity, shown_);
+    if (at_end != nullptr) copy(at_end->intensity, shown_);
     const float weight = now.followed ? kFollowed : 1;
     for (std::size_t i = 0; i < since_.values().size(); ++i)
         since_.values()[i] = weight * events.values()[i];
