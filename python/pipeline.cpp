@@ -114,6 +114,8 @@ public:
                 {"merged_windows", c.merged_windows},
                 {"frames", c.frames},
                 {"skipped_frames", c.skipped_frames},
+                {"used_images", c.used_images},
+                {"dropped_images", c.dropped_images},
                 {"latency_p50_us", std::uint64_t(c.latency_p50.count())},
                 {"latency_p99_us", std::uint64_t(c.latency_p99.count())}};
     }

@@ -7,11 +7,14 @@
 
 #include <eventide/error.h>
 
+#include <pybind11/stl.h>
+
 #include <atomic>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace eventide::python {
 
@@ -121,6 +124,7 @@ public:
                 clock_ = from_us(cast_to<std::int64_t>("clock", clock));
         if (!events) return false;
         append_events(cast_to<py::array>("events", events), batch.events);
+        if (py::hasattr(source_, "images")) append_images(source_.attr("images"), batch.images);
         gap_before_ = live_ && cast_to<bool>("gap_before", source_.attr("gap_before"));
         return true;
     }
@@ -137,6 +141,15 @@ public:
     }
 
 private:
+    /// As Reader.images gives them.
+    static void append_images(const py::object& images, std::vector<ReferenceImage>& into) {
+        using TimeAndPixels = std::pair<std::int64_t, py::array>;
+        for (const auto& [t, pixels] : cast_to<std::vector<TimeAndPixels>>("images", images)) {
+            ReferenceImage& image = into.emplace_back(image_of(pixels));
+            image.t = image.exposure_begin = image.exposure_end = from_us(t);
+        }
+    }
+
     py::object source_;
     py::object events_;
     const bool live_;

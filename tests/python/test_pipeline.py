@@ -54,6 +54,32 @@ class Pipelines(RecordedTest):
         otherwise = self.frames_of(events, window="aps", width=64, height=48)
         self.assertFalse(np.array_equal(otherwise, expected), "the times show")
 
+    def test_an_iterable_with_images_has_them_correct_frames(self):
+        class Wrapped:
+            def __init__(self, reader):
+                self.reader, self.width, self.height = reader, reader.width, reader.height
+                self.images = []
+
+            def __iter__(self):
+                for events in self.reader:
+                    self.images = self.reader.images
+                    yield events
+
+        reader, reconstructor = eventide.open(self.recording), self.reconstructor()
+        for events in reader:
+            for t, image in reader.images:
+                reconstructor.push_image(t, image)
+            reconstructor.push(events, resets=True)
+        reconstructor.finish()
+        expected = [np.stack([f.intensity, f.sigma]) for f in reconstructor.frames()]
+        self.assertGreater(reconstructor.counters["used_images"], 5)
+        frames = self.frames_of(Wrapped(eventide.open(self.recording)))
+        np.testing.assert_array_equal(frames, expected)
+        wrong = Wrapped(eventide.open(self.recording))
+        wrong.__class__.images = property(lambda self: [(1, "no pixels")], lambda self, given: None)
+        with self.assertRaisesRegex(TypeError, "images"):
+            self.frames_of(wrong)
+
     def test_a_simulation_as_fast_as_it_can_be_waits_for_its_frames(self):
         name = "sim:demo?size=64x48&seconds=0.3&speed=max"
         expected = self.frames_one_by_one(eventide.open_camera(name))
