@@ -52,8 +52,8 @@ ReconstructorOptions options_of(const eventide_options* given_options) {
 }
 
 ReferenceImage image_of(const eventide_image& image) {
-    const auto largest = [](int side) { return side >= 1 && side <= kLargestSensorSide; };
-    if (!largest(image.width) || !largest(image.height))
+    const auto is_side = [](int side) { return side >= 1 && side <= kLargestSensorSide; };
+    if (!is_side(image.width) || !is_side(image.height))
         throw Error(ErrorKind::usage, "image: expected 1 to " + std::to_string(kLargestSensorSide) +
                                           " px each way, found " + std::to_string(image.width) +
                                           "x" + std::to_string(image.height));

@@ -177,6 +177,21 @@ TEST_F(ImageFusionTest, AnImageThatIsBlurredByMotionIsTrustedLess) {
     EXPECT_GT(shown(100).sigma(9, 9), .04F);
 }
 
+/// Recordings may say anything of it.
+TEST_F(ImageFusionTest, AnExposureThatBeganBeforeAllTimeIsALongOne) {
+    const auto sigma_of = [&](SensorTime exposure_begin) {
+        fusion_.reset();
+        now_ms_ = 0;
+        for (int i = 1; i <= 10; ++i) advance(10 * i, .3F);
+        ReferenceImage image = image_of(ramp(), at_ms(100));
+        image.exposure_begin = exposure_begin;
+        EXPECT_TRUE(fusion_.correct(image, grey(.4F, at_ms(100))));
+        return shown(100).sigma(9, 9);
+    };
+    EXPECT_EQ(sigma_of(SensorTime::min()), sigma_of(at_ms(-5000)));
+    EXPECT_EQ(sigma_of(SensorTime::max()), sigma_of(at_ms(100)));
+}
+
 TEST_F(ImageFusionTest, ImagesOfOtherTimesTellNothing) {
     EXPECT_FALSE(correct(ramp(), 0)) << "before the first window";
     advance(500);

@@ -14,6 +14,8 @@ namespace {
 constexpr float kImageNoise = .02F;
 // Events of what was followed count so much, against those of what was not.
 constexpr float kFollowed = .1F;
+// A shutter that is said to have been open for longer (a damaged time) was open for this.
+constexpr SensorDuration kLongestExposure{10'000'000};
 // Share of its window over which an image comes in at least.
 constexpr float kFastest = .25F;
 /// Where row or column `out` of a frame lies on the sensor (docs/model.md: corners lie on corners).
@@ -100,7 +102,8 @@ bool ImageFusion::correct(const ReferenceImage& image, const Frame& rendered) no
     image_.take(image, rendered.intensity, now.correction, since_, trust_);
     // What moves while the shutter is open is as blurred as if it had moved unfollowed since.
     fill(since_, 0);
-    past_.add_since(std::min(image.t, image.exposure_begin), 1, since_);
+    past_.add_since(std::clamp(image.exposure_begin, image.t - kLongestExposure, image.t), 1,
+                    since_);
     past_.add_since(image.t, knows_shown_ ? kFollowed - 1 : 0, since_);
     pyramid_.observe(trust_, since_);
     if (!knows_shown_) copy(rendered.intensity, shown_);
