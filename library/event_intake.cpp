@@ -1,6 +1,7 @@
 // What a caller pushes -> event windows.
 #include "library/event_intake.h"
 
+#include "library/far_time.h"
 #include "library/pushed_images.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/binning/noise_filter.h"
@@ -11,19 +12,6 @@
 #include <utility>
 
 namespace eventide {
-namespace {
-
-bool is_far(SensorTime t) {
-    return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
-}
-
-void check_time(SensorTime t, const char* what) {
-    if (is_far(t))
-        throw Error(ErrorKind::usage, std::string{what} + ": expected a time of at most 2^60 us " +
-                                          "from zero, found " + std::to_string(to_us(t)) + " us");
-}
-
-}  // namespace
 
 EventIntake::EventIntake(const SlicerSettings& settings, int width, int height,
                          std::unique_ptr<EventFilter> filter, ReconstructorCounters& counters)
@@ -97,13 +85,13 @@ bool EventIntake::is_sound(const Event& event) {
 
 void EventIntake::advance(SensorTime now) {
     check_open("advance");
-    check_time(now, "advance");
+    refuse_far(now, "advance");
     slicer_.advance(now, Clock::now());
 }
 
 void EventIntake::finish(std::optional<SensorTime> end) {
     if (finished_) return;
-    if (end) check_time(*end, "finish");
+    if (end) refuse_far(*end, "finish");
     // A stream without any event has no frames, even though its clock ran.
     if (end && slicer_.has_begun()) slicer_.advance(*end, Clock::now());
     slicer_.finish();

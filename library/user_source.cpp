@@ -1,9 +1,7 @@
 #include "library/user_source.h"
 
+#include "library/far_time.h"
 #include "library/pushed_images.h"
-#include "src/core/error.h"
-
-#include <eventide/reconstructor.h>
 
 #include <algorithm>
 #include <cstring>
@@ -15,18 +13,6 @@ namespace eventide {
 namespace {
 
 static_assert(std::is_trivially_copyable_v<Event>);
-
-bool is_far(SensorTime t) {
-    return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
-}
-
-/// As Reconstructor::advance() and finish() do: by such a clock a pipeline would go on for ever.
-void refuse_far(SensorTime clock) {
-    if (is_far(clock))
-        throw Error(ErrorKind::usage,
-                    "clock of the source: expected a time of at most 2^60 us from zero, found " +
-                        std::to_string(to_us(clock)) + " us");
-}
 
 /// Of an image in a packet; its pixels follow, row by row.
 struct ImageHead {
@@ -136,7 +122,7 @@ ReadStatus UserSource::read(RawPacket& into) {
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = !ended_ && source_.gap_before();  // at the end: told before
     const std::optional<SensorTime> clock = source_.clock();
-    if (clock) refuse_far(*clock);
+    if (clock) refuse_far(*clock, "clock of the source");
     if (is_live() && !ended_ && batch_.empty() && clock == clock_ && !into.gap_before)
         return ReadStatus::timeout;
     clock_ = clock;

@@ -1,0 +1,24 @@
+// Times that no stream has.
+#pragma once
+
+#include "src/core/error.h"
+
+#include <eventide/reconstructor.h>
+
+#include <string>
+
+namespace eventide {
+
+/// Beyond Reconstructor::kFarthestTime.
+inline bool is_far(SensorTime t) {
+    return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
+}
+
+/// Throws Error (usage) naming `what` for such a time: by it a stream would go on for ever.
+inline void refuse_far(SensorTime t, const char* what) {
+    if (is_far(t))
+        throw Error(ErrorKind::usage, std::string{what} + ": expected a time of at most 2^60 us " +
+                                          "from zero, found " + std::to_string(to_us(t)) + " us");
+}
+
+}  // namespace eventide
