@@ -52,6 +52,7 @@ Snapshot Counters::snapshot() const {
     s.broken_frames = present.broken_frames.value();
     s.newest_frame = from_us(std::int64_t(present.newest_us.value()));
     s.latency = present.latency.summary();
+    s.take = present.take.summary();
     s.render = present.render.summary();
     s.write = present.write.summary();
     return s;

@@ -57,6 +57,7 @@ struct Snapshot {
 
     LatencySummary latency;        ///< from the last packet a frame saw to the frame written
     LatencySummary bin, encode;    ///< work per event window
+    LatencySummary take;           ///< the same before its frames: to follow the camera's images
     LatencySummary render, write;  ///< work per frame
 
     std::uint64_t lost() const { return lost_packets; }
@@ -81,7 +82,7 @@ struct Counters {
     } encode;
     struct alignas(64) {
         Counter frames, skipped_frames, broken_frames, newest_us;
-        LatencyHistogram latency, render, write;
+        LatencyHistogram latency, take, render, write;
     } present;
 
     void note(const Damage& damaged, const SlicerCounters& slicing);  ///< bin thread

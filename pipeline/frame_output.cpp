@@ -44,7 +44,9 @@ void FrameOutput::accept(Encoded& encoded) {
         schedule_.restart();
     }
     if (settings_.changes != nullptr) change();
+    const HostTime begun = Clock::now();
     renderer_.take(encoded.latent);
+    counters_.present.take.record(Clock::now() - begun);
     arrived_ = latent.arrived;
     Waiting& held = held_[(oldest_ + held_count_++) % held_.size()];
     copy_stamp(latent, held);

@@ -25,7 +25,7 @@ constexpr double kContentEventsPerPixel = 0.4;
         ErrorKind::usage,
         "window '" + std::string{text} + "': " + why +
             "; expected for example auto, 50ms, 20000ev, 0.35epp, aps, or with a maximum width "
-            "20000ev,200ms");
+            "20000ev,200ms, or with a minimum, too, auto,50ms,5ms");
 }
 
 void require(bool good, const char* name, std::int64_t found) {
@@ -54,6 +54,12 @@ std::optional<SensorDuration> duration(Quantity q, std::string_view text) {
     const double us = std::round(q.value * us_per_unit);
     if (us < 1 || us > kUsPerDay) refuse(text, "a width is 1 us to one day");
     return SensorDuration{std::int64_t(us)};
+}
+
+SensorDuration width(std::string_view part, std::string_view text, const std::string& which) {
+    const auto found = duration(quantity(part, text), text);
+    if (!found) refuse(text, "the " + which + " width is a duration");
+    return *found;
 }
 
 void parse_rule(std::string_view rule, std::string_view text, SlicerSettings& settings) {
@@ -122,9 +128,13 @@ SlicerSettings parse_window(std::string_view text) {
     parse_rule(text.substr(0, comma), text, settings);
     if (comma == text.npos) return settings;
     if (settings.rule == WindowRule::duration) refuse(text, "a constant width has no maximum");
-    const auto widest = duration(quantity(text.substr(comma + 1), text), text);
-    if (!widest) refuse(text, "the maximum width is a duration");
-    settings.max_width = *widest;
+    const auto second = text.find(',', comma + 1);
+    settings.max_width = width(text.substr(comma + 1, second - comma - 1), text, "maximum");
+    if (second == text.npos) return settings;
+    if (settings.rule != WindowRule::content) refuse(text, "only auto has a minimum width");
+    settings.min_width = width(text.substr(second + 1), text, "minimum");
+    if (settings.min_width > settings.max_width)
+        refuse(text, "the minimum width exceeds the maximum");
     return settings;
 }
 
@@ -136,7 +146,10 @@ std::string window_text(const SlicerSettings& settings) {
         case WindowRule::reference:
             return "aps" + widest;
         case WindowRule::content:
-            return "auto" + widest;
+            return "auto" + widest +
+                   (settings.min_width == SlicerSettings{}.min_width
+                        ? ""
+                        : "," + duration_text(settings.min_width));
         case WindowRule::count:
             break;
     }

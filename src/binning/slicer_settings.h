@@ -65,8 +65,9 @@ SensorDuration natural_width(const SlicerSettings& settings);
 /// An event window ends early after so many events.
 std::uint64_t events_per_window(const SlicerSettings& settings, int width, int height);
 
-/// "50ms", "20000ev", "0.35epp" (events per pixel) or "aps" (reference images); durations in us,
-/// ms or s; after a comma the maximum width: "20000ev,200ms". Throws Error (usage).
+/// "50ms", "20000ev", "0.35epp" (events per pixel), "aps" (reference images) or "auto" (content);
+/// durations in us, ms or s; after a comma the maximum width: "20000ev,200ms"; for "auto", after
+/// another one, the minimum width: "auto,50ms,5ms". Throws Error (usage).
 SlicerSettings parse_window(std::string_view text);
 
 /// What parse_window() reads back.

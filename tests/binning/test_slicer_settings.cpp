@@ -40,19 +40,44 @@ TEST(WindowText, NamesContent) {
     EXPECT_EQ(parse_window("auto").max_width, 100ms);
     EXPECT_EQ(parse_window("auto").min_width, 1ms);
     EXPECT_EQ(parse_window("auto,20ms").max_width, 20ms);
+    EXPECT_EQ(parse_window("auto,20ms").min_width, 1ms);
+    EXPECT_EQ(parse_window("auto,20ms,5ms").max_width, 20ms);
+    EXPECT_EQ(parse_window("auto,20ms,5ms").min_width, 5ms);
 }
 
 TEST(WindowText, IsReadBackAsItWasWritten) {
-    for (const std::string text :
-         {"50ms", "7us", "2s", "20000ev,100ms", "0.35epp,333us", "aps,1s", "auto,50ms"})
+    for (const std::string text : {"50ms", "7us", "2s", "20000ev,100ms", "0.35epp,333us", "aps,1s",
+                                   "auto,50ms", "auto,500us", "auto,50ms,10ms"})
         EXPECT_EQ(window_text(parse_window(text)), text);
 }
 
 TEST(WindowText, RefusesByName) {
-    for (const std::string text :
-         {"",      "50",    "ms",    "50 ms",      "-5ms",     "0ms",        "0.2us",
-          "1e9s",  "nanms", "infms", "1.5ev",      "0ev",      "2e9ev",      "0epp",
-          "-1epp", "50mss", "aps ",  "50ms,100ms", "20000ev,", "20000ev,5ev"})
+    for (const std::string text : {"",
+                                   "50",
+                                   "ms",
+                                   "50 ms",
+                                   "-5ms",
+                                   "0ms",
+                                   "0.2us",
+                                   "1e9s",
+                                   "nanms",
+                                   "infms",
+                                   "1.5ev",
+                                   "0ev",
+                                   "2e9ev",
+                                   "0epp",
+                                   "-1epp",
+                                   "50mss",
+                                   "aps ",
+                                   "50ms,100ms",
+                                   "20000ev,",
+                                   "20000ev,5ev",
+                                   "auto,",
+                                   "auto,50ms,",
+                                   "auto,50ms,5",
+                                   "auto,5ms,50ms",
+                                   "aps,1s,5ms",
+                                   "auto,50ms,5ms,1ms"})
         try {
             parse_window(text);
             ADD_FAILURE() << "took '" << text << "'";

@@ -40,6 +40,8 @@ TEST_F(Quality, ACamerasIsChosenByAProfileThatIsKept) {
                 testing::Contains(quality.at("precision").get<std::string>()));
     EXPECT_EQ(quality.at("scale"), 1);
     EXPECT_EQ(quality.at("frames_per_second"), 30);
+    EXPECT_EQ(quality.at("min_window_ms"), 2);
+    EXPECT_EQ(run_json("a").at("settings").at("window"), "auto,20ms,2ms") << "of a model of 20 ms";
     EXPECT_EQ(quality.at("budget"), "1s");
     EXPECT_EQ(quality.at("holds"), true);
     EXPECT_EQ(quality.at("measured"), true);
@@ -66,6 +68,8 @@ TEST_F(Quality, FixedChangesNothing) {
     EXPECT_EQ(quality.at("mode"), "fixed");
     EXPECT_EQ(quality.at("model"), "default");
     EXPECT_EQ(quality.at("precision"), "auto");
+    EXPECT_TRUE(quality.at("min_window_ms").is_null());
+    EXPECT_EQ(run_json("a").at("settings").at("window"), "auto");
     EXPECT_EQ(quality.at("scale"), 1);
     EXPECT_EQ(quality.at("frames_per_second"), 30);
     EXPECT_FALSE(std::filesystem::exists(temp_ / "cache")) << "nothing was measured";
@@ -98,6 +102,19 @@ TEST_F(Quality, WhatWasGivenStays) {
     EXPECT_EQ(quality.at("scale"), 2);
     EXPECT_EQ(quality.at("frames_per_second"), 50);
     EXPECT_EQ(quality.at("changes"), 0);
+}
+
+TEST_F(Quality, EventWindowsAreOnlyChosenWhereNoneWereAskedFor) {
+    for (const std::vector<std::string> given : {std::vector<std::string>{"--window", "model"},
+                                                 {"--window", "20ms"},
+                                                 {"--fps", "frame"}}) {
+        std::vector<std::string> run{"run",   kCamera, "--model",    model(),
+                                     "--out", "a/",    "--overwrite"};
+        run.insert(run.end(), given.begin(), given.end());
+        const Result result = eventide(run, with_cache());
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_TRUE(run_json("a").at("quality").at("min_window_ms").is_null()) << given[1];
+    }
 }
 
 TEST_F(Quality, WorksWithoutAHome) {

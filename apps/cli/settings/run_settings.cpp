@@ -140,8 +140,9 @@ void RunSettings::add_times(SettingTable& table) {
         "window", window, "WINDOW",
         "How events are cut into event windows: 50ms (constant time), 20000ev (constant number), "
         "0.35epp (events per pixel), aps (between reference images); after a comma the maximum "
-        "width: 20000ev,200ms. model: what the model was trained for. auto: by content for "
-        "recordings, short where much moves and 100 ms at most; model for live sources.",
+        "width: 20000ev,200ms. model: what the model was trained for. auto: by content, short "
+        "where much moves and 100 ms at most (auto,50ms,5ms: 50 at most, 5 at least); of live "
+        "sources no longer than model, and no shorter than the pace allows.",
         check_window, same_text));
     add(parsed_setting<std::string>(
         "speed", speed, "FACTOR",
@@ -173,8 +174,9 @@ void RunSettings::add_quality(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
     add(choice_setting("quality", quality,
                        "auto: for live sources and with --realtime, whichever of model, precision, "
-                       "size and frame rate is not given is chosen to hold the pace; size and rate "
-                       "then follow the load. Every choice is logged. fixed: nothing is changed.",
+                       "event windows, size and frame rate is not given is chosen to hold the "
+                       "pace; windows, size and rate then follow the load. Every choice is logged. "
+                       "fixed: nothing is changed.",
                        {{QualityMode::automatic, "auto"}, {QualityMode::fixed, "fixed"}}));
     add(flag_setting(
         "realtime", realtime,

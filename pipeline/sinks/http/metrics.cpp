@@ -70,6 +70,7 @@ void add_line(Text& text, const Snapshot& now) {
                  now.latency);
     text.summary("bin_seconds", "Work per event window: binning.", now.bin);
     text.summary("encode_seconds", "Work per event window: encoding.", now.encode);
+    text.summary("take_seconds", "Work per event window: following the camera's images.", now.take);
     text.summary("render_seconds", "Work per frame: rendering.", now.render);
     text.summary("write_seconds", "Work per frame: writing to the sinks.", now.write);
 }

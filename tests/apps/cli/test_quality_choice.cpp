@@ -59,6 +59,36 @@ TEST(QualityChoice, GivesUpTheRateFirstAndThenTheScale) {
     EXPECT_EQ(best_that_holds(kFloat, levels, demand)->level, (QualityLevel{third, 1}));
 }
 
+TEST(QualityChoice, GivesUpShortEventWindowsBeforeAllElse) {
+    using namespace std::chrono_literals;
+    EXPECT_EQ(min_windows(50ms), (std::vector<SensorDuration>{2ms, 5ms, 10ms, 20ms, 50ms}));
+    EXPECT_EQ(min_windows(5ms), (std::vector<SensorDuration>{2ms, 5ms}));
+    EXPECT_EQ(min_windows(1ms), (std::vector<SensorDuration>{1ms}));
+    const auto windows = min_windows(10ms);
+    const std::vector<QualityLevel> order{{1, 0, 2ms},      {1, 0, 5ms},     {1, 0, 10ms},
+                                          {1, 1, 10ms},     {1, 2, 10ms},    {third, 0, 10ms},
+                                          {third, 1, 10ms}, {third, 2, 10ms}};
+    EXPECT_EQ(quality_levels({1, 0}, true, true, windows), order);
+    EXPECT_EQ(quality_levels({1, 0}, false, false, windows),
+              (std::vector<QualityLevel>{{1, 0, 2ms}, {1, 0, 5ms}, {1, 0, 10ms}}));
+}
+
+TEST(QualityChoice, CountsAsManyEventWindowsAsThereCanBe) {
+    using namespace std::chrono_literals;
+    QualityDemand demand = usual(30);
+    EXPECT_DOUBLE_EQ(windows_at({1, 0}, demand), 20);
+    EXPECT_DOUBLE_EQ(windows_at({1, 0, 5ms}, demand), 200);
+    EXPECT_DOUBLE_EQ(load_of(kCosts[0], {1, 0, 20ms}, demand).encode, 50 * 10e-3);
+    EXPECT_DOUBLE_EQ(load_of(kCosts[0], {1, 0, 20ms}, demand).frames, 30 * 4e-3)
+        << "fewer than event windows";
+    demand.pace = .5;
+    EXPECT_DOUBLE_EQ(windows_at({1, 0, 5ms}, demand), 100) << "of the clock on the wall";
+    demand = usual(30);
+    demand.threads = 2;  // 1.19 cores; f32 takes 1 at 10 ms
+    const auto levels = quality_levels({1, 0}, true, true, min_windows(50ms));
+    EXPECT_EQ(best_that_holds(kFloat, levels, demand)->level, (QualityLevel{1, 0, 10ms}));
+}
+
 TEST(QualityChoice, LeavesAloneWhatWasGiven) {
     EXPECT_EQ(quality_levels({2.5, 0}, false, false), (std::vector<QualityLevel>{{2.5, 0}}));
     EXPECT_EQ(quality_levels({1, 0}, true, false),

@@ -6,6 +6,7 @@
 namespace eventide::app {
 namespace {
 
+using namespace std::chrono_literals;
 using Seconds = std::chrono::duration<double>;
 
 /// 20 event windows and 40 frames a second; on one thread, by the profile, 0.2 for encoding and
@@ -125,6 +126,80 @@ TEST(QualityControl, WindowsThatHadToBeMergedCallForLess) {
     machine.run(5, 1);
     EXPECT_GE(machine.run(2, 1, 1, true), 1);
     EXPECT_NE(machine.level(), (QualityLevel{1, 0}));
+}
+
+TEST(QualityControl, SingleWindowsThatWereMergedCallForNothing) {
+    QualityControl control{kCost, quality_levels({1, 0}, true, true), 0, {20, 40, 1, {}}};
+    QualityMeasure now;
+    for (int i = 0; i < 40; ++i) {
+        now.at += Seconds{1};
+        now.windows += 49;
+        now.merged += 1;
+        now.frames += 40;
+        now.encode += Seconds{0.2};
+        now.present += Seconds{0.2};
+        EXPECT_FALSE(control.look(now));
+    }
+}
+
+/// A scene that gives so many event windows a second, if they may be so short, each of which takes
+/// so much of what the profile says; on two threads.
+class Scene {
+public:
+    Scene()
+        : levels_{quality_levels({1, 0}, true, true, min_windows(50ms))},
+          control_{kCost, levels_, 3, demand_} {}
+
+    int run(double seconds, double windows_per_s, double cost, double take_ms = 0) {
+        int changes = 0;
+        for (int i = 0; i < int(seconds * 2); ++i) {
+            const double windows =
+                std::min(windows_per_s, windows_at(control_.level(), demand_)) / 2;
+            now_.at += Seconds{0.5};
+            now_.windows = std::uint64_t(windows_ += windows);
+            now_.frames += std::uint64_t(20 >> control_.level().halvings);
+            now_.encode += Seconds{windows * cost * kCost.encode_ms * 1e-3 / cores_of(2)};
+            now_.present += Seconds{0.1};
+            now_.take += Seconds{windows * take_ms * 1e-3};
+            changes += control_.look(now_) ? 1 : 0;
+        }
+        return changes;
+    }
+    const QualityLevel& level() const { return control_.level(); }
+
+private:
+    QualityDemand demand_{20, 40, 2, {}};
+    std::vector<QualityLevel> levels_;
+    QualityControl control_;
+    QualityMeasure now_;
+    double windows_ = 0;
+};
+
+TEST(QualityControl, ShortensEventWindowsNoFurtherThanHoldsWhenAllMoves) {
+    // By the profile 10 ms a window are 0.59 of the encoder's time at 10 ms, and 1.18 at 5.
+    Scene scene;
+    ASSERT_EQ(scene.level().min_window, 20ms);
+    EXPECT_EQ(scene.run(20, 20, 0.1), 1) << "little moves, and windows are few and cheap";
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 10ms}));
+    EXPECT_EQ(scene.run(60, 1000, 1), 0) << "then all moves at once, and it holds";
+}
+
+TEST(QualityControl, LengthensEventWindowsWhereEncodingTakesTooLongAndShortensThemAgain) {
+    Scene scene;
+    scene.run(10, 1000, 3);  // 0.88 of the encoder's time at 20 ms: holds
+    EXPECT_EQ(scene.level().min_window, 20ms);
+    EXPECT_EQ(scene.run(5, 1000, 4), 1);
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 50ms})) << "nothing else is given up";
+    EXPECT_GE(scene.run(120, 1000, 1), 1);
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 10ms}));
+}
+
+TEST(QualityControl, KnowsWhatEventWindowsTakeOfTheFramesThread) {
+    Scene scene;
+    scene.run(20, 1000, 0.5, 12);  // 0.6 and 0.2 at 20 ms; 1.2 and 0.2 at 10
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 20ms}));
+    scene.run(5, 1000, 0.5, 20);
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 50ms}));
 }
 
 /// Twice the pace, and so twice the frames: the load is told as it is, not twice of that.

@@ -32,30 +32,57 @@ QualityChoice quicker(std::span<const PrecisionCost> costs, const QualityLevel& 
 
 }  // namespace
 
+std::vector<SensorDuration> min_windows(SensorDuration widest) {
+    std::vector<SensorDuration> windows;
+    for (const int ms : {2, 5, 10, 20, 50})
+        if (SensorDuration{1000 * ms} < widest) windows.emplace_back(1000 * ms);
+    windows.push_back(widest);
+    return windows;
+}
+
 std::vector<QualityLevel> quality_levels(const QualityLevel& as_asked, bool rate_open,
-                                         bool scale_open) {
+                                         bool scale_open, std::span<const SensorDuration> windows) {
     constexpr double kScales[]{1, kThird};
     constexpr unsigned kHalvings = 2;
     std::vector<QualityLevel> levels;
+    QualityLevel level = as_asked;
+    for (const SensorDuration shortest : windows) {
+        level.min_window = shortest;
+        if (shortest != windows.back()) levels.push_back(level);
+    }
     for (const double scale : kScales) {
-        for (unsigned halvings = 0; halvings <= (rate_open ? kHalvings : 0); ++halvings)
-            levels.push_back({as_asked.scale * scale, as_asked.halvings + halvings});
+        level.scale = as_asked.scale * scale;
+        for (unsigned halvings = 0; halvings <= (rate_open ? kHalvings : 0); ++halvings) {
+            level.halvings = as_asked.halvings + halvings;
+            levels.push_back(level);
+        }
         if (!scale_open) break;
     }
     return levels;
 }
 
+double windows_at(const QualityLevel& level, const QualityDemand& demand) {
+    if (level.min_window.count() == 0) return demand.windows;
+    return 1e6 / double(level.min_window.count()) * demand.pace;
+}
+
 NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
                     const QualityDemand& demand) {
     const double frames = demand.frames / double(1U << level.halvings),
-                 windows = std::min(frames, demand.windows);  // that frames are rendered of
-    return {1e-3 * cost.encode_ms * demand.windows,
-            1e-3 * (cost.first_ms * windows + frame_ms(cost, level.scale) * frames)};
+                 windows = windows_at(level, demand);
+    const double first = std::min(frames, windows);  // windows that frames are rendered of
+    return {1e-3 * cost.encode_ms * windows,
+            1e-3 * (cost.first_ms * first + frame_ms(cost, level.scale) * frames)};
+}
+
+double cores_of(double threads) {
+    constexpr double kFurther = 0.7;
+    return 1 + kFurther * (std::max(threads, 1.0) - 1);
 }
 
 double affordable_load(const QualityDemand& demand) {
-    constexpr double kShare = 0.7, kFurther = 0.7;
-    const double pace = kShare * (1 + kFurther * (std::max(demand.threads, 1.0) - 1));
+    constexpr double kShare = 0.7;
+    const double pace = kShare * cores_of(demand.threads);
     return demand.share ? std::min(*demand.share, pace) : pace;
 }
 

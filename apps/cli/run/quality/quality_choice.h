@@ -2,6 +2,7 @@
 #pragma once
 
 #include "apps/cli/run/quality/quality_profile.h"
+#include "src/core/sensor_time.h"
 
 #include <cstddef>
 #include <optional>
@@ -15,23 +16,34 @@ namespace eventide::app {
 struct QualityLevel {
     double scale = 1;  ///< of the frames, times the sensor's size
     unsigned halvings = 0;
+    /// Of sensor time: no event ends an event window sooner. 0: events end none, all windows are
+    /// alike.
+    SensorDuration min_window{0};
     friend bool operator==(const QualityLevel&, const QualityLevel&) = default;
 };
 
-/// From the best on: at each size the rate is given up first, down to a quarter, then the size, to
-/// a third, as none between costs less than the whole (PrecisionCost). Where rate or scale is not
-/// open, it stays as `as_asked` has it.
+/// For windows that events end, no longer than `widest`: how soon they may, the least first.
+std::vector<SensorDuration> min_windows(SensorDuration widest);
+
+/// From the best on: short event windows are given up first, then, at each size, the rate, down to
+/// a quarter, then the size, to a third, as none between costs less than the whole (PrecisionCost).
+/// Where rate or scale is not open, it stays as `as_asked` has it; the same for `windows`, where
+/// there are none.
 std::vector<QualityLevel> quality_levels(const QualityLevel& as_asked, bool rate_open,
-                                         bool scale_open);
+                                         bool scale_open,
+                                         std::span<const SensorDuration> windows = {});
 
 /// What has to be done in a second of the clock on the wall.
 struct QualityDemand {
-    double windows = 20;          ///< event windows
+    double windows = 20;          ///< event windows, where events end none of them
     double frames = 30;           ///< frames asked for, before halvings
     double threads = 1;           ///< that the network may use
     std::optional<double> share;  ///< --budget: processor time, in cores
     double pace = 1;              ///< sensor time over that of the clock, in windows and frames
 };
+
+/// Event windows a second at this level: where events end them, as many as there can be.
+double windows_at(const QualityLevel& level, const QualityDemand& demand);
 
 /// What encoding and frames take, as parts of a core.
 struct NetworkLoad {
@@ -46,6 +58,9 @@ NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
 /// What of a core the network may take, before anything is known of this run: the budget, and at
 /// most 70 % of what its threads do, each further one 70 % of the first.
 double affordable_load(const QualityDemand& demand);
+
+/// So many cores are what the network's threads do together.
+double cores_of(double threads);
 
 struct QualityChoice {
     std::size_t model = 0;  ///< of those given

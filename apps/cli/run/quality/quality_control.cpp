@@ -14,7 +14,13 @@ constexpr Seconds kLook{0.5};                        // shorter spans jump
 constexpr Seconds kRaiseWait{5}, kMaxRaiseWait{80};  // before a step up
 constexpr Seconds kTakenBack{15}, kForgotten{60};
 constexpr unsigned kStrainedLooks = 3;
+constexpr double kFewMerged = 0.05;  // of the windows: single ones wait for a frame
 constexpr double kHolds = 0.9, kComfortable = 0.75, kEasy = 0.6;
+
+/// Half of a measure is what was known: single windows may be slow for reasons of their own.
+void mix(double& known, double found) {
+    known += 0.5 * (found - known);
+}
 
 }  // namespace
 
@@ -27,11 +33,28 @@ QualityControl::QualityControl(PrecisionCost profile, std::vector<QualityLevel> 
       demand_{demand},
       encode_factor_{1 / std::max(demand.threads, 1.0)},
       frame_factor_{encode_factor_},
-      raise_wait_{kRaiseWait} {}
+      raise_wait_{kRaiseWait} {
+    demand_.windows = windows_at(level(), demand_);
+}
+
+/// Whether its event windows may be shorter than now.
+bool QualityControl::is_shorter(std::size_t level) const {
+    return levels_[level].min_window < levels_[at_].min_window;
+}
 
 NetworkLoad QualityControl::load_at(std::size_t level) const {
-    const NetworkLoad load = load_of(profile_, levels_[level], demand_);
-    return {load.encode * encode_factor_, load.frames * frame_factor_};
+    QualityLevel there = levels_[level];
+    QualityDemand demand = demand_;
+    double encode_factor = encode_factor_;
+    if (is_shorter(level)) {
+        encode_factor = std::max(encode_factor, 1 / cores_of(demand.threads));
+    } else {
+        demand.windows = std::min(demand.windows, windows_at(there, demand));
+        there.min_window = {};
+    }
+    const NetworkLoad load = load_of(profile_, there, demand);
+    return {load.encode * encode_factor,
+            load.frames * frame_factor_ + take_s_ * windows_at(there, demand)};
 }
 
 bool QualityControl::holds(std::size_t level, double margin) const {
@@ -41,23 +64,28 @@ bool QualityControl::holds(std::size_t level, double margin) const {
            load.total() * std::max(demand_.threads, 1.0) <= margin * *demand_.share;
 }
 
-/// Half of a measure is what was known: single windows may be slow for reasons of their own.
-void QualityControl::learn(const QualityMeasure& now) {
+void QualityControl::learn_windows(const QualityMeasure& now) {
     const double seconds = (now.at - before_.at).count();
     const auto windows = double(now.windows - before_.windows),
-               merged = double(now.merged - before_.merged),
-               frames = double(now.frames - before_.frames);
-    const auto mix = [](double& known, double found) { known += 0.5 * (found - known); };
-    merging_ = merged > 0;
-    if (windows > 0 && seconds > 0) {
-        mix(demand_.windows, (windows + merged) / seconds);
-        mix(encode_factor_,
-            (now.encode - before_.encode).count() / windows / (1e-3 * profile_.encode_ms));
-    }
+               merged = double(now.merged - before_.merged);
+    merging_ = merged > kFewMerged * (windows + merged);
+    demand_.pace = now.pace;
+    if (windows == 0 || seconds <= 0) return;
+    mix(demand_.windows, (windows + merged) / seconds);
+    mix(encode_factor_,
+        (now.encode - before_.encode).count() / windows / (1e-3 * profile_.encode_ms));
+    mix(take_s_, (now.take - before_.take).count() / windows);
+}
+
+void QualityControl::learn(const QualityMeasure& now) {
+    learn_windows(now);
+    const auto frames = double(now.frames - before_.frames);
     demand_.frames = asked_ * now.pace;
     const double rate = demand_.frames / double(1U << level().halvings);
     if (frames == 0 || rate <= 0) return;
-    const double expected = load_of(profile_, level(), demand_).frames / rate;
+    QualityLevel measured = level();
+    measured.min_window = {};  // windows were counted
+    const double expected = load_of(profile_, measured, demand_).frames / rate;
     if (expected > 0)
         mix(frame_factor_, (now.present - before_.present).count() / frames / expected);
 }
@@ -77,10 +105,22 @@ bool QualityControl::look(const QualityMeasure& now) {
     return raise(now.at);
 }
 
+/// The first level from the present one on whose windows are few enough for the encoder; the one
+/// with the fewest, where none's are.
+std::size_t QualityControl::with_fewer_windows() const {
+    std::size_t to = at_;
+    while (to + 1 < levels_.size() && levels_[to + 1].min_window > levels_[to].min_window &&
+           load_at(to).encode > kComfortable)
+        ++to;
+    return to;
+}
+
 bool QualityControl::lower(Seconds now) {
     std::size_t to = at_ + 1;
     const NetworkLoad load = load_at(at_);
-    if (load.encode > kHolds) {
+    if (const std::size_t fewer = with_fewer_windows(); load.encode > kHolds && fewer > at_) {
+        to = fewer;
+    } else if (load.encode > kHolds) {
         // Windows gain only the cores that frames leave: one step, over levels (small frames, but
         // all of them) that would take more.
         while (to < levels_.size() && load_at(to).frames >= load.frames) ++to;
@@ -95,7 +135,7 @@ bool QualityControl::lower(Seconds now) {
 bool QualityControl::raise(Seconds now) {
     forget(now);
     std::size_t to = 0;
-    while (to < at_ && !holds(to, kEasy)) ++to;
+    while (to < at_ && !holds(to, is_shorter(to) ? kComfortable : kEasy)) ++to;
     if (to == at_) calm_since_ = now;
     if (now - calm_since_ < raise_wait_) return false;
     raised_ = now;
@@ -109,6 +149,7 @@ void QualityControl::forget(Seconds now) {
 }
 
 bool QualityControl::move(std::size_t to, Seconds now) {
+    demand_.windows = std::min(demand_.windows, windows_at(levels_[to], demand_));
     at_ = to;
     settled_ = calm_since_ = now;
     strained_ = 0;

@@ -17,6 +17,8 @@ struct QualityMeasure {
     std::uint64_t merged = 0;             ///< event windows that became one with another
     std::uint64_t frames = 0;             ///< rendered and written
     std::chrono::duration<double> encode{0}, present{0};  ///< work on them, by the clock
+    /// Work on windows by the frames' thread (the camera's images), by the clock.
+    std::chrono::duration<double> take{0};
     double pace = 1;  ///< sensor time over that of the clock, as it should be
 };
 
@@ -24,13 +26,15 @@ struct QualityMeasure {
 /// that tests make them. One thread.
 ///
 /// Work is compared with the profile: by how much windows and frames cost more or less than
-/// measured there, every level will. A level holds where encoding and frames each leave their
-/// thread a margin, and all work together the budget. Down, to the best level that leaves a
-/// quarter (where encoding takes too long, to the next one whose frames take less), after a second
+/// measured there, every level will; but shorter windows are taken to cost at least what the
+/// profile says, and to be as many as there can be, for that is what they are when much moves. A
+/// level holds where encoding and frames each leave their thread a margin, and all work together
+/// the budget. Down, to the best level that leaves a quarter (where encoding takes too long, to
+/// longer windows as far as they help, then to the next one whose frames take less), after a second
 /// and a half in which the present one did not hold or event windows had to be merged; up, to the
-/// best level that leaves 40 %, after 5 s in which there was one. A step up that was taken back
-/// within 15 s doubles this time, up to 80 s; a minute without a change halves it: where the load
-/// lies between two levels, it stays at the lower one.
+/// best level that leaves 40 % (one of shorter windows: a quarter), after 5 s in which there was
+/// one. A step up that was taken back within 15 s doubles this time, up to 80 s; a minute without a
+/// change halves it: where the load lies between two levels, it stays at the lower one.
 class QualityControl {
 public:
     /// `at`: the level it begins with.
@@ -47,6 +51,9 @@ public:
 private:
     using Seconds = std::chrono::duration<double>;
     void learn(const QualityMeasure& now);
+    void learn_windows(const QualityMeasure& now);
+    std::size_t with_fewer_windows() const;
+    bool is_shorter(std::size_t level) const;
     NetworkLoad load_at(std::size_t level) const;
     bool holds(std::size_t level, double margin) const;
     bool move(std::size_t to, Seconds now);
@@ -60,6 +67,7 @@ private:
     std::size_t at_;
     QualityDemand demand_;
     double encode_factor_, frame_factor_;  // work by the clock over the profile's processor time
+    double take_s_ = 0;                    // by the clock, for each window
     NetworkLoad measured_;
     bool merging_ = false;
     QualityMeasure before_;

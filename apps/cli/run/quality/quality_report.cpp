@@ -26,8 +26,22 @@ double rate_of(const QualityLevel& level, double frames_per_second) {
     return frames_per_second / double(1U << level.halvings);
 }
 
+double ms_of(SensorDuration duration) {
+    return double(duration.count()) / 1e3;
+}
+
 Json json_of(const QualityLevel& level, double frames_per_second) {
-    return {{"scale", level.scale}, {"frames_per_second", rate_of(level, frames_per_second)}};
+    return {{"scale", level.scale},
+            {"frames_per_second", rate_of(level, frames_per_second)},
+            {"min_window_ms",
+             level.min_window.count() > 0 ? Json(ms_of(level.min_window)) : Json(nullptr)}};
+}
+
+/// Whether `to` is further down than `from`.
+bool is_lower(const QualityLevel& to, const QualityLevel& from) {
+    if (to.scale != from.scale) return to.scale < from.scale;
+    if (to.halvings != from.halvings) return to.halvings > from.halvings;
+    return to.min_window > from.min_window;
 }
 
 Json json_of(const NetworkLoad& load) {
@@ -38,9 +52,10 @@ Json json_of(const NetworkLoad& load) {
 
 std::string level_text(const QualityLevel& level, double frames_per_second) {
     const std::string scale = rounded(level.scale) + "x ";
-    if (frames_per_second > 0)
-        return scale + rounded(rate_of(level, frames_per_second)) + " frames/s";
-    return scale + "a frame per event window";
+    if (frames_per_second <= 0) return scale + "a frame per event window";
+    const std::string rate = rounded(rate_of(level, frames_per_second)) + " frames/s";
+    if (level.min_window.count() == 0) return scale + rate;
+    return scale + rate + ", event windows of " + rounded(ms_of(level.min_window)) + " ms or more";
 }
 
 std::string choice_text(const QualityState& state) {
@@ -52,11 +67,8 @@ std::string choice_text(const QualityState& state) {
 }
 
 std::string change_text(const QualityChange& change, double frames_per_second) {
-    const bool down =
-        change.to.scale < change.from.scale ||
-        (change.to.scale == change.from.scale && change.to.halvings > change.from.halvings);
-    return std::string{"quality "} + (down ? "lowered" : "raised") + " from " +
-           level_text(change.from, frames_per_second) + " to " +
+    return std::string{"quality "} + (is_lower(change.to, change.from) ? "lowered" : "raised") +
+           " from " + level_text(change.from, frames_per_second) + " to " +
            level_text(change.to, frames_per_second) + ": encoding took " +
            rounded(change.load.encode) + " of its thread, frames " + rounded(change.load.frames);
 }

@@ -22,7 +22,7 @@ struct QualityChange {
 /// At one moment.
 struct QualityState {
     bool chosen = false;      ///< false: fixed, and nothing is changed
-    bool taken_over = false;  ///< chosen, but a viewer of the live page has set rate or scale since
+    bool taken_over = false;  ///< chosen, but a viewer of the live page has set some of it since
     bool holds = true;        ///< the start's choice, by the profile
     std::string model, precision;
     QualityLevel level;
@@ -37,7 +37,7 @@ struct QualityState {
     std::vector<QualityChange> newest;  ///< of the changes, oldest first
 };
 
-/// "0.75x 15 frames/s"
+/// "0.75x 15 frames/s, event windows of 5 ms or more"
 std::string level_text(const QualityLevel& level, double frames_per_second);
 /// "default, bf16, 1x 30 frames/s: 0.31 cores by its profile, of 1.2"
 std::string choice_text(const QualityState& state);

@@ -48,6 +48,15 @@ bool scale_is_open(const RunSettings& settings) {
     return !settings.size_given && !settings.region && settings.adjust.crop_px == 0;
 }
 
+/// Empty: as they were asked for. One frame for each window has the windows' own rate.
+std::optional<SlicerSettings> windows_by_content(const RunSettings& settings,
+                                                 const SlicerSettings& usual) {
+    if (settings.window != "auto" || !rate_of(settings, usual).is_set()) return {};
+    SlicerSettings slicer = parse_window("auto");
+    slicer.max_width = natural_width(usual);
+    return slicer;
+}
+
 double usable_threads(const RunSettings& settings) {
     const double usable = std::max(1U, std::thread::hardware_concurrency());
     return settings.threads == 0 ? usable : std::min(usable, double(settings.threads));
@@ -106,7 +115,13 @@ struct RunQuality::Chosen {
     std::vector<PrecisionCost> costs;  // of the model
     QualityDemand demand;
     QualityLevel asked;
+    std::optional<SlicerSettings> slicer;  // windows by content
     CachedProfile profile;
+
+    std::vector<QualityLevel> levels(const QualityLevel& best, bool rate, bool scale) const {
+        if (!slicer) return quality_levels(best, rate, scale);
+        return quality_levels(best, rate, scale, min_windows(slicer->max_width));
+    }
 };
 
 RunQuality::RunQuality(RunSettings& settings, const Place& place,
@@ -124,6 +139,11 @@ RunQuality::RunQuality(RunSettings& settings, const Place& place,
     state_.precision = show_word(settings.precision, kPrecisionWords);
     state_.level = chosen.choice.level;
     if (scale_is_open(settings)) settings.size.scale = state_.level.scale;
+    if (chosen.slicer) {
+        slicer_ = *chosen.slicer;
+        slicer_.min_width = state_.level.min_window;
+        settings.window = window_text(slicer_);
+    }
     if (chosen.demand.share && settings.threads == 0) settings.threads = int(chosen.demand.threads);
     state_.holds = chosen.choice.holds;
     state_.load = chosen.choice.load;
@@ -137,9 +157,8 @@ RunQuality::RunQuality(RunSettings& settings, const Place& place,
 }
 
 QualityDemand RunQuality::demand_of(const RunSettings& settings, const Place& place,
-                                    const ModelConfig& config) const {
+                                    const SlicerSettings& slicer) const {
     constexpr double kWindowsByContent = 20;  // until it is known how much moves
-    const SlicerSettings slicer = slicer_of(settings, config, place.span, place.as_live);
     QualityDemand demand;
     demand.pace = place.pace;
     demand.windows =
@@ -159,18 +178,24 @@ QualityDemand RunQuality::demand_of(const RunSettings& settings, const Place& pl
 RunQuality::Chosen RunQuality::choose(RunSettings& settings, const Place& place,
                                       const std::function<bool()>& give_up) {
     const QualityLevel asked = asked_level(settings, place.sensor);
-    const auto levels = quality_levels(asked, rate_is_open(settings), scale_is_open(settings));
     std::optional<Chosen> least;
     for (const std::string& name : models_to_choose_from(settings)) {
         if (least && found_model(name).empty()) continue;  // the first must be there
         const Model model = load_model(find_model(name));
         CachedProfile profile = profile_of(name, model, settings, place.sensor, give_up);
-        const auto costs = costs_to_choose_from(profile.profile, settings);
-        const QualityDemand demand = demand_of(settings, place, model.config);
-        const auto best = best_that_holds(costs, levels, demand);
-        const QualityChoice choice = best ? *best : least_load(costs, levels, demand);
-        if (best || !least || choice.load.total() < least->choice.load.total())
-            least = {name, choice, costs, demand, asked, std::move(profile)};
+        const SlicerSettings usual = slicer_of(settings, model.config, place.span, place.as_live);
+        Chosen chosen{name,
+                      {},
+                      costs_to_choose_from(profile.profile, settings),
+                      demand_of(settings, place, usual),
+                      asked,
+                      windows_by_content(settings, usual),
+                      std::move(profile)};
+        const auto levels = chosen.levels(asked, rate_is_open(settings), scale_is_open(settings));
+        const auto best = best_that_holds(chosen.costs, levels, chosen.demand);
+        chosen.choice = best ? *best : least_load(chosen.costs, levels, chosen.demand);
+        if (best || !least || chosen.choice.load.total() < least->choice.load.total())
+            least = std::move(chosen);
         if (best) break;
     }
     return std::move(*least);
@@ -180,10 +205,10 @@ RunQuality::Chosen RunQuality::choose(RunSettings& settings, const Place& place,
 void RunQuality::begin_control(const RunSettings& settings, const Chosen& chosen) {
     const bool scale = scale_is_open(settings) && !rigid_sink(settings),
                rate = rate_is_open(settings);
-    if (!scale && !rate) return;
+    if (!scale && !rate && !chosen.slicer) return;
     QualityLevel best = chosen.asked;
     if (!scale) best.scale = state_.level.scale;
-    const auto levels = quality_levels(best, rate, scale);
+    const auto levels = chosen.levels(best, rate, scale);
     const auto at = std::ranges::find(levels, state_.level);
     const auto cost =
         std::ranges::find(chosen.costs, chosen.choice.precision, &PrecisionCost::precision);
@@ -206,7 +231,7 @@ void RunQuality::look(const Snapshot& now, std::chrono::duration<double> elapsed
     const QualityLevel before = control_->level();
     const bool changed =
         control_->look({elapsed, now.encoded, now.merged_windows, now.frames, now.encode.total,
-                        now.render.total + now.write.total, pace});
+                        now.render.total + now.write.total, now.take.total, pace});
     const NetworkLoad load = control_->measured();
     state_.load = load;
     if (!changed) return;
@@ -219,6 +244,10 @@ void RunQuality::look(const Snapshot& now, std::chrono::duration<double> elapsed
         changes.set_size(std::max(1, int(std::lround(sensor_.width * state_.level.scale))),
                          std::max(1, int(std::lround(sensor_.height * state_.level.scale))));
     changes.set_halvings(state_.level.halvings);
+    if (before.min_window != state_.level.min_window) {
+        slicer_.min_width = state_.level.min_window;
+        changes.set_window(slicer_);
+    }
     spdlog::info("{}", change_text(change, state_.frames_per_second));
 }
 
@@ -228,7 +257,8 @@ void RunQuality::take_over(LiveChanges& changes) {
     state_.taken_over = true;
     state_.level.halvings = 0;
     changes.set_halvings(0);
-    spdlog::info("quality: a viewer has set rate or scale; it is not changed any more");
+    spdlog::info(
+        "quality: a viewer has set rate, scale or event window; it is not changed any more");
 }
 
 void RunQuality::tell_rate(double frames_per_second) {
@@ -243,12 +273,13 @@ void RunQuality::tell_scale(double scale) {
 
 void RunQuality::follow(std::vector<HttpControl>& controls, LiveChanges& changes) {
     for (HttpControl& control : controls) {
-        const bool scale = control.name == "scale";
-        if (!control.set || (control.name != "fps" && !scale)) continue;
-        control.set = [this, &changes, scale, set = std::move(control.set)](double wanted) {
+        const bool scale = control.name == "scale", rate = control.name == "fps";
+        if (!control.set || (!rate && !scale && control.name != "window")) continue;
+        control.set = [this, &changes, scale, rate, set = std::move(control.set)](double wanted) {
             take_over(changes);
             set(wanted);
-            scale ? tell_scale(wanted) : tell_rate(wanted);
+            if (scale) tell_scale(wanted);
+            if (rate) tell_rate(wanted);
         };
         if (scale)
             control.get = [this, get = std::move(control.get)] {

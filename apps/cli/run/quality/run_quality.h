@@ -33,9 +33,9 @@ public:
         double pace = 0;       ///< sensor time over that of the clock; 0: none
         bool chooses = false;
     };
-    /// Puts what is left open into `settings`: model, precision, size, and with --budget the
-    /// threads; measures the processor where the cache has nothing. What was chosen is said in the
-    /// log, as a warning where nothing holds. Throws Error (input, usage, failed).
+    /// Puts what is left open into `settings`: model, precision, event windows, size, and with
+    /// --budget the threads; measures the processor where the cache has nothing. What was chosen is
+    /// said in the log, as a warning where nothing holds. Throws Error (input, usage, failed).
     RunQuality(RunSettings& settings, const Place& place, const std::function<bool()>& give_up);
 
     bool changes_while_running() const { return control_.has_value(); }
@@ -46,9 +46,9 @@ public:
     /// Asks `changes` for what the work so far calls for. Status thread, before the run ends.
     void look(const Snapshot& now, std::chrono::duration<double> elapsed, double pace,
               LiveChanges& changes);
-    /// Once a viewer sets rate or scale by these controls nothing is changed any more; state() has
-    /// what was set, and the scale that is shown is that of now. Before the run; `changes` and this
-    /// outlive the controls.
+    /// Once a viewer sets rate, scale or windows by these controls nothing is changed any more;
+    /// state() has what was set, and the scale that is shown is that of now. Before the run;
+    /// `changes` and this outlive the controls.
     void follow(std::vector<HttpControl>& controls, LiveChanges& changes);
     QualityState state() const;  ///< any thread
 
@@ -56,7 +56,7 @@ private:
     struct Chosen;
     Chosen choose(RunSettings& settings, const Place& place, const std::function<bool()>& give_up);
     QualityDemand demand_of(const RunSettings& settings, const Place& place,
-                            const ModelConfig& config) const;
+                            const SlicerSettings& slicer) const;
     void begin_control(const RunSettings& settings, const Chosen& chosen);
     void say() const;
     void take_over(LiveChanges& changes);
@@ -66,6 +66,7 @@ private:
     QualityState state_;
     std::optional<QualityControl> control_;  // none: nothing is changed while it runs
     Size sensor_;
+    SlicerSettings slicer_;  // how windows are cut, where that is changed
 };
 
 }  // namespace eventide::app

@@ -147,6 +147,7 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
     json["latency_ms"] = json_of(now.latency);
     json["work_ms"] = {{"bin", json_of(now.bin)},
                        {"encode", json_of(now.encode)},
+                       {"take", json_of(now.take)},
                        {"render", json_of(now.render)},
                        {"write", json_of(now.write)}};
     if (progress.quality) json["quality"] = quality_json(*progress.quality, false);
