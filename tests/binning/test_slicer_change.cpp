@@ -62,6 +62,16 @@ TEST(SlicerChange, TheRuleMayBeAnother) {
     EXPECT_EQ(content[1], (std::pair<std::int64_t, std::int64_t>{2000, 3000})) << "the least width";
 }
 
+TEST(SlicerChange, SoMayBeTheLeastWidthOfWindowsByContent) {
+    SlicerSettings quick = by_content(1e-6), slow = by_content(1e-6);
+    quick.min_width = SensorDuration{800};
+    slow.min_width = SensorDuration{1300};
+    EXPECT_EQ(edges_of_change(quick, slow),
+              (Edges{{0, 800}, {800, 1600}, {1600, 2400}, {2400, 3700}}));
+    EXPECT_EQ(edges_of_change(slow, quick),
+              (Edges{{0, 1300}, {1300, 2100}, {2100, 2900}, {2900, 3700}, {3700, 4500}}));
+}
+
 TEST(SlicerChange, WhereAndHowLongIsAsItWas) {
     SlicerSettings settings = by_duration(1000);
     settings.begin = from_us(500);
