@@ -64,13 +64,14 @@ TEST(QualityChoice, GivesUpShortEventWindowsBeforeAllElse) {
     EXPECT_EQ(min_windows(50ms), (std::vector<SensorDuration>{2ms, 5ms, 10ms, 20ms, 50ms}));
     EXPECT_EQ(min_windows(5ms), (std::vector<SensorDuration>{2ms, 5ms}));
     EXPECT_EQ(min_windows(1ms), (std::vector<SensorDuration>{1ms}));
-    const auto windows = min_windows(10ms);
-    const std::vector<QualityLevel> order{{1, 0, 2ms},      {1, 0, 5ms},     {1, 0, 10ms},
-                                          {1, 1, 10ms},     {1, 2, 10ms},    {third, 0, 10ms},
-                                          {third, 1, 10ms}, {third, 2, 10ms}};
+    const auto windows = min_windows(5ms);
+    const std::vector<QualityLevel> order{{1, 0, 2ms},     {1, 0, 5ms},     {1, 1, 2ms},
+                                          {1, 1, 5ms},     {1, 2, 2ms},     {1, 2, 5ms},
+                                          {third, 0, 2ms}, {third, 0, 5ms}, {third, 1, 2ms},
+                                          {third, 1, 5ms}, {third, 2, 2ms}, {third, 2, 5ms}};
     EXPECT_EQ(quality_levels({1, 0}, true, true, windows), order);
     EXPECT_EQ(quality_levels({1, 0}, false, false, windows),
-              (std::vector<QualityLevel>{{1, 0, 2ms}, {1, 0, 5ms}, {1, 0, 10ms}}));
+              (std::vector<QualityLevel>{{1, 0, 2ms}, {1, 0, 5ms}}));
 }
 
 TEST(QualityChoice, CountsAsManyEventWindowsAsThereCanBe) {

@@ -194,6 +194,13 @@ TEST(QualityControl, LengthensEventWindowsWhereEncodingTakesTooLongAndShortensTh
     EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 10ms}));
 }
 
+TEST(QualityControl, GivesUpFramesOnlyWhereTheLongestEventWindowsAreTooMany) {
+    Scene scene;
+    scene.run(10, 1000, 9);  // 1.06 of the encoder's time at 50 ms
+    EXPECT_EQ(scene.level().min_window, 50ms);
+    EXPECT_GT(scene.level().halvings, 0U);
+}
+
 TEST(QualityControl, KnowsWhatEventWindowsTakeOfTheFramesThread) {
     Scene scene;
     scene.run(20, 1000, 0.5, 12);  // 0.6 and 0.2 at 20 ms; 1.2 and 0.2 at 10

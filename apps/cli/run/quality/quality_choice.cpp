@@ -44,18 +44,12 @@ std::vector<QualityLevel> quality_levels(const QualityLevel& as_asked, bool rate
                                          bool scale_open, std::span<const SensorDuration> windows) {
     constexpr double kScales[]{1, kThird};
     constexpr unsigned kHalvings = 2;
+    if (windows.empty()) windows = {&as_asked.min_window, 1};
     std::vector<QualityLevel> levels;
-    QualityLevel level = as_asked;
-    for (const SensorDuration shortest : windows) {
-        level.min_window = shortest;
-        if (shortest != windows.back()) levels.push_back(level);
-    }
     for (const double scale : kScales) {
-        level.scale = as_asked.scale * scale;
-        for (unsigned halvings = 0; halvings <= (rate_open ? kHalvings : 0); ++halvings) {
-            level.halvings = as_asked.halvings + halvings;
-            levels.push_back(level);
-        }
+        for (unsigned halvings = 0; halvings <= (rate_open ? kHalvings : 0); ++halvings)
+            for (const SensorDuration shortest : windows)
+                levels.push_back({as_asked.scale * scale, as_asked.halvings + halvings, shortest});
         if (!scale_open) break;
     }
     return levels;

@@ -25,8 +25,9 @@ struct QualityLevel {
 /// For windows that events end, no longer than `widest`: how soon they may, the least first.
 std::vector<SensorDuration> min_windows(SensorDuration widest);
 
-/// From the best on: short event windows are given up first, then, at each size, the rate, down to
-/// a quarter, then the size, to a third, as none between costs less than the whole (PrecisionCost).
+/// From the best on: at each size and rate short event windows are given up first, at each size
+/// then the rate, down to a quarter, then the size, to a third, as none between costs less than the
+/// whole (PrecisionCost).
 /// Where rate or scale is not open, it stays as `as_asked` has it; the same for `windows`, where
 /// there are none.
 std::vector<QualityLevel> quality_levels(const QualityLevel& as_asked, bool rate_open,

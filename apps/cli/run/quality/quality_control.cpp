@@ -123,7 +123,7 @@ bool QualityControl::lower(Seconds now) {
     } else if (load.encode > kHolds) {
         // Windows gain only the cores that frames leave: one step, over levels (small frames, but
         // all of them) that would take more.
-        while (to < levels_.size() && load_at(to).frames >= load.frames) ++to;
+        while (to < levels_.size() && (is_shorter(to) || load_at(to).frames >= load.frames)) ++to;
     } else {
         while (to + 1 < levels_.size() && !holds(to, kComfortable)) ++to;
     }
