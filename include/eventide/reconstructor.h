@@ -18,13 +18,15 @@
 
 namespace eventide {
 
-/// The defaults are those of `eventide run` on a camera: frames as early as they can be. For a
-/// recording, which can wait, `eventide run` takes window "auto" and lookahead 2, which are better.
+/// The defaults are those of `eventide run --quality fixed` on a camera: frames as early as they
+/// can be. For a recording, which can wait, `eventide run` takes window "auto" and lookahead 2,
+/// which are better.
 struct ReconstructorOptions {
     /// How events are cut into event windows, each of which is one step of the network: "model"
-    /// (what the model was trained for), "auto" (by content: short where much moves, 50 ms at
+    /// (what the model was trained for), "auto" (by content: short where much moves, 100 ms at
     /// most), "50ms" (constant time: us, ms or s), "20000ev" (constant number), "0.35epp" (events
-    /// per pixel), "aps" (between reference images); after a comma the longest: "20000ev,200ms".
+    /// per pixel), "aps" (between reference images); after a comma the longest: "20000ev,200ms",
+    /// and for "auto" after another one the shortest: "auto,50ms,5ms".
     std::string window = "model";
     int lookahead =
         0;  ///< 0, 1 or 2: event windows a frame waits for; more: higher quality, more latency

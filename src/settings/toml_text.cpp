@@ -16,6 +16,10 @@ bool may_begin_a_name(char c) {
            std::string_view{"_-\"']"}.find(c) != std::string_view::npos;
 }
 
+bool is_blank(char c) {
+    return std::string_view{" \t\r\n"}.find(c) != std::string_view::npos;
+}
+
 /// Walks through TOML as far as it is sound, which is as far as toml++ comes: past strings,
 /// comments and lists, so that only what begins a table's header is taken for one.
 class Walk {
@@ -30,6 +34,7 @@ public:
             if (std::exchange(begins_line_, false) && depth_ == 0) {
                 skip_blanks();
                 if (rest_.starts_with('[')) {
+                    last_ = '\n';
                     take(rest_.starts_with("[[") ? 2 : 1);
                     skip_blanks();
                     return true;
@@ -55,6 +60,8 @@ private:
         const char c = rest_.front();
         if (c == '#') return take(std::min(rest_.find('\n'), rest_.size()));
         if (static_cast<unsigned char>(c) >= 0x80) refuse("letters without accents outside quotes");
+        if (c == '}' && (last_ == '[' || last_ == ',')) refuse("a value or the end of the list");
+        if (!is_blank(c)) last_ = c;
         if (c == '"' || c == '\'') return skip_string(c);
         if (c == '[') ++depth_;
         if (c == ']' && depth_ > 0) --depth_;
@@ -88,11 +95,12 @@ private:
     std::string_view rest_;
     int line_ = 1, depth_ = 0;  // depth: of lists
     bool begins_line_ = true;
+    char last_ = '\n';  // but blanks and comments
 };
 
 }  // namespace
 
-void check_table_names(const std::string& path, std::string_view text) {
+void check_toml(const std::string& path, std::string_view text) {
     Walk walk{path, text};
     while (walk.next_table())
         if (!walk.rest().empty() && !may_begin_a_name(walk.rest().front()))
@@ -101,7 +109,7 @@ void check_table_names(const std::string& path, std::string_view text) {
 
 std::string read_toml_text(const std::filesystem::path& path) {
     std::string text = read_text_file(path, ErrorKind::usage);
-    check_table_names(path.string(), text);
+    check_toml(path.string(), text);
     return text;
 }
 

@@ -7,13 +7,13 @@
 
 namespace eventide {
 
-/// toml++ 3 takes for granted that the name of a table begins as a key does, and does not look
-/// where assertions are off; and it does not survive some letters in numbers. Throws Error (usage)
-/// naming `path` and the line where a name does not, or where a character that is not ASCII stands
-/// outside of strings and comments.
-void check_table_names(const std::string& path, std::string_view text);
+/// toml++ 3 takes for granted that the name of a table begins as a key does and that no '}' stands
+/// in place of a list's value, and does not look where assertions are off; and it does not survive
+/// some letters in numbers. Throws Error (usage) naming `path` and the line where a name does not,
+/// where such a '}' stands, or a character that is not ASCII outside of strings and comments.
+void check_toml(const std::string& path, std::string_view text);
 
-/// A whole file that toml++ may parse. Throws Error: as open_to_read() and check_table_names().
+/// A whole file that toml++ may parse. Throws Error: as open_to_read() and check_toml().
 std::string read_toml_text(const std::filesystem::path& path);
 
 }  // namespace eventide

@@ -109,11 +109,22 @@ TEST(Config, NamesOfTablesThatAreNoneAreRefusedBeforeTomlTakesThemForGranted) {
          {"[?un]\nfps = 20\n", "[[[_un]", "[ [x]]", "a = 1\n  [[ \x7f]]\n", "[=]", "[\xc3\xa9]",
           "a = 44+4\xcc\x9f", "[a] \xc3\xa9", "[\n]", "[[\r\n]]", "\xEF\xBB\xBF[?]",
           "a = [\n1] # [\n[ \n", "a = 'x\n[\n", "a = \"\"\"[\n\\\"\"\"\"\n[ \n"})
-        EXPECT_THROW(check_table_names("c.toml", text), Error) << text;
+        EXPECT_THROW(check_toml("c.toml", text), Error) << text;
     for (const char* text : {"[run]\n", " [ \"a b\" ]\n", "[[x]]", "[", "[]", "out = [\n[\n'a' ]]",
                              "a = \"\"\"\n[\n\"\"\"\n", "a = \'\'\'\n[?\'\'\'\'\'\n[run]",
                              "# [\xc3\xa9\n", "[\"\xc3\xa9\"] # \xc3\xa9\na = '\xc3\xa9'"})
-        EXPECT_NO_THROW(check_table_names("c.toml", text)) << text;
+        EXPECT_NO_THROW(check_toml("c.toml", text)) << text;
+}
+
+TEST(Config, ABraceInPlaceOfAListsValueIsRefusedBeforeTomlTakesItForNone) {
+    for (const char* text : {"a = [}", "a = [1, }", "a =[[[[}}[[", "a = [ # [\n\t}\n]",
+                             "a = ['x',\r\n}]", "[t]\na = [\n{b = [1,}]}\n]\n"})
+        EXPECT_THROW(check_toml("c.toml", text), Error) << text;
+    for (const char* text : {"a = [{}]", "a = [{b = [1]}, {c = []}]", "a = ['[}', \",}\"] # [}\n",
+                             "a = {b = [\n1,\n]}", "[t]\n} = 1"})
+        EXPECT_NO_THROW(check_toml("c.toml", text)) << text;
+    EXPECT_NE(complaint("[example]\nname = [\n}\n").find("c.toml:3: expected a value"),
+              std::string::npos);
 }
 
 TEST(Config, AFileThatIsNotThereIsAnErrorAndAnEmptyOneIsNot) {
