@@ -80,8 +80,24 @@ private:
                 for (int i = 0; i < 2 && is_long && rest_.starts_with(quote); ++i) take(1);
                 return;
             }
-            take(quote == '"' && rest_.front() == '\\' ? 2 : 1);
+            if (quote == '"' && rest_.front() == '\\')
+                skip_escape(is_long);
+            else
+                take(1);
         }
+    }
+
+    /// In a long string all blanks behind a backslash are left out; toml++ asks whether what
+    /// follows is one more, and has no answer for some of U+FCC0 to U+FEFF.
+    void skip_escape(bool is_long) {
+        take(1);
+        const std::size_t blanks = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
+        const std::string_view next = rest_.substr(is_long ? blanks : rest_.size());
+        if (next.size() > 1 && next[0] == '\xEF' && next[1] >= '\xB3' && next[1] <= '\xBB') {
+            take(blanks);
+            refuse("no letter from U+FCC0 to U+FEFF behind a backslash");
+        }
+        take(1);
     }
 
     void skip_blanks() { take(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }

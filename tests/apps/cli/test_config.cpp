@@ -127,6 +127,16 @@ TEST(Config, ABraceInPlaceOfAListsValueIsRefusedBeforeTomlTakesItForNone) {
               std::string::npos);
 }
 
+TEST(Config, LettersThatTomlHasNoAnswerForAreRefusedBehindABackslash) {
+    for (const char* text : {"a = \"\"\"b\\\xef\xb3\xbf\"\"\"", "a = \"\"\"\\ \r\n\t\xef\xb8\x8f",
+                             "a = \"\"\"\\\n\xef\xbb\xbf\"\"\""})
+        EXPECT_THROW(check_toml("c.toml", text), Error) << text;
+    for (const char* text :
+         {"a = \"\"\"\xef\xb3\xbf\\\n\xc3\xa9\"\"\"", "a = '''\\\xef\xb3\xbf'''",
+          "a = \"\\\\\xef\xb3\xbf\"", "a = \"\"\"\\\\ \xef\xb3\"\"\"", "a = \"\"\"\\"})
+        EXPECT_NO_THROW(check_toml("c.toml", text)) << text;
+}
+
 TEST(Config, AFileThatIsNotThereIsAnErrorAndAnEmptyOneIsNot) {
     EXPECT_THROW(read_config_file("/nowhere/c.toml"), Error);
     EXPECT_THROW(read_config_file("/tmp"), Error);
