@@ -20,6 +20,11 @@ bool is_blank(char c) {
     return std::string_view{" \t\r\n"}.find(c) != std::string_view::npos;
 }
 
+/// Of a quote behind anything else toml++ says that it is part of a word.
+bool may_stand_before_a_string(char c) {
+    return is_blank(c) || std::string_view{"=[,{."}.find(c) != std::string_view::npos;
+}
+
 /// Walks through TOML as far as it is sound, which is as far as toml++ comes: past strings,
 /// comments and lists, so that only what begins a table's header is taken for one.
 class Walk {
@@ -62,7 +67,10 @@ private:
         if (static_cast<unsigned char>(c) >= 0x80) refuse("letters without accents outside quotes");
         if (c == '}' && (last_ == '[' || last_ == ',')) refuse("a value or the end of the list");
         if (!is_blank(c)) last_ = c;
-        if (c == '"' || c == '\'') return skip_string(c);
+        if (c == '"' || c == '\'') {
+            if (!may_stand_before_a_string(before_)) refuse("no quote within a word");
+            return skip_string(c);
+        }
         if (c == '[') ++depth_;
         if (c == ']' && depth_ > 0) --depth_;
         begins_line_ = c == '\n';
@@ -104,6 +112,7 @@ private:
     void take(std::size_t n) {
         const std::string_view taken = rest_.substr(0, n);
         line_ += int(std::ranges::count(taken, '\n'));
+        if (!taken.empty()) before_ = taken.back();
         rest_.remove_prefix(taken.size());
     }
 
@@ -111,7 +120,7 @@ private:
     std::string_view rest_;
     int line_ = 1, depth_ = 0;  // depth: of lists
     bool begins_line_ = true;
-    char last_ = '\n';  // but blanks and comments
+    char before_ = '\n', last_ = '\n';  // last: but blanks and comments
 };
 
 }  // namespace

@@ -137,6 +137,15 @@ TEST(Config, LettersThatTomlHasNoAnswerForAreRefusedBehindABackslash) {
         EXPECT_NO_THROW(check_toml("c.toml", text)) << text;
 }
 
+TEST(Config, AQuoteWithinAWordIsRefusedBecauseTomlDoesNotTakeItForAString) {
+    for (const char* text :
+         {"a = 1C'\xef\xbb\xb0'", "a = tr\"x\"", "a'b' = 1", "a = 'x''y'", "a = [1]'x'"})
+        EXPECT_THROW(check_toml("c.toml", text), Error) << text;
+    for (const char* text : {"a='x'\n'b'=\"y\"", "a.'b'.\"c\" = ['x','y',\n\"z\"]", "['a'.\"b\"]",
+                             "a = {'b'='c'}", "a = '''x'''''\nb = ''", "\xEF\xBB\xBF'a' = 1"})
+        EXPECT_NO_THROW(check_toml("c.toml", text)) << text;
+}
+
 TEST(Config, AFileThatIsNotThereIsAnErrorAndAnEmptyOneIsNot) {
     EXPECT_THROW(read_config_file("/nowhere/c.toml"), Error);
     EXPECT_THROW(read_config_file("/tmp"), Error);

@@ -61,10 +61,11 @@ TEST(QualityChoice, GivesUpTheRateFirstAndThenTheScale) {
 
 TEST(QualityChoice, GivesUpShortEventWindowsBeforeAllElse) {
     using namespace std::chrono_literals;
-    EXPECT_EQ(min_windows(50ms), (std::vector<SensorDuration>{2ms, 5ms, 10ms, 20ms, 50ms}));
-    EXPECT_EQ(min_windows(5ms), (std::vector<SensorDuration>{2ms, 5ms}));
+    EXPECT_EQ(min_windows(50ms),
+              (std::vector<SensorDuration>{2ms, 3ms, 5ms, 7ms, 10ms, 15ms, 20ms, 30ms, 50ms}));
+    EXPECT_EQ(min_windows(5ms), (std::vector<SensorDuration>{2ms, 3ms, 5ms}));
     EXPECT_EQ(min_windows(1ms), (std::vector<SensorDuration>{1ms}));
-    const auto windows = min_windows(5ms);
+    const std::vector<SensorDuration> windows{2ms, 5ms};
     const std::vector<QualityLevel> order{{1, 0, 2ms},     {1, 0, 5ms},     {1, 1, 2ms},
                                           {1, 1, 5ms},     {1, 2, 2ms},     {1, 2, 5ms},
                                           {third, 0, 2ms}, {third, 0, 5ms}, {third, 1, 2ms},

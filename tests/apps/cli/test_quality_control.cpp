@@ -148,7 +148,7 @@ class Scene {
 public:
     Scene()
         : levels_{quality_levels({1, 0}, true, true, min_windows(50ms))},
-          control_{kCost, levels_, 3, demand_} {}
+          control_{kCost, levels_, 6, demand_} {}
 
     int run(double seconds, double windows_per_s, double cost, double take_ms = 0) {
         int changes = 0;

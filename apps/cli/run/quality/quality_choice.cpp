@@ -34,7 +34,7 @@ QualityChoice quicker(std::span<const PrecisionCost> costs, const QualityLevel& 
 
 std::vector<SensorDuration> min_windows(SensorDuration widest) {
     std::vector<SensorDuration> windows;
-    for (const int ms : {2, 5, 10, 20, 50})
+    for (const int ms : {2, 3, 5, 7, 10, 15, 20, 30})
         if (SensorDuration{1000 * ms} < widest) windows.emplace_back(1000 * ms);
     windows.push_back(widest);
     return windows;
