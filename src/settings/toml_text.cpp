@@ -5,10 +5,15 @@
 #include "src/io/input_file.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 namespace eventide {
 namespace {
+
+bool is_ascii(char c) {
+    return static_cast<unsigned char>(c) < 0x80;
+}
 
 /// Of a bare or quoted key, or what toml++ refuses itself: nothing.
 bool may_begin_a_name(char c) {
@@ -20,13 +25,36 @@ bool is_blank(char c) {
     return std::string_view{" \t\r\n"}.find(c) != std::string_view::npos;
 }
 
-/// Of a quote behind anything else toml++ says that it is part of a word.
-bool may_stand_before_a_string(char c) {
-    return is_blank(c) || std::string_view{"=[,{."}.find(c) != std::string_view::npos;
+struct Letter {
+    char32_t code = 0;
+    std::size_t bytes = 0;  // 0: not UTF-8
+};
+
+/// The character that `text` begins with, which is not ASCII.
+Letter first_letter(std::string_view text) {
+    const auto at = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    constexpr char32_t kLeast[]{0, 0, 0x80, 0x800, 0x10000};
+    const std::size_t bytes = at(0) >= 0xF0 ? 4 : at(0) >= 0xE0 ? 3 : 2;
+    if (at(0) < 0xC2 || at(0) > 0xF4 || text.size() < bytes) return {};
+    char32_t code = at(0) & (0xFFU >> (bytes + 1));
+    for (std::size_t i = 1; i < bytes; ++i) {
+        if ((at(i) & 0xC0U) != 0x80) return {};
+        code = code << 6U | (at(i) & 0x3FU);
+    }
+    const bool is_one =
+        code >= kLeast[bytes] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
+    return is_one ? Letter{code, bytes} : Letter{};
+}
+
+std::string escape_sequence(char32_t code) {
+    char text[16];
+    std::snprintf(text, sizeof text, code > 0xFFFF ? "\\U%08X" : "\\u%04X", unsigned(code));
+    return text;
 }
 
 /// Walks through TOML as far as it is sound, which is as far as toml++ comes: past strings,
-/// comments and lists, so that only what begins a table's header is taken for one.
+/// comments and lists, so that only what begins a table's header is taken for one. What it has
+/// passed stands in plain(), in ASCII.
 class Walk {
 public:
     Walk(const std::string& path, std::string_view text) : path_(path), rest_(text) {
@@ -50,6 +78,7 @@ public:
         return false;
     }
     std::string_view rest() const { return rest_; }
+    const std::string& plain() const { return plain_; }
     [[noreturn]] void refuse(const std::string& wanted) const {
         const char found = rest_.front();
         throw Error(ErrorKind::usage, path_ + ":" + std::to_string(line_) + ": expected " + wanted +
@@ -63,79 +92,107 @@ private:
     void step() {
         if (rest_.empty()) return;
         const char c = rest_.front();
-        if (c == '#') return take(std::min(rest_.find('\n'), rest_.size()));
-        if (static_cast<unsigned char>(c) >= 0x80) refuse("letters without accents outside quotes");
+        if (c == '#') return take_comment();
+        if (!is_ascii(c)) refuse("letters without accents outside quotes");
         if (c == '}' && (last_ == '[' || last_ == ',')) refuse("a value or the end of the list");
         if (!is_blank(c)) last_ = c;
-        if (c == '"' || c == '\'') {
-            if (!may_stand_before_a_string(before_)) refuse("no quote within a word");
-            return skip_string(c);
-        }
+        if (c == '"') return take_basic(rest_.starts_with("\"\"\""));
+        if (c == '\'') return take_literal(rest_.starts_with("\'\'\'"));
         if (c == '[') ++depth_;
         if (c == ']' && depth_ > 0) --depth_;
         begins_line_ = c == '\n';
         take(1);
     }
 
-    void skip_string(char quote) {
-        const std::string three(3, quote);
-        const bool is_long = rest_.starts_with(three);
-        take(is_long ? 3 : 1);
+    void take_comment() {
+        while (!rest_.empty() && rest_.front() != '\n') take_character();
+    }
+
+    /// A string with escape sequences.
+    void take_basic(bool is_long) {
+        const std::string_view quotes = is_long ? "\"\"\"" : "\"";
+        take(quotes.size());
         while (!rest_.empty() && (is_long || rest_.front() != '\n')) {
-            if (is_long ? rest_.starts_with(three) : rest_.front() == quote) {
-                take(is_long ? 3 : 1);
+            if (rest_.starts_with(quotes)) {
+                take(quotes.size());
                 // Two more may be the end of what it says.
-                for (int i = 0; i < 2 && is_long && rest_.starts_with(quote); ++i) take(1);
+                for (int i = 0; i < 2 && is_long && rest_.starts_with('"'); ++i) take(1);
                 return;
             }
-            if (quote == '"' && rest_.front() == '\\')
-                skip_escape(is_long);
-            else
+            if (rest_.front() == '\\') {
                 take(1);
+                if (!rest_.empty() && !is_ascii(rest_.front())) refuse("an escape sequence");
+                take(1);
+            } else {
+                take_character();
+            }
         }
     }
 
-    /// In a long string all blanks behind a backslash are left out; toml++ asks whether what
-    /// follows is one more, and has no answer for some of U+FCC0 to U+FEFF.
-    void skip_escape(bool is_long) {
-        take(1);
-        const std::size_t blanks = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
-        const std::string_view next = rest_.substr(is_long ? blanks : rest_.size());
-        if (next.size() > 1 && next[0] == '\xEF' && next[1] >= '\xB3' && next[1] <= '\xBB') {
-            take(blanks);
-            refuse("no letter from U+FCC0 to U+FEFF behind a backslash");
+    /// One without. Where it is not ASCII alone it becomes one with them.
+    void take_literal(bool is_long) {
+        const std::size_t quotes = is_long ? 3 : 1;
+        const std::string_view inside = rest_.substr(quotes);
+        std::size_t length = is_long ? inside.find("\'\'\'") : inside.find_first_of("'\n");
+        const bool is_ended = length < inside.size() && inside[length] == '\'';
+        length = std::min(length, inside.size());
+        for (int i = 0; i < 2 && is_long && is_ended && inside.substr(length + 3).starts_with('\'');
+             ++i)
+            ++length;
+        if (std::ranges::all_of(inside.substr(0, length), is_ascii))
+            return take(quotes + length + (is_ended ? quotes : 0));
+        const std::size_t end = rest_.size() - quotes - length;
+        plain_.append(quotes, '"');
+        skip(quotes);
+        while (rest_.size() > end) {
+            if (rest_.front() == '\\' || rest_.front() == '"') plain_ += '\\';
+            take_character();
         }
-        take(1);
+        if (!is_ended) return;
+        plain_.append(quotes, '"');
+        skip(quotes);
+    }
+
+    /// Of a string or comment.
+    void take_character() {
+        if (is_ascii(rest_.front())) return take(1);
+        const Letter letter = first_letter(rest_);
+        if (letter.bytes == 0) refuse("UTF-8");
+        plain_ += escape_sequence(letter.code);
+        skip(letter.bytes);
     }
 
     void skip_blanks() { take(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }
     void take(std::size_t n) {
-        const std::string_view taken = rest_.substr(0, n);
-        line_ += int(std::ranges::count(taken, '\n'));
-        if (!taken.empty()) before_ = taken.back();
-        rest_.remove_prefix(taken.size());
+        plain_ += rest_.substr(0, n);
+        skip(n);
+    }
+    void skip(std::size_t n) {
+        const std::string_view passed = rest_.substr(0, n);
+        line_ += int(std::ranges::count(passed, '\n'));
+        rest_.remove_prefix(passed.size());
     }
 
     const std::string& path_;
     std::string_view rest_;
     int line_ = 1, depth_ = 0;  // depth: of lists
     bool begins_line_ = true;
-    char before_ = '\n', last_ = '\n';  // last: but blanks and comments
+    char last_ = '\n';  // but blanks and comments
+    std::string plain_;
 };
 
 }  // namespace
 
-void check_toml(const std::string& path, std::string_view text) {
+std::string plain_toml(const std::string& path, std::string_view text) {
     Walk walk{path, text};
     while (walk.next_table())
         if (!walk.rest().empty() && !may_begin_a_name(walk.rest().front()))
             walk.refuse("the name of a table after '['");
+    return walk.plain();
 }
 
 std::string read_toml_text(const std::filesystem::path& path) {
-    std::string text = read_text_file(path, ErrorKind::usage);
-    check_toml(path.string(), text);
-    return text;
+    return plain_toml(path.string(), read_text_file(path, ErrorKind::usage));
 }
 
 }  // namespace eventide

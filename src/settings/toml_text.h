@@ -7,14 +7,15 @@
 
 namespace eventide {
 
-/// toml++ 3 takes for granted that the name of a table begins as a key does and that no '}' stands
-/// in place of a list's value, and does not look where assertions are off; and it does not survive
-/// some letters in numbers and behind backslashes. Throws Error (usage) naming `path` and the line
-/// where a name does not, where such a '}' or such a letter stands, a quote within a word, or a
-/// character that is not ASCII outside of strings and comments.
-void check_toml(const std::string& path, std::string_view text);
+/// `text` as toml++ 3 may read it, with the same lines, names and values. toml++ takes for granted
+/// that the name of a table begins as a key does and that no '}' stands in place of a list's value,
+/// and it does not survive some characters that are not ASCII in or behind numbers and backslashes:
+/// here these are escape sequences of strings. Throws Error (usage) naming `path` and the line
+/// where a name does not, where such a '}' stands, a character that is not ASCII outside of strings
+/// and comments, or what is not UTF-8 inside.
+std::string plain_toml(const std::string& path, std::string_view text);
 
-/// A whole file that toml++ may parse. Throws Error: as open_to_read() and check_toml().
+/// A whole file so. Throws Error: as open_to_read() and plain_toml().
 std::string read_toml_text(const std::filesystem::path& path);
 
 }  // namespace eventide

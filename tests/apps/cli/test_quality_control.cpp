@@ -186,12 +186,18 @@ TEST(QualityControl, ShortensEventWindowsNoFurtherThanHoldsWhenAllMoves) {
 
 TEST(QualityControl, LengthensEventWindowsWhereEncodingTakesTooLongAndShortensThemAgain) {
     Scene scene;
-    scene.run(10, 1000, 3);  // 0.88 of the encoder's time at 20 ms: holds
+    scene.run(10, 1000, 2.5);  // 0.74 of the encoder's time at 20 ms: holds
     EXPECT_EQ(scene.level().min_window, 20ms);
     EXPECT_EQ(scene.run(5, 1000, 4), 1);
     EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 50ms})) << "nothing else is given up";
     EXPECT_GE(scene.run(120, 1000, 1), 1);
     EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 10ms}));
+}
+
+TEST(QualityControl, EventWindowsAreNoShorterThanLeavesTheEncoderSomeTime) {
+    Scene scene;
+    EXPECT_EQ(scene.run(10, 1000, 2.8), 1);  // 0.82: holds, but longer windows would wait less
+    EXPECT_EQ(scene.level(), (QualityLevel{1, 0, 30ms}));
 }
 
 TEST(QualityControl, GivesUpFramesOnlyWhereTheLongestEventWindowsAreTooMany) {

@@ -98,28 +98,32 @@ bool QualityControl::look(const QualityMeasure& now) {
     measured_ = load_at(at_);
     before_ = now;
     if (idle) return false;  // a camera that is silent, or a page that was paused
-    const bool strained = merging_ || !holds(at_, kHolds);
+    const bool strained = merging_ || !holds(at_, kHolds) ||
+                          (load_at(at_).encode > kComfortable && can_lengthen(at_));
     strained_ = strained ? strained_ + 1 : 0;
     if (strained) calm_since_ = now.at;
     if (strained_ >= kStrainedLooks) return lower(now.at);
     return raise(now.at);
 }
 
+/// Whether the next level down differs by longer event windows.
+bool QualityControl::can_lengthen(std::size_t level) const {
+    return level + 1 < levels_.size() && levels_[level + 1].min_window > levels_[level].min_window;
+}
+
 /// The first level from the present one on whose windows are few enough for the encoder; the one
 /// with the fewest, where none's are.
 std::size_t QualityControl::with_fewer_windows() const {
     std::size_t to = at_;
-    while (to + 1 < levels_.size() && levels_[to + 1].min_window > levels_[to].min_window &&
-           load_at(to).encode > kComfortable)
-        ++to;
+    while (can_lengthen(to) && load_at(to).encode > kEasy) ++to;
     return to;
 }
 
 bool QualityControl::lower(Seconds now) {
     std::size_t to = at_ + 1;
     const NetworkLoad load = load_at(at_);
-    if (const std::size_t fewer = with_fewer_windows(); load.encode > kHolds && fewer > at_) {
-        to = fewer;
+    if (load.encode > kComfortable && can_lengthen(at_)) {
+        to = with_fewer_windows();
     } else if (load.encode > kHolds) {
         // Windows gain only the cores that frames leave: one step, over levels (small frames, but
         // all of them) that would take more.
@@ -135,7 +139,7 @@ bool QualityControl::lower(Seconds now) {
 bool QualityControl::raise(Seconds now) {
     forget(now);
     std::size_t to = 0;
-    while (to < at_ && !holds(to, is_shorter(to) ? kComfortable : kEasy)) ++to;
+    while (to < at_ && !holds(to, kEasy)) ++to;
     if (to == at_) calm_since_ = now;
     if (now - calm_since_ < raise_wait_) return false;
     raised_ = now;

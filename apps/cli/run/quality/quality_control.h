@@ -30,11 +30,12 @@ struct QualityMeasure {
 /// profile says, and to be as many as there can be, for that is what they are when much moves. A
 /// level holds where encoding and frames each leave their thread a margin, and all work together
 /// the budget. Down, to the best level that leaves a quarter (where encoding takes too long, to
-/// longer windows as far as they help, then to the next one whose frames take less), after a second
-/// and a half in which the present one did not hold or event windows had to be merged; up, to the
-/// best level that leaves 40 % (one of shorter windows: a quarter), after 5 s in which there was
-/// one. A step up that was taken back within 15 s doubles this time, up to 80 s; a minute without a
-/// change halves it: where the load lies between two levels, it stays at the lower one.
+/// longer windows that leave 40 %, and where none are longer to the next one whose frames take
+/// less), after a second and a half in which the present one did not hold, encoding did not leave a
+/// quarter though windows might be longer, or event windows had to be merged; up, to the best level
+/// that leaves 40 %, after 5 s in which there was one. A step up that was taken back within 15 s
+/// doubles this time, up to 80 s; a minute without a change halves it: where the load lies between
+/// two levels, it stays at the lower one.
 class QualityControl {
 public:
     /// `at`: the level it begins with.
@@ -52,6 +53,7 @@ private:
     using Seconds = std::chrono::duration<double>;
     void learn(const QualityMeasure& now);
     void learn_windows(const QualityMeasure& now);
+    bool can_lengthen(std::size_t level) const;
     std::size_t with_fewer_windows() const;
     bool is_shorter(std::size_t level) const;
     NetworkLoad load_at(std::size_t level) const;
