@@ -2,6 +2,7 @@
 #include "src/settings/toml_text.h"
 
 #include "src/core/error.h"
+#include "src/core/utf8.h"
 #include "src/io/input_file.h"
 
 #include <algorithm>
@@ -23,27 +24,6 @@ bool may_begin_a_name(char c) {
 
 bool is_blank(char c) {
     return std::string_view{" \t\r\n"}.find(c) != std::string_view::npos;
-}
-
-struct Letter {
-    char32_t code = 0;
-    std::size_t bytes = 0;  // 0: not UTF-8
-};
-
-/// The character that `text` begins with, which is not ASCII.
-Letter first_letter(std::string_view text) {
-    const auto at = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    constexpr char32_t kLeast[]{0, 0, 0x80, 0x800, 0x10000};
-    const std::size_t bytes = at(0) >= 0xF0 ? 4 : at(0) >= 0xE0 ? 3 : 2;
-    if (at(0) < 0xC2 || at(0) > 0xF4 || text.size() < bytes) return {};
-    char32_t code = at(0) & (0xFFU >> (bytes + 1));
-    for (std::size_t i = 1; i < bytes; ++i) {
-        if ((at(i) & 0xC0U) != 0x80) return {};
-        code = code << 6U | (at(i) & 0x3FU);
-    }
-    const bool is_one =
-        code >= kLeast[bytes] && code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
-    return is_one ? Letter{code, bytes} : Letter{};
 }
 
 std::string escape_sequence(char32_t code) {
@@ -156,10 +136,10 @@ private:
     /// Of a string or comment.
     void take_character() {
         if (is_ascii(rest_.front())) return take(1);
-        const Letter letter = first_letter(rest_);
-        if (letter.bytes == 0) refuse("UTF-8");
-        plain_ += escape_sequence(letter.code);
-        skip(letter.bytes);
+        const Character character = first_character(rest_);
+        if (character.bytes == 0) refuse("UTF-8");
+        plain_ += escape_sequence(character.code);
+        skip(character.bytes);
     }
 
     void skip_blanks() { take(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }

@@ -62,8 +62,12 @@ double windows_at(const QualityLevel& level, const QualityDemand& demand) {
 
 NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
                     const QualityDemand& demand) {
-    const double frames = demand.frames / double(1U << level.halvings),
-                 windows = windows_at(level, demand);
+    return load_of(cost, level, demand, windows_at(level, demand));
+}
+
+NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
+                    const QualityDemand& demand, double windows) {
+    const double frames = demand.frames / double(1U << level.halvings);
     const double first = std::min(frames, windows);  // windows that frames are rendered of
     return {1e-3 * cost.encode_ms * windows,
             1e-3 * (cost.first_ms * first + frame_ms(cost, level.scale) * frames)};

@@ -27,9 +27,8 @@ std::vector<SensorDuration> min_windows(SensorDuration widest);
 
 /// From the best on: at each size and rate short event windows are given up first, at each size
 /// then the rate, down to a quarter, then the size, to a third, as none between costs less than the
-/// whole (PrecisionCost).
-/// Where rate or scale is not open, it stays as `as_asked` has it; the same for `windows`, where
-/// there are none.
+/// whole (PrecisionCost). Where rate or scale is not open, it stays as `as_asked` has it; so do
+/// windows, where none are given.
 std::vector<QualityLevel> quality_levels(const QualityLevel& as_asked, bool rate_open,
                                          bool scale_open,
                                          std::span<const SensorDuration> windows = {});
@@ -55,6 +54,9 @@ struct NetworkLoad {
 /// By the profile, everything moving.
 NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
                     const QualityDemand& demand);
+/// The same with so many event windows a second.
+NetworkLoad load_of(const PrecisionCost& cost, const QualityLevel& level,
+                    const QualityDemand& demand, double windows);
 
 /// What of a core the network may take, before anything is known of this run: the budget, and at
 /// most 70 % of what its threads do, each further one 70 % of the first.

@@ -43,18 +43,13 @@ bool QualityControl::is_shorter(std::size_t level) const {
 }
 
 NetworkLoad QualityControl::load_at(std::size_t level) const {
-    QualityLevel there = levels_[level];
-    QualityDemand demand = demand_;
-    double encode_factor = encode_factor_;
-    if (is_shorter(level)) {
-        encode_factor = std::max(encode_factor, 1 / cores_of(demand.threads));
-    } else {
-        demand.windows = std::min(demand.windows, windows_at(there, demand));
-        there.min_window = {};
-    }
-    const NetworkLoad load = load_of(profile_, there, demand);
-    return {load.encode * encode_factor,
-            load.frames * frame_factor_ + take_s_ * windows_at(there, demand)};
+    double windows = windows_at(levels_[level], demand_), encode_factor = encode_factor_;
+    if (is_shorter(level))
+        encode_factor = std::max(encode_factor, 1 / cores_of(demand_.threads));
+    else
+        windows = std::min(windows, demand_.windows);
+    const NetworkLoad load = load_of(profile_, levels_[level], demand_, windows);
+    return {load.encode * encode_factor, load.frames * frame_factor_ + take_s_ * windows};
 }
 
 bool QualityControl::holds(std::size_t level, double margin) const {
@@ -83,9 +78,7 @@ void QualityControl::learn(const QualityMeasure& now) {
     demand_.frames = asked_ * now.pace;
     const double rate = demand_.frames / double(1U << level().halvings);
     if (frames == 0 || rate <= 0) return;
-    QualityLevel measured = level();
-    measured.min_window = {};  // windows were counted
-    const double expected = load_of(profile_, measured, demand_).frames / rate;
+    const double expected = load_of(profile_, level(), demand_, demand_.windows).frames / rate;
     if (expected > 0)
         mix(frame_factor_, (now.present - before_.present).count() / frames / expected);
 }
@@ -98,8 +91,8 @@ bool QualityControl::look(const QualityMeasure& now) {
     measured_ = load_at(at_);
     before_ = now;
     if (idle) return false;  // a camera that is silent, or a page that was paused
-    const bool strained = merging_ || !holds(at_, kHolds) ||
-                          (load_at(at_).encode > kComfortable && can_lengthen(at_));
+    const bool strained =
+        merging_ || !holds(at_, kHolds) || (measured_.encode > kComfortable && can_lengthen(at_));
     strained_ = strained ? strained_ + 1 : 0;
     if (strained) calm_since_ = now.at;
     if (strained_ >= kStrainedLooks) return lower(now.at);
