@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace eventide {
 namespace {
@@ -12,6 +13,23 @@ constexpr int kMaxSteps = 12;
 constexpr float kFurthest = 8;
 // Added to the squares of gradients, so that noise on plain surfaces does not move a patch.
 constexpr float kPlain = 64 * .03F * .03F;
+
+// Half a row of a patch: a register of what the program is compiled for, whatever the processor has
+// besides, so that sums are the same everywhere. Compilers do not find these vectors by themselves,
+// as the order of a sum is not theirs to change.
+using Four [[gnu::vector_size(16)]] = float;
+
+Four load(const float* from) {
+    Four four;
+    std::memcpy(&four, from, sizeof four);
+    return four;
+}
+void store(Four four, float* to) {
+    std::memcpy(to, &four, sizeof four);
+}
+float total(Four sums) {
+    return (sums[0] + sums[2]) + (sums[1] + sums[3]);
+}
 
 }  // namespace
 
@@ -30,25 +48,30 @@ FlowPatch::Corner::Corner(float y, float x, int size, const Array2<float>& rimme
 FlowPatch::FlowPatch(const Array2<float>& now, const Array2<float>& gradient_x,
                      const Array2<float>& gradient_y, const Array2<float>& then, int top,
                      int left) noexcept
-    : then_(&then), x0_(left), y0_(top) {
-    float mean_x = 0, mean_y = 0, mean = 0;
-    for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x) {
-            const auto i = std::size_t(y * kSide + x);
-            mean_x += gx_[i] = gradient_x(y0_ + y, x0_ + x);
-            mean_y += gy_[i] = gradient_y(y0_ + y, x0_ + x);
-            mean += seen_[i] = now(y0_ + y + kRim, x0_ + x + kRim);
+    : now_(&now),
+      gradient_x_(&gradient_x),
+      gradient_y_(&gradient_y),
+      then_(&then),
+      top_(top),
+      left_(left) {
+    Four x{}, y{}, xx{}, xy{}, yy{};
+    for (int j = 0; j < kSide; ++j) {
+        const float *along_x = &gradient_x(top + j, left), *along_y = &gradient_y(top + j, left);
+        for (int i = 0; i < kSide; i += 4) {
+            const Four u = load(along_x + i), v = load(along_y + i);
+            x += u;
+            y += v;
+            xx += u * u;
+            xy += u * v;
+            yy += v * v;
         }
-    constexpr float kShare = 1.F / (kSide * kSide);
-    float a = kPlain, b = 0, c = kPlain;
-    for (std::size_t i = 0; i < seen_.size(); ++i) {
-        gx_[i] -= kShare * mean_x;
-        gy_[i] -= kShare * mean_y;
-        seen_[i] -= kShare * mean;
-        a += gx_[i] * gx_[i];
-        b += gx_[i] * gy_[i];
-        c += gy_[i] * gy_[i];
     }
+    // The means are left out.
+    constexpr float kShare = 1.F / (kSide * kSide);
+    const float sum_x = total(x), sum_y = total(y);
+    const float a = kPlain + std::max(0.F, total(xx) - kShare * sum_x * sum_x);
+    const float b = total(xy) - kShare * sum_x * sum_y;
+    const float c = kPlain + std::max(0.F, total(yy) - kShare * sum_y * sum_y);
     const float determinant = a * c - b * b;  // > 0: kPlain
     texture_ = determinant / (a + c);
     xx_ = c / determinant;
@@ -57,25 +80,43 @@ FlowPatch::FlowPatch(const Array2<float>& now, const Array2<float>& gradient_x,
 }
 
 float FlowPatch::differences(FlowVector v, Pixels& difference) const noexcept {
-    const Corner at{float(y0_) + v.y, float(x0_) + v.x, kSide, *then_};
-    float mean = 0;
+    const Corner at{float(top_) + v.y, float(left_) + v.x, kSide, *then_};
+    Four sum{};
     for (int j = 0; j < kSide; ++j) {
-        const float* upper = &(*then_)(at.row + j, at.column);
-        const float* lower = upper + then_->width();
-        for (int i = 0; i < kSide; ++i) {
-            const auto k = std::size_t(j * kSide + i);
-            difference[k] = at.a * upper[i] + at.b * upper[i + 1] + at.c * lower[i] +
-                            at.d * lower[i + 1] - seen_[k];
-            mean += difference[k];
+        const float *upper = &(*then_)(at.row + j, at.column), *lower = upper + then_->width();
+        const float* here = &(*now_)(top_ + j + kRim, left_ + kRim);
+        for (int i = 0; i < kSide; i += 4) {
+            const Four there = (at.a * load(upper + i) + at.b * load(upper + i + 1)) +
+                               (at.c * load(lower + i) + at.d * load(lower + i + 1));
+            const Four less = there - load(here + i);
+            store(less, &difference[std::size_t(j * kSide + i)]);
+            sum += less;
         }
     }
-    mean /= kSide * kSide;
-    float squares = 0;
-    for (float& value : difference) {
-        value -= mean;
-        squares += value * value;
+    const float mean = total(sum) / (kSide * kSide);
+    Four squares{};
+    for (std::size_t k = 0; k < difference.size(); k += 4) {
+        const Four less = load(&difference[k]) - mean;
+        store(less, &difference[k]);
+        squares += less * less;
     }
-    return squares;
+    return total(squares);
+}
+
+/// The sums of the differences times the gradients; as their mean is 0, that of the gradients need
+/// not be left out.
+FlowVector FlowPatch::slope(const Pixels& difference) const noexcept {
+    Four x{}, y{};
+    for (int j = 0; j < kSide; ++j) {
+        const float *along_x = &(*gradient_x_)(top_ + j, left_),
+                    *along_y = &(*gradient_y_)(top_ + j, left_);
+        for (int i = 0; i < kSide; i += 4) {
+            const Four by = load(&difference[std::size_t(j * kSide + i)]);
+            x += by * load(along_x + i);
+            y += by * load(along_y + i);
+        }
+    }
+    return {total(x), total(y)};
 }
 
 FlowVector FlowPatch::descend(FlowVector from) const noexcept {
@@ -87,11 +128,7 @@ FlowVector FlowPatch::descend(FlowVector from) const noexcept {
         if (!(squares < least)) break;
         least = squares;
         best = at;
-        float x = 0, y = 0;
-        for (std::size_t i = 0; i < difference.size(); ++i) {
-            x += gx_[i] * difference[i];
-            y += gy_[i] * difference[i];
-        }
+        const auto [x, y] = slope(difference);
         const FlowVector by{xx_ * x + xy_ * y, xy_ * x + yy_ * y};
         if (by.x * by.x + by.y * by.y < 1e-5F) break;
         at = {at.x - by.x, at.y - by.y};

@@ -34,8 +34,8 @@ public:
               const Array2<float>& gradient_y, const Array2<float>& then, int top,
               int left) noexcept;
 
-    int top() const { return y0_; }
-    int left() const { return x0_; }
+    int top() const { return top_; }
+    int left() const { return left_; }
     /// Of the direction that has less of it: some half of the sum of the squares of its gradients.
     float texture() const { return texture_; }
 
@@ -47,9 +47,10 @@ public:
     FlowVector descend(FlowVector from) const noexcept;
 
 private:
-    const Array2<float>* then_;
-    int x0_, y0_;
-    Pixels gx_, gy_, seen_;
+    FlowVector slope(const Pixels& difference) const noexcept;
+
+    const Array2<float>*now_, *gradient_x_, *gradient_y_, *then_;
+    int top_, left_;
     float xx_ = 0, xy_ = 0, yy_ = 0;  // the inverse of the squares of the gradients
     float texture_ = 0;
 };

@@ -5,6 +5,7 @@
 #include "src/model/render/half_maps.h"
 
 #include <algorithm>
+#include <array>
 
 namespace eventide {
 namespace {
@@ -22,16 +23,42 @@ void add_motion_row(const MotionField& motion, int y, float times, std::span<flo
 
 void displaced_row(const Array2<float>& map, int y, std::span<const float> dx,
                    std::span<const float> dy, std::span<float> row) noexcept {
-    const int last_y = map.height() - 1, last_x = map.width() - 1;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-        const float v = std::clamp(float(y) + dy[i], 0.F, float(last_y));
-        const float u = std::clamp(float(i) + dx[i], 0.F, float(last_x));
-        const int y0 = int(v), x0 = int(u);
-        const auto upper = map.row(y0), lower = map.row(std::min(y0 + 1, last_y));
-        const auto left = std::size_t(x0), right = std::size_t(std::min(x0 + 1, last_x));
-        const float across = u - float(x0);
-        row[i] = mix(mix(upper[left], upper[right], across), mix(lower[left], lower[right], across),
-                     v - float(y0));
+    const auto none = [](std::span<const float> d) {
+        return std::ranges::all_of(d, [](float v) { return v == 0; });
+    };
+    if (none(dx) && none(dy)) {
+        std::ranges::copy(map.row(y), row.begin());
+        return;
+    }
+    // Where to read, what is there, and what lies between, each for a stretch: only reading goes
+    // pixel by pixel. The last pixel of a row or column is read as the second of two.
+    constexpr std::size_t kStretch = 64;
+    std::array<int, kStretch> at;
+    std::array<float, kStretch> across, along, upper_left, upper_right, lower_left, lower_right;
+    const int last_y = map.height() - 1, last_x = map.width() - 1, width = map.width();
+    const int last_upper = std::max(0, last_y - 1), last_left = std::max(0, last_x - 1);
+    const int right = last_x > 0 ? 1 : 0, below = last_y > 0 ? width : 0;
+    const float* const pixels = map.values().data();
+    for (std::size_t begin = 0; begin < row.size(); begin += kStretch) {
+        const std::size_t count = std::min(kStretch, row.size() - begin);
+        for (std::size_t i = 0; i < count; ++i) {
+            const float v = std::clamp(float(y) + dy[begin + i], 0.F, float(last_y));
+            const float u = std::clamp(float(int(begin + i)) + dx[begin + i], 0.F, float(last_x));
+            const int y0 = std::min(int(v), last_upper), x0 = std::min(int(u), last_left);
+            at[i] = y0 * width + x0;
+            along[i] = v - float(y0);
+            across[i] = u - float(x0);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const float* const upper = pixels + at[i];
+            upper_left[i] = upper[0];
+            upper_right[i] = upper[right];
+            lower_left[i] = upper[below];
+            lower_right[i] = upper[below + right];
+        }
+        for (std::size_t i = 0; i < count; ++i)
+            row[begin + i] = mix(mix(upper_left[i], upper_right[i], across[i]),
+                                 mix(lower_left[i], lower_right[i], across[i]), along[i]);
     }
 }
 

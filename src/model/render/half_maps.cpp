@@ -2,6 +2,7 @@
 #include "src/model/render/half_maps.h"
 
 #include <algorithm>
+#include <array>
 
 namespace eventide {
 
@@ -32,14 +33,22 @@ void halve(const Array2<float>& from, Array2<float>& to) noexcept {
 void add_doubled_row(const Array2<float>& from, int y, std::span<float> to, float times) noexcept {
     const int near = y / 2, other = y % 2 == 0 ? near - 1 : near + 1;
     const auto a = from.row(near), b = from.row(std::clamp(other, 0, from.height() - 1));
-    const auto at = [&](std::size_t x) { return mix(a[x], b[x], .25F); };
-    float left = at(0), middle = left;
-    for (std::size_t x = 0; 2 * x < to.size(); ++x) {
-        const float right = x + 1 < a.size() ? at(x + 1) : middle;
-        to[2 * x] += times * mix(middle, left, .25F);
-        if (2 * x + 1 < to.size()) to[2 * x + 1] += times * mix(middle, right, .25F);
-        left = middle;
-        middle = right;
+    const auto between = [&](std::size_t x) { return mix(a[x], b[x], .25F); };
+    // A stretch of what lies between the two rows, with a neighbour on either side.
+    constexpr std::size_t kStretch = 64;
+    std::array<float, kStretch + 2> row;
+    for (std::size_t begin = 0; begin < a.size(); begin += kStretch) {
+        const std::size_t count = std::min(kStretch, a.size() - begin);
+        row[0] = between(begin > 0 ? begin - 1 : 0);
+        for (std::size_t i = 0; i < count; ++i) row[i + 1] = between(begin + i);
+        row[count + 1] = between(std::min(begin + count, a.size() - 1));
+        const auto out = to.subspan(2 * begin);
+        const std::size_t pairs = std::min(count, out.size() / 2);
+        for (std::size_t i = 0; i < pairs; ++i) {
+            out[2 * i] += times * mix(row[i + 1], row[i], .25F);
+            out[2 * i + 1] += times * mix(row[i + 1], row[i + 2], .25F);
+        }
+        if (pairs < count) out[2 * pairs] += times * mix(row[pairs + 1], row[pairs], .25F);
     }
 }
 

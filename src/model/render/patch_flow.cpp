@@ -61,7 +61,10 @@ PatchFlow::PatchFlow(int width, int height)
             level.columns = (width - FlowPatch::kSide + kStride - 1) / kStride + 1;
             level.rows = (height - FlowPatch::kSide + kStride - 1) / kStride + 1;
         }
-        level.patches.resize(std::size_t(level.columns) * std::size_t(level.rows));
+        const std::size_t patches = std::size_t(level.columns) * std::size_t(level.rows);
+        level.patches.reserve(patches);
+        level.motions.resize(patches);
+        level.patch_events.resize(patches);
         for (Array2<float>* map : {&level.now, &level.then})
             *map = Array2<float>(height + 2 * FlowPatch::kRim, width + 2 * FlowPatch::kRim);
         for (Array2<float>* map : {&level.gradient_x, &level.gradient_y, &level.events, &level.dx,
@@ -90,48 +93,57 @@ void PatchFlow::differentiate(Level& level) noexcept {
         }
 }
 
-int PatchFlow::top_of(const Level& level, int row) {
-    return std::min(row * kStride, level.height - FlowPatch::kSide);
-}
-int PatchFlow::left_of(const Level& level, int column) {
-    return std::min(column * kStride, level.width - FlowPatch::kSide);
-}
-FlowPatch PatchFlow::patch_at(const Level& level, int row, int column) {
-    return {level.now,  level.gradient_x,   level.gradient_y,
-            level.then, top_of(level, row), left_of(level, column)};
+void PatchFlow::set_patches(Level& level) noexcept {
+    level.patches.clear();
+    for (int row = 0; row < level.rows; ++row)
+        for (int column = 0; column < level.columns; ++column) {
+            const int top = std::min(row * kStride, level.height - FlowPatch::kSide);
+            const int left = std::min(column * kStride, level.width - FlowPatch::kSide);
+            float events = 0;
+            for (int y = 0; y < FlowPatch::kSide; ++y)
+                for (int x = 0; x < FlowPatch::kSide; ++x)
+                    events += level.events(top + y, left + x);
+            level.patch_events[level.patches.size()] =
+                events / (FlowPatch::kSide * FlowPatch::kSide);
+            level.patches.emplace_back(level.now, level.gradient_x, level.gradient_y, level.then,
+                                       top, left);
+        }
 }
 
 /// Each patch at the motion of its middle, `scale` px of this level for one of the map's.
 void PatchFlow::begin_at(const Array2<float>& dx, const Array2<float>& dy, float scale,
                          Level& level) noexcept {
-    for (int row = 0; row < level.rows; ++row)
-        for (int column = 0; column < level.columns; ++column) {
-            const int y = top_of(level, row) + FlowPatch::kSide / 2;
-            const int x = left_of(level, column) + FlowPatch::kSide / 2;
-            const int v = std::min(y * dx.height() / level.height, dx.height() - 1);
-            const int u = std::min(x * dx.width() / level.width, dx.width() - 1);
-            level.patches[std::size_t(row * level.columns + column)] = {scale * dx(v, u),
-                                                                        scale * dy(v, u)};
-        }
+    for (std::size_t i = 0; i < level.patches.size(); ++i) {
+        const int y = level.patches[i].top() + FlowPatch::kSide / 2;
+        const int x = level.patches[i].left() + FlowPatch::kSide / 2;
+        const int v = std::min(y * dx.height() / level.height, dx.height() - 1);
+        const int u = std::min(x * dx.width() / level.width, dx.width() - 1);
+        level.motions[i] = {scale * dx(v, u), scale * dy(v, u)};
+    }
 }
 
 /// In reading order each patch looks at where those left of it and above it ended, too; backward,
-/// at those right of it and below.
+/// at those right of it and below. Those without events stay where they are.
 void PatchFlow::search(Level& level, bool backward) noexcept {
     FlowPatch::Pixels scratch;
     const int count = level.rows * level.columns, next = backward ? 1 : -1;
     for (int n = 0; n < count; ++n) {
         const int i = backward ? count - 1 - n : n;
         const int row = i / level.columns, column = i % level.columns;
-        const FlowPatch patch = patch_at(level, row, column);
-        FlowVector from = level.patches[std::size_t(i)];
+        const FlowPatch& patch = level.patches[std::size_t(i)];
+        FlowVector& motion = level.motions[std::size_t(i)];
+        if (level.patch_events[std::size_t(i)] == 0) {
+            motion = {};
+            continue;
+        }
+        FlowVector from = motion;
         float least = patch.differences(from, scratch);
         const auto try_that_of = [&](int other_row, int other_column) {
             if (other_row < 0 || other_row >= level.rows || other_column < 0 ||
                 other_column >= level.columns)
                 return;
             const FlowVector other =
-                level.patches[std::size_t(other_row * level.columns + other_column)];
+                level.motions[std::size_t(other_row * level.columns + other_column)];
             const float squares = patch.differences(other, scratch);
             if (!(squares < least)) return;
             least = squares;
@@ -139,28 +151,22 @@ void PatchFlow::search(Level& level, bool backward) noexcept {
         };
         try_that_of(row, column + next);
         try_that_of(row + next, column);
-        level.patches[std::size_t(i)] = patch.descend(from);
+        motion = patch.descend(from);
     }
 }
 
 /// A patch that fits nearly as well where it was has not moved: within a factor of 1 + kStill / n
-/// in squares, n events per pixel, without which nothing moves.
+/// in squares, n events per pixel.
 void PatchFlow::keep_still(Level& level) noexcept {
     FlowPatch::Pixels scratch;
-    for (int row = 0; row < level.rows; ++row)
-        for (int column = 0; column < level.columns; ++column) {
-            FlowVector& motion = level.patches[std::size_t(row * level.columns + column)];
-            if (motion.x == 0 && motion.y == 0) continue;
-            const FlowPatch patch = patch_at(level, row, column);
-            float events = 0;
-            for (int y = 0; y < FlowPatch::kSide; ++y)
-                for (int x = 0; x < FlowPatch::kSide; ++x)
-                    events += level.events(patch.top() + y, patch.left() + x);
-            events /= FlowPatch::kSide * FlowPatch::kSide;
-            const float there = patch.differences({}, scratch),
-                        here = patch.differences(motion, scratch);
-            if (events * there <= (events + kStill) * here) motion = {};
-        }
+    for (std::size_t i = 0; i < level.patches.size(); ++i) {
+        FlowVector& motion = level.motions[i];
+        if (motion.x == 0 && motion.y == 0) continue;
+        const float events = level.patch_events[i];
+        const float there = level.patches[i].differences({}, scratch),
+                    here = level.patches[i].differences(motion, scratch);
+        if (events * there <= (events + kStill) * here) motion = {};
+    }
 }
 
 /// The motion of each pixel: the mean of the patches over it and near it, each weighted by its
@@ -168,20 +174,25 @@ void PatchFlow::keep_still(Level& level) noexcept {
 void PatchFlow::spread(Level& level) noexcept {
     for (Array2<float>* map : {&level.dx, &level.dy, &level.weight}) fill(*map, 0);
     FlowPatch::Pixels difference;
-    for (int row = 0; row < level.rows; ++row)
-        for (int column = 0; column < level.columns; ++column) {
-            const FlowPatch patch = patch_at(level, row, column);
-            const FlowVector motion = level.patches[std::size_t(row * level.columns + column)];
-            patch.differences(motion, difference);
-            for (int y = 0; y < FlowPatch::kSide; ++y)
-                for (int x = 0; x < FlowPatch::kSide; ++x) {
-                    const float by = std::abs(difference[std::size_t(y * FlowPatch::kSide + x)]);
-                    const float weight = (kTexture + patch.texture()) / std::max(kGreyLevel, by);
-                    level.dx(patch.top() + y, patch.left() + x) += weight * motion.x;
-                    level.dy(patch.top() + y, patch.left() + x) += weight * motion.y;
-                    level.weight(patch.top() + y, patch.left() + x) += weight;
-                }
-        }
+    for (std::size_t i = 0; i < level.patches.size(); ++i) {
+        const FlowPatch& patch = level.patches[i];
+        const FlowVector motion = level.motions[i];
+        patch.differences(motion, difference);
+        FlowPatch::Pixels weights;
+        for (std::size_t k = 0; k < weights.size(); ++k)
+            weights[k] =
+                (kTexture + patch.texture()) / std::max(kGreyLevel, std::abs(difference[k]));
+        const auto add = [&](float times, Array2<float>& map) {
+            const float* weight = weights.data();
+            for (int y = 0; y < FlowPatch::kSide; ++y, weight += FlowPatch::kSide) {
+                float* row = &map(patch.top() + y, patch.left());
+                for (int x = 0; x < FlowPatch::kSide; ++x) row[x] += times * weight[x];
+            }
+        };
+        add(1, level.weight);
+        if (motion.x != 0) add(motion.x, level.dx);
+        if (motion.y != 0) add(motion.y, level.dy);
+    }
     for (Array2<float>* map : {&level.dx, &level.dy, &level.weight}) smooth(*map);
     for (std::size_t i = 0; i < level.weight.values().size(); ++i) {
         const float weight = level.weight.values()[i];
@@ -230,6 +241,7 @@ void PatchFlow::find(const Array2<float>& now, const Array2<float>& then,
     for (std::size_t k = levels_.size(); k-- > 0;) {
         Level& level = levels_[k];
         differentiate(level);
+        set_patches(level);
         if (k + 1 == levels_.size())
             begin_at(motion.dx, motion.dy, 1 / float(2 << k), level);
         else

@@ -31,7 +31,8 @@ public:
     PatchFlow(int width, int height);
 
     /// Intensities, [y][x], clipped to [0, 1]. `events`: per pixel since then; the fewer there
-    /// were, the better a patch must fit elsewhere before it is taken to have moved. `motion`:
+    /// were, the better a patch must fit elsewhere before it is taken to have moved; without any it
+    /// has not. `motion`:
     /// where to begin, and what was found.
     void find(const Array2<float>& now, const Array2<float>& then, const Array2<float>& events,
               MotionField& motion) noexcept;
@@ -47,14 +48,14 @@ private:
         Array2<float> now, then;               // with a rim that repeats the edge
         Array2<float> gradient_x, gradient_y;  // of now, without a rim
         Array2<float> events;                  // per pixel of the frames, without a rim
-        std::vector<FlowVector> patches;       // px of this level
+        std::vector<FlowPatch> patches;        // in reading order
+        std::vector<FlowVector> motions;       // theirs, px of this level
+        std::vector<float> patch_events;       // theirs, per pixel of the frames
         Array2<float> dx, dy, weight;          // dense
     };
-    static int top_of(const Level& level, int row);
-    static int left_of(const Level& level, int column);
-    static FlowPatch patch_at(const Level& level, int row, int column);
     static void set_level(const Array2<float>& plain, Array2<float>& rimmed) noexcept;
     static void differentiate(Level& level) noexcept;
+    static void set_patches(Level& level) noexcept;
     static void begin_at(const Array2<float>& dx, const Array2<float>& dy, float scale,
                          Level& level) noexcept;
     static void search(Level& level, bool backward) noexcept;

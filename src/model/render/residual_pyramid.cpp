@@ -16,8 +16,10 @@ constexpr int kMaxBands = 7;
 }  // namespace
 
 void ResidualPyramid::Band::fade() noexcept {
-    for (std::size_t i = 0; i < rho.values().size(); ++i)
-        rho.values()[i] = std::exp(-reach * events.values()[i]);
+    for (std::size_t i = 0; i < rho.values().size(); ++i) {
+        const float n = events.values()[i];
+        rho.values()[i] = n == 0 ? 1 : std::exp(-reach * n);
+    }
 }
 
 /// Bands as long as a side can be halved, at most 7; each answers for the same share of variance.
