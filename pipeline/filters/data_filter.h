@@ -40,6 +40,7 @@ public:
 ///   background-activity:TIME[,R[,N]]  where N (1) other pixels not farther than R (1) px had one
 ///                               within TIME
 ///   hot-pixels:learn|FILE       as HotPixelFilter
+///   flicker[:LOW..HIGH]         of pixels that do not flicker at LOW..HIGH (50..500) Hz
 ///   flip:x|y                    mirrored left to right, or upside down
 ///   transpose                   rows become columns
 ///   time:FROM..TO               as 1s..2.5s after the first event or @US..@US; either may be empty

@@ -1,5 +1,6 @@
 // From "region:10,20,100x50" to a filter.
 #include "pipeline/filters/data_filter.h"
+#include "pipeline/filters/flicker_filter.h"
 #include "pipeline/filters/pixel_filters.h"
 #include "pipeline/filters/placing_filters.h"
 #include "pipeline/filters/selecting_filters.h"
@@ -110,6 +111,16 @@ Made make_hot_pixels(const Arguments& arguments, const SensorPixels& size) {
         size, HotPixelFilter(size.width, size.height, std::string(arguments.text)));
 }
 
+Made make_flicker(const Arguments& arguments, const SensorPixels& size) {
+    constexpr int kLow = FlickerFilter::kLowestHz, kHigh = FlickerFilter::kHighestHz;
+    const bool usual = arguments.text.empty();  // lamps, and the screens that flicker
+    const auto [from, to] = split(usual ? "50..500" : arguments.text, "..");
+    const auto low = whole_number(from, kLow, kHigh), high = whole_number(to, kLow, kHigh);
+    if (!low || !high || *low >= *high)
+        arguments.refuse("nothing, or LOW..HIGH in Hz, such as 80..130");
+    return std::make_unique<FlickerFilter>(size, *low, *high);
+}
+
 Made make_flip(const Arguments& arguments, const SensorPixels& size) {
     if (arguments.text != "x" && arguments.text != "y")
         arguments.refuse("x (left to right) or y (upside down)");
@@ -147,7 +158,7 @@ Made make_time(const Arguments& arguments, const SensorPixels& size) {
 }
 
 struct KnownFilter {
-    std::string_view name, arguments;
+    std::string_view name, arguments;  // in brackets, with the colon, where they may be left out
     Made (*make)(const Arguments&, const SensorPixels&);
 };
 
@@ -158,6 +169,7 @@ constexpr KnownFilter kFilters[]{
     {"refractory", "TIME", make_refractory},
     {"background-activity", "TIME[,R[,N]]", make_background_activity},
     {"hot-pixels", "learn|FILE", make_hot_pixels},
+    {"flicker", "[:LOW..HIGH]", make_flicker},
     {"flip", "x|y", make_flip},
     {"transpose", "", make_transpose},
     {"time", "FROM..TO", make_time},
@@ -169,7 +181,8 @@ std::string data_filter_names() {
     std::string names;
     for (const KnownFilter& filter : kFilters) {
         names += (names.empty() ? "" : ", ") + std::string(filter.name);
-        if (!filter.arguments.empty()) names += ":" + std::string(filter.arguments);
+        if (!filter.arguments.empty() && filter.arguments[0] != '[') names += ":";
+        names += filter.arguments;
     }
     return names;
 }

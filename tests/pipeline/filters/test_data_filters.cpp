@@ -219,8 +219,9 @@ TEST(DataFilters, GoInTheOrderGiven) {
 TEST(DataFilters, DoNotDependOnHowEventsAreSplit) {
     const auto events = random_events(5'000);
     const std::vector<std::string> all{
-        "region:2,2,60x44", "refractory:2ms", "background-activity:5ms,2", "subsample:2",
-        "flip:y",           "transpose",      "time:20ms..400ms"};
+        "region:2,2,60x44", "refractory:2ms",  "background-activity:5ms,2",
+        "subsample:2",      "flicker:1..200",  "flip:y",
+        "transpose",        "time:20ms..400ms"};
     const auto whole = filtered(all, events);
     ASSERT_GT(whole.size(), 50U);
     FilterChain chain(all, kSensor);
@@ -256,6 +257,9 @@ TEST(DataFilters, WrongWordsAreRefusedWithWhatIsExpected) {
     EXPECT_THAT(refusal("refractory:5"), HasSubstr("such as 1ms"));
     EXPECT_THAT(refusal("background-activity:1ms,9"), HasSubstr("radius of 1 to 8"));
     EXPECT_THAT(refusal("background-activity:1ms,1,9"), HasSubstr("how many pixels"));
+    for (const char* wrong :
+         {"50", "50..", "..500", "500..50", "50..50", "0..50", "50..10001", "50hz..500hz"})
+        EXPECT_THAT(refusal(std::string("flicker:") + wrong), HasSubstr("in Hz, such as 80..130"));
     EXPECT_THAT(refusal("flip:z"), HasSubstr("upside down"));
     EXPECT_THAT(refusal("transpose:x"), HasSubstr("nothing behind its name"));
     EXPECT_THAT(refusal("time:1s"), HasSubstr("FROM..TO"));
