@@ -9,10 +9,10 @@ namespace eventide {
 
 /// A pixel flickers while its brightness begins to rise (an on event after an off event, or its
 /// first) at equal intervals within the band: from the third interval on that agrees with those
-/// before it, within kTolerance, until intervals have disagreed or stayed away. Now and then an
-/// interval may be twice as long, where a cycle was too faint; one with a rise within is no cycle.
-/// All events of a pixel that flickers are left out; what moves across it is seen again after two
-/// rises that come at other times.
+/// before it, within 3 / 20 of a cycle, until intervals have disagreed or stayed away. Now and then
+/// an interval may be twice as long, where a cycle was too faint; one with a rise within is no
+/// cycle. All events of a pixel that flickers are left out; what moves across it is seen again
+/// after two rises that come at other times.
 class FlickerFilter final : public DataFilter {
 public:
     static constexpr int kLowestHz = 1, kHighestHz = 10'000;
