@@ -1,6 +1,8 @@
 // Leaves out the events of pixels that see a lamp or a screen flicker.
 #include "pipeline/filters/flicker_filter.h"
 
+#include "pipeline/filters/pixel_filters.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -21,8 +23,8 @@ FlickerFilter::FlickerFilter(const SensorPixels& size, int low_hz, int high_hz)
 }
 
 void FlickerFilter::learn(Pixel& pixel, SensorDuration interval) const {
-    const bool even = !pixel.rose_again;
-    for (int cycles = 1; cycles <= kCycles && pixel.agreed > 0 && even; ++cycles) {
+    const bool is_cycle = !pixel.rose_again;
+    for (int cycles = 1; cycles <= kCycles && pixel.agreed > 0 && is_cycle; ++cycles) {
         const SensorDuration cycle = interval / cycles;
         const SensorDuration off = std::chrono::abs(cycle - pixel.cycle);
         if (cycle < shortest_ || cycle > longest_ || kOf * off > kTolerance * pixel.cycle) continue;
@@ -32,7 +34,7 @@ void FlickerFilter::learn(Pixel& pixel, SensorDuration interval) const {
         return;
     }
     if (pixel.agreed > 0) --pixel.agreed;
-    if (pixel.agreed > 0 || interval > longest_ || !even) return;
+    if (pixel.agreed > 0 || interval > longest_ || !is_cycle) return;
     pixel.cycle = interval;
     pixel.agreed = 1;
 }
@@ -41,9 +43,7 @@ bool FlickerFilter::flickers(const Event& event) {
     Pixel& pixel = pixels_[std::size_t(event.y) * std::size_t(size_.width) + std::size_t(event.x)];
     const bool on = event.polarity == Polarity::on, rises = on && !pixel.was_on;
     pixel.was_on = on;
-    // A clock that went back begins anew, too.
-    const bool known = pixel.rise != SensorTime::min() && pixel.rise <= event.t &&
-                       event.t - pixel.rise <= kCycles * longest_ + longest_ / 2;
+    const bool known = is_recent(pixel.rise, event.t, kCycles * longest_ + longest_ / 2);
     if (!known) pixel.agreed = 0;
     if (rises && known && event.t - pixel.rise < shortest_) {
         pixel.rose_again = true;

@@ -6,8 +6,8 @@
 namespace eventide {
 
 bool TimesOfPixels::is_recent(int x, int y, SensorTime t, SensorDuration within) const {
-    const SensorTime last = times_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
-    return last != SensorTime::min() && last <= t && t - last <= within;
+    return eventide::is_recent(times_[std::size_t(y) * std::size_t(width_) + std::size_t(x)], t,
+                               within);
 }
 
 void TimesOfPixels::set(int x, int y, SensorTime t) {

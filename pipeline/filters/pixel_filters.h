@@ -10,6 +10,12 @@
 
 namespace eventide {
 
+/// Whether `last`, which may be none (SensorTime::min()), lies in [t - within, t]; a time after t
+/// is from before the clock went back.
+inline bool is_recent(SensorTime last, SensorTime t, SensorDuration within) {
+    return last != SensorTime::min() && last <= t && t - last <= within;
+}
+
 /// A time for each pixel; none after the clock went back.
 class TimesOfPixels {
 public:
