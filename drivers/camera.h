@@ -19,6 +19,11 @@ struct CameraCounters {
         0;  ///< events the camera itself dropped, as its own counters say (after the run)
 };
 
+/// What to do about a camera that went away, after the words that say so; users of the program and
+/// of the library read it.
+inline constexpr const char* kReconnect =
+    "; --reconnect (the option reconnect of the library) waits until it is back";
+
 /// A live source. Constructed open and configured; data flow from the first read() on.
 class Camera : public Source {
 public:

@@ -10,11 +10,6 @@ reconstructor = eventide.Reconstructor(
     "default", reader.width, reader.height, window="auto", lookahead=2, precision="f32"
 )
 with open(out_name, "wb") as out:
-    more = True
-    while more:
-        more = reader.read_into(reconstructor)
-        if not more:
-            reconstructor.finish(reader.clock)
-        for frame in reconstructor.frames():
-            frame.intensity.tofile(out)
-            frame.sigma.tofile(out)
+    for frame in eventide.read_frames(reader, reconstructor):
+        frame.intensity.tofile(out)
+        frame.sigma.tofile(out)

@@ -6,6 +6,7 @@
 #include <eventide/reader.h>
 
 #include <memory>
+#include <string>
 
 using namespace eventide;
 
@@ -30,16 +31,28 @@ eventide_status eventide_recording_open(const char* path, const char* format, in
     });
 }
 
-eventide_status eventide_camera_open(const char* name, const char* settings,
+eventide_status eventide_camera_open(const char* name, const char* settings, int reconnect,
                                      eventide_source** opened) {
     return c_call([&] {
-        const CameraSettings chosen{settings == nullptr ? "" : settings, false};
+        const CameraSettings chosen{settings == nullptr ? "" : settings, reconnect != 0};
         return open_source<EventCamera>(opened, &given(name, "a camera"), chosen);
     });
 }
 
 void eventide_source_close(eventide_source* source) {
     delete source;
+}
+
+eventide_status eventide_source_add_filter(eventide_source* source, const char* filter) {
+    return c_call([&] {
+        EventSource& to = *given(source, "a source").it;
+        const std::string text = &given(filter, "a filter");
+        if (auto* reader = dynamic_cast<EventReader*>(&to))
+            reader->add_filter(text);
+        else
+            dynamic_cast<EventCamera&>(to).add_filter(text);
+        return EVENTIDE_OK;
+    });
 }
 
 int eventide_source_width(const eventide_source* source) {

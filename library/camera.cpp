@@ -1,7 +1,7 @@
 // Cameras behind the public face.
 #include "drivers/devices.h"
 #include "drivers/simulated/simulated_camera.h"
-#include "library/pushed_images.h"
+#include "library/source_filters.h"
 #include "pipeline/event_windows.h"
 #include "src/core/error.h"
 
@@ -33,11 +33,14 @@ std::unique_ptr<Camera> open(const std::string& name, const CameraSettings& sett
 class EventCamera::Impl {
 public:
     Impl(const std::string& name, const CameraSettings& settings)
-        : camera_(open(name, settings)), parser_(camera_->make_parser()) {}
+        : camera_(open(name, settings)),
+          parser_(camera_->make_parser()),
+          filters_(camera_->info()) {}
 
     Camera& camera() { return *camera_; }
     bool is_live() const { return camera_->is_live(); }
     const Parser& parser() const { return *parser_; }
+    SourceFilters& filters() { return filters_; }
     bool gap_before() const { return gap_before_; }
 
     bool read(Batch& batch) {
@@ -52,7 +55,7 @@ public:
         if (gap_before_) packet_.reopened ? parser_->reopened() : parser_->resync();
         if (camera_->is_live()) parser_->arrives(now_);
         parser_->parse(packet_.bytes, batch);
-        tell_filter(camera_->info().colour_filter, batch.images);
+        filters_.process(batch);
         note_clock();
         return true;
     }
@@ -68,8 +71,9 @@ public:
 private:
     bool read_rest(Batch& batch) {
         if (!std::exchange(ended_, true)) parser_->finish(batch);
-        tell_filter(camera_->info().colour_filter, batch.images);
-        return !batch.empty();
+        const bool empty = batch.empty();
+        filters_.process(batch);
+        return !empty;
     }
 
     void note_clock() {
@@ -81,6 +85,7 @@ private:
 
     std::unique_ptr<Camera> camera_;
     std::unique_ptr<Parser> parser_;
+    SourceFilters filters_;
     RawPacket packet_;
     bool gap_before_ = false, ended_ = false;
     HostTime now_{}, clock_arrived_{};
@@ -94,13 +99,16 @@ EventCamera::EventCamera(EventCamera&&) noexcept = default;
 EventCamera& EventCamera::operator=(EventCamera&&) noexcept = default;
 
 const SensorInfo& EventCamera::info() const noexcept {
-    return impl_->camera().info();
+    return impl_->filters().info();
 }
 int EventCamera::width() const noexcept {
     return info().width;
 }
 int EventCamera::height() const noexcept {
     return info().height;
+}
+void EventCamera::add_filter(const std::string& filter) {
+    impl_->filters().add(filter);
 }
 bool EventCamera::read(Batch& batch) {
     return impl_->read(batch);

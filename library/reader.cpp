@@ -1,5 +1,5 @@
 // Recordings behind the public face.
-#include "library/pushed_images.h"
+#include "library/source_filters.h"
 #include "replay/formats.h"
 #include "replay/summary.h"
 #include "src/core/error.h"
@@ -33,28 +33,29 @@ public:
           options_(open_options(options)),
           recording_(open_recording(path, options_)),
           can_go_back_(path != "-" && recording_->size_bytes() > 0),
-          parser_(recording_->make_parser()) {}
+          parser_(recording_->make_parser()),
+          filters_(recording_->info()) {}
 
     const Recording& recording() const { return *recording_; }
     const Parser& parser() const { return *parser_; }
+    SourceFilters& filters() { return filters_; }
 
     bool read(Batch& batch) {
         batch.clear();
         if (ended_) return false;
-        if (recording_->read(packet_) == ReadStatus::data) {
-            parser_->parse(packet_.bytes, batch);
-            tell_filter(recording_->info().colour_filter, batch.images);
-            return true;
-        }
-        ended_ = true;
-        parser_->finish(batch);
-        tell_filter(recording_->info().colour_filter, batch.images);
-        return !batch.empty();
+        ended_ = recording_->read(packet_) != ReadStatus::data;
+        ended_ ? parser_->finish(batch) : parser_->parse(packet_.bytes, batch);
+        const bool empty = batch.empty();
+        filters_.process(batch);
+        return !ended_ || !empty;
     }
 
     /// What cannot go back stays where it is, and its parser with it.
     void seek(SensorTime t) {
         if (!can_go_back_) return;
+        if (filters_.wants_first())
+            if (const auto first = first_event_time(*open_recording(path_, options_)))
+                filters_.count_from(*first);
         recording_->seek(t);
         damaged_before_ += parser_->damaged().total();
         parser_ = recording_->make_parser();
@@ -84,6 +85,7 @@ private:
     const std::unique_ptr<Recording> recording_;
     const bool can_go_back_;  // a pipe does not tell its size
     std::unique_ptr<Parser> parser_;
+    SourceFilters filters_;
     RawPacket packet_;
     std::uint64_t damaged_before_ = 0;  // by parsers before a seek
     bool ended_ = false;
@@ -96,7 +98,7 @@ EventReader::EventReader(EventReader&&) noexcept = default;
 EventReader& EventReader::operator=(EventReader&&) noexcept = default;
 
 const SensorInfo& EventReader::info() const noexcept {
-    return impl_->recording().info();
+    return impl_->filters().info();
 }
 int EventReader::width() const noexcept {
     return info().width;
@@ -106,6 +108,9 @@ int EventReader::height() const noexcept {
 }
 std::vector<std::string> EventReader::remarks() const {
     return impl_->recording().remarks();
+}
+void EventReader::add_filter(const std::string& filter) {
+    impl_->filters().add(filter);
 }
 bool EventReader::read(Batch& batch) {
     return impl_->read(batch);

@@ -110,10 +110,23 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
         .def("read_into", &read_into<T>, py::arg("reconstructor"),
              "Reads on and pushes what came, with images and marks of lost data; False at "
              "the end.")
+        .def(
+            "add_filter",
+            [](Source<T>& s, const std::string& filter) {
+                s.with([&](T& it) {
+                    check_free(s);
+                    it.add_filter(filter);
+                });
+            },
+            py::arg("filter"),
+            "Puts a filter behind it before anything is read: \"flicker\", as eventide run "
+            "--filter.")
         .def_property_readonly(
-            "width", [](Source<T>& s) { return s.it.width(); }, "px, of the sensor")
+            "width", [](Source<T>& s) { return s.it.width(); },
+            "px, of the sensor behind its filters")
         .def_property_readonly(
-            "height", [](Source<T>& s) { return s.it.height(); }, "px, of the sensor")
+            "height", [](Source<T>& s) { return s.it.height(); },
+            "px, of the sensor behind its filters")
         .def_property_readonly(
             "format", [](Source<T>& s) { return s.it.info().format; }, "aedat4, evt3, davis, ...")
         .def_property_readonly(
@@ -167,12 +180,13 @@ void add_reader(py::module_& module) {
 void add_camera(py::module_& module) {
     add_source<EventCamera>(module, "Camera",
                             "A camera; iterate it for structured arrays (t, x, y, on).")
-        .def(py::init([](const std::string& name, const std::filesystem::path& settings) {
+        .def(py::init([](const std::string& name, const std::filesystem::path& settings,
+                         bool reconnect) {
                  const py::gil_scoped_release released;
                  return std::make_unique<Source<EventCamera>>(
-                     name, CameraSettings{settings, false, hear_signals});
+                     name, CameraSettings{settings, reconnect, hear_signals});
              }),
-             py::arg("name"), py::arg("settings") = "")
+             py::arg("name"), py::arg("settings") = "", py::arg("reconnect") = false)
         .def_property_readonly(
             "gap_before",
             [](Source<EventCamera>& s) {

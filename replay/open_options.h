@@ -8,6 +8,11 @@
 
 namespace eventide {
 
+/// What to do about a sensor's size that nothing says; users of the program and of the library read
+/// it.
+inline constexpr const char* kStateSize =
+    "state it with --input-size WIDTHxHEIGHT (the options width and height of the library)";
+
 struct OpenOptions {
     std::string format{};       ///< a name from all_formats(); empty: found from the content
     int width = 0, height = 0;  ///< px; 0: what the recording says. Both or neither

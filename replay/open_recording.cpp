@@ -106,8 +106,8 @@ void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOpt
         throw Error(ErrorKind::input,
                     file.path() +
                         ": expected the size of the sensor, found none in the stream; "
-                        "state it with --input-size WIDTHxHEIGHT, or begin the text with "
-                        "a line \"WIDTH HEIGHT\"");
+                        "begin the text with a line \"WIDTH HEIGHT\", or " +
+                        kStateSize);
     scan_geometry(file, stream);
 }
 

@@ -39,6 +39,17 @@ Summary summarize(Recording& recording, const std::function<bool()>& progress) {
     return sum;
 }
 
+std::optional<SensorTime> first_event_time(Recording& recording) {
+    const auto parser = recording.make_parser();
+    RawPacket packet;
+    Batch batch;
+    while (batch.events.empty() && recording.read(packet) == ReadStatus::data)
+        parser->parse(packet.bytes, batch);
+    parser->finish(batch);
+    if (batch.events.empty()) return {};
+    return batch.events.front().t;
+}
+
 std::string to_json(const Summary& sum) {
     nlohmann::ordered_json object{{"format", sum.format},
                                   {"width", sum.width},

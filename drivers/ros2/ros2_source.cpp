@@ -36,8 +36,8 @@ Ros2Source::Ros2Source(Ros2SourceName name, const CameraOptions& options)
       topic_{Participant::join(), name_.topic} {
     if (!options.settings.empty())
         throw Error(ErrorKind::usage, label() +
-                                          ": expected no --camera, as the driver that "
-                                          "publishes has the settings; found " +
+                                          ": expected no camera settings, as the driver "
+                                          "that publishes has them; found " +
                                           options.settings.string());
     wait_for_first(options.give_up);
 }
@@ -177,9 +177,7 @@ void Ros2Source::check_same(const EventMessage& message) const {
 
 ReadStatus Ros2Source::lost() {
     if (!reconnect_)
-        throw Error(ErrorKind::device, label() +
-                                           ": its publisher went away (use --reconnect to "
-                                           "wait until it is back)");
+        throw Error(ErrorKind::device, label() + ": its publisher went away" + kReconnect);
     is_there_ = false;
     static_cast<void>(
         topic_.find_publisher(std::chrono::milliseconds{0}));  // it may be less reliable now

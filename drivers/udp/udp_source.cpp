@@ -93,8 +93,9 @@ std::unique_ptr<Parser> UdpSource::make_parser() const {
 
 std::unique_ptr<Camera> open_udp_source(std::string_view which, const CameraOptions& options) {
     if (!options.settings.empty())
-        throw Error(ErrorKind::usage,
-                    "--camera: expected a camera with settings, found udp:" + std::string(which));
+        throw Error(
+            ErrorKind::usage,
+            "camera settings: expected a camera that has some, found udp:" + std::string(which));
     return std::make_unique<UdpSource>(UdpName::parse(std::string(which)));
 }
 

@@ -174,7 +174,7 @@ void UsbCamera::leave_out_half_word(std::vector<std::byte>& bytes) {
 /// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.
 ReadStatus UsbCamera::lost() {
     close();
-    if (!options_.reconnect) refuse("was unplugged (use --reconnect to wait for it to come back)");
+    if (!options_.reconnect) refuse(std::string{"was unplugged"} + kReconnect);
     return ReadStatus::timeout;
 }
 

@@ -166,9 +166,7 @@ void V4l2Camera::note_sequence(std::uint32_t sequence) {
 
 ReadStatus V4l2Camera::lost() {
     if (device_ && !reconnect_)
-        throw Error(ErrorKind::device,
-                    "the camera " + node_.string() +
-                        " stopped (use --reconnect to open it again when it is back)");
+        throw Error(ErrorKind::device, "the camera " + node_.string() + " stopped" + kReconnect);
     device_.reset();
     try {
         open();

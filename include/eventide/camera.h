@@ -40,9 +40,12 @@ public:
     EventCamera(EventCamera&&) noexcept;             ///< leaves the other empty
     EventCamera& operator=(EventCamera&&) noexcept;  ///< leaves the other empty
 
-    const SensorInfo& info() const noexcept override;
-    int width() const noexcept;   ///< px
-    int height() const noexcept;  ///< px
+    const SensorInfo& info() const noexcept override;  ///< as it looks behind the filters
+    int width() const noexcept;                        ///< px
+    int height() const noexcept;                       ///< px
+
+    /// Puts a filter behind the camera and its other filters, as EventReader::add_filter() does.
+    void add_filter(const std::string& filter);
 
     /// Waits for data, at most some 20 ms: `batch` is emptied first and stays empty where none came
     /// in that time. Events are as EventReader::read() gives them. False after stop(). Throws Error

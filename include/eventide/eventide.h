@@ -213,15 +213,21 @@ EVENTIDE_API eventide_status eventide_recording_open(const char* path, const cha
 
 /** "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL", "v4l2:/dev/video0",
  * "ros2:/TOPIC", "udp://HOST:PORT?size=640x480", "sim:demo"; `settings` may be NULL, or a file of
- * settings. */
+ * settings; `reconnect` not 0: an unplugged camera is waited for. */
 EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
-                                                  eventide_source** opened);
+                                                  int reconnect, eventide_source** opened);
 /** Frees it; NULL may be closed. */
 EVENTIDE_API void eventide_source_close(eventide_source* source);
 
-/** px, of the sensor; 0 where a recording does not say. */
+/** Puts a filter behind the source and its other filters, before anything is read from it:
+ * "flicker", "region:10,20,100x50", ..., as `eventide run --filter` takes them. EVENTIDE_USAGE for
+ * one that is none, where a recording does not say its size, and once something was read. */
+EVENTIDE_API eventide_status eventide_source_add_filter(eventide_source* source,
+                                                        const char* filter);
+
+/** px, of the sensor behind its filters; 0 where a recording does not say. */
 EVENTIDE_API int eventide_source_width(const eventide_source* source);
-/** px, of the sensor; 0 where a recording does not say. */
+/** px, of the sensor behind its filters; 0 where a recording does not say. */
 EVENTIDE_API int eventide_source_height(const eventide_source* source);
 
 /** eventide_reconstructor_open() for the sensor of this source. */

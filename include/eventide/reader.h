@@ -38,9 +38,15 @@ public:
     EventReader(EventReader&&) noexcept;             ///< leaves the other empty
     EventReader& operator=(EventReader&&) noexcept;  ///< leaves the other empty
 
-    const SensorInfo& info() const noexcept override;
-    int width() const noexcept;   ///< px; 0 where the recording does not say
-    int height() const noexcept;  ///< px; 0 where the recording does not say
+    const SensorInfo& info() const noexcept override;  ///< as it looks behind the filters
+    int width() const noexcept;                        ///< px; 0 where the recording does not say
+    int height() const noexcept;                       ///< px; 0 where the recording does not say
+
+    /// Puts a filter behind the reader, and behind the filters that are there: "flicker",
+    /// "region:10,20,100x50", ..., as `eventide run --filter` takes them (docs/usage.md). Some
+    /// change width and height ("transpose", "subsample:2x2"). Throws Error (usage) for one that is
+    /// none, where the recording does not say its size, and once something was read.
+    void add_filter(const std::string& filter);
 
     /// What had to be guessed when it was opened: sentences for people.
     std::vector<std::string> remarks() const;

@@ -51,12 +51,15 @@ private:
 
 FilterChain::FilterChain(const std::vector<std::string>& texts, const SensorPixels& size)
     : size_(size) {
-    for (const std::string& text : texts) {
-        Link& link = links_.emplace_back();
-        link.text = text;
-        link.filter = make_data_filter(text, size_);
-        size_ = link.filter->size();
-    }
+    for (const std::string& text : texts) add(text);
+}
+
+void FilterChain::add(const std::string& text) {
+    auto filter = make_data_filter(text, size_);
+    Link& link = links_.emplace_back();
+    link.text = text;
+    link.filter = std::move(filter);
+    size_ = link.filter->size();
 }
 
 ColourFilter FilterChain::pattern(ColourFilter before) const {

@@ -16,6 +16,8 @@ class FilterChain {
 public:
     /// In this order, each as make_data_filter() takes it. Throws Error (usage) as that does.
     FilterChain(const std::vector<std::string>& texts, const SensorPixels& size);
+    /// One more behind the last, before the first events. Throws likewise, and is then as it was.
+    void add(const std::string& text);
 
     bool empty() const { return links_.empty(); }
     SensorPixels size() const { return size_; }  ///< behind the last

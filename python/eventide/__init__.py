@@ -3,11 +3,9 @@
     import eventide
 
     reader = eventide.open("recording.aedat4")
-    reconstructor = eventide.Reconstructor("default", reader.width, reader.height)
-    for events in reader:
-        reconstructor.push(events)
-        for frame in reconstructor.frames():
-            print(frame.t, frame.intensity.mean(), frame.sigma.mean())
+    reconstructor = eventide.Reconstructor("default", reader.width, reader.height, window="auto")
+    for frame in eventide.read_frames(reader, reconstructor):
+        print(frame.t, frame.intensity.mean(), frame.sigma.mean())
 
 simulate() gives events with the truth they came from, evaluate() says how far a frame is from it.
 
@@ -49,27 +47,44 @@ __all__ = [
     "evaluate",
     "open",
     "open_camera",
+    "read_frames",
     "simulate",
     "__version__",
 ]
 
 
-def open(path, format="", width=0, height=0):
+def _filtered(source, filters):
+    for filter in [filters] if isinstance(filters, str) else filters:
+        source.add_filter(filter)
+    return source
+
+
+def open(path, format="", width=0, height=0, filters=()):
     """Open a recording, in any format that eventide reads; iterate it for arrays of events.
 
-    format, width and height are for what its bytes do not say. Raises InputError.
+    format, width and height are for what its bytes do not say. filters, as ["flicker"], are those
+    of eventide run --filter, one behind the other. Raises InputError, or UsageError for a filter.
     """
-    return Reader(path, format, width, height)
+    return _filtered(Reader(path, format, width, height), filters)
 
 
-def open_camera(name, settings=""):
+def open_camera(name, settings="", filters=(), reconnect=False):
     """Open a camera; iterate it for arrays of events.
 
     name is "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
     "v4l2:/dev/video0", "ros2:/TOPIC", "udp://HOST:PORT?size=640x480" or "sim:demo", settings a
-    file. Raises DeviceError, or UsageError for a name that makes no sense.
+    file, filters as in open(); with reconnect an unplugged camera is waited for. Raises
+    DeviceError, or UsageError for a name that makes no sense.
     """
-    return Camera(name, settings)
+    return _filtered(Camera(name, settings, reconnect), filters)
+
+
+def read_frames(source, reconstructor):
+    """Yield the frames of a Reader or Camera: reads on as far as each one needs, to the end."""
+    while source.read_into(reconstructor):
+        yield from reconstructor.frames()
+    reconstructor.finish(source.clock)
+    yield from reconstructor.frames()
 
 
 def simulate(scene="demo", size=(240, 180), seconds=4, **options):

@@ -1,6 +1,7 @@
 // One pass over the events for the smallest sensor that holds them.
 #include "replay/stream/scan_geometry.h"
 
+#include "replay/open_options.h"
 #include "src/core/error.h"
 
 #include <algorithm>
@@ -74,7 +75,7 @@ void SensorSizeSearch::conclude(const std::string& path, const Damage& left_out,
     if (total_ == 0)
         throw Error(ErrorKind::input,
                     path + ": expected events, to find the size of the sensor, found none" +
-                        list_of(left_out) + "; state it with --input-size WIDTHxHEIGHT");
+                        list_of(left_out) + "; " + kStateSize);
     const std::size_t found = smallest();
     if (found == kSensors)
         throw Error(ErrorKind::input,
@@ -82,8 +83,7 @@ void SensorSizeSearch::conclude(const std::string& path, const Damage& left_out,
                         ": expected the size of the sensor, found none in the recording "
                         "and events that need " +
                         text_of({width_, height_}) + " px, more than the largest sensor known (" +
-                        text_of(kKnownSensors.back()) +
-                        "); state it with --input-size WIDTHxHEIGHT");
+                        text_of(kKnownSensors.back()) + "); " + kStateSize);
     header.width = kKnownSensors[found].width;
     header.height = kKnownSensors[found].height;
     std::string remark = "the recording does not say the sensor's size: taken for " +
@@ -91,7 +91,7 @@ void SensorSizeSearch::conclude(const std::string& path, const Damage& left_out,
                          ", the smallest sensor known that holds its events";
     if (const auto n = outside_[found]; n > 0)
         remark += " but " + std::to_string(n) + " of " + std::to_string(total_);
-    remarks.push_back(remark + "; --input-size states another");
+    remarks.push_back(remark + "; if it is another, " + kStateSize);
 }
 
 void scan_geometry(const ByteFile& file, OpenedStream& stream) {

@@ -86,7 +86,7 @@ TEST(DvxplorerFaults, UnpluggedWithoutReconnectIsAnErrorThatNamesTheWayOut) {
                          [&] {
                              while (camera.read(packet) != ReadStatus::end) continue;
                          }),
-                HasSubstr("the DVXplorer 'DVX00001' was unplugged (use --reconnect"));
+                HasSubstr("the DVXplorer 'DVX00001' was unplugged; --reconnect"));
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
         bed.fail_next("QBUF", ENODEV);
         if (!reconnect) {
             EXPECT_THAT(failure_of([&] { camera.read(packet); }),
-                        HasSubstr("stopped (use --reconnect"));
+                        HasSubstr("stopped; --reconnect"));
             continue;
         }
         EXPECT_EQ(camera.read(packet), ReadStatus::timeout);

@@ -207,7 +207,7 @@ TEST_F(CInterface, RefusesWhatMakesNoSenseInWords) {
     eventide_source* source = nullptr;
     EXPECT_EQ(eventide_recording_open((temp_ / "none").c_str(), nullptr, 0, 0, &source),
               EVENTIDE_INPUT);
-    EXPECT_EQ(eventide_camera_open("kodak:", nullptr, &source), EVENTIDE_USAGE);
+    EXPECT_EQ(eventide_camera_open("kodak:", nullptr, 0, &source), EVENTIDE_USAGE);
     EXPECT_EQ(source, nullptr);
     eventide_source_close(nullptr);
     eventide_writer_close(nullptr);
@@ -244,8 +244,9 @@ TEST_F(CInterface, RefusesANoiseFilterThatIsNone) {
 TEST_F(CInterface, CamerasPushWhatTheyRead) {
     open();
     eventide_source* source = nullptr;
-    ASSERT_EQ(eventide_camera_open("sim:demo?seconds=0.2&size=64x48&speed=max", nullptr, &source),
-              EVENTIDE_OK);
+    ASSERT_EQ(
+        eventide_camera_open("sim:demo?seconds=0.2&size=64x48&speed=max", nullptr, 0, &source),
+        EVENTIDE_OK);
     EXPECT_EQ(eventide_seek(source, 0), EVENTIDE_USAGE);
     int frames = 0;
     eventide_frame frame;
@@ -253,6 +254,24 @@ TEST_F(CInterface, CamerasPushWhatTheyRead) {
         while (eventide_next(reconstructor_, &frame) == EVENTIDE_OK) ++frames;
     EXPECT_GT(frames, 15);
     eventide_source_close(source);
+}
+
+TEST_F(CInterface, PutsFiltersBehindASource) {
+    for (const bool is_camera : {false, true}) {
+        eventide_source* source = nullptr;
+        ASSERT_EQ(is_camera ? eventide_camera_open("sim:demo?seconds=0.1&size=64x48&speed=max",
+                                                   nullptr, 0, &source)
+                            : eventide_recording_open(recording().c_str(), nullptr, 0, 0, &source),
+                  EVENTIDE_OK);
+        EXPECT_EQ(eventide_source_add_filter(source, "transpose"), EVENTIDE_OK);
+        EXPECT_EQ(eventide_source_width(source), 48);
+        EXPECT_EQ(eventide_source_height(source), 64);
+        EXPECT_EQ(eventide_source_add_filter(source, "blur"), EVENTIDE_USAGE);
+        EXPECT_TRUE(said("found 'blur'")) << eventide_error_message();
+        EXPECT_EQ(eventide_source_add_filter(source, nullptr), EVENTIDE_USAGE);
+        eventide_source_close(source);
+    }
+    EXPECT_EQ(eventide_source_add_filter(nullptr, "flip:x"), EVENTIDE_USAGE);
 }
 
 TEST_F(CInterface, WritesWhatItReadsAgain) {

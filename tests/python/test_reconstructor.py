@@ -22,6 +22,11 @@ class Frames(RecordedTest):
         self.assertEqual([f.index for f in frames], list(range(len(expected))))
         self.assertEqual(reconstructor.counters["frames"], len(expected))
 
+    def test_are_read_from_a_source_to_its_end(self):
+        reader = eventide.open(self.recording)
+        frames = [[f.intensity, f.sigma] for f in eventide.read_frames(reader, self.reconstructor())]
+        np.testing.assert_array_equal(frames, self.frames_of_run())
+
     def test_are_the_same_from_arrays(self):
         expected = self.frames_of_run("ignore")
         reader = eventide.open(self.recording)

@@ -104,6 +104,21 @@ class Sources(RecordedTest):
         with self.assertRaisesRegex(eventide.DeviceError, "/dev/none"):
             eventide.open_camera("v4l2:/dev/none")
 
+    def test_filters_stand_behind_a_source(self):
+        all = self.events()
+        left = np.concatenate(list(eventide.open(self.recording, filters=["polarity:on", "flip:x"])))
+        expected = all[all["on"]]
+        expected["x"] = 63 - expected["x"]
+        np.testing.assert_array_equal(left, expected)
+        camera = eventide.open_camera("sim:demo?size=64x48&speed=max", filters="transpose")
+        self.assertEqual((camera.width, camera.height), (48, 64))
+        reader = eventide.open(self.recording)
+        next(reader)
+        with self.assertRaisesRegex(eventide.UsageError, "nothing has been read from"):
+            reader.add_filter("flip:x")
+        with self.assertRaisesRegex(eventide.UsageError, "found 'blur'"):
+            eventide.open(self.recording, filters=["blur"])
+
     def test_no_recording_is_refused_in_words(self):
         with self.assertRaisesRegex(eventide.InputError, "/no/such: cannot open"):
             eventide.open("/no/such")

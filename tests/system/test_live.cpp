@@ -102,7 +102,7 @@ TEST_F(Live, UnpluggedItEndsAsADeviceThatWasLostAndItsFilesAreWhole) {
     bed_.unplug();
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 4);
-    EXPECT_THAT(result.error, HasSubstr("was unplugged (use --reconnect"));
+    EXPECT_THAT(result.error, HasSubstr("was unplugged; --reconnect"));
     const Batch kept = recorded(temp_ / "raw.aedat4");
     ASSERT_GT(kept.events.size(), 1000U);
     EXPECT_TRUE(std::equal(kept.events.begin(), kept.events.end(), seen.events.begin()));

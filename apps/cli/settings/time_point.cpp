@@ -2,6 +2,7 @@
 #include "apps/cli/settings/time_point.h"
 
 #include "replay/formats.h"
+#include "replay/summary.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
@@ -51,15 +52,9 @@ SensorTime TimePointReader::first_time() const {
                         " cannot be read twice to find its first event; expected times as "
                         "@MICROSECONDS of the sensor");
     const auto recording = open_recording(path_, options_);
-    const auto parser = recording->make_parser();
-    RawPacket packet;
-    Batch batch;
-    while (batch.events.empty() && recording->read(packet) == ReadStatus::data)
-        parser->parse(packet.bytes, batch);
-    parser->finish(batch);
-    if (batch.events.empty())
-        throw Error(ErrorKind::input, path_ + ": there is no event to count times from");
-    return batch.events.front().t;
+    const auto first = first_event_time(*recording);
+    if (!first) throw Error(ErrorKind::input, path_ + ": there is no event to count times from");
+    return *first;
 }
 
 }  // namespace eventide::app

@@ -1,0 +1,42 @@
+// The filters that a reader's or camera's user has put behind it.
+#pragma once
+
+#include "pipeline/filters/filter_chain.h"
+
+#include <string>
+
+namespace eventide {
+
+class SourceFilters {
+public:
+    /// Behind a source of that sensor.
+    explicit SourceFilters(const SensorInfo& sensor)
+        : info_(sensor),
+          colours_(sensor.colour_filter),
+          chain_({}, {sensor.width, sensor.height}) {}
+
+    /// The sensor as it looks behind the filters.
+    const SensorInfo& info() const { return info_; }
+
+    /// Throws Error (usage): once data were read, without a sensor's size, and as
+    /// make_data_filter() does. Nothing has changed then.
+    void add(const std::string& text);
+
+    /// What was just read. Images that do not say so become mosaics of the sensor's colour filter.
+    void process(Batch& batch);
+
+    /// Whether the next events would be taken for the stream's first ones, wherever they come from.
+    bool wants_first() const { return !chain_.empty() && !has_begun_; }
+    void count_from(SensorTime first) {
+        has_begun_ = true;
+        chain_.count_from(first);
+    }
+
+private:
+    SensorInfo info_;
+    const ColourFilter colours_;  // before the filters
+    FilterChain chain_;
+    bool has_begun_ = false;  // something was read
+};
+
+}  // namespace eventide
