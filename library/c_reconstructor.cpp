@@ -48,6 +48,7 @@ ReconstructorOptions options_of(const eventide_options* given_options) {
     options.allow_silence = c.allow_silence != 0;
     options.noise_filter = &given(c.noise_filter, "options.noise_filter");
     options.images = c.images != 0;
+    options.lamp_flicker = &given(c.lamp_flicker, "options.lamp_flicker");
     return options;
 }
 
@@ -92,7 +93,8 @@ void eventide_options_init(eventide_options* options, size_t struct_size) {
                                     .reset_on_gap = 0,
                                     .allow_silence = 0,
                                     .noise_filter = "model",
-                                    .images = 1};
+                                    .images = 1,
+                                    .lamp_flicker = "auto"};
     std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
     if (struct_size >= sizeof options->struct_size) options->struct_size = struct_size;
 }

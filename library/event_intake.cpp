@@ -4,6 +4,7 @@
 #include "library/far_time.h"
 #include "library/pushed_images.h"
 #include "pipeline/filters/event_filter.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/binning/noise_filter.h"
 #include "src/binning/push_filtered.h"
 #include "src/core/error.h"
@@ -86,12 +87,15 @@ bool EventIntake::is_sound(const Event& event) {
 void EventIntake::advance(SensorTime now) {
     check_open("advance");
     refuse_far(now, "advance");
-    slicer_.advance(now, Clock::now());
+    if (!filter_) return slicer_.advance(now, Clock::now());
+    counters_.filtered += advance_filtered(slicer_, now, *filter_, taken_, Clock::now());
+    note_cut();
 }
 
 void EventIntake::finish(std::optional<SensorTime> end) {
     if (finished_) return;
     if (end) refuse_far(*end, "finish");
+    if (filter_) counters_.filtered += flush_filtered(slicer_, *filter_, taken_, Clock::now());
     // A stream without any event has no frames, even though its clock ran.
     if (end && slicer_.has_begun()) slicer_.advance(*end, Clock::now());
     slicer_.finish();
@@ -112,6 +116,7 @@ void EventIntake::reset() {
     finished_ = false;
     // What noise is around is of the scene; hot pixels that were asked for are of the sensor.
     if (NoiseFilter* const noise = noise_filter_in(filter_.get())) noise->reset();
+    if (FlickerPairs* const flicker = flicker_pairs_in(filter_.get())) flicker->reset();
 }
 
 void EventIntake::check_open(const char* what) const {

@@ -62,7 +62,8 @@ FrameRate rate_of(const ReconstructorOptions& options) {
 
 std::unique_ptr<EventFilter> filter_of(const ReconstructorOptions& options,
                                        const ModelConfig& config, int width, int height) {
-    return event_filter({options.hot_pixels, options.noise_filter}, config, width, height);
+    return event_filter({options.hot_pixels, options.noise_filter, options.lamp_flicker}, config,
+                        width, height);
 }
 
 void check_frame_size(const FrameSize& size, int sensor_width, int sensor_height) {

@@ -48,6 +48,9 @@ void EventWindows::change_window(const SlicerSettings& wanted) noexcept {
 void EventWindows::finish(End end) {
     if (end == End::of_source && !is_past_end()) parser_->finish(batch_);
     pass_on(last_data_.value_or(HostTime{}));
+    if (filter_ != nullptr)
+        counters_.bin.filtered_events.add(
+            flush_filtered(slicer_, *filter_, released_, last_data_.value_or(HostTime{})));
     // A stream without any event has no frames, even though its clock ran.
     if (const auto clock = parser_->clock(); clock && slicer_.has_begun())
         slicer_.advance(*clock, last_data_.value_or(HostTime{}));
@@ -115,14 +118,19 @@ void EventWindows::advance_clock(HostTime arrived) {
     if (!clock || clock == clock_) return;
     clock_ = clock;
     clock_arrived_ = arrived;
-    slicer_.advance(*clock, arrived);
+    advance(*clock, arrived);
+}
+
+void EventWindows::advance(SensorTime now, HostTime arrived) {
+    if (filter_ == nullptr) return slicer_.advance(now, arrived);
+    counters_.bin.filtered_events.add(advance_filtered(slicer_, now, *filter_, released_, arrived));
 }
 
 void EventWindows::advance_in_silence(HostTime now) {
     if (!live_ || !clock_) return;
     const auto silent = std::chrono::duration_cast<SensorDuration>(now - clock_arrived_);
     if (silent <= silence_margin_) return;
-    slicer_.advance(*clock_ + silent - silence_margin_, now);
+    advance(*clock_ + silent - silence_margin_, now);
 }
 
 void EventWindows::look_behind(HostTime arrived) {

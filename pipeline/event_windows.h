@@ -60,6 +60,7 @@ private:
     void advance_clock(HostTime arrived);
     void advance_in_silence(HostTime now);
     void look_behind(HostTime arrived);
+    void advance(SensorTime now, HostTime arrived);
 
     std::unique_ptr<Parser> parser_;
     Slicer slicer_;
@@ -70,7 +71,8 @@ private:
     std::optional<SensorTime> resumed_at_;  // until an event after it has come
     std::vector<SensorTime> stops_;         // descending
     std::function<void(SensorTime)> at_stop_;
-    std::vector<Event> part_;  // of a batch, up to a stop
+    std::vector<Event> part_;      // of a batch, up to a stop
+    std::vector<Event> released_;  // by the filter
     const bool live_;
     const SensorDuration silence_margin_;
     std::optional<SensorTime> clock_;    // the newest the stream told

@@ -5,6 +5,7 @@
 #include "src/core/event.h"
 #include "src/core/frame_data.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace eventide {
@@ -36,8 +37,16 @@ public:
 class EventFilter {
 public:
     virtual ~EventFilter() = default;
-    /// Removes events in place; the order stays.
+    /// Events become those that come out now; the order stays.
     virtual void process(std::vector<Event>& events) = 0;
+
+    // Of one that holds events back until it knows more.
+    /// Appends those that come out as time goes on: no event before `now` will come any more.
+    virtual void release(SensorTime, std::vector<Event>&) {}
+    virtual void flush(std::vector<Event>&) {}  ///< appends all of them
+    /// Where all before `now` was processed: no event before this time will come out any more.
+    virtual SensorTime known_until(SensorTime now) const { return now; }
+    virtual std::size_t held() const { return 0; }
 };
 
 /// Sees all data the parser gives (images, inertial samples), before the filter. Bin thread; it

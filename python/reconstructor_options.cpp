@@ -56,6 +56,8 @@ ReconstructorOptions options_of(const py::dict& given) {
             options.hot_pixels = cast_to<std::filesystem::path>("hot_pixels", value).string();
         else if (name == "noise_filter")
             options.noise_filter = cast_to<std::string>("noise_filter", value);
+        else if (name == "lamp_flicker")
+            options.lamp_flicker = cast_to<std::string>("lamp_flicker", value);
         else if (name == "precision")
             options.precision =
                 option_word("precision", cast_to<std::string>("precision", value), kPrecisionWords);

@@ -24,6 +24,7 @@ struct EvaluateSettings {
     std::optional<SigmaRule> sigma_rule;  ///< else the model's own
     /// "model" (as the model was trained), "auto", "off" or a time; parse_noise_filter().
     std::string noise_filter = "model";
+    std::string lamp_flicker = "auto";  ///< as of a camera: parse_lamp_flicker()
     EngineOptions engine;
     bool fuse_images = false;  ///< images will be given to the model (evaluate_recordings sets it)
     /// Over sequences; results do not depend on it. Memory grows with those done at once.

@@ -1,10 +1,12 @@
 // Real recordings: the model's image at each reference image's time against that image.
 #include "apps/evaluate/evaluate_recordings.h"
 
-#include "src/binning/noise_filter.h"
+#include "pipeline/filters/event_filter.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace eventide {
@@ -57,9 +59,8 @@ std::vector<std::size_t> scored_images(const ReferenceSequence& sequence,
 
 SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence sequence,
                                  const std::string& window, const ScoredImages& which) {
-    std::optional<NoiseFilter> filter;
-    if (evaluation.noise_filter())
-        filter.emplace(sequence.width, sequence.height, *evaluation.noise_filter());
+    const std::unique_ptr<EventFilter> filter =
+        evaluation.filter_for(sequence.width, sequence.height);
     const std::vector<std::size_t> scored = scored_images(sequence, which);
     SequenceEvaluation judged{
         evaluation,
@@ -81,13 +82,22 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
         judged.run().push(event_window);
     };
     if (window == "reference") {
-        if (filter) filter->process(sequence.events);
+        if (filter) {
+            filter->process(sequence.events);
+            filter->flush(sequence.events);
+        }
         for_each_reference_window(sequence, push);
     } else {
-        for_each_cut_window(sequence, window, filter ? &*filter : nullptr, push);
+        for_each_cut_window(sequence, window, filter.get(), push);
     }
     ask_until(SensorTime::max());
     SequenceResult result = judged.finish();
+    if (const FlickerPairs* const flicker = flicker_pairs_in(filter.get());
+        flicker != nullptr && flicker->left_out() > 0)
+        result.notes.push_back(sequence.name + ": light flickered at " +
+                               std::to_string(std::lround(1e6 / flicker->last_period_us())) +
+                               " Hz; " + std::to_string(flicker->left_out()) +
+                               " events left out in pairs");
     if (sequence.damaged.total() > 0)
         result.notes.push_back(sequence.name + ": left out of the recording, as it is damaged: " +
                                text_of(sequence.damaged));

@@ -1,6 +1,7 @@
 // Filling a report, sequence by sequence.
 #include "apps/evaluate/evaluation.h"
 
+#include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 #include "src/model/model_trial.h"
 
@@ -18,6 +19,13 @@ Evaluation::Evaluation(std::string subject, EvaluateSettings settings)
     report_.subject = std::move(subject);
     report_.model = settings_.model.filename().string();
     if (lpips_) report_.lpips_name = lpips_->name();
+}
+
+std::unique_ptr<EventFilter> Evaluation::filter_for(int width, int height) const {
+    return event_filter({.hot_pixels = "off",
+                         .noise_filter = settings_.noise_filter,
+                         .lamp_flicker = settings_.lamp_flicker},
+                        model_.config, width, height);
 }
 
 void Evaluation::run_sequences(int n, const std::function<SequenceResult(int)>& evaluate) {

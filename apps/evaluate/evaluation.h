@@ -3,6 +3,7 @@
 
 #include "apps/evaluate/evaluate.h"
 #include "apps/evaluate/model_run.h"
+#include "pipeline/stages.h"
 #include "src/binning/noise_filter.h"
 
 #include <functional>
@@ -33,6 +34,8 @@ public:
     const EvaluateSettings& settings() const { return settings_; }
     /// None: all events are taken.
     std::optional<NoiseFilterSettings> noise_filter() const { return noise_filter_; }
+    /// For a recording of such a sensor, as a live run has it; null: all events are taken.
+    std::unique_ptr<EventFilter> filter_for(int width, int height) const;
 
     /// The report, with the means over everything.
     EvaluateReport finish(const std::string& settings_text);

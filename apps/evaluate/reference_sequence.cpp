@@ -1,8 +1,8 @@
 // Reading a recording into memory, and cutting it.
 #include "apps/evaluate/reference_sequence.h"
 
+#include "pipeline/stages.h"
 #include "replay/formats.h"
-#include "src/binning/noise_filter.h"
 #include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 #include "src/core/grey.h"
@@ -151,7 +151,7 @@ void for_each_reference_window(const ReferenceSequence& sequence,
 }
 
 void for_each_cut_window(const ReferenceSequence& sequence, const std::string& window,
-                         NoiseFilter* filter, const std::function<void(const EventWindow&)>& use) {
+                         EventFilter* filter, const std::function<void(const EventWindow&)>& use) {
     Slicer slicer{parse_window(window), sequence.width, sequence.height};
     for (const ReferenceImage& image : sequence.images) slicer.push_reference(image.t);
     constexpr std::size_t kAtATime = 1 << 16;
@@ -168,6 +168,7 @@ void for_each_cut_window(const ReferenceSequence& sequence, const std::string& w
         }
         while (slicer.next(event_window)) use(event_window);
     }
+    if (filter != nullptr) flush_filtered(slicer, *filter, left);
     SensorTime end = sequence.images.back().t;
     if (!events.empty()) end = std::max(end, events.back().t);
     slicer.advance(end);

@@ -16,7 +16,7 @@
 
 namespace eventide {
 
-class NoiseFilter;
+class EventFilter;
 
 struct ReferenceSequence {
     std::string name;  ///< of the folder or file
@@ -57,6 +57,6 @@ void for_each_reference_window(const ReferenceSequence& sequence,
 /// Event windows as `window` says (slicer_settings.h), of what the filter leaves, as the pipeline
 /// cuts them. Null: of all.
 void for_each_cut_window(const ReferenceSequence& sequence, const std::string& window,
-                         NoiseFilter* filter, const std::function<void(const EventWindow&)>& use);
+                         EventFilter* filter, const std::function<void(const EventWindow&)>& use);
 
 }  // namespace eventide

@@ -81,6 +81,7 @@ typedef struct eventide_options {
     int allow_silence;        /**< any number of frames in a row without events */
     const char* noise_filter; /**< "model", "auto", "off", or a time such as "10ms" */
     int images;               /**< frames are corrected by the camera's images that are pushed */
+    const char* lamp_flicker; /**< "auto", "off", or a time such as "16ms" */
 } eventide_options;
 
 /** The defaults, those of ReconstructorOptions. `struct_size` is sizeof(eventide_options). */

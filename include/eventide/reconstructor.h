@@ -19,8 +19,8 @@
 namespace eventide {
 
 /// The defaults are those of `eventide run --quality fixed` on a camera: frames as early as they
-/// can be. For a recording, which can wait, `eventide run` takes window "auto" and lookahead 2,
-/// which are better.
+/// can be. For a recording, which can wait, `eventide run` takes window "auto", lookahead 2 and
+/// lamp_flicker "16ms", which are better.
 struct ReconstructorOptions {
     /// How events are cut into event windows, each of which is one step of the network: "model"
     /// (what the model was trained for), "auto" (by content: short where much moves, 100 ms at
@@ -39,6 +39,11 @@ struct ReconstructorOptions {
     /// support within some time: "10ms", for example; "auto": 10 to 500 ms, by the noise that is
     /// found; "off"; "model": as the model was trained.
     std::string noise_filter = "model";
+    /// While light flickers (80 to 800 Hz), leaves out the pairs of on and off events that it adds.
+    /// Events wait as long as the second of a pair may come: "auto", three quarters of a period; a
+    /// time, such as "16ms", which is better and later (`eventide run` takes it for recordings);
+    /// "off".
+    std::string lamp_flicker = "auto";
     /// Frames are corrected by the images that a camera takes beside its events, where they are
     /// pushed with them (push(const Batch&)), as `eventide run` does. Memory: some 190 bytes a
     /// pixel of the sensor, from the first image on.

@@ -2,28 +2,59 @@
 #include "pipeline/filters/event_filter.h"
 
 #include "pipeline/filters/hot_pixels.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/binning/noise_filter.h"
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace eventide {
 namespace {
 
 class FilterChain final : public EventFilter {
 public:
-    FilterChain(std::optional<HotPixelFilter> hot_pixels, std::optional<NoiseFilter> noise)
-        : hot_pixels_(std::move(hot_pixels)), noise_(std::move(noise)) {}
+    FilterChain(std::optional<FlickerPairs> flicker, std::optional<HotPixelFilter> hot_pixels,
+                std::optional<NoiseFilter> noise)
+        : flicker_(std::move(flicker)),
+          hot_pixels_(std::move(hot_pixels)),
+          noise_(std::move(noise)) {}
 
     void process(std::vector<Event>& events) override {
+        if (flicker_) flicker_->process(events);
+        process_rest(events);
+    }
+    void release(SensorTime now, std::vector<Event>& events) override {
+        if (flicker_) append([&] { flicker_->release(now, released_); }, events);
+    }
+    void flush(std::vector<Event>& events) override {
+        if (flicker_) append([&] { flicker_->flush(released_); }, events);
+    }
+    SensorTime known_until(SensorTime now) const override {
+        return flicker_ ? flicker_->known_until(now) : now;
+    }
+    std::size_t held() const override { return flicker_ ? flicker_->held() : 0; }
+
+    NoiseFilter* noise() { return noise_ ? &*noise_ : nullptr; }
+    FlickerPairs* flicker() { return flicker_ ? &*flicker_ : nullptr; }
+
+private:
+    void process_rest(std::vector<Event>& events) {
         if (hot_pixels_) hot_pixels_->process(events);
         if (noise_) noise_->process(events);
     }
+    template <typename Release>
+    void append(Release release, std::vector<Event>& events) {
+        released_.clear();
+        release();
+        process_rest(released_);
+        events.insert(events.end(), released_.begin(), released_.end());
+    }
 
-    NoiseFilter* noise() { return noise_ ? &*noise_ : nullptr; }
-
-private:
+    std::optional<FlickerPairs> flicker_;
     std::optional<HotPixelFilter> hot_pixels_;
     std::optional<NoiseFilter> noise_;
+    std::vector<Event> released_;
 };
 
 }  // namespace
@@ -33,8 +64,16 @@ NoiseFilter* noise_filter_in(EventFilter* filter) {
     return chain == nullptr ? nullptr : chain->noise();
 }
 
+FlickerPairs* flicker_pairs_in(EventFilter* filter) {
+    auto* const chain = dynamic_cast<FilterChain*>(filter);
+    return chain == nullptr ? nullptr : chain->flicker();
+}
+
 std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const ModelConfig& model,
                                           int width, int height) {
+    std::optional<FlickerPairs> flicker;
+    if (const auto longest = parse_lamp_flicker(choice.lamp_flicker, choice.can_wait))
+        flicker.emplace(width, height, *longest);
     std::optional<HotPixelFilter> hot_pixels;
     if (choice.hot_pixels == "learn")
         hot_pixels.emplace(width, height);
@@ -43,8 +82,9 @@ std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const
     std::optional<NoiseFilter> noise;
     if (const auto settings = parse_noise_filter(choice.noise_filter, model.noise_filter))
         noise.emplace(width, height, *settings);
-    if (!hot_pixels && !noise) return nullptr;
-    return std::make_unique<FilterChain>(std::move(hot_pixels), std::move(noise));
+    if (!flicker && !hot_pixels && !noise) return nullptr;
+    return std::make_unique<FilterChain>(std::move(flicker), std::move(hot_pixels),
+                                         std::move(noise));
 }
 
 }  // namespace eventide

@@ -12,14 +12,19 @@ namespace eventide {
 struct EventFilterChoice {
     std::string hot_pixels;    ///< "off", "learn", or a file that lists pixels (HotPixelFilter)
     std::string noise_filter;  ///< parse_noise_filter()
+    std::string lamp_flicker = "auto";  ///< parse_lamp_flicker()
+    bool can_wait = false;              ///< a recording
 };
 
+class FlickerPairs;
 class NoiseFilter;
 
-/// The one within a filter of event_filter(); null: there is none.
+// Those within a filter of event_filter(); null: there is none.
 NoiseFilter* noise_filter_in(EventFilter* filter);
+FlickerPairs* flicker_pairs_in(EventFilter* filter);
 
-/// Hot pixels first, then what nothing supports; null where all events stay. Throws Error (usage).
+/// What light's flicker adds first, then hot pixels, then what nothing supports; null where all
+/// events stay. Throws Error (usage).
 std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const ModelConfig& model,
                                           int width, int height);
 

@@ -44,6 +44,7 @@ class Reconstructor:
         sigma: bool = True,
         hot_pixels: _Path = "off",
         noise_filter: str = "model",
+        lamp_flicker: str = "auto",
         precision: str = "auto",
         kernels: str = "auto",
         threads: int = 0,

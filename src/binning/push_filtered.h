@@ -8,8 +8,11 @@
 
 namespace eventide {
 
-/// Pushes what `filter` leaves of `events`, in place; those left out tell the time all the same.
-/// Returns how many were left out. Filter: has process(std::vector<Event>&).
+// A filter has process(), release(), flush(), known_until() and held(), as EventFilter. Each
+// function returns how many events were left out.
+
+/// Pushes what comes out of `filter` for `events`, in place; those left out tell the time all the
+/// same.
 template <typename Filter>
 std::size_t push_filtered(Slicer& slicer, std::vector<Event>& events, Filter& filter,
                           HostTime arrived = {}) {
@@ -18,12 +21,35 @@ std::size_t push_filtered(Slicer& slicer, std::vector<Event>& events, Filter& fi
         return 0;
     }
     const SensorTime newest = events.back().t;
-    const std::size_t before = events.size();
+    const std::size_t before = events.size() + filter.held();
     slicer.hear(events);
     filter.process(events);
     slicer.push(events, arrived);
-    slicer.advance(newest, arrived);
-    return before - events.size();
+    slicer.advance(filter.known_until(newest), arrived);
+    return before - events.size() - filter.held();
+}
+
+/// The stream's clock says `now`: no event before it will come any more. `room` is overwritten.
+template <typename Filter>
+std::size_t advance_filtered(Slicer& slicer, SensorTime now, Filter& filter,
+                             std::vector<Event>& room, HostTime arrived = {}) {
+    const std::size_t before = filter.held();
+    room.clear();
+    filter.release(now, room);
+    if (!room.empty()) slicer.push(room, arrived);
+    slicer.advance(filter.known_until(now), arrived);
+    return before - room.size() - filter.held();
+}
+
+/// Nothing more will come.
+template <typename Filter>
+std::size_t flush_filtered(Slicer& slicer, Filter& filter, std::vector<Event>& room,
+                           HostTime arrived = {}) {
+    const std::size_t before = filter.held();
+    room.clear();
+    filter.flush(room);
+    if (!room.empty()) slicer.push(room, arrived);
+    return before - room.size();
 }
 
 }  // namespace eventide

@@ -98,6 +98,7 @@ public:
     struct State {
         SensorTime begin{}, origin{};  ///< of the open window; of the edges of rule duration
         SensorTime newest{}, newest_event{};
+        SensorTime heard{};  ///< until when hear() was told, which filters may hold back
         std::uint64_t same_time = 0;
         int silent = 0;
         bool gap = false;

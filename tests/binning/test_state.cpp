@@ -75,8 +75,9 @@ TEST(SlicerState, ThereIsNoneOfWhatCannotGoOn) {
 
 TEST(SlicerState, WhatHoldsNoTruthIsRefused) {
     Slicer slicer{by_duration(1000), 240, 180};
-    Slicer::State good{from_us(1000), from_us(0),          from_us(1500), from_us(1500), 1, 0,
-                       false,         {at(1200), at(1500)}};
+    Slicer::State good{
+        from_us(1000), from_us(0),          from_us(1500), from_us(1500), from_us(1500), 1, 0,
+        false,         {at(1200), at(1500)}};
     slicer.restore(good);
     const auto refused = [&](auto spoil) {
         Slicer::State bad = good;

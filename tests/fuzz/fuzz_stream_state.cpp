@@ -1,6 +1,6 @@
 // Any bytes as what a run remembers: refused with an Error, or what is made of it does not fail.
 // corpus/stream_state: what `eventide run --states-out` kept of a sensor of 10 x 9 with
-// corpus/model/tiny, with and without `--noise-filter auto`.
+// corpus/model/tiny, with and without `--noise-filter auto` and in flickering light.
 #include "apps/cli/run/state/stream_state.h"
 #include "src/binning/binner.h"
 #include "src/core/error.h"
@@ -21,6 +21,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         binner.restore(state->stream.ages);
         std::vector<Event> events{{state->stream.t, 3, 4, Polarity::on},
                                   {state->stream.t + SensorDuration{300'000}, 4, 4, Polarity::on}};
+        if (state->flicker) {
+            FlickerPairs flicker{kWidth, kHeight, SensorDuration{16'000}};
+            flicker.restore(*state->flicker);
+            flicker.process(events);
+            flicker.flush(events);
+        }
         if (state->noise) {
             NoiseFilter noise{kWidth, kHeight, {}};
             noise.restore(*state->noise);

@@ -40,6 +40,7 @@ struct Beginning {
         for (EventWindow event_window; frames.next(event_window);) {
             edges.emplace_back(to_us(event_window.window.begin), to_us(event_window.window.end));
             gaps.push_back(event_window.gap_before);
+            events += event_window.events.size();
         }
     }
 
@@ -48,6 +49,7 @@ struct Beginning {
     EventWindows frames;
     Edges edges;
     std::vector<bool> gaps;
+    std::size_t events = 0;  // in the windows
 };
 
 inline std::vector<std::byte> record(ToyKind kind, std::int64_t t_us) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace eventide {
@@ -140,6 +141,56 @@ TEST(EventWindows, EventsThatAreLeftOutTellTheTimeAllTheSame) {
     }
     EXPECT_EQ(filtered.edges, all.edges);
     EXPECT_EQ(all.edges.size(), 10U);
+}
+
+/// For 20 us; every third event is left out.
+class HoldsBack final : public EventFilter {
+public:
+    void process(std::vector<Event>& events) override {
+        for (const Event& event : events)
+            if (++seen_ % 3 != 0) held_.push_back(event);
+        const SensorTime now = events.empty() ? SensorTime::min() : events.back().t;
+        events.clear();
+        if (now != SensorTime::min()) release(now, events);
+    }
+    void release(SensorTime now, std::vector<Event>& events) override {
+        const auto stay = std::ranges::find_if(
+            held_, [&](const Event& event) { return event.t >= known_until(now); });
+        events.insert(events.end(), held_.begin(), stay);
+        held_.erase(held_.begin(), stay);
+    }
+    void flush(std::vector<Event>& events) override {
+        events.insert(events.end(), held_.begin(), held_.end());
+        held_.clear();
+    }
+    SensorTime known_until(SensorTime now) const override { return now - SensorDuration{20}; }
+    std::size_t held() const override { return held_.size(); }
+
+private:
+    std::vector<Event> held_;
+    int seen_ = 0;
+};
+
+TEST(EventWindows, EventsThatAreHeldBackAreInTheWindowsOfTheirTime) {
+    for (const bool live : {false, true}) {
+        HoldsBack filter;
+        Beginning b(live, 10, &filter);
+        for (int t = 1; t <= 97; t += 3)
+            b.give(record(ToyKind::event, t), t);  // 33, of which 22 stay
+        EXPECT_EQ(b.edges.size(), 7U) << "events of the last 20 us may come yet";
+        EXPECT_EQ(b.events, 16U);
+        if (live) {
+            b.give(record(ToyKind::clock, 113), 113);
+            EXPECT_EQ(b.edges.size(), 9U) << "nor does the clock promise more";
+            b.give({}, 300);
+            EXPECT_EQ(b.edges.size(), 17U) << "nor the host's";
+            EXPECT_EQ(b.events, 22U);
+        }
+        b.finish();
+        EXPECT_EQ(b.events, 22U);
+        EXPECT_EQ(b.counters.snapshot().filtered_events, 11U);
+        EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
+    }
 }
 
 }  // namespace

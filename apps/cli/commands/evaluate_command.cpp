@@ -108,6 +108,8 @@ SettingTable EvaluateCommand::settings() {
     add(seconds_setting("to", to_, "recordings: score until here; end: all.", "end"));
     add(choice_setting("sigma_rule", sigma_rule_, "As in eventide run.", sigma_words()));
     add(text_setting("noise_filter", noise_filter_, "model|auto|off|TIME", "As in eventide run."));
+    add(text_setting("lamp_flicker", lamp_flicker_, "auto|off|TIME",
+                     "recordings: as in eventide run of a camera."));
     add(choice_setting("precision", precision_, "As in eventide run.", kPrecisionWords));
     add(choice_setting("engine", engine_, "As in eventide run.", kEngineWords));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
@@ -160,6 +162,7 @@ EvaluateSettings EvaluateCommand::how(Program& program) const {
     how.sigma_rule = sigma_rule_;
     how.engine.engine = engine_;
     how.noise_filter = noise_filter_;
+    how.lamp_flicker = lamp_flicker_;
     how.engine.precision = precision_;
     how.engine.parallel_for = parallel_for_with(threads_);
     // Of recordings each is long: they come one by one, and the network takes all threads.

@@ -43,6 +43,7 @@ private:
     int lookahead_ = 0, skip_ = 3, given_images_ = 0, threads_ = 0;
     SigmaChoice sigma_rule_;
     std::string noise_filter_ = "model";
+    std::string lamp_flicker_ = "auto";
     Precision precision_ = Precision::automatic;
     Engine engine_ = Engine::fast;
     std::string from_ = "start", to_ = "end";

@@ -7,6 +7,8 @@
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace eventide::app {
 
@@ -60,8 +62,42 @@ void EventsOut::see(const Batch& batch) {
 }
 
 void EventsOut::process(std::vector<Event>& events) {
+    if (!events.empty()) newest_ = events.back().t;
     if (filter_ != nullptr) filter_->process(events);
-    batch_.events = events;
+    write(events);
+}
+
+void EventsOut::release(SensorTime now, std::vector<Event>& events) {
+    if (held() == 0) return;
+    released_.clear();
+    filter_->release(now, released_);
+    newest_ = std::max(newest_, now);
+    write(released_);
+    events.insert(events.end(), released_.begin(), released_.end());
+}
+
+void EventsOut::flush(std::vector<Event>& events) {
+    if (held() == 0) return;
+    released_.clear();
+    filter_->flush(released_);
+    write(released_);
+    events.insert(events.end(), released_.begin(), released_.end());
+}
+
+void EventsOut::write(std::span<const Event> events) {
+    batch_.events.assign(events.begin(), events.end());
+    if (held() > 0) {
+        const SensorTime until = known_until(newest_);
+        const auto keep_for_later = [until](auto& all, auto& later) {
+            const auto first =
+                std::ranges::find_if(all, [&](const auto& i) { return i.t > until; });
+            later.assign(std::make_move_iterator(first), std::make_move_iterator(all.end()));
+            all.erase(first, all.end());
+        };
+        keep_for_later(batch_.images, later_.images);
+        keep_for_later(batch_.imu, later_.imu);
+        keep_for_later(batch_.triggers, later_.triggers);
+    }
     const auto outside = [this](const auto& item) {
         return (from_ && item.t < *from_) || (to_ && item.t > *to_);
     };
@@ -73,6 +109,7 @@ void EventsOut::process(std::vector<Event>& events) {
     times_.put_in_order(batch_);
     if (!batch_.empty()) target_->write(batch_);
     batch_.clear();
+    std::swap(batch_, later_);
 }
 
 void EventsOut::finish() {

@@ -41,16 +41,27 @@ public:
     /// there are none.
     void see(const Batch& batch) override;
     void process(std::vector<Event>& events) override;
+    void release(SensorTime now, std::vector<Event>& events) override;
+    void flush(std::vector<Event>& events) override;
+    SensorTime known_until(SensorTime now) const override {
+        return filter_ != nullptr ? filter_->known_until(now) : now;
+    }
+    std::size_t held() const override { return filter_ != nullptr ? filter_->held() : 0; }
     void finish();
     std::uint64_t lost() const { return target_->lost(); }
     const WrittenTimes& times() const { return times_; }  ///< after the run
 
 private:
+    void write(std::span<const Event> events);
+
     EventFilter* filter_;
     std::unique_ptr<ConvertTarget> target_;
     WrittenTimes times_;
     std::optional<SensorTime> from_, to_;
     Batch batch_;
+    Batch later_;                            // than events that the filter holds back
+    SensorTime newest_ = SensorTime::min();  // event
+    std::vector<Event> released_;
 };
 
 }  // namespace eventide::app

@@ -102,7 +102,7 @@ Run::Run(Program& program, RunSettings& settings)
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
-      filter_{filter_of(settings, network_.config(), sensor_)},
+      filter_{filter_of(settings, network_.config(), sensor_, !as_live())},
       observers_{sheet_ ? &references_ : nullptr,
                  settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
       render_{render_stage()} {

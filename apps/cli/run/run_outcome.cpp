@@ -2,6 +2,8 @@
 #include "apps/cli/commands/disorder.h"
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run.h"
+#include "pipeline/filters/event_filter.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/core/error.h"
 
 #include <spdlog/spdlog.h>
@@ -24,6 +26,10 @@ int Run::report(const RunProgress& end) const {
     const CameraCounters camera = camera_counters();
     spdlog::info("{}{}", summary_text(end_counters, end), camera_text(camera));
     if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
+    if (const FlickerPairs* const flicker = flicker_pairs_in(filter_.get());
+        flicker != nullptr && flicker->left_out() > 0)
+        spdlog::info("light flickered at {:.0f} Hz: {} events left out in pairs",
+                     1e6 / flicker->last_period_us(), flicker->left_out());
     if (const std::string why = disorder_text(settings_.source, sensor_.format, end_counters.events,
                                               end_counters.damaged);
         !why.empty())

@@ -178,9 +178,10 @@ std::string reference_caption(const SensorInfo& sensor) {
 }
 
 std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
-                                       const SensorInfo& sensor) {
-    return event_filter({settings.hot_pixels, settings.noise_filter}, model, sensor.width,
-                        sensor.height);
+                                       const SensorInfo& sensor, bool can_wait) {
+    return event_filter(
+        {settings.hot_pixels, settings.noise_filter, settings.lamp_flicker, can_wait}, model,
+        sensor.width, sensor.height);
 }
 
 std::optional<UndistortionPlan> undistortion_of(const RunSettings& settings,

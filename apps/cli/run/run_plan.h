@@ -67,7 +67,7 @@ std::string reference_caption(const SensorInfo& sensor);
 
 /// Null when all events stay.
 std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
-                                       const SensorInfo& sensor);
+                                       const SensorInfo& sensor, bool can_wait);
 
 /// Empty: not asked for. Throws Error: input for a calibration that cannot be read or is of another
 /// sensor, usage where it does not fit what else was asked for.

@@ -2,6 +2,7 @@
 #include "apps/cli/run/run.h"
 #include "apps/cli/run/state/run_state.h"
 #include "pipeline/filters/event_filter.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/core/error.h"
 
 #include <optional>
@@ -25,6 +26,12 @@ void Run::resume() {
     require("--window", resumed_->window, window_text(slicer_));
     require("--noise-filter", resumed_->noise_filter,
             noise_filter_of(settings_, network_.config()));
+    require("--lamp-flicker", resumed_->lamp_flicker, lamp_flicker_of(settings_));
+    FlickerPairs* const flicker = flicker_pairs_in(filter_.get());
+    if (resumed_->flicker.has_value() != (flicker != nullptr))
+        throw Error(ErrorKind::input,
+                    settings_.state_in + ": expected what is known of flickering light");
+    if (flicker != nullptr) flicker->restore(*resumed_->flicker);
     NoiseFilter* const noise = noise_filter_in(filter_.get());
     if (resumed_->noise.has_value() != (noise != nullptr))
         throw Error(ErrorKind::input,
@@ -33,8 +40,14 @@ void Run::resume() {
 }
 
 void Run::keep_state(const PipelineState& memory) {
-    StreamState state{memory, std::nullopt, window_text(slicer_),
-                      noise_filter_of(settings_, network_.config())};
+    StreamState state{memory,
+                      std::nullopt,
+                      std::nullopt,
+                      window_text(slicer_),
+                      noise_filter_of(settings_, network_.config()),
+                      lamp_flicker_of(settings_)};
+    if (const FlickerPairs* const flicker = flicker_pairs_in(filter_.get()))
+        state.flicker = flicker->state();
     if (const NoiseFilter* const noise = noise_filter_in(filter_.get()))
         state.noise = noise->state();
     TensorFile file = state_of(network_, nullptr);

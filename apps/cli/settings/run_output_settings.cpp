@@ -1,5 +1,6 @@
 // The part of `eventide run`'s table that says where frames go and how they look.
 #include "apps/cli/settings/run_settings.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/binning/noise_filter.h"
 #include "src/settings/setting.h"
 
@@ -22,6 +23,11 @@ std::string check_token(const std::string& text) {
 
 std::string check_hot_pixels(const std::string& text) {
     if (text.empty()) throw_usage("off, learn or a file", text);
+    return text;
+}
+
+std::string check_lamp_flicker(const std::string& text) {
+    parse_lamp_flicker(text, false);
     return text;
 }
 
@@ -116,6 +122,13 @@ void RunSettings::add_adjustments(SettingTable& table) {
         "TIME. auto: 10 to 500 ms by the measured noise, more strictly where nothing moves, and "
         "hot pixels; model: as the model was trained.",
         check_noise_filter, same_text));
+    add(parsed_setting<std::string>(
+        "lamp_flicker", lamp_flicker, "auto|off|TIME",
+        "While light flickers at 80 to 800 Hz, leave out the pairs of on and off events that it "
+        "adds. "
+        "Events wait as long as the second of a pair may come: TIME; auto: 16 ms of a recording, "
+        "three quarters of a period of a camera.",
+        check_lamp_flicker, same_text));
     add(text_setting(
         "undistort", undistort, "FILE",
         "Undistort the frames: YAML of ROS' camera_calibration or Kalibr's camchain, for "

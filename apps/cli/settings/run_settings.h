@@ -88,6 +88,7 @@ struct RunSettings {
     std::vector<std::string> filter;  ///< make_data_filter(), in this order
     std::string hot_pixels = "off";
     std::string noise_filter = "model";
+    std::string lamp_flicker = "auto";  ///< parse_lamp_flicker()
 
     // to where
     std::vector<std::string> out;

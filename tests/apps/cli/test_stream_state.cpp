@@ -2,6 +2,7 @@
 // why.
 #include "apps/cli/run/state/stream_state.h"
 #include "src/core/error.h"
+#include "tests/support/flickering_light.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,11 +30,20 @@ StreamState made_state() {
     state.window = "50ms";
     state.noise_filter = "auto";
     state.noise = filter.state();
+    state.lamp_flicker = "16ms";
+    FlickerPairs flicker{kWidth, kHeight, SensorDuration{16'000}};
+    std::vector<Event> lamp = test::lamp_events({.width = kWidth, .height = kHeight, .share = 1});
+    const SensorDuration later = last.t - lamp.back().t;
+    for (Event& event : lamp) event.t += later;
+    flicker.process(lamp);
+    state.flicker = flicker.state();
+    EXPECT_FALSE(state.flicker->held.empty());
     state.stream.t = last.t + SensorDuration{7};
     state.stream.slicer = {last.t - SensorDuration{90'000'000'000},
                            last.t - SensorDuration{90'000'000'003},
                            last.t,
                            last.t,
+                           last.t + SensorDuration{5},
                            3,
                            2,
                            true,
@@ -70,17 +80,21 @@ TEST(StreamState, ComesBackAsItWas) {
     EXPECT_EQ(back->stream.slicer, kept.stream.slicer);
     EXPECT_EQ(back->stream.ages, kept.stream.ages);
     EXPECT_EQ(back->noise, kept.noise);
+    EXPECT_EQ(back->lamp_flicker, kept.lamp_flicker);
+    EXPECT_EQ(back->flicker, kept.flicker);
     ASSERT_EQ(file.tensors.size(), 1U) << "the network's are left";
     EXPECT_TRUE(file.tensors.contains("h.0"));
 }
 
-TEST(StreamState, OfARunWithoutNoiseFilter) {
+TEST(StreamState, OfARunWithoutFilters) {
     StreamState kept = made_state();
     kept.noise.reset();
+    kept.flicker.reset();
     TensorFile file = file_of(kept);
     const auto back = take_stream_state(file, "kept", kWidth, kHeight);
     ASSERT_TRUE(back);
     EXPECT_FALSE(back->noise);
+    EXPECT_FALSE(back->flicker);
 }
 
 TEST(StreamState, TheNetworksAloneIsNone) {
@@ -97,7 +111,9 @@ TEST(StreamState, DamageIsNamed) {
             TensorFile bad = good;
             bad.metadata.erase(key);
             EXPECT_THAT(refusal(bad), HasSubstr("kept: state: expected '" + key + "'"));
-            if (key == "stream.window" || key == "stream.noise_filter") continue;
+            if (key == "stream.window" || key == "stream.noise_filter" ||
+                key == "stream.lamp_flicker")
+                continue;
             bad = good;
             bad.metadata[key] = "many";
             EXPECT_THAT(refusal(bad), HasSubstr("expected a whole number, found 'many'"));

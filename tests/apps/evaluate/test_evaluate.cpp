@@ -1,7 +1,7 @@
 // Whole evaluations: on a small recording made here, on folders, and what is written about them.
 #include "apps/evaluate/evaluate.h"
 #include "apps/evaluate/reference_sequence.h"
-#include "src/binning/noise_filter.h"
+#include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
 #include "tests/apps/evaluate/small_model.h"
@@ -52,12 +52,12 @@ TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
     for (int i = 1; i < 500; ++i) add(7000 * i, i * 29 % 64, i * 31 % 48);  // 3.5 s of noise
     move_at(3'500'000);
     sequence.images.emplace_back().t = from_us(3'500'006);
-    NoiseFilter filter{64, 48, {SensorDuration{1000}, SensorDuration{1000}}};
+    const auto filter = event_filter({.hot_pixels = "off", .noise_filter = "1ms"}, {}, 64, 48);
     std::vector<Window> of_all, of_filtered;
     std::size_t events = 0;
     for_each_cut_window(sequence, "10ms", nullptr,
                         [&](const EventWindow& cut) { of_all.push_back(cut.window); });
-    for_each_cut_window(sequence, "10ms", &filter, [&](const EventWindow& cut) {
+    for_each_cut_window(sequence, "10ms", filter.get(), [&](const EventWindow& cut) {
         of_filtered.push_back(cut.window);
         events += cut.events.size();
     });

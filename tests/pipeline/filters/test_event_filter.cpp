@@ -36,8 +36,9 @@ TEST(EventFilter, LeavesOutNoiseWhereAskedOrWhereTheModelWasTrainedSo) {
 }
 
 TEST(EventFilter, IsNoneWhereAllEventsStay) {
-    EXPECT_EQ(event_filter({"off", "off"}, {}, 16, 16), nullptr);
-    EXPECT_NE(event_filter({"learn", "off"}, {}, 16, 16), nullptr);
+    EXPECT_EQ(event_filter({"off", "off", "off"}, {}, 16, 16), nullptr);
+    EXPECT_NE(event_filter({"learn", "off", "off"}, {}, 16, 16), nullptr);
+    EXPECT_NE(event_filter({"off", "off", "auto"}, {}, 16, 16), nullptr);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // exactly.
 #include "apps/cli/run/state/stream_state.h"
 
+#include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
@@ -38,6 +39,17 @@ Tensor made(std::vector<std::int64_t> shape, std::vector<float> values) {
     return {std::move(shape), std::move(values)};
 }
 
+/// Each as {2^24 us and us after `begin`, x, y, 1 where on}.
+Tensor events_after(SensorTime begin, const std::vector<Event>& events) {
+    std::vector<float> values;
+    for (const Event& event : events) {
+        const std::int64_t dt = (event.t - begin).count();
+        values.insert(values.end(), {float(dt / kExact), float(dt % kExact), float(event.x),
+                                     float(event.y), event.polarity == Polarity::on ? 1.F : 0.F});
+    }
+    return made({std::int64_t(events.size()), kEventValues}, std::move(values));
+}
+
 void put_slicer(const PipelineState& stream, TensorFile& file) {
     const Slicer::State& slicer = stream.slicer;
     auto& words = file.metadata;
@@ -46,17 +58,29 @@ void put_slicer(const PipelineState& stream, TensorFile& file) {
     words["stream.origin_us"] = text_of(slicer.origin);
     words["stream.newest_us"] = text_of(slicer.newest);
     words["stream.newest_event_us"] = text_of(slicer.newest_event);
+    words["stream.heard_us"] = text_of(slicer.heard);
     words["stream.same_time"] = std::to_string(slicer.same_time);
     words["stream.silent"] = std::to_string(slicer.silent);
     words["stream.gap"] = slicer.gap ? "1" : "0";
-    std::vector<float> events;
-    for (const Event& event : slicer.events) {
-        const std::int64_t dt = (event.t - slicer.begin).count();
-        events.insert(events.end(), {float(dt / kExact), float(dt % kExact), float(event.x),
-                                     float(event.y), event.polarity == Polarity::on ? 1.F : 0.F});
-    }
-    file.tensors["stream.events"] =
-        made({std::int64_t(slicer.events.size()), kEventValues}, std::move(events));
+    file.tensors["stream.events"] = events_after(slicer.begin, slicer.events);
+}
+
+void put_flicker(const FlickerPairs::State& flicker, const PipelineState& stream, int width,
+                 TensorFile& file) {
+    const FlickerPeriod::State& period = flicker.period;
+    file.metadata["stream.flicker_block_us"] = text_of(period.block);
+    std::vector<float> us, rises;
+    put_bits(period.period_us, us);
+    put_bits(period.found_us, us);
+    us.push_back(float(period.unsaid));
+    for (const std::uint32_t rise : period.rises)
+        rises.insert(rises.end(), {float(rise >> 16), float(rise & 0xFFFF)});
+    file.tensors["stream.flicker_period"] = made({9}, std::move(us));
+    file.tensors["stream.flicker_rises"] =
+        made({std::int64_t(period.rises.size()) / width, width, 2}, std::move(rises));
+    file.tensors["stream.flicker_intervals"] =
+        made({FlickerPeriod::kBins}, {period.intervals.begin(), period.intervals.end()});
+    file.tensors["stream.flicker_held"] = events_after(stream.slicer.begin, flicker.held);
 }
 
 void put_noise(const NoiseFilter::State& noise, SensorTime t, std::int64_t width,
@@ -153,6 +177,43 @@ double bits_at(const std::vector<float>& values, std::size_t at) {
     return std::bit_cast<double>(bits);
 }
 
+std::vector<Event> events_after(const Kept& kept, const std::string& key, SensorTime begin,
+                                int width, int height) {
+    std::vector<Event> events;
+    const auto& values = kept.tensor(key, {-1, kEventValues}, 0, float(kExact));
+    for (std::size_t i = 0; i + kEventValues <= values.size(); i += kEventValues) {
+        if (values[i + 2] >= float(width) || values[i + 3] >= float(height))
+            kept.refuse("expected events on a sensor of " + std::to_string(width) + "x" +
+                        std::to_string(height) + ", found one at " +
+                        std::to_string(int(values[i + 2])) + ", " +
+                        std::to_string(int(values[i + 3])));
+        const SensorDuration dt{std::int64_t(values[i]) * kExact + std::int64_t(values[i + 1])};
+        events.push_back({begin + dt, std::uint16_t(values[i + 2]), std::uint16_t(values[i + 3]),
+                          values[i + 4] != 0 ? Polarity::on : Polarity::off});
+    }
+    return events;
+}
+
+FlickerPairs::State flicker_of(const Kept& kept, SensorTime begin, int width, int height) {
+    FlickerPairs::State flicker;
+    flicker.period.block = kept.time_or_none("stream.flicker_block_us");
+    const auto& period = kept.tensor("stream.flicker_period", {9}, 0, 0xFFFF);
+    flicker.period.period_us = bits_at(period, 0);
+    flicker.period.found_us = bits_at(period, 4);
+    flicker.period.unsaid = int(period[8]);
+    const auto& rises = kept.tensor("stream.flicker_rises", {height, width, 2}, 0, 0xFFFF);
+    for (std::size_t i = 0; i + 1 < rises.size(); i += 2)
+        flicker.period.rises.push_back(std::uint32_t(rises[i]) << 16 | std::uint32_t(rises[i + 1]));
+    const auto& intervals =
+        kept.tensor("stream.flicker_intervals", {FlickerPeriod::kBins}, 0, float(kExact));
+    std::ranges::transform(intervals, flicker.period.intervals.begin(),
+                           [](float n) { return std::uint32_t(n); });
+    flicker.held = events_after(kept, "stream.flicker_held", begin, width, height);
+    if (!std::ranges::is_sorted(flicker.held, {}, &Event::t))
+        kept.refuse("expected events in the order of time, found others");
+    return flicker;
+}
+
 PipelineState stream_of(const Kept& kept, int width, int height) {
     PipelineState stream;
     stream.t = kept.time("stream.t_us");
@@ -161,21 +222,11 @@ PipelineState stream_of(const Kept& kept, int width, int height) {
     slicer.origin = kept.time("stream.origin_us");
     slicer.newest = kept.time("stream.newest_us");
     slicer.newest_event = kept.time("stream.newest_event_us");
+    slicer.heard = kept.time("stream.heard_us");
     slicer.same_time = std::uint64_t(kept.number("stream.same_time"));
     slicer.silent = int(std::clamp<std::int64_t>(kept.number("stream.silent"), 0, 1 << 20));
     slicer.gap = kept.number("stream.gap") != 0;
-    const auto& events = kept.tensor("stream.events", {-1, kEventValues}, 0, float(kExact));
-    for (std::size_t i = 0; i + kEventValues <= events.size(); i += kEventValues) {
-        if (events[i + 2] >= float(width) || events[i + 3] >= float(height))
-            kept.refuse("expected events on a sensor of " + std::to_string(width) + "x" +
-                        std::to_string(height) + ", found one at " +
-                        std::to_string(int(events[i + 2])) + ", " +
-                        std::to_string(int(events[i + 3])));
-        const SensorDuration dt{std::int64_t(events[i]) * kExact + std::int64_t(events[i + 1])};
-        slicer.events.push_back({slicer.begin + dt, std::uint16_t(events[i + 2]),
-                                 std::uint16_t(events[i + 3]),
-                                 events[i + 4] != 0 ? Polarity::on : Polarity::off});
-    }
+    slicer.events = events_after(kept, "stream.events", slicer.begin, width, height);
     const auto& ages = kept.tensor("stream.ages", {height, width}, 0, 255);
     stream.ages.assign(ages.begin(), ages.end());
     return stream;
@@ -220,6 +271,8 @@ void put_stream_state(const StreamState& state, int width, TensorFile& file) {
     file.tensors["stream.ages"] =
         made({std::int64_t(ages.size()) / width, width}, {ages.begin(), ages.end()});
     if (state.noise) put_noise(*state.noise, state.stream.t, width, file);
+    file.metadata["stream.lamp_flicker"] = state.lamp_flicker;
+    if (state.flicker) put_flicker(*state.flicker, state.stream, width, file);
 }
 
 std::optional<StreamState> take_stream_state(TensorFile& file, const std::string& name, int width,
@@ -231,6 +284,9 @@ std::optional<StreamState> take_stream_state(TensorFile& file, const std::string
     state.noise_filter = kept.word("stream.noise_filter");
     state.stream = stream_of(kept, width, height);
     if (kept.has("stream.noise_hz")) state.noise = noise_of(kept, state.stream.t, width, height);
+    state.lamp_flicker = kept.word("stream.lamp_flicker");
+    if (kept.has("stream.flicker_period"))
+        state.flicker = flicker_of(kept, state.stream.slicer.begin, width, height);
     std::erase_if(file.tensors, [](const auto& each) { return each.first.starts_with(kPrefix); });
     return state;
 }
@@ -244,6 +300,12 @@ std::filesystem::path state_file(const std::string& folder, std::size_t number) 
 std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model) {
     const auto noise = parse_noise_filter(settings.noise_filter, model.noise_filter);
     return noise ? noise_filter_text(*noise) : "off";
+}
+
+std::string lamp_flicker_of(const RunSettings& settings) {
+    constexpr bool kOfARecording = true;  // check_stream_state()
+    const auto longest = parse_lamp_flicker(settings.lamp_flicker, kOfARecording);
+    return longest ? duration_text(*longest) : "off";
 }
 
 void check_stream_state(const RunSettings& settings, const std::string& option, bool live) {

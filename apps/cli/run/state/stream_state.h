@@ -4,6 +4,7 @@
 
 #include "apps/cli/settings/run_settings.h"
 #include "pipeline/pipeline_state.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/binning/noise_filter.h"
 #include "src/model/model_config.h"
 #include "src/nn/safetensors.h"
@@ -18,8 +19,10 @@ namespace eventide::app {
 struct StreamState {
     PipelineState stream;
     std::optional<NoiseFilter::State> noise;
-    /// How events were cut and filtered: window_text(), noise_filter_text() or "off".
-    std::string window, noise_filter;
+    std::optional<FlickerPairs::State> flicker;
+    /// How events were cut and filtered: window_text(), noise_filter_text() or "off",
+    /// lamp_flicker_text().
+    std::string window, noise_filter, lamp_flicker;
 };
 
 /// Adds it to the state of the network. Sensor of width px a row.
@@ -35,6 +38,9 @@ std::filesystem::path state_file(const std::string& folder, std::size_t number);
 
 /// noise_filter_text() of what a run has, or "off".
 std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model);
+
+/// How long events of a recording wait for the second of a pair ("16ms"), or "off".
+std::string lamp_flicker_of(const RunSettings& settings);
 
 /// Throws Error (usage) naming the option, where a run has more to remember than is kept: images of
 /// the camera, colours, filters of the user's.
