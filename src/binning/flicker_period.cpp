@@ -88,20 +88,28 @@ void FlickerPeriod::note(const Event& event) noexcept {
     ++counted_;
 }
 
-FlickerPeriod::Comb FlickerPeriod::comb(double period_us) const noexcept {
+FlickerPeriod::Sums FlickerPeriod::sums() const noexcept {
+    Sums sums{};
+    std::partial_sum(state_.intervals.begin(), state_.intervals.end(), sums.begin() + 1);
+    return sums;
+}
+
+/// Of bins whose middle lies within.
+FlickerPeriod::Comb FlickerPeriod::comb(const Sums& sums, double period_us) noexcept {
     double whole = 0, between = 0;
     int wholes = 0, betweens = 0;
-    const double bin = kBinUs / period_us;
-    for (int i = int(.5 / bin); i < kBins && (i + .5) * bin < kPeriods; ++i) {
-        const double periods = (i + .5) * bin;
-        const double off = std::abs(periods - std::round(periods));
-        if (off <= kFromWhole) {
-            whole += state_.intervals[std::size_t(i)];
-            ++wholes;
-        } else if (off >= .5 - kFromWhole) {
-            between += state_.intervals[std::size_t(i)];
-            ++betweens;
-        }
+    const auto add = [&](double from, double to, double& intervals, int& bins) {
+        const auto edge = [&](double periods) {
+            return std::clamp(int(std::ceil(periods * period_us / kBinUs - .5)), 0, kBins);
+        };
+        const int first = edge(from), end = edge(to);
+        intervals += sums[std::size_t(end)] - sums[std::size_t(first)];
+        bins += end - first;
+    };
+    for (int n = 0; n <= kPeriods; ++n) {
+        if (n > 0) add(n - kFromWhole, n + kFromWhole, whole, wholes);
+        add(n > 0 ? n + .5 - kFromWhole : .5, std::min(n + .5 + kFromWhole, kPeriods), between,
+            betweens);
     }
     if (wholes == 0 || betweens == 0) return {};
     Comb found{whole / wholes, between / betweens, 0};
@@ -129,11 +137,12 @@ bool FlickerPeriod::is_flicker(const Comb& comb, double least) const noexcept {
 
 /// 0 where there is none.
 double FlickerPeriod::period_of_block() const noexcept {
+    const Sums sums = this->sums();
     Comb best;
     double found = 0;
     for (double period = kShortestUs; period <= kLongestUs; period *= kStep) {
         const bool known = is_as_before(period, state_.period_us);
-        const Comb tried = comb(period);
+        const Comb tried = comb(sums, period);
         if (!is_flicker(tried, known ? kContrastAsBefore : kContrast)) continue;
         if (tried.excess <= best.excess) continue;
         best = tried;

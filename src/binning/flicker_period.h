@@ -61,7 +61,9 @@ private:
     void note(const Event& event) noexcept;
     bool is_flicker(const Comb& comb, double least) const noexcept;
     void end_block() noexcept;
-    Comb comb(double period_us) const noexcept;
+    using Sums = std::array<std::uint32_t, kBins + 1>;  // of the intervals in all bins before
+    Sums sums() const noexcept;
+    static Comb comb(const Sums& sums, double period_us) noexcept;
     double refined(double period_us) const noexcept;
     double period_of_block() const noexcept;
 
