@@ -26,7 +26,7 @@ void Run::resume() {
     require("--window", resumed_->window, window_text(slicer_));
     require("--noise-filter", resumed_->noise_filter,
             noise_filter_of(settings_, network_.config()));
-    require("--lamp-flicker", resumed_->lamp_flicker, lamp_flicker_of(settings_));
+    require("--lamp-flicker", resumed_->lamp_flicker, lamp_flicker_of(settings_, !as_live()));
     FlickerPairs* const flicker = flicker_pairs_in(filter_.get());
     if (resumed_->flicker.has_value() != (flicker != nullptr))
         throw Error(ErrorKind::input,
@@ -45,7 +45,7 @@ void Run::keep_state(const PipelineState& memory) {
                       std::nullopt,
                       window_text(slicer_),
                       noise_filter_of(settings_, network_.config()),
-                      lamp_flicker_of(settings_)};
+                      lamp_flicker_of(settings_, !as_live())};
     if (const FlickerPairs* const flicker = flicker_pairs_in(filter_.get()))
         state.flicker = flicker->state();
     if (const NoiseFilter* const noise = noise_filter_in(filter_.get()))

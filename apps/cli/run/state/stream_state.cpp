@@ -302,10 +302,10 @@ std::string noise_filter_of(const RunSettings& settings, const ModelConfig& mode
     return noise ? noise_filter_text(*noise) : "off";
 }
 
-std::string lamp_flicker_of(const RunSettings& settings) {
-    constexpr bool kOfARecording = true;  // check_stream_state()
-    const auto longest = parse_lamp_flicker(settings.lamp_flicker, kOfARecording);
-    return longest ? duration_text(*longest) : "off";
+std::string lamp_flicker_of(const RunSettings& settings, bool can_wait) {
+    const auto longest = parse_lamp_flicker(settings.lamp_flicker, can_wait);
+    if (!longest) return "off";
+    return longest->count() > 0 ? duration_text(*longest) : "auto";
 }
 
 void check_stream_state(const RunSettings& settings, const std::string& option, bool live) {

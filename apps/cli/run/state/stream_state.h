@@ -20,8 +20,7 @@ struct StreamState {
     PipelineState stream;
     std::optional<NoiseFilter::State> noise;
     std::optional<FlickerPairs::State> flicker;
-    /// How events were cut and filtered: window_text(), noise_filter_text() or "off",
-    /// lamp_flicker_text().
+    /// How events were cut and filtered: window_text(), noise_filter_of(), lamp_flicker_of().
     std::string window, noise_filter, lamp_flicker;
 };
 
@@ -39,8 +38,9 @@ std::filesystem::path state_file(const std::string& folder, std::size_t number);
 /// noise_filter_text() of what a run has, or "off".
 std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model);
 
-/// How long events of a recording wait for the second of a pair ("16ms"), or "off".
-std::string lamp_flicker_of(const RunSettings& settings);
+/// How long events wait for the second of a pair ("16ms"; "auto": three quarters of a period), or
+/// "off".
+std::string lamp_flicker_of(const RunSettings& settings, bool can_wait);
 
 /// Throws Error (usage) naming the option, where a run has more to remember than is kept: images of
 /// the camera, colours, filters of the user's.
