@@ -140,13 +140,18 @@ double FlickerPeriod::period_of_block() const noexcept {
     const Sums sums = this->sums();
     Comb best;
     double found = 0;
-    for (double period = kShortestUs; period <= kLongestUs; period *= kStep) {
+    const auto look_at = [&](double period) {
         const bool known = is_as_before(period, state_.period_us);
         const Comb tried = comb(sums, period);
-        if (!is_flicker(tried, known ? kContrastAsBefore : kContrast)) continue;
-        if (tried.excess <= best.excess) continue;
+        if (!is_flicker(tried, known ? kContrastAsBefore : kContrast)) return;
+        if (tried.excess <= best.excess) return;
         best = tried;
         found = period;
+    };
+    double next = kShortestUs;
+    while (next <= kLongestUs) {
+        look_at(next);
+        next *= kStep;
     }
     double period = found;
     for (int i = 0; period > 0 && i < 3; ++i) period = refined(period);

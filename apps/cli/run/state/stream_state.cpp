@@ -43,9 +43,9 @@ Tensor made(std::vector<std::int64_t> shape, std::vector<float> values) {
 Tensor events_after(SensorTime begin, const std::vector<Event>& events) {
     std::vector<float> values;
     for (const Event& event : events) {
-        const std::int64_t dt = (event.t - begin).count();
-        values.insert(values.end(), {float(dt / kExact), float(dt % kExact), float(event.x),
-                                     float(event.y), event.polarity == Polarity::on ? 1.F : 0.F});
+        const std::int64_t dt = (event.t - begin).count(), high = dt / kExact, low = dt % kExact;
+        values.insert(values.end(), {float(high), float(low), float(event.x), float(event.y),
+                                     event.polarity == Polarity::on ? 1.F : 0.F});
     }
     return made({std::int64_t(events.size()), kEventValues}, std::move(values));
 }
