@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -22,8 +21,8 @@ bool is_between(double us, double period_us) {
 
 }  // namespace
 
-FlickerPairs::FlickerPairs(int width, int height, SensorDuration longest)
-    : width_(width), longest_(longest), period_(width, height) {
+FlickerPairs::FlickerPairs(int width, int height, SensorDuration longest, std::uint32_t renumber_at)
+    : width_(width), longest_(longest), renumber_at_(renumber_at), period_(width, height) {
     newest_.resize(std::size_t(width) * std::size_t(height));
 }
 
@@ -96,8 +95,16 @@ void FlickerPairs::release(SensorTime now, std::vector<Event>& events) {
     if (2 * gone_ < held_.size()) return;
     held_.erase(held_.begin(), held_.begin() + std::ptrdiff_t(gone_));
     gone_ = 0;
-    if (!held_.empty() || first_ < std::numeric_limits<std::uint32_t>::max() / 2) return;
-    std::ranges::fill(newest_, 0U);  // before numbers run out
+    if (first_ >= renumber_at_) renumber();
+}
+
+/// Before numbers run out: what is held is counted from 1 again. Nothing of held_ is gone.
+void FlickerPairs::renumber() noexcept {
+    const auto renumbered = [this](std::uint32_t& number) {
+        number = number >= first_ ? number - first_ + 1 : 0;
+    };
+    std::ranges::for_each(newest_, renumbered);
+    for (Held& held : held_) renumbered(held.before);
     first_ = 1;
 }
 

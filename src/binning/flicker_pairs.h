@@ -26,8 +26,10 @@ public:
     static constexpr std::size_t kMostHeld = std::size_t{1} << 22;
 
     /// Sensor of width x height px. `longest` between the events of a pair, and so how long events
-    /// are held back: 0 to kLongest; 0: three quarters of a period.
-    FlickerPairs(int width, int height, SensorDuration longest);
+    /// are held back: 0 to kLongest; 0: three quarters of a period. After `renumber_at` events the
+    /// numbers that it counts them with begin anew, which makes no difference.
+    FlickerPairs(int width, int height, SensorDuration longest,
+                 std::uint32_t renumber_at = std::uint32_t{1} << 31);
 
     /// Events in order of time, on the sensor, become those that come out now, in order.
     void process(std::vector<Event>& events);
@@ -68,9 +70,11 @@ private:
     bool is_pair(const Event& a, const Event& b) const;
     void hold(const Event& event);
     void let_go(std::vector<Event>& events);
+    void renumber() noexcept;
 
     int width_;
     SensorDuration longest_;
+    std::uint32_t renumber_at_;
     FlickerPeriod period_;
     std::vector<Held> held_;  // in order of time; those before gone_ have come out
     std::size_t gone_ = 0;

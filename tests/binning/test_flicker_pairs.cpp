@@ -102,6 +102,18 @@ TEST(FlickerPairs, AreTheSameHoweverTheStreamIsSplitAndComeOutInOrder) {
     }
 }
 
+TEST(FlickerPairs, AreTheSameWhereverTheirNumbersBeginAnew) {
+    const Events events = merged(lamp_events({}), bar_events(kWidth, kHeight, .3, 1500));
+    const Events expected = left_of(events, SensorDuration{16'000});
+    for (const std::uint32_t renumber_at : {2U, 100U, 5'000U}) {
+        FlickerPairs pairs{kWidth, kHeight, SensorDuration{16'000}, renumber_at};
+        Events left = events;
+        pairs.process(left);
+        pairs.flush(left);
+        EXPECT_EQ(left, expected) << renumber_at;
+    }
+}
+
 TEST(FlickerPairs, ComeOutAsTimeGoesOnWithoutEvents) {
     Events events = lamp_events({});
     FlickerPairs pairs{kWidth, kHeight, SensorDuration{16'000}};
