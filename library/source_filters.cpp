@@ -16,9 +16,7 @@ void SourceFilters::add(const std::string& text) {
                                           ": expected a sensor of known size, found a recording "
                                           "that does not say it; give width and height");
     chain_.add(text);
-    info_.width = chain_.size().width;
-    info_.height = chain_.size().height;
-    info_.colour_filter = chain_.pattern(colours_);
+    info_ = chain_.behind(sensor_);
 }
 
 void SourceFilters::process(Batch& batch) {

@@ -11,9 +11,7 @@ class SourceFilters {
 public:
     /// Behind a source of that sensor.
     explicit SourceFilters(const SensorInfo& sensor)
-        : info_(sensor),
-          colours_(sensor.colour_filter),
-          chain_({}, {sensor.width, sensor.height}) {}
+        : sensor_(sensor), info_(sensor), chain_({}, {sensor.width, sensor.height}) {}
 
     /// The sensor as it looks behind the filters.
     const SensorInfo& info() const { return info_; }
@@ -33,8 +31,8 @@ public:
     }
 
 private:
+    const SensorInfo sensor_;  // before the filters
     SensorInfo info_;
-    const ColourFilter colours_;  // before the filters
     FilterChain chain_;
     bool has_begun_ = false;  // something was read
 };

@@ -2,11 +2,9 @@
 #include "apps/evaluate/evaluate_recordings.h"
 
 #include "pipeline/filters/event_filter.h"
-#include "src/binning/flicker_pairs.h"
 #include "src/core/error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace eventide {
@@ -83,8 +81,10 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
     };
     if (window == "reference") {
         if (filter) {
+            std::vector<Event> rest;
             filter->process(sequence.events);
-            filter->flush(sequence.events);
+            filter->flush(rest);
+            sequence.events.insert(sequence.events.end(), rest.begin(), rest.end());
         }
         for_each_reference_window(sequence, push);
     } else {
@@ -92,12 +92,8 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
     }
     ask_until(SensorTime::max());
     SequenceResult result = judged.finish();
-    if (const FlickerPairs* const flicker = flicker_pairs_in(filter.get());
-        flicker != nullptr && flicker->left_out() > 0)
-        result.notes.push_back(sequence.name + ": light flickered at " +
-                               std::to_string(std::lround(1e6 / flicker->last_period_us())) +
-                               " Hz; " + std::to_string(flicker->left_out()) +
-                               " events left out in pairs");
+    if (const std::string remark = flicker_remark(filter.get()); !remark.empty())
+        result.notes.push_back(sequence.name + ": " + remark);
     if (sequence.damaged.total() > 0)
         result.notes.push_back(sequence.name + ": left out of the recording, as it is damaged: " +
                                text_of(sequence.damaged));

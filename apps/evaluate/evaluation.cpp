@@ -2,6 +2,7 @@
 #include "apps/evaluate/evaluation.h"
 
 #include "pipeline/filters/event_filter.h"
+#include "src/binning/flicker_pairs.h"
 #include "src/core/error.h"
 #include "src/model/model_trial.h"
 
@@ -15,6 +16,7 @@ Evaluation::Evaluation(std::string subject, EvaluateSettings settings)
     if (settings_.lookahead < 0 || settings_.lookahead > 2)
         throw Error(ErrorKind::usage,
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(settings_.lookahead));
+    parse_lamp_flicker(settings_.lamp_flicker, false);  // of every protocol
     try_model(model_, settings_.model.string());
     report_.subject = std::move(subject);
     report_.model = settings_.model.filename().string();

@@ -5,7 +5,9 @@
 #include "src/binning/flicker_pairs.h"
 #include "src/binning/noise_filter.h"
 
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -25,10 +27,12 @@ public:
         process_rest(events);
     }
     void release(SensorTime now, std::vector<Event>& events) override {
-        if (flicker_) append([&] { flicker_->release(now, released_); }, events);
+        if (flicker_) flicker_->release(now, events);
+        process_rest(events);
     }
     void flush(std::vector<Event>& events) override {
-        if (flicker_) append([&] { flicker_->flush(released_); }, events);
+        if (flicker_) flicker_->flush(events);
+        process_rest(events);
     }
     SensorTime known_until(SensorTime now) const override {
         return flicker_ ? flicker_->known_until(now) : now;
@@ -43,18 +47,9 @@ private:
         if (hot_pixels_) hot_pixels_->process(events);
         if (noise_) noise_->process(events);
     }
-    template <typename Release>
-    void append(Release release, std::vector<Event>& events) {
-        released_.clear();
-        release();
-        process_rest(released_);
-        events.insert(events.end(), released_.begin(), released_.end());
-    }
-
     std::optional<FlickerPairs> flicker_;
     std::optional<HotPixelFilter> hot_pixels_;
     std::optional<NoiseFilter> noise_;
-    std::vector<Event> released_;
 };
 
 }  // namespace
@@ -67,6 +62,13 @@ NoiseFilter* noise_filter_in(EventFilter* filter) {
 FlickerPairs* flicker_pairs_in(EventFilter* filter) {
     auto* const chain = dynamic_cast<FilterChain*>(filter);
     return chain == nullptr ? nullptr : chain->flicker();
+}
+
+std::string flicker_remark(EventFilter* filter) {
+    const FlickerPairs* const flicker = flicker_pairs_in(filter);
+    if (flicker == nullptr || flicker->left_out() == 0) return {};
+    return "light flickered at " + std::to_string(std::lround(1e6 / flicker->last_period_us())) +
+           " Hz: " + std::to_string(flicker->left_out()) + " events left out in pairs";
 }
 
 std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const ModelConfig& model,

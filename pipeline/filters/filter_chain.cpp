@@ -67,6 +67,13 @@ ColourFilter FilterChain::pattern(ColourFilter before) const {
     return before;
 }
 
+SensorInfo FilterChain::behind(SensorInfo sensor) const {
+    sensor.width = size_.width;
+    sensor.height = size_.height;
+    sensor.colour_filter = pattern(sensor.colour_filter);
+    return sensor;
+}
+
 /// Times count from the recording's first event, whatever filters leave of the beginning.
 void FilterChain::process(Batch& batch) {
     if (!counts_ && !batch.events.empty()) count_from(batch.events.front().t);
@@ -92,11 +99,7 @@ std::string FilterChain::report() const {
 }
 
 FilteredSource::FilteredSource(Source& source, FilterChain& chain)
-    : source_(source), chain_(chain), info_(source.info()) {
-    info_.width = chain.size().width;
-    info_.height = chain.size().height;
-    info_.colour_filter = chain.pattern(info_.colour_filter);
-}
+    : source_(source), chain_(chain), info_(chain.behind(source.info())) {}
 
 std::unique_ptr<Parser> FilteredSource::make_parser() const {
     return std::make_unique<FilteringParser>(source_.make_parser(), chain_);

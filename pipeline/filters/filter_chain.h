@@ -23,6 +23,8 @@ public:
     SensorPixels size() const { return size_; }  ///< behind the last
     /// The sensor's colour filter as DataFilter::pattern() says, behind the last.
     ColourFilter pattern(ColourFilter before) const;
+    /// The sensor as it looks behind the last.
+    SensorInfo behind(SensorInfo sensor) const;
     void process(Batch& batch);
     /// Tells when the recording's first event was, where that is not the first that is processed.
     void count_from(SensorTime first) {

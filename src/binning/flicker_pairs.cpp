@@ -74,6 +74,11 @@ void FlickerPairs::hold(const Event& event) {
             return;
         }
     }
+    keep(event);
+}
+
+void FlickerPairs::keep(const Event& event) {
+    std::uint32_t& newest = newest_of(event);
     held_.push_back({event, newest, false});
     newest = first_ + std::uint32_t(held_.size() - gone_) - 1;
     ++held_count_;
@@ -115,12 +120,16 @@ void FlickerPairs::flush(std::vector<Event>& events) {
 }
 
 void FlickerPairs::reset() noexcept {
+    period_.reset();
+    forget_held();
+}
+
+void FlickerPairs::forget_held() noexcept {
     std::ranges::fill(newest_, 0U);
     held_.clear();
     gone_ = held_count_ = 0;
     first_ = 1;
     now_ = SensorTime::min();
-    period_.reset();
 }
 
 FlickerPairs::State FlickerPairs::state() const {
@@ -133,16 +142,12 @@ FlickerPairs::State FlickerPairs::state() const {
 void FlickerPairs::restore(const State& state) {
     if (state.period.period_us == 0 && !state.held.empty())
         throw Error(ErrorKind::input, "flicker: expected no events held back, as nothing flickers");
-    FlickerPeriod period = period_;
-    period.restore(state.period);
-    reset();
-    period_ = std::move(period);
+    period_.restore(state.period);
+    forget_held();
     for (const Event& event : state.held) {
-        held_.push_back({event, newest_of(event), false});
-        newest_of(event) = std::uint32_t(held_.size());
+        keep(event);
         now_ = event.t;
     }
-    held_count_ = held_.size();
 }
 
 std::optional<SensorDuration> parse_lamp_flicker(std::string_view text, bool can_wait) {

@@ -69,6 +69,8 @@ private:
     }
     bool is_pair(const Event& a, const Event& b) const;
     void hold(const Event& event);
+    void keep(const Event& event);
+    void forget_held() noexcept;
     void let_go(std::vector<Event>& events);
     void renumber() noexcept;
 

@@ -69,19 +69,15 @@ void EventsOut::process(std::vector<Event>& events) {
 
 void EventsOut::release(SensorTime now, std::vector<Event>& events) {
     if (held() == 0) return;
-    released_.clear();
-    filter_->release(now, released_);
     newest_ = std::max(newest_, now);
-    write(released_);
-    events.insert(events.end(), released_.begin(), released_.end());
+    filter_->release(now, events);
+    write(events);
 }
 
 void EventsOut::flush(std::vector<Event>& events) {
     if (held() == 0) return;
-    released_.clear();
-    filter_->flush(released_);
-    write(released_);
-    events.insert(events.end(), released_.begin(), released_.end());
+    filter_->flush(events);
+    write(events);
 }
 
 void EventsOut::write(std::span<const Event> events) {

@@ -61,7 +61,6 @@ private:
     Batch batch_;
     Batch later_;                            // than events that the filter holds back
     SensorTime newest_ = SensorTime::min();  // event
-    std::vector<Event> released_;
 };
 
 }  // namespace eventide::app

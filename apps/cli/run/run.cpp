@@ -30,13 +30,6 @@ SensorPixels size_of(const Source& source) {
     return {source.info().width, source.info().height};
 }
 
-SensorInfo info_behind(SensorInfo info, const FilterChain& filters) {
-    info.width = filters.size().width;
-    info.height = filters.size().height;
-    info.colour_filter = filters.pattern(info.colour_filter);
-    return info;
-}
-
 /// Null: not asked for.
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
                                          ColourFilter colours, const Span& span,
@@ -87,7 +80,7 @@ Run::Run(Program& program, RunSettings& settings)
       speed_{speed_of(settings)},
       opened_{open_source(settings, speed_, [&program] { return program.signals.stopping(); })},
       filters_{settings.filter, size_of(*opened_.source)},
-      sensor_{info_behind(opened_.source->info(), filters_)},
+      sensor_{filters_.behind(opened_.source->info())},
       state_{state_in_of(settings)},
       resumed_{stream_in(settings, state_, sensor_, live())},
       states_at_{state_times_of(settings)},

@@ -3,7 +3,6 @@
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run.h"
 #include "pipeline/filters/event_filter.h"
-#include "src/binning/flicker_pairs.h"
 #include "src/core/error.h"
 
 #include <spdlog/spdlog.h>
@@ -26,10 +25,8 @@ int Run::report(const RunProgress& end) const {
     const CameraCounters camera = camera_counters();
     spdlog::info("{}{}", summary_text(end_counters, end), camera_text(camera));
     if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
-    if (const FlickerPairs* const flicker = flicker_pairs_in(filter_.get());
-        flicker != nullptr && flicker->left_out() > 0)
-        spdlog::info("light flickered at {:.0f} Hz: {} events left out in pairs",
-                     1e6 / flicker->last_period_us(), flicker->left_out());
+    if (const std::string remark = flicker_remark(filter_.get()); !remark.empty())
+        spdlog::info("{}", remark);
     if (const std::string why = disorder_text(settings_.source, sensor_.format, end_counters.events,
                                               end_counters.damaged);
         !why.empty())

@@ -218,6 +218,8 @@ TEST(EvaluateSimulated, ComparesAtAnyLookaheadScaleAndTime) {
     EXPECT_EQ(report.sequences[0].not_rendered, 0);
     what.phases = {0};
     EXPECT_THROW(evaluate_simulated(what, how), Error);
+    how.lamp_flicker = "sometimes";
+    EXPECT_THROW(evaluate_simulated(small_simulation(), how), Error);
 }
 
 TEST(Report, IsJsonWithTheAgreedKeysAndNullForWhatWasNotMeasured) {
