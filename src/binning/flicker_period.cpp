@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <numeric>
 #include <string>
 
@@ -17,9 +19,11 @@ constexpr double kPeriods = 3.5;    // as long as intervals may be
 // Recordings in lamps' light have .38 to .99, others .38 at most (motion over few pixels), usually
 // .1.
 constexpr double kContrast = .45, kContrastAsBefore = .25;
-constexpr double kShare = .05;          // of all intervals, near whole numbers of periods
-constexpr double kAsBefore = .03;       // of the period
-constexpr int kMostUnsaid = 20;         // blocks that say nothing, until nothing is known
+constexpr double kShare = .05;     // of all intervals, near whole numbers of periods
+constexpr double kAsBefore = .03;  // of the period
+// Resultant of the phases of all rises over how many more intervals lie near whole numbers of
+// periods: lamps have .9 to 4.4 (their intervals lie between whole numbers, too), wheels about 0.
+constexpr double kInStep = .4, kInStepAsBefore = .25;
 constexpr std::uint32_t kEnough = 300;  // intervals, to say anything
 constexpr double kStep = 1.01;          // from one period that is tried to the next
 
@@ -35,13 +39,14 @@ bool is_in_range(double period_us) {
 
 FlickerPeriod::FlickerPeriod(int width, int height) : width_(width) {
     state_.rises.resize(std::size_t(width) * std::size_t(height));
+    state_.when.resize(std::size_t(kTicks));
 }
 
 void FlickerPeriod::reset() noexcept {
     std::ranges::fill(state_.rises, 0U);
-    state_.intervals.fill(0);
-    counted_ = 0;
+    clear_intervals();
     state_.block.reset();
+    state_.since = {};
     state_.period_us = state_.found_us = 0;
     state_.unsaid = 0;
 }
@@ -51,6 +56,14 @@ void FlickerPeriod::restore(const State& state) {
         throw Error(ErrorKind::input,
                     "flicker: expected what is known of " + std::to_string(state_.rises.size()) +
                         " pixels, found that of " + std::to_string(state.rises.size()));
+    if (state.when.size() != state_.when.size())
+        throw Error(ErrorKind::input, "flicker: expected the times of rises in " +
+                                          std::to_string(kTicks) + " parts, found " +
+                                          std::to_string(state.when.size()));
+    if (state.block &&
+        (state.since > *state.block || *state.block - state.since > (kMostUnsaid - 1) * kBlock))
+        throw Error(ErrorKind::input,
+                    "flicker: expected rises since a second before the block or less");
     for (const double us : {state.period_us, state.found_us})
         if (us != 0 && !is_in_range(us))
             throw Error(ErrorKind::input, "flicker: expected a period of " +
@@ -63,12 +76,26 @@ void FlickerPeriod::restore(const State& state) {
 
 void FlickerPeriod::see(const Event& event) noexcept {
     if (((event.x + event.y) & 3) != 0) return;
-    if (!state_.block || event.t < *state_.block) state_.block = event.t;
+    if (!state_.block || event.t < *state_.block) begin_block(event.t);
     if (event.t - *state_.block >= kBlock) {
         end_block();
-        state_.block = event.t;
+        begin_block(event.t);
     }
     note(event);
+}
+
+/// Rises of a second ago, before a pause, are forgotten.
+void FlickerPeriod::begin_block(SensorTime t) noexcept {
+    state_.block = t;
+    if (counted_ > 0 && t >= state_.since && t - state_.since <= (kMostUnsaid - 1) * kBlock) return;
+    clear_intervals();
+    state_.since = t;
+}
+
+void FlickerPeriod::clear_intervals() noexcept {
+    state_.intervals.fill(0);
+    std::ranges::fill(state_.when, 0U);
+    counted_ = 0;
 }
 
 void FlickerPeriod::note(const Event& event) noexcept {
@@ -83,8 +110,10 @@ void FlickerPeriod::note(const Event& event) noexcept {
     const std::uint32_t interval = (now - (last & ~std::uint32_t{1})) >> 1;
     last = now | 1;
     const std::uint32_t bin = interval / kBinUs;
-    if (bin >= kBins) return;
+    const std::int64_t tick = (event.t - state_.since).count() / kTickUs;
+    if (bin >= kBins || tick >= kTicks) return;
     ++state_.intervals[bin];
+    ++state_.when[std::size_t(tick)];
     ++counted_;
 }
 
@@ -130,9 +159,41 @@ double FlickerPeriod::refined(double period_us) const noexcept {
     return periods > 0 ? time / periods : period_us;
 }
 
-bool FlickerPeriod::is_flicker(const Comb& comb, double least) const noexcept {
+/// As many as are in use, in whole blocks.
+int FlickerPeriod::ticks() const noexcept {
+    // What comes before a block has ended may be as late as it is long.
+    return std::min(kTicks, int((*state_.block - state_.since) / kBlock + 2) * kTicksABlock);
+}
+
+bool FlickerPeriod::is_periodic(const Comb& comb, double least) const noexcept {
     return comb.whole - comb.between >= least * (comb.whole + comb.between) &&
            comb.excess >= kShare * counted_;
+}
+
+/// |sum of exp(i phase)| over the rises, phases of a `part`-th of the period: their number where
+/// all come at one time of it, about the root of that where they come at any. By stretches of a
+/// block each, so that the period need not be exact.
+double FlickerPeriod::in_phase(double period_us, int part) const noexcept {
+    const std::complex<double> turn =
+        std::polar(1.0, 2 * std::numbers::pi * part * kTickUs / period_us);
+    double all = 0;
+    for (int begin = 0; begin < ticks(); begin += kTicksABlock) {
+        std::complex<double> sum = 0, at = 1;
+        for (int i = begin; i < begin + kTicksABlock; ++i, at *= turn)
+            sum += double(state_.when[std::size_t(i)]) * at;
+        all += std::abs(sum);
+    }
+    return all;
+}
+
+/// Whether rises come in one part of the period, or in three, more than by chance.
+bool FlickerPeriod::is_in_step(double period_us, double excess, double least) const noexcept {
+    const double stretches = ticks() / double(kTicksABlock);
+    // n phases at random give .9 sqrt(n) or less in a stretch, .5 sqrt(n) about the sum of all.
+    const double chance = .9 * std::sqrt(counted_ * stretches) + 2.5 * std::sqrt(counted_);
+    constexpr double kOfThree = .5;  // what is left of so much narrower a part
+    return in_phase(period_us, 1) >= std::max(least * excess, chance) ||
+           in_phase(period_us, 3) >= std::max(kOfThree * least * excess, chance);
 }
 
 /// 0 where there is none.
@@ -143,8 +204,9 @@ double FlickerPeriod::period_of_block() const noexcept {
     const auto look_at = [&](double period) {
         const bool known = is_as_before(period, state_.period_us);
         const Comb tried = comb(sums, period);
-        if (!is_flicker(tried, known ? kContrastAsBefore : kContrast)) return;
+        if (!is_periodic(tried, known ? kContrastAsBefore : kContrast)) return;
         if (tried.excess <= best.excess) return;
+        if (!is_in_step(period, tried.excess, known ? kInStepAsBefore : kInStep)) return;
         best = tried;
         found = period;
     };
@@ -171,8 +233,7 @@ void FlickerPeriod::end_block() noexcept {
         state_.found_us = found;
     }
     state_.unsaid = 0;
-    state_.intervals.fill(0);
-    counted_ = 0;
+    clear_intervals();
 }
 
 }  // namespace eventide

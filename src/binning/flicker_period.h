@@ -13,7 +13,11 @@ namespace eventide {
 /// Where light flickers, a pixel's brightness begins to rise (an on event after an off event) a
 /// whole number of periods after it did before; where things move, after any time. So from the
 /// times between rises of all pixels, in some tenth of a second, the period follows that most of
-/// them are multiples of, if there is one. Pixels may skip cycles, and lamps may differ in phase.
+/// them are multiples of, if there is one. Pixels may skip cycles.
+///
+/// A wheel whose spokes pass as often does the same to each pixel, but to each at another time.
+/// Light is everywhere at once: its rises come in one part of the period, or, by lamps on the three
+/// phases of the mains, in three.
 ///
 /// Looks at a quarter of the pixels. Deterministic: depends on the events, not on how they are
 /// split.
@@ -34,13 +38,21 @@ public:
 
     static constexpr int kBinUs = 50;
     static constexpr int kBins = int(3.5 * kLongestUs) / kBinUs;  ///< three periods and a half
+    static constexpr int kMostUnsaid = 20;  ///< blocks that say nothing, until nothing is known
+    static constexpr int kTickUs = 100;     ///< of the times of rises
+    static constexpr int kTicksABlock = 500;
+    static constexpr int kTicks = kMostUnsaid * kTicksABlock;
 
     /// All that it has learned, to go on from elsewhere.
     struct State {
         /// [y][x]: us of the last rise (31 bits), and 1 where the newest event is on
         std::vector<std::uint32_t> rises;
-        std::array<std::uint32_t, kBins> intervals{};  ///< between rises, in this block
-        std::optional<SensorTime> block;               ///< its begin
+        /// Between rises, in this block and those before that said nothing; [i / kBinUs]
+        std::array<std::uint32_t, kBins> intervals{};
+        /// When they ended; [(t - since) / kTickUs]
+        std::vector<std::uint32_t> when;
+        std::optional<SensorTime> block;  ///< its begin
+        SensorTime since{};               ///< that of the first of them
         double period_us = 0;
         double found_us = 0;  ///< in the last block
         int unsaid = 0;       ///< blocks in a row with too few intervals
@@ -51,15 +63,20 @@ public:
     void restore(const State& state);
 
 private:
-    static constexpr SensorDuration kBlock{50'000};
+    static constexpr SensorDuration kBlock{kTicksABlock * kTickUs};
 
     /// Intervals near whole numbers of periods, and near halves between them.
     struct Comb {
         double whole = 0, between = 0;  // per bin
         double excess = 0;              // intervals
     };
+    void begin_block(SensorTime t) noexcept;
     void note(const Event& event) noexcept;
-    bool is_flicker(const Comb& comb, double least) const noexcept;
+    void clear_intervals() noexcept;
+    int ticks() const noexcept;
+    bool is_periodic(const Comb& comb, double least) const noexcept;
+    bool is_in_step(double period_us, double excess, double least) const noexcept;
+    double in_phase(double period_us, int part) const noexcept;
     void end_block() noexcept;
     using Sums = std::array<std::uint32_t, kBins + 1>;  // of the intervals in all bins before
     Sums sums() const noexcept;

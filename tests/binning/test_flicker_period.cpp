@@ -36,6 +36,49 @@ TEST(FlickerPeriod, IsNoneWhereThingsOnlyMove) {
         EXPECT_EQ(period_of(bar_events(32, 24, .5, speed)), 0) << speed << " px/s";
 }
 
+TEST(FlickerPeriod, IsNoneWhereAWheelTurns) {
+    for (const int spokes : {2, 3, 5, 7})
+        for (const double hz : {100., 170., 300., 600.})
+            EXPECT_EQ(period_of(wheel_events({.spokes = spokes, .hz = hz})), 0)
+                << spokes << " spokes, " << hz << " Hz";
+}
+
+TEST(FlickerPeriod, IsNoneWhereHalfAWheelIsSeen) {
+    for (const int spokes : {2, 3, 4, 5})
+        EXPECT_EQ(period_of(wheel_events({.y = 0, .spokes = spokes})), 0) << spokes << " spokes";
+}
+
+TEST(FlickerPeriod, IsThatOfTheLampWhereAWheelTurnsToo) {
+    const auto wheel = wheel_events({.width = 16, .x = 8, .hz = 170});
+    EXPECT_NEAR(period_of(merged(lamp_events({.share = .8}), wheel)), 3333, 70);
+}
+
+TEST(FlickerPeriod, IsFoundInTheLightOfLampsOnThreePhases) {
+    std::vector<Event> events;
+    for (const int phase : {0, 1, 2})
+        for (Event event : lamp_events({.width = 10, .hz = 100, .spread_us = 300})) {
+            event.x = std::uint16_t(event.x + 10 * phase);
+            event.t += SensorDuration{phase * 10'000 / 3};
+            events.push_back(event);
+        }
+    std::ranges::stable_sort(events, {}, &Event::t);
+    EXPECT_NEAR(period_of(events), 10'000, 200);
+}
+
+TEST(FlickerPeriod, IsFoundWhereFewPixelsSeeIt) {
+    const auto events = lamp_events({.width = 8, .height = 6, .hz = 120, .seconds = 2});
+    EXPECT_NEAR(period_of(events), 8333, 150);
+}
+
+TEST(FlickerPeriod, IsFoundAfterAPauseToo) {
+    std::vector<Event> events = lamp_events({.width = 2, .height = 2});
+    for (Event event : lamp_events({})) {
+        event.t += SensorDuration{3'000'000};
+        events.push_back(event);
+    }
+    EXPECT_NEAR(period_of(events), 3333, 70);
+}
+
 TEST(FlickerPeriod, IsNoneInNoise) {
     std::mt19937 random{1};
     for (const double per_pixel_hz : {5., 50., 500.}) {
@@ -60,7 +103,7 @@ TEST(FlickerPeriod, EndsWithTheFlicker) {
     EXPECT_EQ(period.us(), 0);
 }
 
-TEST(FlickerPeriod, RefusesTheStateOfAnotherSensorAndPeriodsThatAreNone) {
+TEST(FlickerPeriod, RefusesTheStateOfAnotherSensorAndWhatCannotBe) {
     FlickerPeriod period{32, 24}, larger{33, 24};
     EXPECT_THROW(larger.restore(period.state()), Error);
     FlickerPeriod::State state = period.state();
@@ -68,6 +111,16 @@ TEST(FlickerPeriod, RefusesTheStateOfAnotherSensorAndPeriodsThatAreNone) {
         state.period_us = us;
         EXPECT_THROW(period.restore(state), Error) << us;
     }
+    state.period_us = 0;
+    state.block = from_us(5'000'000);
+    for (const std::int64_t since : {0, 5'000'001}) {
+        state.since = from_us(since);
+        EXPECT_THROW(period.restore(state), Error) << since;
+    }
+    state.since = from_us(4'500'000);
+    EXPECT_NO_THROW(period.restore(state));
+    state.when.pop_back();
+    EXPECT_THROW(period.restore(state), Error);
     EXPECT_EQ(period.us(), 0);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -60,6 +61,38 @@ inline std::vector<Event> bar_events(int width, int height, double seconds, doub
                     events.push_back({from_us(std::max<std::int64_t>(us, 1)), std::uint16_t(x),
                                       std::uint16_t(y), on ? Polarity::on : Polarity::off});
                 }
+    std::ranges::stable_sort(events, {}, &Event::t);
+    return events;
+}
+
+/// A wheel of bright spokes, as wide as what is between them: each pixel brightens as a spoke
+/// comes, evenly, but each at a time of its own.
+struct Wheel {
+    int width = 32, height = 24;
+    double x = 16, y = 12;  ///< of its hub, px
+    int spokes = 3;
+    double hz = 300;  ///< spokes that pass a pixel in a second
+    double seconds = .3;
+    double spread_us = 100;
+};
+
+inline std::vector<Event> wheel_events(const Wheel& wheel) {
+    std::mt19937 random{7};
+    std::normal_distribution<double> spread{0, wheel.spread_us};
+    const double period = 1e6 / wheel.hz;
+    std::vector<Event> events;
+    for (int y = 0; y < wheel.height; ++y)
+        for (int x = 0; x < wheel.width; ++x) {
+            const double turn =
+                std::atan2(y + .5 - wheel.y, x + .5 - wheel.x) / (2 * std::numbers::pi);
+            const double phase = turn * wheel.spokes - std::floor(turn * wheel.spokes);
+            for (double at = phase + .5; at * period < wheel.seconds * 1e6; at += .5) {
+                const bool is_on = std::lround(2 * (at - phase)) % 2 == 0;
+                const auto us = std::int64_t(at * period + spread(random));
+                events.push_back({from_us(std::max<std::int64_t>(us, 1)), std::uint16_t(x),
+                                  std::uint16_t(y), is_on ? Polarity::on : Polarity::off});
+            }
+        }
     std::ranges::stable_sort(events, {}, &Event::t);
     return events;
 }

@@ -146,10 +146,17 @@ VideoFile::VideoFile(std::filesystem::path path, EncoderSettings settings)
     container_->flags |= AVFMT_FLAG_CUSTOM_IO;
 }
 
-VideoFile::~VideoFile() = default;
+/// What a muxer holds (GIF's the last image) it lets go of with its trailer alone, so where none
+/// was written one comes now, for nobody.
+VideoFile::~VideoFile() {
+    if (!trailer_due_) return;
+    is_given_up_ = true;
+    av_write_trailer(container_.get());
+}
 
 int VideoFile::put(void* self, const std::uint8_t* bytes, int size) {
     auto& file = *static_cast<VideoFile*>(self);
+    if (file.is_given_up_) return AVERROR(EIO);
     try {
         file.put_here(std::as_bytes(std::span{bytes, std::size_t(size)}));
         return size;
@@ -221,7 +228,7 @@ void VideoFile::open_encoder(const cv::Mat& image) {
     const int result = avformat_write_header(container_.get(), &options);
     av_dict_free(&options);
     check(result, "writing its header");
-    header_written_ = true;
+    header_written_ = trailer_due_ = true;
 
     frame_->format = encoder_->pix_fmt;
     frame_->width = encoder_->width;
@@ -274,6 +281,7 @@ void VideoFile::finish() {
     if (std::exchange(finished_, true)) return;
     if (header_written_ && !failure_) {
         encode(nullptr);
+        trailer_due_ = false;
         check(av_write_trailer(container_.get()), "ending it");
         avio_flush(bytes_.get());
         check(0, "closing it");

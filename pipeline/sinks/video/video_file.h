@@ -76,7 +76,8 @@ private:
     AVStream* stream_ = nullptr;  // the container's
     int width_ = 0, height_ = 0, type_ = -1;
     std::int64_t next_tick_ = 0;  // the earliest for the frame that comes
-    bool header_written_ = false, finished_ = false;
+    bool header_written_ = false, trailer_due_ = false, finished_ = false;
+    bool is_given_up_ = false;  // nothing more goes into the file
 };
 
 }  // namespace eventide

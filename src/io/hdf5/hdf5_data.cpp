@@ -26,6 +26,15 @@ hid_t open_set(hid_t file, const std::string& name, std::uint64_t cache_bytes) {
     return h5.H5Dopen2(file, name.c_str(), access.id());
 }
 
+/// For reading so many bytes: HDF5 would clear twice 1 MiB for the conversion of one number.
+Hdf5Handle transfer_of(std::uint64_t bytes) {
+    constexpr std::uint64_t kUsualBuffer = std::uint64_t{1} << 20;
+    const Hdf5Library& h5 = hdf5();
+    Hdf5Handle transfer{h5.H5Pcreate(h5.H5P_CLS_DATASET_XFER_ID_g), h5.H5Pclose};
+    if (bytes < kUsualBuffer) h5.H5Pset_buffer(transfer.id(), std::size_t(bytes), nullptr, nullptr);
+    return transfer;
+}
+
 Hdf5Data::Kind kind_of(hid_t type) {
     switch (hdf5().H5Tget_class(type)) {
         case H5T_INTEGER:
@@ -137,8 +146,11 @@ bool Hdf5Data::read_as(std::uint64_t first, std::uint64_t count, std::int64_t ki
         if (h5.H5Tinsert(record.id(), member, 0, kind) < 0) return false;
         kind = record.id();
     }
+    // Each number as it is held or as it is wanted, whichever is wider.
+    const std::uint64_t widest = std::max(size, h5.H5Tget_size(type_.id()));
+    const Hdf5Handle transfer = transfer_of(count * row_length() * widest);
     if (shape_.empty())
-        return h5.H5Dread(set_.id(), kind, H5S_ALL, H5S_ALL, H5P_DEFAULT, into) >= 0;
+        return h5.H5Dread(set_.id(), kind, H5S_ALL, H5S_ALL, transfer.id(), into) >= 0;
     std::vector<hsize_t> start(shape_.size(), 0), part(shape_.begin(), shape_.end());
     start[0] = first;
     part[0] = count;
@@ -146,7 +158,7 @@ bool Hdf5Data::read_as(std::uint64_t first, std::uint64_t count, std::int64_t ki
                             h5.H5Sclose};
     return h5.H5Sselect_hyperslab(space_.id(), H5S_SELECT_SET, start.data(), nullptr, part.data(),
                                   nullptr) >= 0 &&
-           h5.H5Dread(set_.id(), kind, memory.id(), space_.id(), H5P_DEFAULT, into) >= 0;
+           h5.H5Dread(set_.id(), kind, memory.id(), space_.id(), transfer.id(), into) >= 0;
 }
 
 template <typename T>

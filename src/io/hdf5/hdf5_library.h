@@ -47,6 +47,7 @@ namespace eventide {
     X(H5Pget_filter2)               \
     X(H5Pget_layout)                \
     X(H5Pget_nfilters)              \
+    X(H5Pset_buffer)                \
     X(H5Pset_chunk)                 \
     X(H5Pset_chunk_cache)           \
     X(H5Pset_deflate)               \
@@ -81,7 +82,8 @@ namespace eventide {
     X(H5T_NATIVE_UINT64_g)         \
     X(H5T_C_S1_g)                  \
     X(H5P_CLS_DATASET_CREATE_ID_g) \
-    X(H5P_CLS_DATASET_ACCESS_ID_g)
+    X(H5P_CLS_DATASET_ACCESS_ID_g) \
+    X(H5P_CLS_DATASET_XFER_ID_g)
 
 /// H5F_ACC_RDONLY and H5F_ACC_TRUNC, which are macros that call the library.
 constexpr unsigned kHdf5ReadOnly = 0, kHdf5Replace = 2;

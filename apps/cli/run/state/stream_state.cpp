@@ -69,17 +69,23 @@ void put_flicker(const FlickerPairs::State& flicker, const PipelineState& stream
                  TensorFile& file) {
     const FlickerPeriod::State& period = flicker.period;
     file.metadata["stream.flicker_block_us"] = text_of(period.block);
-    std::vector<float> us, rises;
+    file.metadata["stream.flicker_since_us"] = text_of(period.since);
+    std::vector<float> us, rises, when;
     put_bits(period.period_us, us);
     put_bits(period.found_us, us);
     us.push_back(float(period.unsaid));
     for (const std::uint32_t rise : period.rises)
         rises.insert(rises.end(), {float(rise >> 16), float(rise & 0xFFFF)});
+    // Few ticks have any.
+    for (std::size_t tick = 0; tick < period.when.size(); ++tick)
+        if (period.when[tick] > 0) when.insert(when.end(), {float(tick), float(period.when[tick])});
     file.tensors["stream.flicker_period"] = made({9}, std::move(us));
     file.tensors["stream.flicker_rises"] =
         made({std::int64_t(period.rises.size()) / width, width, 2}, std::move(rises));
     file.tensors["stream.flicker_intervals"] =
         made({FlickerPeriod::kBins}, {period.intervals.begin(), period.intervals.end()});
+    const std::int64_t ticks = std::int64_t(when.size()) / 2;
+    file.tensors["stream.flicker_when"] = made({ticks, 2}, std::move(when));
     file.tensors["stream.flicker_held"] = events_after(stream.slicer.begin, flicker.held);
 }
 
@@ -204,10 +210,19 @@ FlickerPairs::State flicker_of(const Kept& kept, SensorTime begin, int width, in
     const auto& rises = kept.tensor("stream.flicker_rises", {height, width, 2}, 0, 0xFFFF);
     for (std::size_t i = 0; i + 1 < rises.size(); i += 2)
         flicker.period.rises.push_back(std::uint32_t(rises[i]) << 16 | std::uint32_t(rises[i + 1]));
+    flicker.period.since = kept.time("stream.flicker_since_us");
     const auto& intervals =
         kept.tensor("stream.flicker_intervals", {FlickerPeriod::kBins}, 0, float(kExact));
     std::ranges::transform(intervals, flicker.period.intervals.begin(),
                            [](float n) { return std::uint32_t(n); });
+    flicker.period.when.resize(std::size_t(FlickerPeriod::kTicks));
+    const auto& when = kept.tensor("stream.flicker_when", {-1, 2}, 0, float(kExact));
+    for (std::size_t i = 0; i + 1 < when.size(); i += 2) {
+        if (when[i] >= float(FlickerPeriod::kTicks))
+            kept.refuse("expected rises within a second, found one in tick " +
+                        std::to_string(int(when[i])));
+        flicker.period.when[std::size_t(when[i])] = std::uint32_t(when[i + 1]);
+    }
     flicker.held = events_after(kept, "stream.flicker_held", begin, width, height);
     if (!std::ranges::is_sorted(flicker.held, {}, &Event::t))
         kept.refuse("expected events in the order of time, found others");
