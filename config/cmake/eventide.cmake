@@ -113,8 +113,8 @@ function(eventide_test name)
   # properties ("LABELS a b c" labels with a alone, and sets a property b to c).
   list(JOIN arg_LABELS "," labels)
   if(EVENTIDE_SANITIZE)
-    # A sanitizer's start takes a second, which is more than most tests take: one process runs all of them. The thread
-    # sanitizer is the slowest: test_model takes more than 20 minutes beside other work.
+    # A sanitizer's start takes a second, which is more than most tests take: one process runs all of them. test_model
+    # takes 20 minutes with the address sanitizer, more with the thread sanitizer.
     set(times 8)
     if(EVENTIDE_SANITIZE MATCHES "thread")
       set(times 12)

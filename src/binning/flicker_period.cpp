@@ -87,9 +87,9 @@ void FlickerPeriod::see(const Event& event) noexcept {
 /// Rises of a second ago, before a pause, are forgotten.
 void FlickerPeriod::begin_block(SensorTime t) noexcept {
     state_.block = t;
-    if (counted_ > 0 && t >= state_.since && t - state_.since <= (kMostUnsaid - 1) * kBlock) return;
-    clear_intervals();
-    state_.since = t;
+    const bool is_long_ago = t < state_.since || t - state_.since > (kMostUnsaid - 1) * kBlock;
+    if (counted_ > 0 && is_long_ago) clear_intervals();
+    if (counted_ == 0) state_.since = t;
 }
 
 void FlickerPeriod::clear_intervals() noexcept {

@@ -86,11 +86,11 @@ inline std::vector<Event> wheel_events(const Wheel& wheel) {
             const double turn =
                 std::atan2(y + .5 - wheel.y, x + .5 - wheel.x) / (2 * std::numbers::pi);
             const double phase = turn * wheel.spokes - std::floor(turn * wheel.spokes);
-            for (double at = phase + .5; at * period < wheel.seconds * 1e6; at += .5) {
-                const bool is_on = std::lround(2 * (at - phase)) % 2 == 0;
-                const auto us = std::int64_t(at * period + spread(random));
+            // A spoke's beginning and its end, half a period apart.
+            for (int half = 1; (phase + .5 * half) * period < wheel.seconds * 1e6; ++half) {
+                const auto us = std::int64_t((phase + .5 * half) * period + spread(random));
                 events.push_back({from_us(std::max<std::int64_t>(us, 1)), std::uint16_t(x),
-                                  std::uint16_t(y), is_on ? Polarity::on : Polarity::off});
+                                  std::uint16_t(y), half % 2 == 0 ? Polarity::on : Polarity::off});
             }
         }
     std::ranges::stable_sort(events, {}, &Event::t);
