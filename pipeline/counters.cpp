@@ -13,6 +13,12 @@ void Counters::note(const Damage& damaged, const SlicerCounters& slicing) {
     bin.time_resets.set(slicing.time_resets);
 }
 
+void Counters::note(const FlickerFound& flicker) {
+    bin.flicker_millihertz.set(std::uint64_t(1000 * flicker.hz));
+    bin.last_flicker_millihertz.set(std::uint64_t(1000 * flicker.last_hz));
+    bin.flicker_events.set(flicker.left_out);
+}
+
 Snapshot Counters::snapshot() const {
     Snapshot s;
     s.packets = read.packets.value();
@@ -27,6 +33,8 @@ Snapshot Counters::snapshot() const {
     s.imu = bin.imu.value();
     s.triggers = bin.triggers.value();
     s.filtered_events = bin.filtered_events.value();
+    s.flicker = {double(bin.flicker_millihertz.value()) / 1000,
+                 double(bin.last_flicker_millihertz.value()) / 1000, bin.flicker_events.value()};
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         s.damaged.count(DamageReason(i), bin.damaged[i].value());
     s.slicing.before_begin = bin.before_begin.value();

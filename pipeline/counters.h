@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/pace/latency.h"
+#include "pipeline/stages.h"
 #include "src/binning/slicer.h"
 #include "src/core/damage.h"
 #include "src/core/frame_data.h"
@@ -35,6 +36,7 @@ struct Snapshot {
     std::uint64_t gaps = 0;  ///< places where bytes are missing, here or already at the source
     std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;  ///< parsed
     std::uint64_t filtered_events = 0;                            ///< skipped by the event filter
+    FlickerFound flicker;                                         ///< by the event filter
     Damage damaged;
     SlicerCounters slicing;
     std::uint64_t event_windows = 0, silent_windows = 0;  ///< silent: of those, without events
@@ -71,6 +73,7 @@ struct Counters {
     struct alignas(64) {
         Counter bytes, gaps, events, images, imu, triggers, filtered_events;
         std::array<Counter, kDamageReasons> damaged;
+        Counter flicker_millihertz, last_flicker_millihertz, flicker_events;
         Counter before_begin, after_end, too_many, late, late_references, time_resets;
         Counter event_windows, silent_windows, merged_windows, begin_us, window_begin_us,
             window_end_us;
@@ -86,6 +89,7 @@ struct Counters {
     } present;
 
     void note(const Damage& damaged, const SlicerCounters& slicing);  ///< bin thread
+    void note(const FlickerFound& flicker);                           ///< bin thread
     Snapshot snapshot() const;                                        ///< any thread
 };
 

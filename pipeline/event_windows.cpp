@@ -48,9 +48,11 @@ void EventWindows::change_window(const SlicerSettings& wanted) noexcept {
 void EventWindows::finish(End end) {
     if (end == End::of_source && !is_past_end()) parser_->finish(batch_);
     pass_on(last_data_.value_or(HostTime{}));
-    if (filter_ != nullptr)
+    if (filter_ != nullptr) {
         counters_.bin.filtered_events.add(
             flush_filtered(slicer_, *filter_, released_, last_data_.value_or(HostTime{})));
+        counters_.note(filter_->flicker());
+    }
     // A stream without any event has no frames, even though its clock ran.
     if (const auto clock = parser_->clock(); clock && slicer_.has_begun())
         slicer_.advance(*clock, last_data_.value_or(HostTime{}));
@@ -100,6 +102,7 @@ void EventWindows::stop(HostTime arrived) {
 void EventWindows::push(std::vector<Event>& events, HostTime arrived) {
     if (filter_ == nullptr) return slicer_.push(events, arrived);
     counters_.bin.filtered_events.add(push_filtered(slicer_, events, *filter_, arrived));
+    counters_.note(filter_->flicker());
 }
 
 void EventWindows::stop_at(std::vector<SensorTime> times, std::function<void(SensorTime)> at) {

@@ -6,6 +6,7 @@
 #include "src/core/frame_data.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace eventide {
@@ -33,6 +34,13 @@ public:
     virtual bool change_size(int, int, Frame&) { return false; }
 };
 
+/// Light that flickers in what a sensor sees.
+struct FlickerFound {
+    double hz = 0;               ///< now; 0: none does
+    double last_hz = 0;          ///< when it last did; 0: it never did
+    std::uint64_t left_out = 0;  ///< events that it added
+};
+
 /// events -> fewer events, before they are sliced (hot pixels, for example). Bin thread.
 class EventFilter {
 public:
@@ -47,6 +55,8 @@ public:
     /// Where all before `now` was processed: no event before this time will come out any more.
     virtual SensorTime known_until(SensorTime now) const { return now; }
     virtual std::size_t held() const { return 0; }
+
+    virtual FlickerFound flicker() const { return {}; }  ///< of one that looks for it
 };
 
 /// Sees all data the parser gives (images, inertial samples), before the filter. Bin thread; it

@@ -19,6 +19,10 @@ struct Summary {
     /// Of the events; empty where there are none.
     std::optional<SensorTime> first, last;
     std::uint64_t frames = 0, imu = 0, triggers = 0;
+    /// Of the events, those that came while light flickered, as FlickerPeriod finds it, and at how
+    /// many Hz it did on the average of them; 0 where it did not.
+    std::uint64_t in_flicker = 0;
+    double flicker_hz = 0;
     Damage damaged;
 };
 
@@ -30,7 +34,8 @@ Summary summarize(Recording& recording, const std::function<bool()>& progress = 
 std::optional<SensorTime> first_event_time(Recording& recording);
 
 /// One object: format, width, height, events, on, first_us, last_us (null without events), frames,
-/// imu, triggers, damaged (counts by reason, all reasons).
+/// imu, triggers, flicker_hz (null where no light flickered), in_flicker, damaged (counts by
+/// reason, all reasons).
 std::string to_json(const Summary& summary);
 
 }  // namespace eventide

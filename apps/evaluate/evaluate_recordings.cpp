@@ -92,7 +92,7 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
     }
     ask_until(SensorTime::max());
     SequenceResult result = judged.finish();
-    if (const std::string remark = flicker_remark(filter.get()); !remark.empty())
+    if (const std::string remark = filter ? flicker_remark(filter->flicker()) : ""; !remark.empty())
         result.notes.push_back(sequence.name + ": " + remark);
     if (sequence.damaged.total() > 0)
         result.notes.push_back(sequence.name + ": left out of the recording, as it is damaged: " +

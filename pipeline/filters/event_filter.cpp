@@ -14,6 +14,10 @@
 namespace eventide {
 namespace {
 
+double hz_of(double period_us) {
+    return period_us > 0 ? 1e6 / period_us : 0;
+}
+
 class FilterChain final : public EventFilter {
 public:
     FilterChain(std::optional<FlickerPairs> flicker, std::optional<HotPixelFilter> hot_pixels,
@@ -38,9 +42,14 @@ public:
         return flicker_ ? flicker_->known_until(now) : now;
     }
     std::size_t held() const override { return flicker_ ? flicker_->held() : 0; }
+    FlickerFound flicker() const override {
+        if (!flicker_) return {};
+        return {hz_of(flicker_->period_us()), hz_of(flicker_->last_period_us()),
+                flicker_->left_out()};
+    }
 
     NoiseFilter* noise() { return noise_ ? &*noise_ : nullptr; }
-    FlickerPairs* flicker() { return flicker_ ? &*flicker_ : nullptr; }
+    FlickerPairs* flicker_pairs() { return flicker_ ? &*flicker_ : nullptr; }
 
 private:
     void process_rest(std::vector<Event>& events) {
@@ -61,14 +70,13 @@ NoiseFilter* noise_filter_in(EventFilter* filter) {
 
 FlickerPairs* flicker_pairs_in(EventFilter* filter) {
     auto* const chain = dynamic_cast<FilterChain*>(filter);
-    return chain == nullptr ? nullptr : chain->flicker();
+    return chain == nullptr ? nullptr : chain->flicker_pairs();
 }
 
-std::string flicker_remark(EventFilter* filter) {
-    const FlickerPairs* const flicker = flicker_pairs_in(filter);
-    if (flicker == nullptr || flicker->left_out() == 0) return {};
-    return "light flickered at " + std::to_string(std::lround(1e6 / flicker->last_period_us())) +
-           " Hz: " + std::to_string(flicker->left_out()) + " events left out in pairs";
+std::string flicker_remark(const FlickerFound& flicker) {
+    if (flicker.left_out == 0) return {};
+    return "light flickered at " + std::to_string(std::lround(flicker.last_hz)) +
+           " Hz: " + std::to_string(flicker.left_out) + " events left out in pairs";
 }
 
 std::unique_ptr<EventFilter> event_filter(const EventFilterChoice& choice, const ModelConfig& model,

@@ -23,8 +23,8 @@ class NoiseFilter;
 NoiseFilter* noise_filter_in(EventFilter* filter);
 FlickerPairs* flicker_pairs_in(EventFilter* filter);
 
-/// For people, of a filter of event_filter(): what flickering light added; empty where it did not.
-std::string flicker_remark(EventFilter* filter);
+/// For people: what flickering light added; empty where it did not.
+std::string flicker_remark(const FlickerFound& flicker);
 
 /// What light's flicker adds first, then hot pixels, then what nothing supports; null where all
 /// events stay. Throws Error (usage).

@@ -40,7 +40,7 @@ const Arrows kArrows{
     {"src/simulate", {"src/core", "src/io"}},
     {"pipeline",
      {"include", "src/binning", "src/codec", "src/core", "src/io", "src/model", "src/settings"}},
-    {"replay", {"pipeline", "src/codec", "src/core", "src/io"}},
+    {"replay", {"pipeline", "src/binning", "src/codec", "src/core", "src/io"}},
     {"drivers", {"pipeline", "src/codec", "src/core", "src/io", "src/settings", "src/simulate"}},
     {"library",
      {"drivers", "include", "pipeline", "replay", "src/binning", "src/core", "src/metrics",

@@ -193,5 +193,23 @@ TEST(EventWindows, EventsThatAreHeldBackAreInTheWindowsOfTheirTime) {
     }
 }
 
+TEST(EventWindows, SayWhatTheFilterFoundOfFlickeringLight) {
+    struct Finds final : EventFilter {
+        void process(std::vector<Event>&) override { found = {100.25, 100.25, found.left_out + 2}; }
+        void flush(std::vector<Event>&) override { found = {0, 99.5, 7}; }
+        FlickerFound flicker() const override { return found; }
+        FlickerFound found;
+    } filter;
+    Beginning b(false, 10, &filter);
+    EXPECT_EQ(b.counters.snapshot().flicker.hz, 0);
+    b.give(record(ToyKind::event, 1), 0);
+    EXPECT_EQ(b.counters.snapshot().flicker.hz, 100.25);
+    EXPECT_EQ(b.counters.snapshot().flicker.left_out, 2U);
+    b.finish();
+    EXPECT_EQ(b.counters.snapshot().flicker.hz, 0);
+    EXPECT_EQ(b.counters.snapshot().flicker.last_hz, 99.5);
+    EXPECT_EQ(b.counters.snapshot().flicker.left_out, 7U);
+}
+
 }  // namespace
 }  // namespace eventide

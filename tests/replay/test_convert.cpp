@@ -1,14 +1,12 @@
 // From format to format and back: nothing is lost that the formats hold, and what is not is said.
 #include "replay/convert.h"
 
-#include "replay/summary.h"
 #include "src/core/error.h"
 #include "tests/replay/recording_files.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <csignal>
@@ -244,26 +242,6 @@ TEST(Convert, EndsWhereTheReaderOfAPipeWentAway) {
     EXPECT_LT(recording->position_bytes(), recording->size_bytes()) << "the rest is not read";
     ::close(ends[1]);
     std::signal(SIGPIPE, handler);
-}
-
-TEST(Summary, IsOneObjectWithTheKnownKeys) {
-    const TestFolder folder;
-    const auto sum = summarize(
-        *open_recording(folder.write("a.txt", "240 180\n0.1 1 2 1\n0.2 1 2 0\njunk\n0.3 1 2 1\n")));
-    const auto json = nlohmann::json::parse(to_json(sum));
-    EXPECT_EQ(json.size(), 11U);
-    EXPECT_EQ(json["format"], "text");
-    EXPECT_EQ(json["width"], 240);
-    EXPECT_EQ(json["height"], 180);
-    EXPECT_EQ(json["events"], 3);
-    EXPECT_EQ(json["on"], 2);
-    EXPECT_EQ(json["first_us"], 100000);
-    EXPECT_EQ(json["last_us"], 300000);
-    EXPECT_EQ(json["frames"], 0);
-    EXPECT_EQ(json["imu"], 0);
-    EXPECT_EQ(json["triggers"], 0);
-    EXPECT_EQ(json["damaged"]["bad_record"], 1);
-    EXPECT_TRUE(nlohmann::json::parse(to_json({}))["first_us"].is_null());
 }
 
 }  // namespace

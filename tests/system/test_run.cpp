@@ -1,4 +1,5 @@
 // eventide run, as a user runs it: what is in the files afterwards.
+#include "tests/support/flickering_light.h"
 #include "tests/support/manager_socket.h"
 #include "tests/system/program_test.h"
 
@@ -27,6 +28,25 @@ std::map<std::string, std::string> contents(const std::filesystem::path& folder)
             files[std::filesystem::relative(entry.path(), folder).string()] =
                 read_text(entry.path());
     return files;
+}
+
+TEST_F(Run, SaysThatLightFlickers) {
+    std::ofstream text{temp_ / "lamp.txt"};
+    text << "32 24\n";
+    for (const Event& event : lamp_events({.hz = 100, .seconds = 1}))
+        text << to_us(event.t) << "e-6 " << event.x << ' ' << event.y << ' '
+             << (event.polarity == Polarity::on) << '\n';
+    text.close();
+    const Result result = eventide(
+        {"run", "lamp.txt", "--realtime", "--speed", "1", "--out", "null", "--stats", "s.jsonl"});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.error, HasSubstr("light flickers at 100 Hz"));
+    EXPECT_THAT(result.error, HasSubstr("light flickered at 100 Hz: "));
+    std::istringstream stats{read_text(temp_ / "s.jsonl")};
+    Json last;
+    for (std::string line; std::getline(stats, line);) last = Json::parse(line);
+    EXPECT_NEAR(last["flicker_hz"], 100, 2);
+    EXPECT_GT(last["flicker_events"], 100);
 }
 
 TEST_F(Run, WritesAFolderAVideoAndASheetInOneGo) {

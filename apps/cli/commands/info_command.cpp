@@ -20,6 +20,13 @@ namespace eventide::app {
 
 namespace {
 
+std::string flicker_text(const Summary& summary) {
+    if (summary.in_flicker == 0) return "none";
+    const double share = double(summary.in_flicker) / double(summary.events);
+    return std::to_string(std::lround(summary.flicker_hz)) + " Hz, during " +
+           std::to_string(std::lround(100 * share)) + " % of the events";
+}
+
 void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t bytes) {
     const auto line = [](const char* name, const std::string& value) {
         std::cout << name << std::string(12 - std::string{name}.size(), ' ') << printable(value)
@@ -46,6 +53,7 @@ void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t
     line("images", whole(summary.frames));
     line("imu", whole(summary.imu));
     line("triggers", whole(summary.triggers));
+    line("flicker", flicker_text(summary));
     std::string damage = whole(summary.damaged.total());
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         if (const auto n = summary.damaged[DamageReason(i)]; n > 0)

@@ -25,7 +25,7 @@ int Run::report(const RunProgress& end) const {
     const CameraCounters camera = camera_counters();
     spdlog::info("{}{}", summary_text(end_counters, end), camera_text(camera));
     if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
-    if (const std::string remark = flicker_remark(filter_.get()); !remark.empty())
+    if (const std::string remark = flicker_remark(end_counters.flicker); !remark.empty())
         spdlog::info("{}", remark);
     if (const std::string why = disorder_text(settings_.source, sensor_.format, end_counters.events,
                                               end_counters.damaged);

@@ -18,6 +18,7 @@ Snapshot busy() {
     now.used_images = 30;
     now.dropped_images = 4;
     now.lost_packets = 2;
+    now.flicker = {100.5, 100.5, 77};
     now.damaged.count(DamageReason::unknown_word, 5);
     now.window = {from_us(1'000'000), from_us(1'050'000)};
     now.newest_frame = from_us(1'040'000);
@@ -34,11 +35,14 @@ TEST(RunReport, JsonIsOneLineWithEveryCounter) {
     EXPECT_EQ(json["lost_packets"], 2);
     EXPECT_EQ(json["used_images"], 30);
     EXPECT_EQ(json["dropped_images"], 4);
+    EXPECT_EQ(json["flicker_hz"], 100.5);
+    EXPECT_EQ(json["flicker_events"], 77);
     EXPECT_EQ(json["damaged"]["unknown_word"], 5);
     EXPECT_EQ(json["damaged"].size(), kDamageReasons);
     EXPECT_EQ(json["latency_ms"]["p50"], 12.0);
     EXPECT_EQ(json["newest_frame_us"], 1'040'000);
     EXPECT_TRUE(nlohmann::json::parse(stats_json({}, {}, false))["newest_frame_us"].is_null());
+    EXPECT_TRUE(nlohmann::json::parse(stats_json({}, {}, false))["flicker_hz"].is_null());
 }
 
 TEST(RunReport, JsonNamesAModelWhoseFileNameIsNoUtf8) {

@@ -124,6 +124,8 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
     json["lost_bytes"] = now.lost_bytes;
     json["gaps"] = now.gaps;
     json["filtered_events"] = now.filtered_events;
+    json["flicker_hz"] = now.flicker.hz > 0 ? Json(now.flicker.hz) : Json(nullptr);
+    json["flicker_events"] = now.flicker.left_out;
     json["damaged"] = json_of(now.damaged);
     json["slicing"] = {{"before_begin", now.slicing.before_begin},
                        {"after_end", now.slicing.after_end},

@@ -1,6 +1,9 @@
 // While a run goes on: the moving line on a terminal, and the JSON lines of --stats.
 #include "apps/cli/run/report/status.h"
 
+#include <spdlog/spdlog.h>
+
+#include <cmath>
 #include <utility>
 
 namespace eventide::app {
@@ -40,6 +43,7 @@ void Status::tick() {
         std::unique_lock lock{mutex_};
         if (ended_.wait_for(lock, kTick, [this] { return end_; })) return;
         const Snapshot now = snapshot_();
+        note_flicker(now.flicker);
         if (quality_) fixed_.quality = quality_(now, Clock::now() - begun_);
         const RunProgress state = progress(now);
         line_.show(status_line(now, state, line_.columns()));
@@ -47,6 +51,13 @@ void Status::tick() {
         if (second_is_over) write_stats(now, false);
         tell_manager(now, state, second_is_over);
     }
+}
+
+void Status::note_flicker(const FlickerFound& flicker) {
+    if (flicker.hz <= 0 || flicker_said_) return;
+    flicker_said_ = true;
+    spdlog::info("light flickers at {} Hz: the events it adds are left out (--lamp-flicker)",
+                 std::lround(flicker.hz));
 }
 
 /// The watchdog hears of work that was done since it heard last: a camera gives event windows in

@@ -1,0 +1,64 @@
+// What a recording holds is counted.
+#include "replay/formats.h"
+#include "replay/summary.h"
+#include "tests/replay/recording_files.h"
+#include "tests/support/flickering_light.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+
+namespace eventide::test {
+namespace {
+
+std::string as_text(const std::vector<Event>& events) {
+    std::ostringstream text;
+    text << "32 24\n";
+    for (const Event& event : events)
+        text << to_us(event.t) << "e-6 " << event.x << ' ' << event.y << ' '
+             << (event.polarity == Polarity::on) << '\n';
+    return text.str();
+}
+
+TEST(Summary, IsOneObjectWithTheKnownKeys) {
+    const TestFolder folder;
+    const auto sum = summarize(
+        *open_recording(folder.write("a.txt", "240 180\n0.1 1 2 1\n0.2 1 2 0\njunk\n0.3 1 2 1\n")));
+    const auto json = nlohmann::json::parse(to_json(sum));
+    EXPECT_EQ(json.size(), 13U);
+    EXPECT_EQ(json["format"], "text");
+    EXPECT_EQ(json["width"], 240);
+    EXPECT_EQ(json["height"], 180);
+    EXPECT_EQ(json["events"], 3);
+    EXPECT_EQ(json["on"], 2);
+    EXPECT_EQ(json["first_us"], 100000);
+    EXPECT_EQ(json["last_us"], 300000);
+    EXPECT_EQ(json["frames"], 0);
+    EXPECT_EQ(json["imu"], 0);
+    EXPECT_EQ(json["triggers"], 0);
+    EXPECT_TRUE(json["flicker_hz"].is_null());
+    EXPECT_EQ(json["in_flicker"], 0);
+    EXPECT_EQ(json["damaged"]["bad_record"], 1);
+    EXPECT_TRUE(nlohmann::json::parse(to_json({}))["first_us"].is_null());
+}
+
+TEST(Summary, TellsFlickeringLight) {
+    const TestFolder folder;
+    const auto lamp = lamp_events({.hz = 100, .seconds = 1});
+    const Summary sum = summarize(*open_recording(folder.write("a.txt", as_text(lamp))));
+    EXPECT_NEAR(sum.flicker_hz, 100, 2);
+    EXPECT_GT(sum.in_flicker, lamp.size() / 2);
+    EXPECT_LT(sum.in_flicker, sum.events);
+}
+
+TEST(Summary, TellsNoFlickerWhereThingsOnlyMove) {
+    const TestFolder folder;
+    const auto bar = bar_events(32, 24, .5, 1000);
+    const Summary sum = summarize(*open_recording(folder.write("a.txt", as_text(bar))));
+    EXPECT_EQ(sum.in_flicker, 0U);
+    EXPECT_EQ(sum.events, bar.size());
+}
+
+}  // namespace
+}  // namespace eventide::test
