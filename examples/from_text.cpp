@@ -14,9 +14,11 @@ int main(int argc, char** argv) try {
     std::ofstream out(argv[2], std::ios::binary);
     int width = 0, height = 0, x = 0, y = 0, p = 0;
     events >> width >> height;
-    eventide::Reconstructor reconstructor(
-        "default", width, height,
-        {.window = "auto", .lookahead = 2, .precision = eventide::Precision::f32});
+    eventide::Reconstructor reconstructor("default", width, height,
+                                          {.window = "auto",
+                                           .lookahead = 2,
+                                           .lamp_flicker = "16ms",
+                                           .precision = eventide::Precision::f32});
     double t = 0;
     while (events) {
         if (events >> t >> x >> y >> p) {

@@ -9,8 +9,8 @@ int main(int argc, char** argv) {
     eventide_frame frame;
     FILE* out = argc == 3 ? fopen(argv[2], "wb") : NULL;
     if (out == NULL) return fprintf(stderr, "reconstruct RECORDING OUT\n"), 1;
-    eventide_options_init(&options, sizeof options);
-    options.window = "auto", options.lookahead = 2, options.precision = "f32";
+    eventide_options_init(&options, sizeof options), options.precision = "f32";
+    options.window = "auto", options.lookahead = 2, options.lamp_flicker = "16ms";
     eventide_status status = eventide_recording_open(argv[1], NULL, 0, 0, &source);
     if (!status) status = eventide_reconstructor_open_for(source, "default", &options, &network);
     while (!status && !(status = eventide_read_frame(source, network, &frame))) {

@@ -7,9 +7,11 @@
 int main(int argc, char** argv) try {
     if (argc != 3) throw eventide::Error(eventide::ErrorKind::usage, "reconstruct RECORDING OUT");
     eventide::EventReader reader(argv[1]);
-    eventide::Reconstructor reconstructor(
-        "default", reader.width(), reader.height(),
-        {.window = "auto", .lookahead = 2, .precision = eventide::Precision::f32});
+    eventide::Reconstructor reconstructor("default", reader.width(), reader.height(),
+                                          {.window = "auto",
+                                           .lookahead = 2,
+                                           .lamp_flicker = "16ms",
+                                           .precision = eventide::Precision::f32});
     std::ofstream out(argv[2], std::ios::binary);
     for (eventide::Frame frame; eventide::read_frame(reader, reconstructor, frame);)
         for (const auto* plane : {&frame.intensity, &frame.sigma})

@@ -7,7 +7,8 @@ import eventide
 recording, out_name = sys.argv[1:]
 reader = eventide.open(recording)
 reconstructor = eventide.Reconstructor(
-    "default", reader.width, reader.height, window="auto", lookahead=2, precision="f32"
+    "default", reader.width, reader.height, window="auto", lookahead=2, lamp_flicker="16ms",
+    precision="f32",
 )
 with open(out_name, "wb") as out:
     for frame in eventide.read_frames(reader, reconstructor):

@@ -263,8 +263,9 @@ int main(int argc, char** argv) try {
     if (argc != 2 && argc != 3)
         throw eventide::Error(eventide::ErrorKind::usage, "tracker RECORDING [TRUTH/]");
     eventide::EventReader reader(argv[1]);
-    eventide::Reconstructor reconstructor("default", reader.width(), reader.height(),
-                                          {.window = "auto", .lookahead = 2, .fps = "50"});
+    eventide::Reconstructor reconstructor(
+        "default", reader.width(), reader.height(),
+        {.window = "auto", .lookahead = 2, .fps = "50", .lamp_flicker = "16ms"});
     const std::vector<long long> truth_times =
         argc == 3 ? times_of(argv[2]) : std::vector<long long>{};
     Tracker tracker(argc == 3 ? argv[2] : "");

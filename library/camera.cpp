@@ -7,6 +7,7 @@
 
 #include <eventide/camera.h>
 
+#include <atomic>
 #include <string>
 #include <utility>
 
@@ -37,7 +38,10 @@ public:
           parser_(camera_->make_parser()),
           filters_(camera_->info()) {}
 
-    Camera& camera() { return *camera_; }
+    void stop() noexcept {
+        stopped_ = true;
+        camera_->stop();
+    }
     bool is_live() const { return camera_->is_live(); }
     const Parser& parser() const { return *parser_; }
     SourceFilters& filters() { return filters_; }
@@ -52,9 +56,7 @@ public:
         if (status == ReadStatus::timeout) return true;
         now_ = packet_.arrived;
         gap_before_ = packet_.gap_before;
-        if (gap_before_) packet_.reopened ? parser_->reopened() : parser_->resync();
-        if (camera_->is_live()) parser_->arrives(now_);
-        parser_->parse(packet_.bytes, batch);
+        parse_packet(packet_, camera_->is_live(), *parser_, batch);
         filters_.process(batch);
         note_clock();
         return true;
@@ -70,7 +72,8 @@ public:
 
 private:
     bool read_rest(Batch& batch) {
-        if (!std::exchange(ended_, true)) parser_->finish(batch);
+        // Where the end was asked for, half a record in hand is no damage.
+        if (!std::exchange(ended_, true) && !stopped_) parser_->finish(batch);
         const bool empty = batch.empty();
         filters_.process(batch);
         return !empty;
@@ -88,6 +91,7 @@ private:
     SourceFilters filters_;
     RawPacket packet_;
     bool gap_before_ = false, ended_ = false;
+    std::atomic<bool> stopped_{false};
     HostTime now_{}, clock_arrived_{};
     std::optional<SensorTime> clock_;
 };
@@ -126,7 +130,7 @@ std::uint64_t EventCamera::damaged() const noexcept {
     return impl_->parser().damaged().total();
 }
 void EventCamera::stop() noexcept {
-    impl_->camera().stop();
+    impl_->stop();
 }
 
 }  // namespace eventide

@@ -3,19 +3,17 @@
 
 #include "library/far_time.h"
 #include "library/pushed_images.h"
-#include "pipeline/filters/event_filter.h"
-#include "src/binning/flicker_pairs.h"
-#include "src/binning/noise_filter.h"
 #include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
 namespace eventide {
 
 EventIntake::EventIntake(const SlicerSettings& settings, int width, int height,
-                         std::unique_ptr<EventFilter> filter, ReconstructorCounters& counters)
+                         std::unique_ptr<EventFilters> filter, ReconstructorCounters& counters)
     : width_(unsigned(width)),
       height_(unsigned(height)),
       slicer_(settings, width, height),
@@ -31,21 +29,28 @@ void EventIntake::push(std::span<const Event> events, HostTime arrived) {
 void EventIntake::push(const Batch& batch, HostTime arrived) {
     check_open("push");
     for (const ReferenceImage& image : batch.images) check_image(image);
-    hold(batch.images);
-    take(batch.events, StepBack::is_new_clock, arrived);
+    std::span<const Event> events = batch.events;
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < batch.images.size(); ++i) {
+        const std::size_t place = std::min(batch.place_of_image(i), batch.events.size());
+        if (place > taken) {
+            take(events.first(place - taken), StepBack::is_new_clock, arrived);
+            events = events.subspan(place - taken);
+            taken = place;
+        }
+        hold(batch.images[i]);
+    }
+    take(events, StepBack::is_new_clock, arrived);
     note_cut();
 }
 
-void EventIntake::hold(const std::vector<ReferenceImage>& images) {
-    const Slicer::Position since = slicer_.heard();
-    for (const ReferenceImage& image : images) {
-        if (is_far(image.t)) {
-            ++counters_.bad_time;
-            continue;
-        }
-        if (holds_images_) images_.push_back({without_mosaic(image), since});
-        slicer_.push_reference(image.t);
+void EventIntake::hold(const ReferenceImage& image) {
+    if (is_far(image.t)) {
+        ++counters_.bad_time;
+        return;
     }
+    if (holds_images_) images_.push_back({without_mosaic(image), slicer_.heard()});
+    slicer_.push_reference(image.t);
 }
 
 std::optional<ReferenceImage> EventIntake::next_image() {
@@ -99,6 +104,7 @@ void EventIntake::finish(std::optional<SensorTime> end) {
     // A stream without any event has no frames, even though its clock ran.
     if (end && slicer_.has_begun()) slicer_.advance(*end, Clock::now());
     slicer_.finish();
+    note_cut();
     finished_ = true;
 }
 
@@ -114,9 +120,7 @@ void EventIntake::reset() {
     images_.clear();
     newest_.reset();
     finished_ = false;
-    // What noise is around is of the scene; hot pixels that were asked for are of the sensor.
-    if (NoiseFilter* const noise = noise_filter_in(filter_.get())) noise->reset();
-    if (FlickerPairs* const flicker = flicker_pairs_in(filter_.get())) flicker->reset();
+    if (filter_) filter_->forget_scene();
 }
 
 void EventIntake::check_open(const char* what) const {

@@ -1,7 +1,7 @@
 // What a caller pushes -> event windows: hostile events are left out and counted, the rest is cut.
 #pragma once
 
-#include "pipeline/stages.h"
+#include "pipeline/filters/event_filter.h"
 #include "src/binning/slicer.h"
 
 #include <eventide/reconstructor.h>
@@ -21,7 +21,7 @@ public:
 
     /// `filter` may be null.
     EventIntake(const SlicerSettings& settings, int width, int height,
-                std::unique_ptr<EventFilter> filter, ReconstructorCounters& counters);
+                std::unique_ptr<EventFilters> filter, ReconstructorCounters& counters);
 
     /// A step back in time is disorder.
     void push(std::span<const Event> events, HostTime arrived = Clock::now());
@@ -43,7 +43,7 @@ public:
 
 private:
     enum class StepBack { is_disorder, is_new_clock };
-    void hold(const std::vector<ReferenceImage>& images);
+    void hold(const ReferenceImage& image);
     void take(std::span<const Event> events, StepBack step_back, HostTime arrived);
     bool is_sound(const Event& event);
     void check_open(const char* what) const;
@@ -51,7 +51,7 @@ private:
 
     const unsigned width_, height_;
     Slicer slicer_;
-    std::unique_ptr<EventFilter> filter_;
+    std::unique_ptr<EventFilters> filter_;
     ReconstructorCounters& counters_;
     std::vector<Event> taken_;
     std::optional<SensorTime> newest_;

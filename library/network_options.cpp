@@ -60,8 +60,8 @@ FrameRate rate_of(const ReconstructorOptions& options) {
     return options.fps == "frame" ? FrameRate{} : parse_frame_rate(options.fps);
 }
 
-std::unique_ptr<EventFilter> filter_of(const ReconstructorOptions& options,
-                                       const ModelConfig& config, int width, int height) {
+std::unique_ptr<EventFilters> filter_of(const ReconstructorOptions& options,
+                                        const ModelConfig& config, int width, int height) {
     return event_filter({options.hot_pixels, options.noise_filter, options.lamp_flicker}, config,
                         width, height);
 }

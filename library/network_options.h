@@ -1,8 +1,8 @@
 // What the options of the public face say to the parts behind it.
 #pragma once
 
+#include "pipeline/filters/event_filter.h"
 #include "pipeline/frame_clock.h"
-#include "pipeline/stages.h"
 #include "src/binning/slicer_settings.h"
 #include "src/model/engine.h"
 #include "src/model/model_file.h"
@@ -27,8 +27,8 @@ SlicerSettings slicer_of(const ReconstructorOptions& options, const ModelConfig&
 EngineOptions engine_of(const ReconstructorOptions& options);
 FrameRate rate_of(const ReconstructorOptions& options);
 /// Null where nothing is filtered.
-std::unique_ptr<EventFilter> filter_of(const ReconstructorOptions& options,
-                                       const ModelConfig& config, int width, int height);
+std::unique_ptr<EventFilters> filter_of(const ReconstructorOptions& options,
+                                        const ModelConfig& config, int width, int height);
 
 /// Throws Error (usage) for a size that no frame has, and a region that is no part of it.
 void check_frame_size(const FrameSize& size, int sensor_width, int sensor_height);

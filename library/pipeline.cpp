@@ -37,14 +37,13 @@ class ImagesSeen final : public DataObserver {
 public:
     explicit ImagesSeen(ImagesOnTheWay& images) : images_(images) {}
     void see(const Batch& batch) override {
-        grey_.clear();
-        for (const ReferenceImage& image : batch.images) grey_.push_back(without_mosaic(image));
-        images_.put(grey_);
+        std::vector<ReferenceImage> grey;
+        for (const ReferenceImage& image : batch.images) grey.push_back(without_mosaic(image));
+        if (!grey.empty()) images_.put(std::move(grey));
     }
 
 private:
     ImagesOnTheWay& images_;
-    std::vector<ReferenceImage> grey_;
 };
 
 std::vector<std::unique_ptr<UserSink>> wrapped(const std::vector<FrameSink*>& sinks) {
@@ -87,8 +86,7 @@ PipelineSettings settings_of(const PipelineOptions& options, const ModelConfig& 
     settings.reset_on_gap = options.frames.reset_on_gap;
     settings.allow_silence = options.frames.allow_silence;
     settings.events_per_pixel = options.frames.images;
-    // A recording waits: it needs no more than one being filled and one being read.
-    if (!live) settings.buffers = {.packets = 8, .grids = 2, .latents = 2};
+    if (!live) settings.buffers = kBuffersOfRecording;
     return settings;
 }
 
@@ -140,7 +138,7 @@ private:
     const bool sequential_;
     UserSource source_;
     std::vector<std::unique_ptr<UserSink>> sinks_;
-    std::unique_ptr<EventFilter> filter_;
+    std::unique_ptr<EventFilters> filter_;
     Encoder encoder_;
     Renderer renderer_;
     ImagesOnTheWay images_;

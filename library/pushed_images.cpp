@@ -51,8 +51,7 @@ void tell_filter(ColourFilter filter, std::vector<ReferenceImage>& images) {
     for (ReferenceImage& image : images)
         if (image.channels == 1 && image.filter == ColourFilter::none &&
             filter != ColourFilter::none)
-            image.filter = filter_with(
-                [&](int x, int y) { return channel_at(filter, image.x0 + x, image.y0 + y); });
+            image.filter = filter_at(filter, image.x0, image.y0);
 }
 
 }  // namespace eventide

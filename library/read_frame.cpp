@@ -1,9 +1,27 @@
 // Frames of a source, one by one.
+#include <eventide/error.h>
 #include <eventide/pipeline.h>
 
+#include <string>
+
 namespace eventide {
+namespace {
+
+std::string size_text(int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+}
+
+}  // namespace
 
 void push_from(const EventSource& source, const Batch& batch, Reconstructor& reconstructor) {
+    const SensorInfo& sensor = source.info();
+    const bool is_known = sensor.width > 0 && sensor.height > 0;
+    if (is_known &&
+        (sensor.width != reconstructor.width() || sensor.height != reconstructor.height()))
+        throw Error(ErrorKind::usage, "source: expected a sensor of " +
+                                          size_text(reconstructor.width(), reconstructor.height()) +
+                                          " px, as of the reconstructor, found one of " +
+                                          size_text(sensor.width, sensor.height));
     if (source.gap_before()) reconstructor.mark_gap();
     reconstructor.push(batch);
     if (const auto clock = source.clock(); clock && source.is_live()) reconstructor.advance(*clock);

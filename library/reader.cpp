@@ -2,6 +2,7 @@
 #include "library/source_filters.h"
 #include "replay/formats.h"
 #include "replay/summary.h"
+#include "src/core/batch_pieces.h"
 #include "src/core/error.h"
 
 #include <eventide/reader.h>
@@ -41,13 +42,15 @@ public:
     SourceFilters& filters() { return filters_; }
 
     bool read(Batch& batch) {
-        batch.clear();
-        if (ended_) return false;
-        ended_ = recording_->read(packet_) != ReadStatus::data;
-        ended_ ? parser_->finish(batch) : parser_->parse(packet_.bytes, batch);
-        const bool empty = batch.empty();
-        filters_.process(batch);
-        return !ended_ || !empty;
+        bool more = pieces_.next(batch);
+        if (!more && !ended_) {
+            ended_ = recording_->read(packet_) != ReadStatus::data;
+            ended_ ? parser_->finish(parsed_) : parser_->parse(packet_.bytes, parsed_);
+            pieces_.put(parsed_);
+            more = pieces_.next(batch) || !ended_;
+        }
+        if (more) filters_.process(batch);
+        return more;
     }
 
     /// What cannot go back stays where it is, and its parser with it.
@@ -60,6 +63,7 @@ public:
         damaged_before_ += parser_->damaged().total();
         parser_ = recording_->make_parser();
         ended_ = false;
+        pieces_ = {};
     }
 
     void stop() noexcept {
@@ -87,6 +91,8 @@ private:
     std::unique_ptr<Parser> parser_;
     SourceFilters filters_;
     RawPacket packet_;
+    Batch parsed_;
+    BatchPieces pieces_;
     std::uint64_t damaged_before_ = 0;  // by parsers before a seek
     bool ended_ = false;
 };

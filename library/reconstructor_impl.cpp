@@ -42,7 +42,7 @@ Reconstructor::Impl::Impl(const Model& model, int width, int height,
     request_.want_sigma = options.sigma;
     if (options.images) {
         fused_.emplace(renderer_, width, height, options.lookahead);
-        fused_->keep_at_most(std::numeric_limits<std::size_t>::max());
+        fused_->keep_at_most(FusedRenderer::kMaxWaitingOfRecording);
         latent_.events_per_pixel = Array2<float>(height, width);
         intake_.hold_images();
     }
@@ -75,6 +75,15 @@ bool Reconstructor::Impl::step() {
     renderer_.finish();
     ended_ = true;
     return true;
+}
+
+/// Whether a step leaves all frames to next() that it has not given, or nobody calls it.
+bool Reconstructor::Impl::keeps_frames() const {
+    const std::uint64_t waiting = encoded_ - opened_;
+    if (!follows_) return true;
+    if (new_clock_) return waiting == 0 && schedule_.due() == 0;
+    return waiting < FrameOutput::kMaxLookahead ||
+           (waiting == FrameOutput::kMaxLookahead && schedule_.due() == 0);
 }
 
 void Reconstructor::Impl::bin(const EventWindow& event_window) {
@@ -169,6 +178,7 @@ void Reconstructor::Impl::check_silence() {
 }
 
 void Reconstructor::Impl::render_due(Frame& frame) {
+    follows_ = true;
     const DueFrame due = schedule_.next();
     // The stream's first frame may stand at the first window's begin, which is outside it.
     render_request(std::max(due.t, open_.window.begin + SensorDuration{1}), options_.size, frame);
@@ -181,7 +191,7 @@ Readiness Reconstructor::Impl::readiness(SensorTime t) {
         const Readiness found = renderer_.readiness(t, options_.lookahead);
         const bool of_next_stream = found == Readiness::gone && new_clock_;
         if (found != Readiness::later && !of_next_stream) return found;
-        if (!step()) return found;
+        if (!keeps_frames() || !step()) return found;
     }
 }
 
@@ -191,7 +201,8 @@ void Reconstructor::Impl::render(SensorTime t, const FrameSize& size, Frame& fra
         throw Error(ErrorKind::usage,
                     "frame at " + us(t) + ": expected a time that is ready, found one " +
                         (found == Readiness::later
-                             ? "that waits for events not pushed yet"
+                             ? keeps_frames() ? "that waits for events not pushed yet"
+                                              : "that waits until next() has given those before"
                              : "outside the event windows that the network remembers"));
     render_request(t, size, frame);
 }
@@ -228,7 +239,7 @@ void Reconstructor::Impl::make_room(const FrameSize& size) {
 }
 
 std::optional<SensorTime> Reconstructor::Impl::newest() {
-    while (step()) {
+    while (keeps_frames() && step()) {
     }
     const std::uint64_t waits = ended_ ? 0 : std::uint64_t(options_.lookahead);
     if (encoded_ <= waits) return std::nullopt;
@@ -242,6 +253,7 @@ void Reconstructor::Impl::forget_events() {
     binner_.reset();
     forget_stream();
     gaps_ = {};
+    follows_ = false;
     schedule_ = FrameSchedule{rate_of(options_)};
 }
 

@@ -37,6 +37,7 @@ public:
 
 private:
     bool step();
+    bool keeps_frames() const;
     void bin(const EventWindow& event_window);
     void encode();
     void take_images();
@@ -74,6 +75,7 @@ private:
     WindowStamp open_;           // whose frames are due
     std::uint64_t silent_ = 0;   // frames in a row without events
     GapCarrier gaps_;
+    bool follows_ = false;    // next() gave a frame, and its frames stay
     bool ended_ = false;      // the renderer was told that no window follows
     bool new_clock_ = false;  // grid_ begins another stream, which waits for the frames before
 };

@@ -19,6 +19,7 @@ struct ImageHead {
     SensorTime t{}, exposure_begin{}, exposure_end{};
     int x0 = 0, y0 = 0, channels = 1, width = 0, height = 0;
     ColourFilter filter = ColourFilter::none;
+    std::uint64_t place = 0;  // Batch::image_places
 };
 
 /// Of a packet. Images follow, then events.
@@ -42,7 +43,8 @@ T taken_from(std::span<const std::byte>& bytes) {
     return value;
 }
 
-void append_image(const ReferenceImage& image, bool whole, std::vector<std::byte>& out) {
+void append_image(const ReferenceImage& image, std::uint64_t place, bool whole,
+                  std::vector<std::byte>& out) {
     const ImageHead head{.t = image.t,
                          .exposure_begin = image.exposure_begin,
                          .exposure_end = image.exposure_end,
@@ -51,13 +53,15 @@ void append_image(const ReferenceImage& image, bool whole, std::vector<std::byte
                          .channels = image.channels,
                          .width = whole ? image.pixels.width() : 0,
                          .height = whole ? image.pixels.height() : 0,
-                         .filter = image.filter};
+                         .filter = image.filter,
+                         .place = place};
     append(&head, 1, out);
     if (whole) append(image.pixels.values().data(), image.pixels.values().size(), out);
 }
 
-ReferenceImage image_taken_from(std::span<const std::byte>& bytes) {
+ReferenceImage image_taken_from(std::span<const std::byte>& bytes, std::uint64_t& place) {
     const auto head = taken_from<ImageHead>(bytes);
+    place = head.place;
     ReferenceImage image{.t = head.t,
                          .exposure_begin = head.exposure_begin,
                          .exposure_end = head.exposure_end,
@@ -80,21 +84,16 @@ public:
     void parse(std::span<const std::byte> bytes, Batch& into) override {
         const Head head = taken_from<Head>(bytes);
         if (head.has_clock) clock_ = head.clock;
-        for (std::uint64_t i = 0; i < head.images; ++i) {
-            ReferenceImage image = image_taken_from(bytes);
-            if (!is_far(image.t)) into.images.push_back(std::move(image));
-        }
+        images_.resize(head.images);
+        for (Image& image : images_) image.it = image_taken_from(bytes, image.place);
         into.imu.resize(into.imu.size() + head.imu);
         into.triggers.resize(into.triggers.size() + head.triggers);
+        auto image = images_.begin();
         for (std::uint64_t i = 0; i < head.events; ++i) {
-            const auto event = taken_from<Event>(bytes);
-            if (event.x >= width_ || event.y >= height_)
-                damage_.count(DamageReason::out_of_range);
-            else if (is_far(event.t))
-                damage_.count(DamageReason::bad_record);
-            else
-                into.events.push_back(event);
+            for (; image != images_.end() && image->place <= i; ++image) take(*image, into);
+            take(taken_from<Event>(bytes), into);
         }
+        for (; image != images_.end(); ++image) take(*image, into);
     }
     void finish(Batch&) override {}
     void resync() override {}
@@ -102,9 +101,26 @@ public:
     const Damage& damaged() const override { return damage_; }
 
 private:
+    struct Image {
+        ReferenceImage it;
+        std::uint64_t place;
+    };
+    static void take(Image& image, Batch& into) {
+        if (!is_far(image.it.t)) into.add_image(std::move(image.it));
+    }
+    void take(const Event& event, Batch& into) {
+        if (event.x >= width_ || event.y >= height_)
+            damage_.count(DamageReason::out_of_range);
+        else if (is_far(event.t))
+            damage_.count(DamageReason::bad_record);
+        else
+            into.events.push_back(event);
+    }
+
     const unsigned width_, height_;
     std::optional<SensorTime> clock_;
     Damage damage_;
+    std::vector<Image> images_;  // of one packet
 };
 
 }  // namespace
@@ -133,7 +149,8 @@ ReadStatus UserSource::read(RawPacket& into) {
                     .has_clock = clock.has_value(),
                     .clock = clock.value_or(SensorTime{})};
     append(&head, 1, into.bytes);
-    for (const ReferenceImage& image : batch_.images) append_image(image, with_images_, into.bytes);
+    for (std::size_t i = 0; i < batch_.images.size(); ++i)
+        append_image(batch_.images[i], batch_.place_of_image(i), with_images_, into.bytes);
     append(batch_.events.data(), batch_.events.size(), into.bytes);
     return ReadStatus::data;
 }

@@ -14,12 +14,10 @@ const Format& format_of(const std::string& path, const WriterOptions& options) {
     const Format* format =
         options.format.empty() ? format_for_writing(path) : find_format(options.format);
     if (format != nullptr && format->is_written()) return *format;
-    std::string names;
-    for (const Format& one : all_formats())
-        if (one.is_written()) names += (names.empty() ? "" : ", ") + std::string{one.name};
     throw Error(ErrorKind::usage,
-                path + ": expected a format that can be written (" + names + "), found " +
-                    (options.format.empty() ? "an extension of none" : options.format));
+                path + ": expected a format that can be written (" + names_of_writable() +
+                    "), found " +
+                    (options.format.empty() ? "an extension that is of none" : options.format));
 }
 
 StreamHeader header_of(const Format& format, const SensorInfo& sensor, const std::string& path) {
@@ -43,6 +41,8 @@ public:
     Impl(const std::string& path, const SensorInfo& sensor, const WriterOptions& options)
         : path_(path),
           format_(format_of(path, options)),
+          width_(sensor.width),
+          height_(sensor.height),
           file_(path, {.overwrite = options.overwrite}, format_, header_of(format_, sensor, path)) {
     }
 
@@ -72,9 +72,20 @@ private:
             throw Error(ErrorKind::usage, path_ +
                                               ": expected a recording that is being written, "
                                               "found one after finish()");
+        refuse_others();
         refuse_steps_back();
         if (!held_.empty()) file_.write(held_);
         if (!held_.events.empty()) newest_ = held_.events.back().t;
+    }
+
+    /// Readers would leave out what lies outside of the sensor.
+    void refuse_others() const {
+        for (const Event& event : held_.events)
+            if (event.x >= width_ || event.y >= height_)
+                throw Error(ErrorKind::usage,
+                            path_ + ": expected events within " + std::to_string(width_) + "x" +
+                                std::to_string(height_) + " px, found one at " +
+                                std::to_string(event.x) + "," + std::to_string(event.y));
     }
 
     /// Readers would leave out what comes before the newest event, and all until then.
@@ -92,6 +103,7 @@ private:
 
     const std::string path_;
     const Format& format_;
+    const int width_, height_;
     RecordingFile file_;
     Batch held_;
     SensorTime newest_ = SensorTime::min();  // of the events written

@@ -21,15 +21,17 @@ EventWindows::EventWindows(const Source& source, const Settings& settings, Event
       silence_margin_(settings.silence_margin) {}
 
 void EventWindows::take(const RawPacket& packet) {
-    if (packet.gap_before) note_gap(packet.reopened);
+    if (packet.gap_before) {
+        counters_.bin.gaps.add();
+        slicer_.mark_gap();
+    }
+    parse_packet(packet, live_, *parser_, batch_);
     if (packet.bytes.empty()) {
         advance_in_silence(packet.arrived);
         return;
     }
     last_data_ = packet.arrived;
     counters_.bin.bytes.add(packet.bytes.size());
-    if (live_) parser_->arrives(packet.arrived);
-    parser_->parse(packet.bytes, batch_);
     look_behind(packet.arrived);
     pass_on(packet.arrived);
     if (live_) advance_clock(packet.arrived);
@@ -60,41 +62,47 @@ void EventWindows::finish(End end) {
     counters_.note(parser_->damaged(), slicer_.counters());
 }
 
-void EventWindows::note_gap(bool reopened) {
-    counters_.bin.gaps.add();
-    reopened ? parser_->reopened() : parser_->resync();
-    slicer_.mark_gap();
+void EventWindows::pass_on(HostTime arrived) {
+    for (const ReferenceImage& image : batch_.images) slicer_.push_reference(image.t);
+    pieces_.put(batch_);
+    while (pieces_.next(piece_)) pass_on_piece(arrived);
 }
 
-void EventWindows::pass_on(HostTime arrived) {
-    counters_.bin.events.add(batch_.events.size());
-    counters_.bin.images.add(batch_.images.size());
-    counters_.bin.imu.add(batch_.imu.size());
-    counters_.bin.triggers.add(batch_.triggers.size());
-    if (observer_) observer_->see(batch_);
-    for (const ReferenceImage& image : batch_.images) slicer_.push_reference(image.t);
+void EventWindows::pass_on_piece(HostTime arrived) {
+    counters_.bin.events.add(piece_.events.size());
+    counters_.bin.images.add(piece_.images.size());
+    counters_.bin.imu.add(piece_.imu.size());
+    counters_.bin.triggers.add(piece_.triggers.size());
+    if (observer_) observer_->see(piece_);
+    images_since_.insert(images_since_.end(), piece_.images.size(), slicer_.heard());
     if (resumed_at_) leave_out_known();
-    while (!stops_.empty() && !batch_.events.empty() && batch_.events.back().t > stops_.back())
+    while (!stops_.empty() && !piece_.events.empty() && piece_.events.back().t > stops_.back())
         stop(arrived);
-    push(batch_.events, arrived);
-    batch_.clear();
+    push(piece_.events, arrived);
+}
+
+bool EventWindows::next(EventWindow& event_window) {
+    if (!slicer_.next(event_window)) return false;
+    for (; !images_since_.empty() && !slicer_.ended_before(images_since_.front()); ++images_)
+        images_since_.pop_front();
+    return true;
 }
 
 /// A source that was asked to go to a time may begin before it.
 void EventWindows::leave_out_known() {
     const auto known = [this](const Event& event) { return event.t <= *resumed_at_; };
-    const auto first = std::ranges::find_if_not(batch_.events, known);
-    if (first != batch_.events.end()) resumed_at_.reset();
-    batch_.events.erase(batch_.events.begin(), first);
+    const auto first = std::ranges::find_if_not(piece_.events, known);
+    if (first != piece_.events.end()) resumed_at_.reset();
+    piece_.events.erase(piece_.events.begin(), first);
 }
 
 void EventWindows::stop(HostTime arrived) {
     const SensorTime t = stops_.back();
     stops_.pop_back();
     const auto first =
-        std::ranges::find_if(batch_.events, [t](const Event& event) { return event.t > t; });
-    part_.assign(batch_.events.begin(), first);
-    batch_.events.erase(batch_.events.begin(), first);
+        std::ranges::find_if(piece_.events, [t](const Event& event) { return event.t > t; });
+    part_.assign(piece_.events.begin(), first);
+    piece_.events.erase(piece_.events.begin(), first);
     push(part_, arrived);
     at_stop_(t);
 }

@@ -6,7 +6,10 @@
 #include "pipeline/source.h"
 #include "pipeline/stages.h"
 #include "src/binning/slicer.h"
+#include "src/core/batch_pieces.h"
 
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -48,12 +51,15 @@ public:
     /// After the last packet. Where the end was asked for, half a record in hand is no damage.
     enum class End { of_source, asked_for };
     void finish(End end);
-    bool next(EventWindow& event_window) { return slicer_.next(event_window); }
+    bool next(EventWindow& event_window);
+    /// Images of the stream that had come when the window given last could first be cut: however
+    /// late it was, the same.
+    std::uint64_t images() const { return images_; }
     bool is_past_end() const { return slicer_.is_past_end(); }
 
 private:
-    void note_gap(bool reopened);
     void pass_on(HostTime arrived);
+    void pass_on_piece(HostTime arrived);
     void leave_out_known();
     void stop(HostTime arrived);
     void push(std::vector<Event>& events, HostTime arrived);
@@ -67,11 +73,14 @@ private:
     EventFilter* filter_;
     DataObserver* observer_;
     Counters& counters_;
-    Batch batch_;
+    Batch batch_, piece_;
+    BatchPieces pieces_;
+    std::deque<Slicer::Position> images_since_;  // what was known before each that no window knows
+    std::uint64_t images_ = 0;
     std::optional<SensorTime> resumed_at_;  // until an event after it has come
     std::vector<SensorTime> stops_;         // descending
     std::function<void(SensorTime)> at_stop_;
-    std::vector<Event> part_;      // of a batch, up to a stop
+    std::vector<Event> part_;      // of a piece, up to a stop
     std::vector<Event> released_;  // by the filter
     const bool live_;
     const SensorDuration silence_margin_;

@@ -24,9 +24,9 @@ public:
     void keep_at_most(std::size_t images) { most_ = images; }
     std::size_t most() const { return most_; }
 
-    void put(const std::vector<ReferenceImage>& images) {
+    void put(std::vector<ReferenceImage> images) {
         const std::lock_guard lock{mutex_};
-        for (const ReferenceImage& image : images) images_.push_back(image);
+        for (ReferenceImage& image : images) images_.push_back(std::move(image));
         given_ += images.size();
         for (; images_.size() > most_; ++dropped_) images_.pop_front();
     }

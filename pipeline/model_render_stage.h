@@ -25,7 +25,7 @@ public:
           request_(request),
           images_(&images),
           fused_(std::in_place, renderer, sensor_width, sensor_height, request.lookahead) {
-        fused_->keep_at_most(images.most());
+        fused_->keep_at_most(std::min(images.most(), FusedRenderer::kMaxWaitingOfRecording));
         fused_->prepare(request_);
     }
 

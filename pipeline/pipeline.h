@@ -29,6 +29,10 @@ struct PipelineBuffers {
     std::size_t packets = 64, grids = 3, latents = 4;  ///< each at least 1
 };
 
+/// Of a recording, which waits: it needs no more than one being filled and one being read, and of
+/// the small packets a few.
+inline constexpr PipelineBuffers kBuffersOfRecording{.packets = 8, .grids = 2, .latents = 2};
+
 struct PipelineSettings {
     int bins = 5;  ///< B of the model
     EventWindows::Settings event_windows;

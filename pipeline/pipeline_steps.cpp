@@ -67,7 +67,7 @@ void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
     if (event_window.reset_before || (event_window.gap_before && settings_.reset_on_gap))
         binner_.reset();
     binner_.process(event_window, grid);
-    grid.images = counters_.bin.images.value();
+    grid.images = event_windows_.images();
     if (counters_.bin.event_windows.value() == 0)
         counters_.bin.begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
     counters_.bin.event_windows.add();

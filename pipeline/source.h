@@ -34,4 +34,13 @@ public:
     virtual std::unique_ptr<Parser> make_parser() const = 0;
 };
 
+/// What a parser is told of each packet of its source, so that whoever parses them tells the same
+/// times. Appends what the bytes complete; an empty packet tells of a gap at most.
+inline void parse_packet(const RawPacket& packet, bool is_live, Parser& parser, Batch& into) {
+    if (packet.gap_before) packet.reopened ? parser.reopened() : parser.resync();
+    if (packet.bytes.empty()) return;
+    if (is_live) parser.arrives(packet.arrived);
+    parser.parse(packet.bytes, into);
+}
+
 }  // namespace eventide

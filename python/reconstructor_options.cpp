@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
 #include <filesystem>
 
 namespace eventide::python {
@@ -27,10 +28,23 @@ FrameSize size_of(const Size& size, const Roi& roi, FrameSize otherwise) {
     return otherwise;
 }
 
+namespace {
+
+/// The simplest fraction that a float stands for: 60000/1001 of 59.94005994005994.
+std::string fraction_of(const py::handle& number) {
+    const double value = py::float_(py::reinterpret_borrow<py::object>(number));
+    if (!std::isfinite(value)) return std::to_string(value);
+    constexpr int kLargestDenominator = 1'000'000;
+    const py::object fraction = py::module_::import("fractions").attr("Fraction")(value);
+    return py::str(fraction.attr("limit_denominator")(kLargestDenominator));
+}
+
+}  // namespace
+
 std::string rate_of(const py::handle& fps) {
     if (py::isinstance<py::str>(fps)) return fps.cast<std::string>();
-    if (PyFloat_Check(fps.ptr()) || (PyIndex_Check(fps.ptr()) && !PyBool_Check(fps.ptr())))
-        return py::str(fps);
+    if (PyIndex_Check(fps.ptr()) && !PyBool_Check(fps.ptr())) return py::str(fps);
+    if (PyNumber_Check(fps.ptr()) && !PyBool_Check(fps.ptr())) return fraction_of(fps);
     throw py::type_error("fps: expected int, float or str, found " + std::string(py::repr(fps)));
 }
 

@@ -33,19 +33,6 @@ DataCounts counts_of(const Batch& batch) {
     return {batch.events.size(), batch.images.size(), batch.imu.size(), batch.triggers.size()};
 }
 
-void add(DataCounts& sum, const DataCounts& more) {
-    sum.events += more.events;
-    sum.images += more.images;
-    sum.imu += more.imu;
-    sum.triggers += more.triggers;
-}
-
-/// Those behind events that were written before.
-std::uint64_t late_triggers(const Batch& batch, std::optional<SensorTime> written) {
-    return std::uint64_t(std::ranges::count_if(
-        batch.triggers, [&](const Trigger& trigger) { return trigger.t < written; }));
-}
-
 /// One file of one format.
 class FileTarget final : public ConvertTarget {
 public:
@@ -90,16 +77,15 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     if (options.from) recording.seek(*options.from);
     const auto parser = recording.make_parser();
     Batch batch;
-    std::optional<SensorTime> last_event, written;
+    report.data = WrittenData{target.holds()};
+    std::optional<SensorTime> last_event;
     const auto pass_on = [&] {
         if (!batch.events.empty()) last_event = batch.events.back().t;
         report.events_read += batch.events.size();
         keep_inside(batch, options);
         if (options.filter) options.filter(batch);
-        add(report.not_held, remove_not_held(batch, target.holds()));
-        add(report.written, counts_of(batch));
-        if (target.holds().in_time_order) report.late_triggers += late_triggers(batch, written);
-        if (!batch.events.empty()) written = batch.events.back().t;
+        report.data.fit(batch);
+        report.written += counts_of(batch);
         if (!batch.empty()) target.write(batch);
         batch.clear();
     };

@@ -3,6 +3,7 @@
 
 #include "replay/formats.h"
 #include "replay/recording.h"
+#include "replay/written_data.h"
 
 #include <cstdint>
 #include <functional>
@@ -20,10 +21,8 @@ struct ConvertOptions {
 struct ConvertReport {
     std::uint64_t events_read = 0;  ///< before limits and filter
     DataCounts written;
-    DataCounts not_held;  ///< left out because the target has no record for them
-    /// Triggers behind later events, which the target holds with the time of those.
-    std::uint64_t late_triggers = 0;
-    Damage damaged;  ///< found in what was read
+    WrittenData data{FormatHolds{}};  ///< what the target could not hold as it was
+    Damage damaged;                   ///< found in what was read
     std::uint64_t bytes_written = 0;
     std::uint64_t lost = 0;  ///< ConvertTarget::lost()
 };

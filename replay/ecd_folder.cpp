@@ -105,8 +105,8 @@ EcdParser::EcdParser(std::unique_ptr<Parser> events, EcdImages images, bool in_t
     image_damage_.count(DamageReason::bad_record, images_.bad_entries);
 }
 
-/// Empty: all that are left.
-void EcdParser::emit_until(std::optional<SensorTime> t, Batch& into) {
+/// Each among the events from number `first` on as its time says. Empty: all that are left.
+void EcdParser::emit_until(std::optional<SensorTime> t, std::size_t first, Batch& into) {
     for (; next_image_ < images_.entries.size(); ++next_image_) {
         const auto& entry = images_.entries[next_image_];
         if (t && entry.t > *t) break;
@@ -118,7 +118,11 @@ void EcdParser::emit_until(std::optional<SensorTime> t, Batch& into) {
         image->t = entry.t;
         image->exposure_begin = entry.exposure_begin;
         image->exposure_end = entry.exposure_end;
-        into.images.push_back(std::move(*image));
+        into.add_image(std::move(*image));
+        const auto next =
+            std::find_if(into.events.begin() + std::ptrdiff_t(first), into.events.end(),
+                         [&](const Event& event) { return event.t >= entry.t; });
+        first = into.image_places.back() = std::size_t(next - into.events.begin());
     }
 }
 
@@ -134,12 +138,12 @@ void EcdParser::parse(std::span<const std::byte> bytes, Batch& into) {
             images_.entries.begin());
         jumped_ = false;
     }
-    emit_until(into.events.back().t, into);
+    emit_until(into.events.back().t, before, into);
 }
 
 void EcdParser::finish(Batch& into) {
     events_->finish(into);
-    if (!jumped_) emit_until({}, into);
+    if (!jumped_) emit_until({}, into.events.size(), into);
 }
 
 void EcdParser::resync() {

@@ -43,7 +43,7 @@ public:
     const Damage& damaged() const override;
 
 private:
-    void emit_until(std::optional<SensorTime> t, Batch& into);
+    void emit_until(std::optional<SensorTime> t, std::size_t first, Batch& into);
 
     std::unique_ptr<Parser> events_;
     EcdImages images_;

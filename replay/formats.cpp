@@ -19,6 +19,7 @@
 #include "src/codec/prophesee/evt_header.h"
 #include "src/codec/text/text.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -218,6 +219,26 @@ std::uint64_t remove_unless(std::vector<T>& items, bool held) {
 
 }  // namespace
 
+DataCounts& DataCounts::operator+=(const DataCounts& more) {
+    events += more.events;
+    images += more.images;
+    imu += more.imu;
+    triggers += more.triggers;
+    return *this;
+}
+
+std::string text_of(const DataCounts& counts) {
+    std::string text;
+    const auto add = [&text](std::uint64_t n, const char* what) {
+        if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, what);
+    };
+    add(counts.events, "event");
+    add(counts.images, "image");
+    add(counts.imu, "IMU sample");
+    add(counts.triggers, "trigger");
+    return text.empty() ? "0 events" : text;
+}
+
 DataCounts remove_not_held(Batch& batch, const FormatHolds& holds) {
     DataCounts removed;
     removed.events = remove_unless(batch.events, holds.events);
@@ -232,6 +253,13 @@ DataCounts remove_not_held(Batch& batch, const FormatHolds& holds) {
 
 std::span<const Format> all_formats() {
     return kFormats;
+}
+
+std::string names_of_writable() {
+    std::string names;
+    for (const Format& format : kFormats)
+        if (format.is_written()) names += (names.empty() ? "" : ", ") + std::string{format.name};
+    return names;
 }
 
 const Format* find_format(std::string_view name) {

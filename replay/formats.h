@@ -31,7 +31,11 @@ struct FormatHolds {
 struct DataCounts {
     std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;
     friend bool operator==(const DataCounts&, const DataCounts&) = default;
+    DataCounts& operator+=(const DataCounts& more);
 };
+
+/// "3 events, 1 image"; what there is none of goes unsaid.
+std::string text_of(const DataCounts& counts);
 
 /// Takes out what a format has no record for; returns how much that was.
 DataCounts remove_not_held(Batch& batch, const FormatHolds& holds);
@@ -62,6 +66,8 @@ constexpr std::size_t kHeadBytes = std::size_t(1) << 20;
 
 /// In the order in which they are tried on a file.
 std::span<const Format> all_formats();
+/// "aedat4, evt3, ...": of those that are written.
+std::string names_of_writable();
 
 /// Null when there is no format of that name.
 const Format* find_format(std::string_view name);

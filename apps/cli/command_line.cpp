@@ -241,6 +241,8 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
         // CLI11 takes them from the back.
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::Success& success) {  // --help, --version
+        if (command_of(app).empty() && !arguments.front().starts_with("-"))
+            refuse_extras(arguments, app, {});
         app.exit(success, std::cout, std::cerr);
         return {};
     } catch (const CLI::ExtrasError&) {

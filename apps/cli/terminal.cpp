@@ -143,8 +143,4 @@ std::string short_count(double n) {
     return text;
 }
 
-std::string counted(std::uint64_t n, const std::string& what) {
-    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-}
-
 }  // namespace eventide::app

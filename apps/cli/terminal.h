@@ -50,7 +50,4 @@ private:
 /// 12,345,678 -> "12.3 M"; for rates and counts in lines people read.
 std::string short_count(double n);
 
-/// "1 image", "2 images"
-std::string counted(std::uint64_t n, const std::string& what);
-
 }  // namespace eventide::app

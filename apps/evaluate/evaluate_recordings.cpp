@@ -3,8 +3,11 @@
 
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
+#include <chrono>
+#include <string>
 #include <utility>
 
 namespace eventide {
@@ -51,6 +54,19 @@ std::vector<std::size_t> scored_images(const ReferenceSequence& sequence,
         if (t >= which.from && t <= which.to) scored.push_back(i);
     }
     return scored;
+}
+
+void require_scored(const ReferenceSequence& sequence, const ScoredImages& which) {
+    if (!scored_images(sequence, which).empty()) return;
+    const auto seconds = [&](SensorTime t) {
+        return std::to_string(std::chrono::duration<double>(t - sequence.first).count());
+    };
+    throw Error(ErrorKind::usage,
+                sequence.name + ": expected an image to score between --from and --to, found " +
+                    counted(sequence.images.size(), "image") + " from " +
+                    seconds(sequence.images.front().t) + " to " +
+                    seconds(sequence.images.back().t) + " s, the first " +
+                    std::to_string(which.skip) + " not scored (--skip)");
 }
 
 }  // namespace
@@ -103,6 +119,10 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
 EvaluateReport evaluate_recordings(const RecordingSettings& what, const EvaluateSettings& how) {
     if (what.recordings.empty())
         throw Error(ErrorKind::usage, "evaluate: expected at least one recording, found none");
+    if (what.from_s && what.to_s && *what.from_s >= *what.to_s)
+        throw Error(ErrorKind::usage, "--to: expected a time after --from (" +
+                                          std::to_string(*what.from_s) + " s), found " +
+                                          std::to_string(*what.to_s) + " s");
     EvaluateSettings settings = how;
     settings.fuse_images = what.given_images > 0;
     Evaluation evaluation{"recordings", settings};
@@ -120,7 +140,14 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
                          : std::clamp(what.skip_images, 0, images - 1);
         if (what.from_s)
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
-        return evaluate_sequence(evaluation, std::move(sequence), what.window, which);
+        require_scored(sequence, which);
+        const std::string name = sequence.name;
+        SequenceResult result =
+            evaluate_sequence(evaluation, std::move(sequence), what.window, which);
+        if (which.skip < what.skip_images)
+            result.notes.push_back(name + ": of " + counted(std::uint64_t(images), "image") +
+                                   " the first " + std::to_string(which.skip) + " are not scored");
+        return result;
     });
     return evaluation.finish("windows " + what.window + ", first " +
                              (what.skip_images == RecordingSettings::kSkipHalf

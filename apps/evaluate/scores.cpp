@@ -127,7 +127,7 @@ std::optional<double> Judge::observe_patches(const Array2<float>& lpips_map,
     for (Observations::PatchSize& at : sizes) {
         const std::vector<double> error = patch_means(lpips_map, at.size);
         const std::vector<double> doubt = patch_medians(sigma, at.size);
-        const std::optional<double> r = correlation(error, doubt);
+        const std::optional<double> r = correlation(spread(error, doubt));
         if (at.size == kCorrelationPatch) {
             chosen = r;
             for (std::size_t i = 0; i < error.size(); ++i) {

@@ -79,7 +79,8 @@ function(eventide_public_library name)
     COMMAND ${CMAKE_OBJCOPY} --keep-global-symbols=${names} ${object})
   add_library(eventide_${name}_static STATIC ${object})
   set_target_properties(eventide_${name}_static PROPERTIES LINKER_LANGUAGE CXX EVENTIDE_PACKAGES "${arg_PACKAGES}")
-  target_link_libraries(eventide_${name}_static INTERFACE ${arg_PACKAGES})
+  # A program in C does not bring C++'s library.
+  target_link_libraries(eventide_${name}_static INTERFACE ${arg_PACKAGES} $<$<LINK_LANGUAGE:C>:stdc++> m)
 
   foreach(kind shared static)
     set(target eventide_${name}_${kind})

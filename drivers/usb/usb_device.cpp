@@ -145,7 +145,8 @@ std::string explain_usb_error(int code) {
         return system_words(EMFILE);
     switch (code) {
         case LIBUSB_ERROR_ACCESS:
-            return "no permission: install config/udev/65-eventide.rules into /etc/udev/rules.d, "
+            return "no permission: install 65-eventide.rules (of config/udev, or lib/udev/rules.d) "
+                   "into /etc/udev/rules.d, "
                    "run "
                    "'udevadm control --reload', and plug the camera in again";
         case LIBUSB_ERROR_BUSY:

@@ -7,8 +7,10 @@
 #include <eventide/sensor_time.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -98,17 +100,32 @@ struct Trigger {
 struct Batch {
     std::vector<Event> events;           ///< changes of brightness
     std::vector<ReferenceImage> images;  ///< the sensor's own images, or those beside a recording
-    std::vector<ImuSample> imu;          ///< inertial samples
-    std::vector<Trigger> triggers;       ///< edges, pulses and marks
+    /// Of each image, in order, how many of `events` came before it; of those beyond this vector's
+    /// end none did.
+    std::vector<std::size_t> image_places;
+    std::vector<ImuSample> imu;     ///< inertial samples
+    std::vector<Trigger> triggers;  ///< edges, pulses and marks
+
+    /// Of image number i: how many of `events` came before it.
+    std::size_t place_of_image(std::size_t i) const {
+        return i < image_places.size() ? image_places[i] : 0;
+    }
+    /// The next image, after the events so far.
+    void add_image(ReferenceImage image) {
+        image_places.resize(images.size());
+        image_places.push_back(events.size());
+        images.push_back(std::move(image));
+    }
 
     /// Empties each vector and keeps its memory.
     void clear() {
         events.clear();
         images.clear();
+        image_places.clear();
         imu.clear();
         triggers.clear();
     }
-    /// Whether all four are.
+    /// Whether there is no event, image, sample or trigger.
     bool empty() const {
         return events.empty() && images.empty() && imu.empty() && triggers.empty();
     }

@@ -150,10 +150,12 @@ EVENTIDE_API eventide_status eventide_finish(eventide_reconstructor* reconstruct
 EVENTIDE_API eventide_status eventide_next(eventide_reconstructor* reconstructor,
                                            eventide_frame* frame);
 
-/** EVENTIDE_OK where a frame of this time can be rendered, else EVENTIDE_NONE. */
+/** EVENTIDE_OK where a frame of this time can be rendered, else EVENTIDE_NONE. Where
+ *  eventide_next() gives frames: no further ahead than it can follow. */
 EVENTIDE_API eventide_status eventide_ready(eventide_reconstructor* reconstructor, int64_t t);
 
-/** The newest time that can be rendered; EVENTIDE_NONE where there is none. */
+/** The newest time that can be rendered, as for eventide_ready(); EVENTIDE_NONE where there is
+ *  none. */
 EVENTIDE_API eventide_status eventide_newest(eventide_reconstructor* reconstructor, int64_t* t);
 
 /** The frame of one instant that is ready. `size` may be NULL: that of the options. */

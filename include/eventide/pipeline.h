@@ -52,13 +52,14 @@ protected:
 };
 
 /// Pushes what `source` has just read into `batch`: the gap before it, where data were lost, its
-/// events and images, and a live source's clock. Throws what Reconstructor::push() throws.
+/// events and images, and a live source's clock. Throws what Reconstructor::push() throws, and
+/// Error (usage) where the source's sensor has another size than the reconstructor's.
 EVENTIDE_API void push_from(const EventSource& source, const Batch& batch,
                             Reconstructor& reconstructor);
 
 /// The next frame of a source: reads on until it is there, with push_from() for each batch, and
 /// finishes where the source has ended. False after the last frame. Throws
-/// what `source` throws, and Reconstructor::push() and next().
+/// what `source` throws, push_from() and Reconstructor::next().
 EVENTIDE_API bool read_frame(EventSource& source, Reconstructor& reconstructor, Frame& frame);
 
 /// Where frames go: one of your own. Thread: the one that run() was called on.

@@ -78,7 +78,9 @@ struct ReconstructorCounters {
 ///
 /// Frames are found in two ways, which may be mixed: next() gives those at a constant rate, one
 /// after the other; render() gives any time, as long as ready() says so. The network remembers some
-/// five event windows, so ask in the order of time.
+/// five event windows, so ask in the order of time. Once next() has given a frame it gives
+/// every one after it, and ready() and newest() go no further ahead than it can follow: call it
+/// until it is false first. Before, frames that it would have given are left out.
 ///
 /// How the events are split into calls changes nothing. With the same model, window, lookahead,
 /// precision and kernels (not automatic ones, which are measured anew in each process) frames are
@@ -86,8 +88,9 @@ struct ReconstructorCounters {
 /// `--frames ignore`; where the images are of a colour camera, nearly).
 ///
 /// Thread: one at a time; several objects may work side by side. Once warm (the same batch sizes
-/// and frame sizes as before), nothing here allocates memory with Kernels::own and one thread. All
-/// functions but those marked noexcept may throw Error; an object that threw may be used on.
+/// and frame sizes as before), nothing here allocates memory with Kernels::own and one thread, but
+/// for images. All functions but those marked noexcept may throw Error; an object that threw may be
+/// used on.
 class EVENTIDE_API Reconstructor {
 public:
     /// us: no time is further from zero (36000 years).
@@ -136,7 +139,8 @@ public:
     /// (times that are wrong), which are then skipped.
     bool next(Frame& frame);
 
-    /// Whether a frame of this time can be rendered; takes the network so far as that needs.
+    /// Whether a frame of this time can be rendered; takes the network so far as that needs, and as
+    /// next() can follow where it is used.
     Readiness readiness(SensorTime t);
     /// Whether readiness() says so.
     bool ready(SensorTime t) { return readiness(t) == Readiness::ready; }
@@ -149,7 +153,8 @@ public:
     void render(SensorTime t, const FrameSize& size, Frame& frame);
 
     /// The newest time that can be rendered, after all events pushed so far have gone through the
-    /// network; empty where there is none. What was not asked for until then may be gone.
+    /// network, or those that next() can follow where it is used; empty where there is
+    /// none. What was not asked for until then may be gone.
     std::optional<SensorTime> newest();
 
     /// As constructed: a new stream begins. Counters and the hot pixels that were learned stay.

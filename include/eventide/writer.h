@@ -32,7 +32,7 @@ public:
     EventWriter& operator=(EventWriter&&) noexcept;  ///< leaves the other empty
 
     /// Must follow what was written before in time. Throws Error: usage for an event earlier than
-    /// the one before it, for what the format cannot hold (a coordinate too large) and after
+    /// the one before it or outside of the sensor, for what the format cannot hold and after
     /// finish(), failed where the disk is full.
     void write(std::span<const Event> events);
 

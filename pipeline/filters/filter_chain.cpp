@@ -1,11 +1,30 @@
 // Filters one behind the other.
 #include "pipeline/filters/filter_chain.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace eventide {
 
 namespace {
+
+template <typename T>
+void append(std::vector<T>& more, std::vector<T>& to) {
+    to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// Leaves `more` with what was moved from.
+void append(Batch& more, Batch& to) {
+    const std::size_t before = to.events.size();
+    for (std::size_t i = 0; i < more.images.size(); ++i) {
+        to.add_image(std::move(more.images[i]));
+        to.image_places.back() = before + more.place_of_image(i);
+    }
+    append(more.events, to.events);
+    append(more.imu, to.imu);
+    append(more.triggers, to.triggers);
+}
 
 /// Filters what another parser gives.
 class FilteringParser final : public Parser {
@@ -28,17 +47,9 @@ public:
     const Damage& damaged() const override { return parser_->damaged(); }
 
 private:
-    template <typename T>
-    static void append(std::vector<T>& more, std::vector<T>& to) {
-        to.insert(to.end(), std::make_move_iterator(more.begin()),
-                  std::make_move_iterator(more.end()));
-    }
     void pass_on(Batch& into) {
         chain_.process(batch_);
-        append(batch_.events, into.events);
-        append(batch_.images, into.images);
-        append(batch_.imu, into.imu);
-        append(batch_.triggers, into.triggers);
+        append(batch_, into);
         batch_.clear();
     }
 
@@ -74,8 +85,19 @@ SensorInfo FilterChain::behind(SensorInfo sensor) const {
     return sensor;
 }
 
-/// Times count from the recording's first event, whatever filters leave of the beginning.
+/// In pieces: filters that leave out events need not know which images they stand among.
 void FilterChain::process(Batch& batch) {
+    if (std::ranges::all_of(batch.image_places, [](std::size_t place) { return place == 0; }))
+        return process_piece(batch);
+    pieces_.put(batch);
+    while (pieces_.next(piece_)) {
+        process_piece(piece_);
+        append(piece_, batch);
+    }
+}
+
+/// Times count from the recording's first event, whatever filters leave of the beginning.
+void FilterChain::process_piece(Batch& batch) {
     if (!counts_ && !batch.events.empty()) count_from(batch.events.front().t);
     for (Link& link : links_) {
         const std::size_t before = batch.events.size();

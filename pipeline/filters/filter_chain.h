@@ -4,6 +4,7 @@
 #include "pipeline/counters.h"
 #include "pipeline/filters/data_filter.h"
 #include "pipeline/source.h"
+#include "src/core/batch_pieces.h"
 
 #include <deque>
 #include <memory>
@@ -43,7 +44,11 @@ private:
         std::unique_ptr<DataFilter> filter;
         Counter left_out;
     };
+    void process_piece(Batch& batch);
+
     SensorPixels size_;
+    Batch piece_;
+    BatchPieces pieces_;
     std::deque<Link> links_;  // counters stay where they are
     bool counts_ = false;     // the first event's time is known
 };

@@ -39,8 +39,9 @@ void append_row(std::span<const float> row, float white, std::vector<T>& scratch
 /// Interleaves intensity and confidence, 1 - sigma / sigma_white.
 template <typename T>
 void append_alpha_row(std::span<const float> row, std::span<const float> sigma, float white,
-                      std::vector<T>& scratch, std::vector<std::byte>& into) {
-    std::vector<float> pairs;
+                      std::vector<float>& pairs, std::vector<T>& scratch,
+                      std::vector<std::byte>& into) {
+    pairs.clear();
     for (std::size_t x = 0; x < row.size(); ++x) {
         pairs.push_back(row[x]);
         pairs.push_back(sigma.empty() ? 1.0f : 1.0f - std::clamp(sigma[x] / white, 0.0f, 1.0f));
@@ -55,13 +56,14 @@ void append_pixels(const Frame& frame, const RawLayout& layout, std::vector<std:
     const int height = frame.intensity.height();
     const std::vector<float> zeros(std::size_t(frame.intensity.width()), 0.0f);
     std::vector<T> scratch;
+    std::vector<float> pairs;
     const auto sigma = [&](int y) {
         return frame.sigma.empty() ? std::span<const float>{zeros} : frame.sigma.row(y);
     };
     for (int y = 0; y < height; ++y) {
         if (layout.uncertainty == Uncertainty::alpha) {
-            append_alpha_row<T>(frame.intensity.row(y), sigma(y), layout.sigma_white, scratch,
-                                into);
+            append_alpha_row<T>(frame.intensity.row(y), sigma(y), layout.sigma_white, pairs,
+                                scratch, into);
             continue;
         }
         append_row<T>(frame.intensity.row(y), 1.0f, scratch, into);

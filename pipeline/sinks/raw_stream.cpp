@@ -105,7 +105,7 @@ StreamSink::StreamSink(StreamSettings settings) : settings_{std::move(settings)}
 }
 
 void StreamSink::write(const Frame& frame) {
-    if (begun_ && settings_.overload == Overload::repeat) repeat_until(frame.index);
+    if (begun_ && repeats()) repeat_before(frame.index);
     if (!wants_more()) return;
     index_ = frame.index;
     bytes_.clear();
@@ -117,14 +117,23 @@ void StreamSink::write(const Frame& frame) {
     begun_ = true;
 }
 
-/// What was skipped before frame `index`.
-void StreamSink::repeat_until(std::uint64_t index) {
-    while (index_ + 1 < index && wants_more()) {
-        stamp_.index = std::uint32_t(++index_);
+bool StreamSink::repeats() const {
+    return settings_.overload == Overload::repeat ||
+           (settings_.overload == Overload::automatic && !settings_.stamp);
+}
+
+/// What was skipped before frame `index`. A reader that is behind would fall back further with
+/// every frame that is repeated for it, so it gets them when it has caught up.
+void StreamSink::repeat_before(std::uint64_t index) {
+    owed_ += index > index_ ? index - index_ - 1 : 0;
+    for (; owed_ > 0 && wants_more() && file_->takes_at_once(); --owed_) {
+        stamp_.index = std::uint32_t(index - owed_);
         stamp_.flags = FrameStamp::kRepeat;
         if (settings_.stamp) stamp_.write_to(bytes_);
         file_->write(bytes_);
     }
+    // The stamps tell what is missing.
+    if (settings_.stamp) owed_ = 0;
 }
 
 void StreamSink::append_y4m(const Frame& frame) {
@@ -171,6 +180,8 @@ void StreamSink::append_raw(const Frame& frame) {
 }
 
 void StreamSink::close() {
+    if (const std::uint64_t owed = std::exchange(owed_, 0); owed > 0 && settings_.shorter_by)
+        settings_.shorter_by(owed);
     if (file_) file_->close();
     file_.reset();
 }

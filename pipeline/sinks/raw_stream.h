@@ -29,8 +29,10 @@ std::string_view name_of(StreamFormat format);
 
 /// What a stream of constant rate does where frames were skipped.
 enum class Overload {
-    repeat,  ///< the frame before again: the stream keeps its pace
-    skip     ///< nothing: the stream is shorter than the time it shows
+    automatic,  ///< skip where frames are stamped, else repeat
+    repeat,     ///< the frame before again, once the reader is ready to take it: the stream keeps
+                ///< its pace, but where its reader is slower
+    skip        ///< nothing: the stream is shorter than the time it shows
 };
 
 /// What stands before each frame of a stamped raw stream: 16 bytes, little endian.
@@ -66,6 +68,9 @@ struct StreamSettings {
     Overload overload = Overload::skip;
     /// Asked while a named pipe waits for its reader: true gives up. May be empty.
     std::function<bool()> give_up = {};
+    /// Told at close() by how many frames the stream is shorter than the time it shows, where its
+    /// reader was slower. May be empty.
+    std::function<void(std::uint64_t)> shorter_by = {};
 };
 
 /// SIGPIPE must be ignored by the program. When the reader goes away, wants_more() is false from
@@ -82,7 +87,8 @@ public:
     bool wants_more() const override { return file_ && !file_->reader_gone(); }
 
 private:
-    void repeat_until(std::uint64_t index);
+    bool repeats() const;
+    void repeat_before(std::uint64_t index);
     void append_y4m(const Frame& frame);
     void append_raw(const Frame& frame);
 
@@ -93,6 +99,7 @@ private:
     std::vector<std::byte> bytes_;  // of one frame: one write, so that readers see whole frames
     FrameStamp stamp_;              // of that frame
     std::uint64_t index_ = 0;       // of that frame
+    std::uint64_t owed_ = 0;        // frames to be repeated that the reader was not ready to take
 };
 
 }  // namespace eventide

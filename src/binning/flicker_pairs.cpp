@@ -48,8 +48,10 @@ void FlickerPairs::process(std::vector<Event>& events) {
         const Event& event = events[i];
         if (event.t < now_) flush(out_);
         now_ = event.t;
+        // The event that tells the period is not held itself.
+        const bool was_known = period_.us() != 0;
         period_.see(event);
-        if (period_.us() == 0) {
+        if (!was_known || period_.us() == 0) {
             flush(out_);
             out_.push_back(event);
         } else {

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <iterator>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -32,31 +35,55 @@ std::span<const T> take_until(std::span<const T>& items, SensorTime last) {
     return taken;
 }
 
-/// take(BatchPart) for all of the batch, kLongestPart at a time. Events alone are one part: nothing
-/// else could come too late.
+/// What came before the sensor's clock began anew, where it did: an event is earlier than the one
+/// before it. Taken off `rest`; other data go with the clock that their time is nearer to.
+inline BatchPart take_clock(BatchPart& rest) {
+    const auto back = std::ranges::adjacent_find(
+        rest.events, [](const Event& a, const Event& b) { return b.t < a.t; });
+    if (back == rest.events.end()) return std::exchange(rest, {});
+    const SensorTime last = back->t, first = std::next(back)->t;
+    const auto take = [&](auto& items) {
+        const auto end = std::ranges::find_if(items, [&](const auto& item) {
+            return std::chrono::abs(item.t - first) < std::chrono::abs(item.t - last);
+        });
+        const auto taken = items.first(std::size_t(end - items.begin()));
+        items = items.subspan(taken.size());
+        return taken;
+    };
+    const auto events = rest.events.first(std::size_t(std::next(back) - rest.events.begin()));
+    rest.events = rest.events.subspan(events.size());
+    return {events, take(rest.images), take(rest.imu), take(rest.triggers)};
+}
+
+/// take(BatchPart) for all of the batch, kLongestPart at a time, and never of two clocks. Events
+/// alone are one part: nothing else could come too late.
 template <typename Take>
 void in_parts(const Batch& batch, Take&& take) {
-    BatchPart rest{batch.events, batch.images, batch.imu, batch.triggers};
+    const auto is_empty = [](const BatchPart& part) {
+        return part.events.empty() && part.images.empty() && part.imu.empty() &&
+               part.triggers.empty();
+    };
+    BatchPart all{batch.events, batch.images, batch.imu, batch.triggers};
     if (batch.images.empty() && batch.imu.empty() && batch.triggers.empty()) {
-        if (!batch.events.empty()) take(rest);
+        if (!is_empty(all)) take(all);
         return;
     }
-    const auto none_left = [&] {
-        return rest.events.empty() && rest.images.empty() && rest.imu.empty() &&
-               rest.triggers.empty();
-    };
-    while (!none_left()) {
-        SensorTime first = SensorTime::max();
-        const auto look = [&](const auto& items) {
-            if (!items.empty()) first = std::min(first, items.front().t);
-        };
-        look(rest.events);
-        look(rest.images);
-        look(rest.imu);
-        look(rest.triggers);
-        const SensorTime last = std::min(first, SensorTime::max() - kLongestPart) + kLongestPart;
-        take(BatchPart{take_until(rest.events, last), take_until(rest.images, last),
-                       take_until(rest.imu, last), take_until(rest.triggers, last)});
+    while (!is_empty(all)) {
+        BatchPart rest = take_clock(all);
+        while (!is_empty(rest)) {
+            SensorTime first = SensorTime::max();
+            const auto look = [&](const auto& items) {
+                if (!items.empty()) first = std::min(first, items.front().t);
+            };
+            look(rest.events);
+            look(rest.images);
+            look(rest.imu);
+            look(rest.triggers);
+            const SensorTime last =
+                std::min(first, SensorTime::max() - kLongestPart) + kLongestPart;
+            take(BatchPart{take_until(rest.events, last), take_until(rest.images, last),
+                           take_until(rest.imu, last), take_until(rest.triggers, last)});
+        }
     }
 }
 

@@ -175,7 +175,7 @@ void PlainRecordsParser::end_image(Batch& into) {
         at += 2;
     }
     tell(to_us(image.t));
-    into.images.push_back(std::move(image));
+    into.add_image(std::move(image));
 }
 
 void PlainRecordsParser::end_imu(Batch& into) {

@@ -90,6 +90,11 @@ ColourFilter filter_with(const Channel& channel) {
     return ColourFilter::none;
 }
 
+/// That of an image whose top left corner is the sensor's pixel (x0, y0). The filter is not none.
+inline ColourFilter filter_at(ColourFilter filter, int x0, int y0) {
+    return filter_with([&](int x, int y) { return channel_at(filter, x0 + x, y0 + y); });
+}
+
 /// Where the colour is; of green, the one in red's row. The filter is not none.
 inline BayerSite site_of(ColourFilter filter, ColourChannel channel) {
     const BayerSite red = red_of(filter);

@@ -1,16 +1,23 @@
-// Numbers from text: the one place, but for the exact decimals of text recordings
+// Numbers and text: from text the one place, but for the exact decimals of text recordings
 // (src/codec/text/text_number.h).
 #pragma once
 
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 namespace eventide {
+
+/// "1 image", "2 images"
+inline std::string counted(std::uint64_t n, const std::string& what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
 
 /// The number that `text` begins with, which is taken off it; nothing, and `text` as it was, where
 /// it begins with none. No white space and no '+' before it; floating point numbers are finite.

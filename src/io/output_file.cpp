@@ -22,8 +22,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr mode_t kMode = 0666;             // less what umask takes
-constexpr int kMaxParts = 1000;            // left behind by as many killed runs
+constexpr mode_t kMode = 0666;   // less what umask takes
+constexpr int kMaxParts = 1000;  // left behind by as many killed runs
+constexpr int kAskAgainMs = 20, kMostAsked = 50;
 constexpr std::size_t kLongestStem = 240;  // bytes: with .part below what a name may have
 
 /// Of an open file that the path stands for: what was written to it before, by whomever, stays.
@@ -36,7 +37,8 @@ std::optional<int> descriptor_named(const fs::path& path) {
 }
 
 Error existing_file(const std::string& name) {
-    return {ErrorKind::usage, name + ": exists already; --overwrite replaces it"};
+    return {ErrorKind::usage,
+            name + ": exists already; --overwrite (in the library overwrite) replaces it"};
 }
 
 }  // namespace
@@ -46,7 +48,7 @@ void OutputFile::fail(const char* doing, int error) const {
 }
 
 OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
-    : name_{path == "-" ? "standard output" : path.string()} {
+    : name_{path == "-" ? "standard output" : path.string()}, give_up_{options.give_up} {
     struct stat facts {};
     if (const auto descriptor = descriptor_named(path)) {
         owned_ = false;
@@ -55,13 +57,14 @@ OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
         // In a file opened for appending (>>) every write goes to the end.
         seekable_ = S_ISREG(facts.st_mode) && ::lseek(file_, 0, SEEK_CUR) == 0 &&
                     (::fcntl(file_, F_GETFL) & O_APPEND) == 0;
+        if (S_ISFIFO(facts.st_mode) && give_up_) open_again();
         return;
     }
     refuse_existing(path, options.overwrite);
     const bool exists = ::stat(path.c_str(), &facts) == 0;
     path_ = exists && !S_ISREG(facts.st_mode) ? path : resolved(path);
     if (exists && S_ISFIFO(facts.st_mode)) {
-        open_pipe(options.give_up);
+        open_pipe();
     } else if (exists && !S_ISREG(facts.st_mode)) {
         file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
         if (file_ < 0) fail("opened", errno);
@@ -78,21 +81,28 @@ OutputFile::~OutputFile() {
     forget_new_file();
 }
 
-/// open() of a pipe without a reader would wait where no signal can end it; so it is asked again
-/// every 20 ms.
-void OutputFile::open_pipe(const std::function<bool()>& give_up) {
+/// open() of a pipe without a reader would wait where no signal can end it, and so would write() of
+/// one that is full; so both are asked again and again.
+void OutputFile::open_pipe() {
     for (;;) {
         file_ = ::open(path_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-        if (file_ >= 0) break;
+        if (file_ >= 0) return;
         if (errno != ENXIO) fail("opened", errno);
-        if (give_up && give_up()) {
+        if (give_up_ && give_up_()) {
             reader_gone_ = true;
             return;
         }
-        ::poll(nullptr, 0, 20);
+        ::poll(nullptr, 0, kAskAgainMs);
     }
-    // From here on a slow reader makes us wait.
-    ::fcntl(file_, F_SETFL, ::fcntl(file_, F_GETFL) & ~O_NONBLOCK);
+}
+
+/// A pipe that is somebody else's, so that not to wait for its reader is a matter of ours alone.
+void OutputFile::open_again() {
+    const std::string again = "/proc/self/fd/" + std::to_string(file_);
+    const int file = ::open(again.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return;
+    file_ = file;
+    owned_ = true;
 }
 
 void OutputFile::open_growing(bool overwrite) {
@@ -135,24 +145,41 @@ void OutputFile::begin() {
     if (::ftruncate(file_, 0) != 0) fail("emptied", errno);
 }
 
+bool OutputFile::takes_at_once() const {
+    pollfd asked{file_, POLLOUT, 0};
+    return ::poll(&asked, 1, 0) != 0;
+}
+
 void OutputFile::write(std::span<const std::byte> bytes) {
     if (reader_gone_) return;
     begin();
+    int asked = 0;
     while (!bytes.empty()) {
         const ssize_t n = ::write(file_, bytes.data(), bytes.size());
         if (n >= 0) {
             bytes = bytes.subspan(std::size_t(n));
+            asked = 0;
         } else if (errno == EPIPE) {
             reader_gone_ = true;
             return;
-        } else if (errno == EAGAIN) {
-            // Standard output may have been made non-blocking by whoever shares it.
-            pollfd waiting{file_, POLLOUT, 0};
-            ::poll(&waiting, 1, -1);
+        } else if (errno == EAGAIN) {  // ours, or standard output that others made non-blocking
+            if (!wait_for_room(asked)) {
+                reader_gone_ = true;
+                return;
+            }
         } else if (errno != EINTR) {
             fail("written", errno);
         }
     }
+}
+
+/// `asked`: how often somebody wanted to give up since the reader last took something. False once
+/// that is long enough.
+bool OutputFile::wait_for_room(int& asked) {
+    pollfd waiting{file_, POLLOUT, 0};
+    ::poll(&waiting, 1, kAskAgainMs);
+    if (!give_up_ || !give_up_()) return true;
+    return ++asked < kMostAsked;
 }
 
 void OutputFile::write(std::string_view text) {

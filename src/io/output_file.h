@@ -24,7 +24,8 @@ enum class Appears {
 struct OutputOptions {
     bool overwrite = false;
     Appears appears = Appears::whole;
-    /// Asked while a named pipe waits for its reader: true gives up. May be empty.
+    /// Asked while a named pipe waits for its reader, and while a pipe is full: true gives up, of a
+    /// full one after a second in which its reader took nothing. May be empty.
     std::function<bool()> give_up = {};
 };
 
@@ -41,9 +42,11 @@ public:
 
     const std::string& name() const { return name_; }  ///< for messages
     bool is_seekable() const { return seekable_; }
-    /// Whoever read the pipe went away: no error, but nothing is written any more.
+    /// Whoever read the pipe went away, or was given up: no error, but nothing is written any more.
     bool reader_gone() const { return reader_gone_; }
 
+    /// False where a pipe is full, as whoever reads it is behind.
+    bool takes_at_once() const;
     /// Throws Error (failed) with the system's words.
     void write(std::span<const std::byte> bytes);
     void write(std::string_view text);
@@ -62,7 +65,9 @@ public:
     void close();
 
 private:
-    void open_pipe(const std::function<bool()>& give_up);
+    void open_pipe();
+    void open_again();
+    bool wait_for_room(int& asked);
     void open_growing(bool overwrite);
     void open_beside(bool overwrite);
     void begin();
@@ -73,6 +78,7 @@ private:
     std::filesystem::path path_;  // without links
     std::filesystem::path part_;  // beside it; empty when there is none (any more)
     std::string name_;
+    std::function<bool()> give_up_;
     int file_ = -1;
     bool owned_ = true;  // standard output is not ours to close
     bool seekable_ = false, reader_gone_ = false;

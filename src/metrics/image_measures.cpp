@@ -60,6 +60,19 @@ auto flat(const Array2<float>& image) {
         .cast<double>();
 }
 
+auto flat(std::span<const double> numbers) {
+    return Eigen::Map<const Eigen::ArrayXd>(numbers.data(), Eigen::Index(numbers.size()));
+}
+
+template <typename Numbers>
+Spread spread_of(const Numbers& a, const Numbers& b) {
+    Spread s{.mean_a = a.mean(), .mean_b = b.mean()};
+    s.var_a = (a - s.mean_a).square().mean();
+    s.var_b = (b - s.mean_b).square().mean();
+    s.covariance = ((a - s.mean_a) * (b - s.mean_b)).mean();
+    return s;
+}
+
 /// An image of less variance is flat but for rounding, and its gain would be noise.
 constexpr double kFlat = 1e-12;
 
@@ -78,11 +91,16 @@ double mean_squared_error(const Array2<float>& a, const Array2<float>& b) {
 
 Spread spread(const Array2<float>& a, const Array2<float>& b) {
     need_same_size(a, b);
-    Spread s{.mean_a = flat(a).mean(), .mean_b = flat(b).mean()};
-    s.var_a = (flat(a) - s.mean_a).square().mean();
-    s.var_b = (flat(b) - s.mean_b).square().mean();
-    s.covariance = ((flat(a) - s.mean_a) * (flat(b) - s.mean_b)).mean();
-    return s;
+    return spread_of(flat(a), flat(b));
+}
+
+Spread spread(std::span<const double> a, std::span<const double> b) {
+    if (a.size() != b.size())
+        throw Error(ErrorKind::usage, "spread: expected as many numbers of both, found " +
+                                          std::to_string(a.size()) + " and " +
+                                          std::to_string(b.size()));
+    if (a.empty()) return {};
+    return spread_of(flat(a), flat(b));
 }
 
 std::optional<double> correlation(const Spread& s) {

@@ -5,6 +5,7 @@
 #include "src/core/array.h"
 
 #include <optional>
+#include <span>
 
 namespace eventide {
 
@@ -27,8 +28,10 @@ struct Spread {
 
 /// Both of one size, else Error(usage).
 Spread spread(const Array2<float>& a, const Array2<float>& b);
+/// As many of each, else Error(usage); of none all is 0.
+Spread spread(std::span<const double> a, std::span<const double> b);
 
-/// Pearson's, -1 to 1; nothing where either image does not vary.
+/// Pearson's, -1 to 1; nothing where either side does not vary.
 std::optional<double> correlation(const Spread& spread);
 
 /// image * gain + offset.

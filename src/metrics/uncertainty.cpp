@@ -92,24 +92,6 @@ double log_likelihood(const Array2<float>& mu, const Array2<float>& sigma,
     return sum / double(mu.values().size()) - .5 * std::log(2 * std::numbers::pi);
 }
 
-std::optional<double> correlation(const std::vector<double>& a, const std::vector<double>& b) {
-    if (a.size() != b.size() || a.size() < 2) return std::nullopt;
-    const auto mean = [](const std::vector<double>& v) {
-        double sum = 0;
-        for (const double x : v) sum += x;
-        return sum / double(v.size());
-    };
-    const double mean_a = mean(a), mean_b = mean(b);
-    double aa = 0, bb = 0, ab = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        aa += (a[i] - mean_a) * (a[i] - mean_a);
-        bb += (b[i] - mean_b) * (b[i] - mean_b);
-        ab += (a[i] - mean_a) * (b[i] - mean_b);
-    }
-    if (!(aa > 0) || !(bb > 0)) return std::nullopt;
-    return ab / std::sqrt(aa * bb);
-}
-
 std::vector<double> patch_means(const Array2<float>& map, int size) {
     return over_patches(map, size, [](const std::vector<float>& patch) {
         double sum = 0;

@@ -20,9 +20,6 @@ double coverage_80(const Array2<float>& mu, const Array2<float>& sigma,
 double log_likelihood(const Array2<float>& mu, const Array2<float>& sigma,
                       const Array2<float>& reference);
 
-/// Pearson's; nothing where either side does not vary.
-std::optional<double> correlation(const std::vector<double>& a, const std::vector<double>& b);
-
 /// One number per whole patch of `size` x `size` px, from the top left; what is left over at the
 /// right and bottom is not used.
 std::vector<double> patch_means(const Array2<float>& map, int size);

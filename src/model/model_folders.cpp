@@ -73,7 +73,7 @@ fs::path find_model(const std::string& name) {
     const auto places = folders();
     std::string looked;
     for (const fs::path& place : places) {
-        const fs::path file = place / (name + ".safetensors");
+        fs::path file = place / (name + ".safetensors");
         if (name.find('/') == name.npos && fs::is_regular_file(file, none)) return file;
         looked += (looked.empty() ? "" : ", ") + place.string();
     }

@@ -102,6 +102,31 @@ TEST(FlickerPairs, AreTheSameHoweverTheStreamIsSplitAndComeOutInOrder) {
     }
 }
 
+/// A call may see a lamp go out and another one come on.
+TEST(FlickerPairs, AreTheSameHoweverAStreamWhoseFlickerPausesIsSplit) {
+    const auto later = [](Events events, std::int64_t us) {
+        for (Event& event : events) event.t += SensorDuration{us};
+        return events;
+    };
+    const Events lamp = lamp_events({});
+    const Events events = merged(merged(lamp, later(lamp, 800'000)),
+                                 later(bar_events(kWidth, kHeight, .4, 1500), 350'000));
+    const Events expected = left_of(events);
+    ASSERT_LT(after(expected, 1'000'000), after(events, 1'000'000) / 2);
+    for (const std::size_t part_of : {1U, 7U, 100U, 5'000U}) {
+        FlickerPairs pairs{kWidth, kHeight, {}};
+        Events left;
+        for (std::size_t at = 0; at < events.size(); at += part_of) {
+            Events part(events.begin() + std::ptrdiff_t(at),
+                        events.begin() + std::ptrdiff_t(std::min(at + part_of, events.size())));
+            pairs.process(part);
+            left.insert(left.end(), part.begin(), part.end());
+        }
+        pairs.flush(left);
+        EXPECT_EQ(left, expected) << part_of;
+    }
+}
+
 TEST(FlickerPairs, AreTheSameWhereverTheirNumbersBeginAnew) {
     const Events events = merged(lamp_events({}), bar_events(kWidth, kHeight, .3, 1500));
     const Events expected = left_of(events, SensorDuration{16'000});

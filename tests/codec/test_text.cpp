@@ -216,12 +216,12 @@ TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
         EXPECT_EQ(saved.layout.unit, TextTimeUnit::microseconds) << format;
         EXPECT_EQ(saved.remarks.size(), 1U) << format;
     }
-    // Fractions are seconds; where no sensor sends so few of them it is said.
+    // Fractions are seconds; where sensors seldom send so few of them it is said.
     EXPECT_TRUE(written("%.6f 1 2 1\n", 1e-5).remarks.empty());
     const TextHeader slow = written("%.3f 1 2 1\n", .5);
     EXPECT_EQ(slow.layout.unit, TextTimeUnit::seconds);
     ASSERT_EQ(slow.remarks.size(), 1U);
-    EXPECT_NE(slow.remarks.front().find("which no sensor sends"), std::string::npos);
+    EXPECT_NE(slow.remarks.front().find("2 events/s, which is slow"), std::string::npos);
     // A few rows tell no rate.
     EXPECT_EQ(read_text_header(to_bytes("0 1 2 1\n20000 1 2 1\n"), {}).layout.unit,
               TextTimeUnit::microseconds);

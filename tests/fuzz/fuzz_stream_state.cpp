@@ -21,15 +21,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         binner.restore(state->stream.ages);
         std::vector<Event> events{{state->stream.t, 3, 4, Polarity::on},
                                   {state->stream.t + SensorDuration{300'000}, 4, 4, Polarity::on}};
-        if (state->flicker) {
+        if (state->filters.flicker) {
             FlickerPairs flicker{kWidth, kHeight, SensorDuration{16'000}};
-            flicker.restore(*state->flicker);
+            flicker.restore(*state->filters.flicker);
             flicker.process(events);
             flicker.flush(events);
         }
-        if (state->noise) {
+        if (state->filters.noise) {
             NoiseFilter noise{kWidth, kHeight, {}};
-            noise.restore(*state->noise);
+            noise.restore(*state->filters.noise);
             noise.process(events);
         }
         slicer.push(events);

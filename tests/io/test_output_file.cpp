@@ -7,7 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
+#include <array>
 #include <filesystem>
 
 namespace eventide {
@@ -35,6 +38,24 @@ std::string refusal(const std::string& path, const OutputOptions& options) {
                std::string{error.what()};
     }
     return {};
+}
+
+TEST(OutputFile, AFullPipeIsGivenUpWhenAskedTo) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    bool wanted = false;
+    OutputFile file{"/dev/fd/" + std::to_string(ends[1]), {.give_up = [&] { return wanted; }}};
+    EXPECT_TRUE(file.takes_at_once());
+    file.write("first");
+    EXPECT_FALSE(file.reader_gone());
+    wanted = true;
+    file.write(std::string(1 << 20, 'x'));
+    EXPECT_TRUE(file.reader_gone());
+    EXPECT_FALSE(file.takes_at_once());
+    EXPECT_EQ(::fcntl(ends[1], F_GETFL) & O_NONBLOCK, 0) << "of others, who share it";
+    file.close();
+    ::close(ends[0]);
+    ::close(ends[1]);
 }
 
 TEST(OutputFile, AWholeFileShowsWhenItIsClosedAndNotBefore) {
@@ -87,7 +108,8 @@ TEST(OutputFile, AFileWithSomethingInItIsKeptUnlessItMayBeReplaced) {
     write_text(temp / "empty", "");
     for (const OutputOptions& options : {OutputOptions{}, kGrow}) {
         EXPECT_EQ(refusal(temp / "a", options),
-                  "usage: " + temp / "a" + ": exists already; --overwrite replaces it");
+                  "usage: " + temp / "a" +
+                      ": exists already; --overwrite (in the library overwrite) replaces it");
         EXPECT_NE(refusal(temp.path(), options).find("found a folder"), std::string::npos);
         EXPECT_EQ(refusal(temp / "empty", options), "");
     }

@@ -123,6 +123,30 @@ TEST(EventIntake, WhichImagesAWindowKnowsDoesNotHangOnWhenItIsTaken) {
         }
 }
 
+/// Some in one, images in their places.
+std::vector<Batch> joined(const std::vector<Batch>& batches, std::uint32_t seed) {
+    std::mt19937 random{seed};
+    std::vector<Batch> some;
+    for (const Batch& batch : batches) {
+        if (some.empty() || random() % 3 == 0) some.emplace_back();
+        Batch& into = some.back();
+        for (const ReferenceImage& image : batch.images) into.add_image(image);
+        into.events.insert(into.events.end(), batch.events.begin(), batch.events.end());
+    }
+    return some;
+}
+
+TEST(EventIntake, WhichImagesAWindowKnowsDoesNotHangOnHowTheStreamIsSplit) {
+    for (const WindowRule rule : {WindowRule::duration, WindowRule::count})
+        for (std::uint32_t seed = 0; seed < 40; ++seed) {
+            const std::vector<Batch> batches = batches_with_images(seed);
+            const auto always = [](std::size_t) { return true; };
+            EXPECT_EQ(windows_of(joined(batches, seed), rule, always),
+                      windows_of(batches, rule, always))
+                << seed;
+        }
+}
+
 /// What the windows above know hangs on it if it is asked of the newest event alone.
 TEST(EventIntake, AnImageIsNewToTheWindowThatWasOpenWhenItCame) {
     ReconstructorCounters counters;

@@ -70,6 +70,7 @@ TEST_F(LampFlicker, IsLeftOutOfTheEventsThatAreWritten) {
     const auto [words, frames] = run_of({"--events-out", "left.aedat4"});
     EXPECT_TRUE(frames == run_of({}).second) << "written or not";
     EXPECT_EQ(words.find("warning"), std::string::npos) << words;
+    EXPECT_THAT(words, HasSubstr("light flickered at "));
     const std::vector<Event> all = events_of(temp_ / "lamp.aedat4"),
                              left = events_of(temp_ / "left.aedat4");
     EXPECT_TRUE(std::ranges::includes(all, left, {}, &Event::t, &Event::t));

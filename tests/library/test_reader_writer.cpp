@@ -178,6 +178,24 @@ TEST_F(Recordings, AreWrittenInTheOrderOfTimeOnly) {
     }
 }
 
+TEST_F(Recordings, AreWrittenWithinTheSensorOnly) {
+    for (const std::string format : {"aedat4", "aedat3", "evt3", "text"}) {
+        EventWriter writer{temp_ / ("within." + format), {"", "", "", 64, 48}, {format, false}};
+        const std::vector<Event> outside{{from_us(1), 64, 2, Polarity::on}};
+        EXPECT_NE(error_of([&] { writer.write(outside); }).find("within 64x48 px, found one at 64"),
+                  std::string::npos)
+            << format;
+    }
+}
+
+TEST_F(Recordings, OfAnotherSizeThanTheReconstructorsAreRefused) {
+    EventReader reader{recording()};
+    Reconstructor other{model(), reader.width() / 2, reader.height(), repeatable("20ms", 0)};
+    Frame frame;
+    EXPECT_NE(error_of([&] { read_frame(reader, other, frame); }).find("as of the reconstructor"),
+              std::string::npos);
+}
+
 TEST_F(Recordings, ThatAreNoneAreRefusedInWords) {
     write_text(temp_ / "letter", "Dear Sir or Madam");
     EXPECT_NE(error_of([&] { EventReader{temp_ / "letter"}; }, ErrorKind::input).find("letter"),

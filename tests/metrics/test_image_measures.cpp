@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace eventide {
 namespace {
 
@@ -122,6 +124,17 @@ TEST(Clipped, BringsAnythingIntoZeroToOne) {
     EXPECT_EQ(out(0, 1), 1);
     EXPECT_EQ(out(0, 2), 0);
     EXPECT_EQ(out(0, 3), .25F);
+}
+
+TEST(Correlation, IsOneForALineMinusOneForAFallingOneAndNothingForAConstant) {
+    const std::vector<double> a{1, 2, 4, 8};
+    const auto with = [&](const std::vector<double>& b) { return correlation(spread(a, b)); };
+    EXPECT_NEAR(*with({3, 5, 9, 17}), 1, 1e-12);
+    EXPECT_NEAR(*with({-1, -2, -4, -8}), -1, 1e-12);
+    EXPECT_FALSE(with({.1, .1, .1, .1}));
+    EXPECT_FALSE(correlation(spread(std::vector{1.}, std::vector{1.})));
+    EXPECT_FALSE(correlation(spread(std::vector<double>{}, std::vector<double>{})));
+    EXPECT_THROW(with({1}), Error);
 }
 
 }  // namespace

@@ -107,14 +107,6 @@ TEST(SigmaScale, IsOneBeforeAnyImage) {
     EXPECT_EQ(SigmaScale{}.by_coverage(), 1);
 }
 
-TEST(Correlation, IsOneForALineMinusOneForAFallingOneAndNothingForAConstant) {
-    const std::vector<double> a{1, 2, 4, 8};
-    EXPECT_NEAR(*correlation(a, {3, 5, 9, 17}), 1, 1e-12);
-    EXPECT_NEAR(*correlation(a, {-1, -2, -4, -8}), -1, 1e-12);
-    EXPECT_FALSE(correlation(a, {2, 2, 2, 2}));
-    EXPECT_FALSE(correlation({1}, {1}));
-}
-
 TEST(Patches, AreWholeOnesFromTheTopLeft) {
     Array2<float> map(5, 7);
     for (int y = 0; y < 5; ++y)

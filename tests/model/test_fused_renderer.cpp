@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 namespace eventide {
 namespace {
 
@@ -78,6 +81,52 @@ TEST(FusedRenderer, AFrameAtAWindowsEndIsNotRenderedTwice) {
     EXPECT_EQ(at_ends, 0U);
     EXPECT_EQ(at_times_within, 12 * kPixels);
     EXPECT_EQ(larger_at_ends, 12 * 4 * kPixels);
+}
+
+/// Of a still scene and images of one grey each, given before the fifth window of 50 ms.
+struct GivenInSilence {
+    float shown = 0;
+    std::uint64_t used = 0, dropped = 0;
+};
+
+GivenInSilence given_in_silence(const std::vector<std::pair<float, double>>& greys_and_ms) {
+    const ModelConfig config = test::small_config();
+    const Model model = test::random_model(config, 1);
+    Encoder encoder{model, kWidth, kHeight};
+    Renderer renderer{model, kWidth, kHeight};
+    FusedRenderer fused{renderer, kWidth, kHeight, 0};
+    GridStream stream{config, kHeight, kWidth, 4};
+    LatentMap latent = encoder.make_output();
+    RenderRequest request;
+    fused.prepare(request);
+    Frame frame = renderer.make_output(request);
+    for (int i = 0; i < 8; ++i) {
+        const VoxelGrid& grid = stream.next(i < 3 ? Kind::patch : Kind::silence);
+        encoder.encode(grid, latent);
+        request.t = latent.window.end = grid.window.end;
+        if (i == 4)
+            for (const auto& [grey, ms] : greys_and_ms)
+                fused.give(image_of(constant(grey), grid.window.end + (at_ms(ms) - at_ms(0))));
+        renderer.push(latent);
+        fused.push(grid.window, constant(i < 3 ? 1.F : 0.F));
+    }
+    fused.render(request, frame);
+    return {frame.intensity(kHeight / 2, kWidth / 2), fused.used(), fused.dropped()};
+}
+
+TEST(FusedRenderer, AnImageOfAWrongTimeDoesNotHoldUpTheOthers) {
+    constexpr double kAnHour = 3'600'000;
+    const GivenInSilence given = given_in_silence({{.9F, kAnHour}, {.3F, -.001}, {.6F, 0}});
+    EXPECT_NEAR(given.shown, .6, 1e-3);
+    EXPECT_EQ(given.used, 2U);
+    EXPECT_EQ(given.dropped, 1U);
+}
+
+TEST(FusedRenderer, AnImageThatIsOlderThanTheOneBeforeIsDropped) {
+    const GivenInSilence given = given_in_silence({{.6F, 0}, {.3F, -.001}});
+    EXPECT_NEAR(given.shown, .6, 1e-3);
+    EXPECT_EQ(given.used, 1U);
+    EXPECT_EQ(given.dropped, 1U);
 }
 
 TEST(FusedRenderer, AFloodOfImagesIsBounded) {

@@ -41,6 +41,7 @@ struct Beginning {
             edges.emplace_back(to_us(event_window.window.begin), to_us(event_window.window.end));
             gaps.push_back(event_window.gap_before);
             events += event_window.events.size();
+            images.push_back(frames.images());
         }
     }
 
@@ -49,7 +50,8 @@ struct Beginning {
     EventWindows frames;
     Edges edges;
     std::vector<bool> gaps;
-    std::size_t events = 0;  // in the windows
+    std::vector<std::uint64_t> images;  // that each window knows
+    std::size_t events = 0;             // in the windows
 };
 
 inline std::vector<std::byte> record(ToyKind kind, std::int64_t t_us) {

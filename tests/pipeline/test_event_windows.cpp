@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -190,6 +192,37 @@ TEST(EventWindows, EventsThatAreHeldBackAreInTheWindowsOfTheirTime) {
         EXPECT_EQ(b.events, 22U);
         EXPECT_EQ(b.counters.snapshot().filtered_events, 11U);
         EXPECT_EQ(b.counters.snapshot().slicing.late, 0U);
+    }
+}
+
+/// Events and images, of which half are late by up to 40 us.
+std::vector<std::byte> events_and_late_images(unsigned seed) {
+    std::mt19937 random{seed};
+    std::vector<std::byte> bytes;
+    for (std::int64_t t = 1; t < 400; t += 1 + random() % 6) {
+        append_record(bytes, ToyKind::event, t, int(random() % 8));
+        if (random() % 8 == 0)
+            append_record(bytes, ToyKind::image, t - std::int64_t(random() % 2 * (random() % 40)));
+    }
+    return bytes;
+}
+
+TEST(EventWindows, KnowTheSameImagesHoweverTheStreamIsSplit) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const std::vector<std::byte> bytes = events_and_late_images(seed);
+        HoldsBack holds_back_by_bytes, holds_back;
+        for (auto [by_bytes_filter, filter] :
+             {std::pair<EventFilter*, EventFilter*>{nullptr, nullptr},
+              {&holds_back_by_bytes, &holds_back}}) {
+            Beginning by_bytes(false, 10, by_bytes_filter), whole(false, 10, filter);
+            for (const std::byte byte : bytes) by_bytes.give({byte}, 0);
+            whole.give(bytes, 0);
+            by_bytes.finish();
+            whole.finish();
+            ASSERT_GT(whole.images.back(), 3U);
+            EXPECT_EQ(whole.edges, by_bytes.edges);
+            EXPECT_EQ(whole.images, by_bytes.images) << seed;
+        }
     }
 }
 

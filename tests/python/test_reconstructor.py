@@ -91,8 +91,12 @@ class Frames(RecordedTest):
             reconstructor.push(self.events())
             return [f.t for f in reconstructor.frames()]
 
-        for fps in (100.0, np.int64(100), "100"):
+        for fps in (100.0, np.int64(100), np.float32(100), "100"):
             self.assertEqual(times(fps), times(100))
+        self.assertEqual(times(60000 / 1001), times("60000/1001"))
+        self.assertEqual(times(100 / 3), times("100/3"))
+        with self.assertRaisesRegex(eventide.UsageError, "frame rate"):
+            self.reconstructor(fps=float("nan"))
         for fps in (True, None, [30]):
             with self.assertRaisesRegex(TypeError, "fps: expected int, float or str"):
                 self.reconstructor(fps=fps)

@@ -140,7 +140,7 @@ TEST(Convert, WhatTheTargetCannotHoldIsCounted) {
     const auto report =
         convert(*open_recording(folder.path("a")), folder.path("b.txt"), *find_format("text"));
     EXPECT_EQ(report.written, (DataCounts{10, 0, 0, 0}));
-    EXPECT_EQ(report.not_held, (DataCounts{0, 2, 1, 1}));
+    EXPECT_EQ(report.data.left_out(), (DataCounts{0, 2, 1, 1}));
 }
 
 TEST(Convert, TriggersOfAKindTheTargetLacksAreLeftOutAndTheOthersKept) {
@@ -161,7 +161,7 @@ TEST(Convert, TriggersOfAKindTheTargetLacksAreLeftOutAndTheOthersKept) {
     const auto report = convert(*open_recording(folder.path("a.aedat4")), folder.path("b.raw"),
                                 *find_format("evt3"));
     EXPECT_EQ(report.written, (DataCounts{10, 0, 0, 1}));
-    EXPECT_EQ(report.not_held, (DataCounts{0, 0, 0, 2}));
+    EXPECT_EQ(report.data.left_out(), (DataCounts{0, 0, 0, 2}));
 }
 
 TEST(Convert, TriggersAnywhereBetweenTheEventsDoNotEndARunToRaw) {
@@ -184,12 +184,41 @@ TEST(Convert, TriggersAnywhereBetweenTheEventsDoNotEndARunToRaw) {
     const auto report = convert(*open_recording(folder.path("a.aedat4")), folder.path("b.raw"),
                                 *find_format("evt3"));
     EXPECT_EQ(report.written, (DataCounts{60'000, 0, 0, 2}));
-    EXPECT_EQ(report.late_triggers, 1U);
+    EXPECT_EQ(report.data.late_triggers(), 1U);
     const Batch batch = read_everything(*open_recording(folder.path("b.raw")));
     EXPECT_TRUE(batch.events == events);
     ASSERT_EQ(batch.triggers.size(), 2U);
     EXPECT_EQ(batch.triggers[0].t, events[30'000].t);
     EXPECT_GT(batch.triggers[1].t, events[40'000].t);
+}
+
+TEST(Convert, AClockThatBeganAnewGoesOnWhereTheFormatCannotSayIt) {
+    const TestFolder folder;
+    const std::string source = folder.path("a.aedat4");
+    std::size_t events = 0;
+    {
+        StreamHeader header{.format = "aedat4", .width = 240, .height = 180};
+        RecordingFile file{source, {}, *find_format("aedat4"), header};
+        for (const std::int64_t begin : {5'000'000, 1'000'000}) {
+            Batch batch;
+            batch.events = some_events(1'000, begin);
+            batch.triggers = {{batch.events.front().t, Trigger::Kind::timestamp_reset, 0}};
+            events += batch.events.size();
+            file.write(batch);
+        }
+        file.finish();
+    }
+    for (const Format& format : all_formats()) {
+        if (!format.is_written()) continue;
+        SCOPED_TRACE(format.name);
+        const std::string file = folder.path("b" + std::string(format.extension));
+        const auto report = convert(*open_recording(source), file, format, {.overwrite = true});
+        EXPECT_EQ(report.data.restarts(), format.holds.clock_resets ? 0U : 1U);
+        const Batch there = read_everything(*open_recording(file));
+        EXPECT_EQ(there.events.size(), events);
+        if (!format.holds.clock_resets)
+            EXPECT_TRUE(std::ranges::is_sorted(there.events, {}, &Event::t));
+    }
 }
 
 TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {

@@ -1,6 +1,7 @@
 // What a recording holds is counted.
-#include "replay/formats.h"
 #include "replay/summary.h"
+
+#include "replay/formats.h"
 #include "tests/replay/recording_files.h"
 #include "tests/support/flickering_light.h"
 

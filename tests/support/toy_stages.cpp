@@ -85,7 +85,7 @@ void ToyParser::take_record(const std::byte* record, Batch& into) {
     if (kind == ToyKind::image) {
         ReferenceImage image;
         image.t = from_us(t_us);
-        into.images.push_back(image);
+        into.add_image(image);
     }
 }
 

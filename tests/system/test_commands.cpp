@@ -59,6 +59,19 @@ TEST_F(Commands, ConvertLosesNoEventAndSaysWhatHasNoPlace) {
     EXPECT_EQ(eventide({"convert", recording(), "d.raw"}).exit_code, 2) << "it exists already";
 }
 
+TEST_F(Commands, RunSaysWhatItsRecordingHasNoPlaceFor) {
+    const auto run = [&](const char* option, const char* file) {
+        return eventide({"run", recording(), "--out", "null", option, file, "--strict"});
+    };
+    const Result result = run("--record", "a.raw");
+    EXPECT_EQ(result.exit_code, 5);
+    EXPECT_NE(result.error.find("a.raw: left out what its format cannot hold: 11 images"),
+              std::string::npos)
+        << result.error;
+    EXPECT_EQ(run("--record", "a.aedat4").exit_code, 0);
+    EXPECT_EQ(run("--events-out", "b.raw").exit_code, 0) << "events are all that was asked for";
+}
+
 TEST_F(Commands, ConvertWritesAFolderOfTheEventCameraDatasetAndReadsItBack) {
     const Json original = info(recording());
     const Result result = eventide({"convert", recording(), "ecd/"});
@@ -170,6 +183,10 @@ TEST_F(Commands, EvaluateMeasuresARecordingAndFolders) {
     const Json scores = Json::parse(read_text(temp_ / "scores.json"));
     EXPECT_GT(scores["frames"].get<int>(), 0);
     EXPECT_GT(scores["raw"]["mse"].get<double>(), 0);
+    const Result most = eventide({"evaluate", recording(), "--skip", "100"});
+    EXPECT_NE((most.output + most.error).find("of 11 images the first 10 are not scored"),
+              std::string::npos)
+        << most.output << most.error;
 
     ASSERT_EQ(
         eventide({"simulate", "--seconds", "0.2", "--size", "32x24", "--out", "a/"}).exit_code, 0);

@@ -33,6 +33,7 @@ TEST_F(ExitCodes, HelpAndVersionAreData) {
 TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"fly"}, "fly");
     expect(2, {"rnu"}, "did you mean run?");
+    expect(2, {"help", "rnu"}, "did you mean run?");
     expect(2, {"run", recording(), "--frm", "5ms"},
            "did you mean --from?; see eventide run --help");
     expect(2, {"run", recording(), "--strict", "--no-strict", "--out", "null"}, "--no-strict");
@@ -68,6 +69,11 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"evaluate", recording(), "--protocol", "folders"}, "two folders");
     expect(2, {"evaluate", recording(), "--frames", "2", "--calibrated", "a.safetensors"},
            "--calibrated a.safetensors: ");
+    expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "expected one of --json");
+    expect(2, {"evaluate", recording(), "--from", "200ms", "--to", "100ms"}, "--to: expected");
+    expect(2, {"evaluate", recording(), "--from", "10s"}, "expected an image to score between");
+    expect(2, {"run", recording(), "--out", "null", "--events-out", "evt2:a.raw"},
+           "expected aedat4, aedat3, evt3, hdf5, text before the colon, found evt2");
     for (const std::string output : {"--json", "--csv", "--frame-csv", "--calibrated"})
         expect(2, {"evaluate", "--figure", "silence", output, "a"},
                output + " a: expected an evaluation, found --figure silence");

@@ -204,6 +204,25 @@ TEST_F(Outputs, AFolderLosesAnEarlierRunAndNothingElse) {
     expect_refused(again, "a/frames/frame_0000000500.png");
 }
 
+TEST_F(Outputs, AFolderOfStatesLosesAnEarlierRunsAndNothingElse) {
+    const auto states_at = [](const std::vector<std::string>& times) {
+        std::vector<std::string> words{"run",          "rec.aedat4", "--frames",   "ignore",
+                                       "--states-out", "s/",         "--overwrite"};
+        for (const std::string& time : times) words.insert(words.end(), {"--states-at", time});
+        return words;
+    };
+    ASSERT_EQ(eventide(states_at({"100ms", "200ms"})).exit_code, 0);
+    EXPECT_TRUE(fs::exists(temp_ / "s/state_000001.safetensors"));
+    ASSERT_EQ(eventide(states_at({"150ms"})).exit_code, 0);
+    EXPECT_FALSE(fs::exists(temp_ / "s/state_000001.safetensors")) << "it was of another run";
+    write_text(temp_ / "s/state_000001.safetensors", "mine");
+    expect_refused(states_at({"150ms"}), "s/state_000001.safetensors", "earlier run's states");
+    const Result late = eventide({"run", "rec.aedat4", "--frames", "ignore", "--states-out", "t/",
+                                  "--states-at", "100ms", "--states-at", "9s"});
+    EXPECT_EQ(late.exit_code, 2);
+    EXPECT_NE(late.error.find("--states-at 9s: expected a time before"), std::string::npos);
+}
+
 TEST_F(Outputs, ASimulatedFolderIsReplacedByAnotherOnly) {
     const std::vector<std::string> simulate{"simulate", "--seconds",   "0.1",  "--size",
                                             "32x24",    "--overwrite", "--out"};

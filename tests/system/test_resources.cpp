@@ -66,8 +66,8 @@ TEST_F(Resources, OneIsFailureWhileRunning) {
     expect(1, {"run", recording(), "--out", "gray8:/dev/full"}, "/dev/full");
     expect(1, {"run", recording(), "--out", "/proc/nowhere/"}, "/proc/nowhere");
     expect(1, {"run", recording(), "--out", "null", "--stats", "/dev/full"}, "/dev/full");
-    std::filesystem::create_symlink("/dev/full", temp_ / "full.bin");
-    expect(1, {"run", recording(), "--out", "null", "--record", "full.bin"}, "full.bin");
+    std::filesystem::create_symlink("/dev/full", temp_ / "full.raw");
+    expect(1, {"run", recording(), "--out", "null", "--record", "full.raw"}, "full.raw");
 }
 
 TEST_F(Resources, OneIsStandardOutputThatCannotBeWritten) {

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -88,6 +89,21 @@ TEST_F(Signals, APipeThatNobodyReadsIsLeftAtTheFirstSignal) {
         process.signal(SIGTERM);
         EXPECT_LE(process.wait().exit_code, 1) << output[0];
     }
+}
+
+TEST_F(Signals, APipeWhoseReaderStandsStillIsLeftAtTheFirstSignal) {
+    const std::string pipe = temp_ / "frames";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    Process process =
+        start({"run", kEndless, "--out", "grayf32:" + pipe, "--record", "all.aedat4"});
+    const int reader = ::open(pipe.c_str(), O_RDONLY);
+    const int full = ::fcntl(reader, F_GETPIPE_SZ);
+    int waiting = 0;
+    while (process.running() && waiting < full) ::ioctl(reader, FIONREAD, &waiting);
+    process.signal(SIGTERM);
+    EXPECT_EQ(process.wait().exit_code, 0);
+    EXPECT_EQ(eventide({"info", "all.aedat4", "--strict"}).exit_code, 0) << "closed as it should";
+    ::close(reader);
 }
 
 TEST_F(Signals, SomeMeasurementsAreNotTakenForAll) {

@@ -14,19 +14,13 @@
 #include "replay/convert.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <spdlog/spdlog.h>
 
 namespace eventide::app {
 
 namespace {
-
-std::string names_of_writable() {
-    std::string names;
-    for (const Format& format : all_formats())
-        if (format.is_written()) names += (names.empty() ? "" : ", ") + std::string{format.name};
-    return names;
-}
 
 /// Null for a folder.
 const Format* target_format(const std::string& file, const std::string& name) {
@@ -47,29 +41,11 @@ const Format* target_format(const std::string& file, const std::string& name) {
     return format;
 }
 
-/// "3 events, 1 image"; what there is none of goes unsaid.
-std::string text_of(const DataCounts& counts) {
-    std::string text;
-    const auto add = [&text](std::uint64_t n, const char* what) {
-        if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, what);
-    };
-    add(counts.events, "event");
-    add(counts.images, "image");
-    add(counts.imu, "IMU sample");
-    add(counts.triggers, "trigger");
-    return text.empty() ? "0 events" : text;
-}
-
 void say(const std::string& source, const std::string& source_format, const std::string& file,
          const ConvertReport& report) {
     spdlog::info("{}: wrote {} ({})", file, text_of(report.written),
                  counted(report.bytes_written, "byte"));
-    if (!(report.not_held == DataCounts{}))
-        spdlog::warn("{}: left out what its format cannot hold: {}", file,
-                     text_of(report.not_held));
-    if (report.late_triggers > 0)
-        spdlog::warn("{}: {} came after later events and got their time", file,
-                     counted(report.late_triggers, "trigger"));
+    for (const std::string& remark : report.data.remarks(file)) spdlog::warn("{}", remark);
     if (report.lost > 0) spdlog::warn("{}: lost {}", file, lost_datagrams(report.lost));
     if (const std::string why =
             disorder_text(source, source_format, report.events_read, report.damaged);
@@ -176,8 +152,8 @@ int ConvertCommand::run(Program& program) {
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(from_file_, recording->info().format, to_file_, report);
     if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());
-    const bool incomplete = report.damaged.total() > 0 || report.lost > 0 ||
-                            report.late_triggers > 0 || !(report.not_held == DataCounts{});
+    const bool incomplete =
+        report.damaged.total() > 0 || report.lost > 0 || !report.data.is_whole();
     return strict_ && incomplete ? exit_data_lost : exit_done;
 }
 

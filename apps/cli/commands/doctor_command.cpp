@@ -111,8 +111,9 @@ std::vector<Finding> cameras() {
                             camera.problem});
     }
     if (findings.empty())
-        findings.push_back({"camera", State::absent, "none found",
-                            "is it plugged in? For permissions see config/udev/65-eventide.rules"});
+        findings.push_back(
+            {"camera", State::absent, "none found",
+             "is it plugged in? For permissions see 65-eventide.rules (docs/cameras.md)"});
     return findings;
 }
 

@@ -209,6 +209,10 @@ void EvaluateCommand::require_outputs_that_fit() const {
                         ": a factor found on frames that images corrected is not the model's; "
                         "expected --frames 0, found " +
                         std::to_string(given_images_));
+    if ((json_ == "-") + (csv_ == "-") + (frame_csv_ == "-") > 1)
+        throw Error(ErrorKind::usage,
+                    "evaluate: expected one of --json, --csv and --frame-csv on standard output, "
+                    "found more");
     if (evaluates()) return;
     for (const auto& [option, file] : {std::pair{"--json ", &json_},
                                        {"--csv ", &csv_},

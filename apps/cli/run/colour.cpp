@@ -14,11 +14,6 @@ namespace eventide::app {
 
 namespace {
 
-/// What the image's own top left corner begins with.
-ColourFilter filter_at(ColourFilter filter, int x0, int y0) {
-    return filter_with([&](int x, int y) { return channel_at(filter, x0 + x, y0 + y); });
-}
-
 int opencv_code(ColourFilter filter) {
     switch (filter) {
         case ColourFilter::grbg:
@@ -150,7 +145,7 @@ void ColourNetworks::see(const std::vector<ReferenceImage>& images) {
             else
                 parts[i].t = images[i].t;
         }
-        channels_[c].images.put(parts);
+        channels_[c].images.put(std::move(parts));
     }
 }
 

@@ -10,7 +10,7 @@ void DataObservers::see(const Batch& batch) {
         images.images.push_back(demosaiced(image, filter_));
     if (shown_ != nullptr) shown_->see(images);
     if (corrections_ == nullptr) return;
-    corrections_->put(images.images);
+    corrections_->put(std::move(images.images));
     if (networks_ != nullptr) networks_->see(batch.images);
 }
 

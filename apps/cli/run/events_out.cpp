@@ -5,6 +5,7 @@
 #include "apps/cli/terminal.h"
 #include "replay/udp_target.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <iterator>
@@ -14,11 +15,16 @@ namespace eventide::app {
 
 namespace {
 
-/// "aedat4" of "aedat4:x"; null where nothing of the kind stands in front.
+/// "aedat4" of "aedat4:x"; null where nothing of the kind stands in front. Throws Error (usage) for
+/// a word that is no format that can be written: what a file is called may begin with ./.
 const Format* format_in_front(const std::string& to) {
     const std::size_t colon = to.find(':');
-    const Format* format = colon == to.npos ? nullptr : find_format(to.substr(0, colon));
-    return format != nullptr && format->is_written() ? format : nullptr;
+    if (colon == to.npos || to.find_first_of("./") < colon) return nullptr;
+    const std::string word = to.substr(0, colon);
+    const Format* const format = find_format(word);
+    if (format != nullptr && format->is_written()) return format;
+    throw Error(ErrorKind::usage,
+                to + ": expected " + names_of_writable() + " before the colon, found " + word);
 }
 
 }  // namespace
@@ -101,8 +107,7 @@ void EventsOut::write(std::span<const Event> events) {
     std::erase_if(batch_.images, outside);
     std::erase_if(batch_.imu, outside);
     std::erase_if(batch_.triggers, outside);
-    remove_not_held(batch_, target_->holds());
-    times_.put_in_order(batch_);
+    data_.fit(batch_);
     if (!batch_.empty()) target_->write(batch_);
     batch_.clear();
     std::swap(batch_, later_);

@@ -1,9 +1,9 @@
 // The events that a run reconstructs from, written down behind all filters.
 #pragma once
 
-#include "apps/cli/run/written_times.h"
 #include "pipeline/stages.h"
 #include "replay/convert.h"
+#include "replay/written_data.h"
 
 #include <cstdint>
 #include <memory>
@@ -33,12 +33,12 @@ public:
               std::optional<SensorTime> from, std::optional<SensorTime> to)
         : filter_(filter),
           target_(std::move(target)),
-          times_(target_->holds()),
+          data_(target_->holds()),
           from_(from),
           to_(to) {}
 
-    /// Images and the rest, which are written with the events they came with, or at once where
-    /// there are none.
+    /// Images and the rest, of which what the target holds is written with the events they came
+    /// with, or at once where there are none.
     void see(const Batch& batch) override;
     void process(std::vector<Event>& events) override;
     void release(SensorTime now, std::vector<Event>& events) override;
@@ -47,16 +47,19 @@ public:
         return filter_ != nullptr ? filter_->known_until(now) : now;
     }
     std::size_t held() const override { return filter_ != nullptr ? filter_->held() : 0; }
+    FlickerFound flicker() const override {
+        return filter_ != nullptr ? filter_->flicker() : FlickerFound{};
+    }
     void finish();
     std::uint64_t lost() const { return target_->lost(); }
-    const WrittenTimes& times() const { return times_; }  ///< after the run
+    const WrittenData& data() const { return data_; }  ///< after the run
 
 private:
     void write(std::span<const Event> events);
 
     EventFilter* filter_;
     std::unique_ptr<ConvertTarget> target_;
-    WrittenTimes times_;
+    WrittenData data_;
     std::optional<SensorTime> from_, to_;
     Batch batch_;
     Batch later_;                            // than events that the filter holds back

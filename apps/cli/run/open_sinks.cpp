@@ -15,6 +15,7 @@
 #include "pipeline/sinks/video/video_kind.h"
 #include "pipeline/sinks/window.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -57,6 +58,17 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.stamp = settings.stamp;
     stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
     stream.give_up = plan.questions.stopping;
+    if (!plan.constant_rate && (format == StreamFormat::y4m || format == StreamFormat::y4m_mono))
+        spdlog::warn(
+            "{}: frames come at no constant rate, and what reads Y4M shows them at {} a second; "
+            "--fps with a number, or MP4, keeps their times",
+            path == "-" ? "standard output" : path, plan.fps);
+    stream.shorter_by = [path, fps = plan.fps](std::uint64_t frames) {
+        spdlog::warn(
+            "{}: its reader was slower than {} frames/s, and got {} fewer than the time they show; "
+            "--stamp tells each frame's time",
+            path == "-" ? "standard output" : path, fps, counted(frames, "frame"));
+    };
     return std::make_unique<StreamSink>(std::move(stream));
 }
 

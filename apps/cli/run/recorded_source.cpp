@@ -3,30 +3,36 @@
 
 #include "src/core/error.h"
 
-namespace eventide::app {
+#include <spdlog/spdlog.h>
 
-RecordedSource::RecordedSource(Source& source, const std::string& path, OutputOptions options)
-    : source_{source} {
-    options.appears = Appears::growing;
-    if (path.ends_with(".bin")) {
-        bytes_.emplace(path, options);
-        return;
-    }
-    format_ = format_for_writing(path);
-    if (format_ == nullptr)
+#include <utility>
+
+namespace eventide::app {
+namespace {
+
+const Format& format_of(const std::string& path) {
+    const Format* const format = format_for_writing(path);
+    if (format == nullptr)
         throw Error(ErrorKind::usage, "--record " + path +
                                           ": expected the extension of a format that can be "
-                                          "written (.aedat4, .raw, .txt, ...) or .bin");
+                                          "written (.aedat4, .raw, .txt, ...)");
+    return *format;
+}
+
+}  // namespace
+
+RecordedSource::RecordedSource(Source& source, const std::string& path, OutputOptions options)
+    : source_{source}, path_{path}, format_{format_of(path)}, data_{format_.holds} {
+    options.appears = Appears::growing;
     StreamHeader header;
-    header.format = format_->name;
+    header.format = format_.name;
     header.width = source.info().width;
     header.height = source.info().height;
     header.sensor_name = source.info().name;
     header.serial = source.info().serial;
     header.colour_filter = source.info().colour_filter;
-    file_ = std::make_unique<RecordingFile>(path, options, *format_, header);
+    file_ = std::make_unique<RecordingFile>(path, options, format_, header);
     parser_ = source.make_parser();
-    times_.emplace(format_->holds);
 }
 
 RecordedSource::~RecordedSource() = default;
@@ -38,23 +44,20 @@ ReadStatus RecordedSource::read(RawPacket& into) {
 }
 
 void RecordedSource::write(const RawPacket& packet) {
-    if (bytes_) return bytes_->write(packet.bytes);
-    // As the pipeline's own parser does it, so that both tell the same times.
-    if (packet.gap_before) packet.reopened ? parser_->reopened() : parser_->resync();
-    if (is_live()) parser_->arrives(packet.arrived);
-    parser_->parse(packet.bytes, batch_);
+    parse_packet(packet, is_live(), *parser_, batch_);
     write_batch();
 }
 
 void RecordedSource::write_batch() {
-    remove_not_held(batch_, format_->holds);
-    times_->put_in_order(batch_);
+    data_.fit(batch_);
+    if (!data_.is_whole() && !std::exchange(told_, true))
+        spdlog::warn("--record {}: {} cannot hold all that comes: {} so far (.aedat4 can)", path_,
+                     format_.title, text_of(data_.left_out()));
     if (!batch_.empty()) file_->write(batch_);
     batch_.clear();
 }
 
 void RecordedSource::finish() {
-    if (bytes_) return bytes_->close();
     parser_->finish(batch_);
     write_batch();
     file_->finish();

@@ -1,10 +1,10 @@
 // A source whose data are also written down, before anything behind it can lose them.
 #pragma once
 
-#include "apps/cli/run/written_times.h"
 #include "pipeline/source.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
+#include "replay/written_data.h"
 #include "src/io/output_file.h"
 
 #include <memory>
@@ -13,9 +13,8 @@
 
 namespace eventide::app {
 
-/// Writes on the source thread: what arrived is in the file even if the pipeline behind skips it. A
-/// file named *.bin gets the source's bytes untouched; any other the data, in the format of its
-/// extension, less the kinds of data that format has no record for.
+/// Writes on the source thread: what arrived is in the file even if the pipeline behind skips it,
+/// in the format of its extension, less the kinds of data that format has no record for.
 class RecordedSource : public Source {
 public:
     /// `source` is borrowed. Throws Error (usage) for an extension that is no format and for a file
@@ -31,20 +30,20 @@ public:
 
     /// After the run: ends the file.
     void finish();
-    /// After the run; null for untouched bytes.
-    const WrittenTimes* times() const { return times_ ? &*times_ : nullptr; }
+    const WrittenData& data() const { return data_; }  ///< after the run
 
 private:
     void write(const RawPacket& packet);
     void write_batch();
 
     Source& source_;
-    std::optional<OutputFile> bytes_;  // either this ...
-    const Format* format_ = nullptr;   // ... or these
+    const std::string path_;
+    const Format& format_;
+    WrittenData data_;
     std::unique_ptr<RecordingFile> file_;
     std::unique_ptr<Parser> parser_;
-    std::optional<WrittenTimes> times_;
     Batch batch_;
+    bool told_ = false;  // that something is left out
 };
 
 }  // namespace eventide::app

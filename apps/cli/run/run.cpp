@@ -140,7 +140,10 @@ void Run::open_outputs() {
     events_out_ = events_out_of(settings_, sensor_, colour_filter_, span_, filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
-    if (!settings_.states_out.empty()) create_folder(settings_.states_out);
+    if (!settings_.states_out.empty()) {
+        if (settings_.overwrite) remove_states(settings_.states_out);
+        create_folder(settings_.states_out);
+    }
     stats_ = stats_of(settings_, growing);  // last: it may lie in a folder that a sink makes
 }
 

@@ -57,7 +57,7 @@ private:
     void resume();
     void keep_state(const PipelineState& memory);
     void run_pipeline();
-    std::uint64_t say_what_was_moved() const;
+    bool wrote_all_data() const;
     CameraCounters camera_counters() const;
     RunProgress progress() const;
     std::string run_json();
@@ -90,7 +90,7 @@ private:
     ImagesOnTheWay images_;
     std::unique_ptr<RecordedSource> recorded_;  // null: nothing is recorded
     std::unique_ptr<OutputFile> stats_;         // null: not asked for, or taken by run()
-    std::unique_ptr<EventFilter> filter_;
+    std::unique_ptr<EventFilters> filter_;
     std::optional<FilteredSource> filtered_;  // none: without --filter
     std::unique_ptr<EventsOut> events_out_;   // null: not asked for
     DataObservers observers_;

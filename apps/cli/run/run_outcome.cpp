@@ -4,6 +4,7 @@
 #include "apps/cli/run/run.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <spdlog/spdlog.h>
 
@@ -32,9 +33,10 @@ int Run::report(const RunProgress& end) const {
         !why.empty())
         spdlog::warn("{}", why);
     if (states_ < states_at_.size() && !program_.signals.stopping())
-        throw Error(ErrorKind::input, "--states-at: expected " + std::to_string(states_at_.size()) +
-                                          " times before the last event, found " +
-                                          std::to_string(states_));
+        throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[states_] +
+                                          ": expected a time before the last event, found one "
+                                          "after it; wrote " +
+                                          counted(states_, "state"));
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())
         spdlog::warn("{}", why);
@@ -46,23 +48,22 @@ int Run::report(const RunProgress& end) const {
                      end_counters.images);
     const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
     if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
-    const std::uint64_t late_triggers = say_what_was_moved();
+    const bool all_written = wrote_all_data();
     const bool lost =
-        lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0 || late_triggers > 0;
+        lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0 || !all_written;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
 
-/// Of the files of data that the run wrote. Returns how many triggers are not at their own time.
-std::uint64_t Run::say_what_was_moved() const {
-    std::uint64_t late = 0;
-    const auto say = [&](const std::string& file, const WrittenTimes* times) {
-        if (times == nullptr) return;
-        for (const std::string& remark : times->remarks(file)) spdlog::warn("{}", remark);
-        late += times->late_triggers();
+/// Of the files of data that the run wrote. Whether all that they were to hold is in them.
+bool Run::wrote_all_data() const {
+    bool all = true;
+    const auto say = [&](const std::string& file, const WrittenData& data) {
+        for (const std::string& remark : data.remarks(file)) spdlog::warn("{}", remark);
+        all = all && data.is_whole();
     };
-    if (recorded_) say(settings_.record, recorded_->times());
-    if (events_out_) say(settings_.events_out, &events_out_->times());
-    return late;
+    if (recorded_) say(settings_.record, recorded_->data());
+    if (events_out_) say(settings_.events_out, events_out_->data());
+    return all;
 }
 
 CameraCounters Run::camera_counters() const {

@@ -81,7 +81,8 @@ ModelRenderStage Run::render_stage() {
 PipelineParts Run::parts() {
     RenderStage& render = colour_ ? colour_->render() : static_cast<RenderStage&>(render_);
     EncodeStage& encode = colour_ ? colour_->encode() : network_.encoder();
-    EventFilter* last = events_out_ ? events_out_.get() : filter_.get();
+    EventFilter* last = filter_.get();
+    if (events_out_) last = events_out_.get();
     PipelineParts parts{source(), encode, render, {}, last, &observers_};
     for (const auto& sink : sinks_) parts.sinks.push_back(sink.get());
     return parts;
@@ -105,14 +106,12 @@ PipelineSettings Run::pipeline_settings() {
     settings.changes = page_ || quality_.changes_while_running() ? &changes_ : nullptr;
     settings.halvings = quality_.halvings();
     settings.events_per_pixel = render_.fused() != nullptr;
-    // A recording waits: it needs no more than one being filled and one being read, and of the
-    // small packets a few.
-    constexpr int kPacketsOfRecordings = 8;
-    const int usual = live() ? 3 : 2;
-    const int packets = live() ? settings_.buffers_packets
-                               : std::min(settings_.buffers_packets, kPacketsOfRecordings);
-    settings.buffers = {std::size_t(packets), std::size_t(settings_.buffers_grids.value_or(usual)),
-                        std::size_t(settings_.buffers_latents.value_or(usual))};
+    settings.buffers = live() ? PipelineBuffers{.latents = 3} : kBuffersOfRecording;
+    const auto packets = std::size_t(settings_.buffers_packets);
+    settings.buffers.packets = live() ? packets : std::min(settings.buffers.packets, packets);
+    if (settings_.buffers_grids) settings.buffers.grids = std::size_t(*settings_.buffers_grids);
+    if (settings_.buffers_latents)
+        settings.buffers.latents = std::size_t(*settings_.buffers_latents);
     return settings;
 }
 

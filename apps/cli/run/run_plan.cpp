@@ -177,8 +177,8 @@ std::string reference_caption(const SensorInfo& sensor) {
     return sensor.name.empty() ? "reference" : "APS";
 }
 
-std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
-                                       const SensorInfo& sensor, bool can_wait) {
+std::unique_ptr<EventFilters> filter_of(const RunSettings& settings, const ModelConfig& model,
+                                        const SensorInfo& sensor, bool can_wait) {
     return event_filter(
         {settings.hot_pixels, settings.noise_filter, settings.lamp_flicker, can_wait}, model,
         sensor.width, sensor.height);

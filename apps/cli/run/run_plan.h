@@ -3,8 +3,8 @@
 
 #include "apps/cli/settings/run_settings.h"
 #include "pipeline/calibration/undistortion.h"
+#include "pipeline/filters/event_filter.h"
 #include "pipeline/source.h"
-#include "pipeline/stages.h"
 #include "src/binning/slicer_settings.h"
 #include "src/model/model_config.h"
 #include "src/model/render/renderer.h"
@@ -66,8 +66,8 @@ int lookahead_of(const RunSettings& settings, const ModelConfig& model, bool liv
 std::string reference_caption(const SensorInfo& sensor);
 
 /// Null when all events stay.
-std::unique_ptr<EventFilter> filter_of(const RunSettings& settings, const ModelConfig& model,
-                                       const SensorInfo& sensor, bool can_wait);
+std::unique_ptr<EventFilters> filter_of(const RunSettings& settings, const ModelConfig& model,
+                                        const SensorInfo& sensor, bool can_wait);
 
 /// Empty: not asked for. Throws Error: input for a calibration that cannot be read or is of another
 /// sensor, usage where it does not fit what else was asked for.

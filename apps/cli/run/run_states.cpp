@@ -2,7 +2,6 @@
 #include "apps/cli/run/run.h"
 #include "apps/cli/run/state/run_state.h"
 #include "pipeline/filters/event_filter.h"
-#include "src/binning/flicker_pairs.h"
 #include "src/core/error.h"
 
 #include <optional>
@@ -27,29 +26,20 @@ void Run::resume() {
     require("--noise-filter", resumed_->noise_filter,
             noise_filter_of(settings_, network_.config()));
     require("--lamp-flicker", resumed_->lamp_flicker, lamp_flicker_of(settings_, !as_live()));
-    FlickerPairs* const flicker = flicker_pairs_in(filter_.get());
-    if (resumed_->flicker.has_value() != (flicker != nullptr))
-        throw Error(ErrorKind::input,
-                    settings_.state_in + ": expected what is known of flickering light");
-    if (flicker != nullptr) flicker->restore(*resumed_->flicker);
-    NoiseFilter* const noise = noise_filter_in(filter_.get());
-    if (resumed_->noise.has_value() != (noise != nullptr))
-        throw Error(ErrorKind::input,
-                    settings_.state_in + ": expected what the noise filter knows");
-    if (noise != nullptr) noise->restore(*resumed_->noise);
+    try {
+        if (filter_)
+            filter_->restore(resumed_->filters);
+        else if (resumed_->filters != EventFilters::State{})
+            throw Error(ErrorKind::input, "expected nothing of filters");
+    } catch (const Error& error) {
+        throw Error(error.kind(), settings_.state_in + ": " + error.what());
+    }
 }
 
 void Run::keep_state(const PipelineState& memory) {
-    StreamState state{memory,
-                      std::nullopt,
-                      std::nullopt,
-                      window_text(slicer_),
-                      noise_filter_of(settings_, network_.config()),
-                      lamp_flicker_of(settings_, !as_live())};
-    if (const FlickerPairs* const flicker = flicker_pairs_in(filter_.get()))
-        state.flicker = flicker->state();
-    if (const NoiseFilter* const noise = noise_filter_in(filter_.get()))
-        state.noise = noise->state();
+    const StreamState state{memory, filter_ ? filter_->state() : EventFilters::State{},
+                            window_text(slicer_), noise_filter_of(settings_, network_.config()),
+                            lamp_flicker_of(settings_, !as_live())};
     TensorFile file = state_of(network_, nullptr);
     put_stream_state(state, sensor_.width, file);
     write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);

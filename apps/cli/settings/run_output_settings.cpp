@@ -66,10 +66,12 @@ void RunSettings::add_outputs(SettingTable& table) {
     add(flag_setting("stamp", stamp,
                      "Raw streams: 16 bytes before each frame with its number, its time in "
                      "microseconds and what happened (docs/usage.md). Y4M has the time anyway."));
-    add(choice_setting("overload", overload,
-                       "What a stream of constant rate contains in place of a skipped frame: the "
-                       "previous one again, so that it keeps its pace, or nothing.",
-                       {{Overload::repeat, "repeat"}, {Overload::skip, "skip"}}));
+    add(choice_setting(
+        "overload", overload,
+        "What a stream of constant rate contains in place of a skipped frame: the "
+        "previous one again, so that it keeps its pace as far as its reader does, "
+        "or nothing; auto: nothing with --stamp, which tells each frame's time.",
+        {{Overload::automatic, "auto"}, {Overload::repeat, "repeat"}, {Overload::skip, "skip"}}));
     add(choice_setting(
         "uncertainty", uncertainty,
         "How sigma is shown: separate (TIFF in the folder, a second video, a second plane), side, "
@@ -97,8 +99,8 @@ void RunSettings::add_outputs(SettingTable& table) {
                      "A name under which browsers reach the live page (of a proxy, for example); "
                      "others are refused, except localhost and addresses."));
     add(text_setting("record", record, "FILE",
-                     "Also write what the source sends, before anything can be lost: in the format "
-                     "of the extension, or untouched bytes as .bin."));
+                     "Also write what the source sends, before anything can be lost, in the format "
+                     "of the extension; .aedat4 holds events, images, IMU samples and triggers."));
     add(text_setting(
         "events_out", events_out, "TO",
         "Also write the events after all filters: in the format of the extension, as FORMAT:PATH "

@@ -95,7 +95,7 @@ struct RunSettings {
     bool overwrite = false;
     bool force = false;  ///< frames onto a terminal
     bool stamp = false;
-    Overload overload = Overload::repeat;
+    Overload overload = Overload::automatic;
     Uncertainty uncertainty = Uncertainty::automatic;
     double sigma_white = 0.3;  // kSigmaWhite, in fewer digits
     bool events = false;

@@ -1,6 +1,7 @@
 // Frames as H.264 in MP4 or Matroska, each with its own exact time.
 #include "pipeline/sinks/video/video.h"
 
+#include "pipeline/first_error.h"
 #include "pipeline/sinks/video/video_file.h"
 #include "pipeline/sinks/video/video_kind.h"
 #include "src/core/error.h"
@@ -63,8 +64,10 @@ void VideoSink::write(const Frame& frame) {
 }
 
 void VideoSink::close() {
-    intensity_->finish();
-    if (sigma_) sigma_->finish();
+    FirstError error;  // both have an end, whatever happens to the other
+    error.guard([&] { intensity_->finish(); });
+    if (sigma_) error.guard([&] { sigma_->finish(); });
+    error.rethrow_if_any();
 }
 
 }  // namespace eventide

@@ -81,7 +81,7 @@ void Aedat2FrameAssembler::emit(Batch& into) {
             image.pixels(y, x) =
                 intensity_of(reset_(from_y, from_x) - 1, signal_(from_y, from_x) - 1);
         }
-    into.images.push_back(std::move(image));
+    into.add_image(std::move(image));
     last_box_ = box_;
 }
 

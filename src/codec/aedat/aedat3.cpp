@@ -202,7 +202,7 @@ void Aedat3Parser::take_frame(std::span<const std::byte> record, Batch& into) {
         return;
     }
     move_clock(to_us(image->exposure_end));
-    into.images.push_back(std::move(*image));
+    into.add_image(std::move(*image));
 }
 
 void Aedat3Parser::take(std::span<const std::byte> record, Batch& into) {

@@ -116,15 +116,16 @@ void Aedat3Writer::begin(const StreamHeader& header, std::vector<std::byte>& out
 void Aedat3Writer::write(const Batch& batch, std::vector<std::byte>& out) {
     out.reserve(out.size() + Aedat3Packet::kPolarityBytes * batch.events.size());
     in_parts(batch, [&](const BatchPart& part) {
-        append_packets(Aedat3Type::polarity, Aedat3Packet::kPolarityBytes, part.events, out,
-                       [&](const Event& event) { append_event(event, out); });
-        for (const ReferenceImage& image : part.images) append_image(image, colours_, out);
-        append_imu(part.imu, out);
+        // First: that the clock began anew comes before the events that it is true of.
         append_packets(Aedat3Type::special, Aedat3Packet::kSpecialBytes, part.triggers, out,
                        [&](const Trigger& trigger) {
                            append_little(out, write_special(trigger));
                            append_little(out, stamp_of(trigger.t));
                        });
+        append_packets(Aedat3Type::polarity, Aedat3Packet::kPolarityBytes, part.events, out,
+                       [&](const Event& event) { append_event(event, out); });
+        for (const ReferenceImage& image : part.images) append_image(image, colours_, out);
+        append_imu(part.imu, out);
     });
 }
 

@@ -166,7 +166,7 @@ std::optional<std::int64_t> take_aedat4_image(const FlatTable& frame, const Even
     image.pixels = Array2<std::uint16_t>(height, width * format->channels);
     copy_pixels(pixels->bytes, format->bytes, image.pixels.values());
     const std::int64_t newest = to_us(image.exposure_end);
-    into.images.push_back(std::move(image));
+    into.add_image(std::move(image));
     return newest;
 }
 

@@ -182,7 +182,7 @@ void DavisParser::special(std::uint16_t data, Batch& into) {
             const auto end = frame_.end(now, image);
             if (end == Frame::End::complete) {
                 facts_.exposure_us = frame_.measured_exposure_us();
-                into.images.push_back(std::move(image));
+                into.add_image(std::move(image));
             }
             if (end == Frame::End::incomplete) {
                 ++facts_.frames_incomplete;

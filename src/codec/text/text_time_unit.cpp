@@ -75,18 +75,23 @@ Times read_times(std::span<const std::string_view> texts) {
     return times;
 }
 
-/// "2.5e+06 events/s"
+/// "870 events/s", "2.5e+06 events/s"
 std::string rate_text(double rate) {
     char text[48];
-    std::snprintf(text, sizeof text, "%.2g events/s", rate);
+    std::snprintf(text, sizeof text, rate >= 1 && rate < 1e4 ? "%.0f events/s" : "%.2g events/s",
+                  rate);
     return text;
+}
+
+const char* doubt_of(double rate) {
+    return rate > kFastest ? ", which no sensor sends" : ", which is slow for a sensor";
 }
 
 /// "times are whole numbers, taken for seconds: 2.5e+06 events/s; ..."
 std::string remark_on(const std::string& what, const Times& times, const Unit& unit,
                       bool impossible) {
     return what + ", taken for " + unit.name + ": " + rate_text(times.rate(unit)) +
-           (impossible ? ", which no sensor sends" : "") + "; --input-time-unit states the unit";
+           (impossible ? doubt_of(times.rate(unit)) : "") + "; --input-time-unit states the unit";
 }
 
 /// Of whole numbers; null: none makes sense.

@@ -38,6 +38,7 @@ void FusedRenderer::reset() noexcept {
     if (fusion_) fusion_->reset();
     active_ = silent_before_ = false;
     waiting_count_ = 0;
+    newest_used_ = SensorTime::min();
     dropped_ += images_.size();
     images_.clear();
 }
@@ -61,7 +62,9 @@ void FusedRenderer::give(ReferenceImage image) noexcept {
 ///     push()     n - 1    n              n + 1
 ///     settles             n - 1          n            advance(), then the images until its end
 void FusedRenderer::push(const Window& window, const Array2<float>& events) noexcept {
-    active_ = active_ || (!images_.empty() && images_.front().t <= window.end);
+    active_ = active_ || std::ranges::any_of(images_, [&](const ReferenceImage& image) {
+                  return image.t <= window.end;
+              });
     if (!active_) return;
     if (waiting_count_ == waiting_.size()) settle_oldest();
     Waiting& newest = waiting_[(oldest_ + waiting_count_++) % waiting_.size()];
@@ -82,8 +85,21 @@ void FusedRenderer::settle_oldest() noexcept {
     silent_before_ = silent;
     if (follow) show(settled.window.end);
     fusion_->advance(settled.window, settled.events, follow ? &shown_ : nullptr);
-    for (; !images_.empty() && images_.front().t <= settled.window.end; images_.pop_front())
-        use(images_.front(), settled.window);
+    use_until(settled.window);
+}
+
+/// In the order in which they came. One whose time has not come when that of a later one has bears
+/// a time that is wrong.
+void FusedRenderer::use_until(const Window& window) noexcept {
+    const auto is_due = [&](const ReferenceImage& image) { return image.t <= window.end; };
+    const auto due = std::ranges::count_if(images_, is_due);
+    for (std::ptrdiff_t used = 0; used < due; images_.pop_front())
+        if (is_due(images_.front())) {
+            use(images_.front(), window);
+            ++used;
+        } else {
+            ++dropped_;
+        }
 }
 
 /// With the sigma that frames have: the renderer keeps what it rendered, and a frame asked for at
@@ -104,6 +120,11 @@ void FusedRenderer::show(SensorTime t) noexcept {
 }
 
 void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexcept {
+    if (image.t < newest_used_) {
+        ++dropped_;
+        return;
+    }
+    newest_used_ = image.t;
     // What the model showed when the image was taken; where that is no longer known, at the
     // window's begin.
     SensorTime t = image.t;

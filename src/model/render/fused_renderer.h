@@ -20,8 +20,10 @@ public:
 
     void reset() noexcept;
 
-    /// In order of time. Of more images whose time has not come than may wait the oldest are
-    /// dropped; so are those that there is no memory for. One without pixels tells nothing.
+    /// In order of time: one that is older than one used before is dropped, and one whose time has
+    /// not come when that of a later one has. Of more images whose time has not come than may wait
+    /// the oldest are dropped; so are those that there is no memory for. One without pixels tells
+    /// nothing.
     void give(ReferenceImage image) noexcept;
 
     /// After Renderer::push() of the same window; events per pixel, [y][x] of the sensor.
@@ -41,7 +43,8 @@ public:
     /// Images that came too late, in too great a number, or before a reset.
     std::uint64_t dropped() const { return dropped_; }
 
-    static constexpr std::size_t kMaxWaiting = 64;
+    /// Of a live source; of a recording, whose images may all come before its events.
+    static constexpr std::size_t kMaxWaiting = 64, kMaxWaitingOfRecording = 1024;
     /// Instead of kMaxWaiting. Before the first.
     void keep_at_most(std::size_t images) { most_waiting_ = images; }
 
@@ -56,6 +59,7 @@ private:
     RenderRequest request_at(SensorTime t) const;
     bool is_sensors(const RenderRequest& request) const;
     void settle_oldest() noexcept;
+    void use_until(const Window& window) noexcept;
     void show(SensorTime t) noexcept;
     void use(const ReferenceImage& image, const Window& window) noexcept;
 
@@ -71,6 +75,7 @@ private:
     std::array<Waiting, 3> waiting_;     // windows that the lookahead holds back
     std::size_t oldest_ = 0, waiting_count_ = 0;
     std::deque<ReferenceImage> images_;
+    SensorTime newest_used_ = SensorTime::min();
     std::uint64_t used_ = 0, dropped_ = 0;
 };
 

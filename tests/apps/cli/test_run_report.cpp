@@ -1,6 +1,7 @@
 // The counters of a run, as JSON and as words.
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/terminal.h"
+#include "src/core/number_text.h"
 
 #include <nlohmann/json.hpp>
 

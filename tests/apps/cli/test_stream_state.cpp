@@ -29,15 +29,15 @@ StreamState made_state() {
     StreamState state;
     state.window = "50ms";
     state.noise_filter = "auto";
-    state.noise = filter.state();
+    state.filters.noise = filter.state();
     state.lamp_flicker = "16ms";
     FlickerPairs flicker{kWidth, kHeight, SensorDuration{16'000}};
     std::vector<Event> lamp = test::lamp_events({.width = kWidth, .height = kHeight, .share = 1});
     const SensorDuration later = last.t - lamp.back().t;
     for (Event& event : lamp) event.t += later;
     flicker.process(lamp);
-    state.flicker = flicker.state();
-    EXPECT_FALSE(state.flicker->held.empty());
+    state.filters.flicker = flicker.state();
+    EXPECT_FALSE(state.filters.flicker->held.empty());
     state.stream.t = last.t + SensorDuration{7};
     state.stream.slicer = {last.t - SensorDuration{90'000'000'000},
                            last.t - SensorDuration{90'000'000'003},
@@ -79,22 +79,22 @@ TEST(StreamState, ComesBackAsItWas) {
     EXPECT_EQ(back->stream.t, kept.stream.t);
     EXPECT_EQ(back->stream.slicer, kept.stream.slicer);
     EXPECT_EQ(back->stream.ages, kept.stream.ages);
-    EXPECT_EQ(back->noise, kept.noise);
+    EXPECT_EQ(back->filters.noise, kept.filters.noise);
     EXPECT_EQ(back->lamp_flicker, kept.lamp_flicker);
-    EXPECT_EQ(back->flicker, kept.flicker);
+    EXPECT_EQ(back->filters.flicker, kept.filters.flicker);
     ASSERT_EQ(file.tensors.size(), 1U) << "the network's are left";
     EXPECT_TRUE(file.tensors.contains("h.0"));
 }
 
 TEST(StreamState, OfARunWithoutFilters) {
     StreamState kept = made_state();
-    kept.noise.reset();
-    kept.flicker.reset();
+    kept.filters.noise.reset();
+    kept.filters.flicker.reset();
     TensorFile file = file_of(kept);
     const auto back = take_stream_state(file, "kept", kWidth, kHeight);
     ASSERT_TRUE(back);
-    EXPECT_FALSE(back->noise);
-    EXPECT_FALSE(back->flicker);
+    EXPECT_FALSE(back->filters.noise);
+    EXPECT_FALSE(back->filters.flicker);
 }
 
 TEST(StreamState, TheNetworksAloneIsNone) {

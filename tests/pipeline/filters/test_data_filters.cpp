@@ -272,5 +272,18 @@ TEST(DataFilters, TimesCountFromTheRecordingsFirstEventInAnyOrder) {
               filtered({"time:40ms..120ms", "region:0,0,9x9"}, events));
 }
 
+TEST(DataFilters, ImagesStayAmongTheEventsThatTheyCameAmong) {
+    Batch batch;
+    for (int t = 1; t <= 6; ++t) {
+        batch.events.push_back(at(t, t, 0, t % 2 == 0 ? Polarity::on : Polarity::off));
+        if (t % 3 == 0) batch.add_image(numbered_image(64, 48));
+    }
+    const Batch left = filtered({"polarity:on", "region:1,0,5x1"}, batch);
+    EXPECT_EQ(left.events.size(), 2U);
+    ASSERT_EQ(left.images.size(), 2U);
+    EXPECT_EQ(left.place_of_image(0), 1U);
+    EXPECT_EQ(left.place_of_image(1), 2U);
+}
+
 }  // namespace
 }  // namespace eventide

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <thread>
@@ -124,6 +126,52 @@ TEST(StreamSink, SkippedFramesAreRepeatedSoThatTheStreamKeepsItsPace) {
     }
     EXPECT_EQ(flags, (std::vector<int>{0, 0, 2, 2, 0, 0}));
     EXPECT_EQ(numbers, (std::vector<int>{3, 4, 5, 6, 7, 8}));
+}
+
+TEST(StreamSink, FramesAreRepeatedByDefaultWhereNoStampTellsTheirTime) {
+    const TempFolder temp;
+    for (const bool stamp : {false, true}) {
+        StreamSink raw{{.path = temp / (stamp ? "stamped" : "plain"),
+                        .format = StreamFormat::gray8,
+                        .stamp = stamp,
+                        .overload = Overload::automatic}};
+        for (const int n : {3, 6}) raw.write(test::ramp_frame(4, 2, n, from_us(1000 * n)));
+        raw.close();
+    }
+    EXPECT_EQ(test::read_text(temp / "plain").size(), 4U * 8);
+    EXPECT_EQ(test::read_text(temp / "stamped").size(), 2 * (FrameStamp::kBytes + 8));
+}
+
+/// A pipe of one page: full with two frames of half a page each.
+TEST(StreamSink, AReaderThatIsBehindGetsNoRepeatsUntilItHasCaughtUp) {
+    constexpr int kPage = 4096, kFrame = kPage / 2;
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    ASSERT_EQ(::fcntl(ends[1], F_SETPIPE_SZ, kPage), kPage);
+    std::uint64_t missing = 0;
+    StreamSink raw{{.path = "/dev/fd/" + std::to_string(ends[1]),
+                    .format = StreamFormat::gray8,
+                    .overload = Overload::repeat,
+                    .shorter_by = [&](std::uint64_t n) { missing = n; }}};
+    const auto write = [&](std::uint64_t n) {
+        Frame frame = test::ramp_frame(64, kFrame / 64, n, from_us(0));
+        std::ranges::fill(frame.intensity.values(), float(n) / 255);
+        raw.write(frame);
+    };
+    const auto two_frames_read = [&] {
+        std::vector<unsigned char> read(kPage);
+        EXPECT_EQ(::read(ends[0], read.data(), read.size()), kPage);
+        return std::vector<int>{read.front(), read.back()};
+    };
+    write(0);
+    write(3);
+    EXPECT_EQ(two_frames_read(), (std::vector{0, 3})) << "1 and 2 were skipped";
+    write(4);
+    EXPECT_EQ(two_frames_read(), (std::vector{3, 4})) << "one of them is made up for";
+    raw.close();
+    EXPECT_EQ(missing, 1U) << "and the other one told";
+    ::close(ends[0]);
+    ::close(ends[1]);
 }
 
 TEST(StreamSink, MonoKeepsOddSizesAndExactGreys) {

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 std::string rounded(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
+    std::snprintf(text, sizeof text, value < 1000 ? "%.3g" : "%.0f", value);
     return text;
 }
 

@@ -4,6 +4,7 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/terminal.h"
 #include "src/core/damage.h"
+#include "src/core/number_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -52,6 +53,12 @@ std::string losses_text(const Snapshot& now) {
            std::to_string(now.skipped_frames) + "  damaged " + std::to_string(now.damaged.total());
 }
 
+/// Between --from (less its warm-up) and --to: what is parsed goes some way beyond.
+std::uint64_t events_within(const Snapshot& end) {
+    const std::uint64_t outside = end.slicing.before_begin + end.slicing.after_end;
+    return end.events > outside ? end.events - outside : 0;
+}
+
 }  // namespace
 
 bool lost_data(const Snapshot& end) {
@@ -61,8 +68,9 @@ bool lost_data(const Snapshot& end) {
 
 std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     const double seconds = progress.elapsed.count();
-    std::string text = counted(end.frames, "frame") + " from " + short_count(double(end.events)) +
-                       text_of(" %s in %.2f s", end.events == 1 ? "event" : "events", seconds);
+    const std::uint64_t events = events_within(end);
+    std::string text = counted(end.frames, "frame") + " from " + short_count(double(events)) +
+                       text_of(" %s in %.2f s", events == 1 ? "event" : "events", seconds);
     if (seconds > 0) text += text_of(" (%.1f frames/s)", double(end.frames) / seconds);
     if (progress.in_step) text += "; " + latency_text(end) + " (p50/p99)";
     text += "\n" + losses_text(end);

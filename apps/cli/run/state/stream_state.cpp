@@ -285,9 +285,9 @@ void put_stream_state(const StreamState& state, int width, TensorFile& file) {
     const auto& ages = state.stream.ages;
     file.tensors["stream.ages"] =
         made({std::int64_t(ages.size()) / width, width}, {ages.begin(), ages.end()});
-    if (state.noise) put_noise(*state.noise, state.stream.t, width, file);
+    if (state.filters.noise) put_noise(*state.filters.noise, state.stream.t, width, file);
     file.metadata["stream.lamp_flicker"] = state.lamp_flicker;
-    if (state.flicker) put_flicker(*state.flicker, state.stream, width, file);
+    if (state.filters.flicker) put_flicker(*state.filters.flicker, state.stream, width, file);
 }
 
 std::optional<StreamState> take_stream_state(TensorFile& file, const std::string& name, int width,
@@ -298,10 +298,11 @@ std::optional<StreamState> take_stream_state(TensorFile& file, const std::string
     state.window = kept.word("stream.window");
     state.noise_filter = kept.word("stream.noise_filter");
     state.stream = stream_of(kept, width, height);
-    if (kept.has("stream.noise_hz")) state.noise = noise_of(kept, state.stream.t, width, height);
+    if (kept.has("stream.noise_hz"))
+        state.filters.noise = noise_of(kept, state.stream.t, width, height);
     state.lamp_flicker = kept.word("stream.lamp_flicker");
     if (kept.has("stream.flicker_period"))
-        state.flicker = flicker_of(kept, state.stream.slicer.begin, width, height);
+        state.filters.flicker = flicker_of(kept, state.stream.slicer.begin, width, height);
     std::erase_if(file.tensors, [](const auto& each) { return each.first.starts_with(kPrefix); });
     return state;
 }
@@ -310,6 +311,26 @@ std::filesystem::path state_file(const std::string& folder, std::size_t number) 
     char name[48];
     std::snprintf(name, sizeof name, "state_%06zu.safetensors", number);
     return std::filesystem::path{folder} / name;
+}
+
+void remove_states(const std::string& folder) {
+    std::vector<std::filesystem::path> states;
+    for (std::size_t n = 0; std::filesystem::exists(state_file(folder, n)); ++n) {
+        const std::filesystem::path& file = states.emplace_back(state_file(folder, n));
+        const auto is_ours = [&] {
+            try {
+                return read_safetensors(file).metadata.contains("stream.window");
+            } catch (const Error&) {
+                return false;
+            }
+        };
+        if (!is_ours())
+            throw Error(ErrorKind::usage, "--states-out " + folder +
+                                              ": expected no files but an earlier run's states, "
+                                              "found " +
+                                              file.string());
+    }
+    for (const std::filesystem::path& file : states) std::filesystem::remove(file);
 }
 
 std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model) {

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "apps/cli/settings/run_settings.h"
+#include "pipeline/filters/event_filter.h"
 #include "pipeline/pipeline_state.h"
-#include "src/binning/flicker_pairs.h"
-#include "src/binning/noise_filter.h"
 #include "src/model/model_config.h"
 #include "src/nn/safetensors.h"
 
@@ -18,8 +17,7 @@ namespace eventide::app {
 
 struct StreamState {
     PipelineState stream;
-    std::optional<NoiseFilter::State> noise;
-    std::optional<FlickerPairs::State> flicker;
+    EventFilters::State filters;
     /// How events were cut and filtered: window_text(), noise_filter_of(), lamp_flicker_of().
     std::string window, noise_filter, lamp_flicker;
 };
@@ -34,6 +32,10 @@ std::optional<StreamState> take_stream_state(TensorFile& file, const std::string
 
 /// FOLDER/state_000002.safetensors, of --states-out.
 std::filesystem::path state_file(const std::string& folder, std::size_t number);
+
+/// Removes an earlier run's states from a folder that may not exist. Throws Error (usage) for a
+/// file that has the name of one and is none, before anything is removed.
+void remove_states(const std::string& folder);
 
 /// noise_filter_text() of what a run has, or "off".
 std::string noise_filter_of(const RunSettings& settings, const ModelConfig& model);

@@ -1,11 +1,11 @@
-// Times as a format can hold them.
-#include "apps/cli/run/written_times.h"
+// Data as a format can hold them.
+#include "replay/written_data.h"
 
-#include "apps/cli/terminal.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 
-namespace eventide::app {
+namespace eventide {
 
 namespace {
 
@@ -30,7 +30,8 @@ struct Seam {
 
 }  // namespace
 
-void WrittenTimes::put_in_order(Batch& batch) {
+void WrittenData::fit(Batch& batch) {
+    left_out_ += remove_not_held(batch, holds_);
     const SensorTime written = newest_;
     if (!holds_.clock_resets) move(batch);
     if (holds_.in_time_order)
@@ -39,7 +40,7 @@ void WrittenTimes::put_in_order(Batch& batch) {
     if (!batch.events.empty()) newest_ = batch.events.back().t;
 }
 
-bool WrittenTimes::begins_anew(SensorTime t, SensorTime newest) const {
+bool WrittenData::begins_anew(SensorTime t, SensorTime newest) const {
     // EVT3's longest; a leap from a clock of its own to one that counts from 1970 is 50 years.
     constexpr SensorDuration kLongestGap = std::chrono::hours{240};
     const bool leaps =
@@ -47,7 +48,7 @@ bool WrittenTimes::begins_anew(SensorTime t, SensorTime newest) const {
     return t < newest || leaps;
 }
 
-void WrittenTimes::move(Batch& batch) {
+void WrittenData::move(Batch& batch) {
     constexpr SensorDuration kMicrosecond{1};
     SensorTime newest = newest_;
     Seam seam{newest, newest, later_, later_};
@@ -65,8 +66,10 @@ void WrittenTimes::move(Batch& batch) {
     seam.move(batch.triggers);
 }
 
-std::vector<std::string> WrittenTimes::remarks(const std::string& file) const {
+std::vector<std::string> WrittenData::remarks(const std::string& file) const {
     std::vector<std::string> remarks;
+    if (!(left_out_ == DataCounts{}))
+        remarks.push_back(file + ": left out what its format cannot hold: " + text_of(left_out_));
     if (restarts_ > 0)
         remarks.push_back(file + ": the clock began anew " + times_text(restarts_) +
                           ", which its format cannot say: the times behind it go on from those "
@@ -77,4 +80,4 @@ std::vector<std::string> WrittenTimes::remarks(const std::string& file) const {
     return remarks;
 }
 
-}  // namespace eventide::app
+}  // namespace eventide

@@ -1,7 +1,7 @@
 // Recordings of a stream whose clock begins anew, and of triggers that come late.
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/recorded_source.h"
-#include "apps/cli/run/written_times.h"
+#include "replay/written_data.h"
 #include "src/codec/udp_records.h"
 #include "tests/replay/recording_files.h"
 
@@ -29,65 +29,79 @@ std::vector<std::int64_t> times_of(const std::vector<T>& items) {
     return times;
 }
 
-TEST(WrittenTimes, GoOnWhereTheFormatCannotSayThatTheClockBeganAnew) {
-    WrittenTimes times{find_format("evt3")->holds};
+TEST(WrittenData, GoOnWhereTheFormatCannotSayThatTheClockBeganAnew) {
+    WrittenData data{find_format("evt3")->holds};
     Batch batch;
     batch.events = {at(5000), at(6000), at(10), at(30)};
     batch.triggers = {{from_us(5500), Trigger::Kind::rising, 0},
                       {from_us(20), Trigger::Kind::rising, 0}};
-    times.put_in_order(batch);
+    data.fit(batch);
     EXPECT_THAT(times_of(batch.events), ElementsAre(5000, 6000, 6001, 6021));
     EXPECT_THAT(times_of(batch.triggers), ElementsAre(5500, 6011));
     Batch next;
     next.events = {at(40), at(7)};
     next.triggers = {{from_us(35), Trigger::Kind::rising, 0}};
-    times.put_in_order(next);
+    data.fit(next);
     EXPECT_THAT(times_of(next.events), ElementsAre(6031, 6032));
     EXPECT_THAT(times_of(next.triggers), ElementsAre(6026));
-    EXPECT_EQ(times.restarts(), 2U);
-    EXPECT_EQ(times.late_triggers(), 0U);
-    EXPECT_THAT(times.remarks("x.raw"),
+    EXPECT_EQ(data.restarts(), 2U);
+    EXPECT_EQ(data.late_triggers(), 0U);
+    EXPECT_THAT(data.remarks("x.raw"),
                 ElementsAre(HasSubstr("x.raw: the clock began anew 2 times")));
 }
 
-TEST(WrittenTimes, GoOnWhereTheClockLeapsFurtherThanTheFormatCanSay) {
+TEST(WrittenData, GoOnWhereTheClockLeapsFurtherThanTheFormatCanSay) {
     constexpr std::int64_t kSince1970 = 1'700'000'000'000'000;
     for (const char* const format : {"evt3", "text", "aedat4"}) {
-        WrittenTimes times{find_format(format)->holds};
+        WrittenData data{find_format(format)->holds};
         Batch batch;
         batch.events = {at(5000), at(kSince1970), at(kSince1970 + 7)};
-        times.put_in_order(batch);
-        const bool moves = times.restarts() == 1;
+        data.fit(batch);
+        const bool moves = data.restarts() == 1;
         EXPECT_EQ(moves, std::string_view{format} == "evt3") << format;
         const std::int64_t first = moves ? 5001 : kSince1970;
         EXPECT_THAT(times_of(batch.events), ElementsAre(5000, first, first + 7)) << format;
     }
 }
 
-TEST(WrittenTimes, StayWhereTheFormatSaysIt) {
-    WrittenTimes times{find_format("aedat4")->holds};
+TEST(WrittenData, StayWhereTheFormatSaysIt) {
+    WrittenData data{find_format("aedat4")->holds};
     Batch batch;
     batch.events = {at(5000), at(10)};
-    times.put_in_order(batch);
+    data.fit(batch);
     EXPECT_THAT(times_of(batch.events), ElementsAre(5000, 10));
-    EXPECT_THAT(times.remarks("x.aedat4"), IsEmpty());
+    EXPECT_THAT(data.remarks("x.aedat4"), IsEmpty());
 }
 
-TEST(WrittenTimes, CountTriggersBehindLaterEvents) {
+TEST(WrittenData, AreTakenOutWhereTheFormatHasNoRecordForThem) {
+    WrittenData data{find_format("text")->holds};
+    Batch batch;
+    batch.events = {at(5)};
+    batch.images.resize(2);
+    batch.triggers.resize(1);
+    data.fit(batch);
+    EXPECT_EQ(batch.events.size(), 1U);
+    EXPECT_TRUE(batch.images.empty() && batch.triggers.empty());
+    EXPECT_FALSE(data.is_whole());
+    EXPECT_THAT(data.remarks("x.txt"),
+                ElementsAre("x.txt: left out what its format cannot hold: 2 images, 1 trigger"));
+}
+
+TEST(WrittenData, CountTriggersBehindLaterEvents) {
     for (const char* const format : {"evt3", "aedat4"}) {
-        WrittenTimes times{find_format(format)->holds};
+        WrittenData data{find_format(format)->holds};
         Batch batch;
         batch.events = {at(100), at(200)};
         batch.triggers = {{from_us(50), Trigger::Kind::rising, 0}};
-        times.put_in_order(batch);
+        data.fit(batch);
         batch.triggers = {{from_us(199), Trigger::Kind::rising, 0},
                           {from_us(200), Trigger::Kind::rising, 0}};
         batch.events = {at(300)};
-        times.put_in_order(batch);
+        data.fit(batch);
         const bool is_evt3 = std::string_view{format} == "evt3";
-        EXPECT_EQ(times.late_triggers(), is_evt3 ? 1U : 0U) << format;
+        EXPECT_EQ(data.late_triggers(), is_evt3 ? 1U : 0U) << format;
         if (is_evt3) {
-            EXPECT_THAT(times.remarks("x.raw"),
+            EXPECT_THAT(data.remarks("x.raw"),
                         ElementsAre(HasSubstr("x.raw: 1 trigger came behind")));
         }
     }
@@ -131,7 +145,7 @@ TEST(RecordedSource, GoesOnWhereASenderIsStartedAgain) {
         recorded.finish();
         const std::size_t known_as_old = UdpRecordsParser::kEventsOfAnother - 1;
         EXPECT_EQ(read_everything(*open_recording(file)).events.size(), 100 - known_as_old) << name;
-        EXPECT_EQ(recorded.times()->restarts(), name == "a.aedat4" ? 0U : 1U) << name;
+        EXPECT_EQ(recorded.data().restarts(), name == "a.aedat4" ? 0U : 1U) << name;
     }
 }
 
@@ -153,7 +167,7 @@ TEST(EventsOut, CountsTriggersBehindLaterEvents) {
     late.triggers = {{from_us(99), Trigger::Kind::falling, 1}};
     out.see(late);
     out.finish();
-    EXPECT_EQ(out.times().late_triggers(), 1U);
+    EXPECT_EQ(out.data().late_triggers(), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+// Data as a format can hold them, of a stream whose clock may begin anew.
+#pragma once
+
+#include "replay/formats.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace eventide {
+
+/// What a file's format has no record for is left out and counted. Where it cannot say that the
+/// sensor's clock began anew (a sender was started again), the times behind it go on from those
+/// before: its readers would leave the events out, and a writer may refuse them. Triggers that come
+/// behind later events are counted.
+class WrittenData {
+public:
+    explicit WrittenData(const FormatHolds& holds) : holds_{holds} {}
+
+    /// To a batch as it is written, one after the other.
+    void fit(Batch& batch);
+
+    const DataCounts& left_out() const { return left_out_; }
+    std::uint64_t restarts() const { return restarts_; }  ///< of the clock, that were moved
+    /// That the file holds with the time of the events before them.
+    std::uint64_t late_triggers() const { return late_triggers_; }
+
+    /// Whether all is in the file, with its time but for that of a clock that began anew.
+    bool is_whole() const { return left_out_ == DataCounts{} && late_triggers_ == 0; }
+    /// What there is to say of `file`: sentences for people.
+    std::vector<std::string> remarks(const std::string& file) const;
+
+private:
+    bool begins_anew(SensorTime t, SensorTime newest) const;
+    void move(Batch& batch);
+
+    FormatHolds holds_;
+    DataCounts left_out_;
+    SensorDuration later_{0};                // than the stream says
+    SensorTime newest_ = SensorTime::min();  // of the events, as written
+    std::uint64_t restarts_ = 0, late_triggers_ = 0;
+};
+
+}  // namespace eventide
