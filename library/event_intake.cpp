@@ -6,7 +6,6 @@
 #include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -29,18 +28,16 @@ void EventIntake::push(std::span<const Event> events, HostTime arrived) {
 void EventIntake::push(const Batch& batch, HostTime arrived) {
     check_open("push");
     for (const ReferenceImage& image : batch.images) check_image(image);
-    std::span<const Event> events = batch.events;
+    const std::span<const Event> events = batch.events;
     std::size_t taken = 0;
     for (std::size_t i = 0; i < batch.images.size(); ++i) {
-        const std::size_t place = std::min(batch.place_of_image(i), batch.events.size());
-        if (place > taken) {
-            take(events.first(place - taken), StepBack::is_new_clock, arrived);
-            events = events.subspan(place - taken);
+        if (const std::size_t place = batch.place_of_image(i); place > taken) {
+            take(events.subspan(taken, place - taken), StepBack::is_new_clock, arrived);
             taken = place;
         }
         hold(batch.images[i]);
     }
-    take(events, StepBack::is_new_clock, arrived);
+    take(events.subspan(taken), StepBack::is_new_clock, arrived);
     note_cut();
 }
 

@@ -1,17 +1,10 @@
 // Frames of a source, one by one.
+#include "src/core/number_text.h"
+
 #include <eventide/error.h>
 #include <eventide/pipeline.h>
 
-#include <string>
-
 namespace eventide {
-namespace {
-
-std::string size_text(int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-}
-
-}  // namespace
 
 void push_from(const EventSource& source, const Batch& batch, Reconstructor& reconstructor) {
     const SensorInfo& sensor = source.info();

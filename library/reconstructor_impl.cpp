@@ -7,7 +7,6 @@
 #include "src/core/frame_stamp.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 

@@ -2,6 +2,7 @@
 #include "replay/formats.h"
 #include "replay/recording_file.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <eventide/writer.h>
 
@@ -82,10 +83,10 @@ private:
     void refuse_others() const {
         for (const Event& event : held_.events)
             if (event.x >= width_ || event.y >= height_)
-                throw Error(ErrorKind::usage,
-                            path_ + ": expected events within " + std::to_string(width_) + "x" +
-                                std::to_string(height_) + " px, found one at " +
-                                std::to_string(event.x) + "," + std::to_string(event.y));
+                throw Error(ErrorKind::usage, path_ + ": expected events within " +
+                                                  size_text(width_, height_) +
+                                                  " px, found one at " + std::to_string(event.x) +
+                                                  "," + std::to_string(event.y));
     }
 
     /// Readers would leave out what comes before the newest event, and all until then.

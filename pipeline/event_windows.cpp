@@ -63,6 +63,7 @@ void EventWindows::finish(End end) {
 }
 
 void EventWindows::pass_on(HostTime arrived) {
+    // First: an image that came behind events that are not cut yet cuts them all the same.
     for (const ReferenceImage& image : batch_.images) slicer_.push_reference(image.t);
     pieces_.put(batch_);
     while (pieces_.next(piece_)) pass_on_piece(arrived);

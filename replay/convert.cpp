@@ -52,20 +52,19 @@ private:
 
 }  // namespace
 
-StreamHeader header_of(const Recording& recording) {
-    const SensorInfo& info = recording.info();
+StreamHeader header_of(const SensorInfo& sensor) {
     StreamHeader header;
-    header.width = info.width;
-    header.height = info.height;
-    header.sensor_name = info.name;
-    header.colour_filter = info.colour_filter;
-    header.serial = info.serial;
+    header.width = sensor.width;
+    header.height = sensor.height;
+    header.sensor_name = sensor.name;
+    header.colour_filter = sensor.colour_filter;
+    header.serial = sensor.serial;
     return header;
 }
 
 ConvertReport convert(Recording& recording, const std::string& path, const Format& format,
                       const ConvertOptions& options, const std::function<bool()>& progress) {
-    StreamHeader header = header_of(recording);
+    StreamHeader header = header_of(recording.info());
     header.format = format.name;
     FileTarget target(path, options.overwrite, format, header);
     return convert(recording, target, options, progress);

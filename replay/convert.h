@@ -42,7 +42,7 @@ public:
 };
 
 /// What a target is told of where its data come from.
-StreamHeader header_of(const Recording& recording);
+StreamHeader header_of(const SensorInfo& sensor);
 
 /// Writes the recording to the target. `progress` is called after each chunk and may return false:
 /// then what was written so far is completed. Throws what the target throws.

@@ -1,6 +1,7 @@
 // Data as a format can hold them.
 #include "replay/written_data.h"
 
+#include "src/codec/batch_parts.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
@@ -20,11 +21,7 @@ struct Seam {
 
     template <typename T>
     void move(std::vector<T>& items) const {
-        for (T& item : items) {
-            const bool is_of_new =
-                std::chrono::abs(item.t - first) < std::chrono::abs(item.t - last);
-            item.t += is_of_new ? after : before;
-        }
+        for (T& item : items) item.t += is_of_new_clock(item.t, last, first) ? after : before;
     }
 };
 

@@ -146,9 +146,8 @@ std::string explain_usb_error(int code) {
     switch (code) {
         case LIBUSB_ERROR_ACCESS:
             return "no permission: install 65-eventide.rules (of config/udev, or lib/udev/rules.d) "
-                   "into /etc/udev/rules.d, "
-                   "run "
-                   "'udevadm control --reload', and plug the camera in again";
+                   "into /etc/udev/rules.d, run 'udevadm control --reload', and plug the camera in "
+                   "again";
         case LIBUSB_ERROR_BUSY:
             return "in use by another program: close it (DV, jAER, another eventide) and try again";
         case LIBUSB_ERROR_NO_DEVICE:

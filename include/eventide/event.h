@@ -6,6 +6,7 @@
 #include <eventide/array.h>
 #include <eventide/sensor_time.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -106,9 +107,9 @@ struct Batch {
     std::vector<ImuSample> imu;     ///< inertial samples
     std::vector<Trigger> triggers;  ///< edges, pulses and marks
 
-    /// Of image number i: how many of `events` came before it.
+    /// Of image number i: how many of `events` came before it, at most all.
     std::size_t place_of_image(std::size_t i) const {
-        return i < image_places.size() ? image_places[i] : 0;
+        return i < image_places.size() ? std::min(image_places[i], events.size()) : 0;
     }
     /// The next image, after the events so far.
     void add_image(ReferenceImage image) {

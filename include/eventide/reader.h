@@ -53,9 +53,8 @@ public:
 
     /// The next data: `batch` is emptied first and may stay without events where others came.
     /// Events are inside the sensor and in order of time; one earlier than the one before it means
-    /// that the sensor's clock began anew. Images came before the batch's events. False at the
-    /// end. Throws Error (input) where the file
-    /// cannot be read; damaged bytes are left out and counted.
+    /// that the sensor's clock began anew. Images came before the batch's events. False at the end.
+    /// Throws Error (input) where the file cannot be read; damaged bytes are left out and counted.
     bool read(Batch& batch) override;
 
     /// Goes on from `t`: the next events are those from then on, and perhaps some before. Does

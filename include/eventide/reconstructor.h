@@ -78,9 +78,9 @@ struct ReconstructorCounters {
 ///
 /// Frames are found in two ways, which may be mixed: next() gives those at a constant rate, one
 /// after the other; render() gives any time, as long as ready() says so. The network remembers some
-/// five event windows, so ask in the order of time. Once next() has given a frame it gives
-/// every one after it, and ready() and newest() go no further ahead than it can follow: call it
-/// until it is false first. Before, frames that it would have given are left out.
+/// five event windows, so ask in the order of time. Once next() has given a frame it gives every
+/// one after it, and ready() and newest() go no further ahead than it can follow: call it until it
+/// is false first. Before, frames that it would have given are left out.
 ///
 /// How the events are split into calls changes nothing. With the same model, window, lookahead,
 /// precision and kernels (not automatic ones, which are measured anew in each process) frames are
@@ -153,8 +153,8 @@ public:
     void render(SensorTime t, const FrameSize& size, Frame& frame);
 
     /// The newest time that can be rendered, after all events pushed so far have gone through the
-    /// network, or those that next() can follow where it is used; empty where there is
-    /// none. What was not asked for until then may be gone.
+    /// network, or those that next() can follow where it is used; empty where there is none. What
+    /// was not asked for until then may be gone.
     std::optional<SensorTime> newest();
 
     /// As constructed: a new stream begins. Counters and the hot pixels that were learned stay.

@@ -1,7 +1,6 @@
 // Filters one behind the other.
 #include "pipeline/filters/filter_chain.h"
 
-#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -16,6 +15,7 @@ void append(std::vector<T>& more, std::vector<T>& to) {
 
 /// Leaves `more` with what was moved from.
 void append(Batch& more, Batch& to) {
+    if (to.empty()) return std::swap(more, to);
     const std::size_t before = to.events.size();
     for (std::size_t i = 0; i < more.images.size(); ++i) {
         to.add_image(std::move(more.images[i]));
@@ -87,8 +87,6 @@ SensorInfo FilterChain::behind(SensorInfo sensor) const {
 
 /// In pieces: filters that leave out events need not know which images they stand among.
 void FilterChain::process(Batch& batch) {
-    if (std::ranges::all_of(batch.image_places, [](std::size_t place) { return place == 0; }))
-        return process_piece(batch);
     pieces_.put(batch);
     while (pieces_.next(piece_)) {
         process_piece(piece_);

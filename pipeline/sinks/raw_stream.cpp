@@ -18,10 +18,6 @@ namespace eventide {
 
 namespace {
 
-bool is_y4m(StreamFormat format) {
-    return format == StreamFormat::y4m || format == StreamFormat::y4m_mono;
-}
-
 bool supports(StreamFormat format, Uncertainty how) {
     switch (how) {
         case Uncertainty::automatic:
@@ -65,6 +61,10 @@ std::string header_of(const cv::Mat& image, const StreamSettings& settings) {
 }
 
 }  // namespace
+
+bool is_y4m(StreamFormat format) {
+    return format == StreamFormat::y4m || format == StreamFormat::y4m_mono;
+}
 
 std::string_view name_of(StreamFormat format) {
     switch (format) {

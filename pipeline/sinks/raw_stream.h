@@ -26,6 +26,7 @@ enum class StreamFormat {
 };
 
 std::string_view name_of(StreamFormat format);
+bool is_y4m(StreamFormat format);
 
 /// What a stream of constant rate does where frames were skipped.
 enum class Overload {

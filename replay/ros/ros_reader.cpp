@@ -2,6 +2,7 @@
 #include "replay/ros/ros_reader.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
 #include <utility>
@@ -133,9 +134,6 @@ void RosReader::choose_images() {
 
 void RosReader::name_other_topics() {
     std::set<std::string> named;
-    const auto size_text = [](int width, int height) {
-        return std::to_string(width) + "x" + std::to_string(height);
-    };
     for (const auto& [number, topic] : topics_) {
         const bool images = topic.kind == RosKind::images;
         if (is_read(number) || (!images && !has_events(topic.kind))) continue;

@@ -35,17 +35,22 @@ std::span<const T> take_until(std::span<const T>& items, SensorTime last) {
     return taken;
 }
 
+/// Of a sensor's clock that began anew with an event at `first`, after one at `last`: what has no
+/// place among the events goes with the one that its time is nearer to.
+inline bool is_of_new_clock(SensorTime t, SensorTime last, SensorTime first) {
+    return std::chrono::abs(t - first) < std::chrono::abs(t - last);
+}
+
 /// What came before the sensor's clock began anew, where it did: an event is earlier than the one
-/// before it. Taken off `rest`; other data go with the clock that their time is nearer to.
+/// before it. Taken off `rest`; other data as is_of_new_clock() says.
 inline BatchPart take_clock(BatchPart& rest) {
     const auto back = std::ranges::adjacent_find(
         rest.events, [](const Event& a, const Event& b) { return b.t < a.t; });
     if (back == rest.events.end()) return std::exchange(rest, {});
     const SensorTime last = back->t, first = std::next(back)->t;
     const auto take = [&](auto& items) {
-        const auto end = std::ranges::find_if(items, [&](const auto& item) {
-            return std::chrono::abs(item.t - first) < std::chrono::abs(item.t - last);
-        });
+        const auto end = std::ranges::find_if(
+            items, [&](const auto& item) { return is_of_new_clock(item.t, last, first); });
         const auto taken = items.first(std::size_t(end - items.begin()));
         items = items.subspan(taken.size());
         return taken;

@@ -3,7 +3,6 @@
 
 #include "src/core/event.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -42,7 +41,7 @@ public:
             return true;
         }
         take(whole_.images, image_, images, piece.images);
-        const std::size_t end = is_last ? whole_.events.size() : place_of(images);
+        const std::size_t end = is_last ? whole_.events.size() : whole_.place_of_image(images);
         take(whole_.events, events_, end, piece.events);
         const SensorTime until = is_last ? SensorTime::max() : piece.events.back().t;
         take(whole_.imu, imu_, end_of(whole_.imu, imu_, until), piece.imu);
@@ -52,13 +51,10 @@ public:
     }
 
 private:
-    std::size_t place_of(std::size_t image) const {
-        return std::min(whole_.place_of_image(image), whole_.events.size());
-    }
     /// How many of the images came before the next event.
     std::size_t images_until_here() const {
         std::size_t i = image_;
-        while (i < whole_.images.size() && place_of(i) <= events_) ++i;
+        while (i < whole_.images.size() && whole_.place_of_image(i) <= events_) ++i;
         return i;
     }
     template <typename T>

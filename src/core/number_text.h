@@ -14,6 +14,11 @@
 
 namespace eventide {
 
+/// "346x260"
+inline std::string size_text(int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+}
+
 /// "1 image", "2 images"
 inline std::string counted(std::uint64_t n, const std::string& what) {
     return std::to_string(n) + " " + what + (n == 1 ? "" : "s");

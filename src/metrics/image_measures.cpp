@@ -2,6 +2,7 @@
 #include "src/metrics/image_measures.h"
 
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 
 #include <Eigen/Core>
 
@@ -17,7 +18,7 @@ constexpr int kTaps = 2 * kRadius + 1;
 constexpr double kC1 = .01 * .01, kC2 = .03 * .03;  // (K1 L)^2 and (K2 L)^2, data range L = 1
 
 std::string size_text(const Array2<float>& image) {
-    return std::to_string(image.width()) + "x" + std::to_string(image.height());
+    return eventide::size_text(image.width(), image.height());
 }
 
 void need_same_size(const Array2<float>& a, const Array2<float>& b) {

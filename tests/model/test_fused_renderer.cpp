@@ -16,31 +16,45 @@ namespace {
 using namespace test;
 using Kind = GridStream::Kind;
 
-/// The whole chain, for each lookahead: an image in silence is what frames show from then on.
-TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
+/// Encoder, renderer and what corrects it, of a small network and a stream of events.
+struct Chain {
+    explicit Chain(int lookahead) : fused{renderer, kWidth, kHeight, lookahead} {}
+
+    Window encode_next(Kind kind) {
+        const VoxelGrid& grid = stream.next(kind);
+        encoder.encode(grid, latent);
+        return latent.window = grid.window;
+    }
+    void push(float events_per_pixel) {
+        renderer.push(latent);
+        fused.push(latent.window, constant(events_per_pixel));
+    }
+
     const ModelConfig config = test::small_config();
     const Model model = test::random_model(config, 1);
+    Encoder encoder{model, kWidth, kHeight};
+    Renderer renderer{model, kWidth, kHeight};
+    FusedRenderer fused;
+    GridStream stream{config, kHeight, kWidth, 4};
+    LatentMap latent = encoder.make_output();
+};
+
+/// The whole chain, for each lookahead: an image in silence is what frames show from then on.
+TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
     for (const int lookahead : {0, 1, 2}) {
-        Encoder encoder{model, kWidth, kHeight};
-        Renderer renderer{model, kWidth, kHeight};
-        FusedRenderer fused{renderer, kWidth, kHeight, lookahead};
-        GridStream stream{config, kHeight, kWidth, 4};
-        LatentMap latent = encoder.make_output();
+        Chain chain{lookahead};
         RenderRequest request{.lookahead = lookahead};
-        fused.prepare(request);
-        Frame frame = renderer.make_output(request);
+        chain.fused.prepare(request);
+        Frame frame = chain.renderer.make_output(request);
         for (int i = 0; i < 12; ++i) {
-            const VoxelGrid& grid = stream.next(i < 5 ? Kind::patch : Kind::silence);
-            encoder.encode(grid, latent);
-            latent.window = grid.window;
-            if (i == 8) fused.give(image_of(ramp(), grid.window.end));
-            if (i == 9) request.t = grid.window.end;
-            renderer.push(latent);
-            fused.push(grid.window, constant(i < 5 ? 1.F : 0.F));
+            const Window window = chain.encode_next(i < 5 ? Kind::patch : Kind::silence);
+            if (i == 8) chain.fused.give(image_of(ramp(), window.end));
+            if (i == 9) request.t = window.end;
+            chain.push(i < 5 ? 1.F : 0.F);
         }
-        fused.render(request, frame);
-        EXPECT_EQ(fused.used(), 1U);
-        EXPECT_EQ(fused.dropped(), 0U);
+        chain.fused.render(request, frame);
+        EXPECT_EQ(chain.fused.used(), 1U);
+        EXPECT_EQ(chain.fused.dropped(), 0U);
         for (std::size_t i = 0; i < frame.intensity.values().size(); ++i)
             ASSERT_NEAR(frame.intensity.values()[i], ramp().values()[i], 1e-3) << lookahead;
     }
@@ -48,24 +62,17 @@ TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
 
 /// What the flow was found with at a window's end is what a frame shows there.
 TEST(FusedRenderer, AFrameAtAWindowsEndIsNotRenderedTwice) {
-    const ModelConfig config = test::small_config();
-    const Model model = test::random_model(config, 1);
-    Encoder encoder{model, kWidth, kHeight};
-    Renderer renderer{model, kWidth, kHeight};
-    FusedRenderer fused{renderer, kWidth, kHeight, 0};
-    GridStream stream{config, kHeight, kWidth, 4};
-    LatentMap latent = encoder.make_output();
+    Chain chain{0};
+    Renderer& renderer = chain.renderer;
+    FusedRenderer& fused = chain.fused;
     RenderRequest request, twice{.width = 2 * kWidth, .height = 2 * kHeight};
     fused.prepare(request);
     Frame frame = renderer.make_output(request), larger = renderer.make_output(twice);
     std::uint64_t at_ends = 0, at_times_within = 0, larger_at_ends = 0;
     for (int i = 0; i < 12; ++i) {
-        const VoxelGrid& grid = stream.next(Kind::everywhere);
-        encoder.encode(grid, latent);
-        latent.window = grid.window;
-        fused.give(image_of(ramp(), grid.window.begin + SensorDuration{1}));
-        renderer.push(latent);
-        fused.push(grid.window, constant(1));
+        const Window window = chain.encode_next(Kind::everywhere);
+        fused.give(image_of(ramp(), window.begin + SensorDuration{1}));
+        chain.push(1);
         const auto cost_of = [&](RenderRequest wanted, SensorTime t, Frame& out) {
             const std::uint64_t before = renderer.pixels_rendered();
             wanted.t = t;
@@ -73,9 +80,9 @@ TEST(FusedRenderer, AFrameAtAWindowsEndIsNotRenderedTwice) {
             fused.render(wanted, out);
             return renderer.pixels_rendered() - before;
         };
-        at_ends += cost_of(request, grid.window.end, frame);
-        larger_at_ends += cost_of(twice, grid.window.end, larger);
-        at_times_within += cost_of(request, grid.window.end - SensorDuration{7}, frame);
+        at_ends += cost_of(request, window.end, frame);
+        larger_at_ends += cost_of(twice, window.end, larger);
+        at_times_within += cost_of(request, window.end - SensorDuration{7}, frame);
     }
     constexpr std::uint64_t kPixels = std::uint64_t{kWidth} * kHeight;
     EXPECT_EQ(at_ends, 0U);
@@ -90,28 +97,19 @@ struct GivenInSilence {
 };
 
 GivenInSilence given_in_silence(const std::vector<std::pair<float, double>>& greys_and_ms) {
-    const ModelConfig config = test::small_config();
-    const Model model = test::random_model(config, 1);
-    Encoder encoder{model, kWidth, kHeight};
-    Renderer renderer{model, kWidth, kHeight};
-    FusedRenderer fused{renderer, kWidth, kHeight, 0};
-    GridStream stream{config, kHeight, kWidth, 4};
-    LatentMap latent = encoder.make_output();
+    Chain chain{0};
     RenderRequest request;
-    fused.prepare(request);
-    Frame frame = renderer.make_output(request);
+    chain.fused.prepare(request);
+    Frame frame = chain.renderer.make_output(request);
     for (int i = 0; i < 8; ++i) {
-        const VoxelGrid& grid = stream.next(i < 3 ? Kind::patch : Kind::silence);
-        encoder.encode(grid, latent);
-        request.t = latent.window.end = grid.window.end;
+        request.t = chain.encode_next(i < 3 ? Kind::patch : Kind::silence).end;
         if (i == 4)
             for (const auto& [grey, ms] : greys_and_ms)
-                fused.give(image_of(constant(grey), grid.window.end + (at_ms(ms) - at_ms(0))));
-        renderer.push(latent);
-        fused.push(grid.window, constant(i < 3 ? 1.F : 0.F));
+                chain.fused.give(image_of(constant(grey), request.t + (at_ms(ms) - at_ms(0))));
+        chain.push(i < 3 ? 1.F : 0.F);
     }
-    fused.render(request, frame);
-    return {frame.intensity(kHeight / 2, kWidth / 2), fused.used(), fused.dropped()};
+    chain.fused.render(request, frame);
+    return {frame.intensity(kHeight / 2, kWidth / 2), chain.fused.used(), chain.fused.dropped()};
 }
 
 TEST(FusedRenderer, AnImageOfAWrongTimeDoesNotHoldUpTheOthers) {

@@ -215,6 +215,13 @@ TEST_F(Outputs, AFolderOfStatesLosesAnEarlierRunsAndNothingElse) {
     EXPECT_TRUE(fs::exists(temp_ / "s/state_000001.safetensors"));
     ASSERT_EQ(eventide(states_at({"150ms"})).exit_code, 0);
     EXPECT_FALSE(fs::exists(temp_ / "s/state_000001.safetensors")) << "it was of another run";
+    ASSERT_EQ(eventide(states_at({"100ms", "200ms"})).exit_code, 0);
+    std::vector<std::string> from_it = states_at({"300ms"});
+    from_it.insert(from_it.end(), {"--state-in", "s/state_000001.safetensors"});
+    expect_refused(from_it, "s/state_000001.safetensors");
+    const std::string second = read_text(temp_ / "s/state_000001.safetensors");
+    EXPECT_EQ(eventide(states_at({"9s"})).exit_code, 2);
+    EXPECT_EQ(read_text(temp_ / "s/state_000001.safetensors"), second) << "no state took its place";
     write_text(temp_ / "s/state_000001.safetensors", "mine");
     expect_refused(states_at({"150ms"}), "s/state_000001.safetensors", "earlier run's states");
     const Result late = eventide({"run", "rec.aedat4", "--frames", "ignore", "--states-out", "t/",

@@ -124,7 +124,7 @@ int ConvertCommand::run(Program& program) {
     if (from_) how.from = times.time_of(*from_);
     if (to_) how.to = times.time_of(*to_);
     check_part({from_file_, options, from_, how.from, how.to});
-    StreamHeader header = header_of(*recording);
+    StreamHeader header = header_of(recording->info());
     FilterChain filters{filter_, {header.width, header.height}};
     header.width = filters.size().width;
     header.height = filters.size().height;

@@ -58,16 +58,17 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.stamp = settings.stamp;
     stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
     stream.give_up = plan.questions.stopping;
-    if (!plan.constant_rate && (format == StreamFormat::y4m || format == StreamFormat::y4m_mono))
+    const std::string name = path == "-" ? "standard output" : path;
+    if (!plan.constant_rate && is_y4m(format))
         spdlog::warn(
             "{}: frames come at no constant rate, and what reads Y4M shows them at {} a second; "
             "--fps with a number, or MP4, keeps their times",
-            path == "-" ? "standard output" : path, plan.fps);
-    stream.shorter_by = [path, fps = plan.fps](std::uint64_t frames) {
+            name, plan.fps);
+    stream.shorter_by = [name, fps = plan.fps](std::uint64_t frames) {
         spdlog::warn(
             "{}: its reader was slower than {} frames/s, and got {} fewer than the time they show; "
             "--stamp tells each frame's time",
-            path == "-" ? "standard output" : path, fps, counted(frames, "frame"));
+            name, fps, counted(frames, "frame"));
     };
     return std::make_unique<StreamSink>(std::move(stream));
 }

@@ -1,6 +1,7 @@
 // A source whose data are also written down.
 #include "apps/cli/run/recorded_source.h"
 
+#include "replay/convert.h"
 #include "src/core/error.h"
 
 #include <spdlog/spdlog.h>
@@ -24,13 +25,8 @@ const Format& format_of(const std::string& path) {
 RecordedSource::RecordedSource(Source& source, const std::string& path, OutputOptions options)
     : source_{source}, path_{path}, format_{format_of(path)}, data_{format_.holds} {
     options.appears = Appears::growing;
-    StreamHeader header;
+    StreamHeader header = header_of(source.info());
     header.format = format_.name;
-    header.width = source.info().width;
-    header.height = source.info().height;
-    header.sensor_name = source.info().name;
-    header.serial = source.info().serial;
-    header.colour_filter = source.info().colour_filter;
     file_ = std::make_unique<RecordingFile>(path, options, format_, header);
     parser_ = source.make_parser();
 }
@@ -50,7 +46,7 @@ void RecordedSource::write(const RawPacket& packet) {
 
 void RecordedSource::write_batch() {
     data_.fit(batch_);
-    if (!data_.is_whole() && !std::exchange(told_, true))
+    if (data_.left_out() != DataCounts{} && !std::exchange(told_, true))
         spdlog::warn("--record {}: {} cannot hold all that comes: {} so far (.aedat4 can)", path_,
                      format_.title, text_of(data_.left_out()));
     if (!batch_.empty()) file_->write(batch_);

@@ -6,6 +6,7 @@
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/state/run_state.h"
+#include "apps/cli/run/state/state_folder.h"
 #include "pipeline/first_error.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
@@ -141,7 +142,7 @@ void Run::open_outputs() {
     observers_.hand_all_to(events_out_.get());
     sinks_ = open_sinks(settings_, sink_plan());
     if (!settings_.states_out.empty()) {
-        if (settings_.overwrite) remove_states(settings_.states_out);
+        if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
         create_folder(settings_.states_out);
     }
     stats_ = stats_of(settings_, growing);  // last: it may lie in a folder that a sink makes

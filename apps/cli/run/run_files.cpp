@@ -5,7 +5,7 @@
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/run/quality/run_quality.h"
-#include "apps/cli/run/state/stream_state.h"
+#include "apps/cli/run/state/state_folder.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/sink_name.h"
 #include "apps/cli/terminal.h"
@@ -49,7 +49,11 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
     files.writes_when_done("--state-out", settings.state_out);
     if (settings.states_out.empty()) return;
     files.writes_folder("--states-out", settings.states_out);
-    for (std::size_t i = 0; i < settings.states_at.size(); ++i)
+    // Those of an earlier run, which go, are no input of this.
+    for (std::size_t i = 0;
+         i < settings.states_at.size() ||
+         (settings.overwrite && std::filesystem::exists(state_file(settings.states_out, i)));
+         ++i)
         files.writes("--states-out", state_file(settings.states_out, i));
 }
 

@@ -1,9 +1,11 @@
 // What a run takes over from an earlier one, and keeps for later ones.
 #include "apps/cli/run/run.h"
 #include "apps/cli/run/state/run_state.h"
+#include "apps/cli/run/state/state_folder.h"
 #include "pipeline/filters/event_filter.h"
 #include "src/core/error.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,6 +42,10 @@ void Run::keep_state(const PipelineState& memory) {
     const StreamState state{memory, filter_ ? filter_->state() : EventFilters::State{},
                             window_text(slicer_), noise_filter_of(settings_, network_.config()),
                             lamp_flicker_of(settings_, !as_live())};
+    // An earlier run's stay until there is one of this.
+    if (states_ == 0 && settings_.overwrite)
+        for (const auto& earlier : earlier_states(settings_.states_out))
+            std::filesystem::remove(earlier);
     TensorFile file = state_of(network_, nullptr);
     put_stream_state(state, sensor_.width, file);
     write_safetensors(state_file(settings_.states_out, states_++), file, settings_.overwrite);

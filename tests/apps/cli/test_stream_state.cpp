@@ -1,6 +1,8 @@
 // What a run remembers beside its networks, as a file: what comes back, and what is refused and
 // why.
 #include "apps/cli/run/state/stream_state.h"
+
+#include "apps/cli/run/state/state_folder.h"
 #include "src/core/error.h"
 #include "tests/support/flickering_light.h"
 
