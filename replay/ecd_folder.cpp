@@ -76,21 +76,47 @@ void set_exposures(const fs::path& path, EcdImages& images) {
     }
 }
 
+std::string joined(const std::vector<std::string>& fields) {
+    std::string line;
+    for (const std::string& field : fields) line += (line.empty() ? "" : " ") + field;
+    return line;
+}
+
+/// Of what is left out, one example for all.
+void remark(EcdImages& images, const std::string& first_bad_line) {
+    if (images.bad_entries > 0)
+        images.remarks.push_back(
+            "images.txt: expected a time in seconds and a file in the folder, found \"" +
+            first_bad_line + "\"; " + std::to_string(images.bad_entries) +
+            " such lines are left out");
+    std::size_t missing = 0;
+    std::string first;
+    std::error_code none;
+    for (const auto& entry : images.entries)
+        if (!fs::is_regular_file(entry.path, none) && ++missing == 1) first = entry.path;
+    if (missing > 0)
+        images.remarks.push_back("images.txt: expected " + first + ", found no such file; " +
+                                 std::to_string(missing) + " of " +
+                                 std::to_string(images.entries.size()) + " images are not there");
+}
+
 }  // namespace
 
 EcdImages read_ecd_images(const std::string& folder) {
     EcdImages images;
+    std::string first_bad_line;
     for (const auto& fields : read_table(fs::path(folder) / "images.txt")) {
         const auto t = fields.size() < 2 ? std::nullopt : parse_seconds(fields[0]);
         const auto file = t ? inside(folder, fields[1]) : std::nullopt;
         if (file)
             images.entries.push_back({*t, *t, *t, *file});
-        else
-            ++images.bad_entries;
+        else if (++images.bad_entries == 1)
+            first_bad_line = joined(fields);
     }
     set_exposures(fs::path(folder) / "exposure.txt", images);
     std::stable_sort(images.entries.begin(), images.entries.end(),
                      [](const auto& a, const auto& b) { return a.t < b.t; });
+    remark(images, first_bad_line);
     for (const auto& entry : images.entries)
         if (const auto size = size_of_image_file(entry.path)) {
             images.width = size->width;
@@ -155,6 +181,12 @@ const Damage& EcdParser::damaged() const {
     damage_ = events_->damaged();
     damage_ += image_damage_;
     return damage_;
+}
+
+std::vector<std::string> EcdRecording::remarks() const {
+    std::vector<std::string> all = events_->remarks();
+    all.insert(all.end(), images_.remarks.begin(), images_.remarks.end());
+    return all;
 }
 
 }  // namespace eventide

@@ -20,9 +20,10 @@ struct EcdImages {
         SensorTime exposure_begin{}, exposure_end{};  ///< equal to t where nothing says them
         std::string path;
     };
-    std::vector<Entry> entries;     ///< in time order; empty where there is no images.txt
-    int width = 0, height = 0;      ///< px, of the first image that can be read; else 0
-    std::uint64_t bad_entries = 0;  ///< lines of images.txt that make no sense or lead elsewhere
+    std::vector<Entry> entries;        ///< in time order; empty where there is no images.txt
+    int width = 0, height = 0;         ///< px, of the first image that can be read; else 0
+    std::uint64_t bad_entries = 0;     ///< lines of images.txt that make no sense or lead elsewhere
+    std::vector<std::string> remarks;  ///< which lines those are, and which images are not there
 };
 
 /// Reads images.txt ("t file", t in seconds, file in the folder), exposure.txt where there is one
@@ -66,7 +67,7 @@ public:
                                            events_->begins_in_the_middle());
     }
     std::unique_ptr<Parser> make_clock() const override { return events_->make_parser(); }
-    std::vector<std::string> remarks() const override { return events_->remarks(); }
+    std::vector<std::string> remarks() const override;
     void seek(SensorTime t) override { events_->seek(t); }
     std::uint64_t size_bytes() const override { return events_->size_bytes(); }
     std::uint64_t position_bytes() const override { return events_->position_bytes(); }

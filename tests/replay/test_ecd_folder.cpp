@@ -42,6 +42,16 @@ TEST(EcdFolder, GivesItsImagesInTimeOrderWithTheEvents) {
     EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 2U);
 }
 
+TEST(EcdFolder, SaysWhichImagesAreLeftOut) {
+    const TestFolder folder;
+    write_folder(folder);
+    const auto remarks = open_recording(folder.path("r"))->remarks();
+    ASSERT_EQ(remarks.size(), 2U);
+    EXPECT_NE(remarks[0].find("found \"no time\"; 1 "), std::string::npos) << remarks[0];
+    EXPECT_NE(remarks[1].find("images/missing.pgm"), std::string::npos) << remarks[1];
+    EXPECT_NE(remarks[1].find("1 of 5 images"), std::string::npos) << remarks[1];
+}
+
 TEST(EcdFolder, ImagesAloneAreRead) {
     const TestFolder folder;
     folder.write("r/events.txt", "20 10\n");
