@@ -33,6 +33,7 @@ void EventWindows::take(const RawPacket& packet) {
     last_data_ = packet.arrived;
     counters_.bin.bytes.add(packet.bytes.size());
     look_behind(packet.arrived);
+    limit_leap(packet.arrived);
     pass_on(packet.arrived);
     if (live_) advance_clock(packet.arrived);
     counters_.note(parser_->damaged(), slicer_.counters());
@@ -63,8 +64,6 @@ void EventWindows::finish(End end) {
 }
 
 void EventWindows::pass_on(HostTime arrived) {
-    // First: an image that came behind events that are not cut yet cuts them all the same.
-    for (const ReferenceImage& image : batch_.images) slicer_.push_reference(image.t);
     pieces_.put(batch_);
     while (pieces_.next(piece_)) pass_on_piece(arrived);
 }
@@ -76,6 +75,7 @@ void EventWindows::pass_on_piece(HostTime arrived) {
     counters_.bin.triggers.add(piece_.triggers.size());
     if (observer_) observer_->see(piece_);
     images_since_.insert(images_since_.end(), piece_.images.size(), slicer_.heard());
+    for (const ReferenceImage& image : piece_.images) slicer_.push_reference(image.t);
     if (resumed_at_) leave_out_known();
     while (!stops_.empty() && !piece_.events.empty() && piece_.events.back().t > stops_.back())
         stop(arrived);
@@ -143,6 +143,17 @@ void EventWindows::advance_in_silence(HostTime now) {
     const auto silent = std::chrono::duration_cast<SensorDuration>(now - clock_arrived_);
     if (silent <= silence_margin_) return;
     advance(*clock_ + silent - silence_margin_, now);
+}
+
+/// A sender whose clock was set begins a new stream, too: nobody wants the frames of the years
+/// between. What it sent faster than it was taken, or after a silence, is no leap.
+void EventWindows::limit_leap(HostTime arrived) {
+    if (!live_ || batch_.events.empty()) return;
+    constexpr int kTimesAsFast = 100;
+    const HostTime::duration passed = last_events_ ? arrived - *last_events_ : HostTime::duration{};
+    last_events_ = arrived;
+    slicer_.limit_leap(kMostAhead +
+                       kTimesAsFast * std::chrono::duration_cast<SensorDuration>(passed));
 }
 
 void EventWindows::look_behind(HostTime arrived) {

@@ -34,6 +34,9 @@ public:
     };
 
     /// filter and observer may be null; both are borrowed.
+    /// Live: a clock that is farther ahead at once was set.
+    static constexpr SensorDuration kMostAhead{60'000'000};
+
     EventWindows(const Source& source, const Settings& settings, EventFilter* filter,
                  DataObserver* observer, Counters& counters);
 
@@ -66,6 +69,7 @@ private:
     void advance_clock(HostTime arrived);
     void advance_in_silence(HostTime now);
     void look_behind(HostTime arrived);
+    void limit_leap(HostTime arrived);
     void advance(SensorTime now, HostTime arrived);
 
     std::unique_ptr<Parser> parser_;
@@ -87,6 +91,7 @@ private:
     std::optional<SensorTime> clock_;    // the newest the stream told
     HostTime clock_arrived_{};           // when it did
     std::optional<HostTime> last_data_;  // when bytes last came
+    std::optional<HostTime> last_events_;
 };
 
 }  // namespace eventide

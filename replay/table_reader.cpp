@@ -4,6 +4,7 @@
 #include "replay/stream/scan_geometry.h"
 #include "src/core/error.h"
 #include "src/core/partition_row.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,6 @@
 namespace eventide {
 
 namespace {
-
-constexpr std::int64_t kFarthestUs = 1'000'000'000'000'000'000;  // sums of two fit 64 bits
 
 /// Of a row that cannot be read it is not known: what is not known is not passed over.
 bool is_before(std::int64_t row_us, std::int64_t t_us) {
@@ -24,11 +23,13 @@ bool is_before(std::int64_t row_us, std::int64_t t_us) {
 
 std::int64_t us_from_seconds(double seconds) {
     const double us = seconds * 1e6;
-    return std::abs(us) <= double(kFarthestUs) ? std::llround(us) : kNoTimeUs;  // NaN is not
+    return std::abs(us) <= double(kFarthestTime_us) ? std::llround(us) : kNoTimeUs;  // NaN is not
 }
 
 std::int64_t us_from_integer(std::int64_t us, std::int64_t base_us) {
-    const auto near = [](std::int64_t t) { return t >= -kFarthestUs && t <= kFarthestUs; };
+    const auto near = [](std::int64_t t) {
+        return t >= -kFarthestTime_us && t <= kFarthestTime_us;
+    };
     return near(us) && near(base_us) ? us + base_us : kNoTimeUs;
 }
 

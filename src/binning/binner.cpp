@@ -49,7 +49,6 @@ Binner::Binner(int bins, int height, int width) : bins_(bins), height_(height), 
     const std::size_t pixels = std::size_t(height) * std::size_t(width);
     moments_.resize(pixels);
     touched_.resize((pixels + 63) / 64);
-    touched_in_window_.resize(touched_.size());
     ages_.assign(pixels, kOldest);
 }
 
@@ -81,7 +80,7 @@ void Binner::process(const EventWindow& event_window, VoxelGrid& grid) noexcept 
     grid.gap_before = event_window.gap_before;
     grid.reset_before = event_window.reset_before;
     grid.arrived = event_window.arrived;
-    std::fill(grid.values.values().begin(), grid.values.values().end(), 0.0F);
+    clear(grid);
 
     const std::int64_t width_us = event_window.window.width().count();
     const bool ordered = in_time_order(event_window.events);
@@ -97,7 +96,19 @@ void Binner::process(const EventWindow& event_window, VoxelGrid& grid) noexcept 
         }
         write(bin, std::ldexp(double(width_us), -ticks.shift), grid);
     }
-    write_ages(grid);
+}
+
+/// As of pixels without events.
+void Binner::clear(VoxelGrid& grid) noexcept {
+    const std::size_t channels = std::size_t(grid.values.channels());
+    float* out = grid.values.values().data();
+    for (std::uint8_t& age : ages_) {
+        age = std::uint8_t(std::min(age + 1, int(kOldest)));
+        std::fill_n(out, channels - 1, 0.0F);
+        out[channels - 1] = float(age) / float(kOldest);
+        out += channels;
+    }
+    std::ranges::fill(grid.touched.values(), std::uint8_t{0});
 }
 
 Binner::BinTicks Binner::ticks_of(int bin, std::int64_t width_us) const {
@@ -126,8 +137,8 @@ void Binner::add(std::span<const Event> events, SensorTime begin, const BinTicks
 void Binner::write(int bin, double ticks_per_bin, VoxelGrid& grid) noexcept {
     const std::size_t channels = std::size_t(grid.values.channels());
     float* const out = grid.values.values().data() + 4 * bin;
+    float* const age_of_pixel = grid.values.values().data() + channels - 1;
     for (std::size_t word = 0; word < touched_.size(); ++word) {
-        touched_in_window_[word] |= touched_[word];
         for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
             const std::size_t pixel = 64 * word + std::size_t(std::countr_zero(bits));
             Moments& moments = moments_[pixel];
@@ -140,23 +151,13 @@ void Binner::write(int bin, double ticks_per_bin, VoxelGrid& grid) noexcept {
                 n < 2 ? 0.0F
                       : float(std::sqrt(scaled_variance(n, moments.sum, moments.squares)) * scale);
             values[3] = float(n);
+            age_of_pixel[pixel * channels] = 0;
+            ages_[pixel] = 0;
+            grid.touched.values()[pixel] = 1;
             moments = {};
         }
         touched_[word] = 0;
     }
-}
-
-void Binner::write_ages(VoxelGrid& grid) noexcept {
-    const std::size_t channels = std::size_t(grid.values.channels());
-    float* out = grid.values.values().data() + channels - 1;
-    for (std::size_t pixel = 0; pixel < ages_.size(); ++pixel, out += channels) {
-        const bool touched = touched_in_window_[pixel / 64] >> (pixel % 64) & 1;
-        const int age = touched ? 0 : std::min(ages_[pixel] + 1, int(kOldest));
-        ages_[pixel] = std::uint8_t(age);
-        grid.touched.values()[pixel] = std::uint8_t(touched);
-        *out = float(age) / float(kOldest);
-    }
-    std::fill(touched_in_window_.begin(), touched_in_window_.end(), 0);
 }
 
 }  // namespace eventide

@@ -54,14 +54,13 @@ private:
     BinTicks ticks_of(int bin, std::int64_t width_us) const;
     void add(std::span<const Event> events, SensorTime begin, const BinTicks& bin) noexcept;
     void write(int bin, double ticks_per_bin, VoxelGrid& grid) noexcept;
-    void write_ages(VoxelGrid& grid) noexcept;
+    void clear(VoxelGrid& grid) noexcept;
 
     int bins_, height_, width_;
     // One bin at a time is summed: at sensor size this stays in the second-level cache.
     std::vector<Moments, CacheLineAllocator<Moments>> moments_;  // [y][x]; all zero between bins
-    std::vector<std::uint64_t> touched_;            // a bit per pixel with events in this bin
-    std::vector<std::uint64_t> touched_in_window_;  // ... in this window
-    std::vector<std::uint8_t> ages_;  // [y][x], windows since the last event, at most kOldest
+    std::vector<std::uint64_t> touched_;  // a bit per pixel with events in this bin
+    std::vector<std::uint8_t> ages_;      // [y][x], windows since the last event, at most kOldest
 };
 
 }  // namespace eventide

@@ -21,9 +21,11 @@ std::span<const Event> PendingEvents::take_until(SensorTime end) {
     return taken;
 }
 
-void PendingEvents::next_segment() {
+SensorTime PendingEvents::next_segment() {
     assert(taken_ == ends_.front().index);
+    const SensorTime begin = ends_.front().begin;
     ends_.erase(ends_.begin());
+    return begin;
 }
 
 void PendingEvents::drop_taken() {

@@ -16,8 +16,11 @@ class PendingEvents {
 public:
     void push(const Event& event) { events_.push_back(event); }
 
-    /// The clock was reset after what was pushed: the segment's time ended at `final`.
-    void end_segment(SensorTime final) { ends_.push_back({events_.size(), final}); }
+    /// The clock was reset after what was pushed: the segment's time ended at `final`, and that of
+    /// the next begins at `begin`.
+    void end_segment(SensorTime final, SensorTime begin) {
+        ends_.push_back({events_.size(), final, begin});
+    }
 
     /// What is left of the oldest segment.
     std::span<const Event> segment() const;
@@ -26,8 +29,8 @@ public:
 
     /// Takes the oldest segment's events up to `end`, inclusive.
     std::span<const Event> take_until(SensorTime end);
-    /// The oldest segment has ended and all of it was taken.
-    void next_segment();
+    /// The oldest segment has ended and all of it was taken. Returns where the next begins.
+    SensorTime next_segment();
 
     void drop_taken();
     void clear() { assign({}); }
@@ -36,7 +39,7 @@ public:
 private:
     struct End {
         std::size_t index;  // of the next segment's first event
-        SensorTime final;
+        SensorTime final, begin;
     };
     std::vector<Event> events_;  // from taken_ on not taken yet
     std::size_t taken_ = 0;

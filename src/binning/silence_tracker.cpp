@@ -8,7 +8,18 @@ namespace eventide {
 void SilenceTracker::restore(int empty_windows, SensorTime newest) {
     empty_windows_ = std::min(empty_windows, silent_windows_);
     newest_ = newest;
+    clocks_heard_ = clocks_given_ = 0;
     pauses_.clear();
+}
+
+void SilenceTracker::hear_anew() {
+    newest_ = SensorTime::min();
+    ++clocks_heard_;
+}
+
+void SilenceTracker::begin_anew() {
+    ++clocks_given_;
+    empty_windows_ = 0;
 }
 
 void SilenceTracker::begin_at(SensorTime begin) {
@@ -18,7 +29,8 @@ void SilenceTracker::begin_at(SensorTime begin) {
 /// The first time after `edge` that was seen, where it is far from it; else `edge`.
 SensorTime SilenceTracker::seen_after(SensorTime edge) const {
     for (const Pause& pause : pauses_)
-        if (pause.begin <= edge && edge < pause.end) return pause.end;
+        if (pause.clock == clocks_given_ && pause.begin <= edge && edge < pause.end)
+            return pause.end;
     return edge;
 }
 
@@ -34,7 +46,9 @@ void SilenceTracker::end_window(bool empty) {
 }
 
 void SilenceTracker::forget_pauses_until(SensorTime t) {
-    std::erase_if(pauses_, [t](const Pause& pause) { return pause.end <= t; });
+    std::erase_if(pauses_, [this, t](const Pause& pause) {
+        return pause.clock < clocks_given_ || (pause.clock == clocks_given_ && pause.end <= t);
+    });
 }
 
 }  // namespace eventide

@@ -4,6 +4,7 @@
 #include "src/core/sensor_limits.h"
 #include "src/core/sensor_time.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace eventide {
@@ -33,30 +34,32 @@ public:
     /// The first window begins here.
     void begin_at(SensorTime begin);
 
-    /// The stream is at t: an event, though a filter leaves it out, or its clock says so. Earlier
-    /// than the time before where the camera's clock was reset.
+    /// The stream is at t: an event, though a filter leaves it out, or its clock says so.
     void see(SensorTime t) {
         // Anything shorter leaves no whole window but those that come one by one anyway.
         if (newest_ != SensorTime::min() && t > newest_ + (kMaxLookahead + 1) * width_)
-            pauses_.push_back({newest_, t});
+            pauses_.push_back({clocks_heard_, newest_, t});
         newest_ = t;
     }
     SensorTime newest() const { return newest_; }  ///< seen last; SensorTime::min(): nothing yet
+    /// What is seen from now on is told by a clock that began anew.
+    void hear_anew();
 
     /// Where a window ends that would end at `edge`, when no event is known before `quiet_until`.
     SensorTime widened(SensorTime edge, SensorTime quiet_until) const;
 
     void end_window(bool empty);
-    /// Windows begin after `t` from now on.
+    /// Windows begin after `t` from now on, or are of a later clock.
     void forget_pauses_until(SensorTime t);
-    /// The next window is of another stream.
-    void begin_anew() { empty_windows_ = 0; }
+    /// The next window is of the clock after this one.
+    void begin_anew();
 
     int empty_windows() const { return empty_windows_; }  ///< in a row, silent_windows at most
 
 private:
     /// Between two times that were seen one after the other, long enough for a wide window.
     struct Pause {
+        std::uint64_t clock;
         SensorTime begin, end;
     };
     SensorTime seen_after(SensorTime edge) const;
@@ -64,6 +67,7 @@ private:
     SensorDuration width_{1};
     int silent_windows_ = 1, empty_windows_ = 0;
     SensorTime newest_ = SensorTime::min();
+    std::uint64_t clocks_heard_ = 0, clocks_given_ = 0;  // that began anew; of windows
     std::vector<Pause> pauses_;  // that may concern the open window or later ones
 };
 

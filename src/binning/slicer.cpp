@@ -44,16 +44,18 @@ void Slicer::change(const SlicerSettings& wanted) {
 void Slicer::reset() {
     pending_.clear();
     references_.clear();
+    gaps_.clear();
     begin_.reset();
     activity_.reset();
     silence_.reset();
     newest_ = newest_event_ = SensorTime::min();
     same_time_ = clocks_heard_ = clocks_given_ = 0;
     behind_since_.reset();
-    gap_ = reset_ = anew_ = finished_ = past_end_ = false;
+    reset_ = anew_ = finished_ = past_end_ = false;
     first_stream_ = true;
     end_ = settings_.end;
     hears_apart_ = false;
+    heard_event_ = SensorTime::min();
     if (settings_.begin) begin_at(*settings_.begin);
 }
 
@@ -75,25 +77,34 @@ void Slicer::hear(std::span<const Event> events) {
     hears_apart_ = true;
     if (!begin_ && !events.empty()) begin_at(events.front().t - kMicrosecond);
     for (const Event& event : events) silence_.see(event.t);
+    if (!events.empty()) heard_event_ = events.back().t;
+}
+
+void Slicer::begin_anew(SensorTime first) {
+    anew_ = false;
+    const bool has_reached_begin = !first_stream_ || !settings_.begin ||
+                                   std::max(heard_event_, newest_event_) > *settings_.begin;
+    heard_event_ = SensorTime::min();
+    if (!has_reached_begin) return;
+    note_time(silence_.newest());
+    if (past_end_) return;
+    ++counters_.time_resets;
+    ++clocks_heard_;
+    const SensorTime final = std::max(newest_, newest_event_), begin = first - kMicrosecond;
+    pending_.end_segment(final, begin);
+    first_stream_ = false;
+    end_ = end_after_reset(final, begin);
+    newest_ = begin;
+    newest_event_ = SensorTime::min();
+    same_time_ = 0;
+    silence_.hear_anew();
 }
 
 void Slicer::push_one(const Event& event) {
-    if (!hears_apart_) silence_.see(event.t);
     // The parser keeps order, so where time goes back the camera's clock was reset.
-    if (const bool anew = std::exchange(anew_, false); anew || event.t < newest_event_) {
-        if (past_end_) {
-            ++counters_.after_end;
-            return;
-        }
-        ++counters_.time_resets;
-        ++clocks_heard_;
-        const SensorTime final = std::max(newest_, newest_event_);
-        pending_.end_segment(final);
-        first_stream_ = false;
-        end_ = end_after_reset(final, event.t - kMicrosecond);
-        newest_ = newest_event_ = SensorTime::min();
-        same_time_ = 0;
-    }
+    if (anew_ || (hears_apart_ ? event.t < newest_event_ : is_new_clock(newest_event_, event.t)))
+        begin_anew(event.t);
+    if (!hears_apart_) silence_.see(event.t);
     if (first_stream_ && settings_.begin && event.t <= *settings_.begin) {
         ++counters_.before_begin;
         return;
@@ -152,37 +163,43 @@ void Slicer::look_behind(SensorTime told, HostTime arrived) {
     anew_ = behind_since_ && arrived - *behind_since_ >= kMostBehind;
 }
 
+void Slicer::finish() {
+    if (begin_) note_time(silence_.newest());
+    finished_ = true;
+}
+
 void Slicer::push_reference(SensorTime t) {
     if (settings_.rule != WindowRule::reference) return;
-    if (begin_ && t <= *begin_) {
-        ++counters_.late_references;
+    const Reference told{clocks_heard_, t};
+    if (begin_ && told.clock == clocks_given_ && t <= *begin_) {
+        if (t > origin_) ++counters_.late_references;  // else before all events
         return;
     }
-    references_.insert(std::upper_bound(references_.begin(), references_.end(), t), t);
+    references_.insert(std::ranges::upper_bound(references_, told), told);
 }
 
 void Slicer::emit(SensorTime end, EventWindow& event_window) {
     event_window.window = {*begin_, end};
     event_window.events = pending_.take_until(end);
-    event_window.gap_before = std::exchange(gap_, false);
     event_window.reset_before = std::exchange(reset_, false);
     event_window.arrived = arrived_;
     begin_ = end;
+    const auto after =
+        std::ranges::find_if(gaps_, [this](const Position& gap) { return ended_before(gap); });
+    event_window.gap_before = after != gaps_.begin();
+    gaps_.erase(gaps_.begin(), after);
     activity_.reset();
     silence_.end_window(event_window.events.empty());
-    // Pauses of a stream after the clock's next reset lie at times of their own.
-    if (!pending_.segment_has_ended()) silence_.forget_pauses_until(end);
+    silence_.forget_pauses_until(end);
 }
 
 /// Goes on where the camera's clock was reset.
 void Slicer::begin_next_segment() {
-    pending_.next_segment();
+    begin_ = origin_ = pending_.next_segment();
     ++clocks_given_;
-    references_.clear();
     activity_.reset();
     silence_.begin_anew();
     reset_ = true;
-    begin_ = origin_ = pending_.segment().front().t - kMicrosecond;
 }
 
 bool Slicer::next(EventWindow& event_window) {

@@ -7,6 +7,7 @@
 #include "src/binning/tile_activity.h"
 #include "src/core/frame_data.h"
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -44,9 +45,21 @@ public:
     void push(std::span<const Event> events, HostTime arrived = {});
 
     /// Events of which a filter leaves out some tell the time all the same: call it with all of
-    /// them before push() with what is left, and advance() after it. Windows in silence are then
-    /// the same however the stream is split, too.
+    /// them, in order of time, before push() with what is left, and advance() after it. Windows in
+    /// silence are then the same however the stream is split, too.
     void hear(std::span<const Event> events);
+    /// Whether the event at t, after one at `before`, is told by a clock that began anew: time went
+    /// back, or farther ahead than limit_leap() says.
+    bool is_new_clock(SensorTime before, SensorTime t) const {
+        return t < before || (before != SensorTime::min() && t - before > most_ahead_);
+    }
+    /// From now on. Without a limit at first: a recording may be silent for hours.
+    void limit_leap(SensorDuration most) { most_ahead_ = most; }
+    /// Whether an event of this time, after those heard, begins a new stream.
+    bool begins_anew(SensorTime t) const { return anew_ || is_new_clock(heard_event_, t); }
+    /// The camera's clock was reset: the open window ends, and a new stream begins at `first`. As
+    /// push() does by itself, for who knows of events that a filter leaves out.
+    void begin_anew(SensorTime first);
 
     /// The time of a reference image; before or after the events around it. Other rules ignore it.
     void push_reference(SensorTime t);
@@ -61,11 +74,21 @@ public:
     static constexpr SensorDuration kMostBehind{1'000'000};
     void look_behind(SensorTime told, HostTime arrived);
 
+    /// A place in the stream: how often its clock had begun anew, and until when all was known
+    /// then.
+    struct Position {
+        std::uint64_t clocks = 0;
+        std::optional<SensorTime> until{};  ///< empty: nothing was
+        friend bool operator==(const Position&, const Position&) = default;
+    };
     /// Bytes were lost here. The next event window carries gap_before.
-    void mark_gap() { gap_ = true; }
+    void mark_gap() {
+        const Position here = heard();
+        if (gaps_.empty() || gaps_.back() != here) gaps_.push_back(here);
+    }
 
     /// Nothing more will come: what is open ends at the newest time known.
-    void finish() { finished_ = true; }
+    void finish();
 
     /// The open event window and those after it are cut so: rule, width, events, events_per_pixel,
     /// min_width and max_width; the rest stays as constructed. Throws Error (usage) for settings
@@ -75,12 +98,6 @@ public:
     /// The next complete event window, borrowed until the next call of anything here.
     bool next(EventWindow& event_window);
 
-    /// A place in the stream: how often its clock had begun anew, and until when all was known
-    /// then.
-    struct Position {
-        std::uint64_t clocks = 0;
-        std::optional<SensorTime> until{};  ///< empty: nothing was
-    };
     /// Of all that was said so far.
     Position heard() const;
     /// The end of the event window given last. It could have been cut before what came when the
@@ -129,7 +146,7 @@ private:
     std::optional<SensorTime> next_reference();
     std::optional<SensorTime> busy_at();
     SensorTime natural_edge() const;
-    SensorTime widened(SensorTime edge, SensorTime known_until, SensorTime limit) const;
+    SensorTime widened(SensorTime edge, SensorTime limit) const;
 
     int width_, height_;  // px
     SlicerSettings settings_;
@@ -139,17 +156,26 @@ private:
     PendingEvents pending_;
     TileActivity activity_;  // rule content: of the open window
     SilenceTracker silence_;
-    std::vector<SensorTime> references_;  // ascending
-    std::optional<SensorTime> begin_;     // of the open window
-    SensorTime origin_{};                 // rule duration: edges are at origin_ + k width
+    /// Which clock tells an image's time: as many had begun anew, of clocks_heard_.
+    struct Reference {
+        std::uint64_t clock;
+        SensorTime t;
+        auto operator<=>(const Reference&) const = default;
+    };
+    std::vector<Reference> references_;  // ascending
+    std::vector<Position> gaps_;         // that no window given carries yet
+    std::optional<SensorTime> begin_;    // of the open window
+    SensorTime origin_{};                // rule duration: edges are at origin_ + k width
     SensorTime newest_ = SensorTime::min(), newest_event_ = SensorTime::min();
     std::uint64_t same_time_ = 0;  // events at newest_event_
     // Clocks that began anew: in what was pushed, in the windows given.
     std::uint64_t clocks_heard_ = 0, clocks_given_ = 0;
-    bool hears_apart_ = false;  // hear() tells the time, not push()
+    bool hears_apart_ = false;                    // hear() tells the time, not push()
+    SensorTime heard_event_ = SensorTime::min();  // the last by hear()
+    SensorDuration most_ahead_ = SensorDuration::max();
     HostTime arrived_{};
     std::optional<HostTime> behind_since_;  // the stream is far behind newest_
-    bool gap_ = false, reset_ = false, anew_ = false, finished_ = false, past_end_ = false;
+    bool reset_ = false, anew_ = false, finished_ = false, past_end_ = false;
     bool first_stream_ = true;       // settings_.begin and end are times of the first stream only
     std::optional<SensorTime> end_;  // of this stream
     SlicerCounters counters_;

@@ -28,10 +28,10 @@ bool Slicer::ended_before(const Position& position) const {
 }
 
 std::optional<SensorTime> Slicer::next_reference() {
-    const auto first = std::upper_bound(references_.begin(), references_.end(), *begin_);
+    const auto first = std::ranges::upper_bound(references_, Reference{clocks_given_, *begin_});
     references_.erase(references_.begin(), first);
-    if (references_.empty()) return std::nullopt;
-    return references_.front();
+    if (references_.empty() || references_.front().clock != clocks_given_) return std::nullopt;
+    return references_.front().t;
 }
 
 /// Rule content: the time at which the open window has seen enough, where it is known.
@@ -46,11 +46,15 @@ SensorTime Slicer::natural_edge() const {
     return origin_ + ((*begin_ - origin_) / step_ + 1) * step_;
 }
 
-/// Of an empty window that reaches into a long silence, at most until `known_until`.
-SensorTime Slicer::widened(SensorTime edge, SensorTime known_until, SensorTime limit) const {
+/// Of an empty window that reaches into a long silence, at most until `limit`. A filter may hold
+/// events back: what it will give does not count, so that windows do not hang on when it does.
+SensorTime Slicer::widened(SensorTime edge, SensorTime limit) const {
     const auto events = pending_.segment();
-    const SensorTime quiet_until = events.empty() ? known_until : events.front().t - kMicrosecond;
-    return silence_.widened(edge, std::min(quiet_until, limit));
+    if (!events.empty())
+        limit = std::min(limit, events.front().t - kMicrosecond);
+    else if (is_ended())
+        limit = std::min(limit, passed());
+    return silence_.widened(edge, limit);
 }
 
 /// The end of the open window, where it is known.
@@ -66,7 +70,7 @@ std::optional<SensorTime> Slicer::cut() {
     }
     if (settings_.rule == WindowRule::content)
         if (const auto busy = busy_at()) edge = std::min(edge, limit = *busy);
-    edge = widened(edge, passed - wait, limit);
+    edge = widened(edge, limit);
     if (const auto events = pending_.segment(); events.size() >= most_events_) {
         const SensorTime last = events[most_events_ - 1].t;
         if (last <= edge) {

@@ -1,6 +1,7 @@
 // What a slicer remembers, so that another one goes on.
 #include "src/binning/slicer.h"
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 
@@ -18,12 +19,12 @@ std::optional<Slicer::State> Slicer::state() const {
                  silence_.newest(),
                  same_time_,
                  silence_.empty_windows(),
-                 gap_,
+                 !gaps_.empty(),
                  {events.begin(), events.end()}};
 }
 
 void Slicer::restore(const State& state) {
-    constexpr SensorTime kFarthest{SensorDuration{std::int64_t{1} << 60}};  // sums of times fit
+    constexpr SensorTime kFarthest{SensorDuration{kFarthestTime_us}};
     const auto in_order = [](const Event& a, const Event& b) { return a.t < b.t; };
     if (state.heard > kFarthest || state.origin < SensorTime{-kFarthest.time_since_epoch()} ||
         state.newest > kFarthest || state.origin > state.begin || state.begin > state.newest ||
@@ -41,7 +42,7 @@ void Slicer::restore(const State& state) {
     newest_ = state.newest;
     newest_event_ = state.newest_event;
     same_time_ = state.same_time;
-    gap_ = state.gap;
+    if (state.gap) gaps_.push_back({});
     silence_.restore(state.silent, state.heard);
     pending_.assign(state.events);
 }

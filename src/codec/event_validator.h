@@ -3,6 +3,7 @@
 
 #include "src/core/damage.h"
 #include "src/core/event.h"
+#include "src/core/sensor_limits.h"
 
 #include <cstdint>
 #include <optional>
@@ -25,8 +26,8 @@ class EventValidator {
 public:
     enum class LeapEnds { with_next_event, with_next_packet };
     static constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
-    static constexpr std::int64_t kLongestFirstPause = 60'000'000;    // us
-    static constexpr std::int64_t kFarthest = std::int64_t{1} << 60;  // us: 36000 years
+    static constexpr std::int64_t kLongestFirstPause = 60'000'000;  // us
+    static constexpr std::int64_t kFarthest = kFarthestTime_us;
 
     /// px
     EventValidator(std::uint64_t width, std::uint64_t height,

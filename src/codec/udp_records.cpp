@@ -3,6 +3,7 @@
 
 #include "src/codec/nearest_time.h"
 #include "src/core/byte_order.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kNoTime = 1U << 31;
 constexpr std::int64_t kFarUs = 1'000'000;
-constexpr std::uint64_t kLatestUs = std::uint64_t{1} << 60;
+constexpr auto kLatestUs = std::uint64_t(kFarthestTime_us);
 
 }  // namespace
 

@@ -40,14 +40,14 @@ TEST(PendingEvents, AResetOfTheClockBeginsASegment) {
     PendingEvents pending;
     for (const int t : {7, 8}) pending.push(at(t));
     EXPECT_FALSE(pending.segment_has_ended());
-    pending.end_segment(from_us(10));
+    pending.end_segment(from_us(10), from_us(0));
     for (const int t : {1, 2}) pending.push(at(t));
     ASSERT_TRUE(pending.segment_has_ended());
     EXPECT_EQ(pending.segment_final(), from_us(10));
     EXPECT_EQ(times_of(pending.take_until(from_us(7))), (Times{7}));
     pending.drop_taken();
     EXPECT_EQ(times_of(pending.take_until(from_us(99))), (Times{8})) << "none of the next segment";
-    pending.next_segment();
+    EXPECT_EQ(pending.next_segment(), from_us(0));
     EXPECT_FALSE(pending.segment_has_ended());
     EXPECT_EQ(times_of(pending.segment()), (Times{1, 2}));
 }
@@ -55,7 +55,7 @@ TEST(PendingEvents, AResetOfTheClockBeginsASegment) {
 TEST(PendingEvents, AreReplacedByThoseOfAState) {
     PendingEvents pending;
     pending.push(at(7));
-    pending.end_segment(from_us(9));
+    pending.end_segment(from_us(9), from_us(0));
     pending.assign(std::vector{at(3), at(4)});
     EXPECT_FALSE(pending.segment_has_ended());
     EXPECT_EQ(times_of(pending.segment()), (Times{3, 4}));

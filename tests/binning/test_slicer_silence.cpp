@@ -224,22 +224,6 @@ TEST(Slicer, MovesAnEventThatComesAfterItsFrameWasClosed) {
     EXPECT_EQ(event_windows[2].events, (std::vector{at(21), at(29)}));
 }
 
-/// A filter leaves out the only event before the clock is reset.
-TEST(Slicer, HearsAResetOfTheClockBeforeAnythingIsPushed) {
-    Slicer slicer(by_duration(10), 240, 180);
-    std::vector<Kept> event_windows;
-    slicer.hear(std::vector{at(1000), at(50)});
-    slicer.push(std::vector{at(50)});
-    slicer.hear(std::vector{at(60), at(20)});
-    slicer.push(std::vector{at(60), at(20)});
-    slicer.finish();
-    take(slicer, event_windows);
-    std::size_t events = 0;
-    for (const Kept& window : event_windows) events += window.events.size();
-    EXPECT_EQ(events, 3U);
-    EXPECT_EQ(slicer.counters().time_resets, 1U);
-}
-
 TEST(Slicer, BeginsAnewWhereASourceStaysBehindWhatWasPromised) {
     Slicer slicer(by_duration(1'000'000), 240, 180);
     std::vector<Kept> event_windows;

@@ -108,6 +108,31 @@ TEST(EventWindows, OfACameraThatBeginsAnewInSilenceDoSoOnce) {
     EXPECT_EQ(b.counters.snapshot().slicing.time_resets, 1U);
 }
 
+/// One datagram of another time, or a sender whose clock was set.
+TEST(EventWindows, OfALiveSourceBeginAnewWhereItsClockLeaps) {
+    constexpr std::int64_t kMs = 1000, kYear = 31'536'000'000'000;
+    const auto windows_of = [](std::int64_t leap_us, std::int64_t silence_us, bool live) {
+        Beginning b(live, 10 * kMs);
+        std::int64_t host = 0;
+        for (std::int64_t t = 1; t < 100 * kMs; t += 5 * kMs)
+            b.give(record(ToyKind::event, t), host += 5 * kMs);
+        host += silence_us;
+        for (std::int64_t t = 100 * kMs + leap_us; t < 200 * kMs + leap_us; t += 5 * kMs)
+            b.give(record(ToyKind::event, t), host += 5 * kMs);
+        b.finish();
+        return std::pair{b.counters.snapshot().slicing.time_resets, b.edges};
+    };
+    for (const bool live : {true, false}) {
+        const auto [resets, edges] = windows_of(50 * kYear, 0, live);
+        EXPECT_EQ(resets, live ? 1U : 0U) << "a recording may have been paused";
+        if (!live) continue;
+        for (const auto& [begin, end] : edges) EXPECT_LE(end - begin, 10 * kMs);
+    }
+    EXPECT_EQ(windows_of(59'000 * kMs, 0, true).first, 0U) << "sent faster than it was seen";
+    EXPECT_EQ(windows_of(3'600'000 * kMs, 3'600'000 * kMs, true).first, 0U) << "an hour's silence";
+    EXPECT_EQ(windows_of(3'600'000 * kMs, 0, true).first, 1U);
+}
+
 TEST(EventWindows, WaitForWhatWasOnItsWayForLong) {
     constexpr std::int64_t kMs = 1000;
     Beginning b(true, 10 * kMs);
