@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -38,6 +39,23 @@ public:
     /// Of zeros. Height and width: at least 0.
     Array2(int height, int width)
         : height_(height), width_(width), values_(std::size_t(height) * std::size_t(width)) {}
+    Array2(const Array2&) = default;             ///< a copy of all values
+    Array2& operator=(const Array2&) = default;  ///< a copy of all values
+    /// `other` is empty afterwards.
+    Array2(Array2&& other) noexcept { swap(other); }
+    /// `other` is empty afterwards.
+    Array2& operator=(Array2&& other) noexcept {
+        Array2 taken(std::move(other));
+        swap(taken);
+        return *this;
+    }
+    ~Array2() = default;
+    /// Exchanges size and values.
+    void swap(Array2& other) noexcept {
+        std::swap(height_, other.height_);
+        std::swap(width_, other.width_);
+        values_.swap(other.values_);
+    }
 
     int height() const { return height_; }                 ///< rows
     int width() const { return width_; }                   ///< columns

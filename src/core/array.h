@@ -6,10 +6,13 @@
 
 #include <sys/mman.h>
 
+#include <bit>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace eventide {
@@ -54,6 +57,21 @@ public:
           width_(width),
           channels_(channels),
           values_(std::size_t(height) * std::size_t(width) * std::size_t(channels)) {}
+    Array3(const Array3&) = default;
+    Array3& operator=(const Array3&) = default;
+    Array3(Array3&& other) noexcept { swap(other); }  ///< `other` is empty afterwards
+    Array3& operator=(Array3&& other) noexcept {      ///< the same
+        Array3 taken(std::move(other));
+        swap(taken);
+        return *this;
+    }
+    ~Array3() = default;
+    void swap(Array3& other) noexcept {
+        std::swap(height_, other.height_);
+        std::swap(width_, other.width_);
+        std::swap(channels_, other.channels_);
+        values_.swap(other.values_);
+    }
 
     int height() const { return height_; }
     int width() const { return width_; }
@@ -81,9 +99,13 @@ private:
 
 /// No NaN, no infinity.
 inline bool is_finite(const Array2<float>& map) {
-    float worst = 0;  // 0 x is NaN for both; sums of NaN stay so, and this loop has no branches
-    for (const float value : map.values()) worst += 0 * value;
-    return worst == 0;
+    // Numbers without their sign, as integers, are as large as they are. No branches: compilers
+    // make vectors of it.
+    constexpr std::int32_t kLargest = 0x7F7F'FFFF;
+    bool found = false;
+    for (const float value : map.values())
+        found |= (std::bit_cast<std::int32_t>(value) & 0x7FFF'FFFF) > kLargest;
+    return !found;
 }
 
 }  // namespace eventide

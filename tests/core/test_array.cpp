@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 namespace eventide {
@@ -35,6 +37,38 @@ TEST(Array2, RowsAreItsValuesInOrder) {
     EXPECT_EQ(plane.row(1)[0], 7);
     EXPECT_EQ(plane.values()[3], 7);
     EXPECT_EQ(plane.row(1).size(), 3U);
+}
+
+/// Whoever uses buffers again asks for their size.
+TEST(Arrays, AreEmptyOnceTheyWereMoved) {
+    Array2<int> plane{2, 3};
+    plane(1, 2) = 7;
+    Array2<int> taken = std::move(plane);
+    EXPECT_EQ(plane, Array2<int>{});  // NOLINT(bugprone-use-after-move): this is what is asked
+    EXPECT_EQ(taken(1, 2), 7);
+    plane = std::move(taken);
+    EXPECT_EQ(taken.height(), 0);  // NOLINT(bugprone-use-after-move)
+    EXPECT_EQ(plane(1, 2), 7);
+    Array3<int> map{2, 3, 4};
+    const Array3<int> taken_map = std::move(map);
+    EXPECT_EQ(map, Array3<int>{});  // NOLINT(bugprone-use-after-move)
+    EXPECT_EQ(taken_map.channels(), 4);
+}
+
+TEST(Arrays, OfNumbersAreFiniteOrNot) {
+    Array2<float> map{5, 7};
+    EXPECT_TRUE(is_finite(map));
+    EXPECT_TRUE(is_finite(Array2<float>{}));
+    constexpr float kMost = std::numeric_limits<float>::max(),
+                    kInfinity = std::numeric_limits<float>::infinity();
+    for (const float value : {kMost, -kMost, -0.0F, 1e-44F}) {
+        map(4, 6) = value;
+        EXPECT_TRUE(is_finite(map)) << value;
+    }
+    for (const float value : {kInfinity, -kInfinity, std::nanf(""), -std::nanf("1")}) {
+        map(3, 2) = value;
+        EXPECT_FALSE(is_finite(map)) << value;
+    }
 }
 
 TEST(SensorTime, CarriesEpochStampsInMicroseconds) {
