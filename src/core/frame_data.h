@@ -68,6 +68,8 @@ struct LatentCodes {
 /// What the encoder knows after one event window.
 struct LatentMap : WindowStamp, LatentCodes {
     Array2<float> events_per_pixel;  ///< [y][x]; empty where not asked for
+    /// Of the mirrored views of an ensemble but the first (EngineOptions::self_ensemble).
+    std::vector<LatentCodes> mirrored;
     /// Of blue, green and red pixels alone, half as wide and high; empty where not asked for.
     std::vector<LatentCodes> channels;
 };

@@ -20,7 +20,7 @@ public:
     /// What latent.is_bf16 has to be.
     virtual bool gives_bf16() const { return false; }
     /// Writes latent.values and says in latent.history what is known of it.
-    virtual void step(const VoxelGrid& grid, LatentMap& latent) noexcept = 0;
+    virtual void step(const VoxelGrid& grid, LatentCodes& latent) noexcept = 0;
     virtual void reset() noexcept = 0;
     /// The hidden maps by name, [height, width, channels].
     virtual Tensors state() const = 0;
@@ -47,10 +47,10 @@ public:
     virtual std::string description() const = 0;
     /// Takes the memory that rendering such frames needs; until then render() takes it.
     virtual void make_room(const FrameGeometry&) {}
-    virtual void push(std::int64_t k, const LatentMap& latent) noexcept = 0;
+    virtual void push(std::int64_t k, const LatentCodes& latent) noexcept = 0;
     /// The same; may keep the codes themselves, and leave others of the same size with a history
     /// that is true of them.
-    virtual void take(std::int64_t k, LatentMap& latent) noexcept { push(k, latent); }
+    virtual void take(std::int64_t k, LatentCodes& latent) noexcept { push(k, latent); }
     virtual void reset() noexcept = 0;
     /// `sigma` is null where not asked for.
     virtual void render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,

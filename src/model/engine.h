@@ -23,6 +23,9 @@ struct EngineOptions {
     /// bf16 without a processor that has it.
     bool emulate_bf16 = false;
     ParallelFor parallel_for = sequential_for;
+    /// 1, 2 or 4 networks see the scene as it is and mirrored, each with a memory of its own, and
+    /// frames are the mean of theirs: that much more time and memory for a smaller error.
+    int self_ensemble = 1;
     /// Leave out tiles in whose reach nothing happened. The results are the same bit for bit; off
     /// only for tests and measurements.
     bool skip_quiet = true;

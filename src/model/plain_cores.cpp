@@ -15,7 +15,7 @@ public:
     PlainEncoder(const Model& model, int height, int width) : network_(model, height, width) {}
 
     std::string description() const override { return "plain, f32"; }
-    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+    void step(const VoxelGrid& grid, LatentCodes& latent) noexcept override {
         latent.values = network_.step(grid.values);
         latent.history = {};
     }
@@ -46,7 +46,7 @@ public:
     explicit PlainRenderer(const Model& model) : network_(model), depth_(model.config.latent) {}
 
     std::string description() const override { return "plain, f32"; }
-    void push(std::int64_t k, const LatentMap& latent) noexcept override {
+    void push(std::int64_t k, const LatentCodes& latent) noexcept override {
         codes_[LatentWindow::slot(k)] = codes_in_float(latent, depth_);
     }
     void reset() noexcept override {}

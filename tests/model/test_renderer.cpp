@@ -99,7 +99,7 @@ TEST(Renderer, SaysWhatItCanRender) {
 }
 
 TEST(Renderer, ImpossibleRequestsAreRefused) {
-    const Renderer renderer{test::random_model(config_of(1), 3), 13, 9};
+    Renderer renderer{test::random_model(config_of(1), 3), 13, 9};
     RenderRequest request;
     request.lookahead = 3;
     EXPECT_THROW(renderer.make_output(request), Error);

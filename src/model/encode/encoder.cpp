@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/core/sensor_limits.h"
 #include "src/model/cores.h"
+#include "src/model/mirrors.h"
 #include "src/model/render/sampling.h"
 #include "src/nn/tiling.h"
 
@@ -30,9 +31,15 @@ Encoder::Encoder(const Model& model, int width, int height, const EngineOptions&
       latent_channels_(model.config.latent) {
     check_size(width, height);
     check_model(model, "encoder");
+    check_self_ensemble(options.self_ensemble);
     identity_ = encoder_identity(model);
-    core_ = options.engine == Engine::plain ? make_plain_encoder(model, height, width)
-                                            : make_fast_encoder(model, height, width, options);
+    for (int view = 0; view < options.self_ensemble; ++view)
+        cores_.push_back(options.engine == Engine::plain
+                             ? make_plain_encoder(model, height, width)
+                             : make_fast_encoder(model, height, width, options));
+    if (cores_.size() == 1) return;
+    mirrored_.values = {height, width, 4 * bins_ + 1};
+    mirrored_.touched = {height, width};
 }
 
 Encoder::~Encoder() = default;
@@ -40,33 +47,56 @@ Encoder::Encoder(Encoder&&) noexcept = default;
 Encoder& Encoder::operator=(Encoder&&) noexcept = default;
 
 std::string Encoder::description() const {
-    return core_->description();
+    const std::string one = cores_.front()->description();
+    return cores_.size() == 1 ? one : one + ", " + std::to_string(cores_.size()) + " views";
 }
 
 LatentMap Encoder::make_output() const {
     LatentMap latent;
-    latent.is_bf16 = core_->gives_bf16();
-    latent.values = {latent_height_, latent_width_,
-                     latent.is_bf16 ? (latent_channels_ + 1) / 2 : latent_channels_};
-    latent.history.changed.reserve(latent_tiles(latent_height_, latent_width_).size());
+    const auto make = [this](LatentCodes& codes) {
+        codes.is_bf16 = cores_.front()->gives_bf16();
+        codes.values = {latent_height_, latent_width_,
+                        codes.is_bf16 ? (latent_channels_ + 1) / 2 : latent_channels_};
+        codes.history.changed.reserve(latent_tiles(latent_height_, latent_width_).size());
+    };
+    make(latent);
+    latent.mirrored.resize(cores_.size() - 1);
+    for (LatentCodes& codes : latent.mirrored) make(codes);
     return latent;
 }
 
 void Encoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
-    core_->step(grid, latent);
+    cores_.front()->step(grid, latent);
+    for (std::size_t view = 1; view < cores_.size(); ++view) {
+        mirror(grid, kMirrors[view], mirrored_);
+        cores_[view]->step(mirrored_, latent.mirrored[view - 1]);
+    }
 }
 
 void Encoder::reset() noexcept {
-    core_->reset();
+    for (const auto& core : cores_) core->reset();
 }
 
+namespace {
+
+/// The hidden maps of the first view are called as they are, those of the second "view1.h.0".
+std::string of_view(std::size_t view, const std::string& name) {
+    return view == 0 ? name : "view" + std::to_string(view) + "." + name;
+}
+
+}  // namespace
+
 TensorFile Encoder::state() const {
-    return {{{"format", "eventide-state"},
-             {"version", "1"},
-             {"model", identity_},
-             {"width", std::to_string(width_)},
-             {"height", std::to_string(height_)}},
-            core_->state()};
+    TensorFile file{{{"format", "eventide-state"},
+                     {"version", "1"},
+                     {"model", identity_},
+                     {"width", std::to_string(width_)},
+                     {"height", std::to_string(height_)}},
+                    {}};
+    for (std::size_t view = 0; view < cores_.size(); ++view)
+        for (auto& [name, tensor] : cores_[view]->state())
+            file.tensors[of_view(view, name)] = std::move(tensor);
+    return file;
 }
 
 namespace {
@@ -97,7 +127,12 @@ void Encoder::restore(const TensorFile& state, const std::string& name) {
         throw Error(ErrorKind::input, name + ": expected " + std::to_string(mine.tensors.size()) +
                                           " tensors, found " +
                                           std::to_string(state.tensors.size()));
-    core_->restore(state.tensors);
+    for (std::size_t view = 0; view < cores_.size(); ++view) {
+        Tensors seen;
+        for (const auto& [map, tensor] : cores_[view]->state())
+            seen[map] = state.tensors.at(of_view(view, map));
+        cores_[view]->restore(seen);
+    }
 }
 
 }  // namespace eventide

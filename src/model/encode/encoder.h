@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace eventide {
 
@@ -48,7 +49,9 @@ private:
     // identity_: encoder_identity() of the model, which saved states carry.
     int width_, height_, bins_, latent_height_, latent_width_, latent_channels_;
     std::string identity_;
-    std::unique_ptr<EncoderCore> core_;
+    // One for each view of the ensemble (kMirrors).
+    std::vector<std::unique_ptr<EncoderCore>> cores_;
+    VoxelGrid mirrored_;  // the grid as a view sees it
 };
 
 }  // namespace eventide

@@ -56,7 +56,7 @@ std::string GatedEncoder::description() const {
     return engine_name(backend_);
 }
 
-void GatedEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
+void GatedEncoder::step(const VoxelGrid& grid, LatentCodes& latent) noexcept {
     latent_.begin_step();
     // Where nothing happens, no state changes, and nothing that follows from them does.
     if (mark_events(grid) || stale_ || !options_.skip_quiet) {

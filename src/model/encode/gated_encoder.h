@@ -18,7 +18,7 @@ public:
 
     std::string description() const override;
     bool gives_bf16() const override { return backend_.bf16 != nullptr; }
-    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
+    void step(const VoxelGrid& grid, LatentCodes& latent) noexcept override;
     void reset() noexcept override;
     Tensors state() const override { return tensors_of(states_); }
     void restore(const Tensors& state) override;

@@ -39,7 +39,7 @@ public:
     /// Tile i has new codes in this step.
     void mark_changed(std::size_t i) noexcept { history_.changed[i] = history_.step; }
     /// Whether tile i of `latent` is not what it would be made of now.
-    bool is_outdated(std::size_t i, const LatentMap& latent) const noexcept {
+    bool is_outdated(std::size_t i, const LatentCodes& latent) const noexcept {
         return StaleTiles{latent.history, history_}(i);
     }
 

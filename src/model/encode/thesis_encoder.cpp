@@ -78,7 +78,7 @@ std::string ThesisEncoder::description() const {
     return engine_name(backend_);
 }
 
-void ThesisEncoder::step(const VoxelGrid& grid, LatentMap& latent) noexcept {
+void ThesisEncoder::step(const VoxelGrid& grid, LatentCodes& latent) noexcept {
     latent_.begin_step();
     feed_in(grid.values);
     normalise(0, nullptr, x0_);

@@ -20,7 +20,7 @@ public:
                   const Backend& backend);
 
     std::string description() const override;
-    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
+    void step(const VoxelGrid& grid, LatentCodes& latent) noexcept override;
     void reset() noexcept override;
     Tensors state() const override { return tensors_of(states_); }
     void restore(const Tensors& state) override { load(state, states_); }

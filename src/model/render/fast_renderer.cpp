@@ -67,11 +67,11 @@ void FastRenderer::reset() noexcept {
     for (Size& size : sizes_) size.kept.reset();
 }
 
-void FastRenderer::push(std::int64_t k, const LatentMap& latent) noexcept {
+void FastRenderer::push(std::int64_t k, const LatentCodes& latent) noexcept {
     first_layer_.push(k, latent);
 }
 
-void FastRenderer::take(std::int64_t k, LatentMap& latent) noexcept {
+void FastRenderer::take(std::int64_t k, LatentCodes& latent) noexcept {
     first_layer_.take(k, latent);
 }
 

@@ -19,8 +19,8 @@ public:
 
     std::string description() const override;
     void make_room(const FrameGeometry& geometry) override { lay_out(geometry); }
-    void push(std::int64_t k, const LatentMap& latent) noexcept override;
-    void take(std::int64_t k, LatentMap& latent) noexcept override;
+    void push(std::int64_t k, const LatentCodes& latent) noexcept override;
+    void take(std::int64_t k, LatentCodes& latent) noexcept override;
     void reset() noexcept override;
     void render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
                 Array2<float>& intensity, Array2<float>* sigma) noexcept override;

@@ -76,7 +76,7 @@ const PaddedMap* FirstLayerCache::code(std::int64_t k) const noexcept {
 }
 
 /// Slot k % 5 holds z_{k-5}: only tiles that changed since are written.
-void FirstLayerCache::push(std::int64_t k, const LatentMap& latent) noexcept {
+void FirstLayerCache::push(std::int64_t k, const LatentCodes& latent) noexcept {
     newest_ = k;
     const std::size_t slot = LatentWindow::slot(k);
     const StaleTiles stale{histories_[slot], latent.history};
@@ -94,7 +94,7 @@ bool FirstLayerCache::is_as_held(const LatentCodes& latent) const noexcept {
            latent.is_bf16 == (numbers_.bf16() != nullptr);
 }
 
-void FirstLayerCache::take(std::int64_t k, LatentMap& latent) noexcept {
+void FirstLayerCache::take(std::int64_t k, LatentCodes& latent) noexcept {
     if (!is_as_held(latent)) {
         push(k, latent);
         return;

@@ -39,9 +39,9 @@ public:
                     const Backend& backend);
 
     /// Takes z_k; k - 1 before it, unless reset() was.
-    void push(std::int64_t k, const LatentMap& latent) noexcept;
+    void push(std::int64_t k, const LatentCodes& latent) noexcept;
     /// The same; z_{k-5}, which goes, is left in place of z_k where no copy is needed.
-    void take(std::int64_t k, LatentMap& latent) noexcept;
+    void take(std::int64_t k, LatentCodes& latent) noexcept;
     void reset() noexcept;
 
     /// The sums of event window k; valid until the call after the next.

@@ -5,8 +5,11 @@
 #include "src/core/frame_stamp.h"
 #include "src/core/sensor_limits.h"
 #include "src/model/cores.h"
+#include "src/model/mirrors.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 namespace eventide {
 
@@ -44,14 +47,23 @@ void check_part(const FrameGeometry& g) {
     const auto size = [](int width, int height) {
         return std::to_string(width) + "x" + std::to_string(height);
     };
-    throw Error(ErrorKind::usage, "--roi exceeds the " + size(g.width, g.height) +
+    throw Error(ErrorKind::usage, "region (roi) exceeds the " + size(g.width, g.height) +
                                       " frame: expected a part of it, found " +
                                       size(g.part_width, g.part_height) + " from " +
                                       std::to_string(g.x) + "," + std::to_string(g.y));
 }
 
-void fit(Array2<float>& map, int height, int width) {
-    if (map.height() != height || map.width() != width) map = {height, width};
+void fit(const FrameGeometry& geometry, Array2<float>& map) {
+    if (map.height() != geometry.part_height || map.width() != geometry.part_width)
+        map = {geometry.part_height, geometry.part_width};
+}
+
+void fit(const FrameGeometry& geometry, bool want_sigma, Frame& frame) {
+    fit(geometry, frame.intensity);
+    if (want_sigma)
+        fit(geometry, frame.sigma);
+    else
+        frame.sigma = {};
 }
 
 }  // namespace
@@ -62,9 +74,11 @@ Renderer::Renderer(const Model& model, int sensor_width, int sensor_height,
     check_side("width of the sensor", sensor_width);
     check_side("height of the sensor", sensor_height);
     check_model(model, "renderer");
-    core_ = options.engine == Engine::plain
-                ? make_plain_renderer(model)
-                : make_fast_renderer(model, sensor_width, sensor_height, options);
+    check_self_ensemble(options.self_ensemble);
+    for (int view = 0; view < options.self_ensemble; ++view)
+        cores_.push_back(options.engine == Engine::plain
+                             ? make_plain_renderer(model)
+                             : make_fast_renderer(model, sensor_width, sensor_height, options));
 }
 
 Renderer::~Renderer() = default;
@@ -72,19 +86,27 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 std::string Renderer::description() const {
-    return core_->description();
+    return cores_.front()->description();
 }
 
 std::uint64_t Renderer::pixels_rendered() const noexcept {
-    return core_->pixels_rendered();
+    std::uint64_t pixels = 0;
+    for (const auto& core : cores_) pixels += core->pixels_rendered();
+    return pixels;
 }
 
 void Renderer::push(const LatentMap& latent) noexcept {
-    core_->push(window_.push(latent), latent);
+    const std::int64_t k = window_.push(latent);
+    cores_.front()->push(k, latent);
+    for (std::size_t view = 1; view < cores_.size(); ++view)
+        cores_[view]->push(k, latent.mirrored[view - 1]);
 }
 
 void Renderer::take(LatentMap& latent) noexcept {
-    core_->take(window_.push(latent), latent);
+    const std::int64_t k = window_.push(latent);
+    cores_.front()->take(k, latent);
+    for (std::size_t view = 1; view < cores_.size(); ++view)
+        cores_[view]->take(k, latent.mirrored[view - 1]);
 }
 
 void Renderer::finish() noexcept {
@@ -93,14 +115,20 @@ void Renderer::finish() noexcept {
 
 void Renderer::reset() noexcept {
     window_.reset();
-    core_->reset();
+    for (const auto& core : cores_) core->reset();
 }
 
 Readiness Renderer::readiness(SensorTime t, int lookahead) const noexcept {
     return window_.readiness(t, lookahead);
 }
 
-Frame Renderer::make_output(const RenderRequest& request) const {
+Frame Renderer::make_output(const RenderRequest& request) {
+    Frame frame;
+    make_room(request, frame);
+    return frame;
+}
+
+void Renderer::make_room(const RenderRequest& request, Frame& frame) {
     const FrameGeometry geometry = geometry_of(request, sensor_width_, sensor_height_);
     check_side("width", geometry.width);
     check_side("height", geometry.height);
@@ -108,11 +136,41 @@ Frame Renderer::make_output(const RenderRequest& request) const {
     if (request.lookahead < 0 || request.lookahead > kMaxLookahead)
         throw Error(ErrorKind::usage,
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(request.lookahead));
-    Frame frame;
-    frame.intensity = {geometry.part_height, geometry.part_width};
-    if (request.want_sigma) frame.sigma = {geometry.part_height, geometry.part_width};
-    core_->make_room(geometry);
-    return frame;
+    fit(geometry, request.want_sigma, frame);
+    for (std::size_t view = 0; view < cores_.size(); ++view)
+        cores_[view]->make_room(mirror(geometry, kMirrors[view]));
+    if (cores_.size() == 1) return;
+    fit(geometry, request.want_sigma, view_);
+    fit(geometry, request.want_sigma, mirrored_);
+}
+
+/// mu = mean of mu_i,  sigma = e sqrt(mean of sigma_i^2), e = error_of_mean()
+void Renderer::render_views(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
+                            Frame& frame) noexcept {
+    Array2<float>* sigma = frame.sigma.empty() ? nullptr : &frame.sigma;
+    cores_.front()->render(codes, geometry, rule, frame.intensity, sigma);
+    if (cores_.size() == 1) return;
+    fit(geometry, sigma != nullptr, view_);
+    fit(geometry, sigma != nullptr, mirrored_);
+    if (sigma != nullptr)
+        for (float& s : sigma->values()) s *= s;
+    for (std::size_t view = 1; view < cores_.size(); ++view) {
+        const Mirror axes = kMirrors[view];
+        cores_[view]->render(codes, mirror(geometry, axes), rule, view_.intensity,
+                             sigma != nullptr ? &view_.sigma : nullptr);
+        mirror(view_.intensity, axes, mirrored_.intensity);
+        std::ranges::transform(frame.intensity.values(), mirrored_.intensity.values(),
+                               frame.intensity.values().begin(), std::plus{});
+        if (sigma == nullptr) continue;
+        mirror(view_.sigma, axes, mirrored_.sigma);
+        std::ranges::transform(sigma->values(), mirrored_.sigma.values(), sigma->values().begin(),
+                               [](float sum, float s) { return sum + s * s; });
+    }
+    const auto views = int(cores_.size());
+    const float share = 1 / float(views), error = float(error_of_mean(views));
+    for (float& mu : frame.intensity.values()) mu *= share;
+    if (sigma != nullptr)
+        for (float& s : sigma->values()) s = error * std::sqrt(share * s);
 }
 
 void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
@@ -128,13 +186,8 @@ void Renderer::render(const RenderRequest& request, Frame& frame) noexcept {
                            at.fraction,
                            {window_.known(at.k + 1, at.k, request.lookahead),
                             window_.known(at.k + 2, at.k, request.lookahead)}};
-    fit(frame.intensity, geometry.part_height, geometry.part_width);
-    if (request.want_sigma)
-        fit(frame.sigma, geometry.part_height, geometry.part_width);
-    else
-        frame.sigma = {};
-    core_->render(codes, geometry, request.sigma_rule.value_or(config_.sigma_rule), frame.intensity,
-                  request.want_sigma ? &frame.sigma : nullptr);
+    fit(geometry, request.want_sigma, frame);
+    render_views(codes, geometry, request.sigma_rule.value_or(config_.sigma_rule), frame);
     stamp_frame(request.t, 0, window_.stamp(at.k), frame);
     // Of the newest event window that the frame may read.
     frame.arrived = window_.stamp(std::min(window_.newest(), at.k + request.lookahead)).arrived;

@@ -9,9 +9,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace eventide {
 
+struct CodeChoice;
 struct FrameGeometry;
 class RendererCore;
 
@@ -56,10 +58,13 @@ public:
         return readiness(t, lookahead) == Readiness::ready;
     }
 
-    /// A frame of the size the request asks for, and all the memory that rendering it takes. Throws
-    /// Error(usage) where the size, region or lookahead is impossible: a request that passes here
-    /// is safe in render().
-    Frame make_output(const RenderRequest& request) const;
+    /// Gives `frame` the size the request asks for, and takes all the memory that rendering it
+    /// needs, but what is there since one of the two sizes asked for last. Throws Error(usage)
+    /// where the size, region or lookahead is impossible: a request that passes here is safe in
+    /// render().
+    void make_room(const RenderRequest& request, Frame& frame);
+    /// The same with a new frame.
+    Frame make_output(const RenderRequest& request);
     /// Only where ready(request.t, request.lookahead). `index` is 0; intensity is
     /// [y][x] of the region. Resizes the frame where it does not fit.
     void render(const RenderRequest& request, Frame& frame) noexcept;
@@ -72,7 +77,13 @@ private:
     ModelConfig config_;
     int sensor_width_, sensor_height_;
     LatentWindow window_;
-    std::unique_ptr<RendererCore> core_;
+    /// Of the ensemble's views, in `frame` as it fits.
+    void render_views(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
+                      Frame& frame) noexcept;
+
+    // One for each view of the ensemble (kMirrors).
+    std::vector<std::unique_ptr<RendererCore>> cores_;
+    Frame view_, mirrored_;  // what one gives, and as the sensor sees it
 };
 
 }  // namespace eventide
