@@ -17,6 +17,7 @@ struct CameraCounters {
     std::uint64_t odd_transfers = 0;  ///< ended within a word, which was left out
     std::uint64_t device_dropped =
         0;  ///< events the camera itself dropped, as its own counters say (after the run)
+    std::uint64_t host_dropped = 0;  ///< datagrams or buffers that came and were not taken in time
 };
 
 /// What to do about a camera that went away, after the words that say so; users of the program and

@@ -49,6 +49,7 @@ ReconstructorOptions options_of(const eventide_options* given_options) {
     options.noise_filter = &given(c.noise_filter, "options.noise_filter");
     options.images = c.images != 0;
     options.lamp_flicker = &given(c.lamp_flicker, "options.lamp_flicker");
+    options.self_ensemble = c.self_ensemble;
     return options;
 }
 
@@ -94,7 +95,8 @@ void eventide_options_init(eventide_options* options, size_t struct_size) {
                                     .allow_silence = 0,
                                     .noise_filter = "model",
                                     .images = 1,
-                                    .lamp_flicker = "auto"};
+                                    .lamp_flicker = "auto",
+                                    .self_ensemble = 1};
     std::memcpy(options, &defaults, std::min(struct_size, sizeof defaults));
     if (struct_size >= sizeof options->struct_size) options->struct_size = struct_size;
 }

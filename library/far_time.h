@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <eventide/reconstructor.h>
 
@@ -11,6 +12,7 @@ namespace eventide {
 
 /// Beyond Reconstructor::kFarthestTime.
 inline bool is_far(SensorTime t) {
+    static_assert(Reconstructor::kFarthestTime == kFarthestTime_us);
     return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
 }
 

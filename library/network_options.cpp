@@ -53,6 +53,7 @@ EngineOptions engine_of(const ReconstructorOptions& options) {
     engine.precision = options.precision;
     engine.kernels = options.kernels;
     engine.parallel_for = parallel_for_with(options.threads);
+    engine.self_ensemble = options.self_ensemble;
     return engine;
 }
 

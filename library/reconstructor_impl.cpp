@@ -5,8 +5,10 @@
 #include "src/binning/grid_sums.h"
 #include "src/core/error.h"
 #include "src/core/frame_stamp.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -45,7 +47,8 @@ Reconstructor::Impl::Impl(const Model& model, int width, int height,
         latent_.events_per_pixel = Array2<float>(height, width);
         intake_.hold_images();
     }
-    make_room(options.size);
+    Frame frame;
+    make_room(options.size, frame);
 }
 
 // ---- events to memory ------------------------------------------------------------------------
@@ -136,7 +139,8 @@ void Reconstructor::Impl::forget_stream() {
     renderer_.reset();
     if (fused_) fused_->reset();
     seen_.fill({});
-    encoded_ = opened_ = silent_ = 0;
+    encoded_ = opened_ = 0;
+    silence_ = {};
     new_clock_ = ended_ = false;
 }
 
@@ -162,18 +166,13 @@ void Reconstructor::Impl::open_next() {
     open_ = seen(opened_++);
     schedule_.open(open_.window);
     open_.gap_before = gaps_.open(open_.gap_before);
-    silent_ = open_.events > 0 ? 0 : silent_ + schedule_.due();
+    silence_.open(open_.events, schedule_.due());
 }
 
 void Reconstructor::Impl::check_silence() {
-    if (silent_ <= FrameOutput::kMaxSilentFrames || options_.allow_silence) return;
+    if (!silence_.is_exceeded() || options_.allow_silence) return;
     schedule_.skip(schedule_.due());
-    const std::uint64_t found = std::exchange(silent_, 0);  // it is said once
-    throw Error(ErrorKind::input,
-                "no events from " + us(open_.window.begin) + " to " + us(open_.window.end) +
-                    ": expected at most " + std::to_string(FrameOutput::kMaxSilentFrames) +
-                    " frames in a row without events, found " + std::to_string(found) +
-                    "; the option allow_silence, or a lower fps, renders them");
+    silence_.refuse(open_.window);
 }
 
 void Reconstructor::Impl::render_due(Frame& frame) {
@@ -207,7 +206,15 @@ void Reconstructor::Impl::render(SensorTime t, const FrameSize& size, Frame& fra
 }
 
 void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Frame& frame) {
-    make_room(size);
+    try {
+        make_room(size, frame);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::failed,
+                    "frame of " +
+                        size_text(size.width != 0 ? size.width : encoder_.width(),
+                                  size.height != 0 ? size.height : encoder_.height()) +
+                        ": expected enough memory for it, found too little");
+    }
     request_.t = t;
     if (fused_) {
         fused_->render(request_, frame);
@@ -223,16 +230,18 @@ void Reconstructor::Impl::render_request(SensorTime t, const FrameSize& size, Fr
                     "or its state are damaged");
 }
 
-/// Throws Error (usage) for an impossible size; rendering cannot fail afterwards.
-void Reconstructor::Impl::make_room(const FrameSize& size) {
-    if (room_for_ && same(size, *room_for_)) return;
+/// Rendering cannot fail afterwards.
+void Reconstructor::Impl::make_room(const FrameSize& size, Frame& frame) {
     check_frame_size(size, encoder_.width(), encoder_.height());
     RenderRequest request = request_;
     request.width = size.width;
     request.height = size.height;
     request.region = size.region;
-    renderer_.make_output(request);
-    if (fused_) fused_->prepare(request);
+    renderer_.make_room(request, frame);
+    if (!room_for_ || !same(size, *room_for_)) {
+        room_for_.reset();
+        if (fused_) fused_->prepare(request);
+    }
     request_ = request;
     room_for_ = size;
 }

@@ -5,6 +5,7 @@
 #include "library/event_intake.h"
 #include "pipeline/frame_clock.h"
 #include "pipeline/frame_output.h"
+#include "pipeline/silence_guard.h"
 #include "src/binning/binner.h"
 #include "src/core/frame_stamp.h"
 #include "src/model/encode/encoder.h"
@@ -50,7 +51,7 @@ private:
     void check_silence();
     void render_due(Frame& frame);
     void render_request(SensorTime t, const FrameSize& size, Frame& frame);
-    void make_room(const FrameSize& size);
+    void make_room(const FrameSize& size, Frame& frame);
 
     const ReconstructorOptions options_;
     const EngineOptions engine_;
@@ -65,7 +66,7 @@ private:
     VoxelGrid grid_;
     LatentMap latent_;
     RenderRequest request_;
-    std::optional<FrameSize> room_for_;  // the size that was checked last
+    std::optional<FrameSize> room_for_;  // images correct frames of this size
 
     FrameSchedule schedule_;
     std::array<WindowStamp, LatentWindow::kLatentsKept>
@@ -73,7 +74,7 @@ private:
     std::uint64_t encoded_ = 0;  // event windows of this stream
     std::uint64_t opened_ = 0;   // of those, whose frames next() gave or gives
     WindowStamp open_;           // whose frames are due
-    std::uint64_t silent_ = 0;   // frames in a row without events
+    SilenceGuard silence_;
     GapCarrier gaps_;
     bool follows_ = false;    // next() gave a frame, and its frames stay
     bool ended_ = false;      // the renderer was told that no window follows

@@ -1,4 +1,5 @@
 // Recordings being written, behind the public face.
+#include "library/far_time.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
 #include "src/core/error.h"
@@ -79,14 +80,16 @@ private:
         if (!held_.events.empty()) newest_ = held_.events.back().t;
     }
 
-    /// Readers would leave out what lies outside of the sensor.
+    /// Readers would leave out what lies outside of the sensor or of all time.
     void refuse_others() const {
-        for (const Event& event : held_.events)
+        for (const Event& event : held_.events) {
+            refuse_far(event.t, path_.c_str());
             if (event.x >= width_ || event.y >= height_)
                 throw Error(ErrorKind::usage, path_ + ": expected events within " +
                                                   size_text(width_, height_) +
                                                   " px, found one at " + std::to_string(event.x) +
                                                   "," + std::to_string(event.y));
+        }
     }
 
     /// Readers would leave out what comes before the newest event, and all until then.

@@ -115,11 +115,12 @@ void ColourRenderStage::take(LatentMap& latent) noexcept {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         LatentMap& codes = codes_[c];
         copy_stamp(latent, codes);
-        static_cast<LatentCodes&>(codes) = latent.channels[c];
+        std::swap(static_cast<LatentCodes&>(codes), latent.channels[c]);
         if (!latent.events_per_pixel.empty())
             take_site(latent.events_per_pixel, site_of(filter_, kColourChannels[c]),
                       codes.events_per_pixel);
         channels_[c]->take(codes);
+        std::swap(static_cast<LatentCodes&>(codes), latent.channels[c]);
     }
     all_.take(latent);
 }

@@ -52,6 +52,9 @@ struct Snapshot {
     std::uint64_t frames = 0;          ///< written
     std::uint64_t skipped_frames = 0;  ///< a live source, and rendering could not keep up
     std::uint64_t broken_frames = 0;   ///< not finite, not written; the run ends with the first
+    /// Times a sink that waited for somebody (a pause, a slow reader) asked whether to go on. Set
+    /// by whoever gave it the question.
+    std::uint64_t waits = 0;
     /// The camera's images: that corrected frames; that came too late for it, or were too many. Set
     /// by whoever has the stage (ModelRenderStage).
     std::uint64_t used_images = 0, dropped_images = 0;

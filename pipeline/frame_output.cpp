@@ -98,10 +98,8 @@ void FrameOutput::present_oldest() {
             counters_.present.skipped_frames.add();
             continue;
         }
-        const HostTime begun = Clock::now();
-        present(due, held);
+        const HostTime::duration work = present(due, held);
         if (!settings_.live) continue;
-        const HostTime::duration work = Clock::now() - begun;
         dropper_.took(work);
         keeper_.frame_took(work);
     }
@@ -134,23 +132,13 @@ void FrameOutput::open_dropper() {
 
 /// Before any of the window's frames: a long silence comes as one wide window.
 void FrameOutput::check_silence(const Waiting& held) {
-    silent_ = held.events > 0 ? 0 : silent_ + schedule_.due();
-    if (silent_ <= kMaxSilentFrames || settings_.live || settings_.allow_silence) return;
-    const double hours =
-        std::chrono::duration<double, std::ratio<3600>>(held.window.end - held.window.begin)
-            .count();
-    char length[32];
-    std::snprintf(length, sizeof length, "%.1f", hours);
-    throw Error(ErrorKind::input,
-                "no events from " + std::to_string(to_us(held.window.begin)) + " to " +
-                    std::to_string(to_us(held.window.end)) + " us (" + length +
-                    " hours): expected at most " + std::to_string(kMaxSilentFrames) +
-                    " frames in a row without events, found " + std::to_string(silent_) +
-                    "; choose a part with --from and --to, fewer frames with --fps, or "
-                    "--allow-silence");
+    silence_.open(held.events, schedule_.due());
+    if (silence_.is_exceeded() && !settings_.live && !settings_.allow_silence)
+        silence_.refuse(held.window);
 }
 
-void FrameOutput::present(const DueFrame& due, Waiting& from) {
+/// Returns how long it worked.
+HostTime::duration FrameOutput::present(const DueFrame& due, Waiting& from) {
     const HostTime begun = Clock::now();
     renderer_.render(due.t, from.window, frame_);
     stamp_frame(due.t, due.index, from, frame_);
@@ -159,17 +147,20 @@ void FrameOutput::present(const DueFrame& due, Waiting& from) {
     std::swap(frame_.event_preview, from.event_preview);
     check_finite();
     const HostTime rendered = Clock::now();
+    HostTime::duration held{};
     for (Sink* sink : sinks_) {
         sink->write(frame_);
+        held += sink->held();
         wanted_ = wanted_ && sink->wants_more();
     }
     std::swap(frame_.event_preview, from.event_preview);
-    const HostTime written = Clock::now();
+    const HostTime written = Clock::now() - held;
     counters_.present.frames.add();
     counters_.present.newest_us.set(std::uint64_t(to_us(due.t)));
     counters_.present.render.record(rendered - begun);
     counters_.present.write.record(written - rendered);
     counters_.present.latency.record(written - arrived_);
+    return written - begun;
 }
 
 /// A state that has a NaN keeps it, so no later frame will be better.

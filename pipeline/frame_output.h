@@ -6,6 +6,7 @@
 #include "pipeline/live_changes.h"
 #include "pipeline/pace/frame_dropper.h"
 #include "pipeline/pace/latency_keeper.h"
+#include "pipeline/silence_guard.h"
 #include "pipeline/sink.h"
 #include "pipeline/stages.h"
 #include "pipeline/stop_request.h"
@@ -31,9 +32,6 @@ struct Encoded {
 class FrameOutput {
 public:
     static constexpr int kMaxLookahead = eventide::kMaxLookahead;
-    /// Of a recording, in a row and without events: more are times that are wrong (a stamp of 0
-    /// before times since 1970), and would fill any disk. 9 hours at 30 frames/s.
-    static constexpr std::uint64_t kMaxSilentFrames = 1'000'000;
 
     struct Settings {
         FrameRate rate;
@@ -52,7 +50,7 @@ public:
                 std::function<std::size_t()> waiting, const StopRequest& stop, Counters& counters,
                 LatencyKeeper& keeper);
 
-    /// Throws what a sink throws, and Error (input) before it writes more than kMaxSilentFrames
+    /// Throws what a sink throws, and Error (input) before it writes more than SilenceGuard::kMost
     /// in a row or one that is not finite. False when no more frames are wanted.
     bool take(Encoded& encoded) {
         accept(encoded);
@@ -82,7 +80,7 @@ private:
     bool is_wanted(const DueFrame& due) const;
     void check_silence(const Waiting& held);
     void check_finite();
-    void present(const DueFrame& due, Waiting& from);
+    HostTime::duration present(const DueFrame& due, Waiting& from);
 
     RenderStage& renderer_;
     std::vector<Sink*> sinks_;
@@ -98,7 +96,7 @@ private:
     std::array<Waiting, kMaxLookahead + 1> held_;  // a ring
     std::size_t oldest_ = 0, held_count_ = 0;
     std::optional<std::size_t> told_lookahead_;  // to the sinks
-    std::uint64_t silent_ = 0;                   // frames in a row without events
+    SilenceGuard silence_;
     GapCarrier gaps_;
     HostTime arrived_{};  // of the newest latent map
     Frame frame_;

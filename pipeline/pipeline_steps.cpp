@@ -85,7 +85,8 @@ void Pipeline::encode_one(const VoxelGrid& grid, Encoded& encoded) {
     }
     LatentMap& latent = encoded.latent;
     parts_.encoder.encode(grid, latent);
-    if (settings_.events_per_pixel) count_events(grid, latent.events_per_pixel);
+    // Who asks for them corrects frames by images, and by none before the first.
+    if (settings_.events_per_pixel && grid.images > 0) count_events(grid, latent.events_per_pixel);
     if (settings_.event_preview) sum_polarities(grid, encoded.event_preview);
     counters_.encode.encoded.add();
     const HostTime::duration work = Clock::now() - begun;

@@ -27,6 +27,10 @@ public:
     /// run ends cleanly.
     virtual bool wants_more() const { return true; }
 
+    /// Render thread. Of the last write(): how long somebody wished to look at that frame (a
+    /// pause), which is no work.
+    virtual HostTime::duration held() const { return {}; }
+
     /// Render thread. False while nobody sees what is written: a frame that no sink has watchers
     /// for is skipped.
     virtual bool is_watched() const { return true; }

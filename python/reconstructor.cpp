@@ -28,11 +28,14 @@ struct SizedReconstructor : GuardedReconstructor {
     FrameSize size;
 };
 
-std::unique_ptr<SizedReconstructor> make(
-    const std::filesystem::path& model, int width, int height, std::string window, int lookahead,
-    const py::object& fps, Size size, Roi roi, bool sigma, const std::filesystem::path& hot_pixels,
-    std::string noise_filter, const std::string& precision, const std::string& kernels, int threads,
-    bool reset_on_gap, bool allow_silence, bool images, std::string lamp_flicker) {
+std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int width, int height,
+                                         std::string window, int lookahead, const py::object& fps,
+                                         Size size, Roi roi, bool sigma,
+                                         const std::filesystem::path& hot_pixels,
+                                         std::string noise_filter, const std::string& precision,
+                                         const std::string& kernels, int threads, bool reset_on_gap,
+                                         bool allow_silence, bool images, std::string lamp_flicker,
+                                         int self_ensemble) {
     const ReconstructorOptions options{
         .window = std::move(window),
         .lookahead = lookahead,
@@ -46,6 +49,7 @@ std::unique_ptr<SizedReconstructor> make(
         .precision = option_word("precision", precision, kPrecisionWords),
         .kernels = option_word("kernels", kernels, kKernelWords),
         .threads = threads,
+        .self_ensemble = self_ensemble,
         .reset_on_gap = reset_on_gap,
         .allow_silence = allow_silence};
     const py::gil_scoped_release released;
@@ -246,7 +250,8 @@ void add_reconstructor(py::module_& module) {
         "wanted; hot_pixels: off, learn or a file; noise_filter: model, auto, off or a time "
         "(\"10ms\"); precision: auto, f32, bf16; kernels: auto, own,\n"
         "onednn; threads: 0 for all; images: frames are corrected by the camera's images that are\n"
-        "pushed; lamp_flicker: auto, off or a time. For recordings window='auto', lookahead=2,\n"
+        "pushed; lamp_flicker: auto, off or a time; self_ensemble: 1, 2 or 4 networks of\n"
+        "mirrored views, whose frames' mean is given. For recordings window='auto', lookahead=2,\n"
         "lamp_flicker='16ms' are better.");
     it.def(py::init(&make), py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(),
            py::arg("window") = "model", py::arg("lookahead") = 0, py::arg("fps") = "30",
@@ -254,7 +259,8 @@ void add_reconstructor(py::module_& module) {
            py::arg("hot_pixels") = "off", py::arg("noise_filter") = "model",
            py::arg("precision") = "auto", py::arg("kernels") = "auto", py::arg("threads") = 0,
            py::arg("reset_on_gap") = false, py::arg("allow_silence") = false,
-           py::arg("images") = true, py::arg("lamp_flicker") = "auto");
+           py::arg("images") = true, py::arg("lamp_flicker") = "auto",
+           py::arg("self_ensemble") = 1);
     add_events_in(it);
     add_state(it);
     add_frames_out(it);

@@ -80,6 +80,8 @@ ReconstructorOptions options_of(const py::dict& given) {
                 option_word("kernels", cast_to<std::string>("kernels", value), kKernelWords);
         else if (name == "threads")
             options.threads = cast_to<int>("threads", value);
+        else if (name == "self_ensemble")
+            options.self_ensemble = cast_to<int>("self_ensemble", value);
         else if (name == "reset_on_gap")
             options.reset_on_gap = cast_to<bool>("reset_on_gap", value);
         else if (name == "images")

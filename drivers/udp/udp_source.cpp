@@ -73,7 +73,7 @@ ReadStatus UdpSource::read(RawPacket& into) {
     }
     if (into.bytes.empty()) return ReadStatus::timeout;
     const std::uint64_t lost = socket_.take_lost();
-    counters_.device_dropped += lost;
+    counters_.host_dropped += lost;
     into.gap_before = lost > 0;
     counters_.bytes += into.bytes.size();
     return ReadStatus::data;

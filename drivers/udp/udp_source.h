@@ -27,7 +27,7 @@ public:
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override { stopped_ = true; }
     std::unique_ptr<Parser> make_parser() const override;
-    /// transfers: datagrams; odd_transfers: those that ended within a record; device_dropped:
+    /// transfers: datagrams; odd_transfers: those that ended within a record; host_dropped:
     /// datagrams lost.
     CameraCounters counters() const override { return counters_; }
 

@@ -160,7 +160,7 @@ void V4l2Camera::note_sequence(std::uint32_t sequence) {
     constexpr std::uint32_t kBackwards = std::uint32_t{1} << 31;
     const std::uint32_t step = sequence - last_sequence_.value_or(sequence);
     if (step > 1) gap_ = true;
-    if (step > 1 && step < kBackwards) counters_.device_dropped += step - 1;
+    if (step > 1 && step < kBackwards) counters_.host_dropped += step - 1;
     last_sequence_ = sequence;
 }
 

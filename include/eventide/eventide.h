@@ -82,6 +82,7 @@ typedef struct eventide_options {
     const char* noise_filter; /**< "model", "auto", "off", or a time such as "10ms" */
     int images;               /**< frames are corrected by the camera's images that are pushed */
     const char* lamp_flicker; /**< "auto", "off", or a time such as "16ms" */
+    int self_ensemble; /**< 1, 2 or 4 networks of mirrored views, whose frames' mean is given */
 } eventide_options;
 
 /** The defaults, those of ReconstructorOptions. `struct_size` is sizeof(eventide_options). */

@@ -51,7 +51,10 @@ struct ReconstructorOptions {
     std::string hot_pixels = "off";  ///< "off", "learn", or a file that lists pixels, "x,y" a line
     Precision precision = Precision::automatic;  ///< of the network's products
     Kernels kernels = Kernels::automatic;        ///< whose convolutions
-    int threads = 0;             ///< the network may use; 0: as many as the process may run on
+    int threads = 0;  ///< the network may use; 0: as many as the process may run on
+    /// 1, 2 or 4 networks see the scene as it is and mirrored, and frames are the mean of theirs: a
+    /// smaller error for that many times the work and memory.
+    int self_ensemble = 1;
     bool reset_on_gap = false;   ///< forget the scene where data were lost
     bool allow_silence = false;  ///< next(): any number of frames in a row without events
 };
@@ -88,9 +91,9 @@ struct ReconstructorCounters {
 /// `--frames ignore`; where the images are of a colour camera, nearly).
 ///
 /// Thread: one at a time; several objects may work side by side. Once warm (the same batch sizes
-/// and frame sizes as before), nothing here allocates memory with Kernels::own and one thread, but
-/// for images. All functions but those marked noexcept may throw Error; an object that threw may be
-/// used on.
+/// as before, and no more than two frame sizes in turns), nothing here allocates memory with
+/// Kernels::own and one thread, but for images. All functions but those marked noexcept may throw
+/// Error; an object that threw may be used on.
 class EVENTIDE_API Reconstructor {
 public:
     /// us: no time is further from zero (36000 years).
@@ -147,7 +150,7 @@ public:
 
     /// The frame of one instant, in the size of the options. Buffers of `frame` are used again
     /// where they fit. Throws Error: usage where it is not ready or the size is impossible, input
-    /// where the network gives no finite numbers.
+    /// where the network gives no finite numbers, failed where there is too little memory.
     void render(SensorTime t, Frame& frame);
     /// The same in another size, or a part of it.
     void render(SensorTime t, const FrameSize& size, Frame& frame);

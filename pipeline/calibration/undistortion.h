@@ -63,6 +63,7 @@ public:
     void close() override { behind_.close(); }
     bool wants_more() const override { return behind_.wants_more(); }
     bool is_watched() const override { return behind_.is_watched(); }
+    HostTime::duration held() const override { return behind_.held(); }
 
 private:
     Undistortion undistortion_;

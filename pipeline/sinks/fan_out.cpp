@@ -32,4 +32,10 @@ bool FanOut::is_watched() const {
     return std::ranges::any_of(sinks_, [](const auto& sink) { return sink->is_watched(); });
 }
 
+HostTime::duration FanOut::held() const {
+    HostTime::duration sum{};
+    for (const auto& sink : sinks_) sum += sink->held();
+    return sum;
+}
+
 }  // namespace eventide

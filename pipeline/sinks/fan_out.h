@@ -19,6 +19,7 @@ public:
     /// False as soon as one of them wants no more.
     bool wants_more() const;
     bool is_watched() const;
+    HostTime::duration held() const;  ///< by all together
 
 private:
     std::vector<std::unique_ptr<Sink>> sinks_;

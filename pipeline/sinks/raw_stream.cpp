@@ -106,15 +106,21 @@ StreamSink::StreamSink(StreamSettings settings) : settings_{std::move(settings)}
 
 void StreamSink::write(const Frame& frame) {
     if (begun_ && repeats()) repeat_before(frame.index);
-    if (!wants_more()) return;
+    if (!is_read()) return note_reader();
     index_ = frame.index;
     bytes_.clear();
     if (is_y4m(settings_.format))
         append_y4m(frame);
     else
         append_raw(frame);
+    if (!begun_ && settings_.live) file_->hold_at_most(bytes_.size());
     file_->write(bytes_);
     begun_ = true;
+    if (!is_read()) note_reader();
+}
+
+void StreamSink::note_reader() {
+    if (auto reader_left = std::exchange(settings_.reader_left, {})) goes_on_ = reader_left();
 }
 
 bool StreamSink::repeats() const {
@@ -126,7 +132,7 @@ bool StreamSink::repeats() const {
 /// every frame that is repeated for it, so it gets them when it has caught up.
 void StreamSink::repeat_before(std::uint64_t index) {
     owed_ += index > index_ ? index - index_ - 1 : 0;
-    for (; owed_ > 0 && wants_more() && file_->takes_at_once(); --owed_) {
+    for (; owed_ > 0 && is_read() && file_->takes_at_once(); --owed_) {
         stamp_.index = std::uint32_t(index - owed_);
         stamp_.flags = FrameStamp::kRepeat;
         if (settings_.stamp) stamp_.write_to(bytes_);

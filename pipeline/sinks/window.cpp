@@ -97,10 +97,12 @@ void WindowSink::write(const Frame& frame) {
     if (controls_.closed) return;
     show(frame);
     react(1);
+    const HostTime shown = HostTime::clock::now();
     while (controls_.paused && !controls_.closed && !(settings_.give_up && settings_.give_up())) {
         react(20);
         show(frame);
     }
+    held_ = HostTime::clock::now() - shown;
 }
 
 void WindowSink::show(const Frame& frame) {

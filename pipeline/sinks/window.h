@@ -52,12 +52,14 @@ public:
     void write(const Frame& frame) override;
     void close() override;
     bool wants_more() const override { return !controls_.closed; }
+    HostTime::duration held() const override { return held_; }
 
 private:
     void show(const Frame& frame);
     void react(int wait_ms);
 
     WindowSettings settings_;
+    HostTime::duration held_{};
     WindowControls controls_;
     cv::Mat image_;
     bool open_ = false;

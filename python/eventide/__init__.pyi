@@ -51,6 +51,7 @@ class Reconstructor:
         reset_on_gap: bool = False,
         allow_silence: bool = False,
         images: bool = True,
+        self_ensemble: int = 1,
     ) -> None: ...
     @property
     def width(self) -> int: ...

@@ -145,6 +145,11 @@ void OutputFile::begin() {
     if (::ftruncate(file_, 0) != 0) fail("emptied", errno);
 }
 
+void OutputFile::hold_at_most(std::size_t bytes) {
+    const int most = ::fcntl(file_, F_GETPIPE_SZ);  // an error for what is no pipe
+    if (most > 0 && bytes < std::size_t(most)) ::fcntl(file_, F_SETPIPE_SZ, int(bytes));
+}
+
 bool OutputFile::takes_at_once() const {
     pollfd asked{file_, POLLOUT, 0};
     return ::poll(&asked, 1, 0) != 0;

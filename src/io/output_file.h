@@ -45,6 +45,9 @@ public:
     /// Whoever read the pipe went away, or was given up: no error, but nothing is written any more.
     bool reader_gone() const { return reader_gone_; }
 
+    /// A pipe holds about so many bytes from now on, if it held more; at least a page of memory.
+    void hold_at_most(std::size_t bytes);
+
     /// False where a pipe is full, as whoever reads it is behind.
     bool takes_at_once() const;
     /// Throws Error (failed) with the system's words.

@@ -111,7 +111,7 @@ TEST(Udp, DatagramsThatTheSystemHadNoRoomForAreAGap) {
     socket.send(std::span(large).first(13));
     ASSERT_EQ(source.read(packet), ReadStatus::data);
     EXPECT_TRUE(packet.gap_before);
-    EXPECT_EQ(source.counters().device_dropped, 400 - read);
+    EXPECT_EQ(source.counters().host_dropped, 400 - read);
 }
 
 TEST(Udp, NamesThatMakeNoSenseAreRefused) {

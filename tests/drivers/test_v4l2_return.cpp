@@ -30,7 +30,7 @@ TEST(V4l2Camera, LostBuffersMarkAGap) {
         if (camera.read(packet) == ReadStatus::data) gaps.push_back(packet.gap_before);
     EXPECT_EQ(gaps, (std::vector<bool>{false, true, false,
                                        true}));  // after the loss, after the damaged buffer
-    EXPECT_EQ(camera.counters().device_dropped, 3U);
+    EXPECT_EQ(camera.counters().host_dropped, 3U);
 }
 
 TEST(V4l2Camera, SilenceIsATimeoutAndStopEnds) {

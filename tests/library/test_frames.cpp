@@ -264,6 +264,33 @@ TEST_F(Frames, AreReadFromASourceOneByOne) {
     EXPECT_TRUE(frames == frames_of_run(repeatable_arguments("7ms", 1)));
 }
 
+TEST_F(Frames, MayBeMovedAwayAndAskedForAgain) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    reconstructor.push(events_of(recording()));
+    reconstructor.finish();
+    std::vector<Frame> frames;
+    for (Frame frame; reconstructor.next(frame);) frames.push_back(std::move(frame));
+    ASSERT_GT(frames.size(), 2U);
+    std::string all;
+    for (const Frame& frame : frames) append_frame(frame, all);
+    EXPECT_TRUE(all == frames_of_run(repeatable_arguments("20ms", 0)));
+}
+
+TEST_F(Frames, CarryTheMarkOfLostDataHoweverLateTheyAreAskedFor) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    const auto events = events_of(recording());
+    const auto half = events.size() / 2;
+    reconstructor.push(std::span{events}.first(half));
+    reconstructor.mark_gap();
+    reconstructor.push(std::span{events}.subspan(half));
+    reconstructor.finish();
+    std::vector<SensorTime> marked;
+    for (Frame frame; reconstructor.next(frame);)
+        if (frame.gap_before) marked.push_back(frame.t);
+    ASSERT_EQ(marked.size(), 1U);
+    EXPECT_GE(marked[0], events[half - 1].t - SensorDuration{20'000});
+}
+
 TEST_F(Frames, CarryTheMarkOfLostData) {
     Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
     const auto events = events_of(recording());

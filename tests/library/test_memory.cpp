@@ -42,6 +42,24 @@ TEST_F(Memory, IsTakenOnceAndThenNoMore) {
     }
 }
 
+TEST_F(Memory, IsNotTakenAnewWhereFramesOfTwoSizesTakeTurns) {
+    if (!can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
+    Reconstructor reconstructor = this->reconstructor(repeatable("7ms", 0));
+    std::array<Event, 100> events;
+    Frame frame, large;
+    const auto run = [&](int from, int to) {
+        for (int ms = from; ms < to; ++ms) {
+            fill(events, ms);
+            reconstructor.push(events);
+            while (reconstructor.next(frame)) reconstructor.render(frame.t, {96, 72}, large);
+        }
+    };
+    run(0, 300);
+    AllocationCount count;
+    run(300, 600);
+    EXPECT_EQ(count.stop(), 0);
+}
+
 TEST_F(Memory, IsSeenToBeTakenAtTheBeginning) {
     if (!can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
     AllocationCount count;

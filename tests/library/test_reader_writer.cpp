@@ -188,6 +188,22 @@ TEST_F(Recordings, AreWrittenWithinTheSensorOnly) {
     }
 }
 
+TEST_F(Recordings, AreWrittenAtTimesThatAreReadOnly) {
+    constexpr std::int64_t kLast = Reconstructor::kFarthestTime;
+    for (const std::string format : {"aedat4", "evt3", "text", "hdf5"}) {
+        const std::string file = temp_ / ("far." + format);
+        EventWriter writer{file, {"", "", "", 64, 48}, {format, false}};
+        const std::vector<Event> far{{from_us(kLast + 1), 1, 2, Polarity::on}};
+        EXPECT_NE(error_of([&] { writer.write(far); }).find("at most 2^60 us"), std::string::npos)
+            << format;
+    }
+    const std::string file = temp_ / "last.h5";
+    EventWriter writer{file, {"", "", "", 64, 48}, {"hdf5", false}};
+    writer.write(std::vector<Event>{{from_us(kLast), 1, 2, Polarity::on}});
+    writer.finish();
+    EXPECT_EQ(events_of(file).size(), 1U);
+}
+
 TEST_F(Recordings, OfAnotherSizeThanTheReconstructorsAreRefused) {
     EventReader reader{recording()};
     Reconstructor other{model(), reader.width() / 2, reader.height(), repeatable("20ms", 0)};

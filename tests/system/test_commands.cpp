@@ -135,10 +135,18 @@ TEST_F(Commands, ConvertSendsDatagrams) {
     const std::string to = "udp://127.0.0.1:" + std::to_string(ntohs(here.sin_port));
     const Result sent = eventide({"convert", recording(), to, "--to", "5ms"});
     EXPECT_EQ(sent.exit_code, 0) << sent.error;
-    std::size_t bytes = 0;
-    char datagram[2048];
-    for (ssize_t n; (n = recv(reader, datagram, sizeof datagram, MSG_DONTWAIT)) > 0;)
-        bytes += std::size_t(n);
+    const auto received = [reader] {
+        std::size_t bytes = 0;
+        char datagram[2048];
+        for (ssize_t n; (n = recv(reader, datagram, sizeof datagram, MSG_DONTWAIT)) > 0;)
+            bytes += std::size_t(n);
+        return bytes;
+    };
+    const std::size_t bytes = received();
+    const Result of_run =
+        eventide({"run", recording(), "--to", "5ms", "--out", "null", "--events-out", to});
+    EXPECT_EQ(of_run.exit_code, 0) << of_run.error;
+    EXPECT_GT(received(), 0U);
     close(reader);
     ASSERT_EQ(eventide({"convert", recording(), "a.aedat4", "--to", "5ms"}).exit_code, 0);
     EXPECT_EQ(bytes, 13 * info(temp_ / "a.aedat4")["events"].get<std::size_t>());

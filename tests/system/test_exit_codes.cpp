@@ -216,7 +216,7 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(2, {"run", recording(), "video.mp4"},
            "unexpected argument 'video.mp4'; did you mean --out?");
     expect(2, {"run", recording(), "--roi", "9999,0,5x5", "--out", "null"},
-           "--roi exceeds the 64x48 frame");
+           "region (roi) exceeds the 64x48 frame");
     write_text(temp_ / "empty.raw", "");
     expect(3, {"info", "empty.raw"}, "the file is empty");
     write_text(temp_ / "letters.raw", "letters and nothing else, for a while, which is no format");

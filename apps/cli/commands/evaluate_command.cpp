@@ -113,6 +113,7 @@ SettingTable EvaluateCommand::settings() {
     add(choice_setting("precision", precision_, "As in eventide run.", kPrecisionWords));
     add(choice_setting("engine", engine_, "As in eventide run.", kEngineWords));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
+    add(whole_setting("self_ensemble", self_ensemble_, "1|2|4", "As in eventide run.", 1, 4));
 
     add(text_setting("images", images_, "FOLDER",
                      "simulated: photographs to draw scenes from; empty: procedural textures."));
@@ -165,6 +166,7 @@ EvaluateSettings EvaluateCommand::how(Program& program) const {
     how.lamp_flicker = lamp_flicker_;
     how.engine.precision = precision_;
     how.engine.parallel_for = parallel_for_with(threads_);
+    how.engine.self_ensemble = self_ensemble_;
     // Of recordings each is long: they come one by one, and the network takes all threads.
     if (protocol_ == Protocol::simulated) how.parallel_for = how.engine.parallel_for;
     how.progress = [progress = std::make_shared<Progress>(program.quiet),

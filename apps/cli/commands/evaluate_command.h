@@ -40,7 +40,7 @@ private:
     InputSettings input_;
     Protocol protocol_ = Protocol::recordings;
     std::string model_ = "default", lpips_, window_ = "reference";
-    int lookahead_ = 0, skip_ = 3, given_images_ = 0, threads_ = 0;
+    int lookahead_ = 0, skip_ = 3, given_images_ = 0, threads_ = 0, self_ensemble_ = 1;
     SigmaChoice sigma_rule_;
     std::string noise_filter_ = "model";
     std::string lamp_flicker_ = "auto";

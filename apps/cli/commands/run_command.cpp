@@ -5,6 +5,10 @@
 #include "apps/cli/run/run_files.h"
 #include "src/core/error.h"
 
+#include <spdlog/spdlog.h>
+
+#include <optional>
+
 namespace eventide::app {
 
 std::string RunCommand::examples() const {
@@ -31,7 +35,16 @@ int RunCommand::run(Program& program) {
         throw Error(ErrorKind::usage,
                     "expected at least one --out, such as --out video.mp4 or --out window");
     name_run_files(settings_, program.files);
-    return Run{program, settings_}.run();
+    std::optional<Run> run;
+    try {
+        run.emplace(program, settings_);
+    } catch (const Error& error) {
+        // A source that said nothing yet is no failure of a service that is stopped.
+        if (error.kind() != ErrorKind::failed || !program.signals.stopping()) throw;
+        spdlog::info("{}", error.what());
+        return exit_done;
+    }
+    return run->run();
 }
 
 }  // namespace eventide::app

@@ -15,10 +15,12 @@ namespace eventide::app {
 
 namespace {
 
-/// "aedat4" of "aedat4:x"; null where nothing of the kind stands in front. Throws Error (usage) for
-/// a word that is no format that can be written: what a file is called may begin with ./.
+/// "aedat4" of "aedat4:x"; null where nothing of the kind stands in front, or udp. Throws Error
+/// (usage) for a word that is no format that can be written: what a file is called may begin with
+/// ./.
 const Format* format_in_front(const std::string& to) {
     const std::size_t colon = to.find(':');
+    if (to.starts_with("udp:")) return nullptr;
     if (colon == to.npos || to.find_first_of("./") < colon) return nullptr;
     const std::string word = to.substr(0, colon);
     const Format* const format = find_format(word);

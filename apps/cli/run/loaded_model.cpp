@@ -24,7 +24,9 @@ Part made_for(const Model& model, const SensorInfo& sensor, const EngineOptions&
     try {
         return Part{model, sensor.width, sensor.height, engine};
     } catch (const std::bad_alloc&) {
-        throw out_of_memory("the network", network_bytes(model.config, sensor, engine.precision),
+        throw out_of_memory("the network",
+                            std::uint64_t(engine.self_ensemble) *
+                                network_bytes(model.config, sensor, engine.precision),
                             sensor);
     }
 }
@@ -38,16 +40,21 @@ Network::Network(const RunSettings& settings, const SensorInfo& sensor)
               .precision = settings.precision,
               .kernels = settings.kernels,
               .instructions = settings.instructions,
-              .parallel_for = parallel_for_with(settings.threads)},
+              .parallel_for = parallel_for_with(settings.threads),
+              .self_ensemble = settings.self_ensemble},
       encoder_{made_for<Encoder>(model_, sensor, engine_)},
       renderer_{made_for<Renderer>(model_, sensor, engine_)} {}
 
 Encoder Network::make_encoder(const SensorInfo& sensor) const {
-    return made_for<Encoder>(model_, sensor, engine_);
+    EngineOptions engine = engine_;
+    engine.self_ensemble = 1;
+    return made_for<Encoder>(model_, sensor, engine);
 }
 
 Renderer Network::make_renderer(const SensorInfo& sensor) const {
-    return made_for<Renderer>(model_, sensor, engine_);
+    EngineOptions engine = engine_;
+    engine.self_ensemble = 1;
+    return made_for<Renderer>(model_, sensor, engine);
 }
 
 }  // namespace eventide::app

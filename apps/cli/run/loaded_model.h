@@ -23,7 +23,8 @@ public:
     Encoder& encoder() { return encoder_; }
     const Encoder& encoder() const { return encoder_; }
     Renderer& renderer() { return renderer_; }
-    /// More of the same, for a sensor of another size. Throws Error (failed) as above.
+    /// More of the same, without an ensemble, for a sensor of another size. Throws Error (failed)
+    /// as above.
     Encoder make_encoder(const SensorInfo& sensor) const;
     Renderer make_renderer(const SensorInfo& sensor) const;
 

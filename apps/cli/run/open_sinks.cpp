@@ -57,8 +57,16 @@ std::unique_ptr<Sink> open_stream(const std::string& path, StreamFormat format,
     stream.rate = plan.rate;
     stream.stamp = settings.stamp;
     stream.overload = plan.constant_rate ? settings.overload : Overload::skip;
+    stream.live = plan.live;
     stream.give_up = plan.questions.stopping;
     const std::string name = path == "-" ? "standard output" : path;
+    stream.reader_left = [name, outputs = plan.outputs] {
+        --*outputs;
+        spdlog::log(*outputs > 0 ? spdlog::level::warn : spdlog::level::info,
+                    "{}: its reader went away{}", name,
+                    *outputs > 0 ? "; the run goes on for the other outputs" : "");
+        return *outputs > 0;
+    };
     if (!plan.constant_rate && is_y4m(format))
         spdlog::warn(
             "{}: frames come at no constant rate, and what reads Y4M shows them at {} a second; "
@@ -249,6 +257,9 @@ bool is_http(const std::string& sink) {
 }
 
 std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const SinkPlan& plan) {
+    *plan.outputs =
+        std::ranges::count_if(settings.out, [](const auto& out) { return out != "null"; }) +
+        (plan.writes_data ? 1 : 0);
     std::vector<std::unique_ptr<Sink>> plain, changed;
     AdjustSettings adjust = settings.adjust;
     adjust.unsharp = float(settings.unsharp);

@@ -34,10 +34,13 @@ struct SinkPlan {
     double speed = 1;                                   ///< of the recording, for the window
     Size sensor;                                        ///< px
     bool live = false;                                  ///< the source is a camera
+    bool writes_data = false;                           ///< --record or --events-out
     std::optional<UndistortionPlan> undistortion = {};  ///< empty: not asked for
     ReferenceImages* references = nullptr;
     std::string reference_caption;  ///< for people
     SinkQuestions questions;
+    /// How many there are besides `null` whose readers have not gone away. Set by open_sinks().
+    std::shared_ptr<std::ptrdiff_t> outputs = std::make_shared<std::ptrdiff_t>(0);
     std::vector<HttpControl> controls = {};  ///< of the live page
 };
 

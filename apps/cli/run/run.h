@@ -101,6 +101,7 @@ private:
     std::vector<std::unique_ptr<Sink>> sinks_;
     std::optional<Pipeline> pipeline_;
     std::size_t states_ = 0;  // kept until now
+    Counter waits_;           // Snapshot::waits; render thread
 };
 
 }  // namespace eventide::app

@@ -49,8 +49,8 @@ int Run::report(const RunProgress& end) const {
     const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
     if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
     const bool all_written = wrote_all_data();
-    const bool lost =
-        lost_data(end_counters) || camera.device_dropped > 0 || unsent > 0 || !all_written;
+    const bool lost = lost_data(end_counters) || camera.device_dropped > 0 ||
+                      camera.host_dropped > 0 || unsent > 0 || !all_written;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
 

@@ -4,6 +4,7 @@
 #include "apps/cli/run/report/status.h"
 #include "apps/cli/run/run.h"
 #include "apps/cli/version.h"
+#include "src/core/sensor_limits.h"
 
 #include <nlohmann/json.hpp>
 
@@ -39,10 +40,14 @@ SinkPlan Run::sink_plan() {
     plan.speed = speed_ > 0 ? speed_ : 1;
     plan.sensor = {sensor_.width, sensor_.height};
     plan.live = live();
+    plan.writes_data = !settings_.record.empty() || !settings_.events_out.empty();
     plan.undistortion = undistortion_;
     plan.references = sheet_ ? &references_ : nullptr;
     plan.reference_caption = reference_caption(sensor_);
-    plan.questions.stopping = [this] { return program_.signals.stopping(); };
+    plan.questions.stopping = [this] {
+        waits_.add();
+        return program_.signals.stopping();
+    };
     plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };
     plan.questions.run_json = [this] { return run_json(); };
     if (opened_.paced != nullptr)
@@ -94,7 +99,7 @@ PipelineSettings Run::pipeline_settings() {
     settings.event_windows.slicer = slicer_;
     settings.rate = rate_;
     settings.frames_from = span_.frames_from;
-    if (settings_.out.empty()) settings.frames_from = from_us(std::int64_t{1} << 60);  // none
+    if (settings_.out.empty()) settings.frames_from = from_us(kFarthestTime_us);  // none
     if (resumed_) settings.resume = &resumed_->stream;
     settings.state_stops = {states_at_,
                             [this](const PipelineState& memory) { keep_state(memory); }};

@@ -80,6 +80,7 @@ struct RunSettings {
     Instructions instructions = Instructions::best;  ///< of `eventide bench`: no option of runs
     Engine engine = Engine::fast;
     int threads = 0;
+    int self_ensemble = 1;
     std::string state_in, state_out;
     bool reset_on_gap = false;
     std::optional<ColourFilter> bayer;  ///< empty: what the camera or recording says

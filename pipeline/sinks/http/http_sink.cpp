@@ -34,10 +34,13 @@ public:
 
     void write(const Frame& frame) override {
         newest_.offer(frame);
-        looked_ = NewestFrame::Clock::now();
+        const auto shown = NewestFrame::Clock::now();
+        looked_ = shown;
         while (paused_ && !is_forgotten() && !(settings_.give_up && settings_.give_up()))
             newest_.offer_while_held(frame, std::chrono::milliseconds{20});
+        held_ = NewestFrame::Clock::now() - shown;
     }
+    HostTime::duration held() const override { return held_; }
     void close() override {
         newest_.close();
         server_.stop();
@@ -66,6 +69,7 @@ private:
 
     HttpSettings settings_;
     std::atomic<bool> paused_{false};
+    HostTime::duration held_{};                // render thread
     NewestFrame::Clock::time_point looked_{};  // somebody did; render thread
     NewestFrame newest_;
     HttpAnswers answers_;

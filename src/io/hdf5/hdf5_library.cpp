@@ -41,7 +41,6 @@ Hdf5Library load() {
     if (h5.H5open() < 0)
         throw Error(ErrorKind::failed,
                     std::string{EVENTIDE_HDF5_LIBRARY} + ": the HDF5 library does not start");
-    h5.H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 #define EVENTIDE_HDF5_FIND(name) h5.name = find_id(library, #name);
     EVENTIDE_HDF5_IDS(EVENTIDE_HDF5_FIND)
 #undef EVENTIDE_HDF5_FIND
@@ -58,6 +57,12 @@ std::recursive_mutex& hdf5_mutex() {
 const Hdf5Library& hdf5() {
     const std::lock_guard lock{hdf5_mutex()};
     static const Hdf5Library library = load();
+    // What a thread-safe HDF5 prints by itself it is told for each thread.
+    thread_local const bool is_silent = [] {
+        library.H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+        return true;
+    }();
+    static_cast<void>(is_silent);
     return library;
 }
 

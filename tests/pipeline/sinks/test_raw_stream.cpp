@@ -215,6 +215,43 @@ TEST(StreamSink, AReaderThatGoesAwayEndsTheRunAndIsNoError) {
     sink.close();
 }
 
+TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
+    signal(SIGPIPE, SIG_IGN);
+    const TempFolder temp;
+    const std::string pipe = temp / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const bool others : {true, false}) {
+        const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+        int told = 0;
+        StreamSink sink{{.path = pipe, .format = StreamFormat::gray8, .reader_left = [&] {
+                             ++told;
+                             return others;
+                         }}};
+        sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
+        EXPECT_TRUE(sink.is_watched());
+        close(reader);
+        for (int i = 1; i < 4; ++i) sink.write(test::ramp_frame(8, 8, i, from_us(i)));
+        EXPECT_EQ(told, 1);
+        EXPECT_EQ(sink.wants_more(), others);
+        EXPECT_FALSE(sink.is_watched());
+        sink.close();
+    }
+}
+
+TEST(StreamSink, APipeOfALiveSourceHoldsAboutAFrame) {
+    const TempFolder temp;
+    const std::string pipe = temp / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const bool live : {true, false}) {
+        const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+        StreamSink sink{{.path = pipe, .format = StreamFormat::gray8, .live = live}};
+        sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
+        EXPECT_EQ(fcntl(reader, F_GETPIPE_SZ) <= 65536 / 4, live);
+        close(reader);
+        sink.close();
+    }
+}
+
 TEST(StreamSink, ANamedPipeWaitsForItsReaderOrGivesUp) {
     const TempFolder temp;
     const std::string pipe = temp / "pipe";

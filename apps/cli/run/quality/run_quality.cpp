@@ -65,7 +65,12 @@ double usable_threads(const RunSettings& settings) {
 std::vector<PrecisionCost> costs_to_choose_from(const QualityProfile& profile,
                                                 const RunSettings& settings) {
     const PrecisionCost* asked = profile.of(settings.precision);
-    return asked == nullptr ? profile.costs : std::vector<PrecisionCost>{*asked};
+    auto costs = asked == nullptr ? profile.costs : std::vector<PrecisionCost>{*asked};
+    for (PrecisionCost& cost : costs)
+        for (double* ms :
+             {&cost.encode_ms, &cost.first_ms, &cost.full_ms, &cost.half_ms, &cost.third_ms})
+            *ms *= settings.self_ensemble;
+    return costs;
 }
 
 CachedProfile profile_of(const std::string& name, const Model& model, const RunSettings& settings,

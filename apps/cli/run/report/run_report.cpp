@@ -109,6 +109,7 @@ std::string camera_text(const CameraCounters& camera) {
             text += (text.empty() ? "\ncamera: " : ", ") + std::string{what} + std::to_string(n);
     };
     say("events dropped by itself ", camera.device_dropped);
+    say("datagrams or buffers that were not taken in time ", camera.host_dropped);
     say("came back ", camera.reconnects);
     say("stalls cleared ", camera.halts);
     say("transfers cut within a word ", camera.odd_transfers);

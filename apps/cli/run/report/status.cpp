@@ -62,10 +62,11 @@ void Status::note_flicker(const FlickerFound& flicker) {
 
 /// The watchdog hears of work that was done since it heard last: a camera gives event windows in
 /// silence, too, but for the time before its first data, which may be long in coming. A recording
-/// may stand still for as long as its reader likes.
+/// may stand still for as long as its reader likes; what waits for a reader or the end of a pause
+/// lives.
 void Status::tell_manager(const Snapshot& now, const RunProgress& state, bool also_status) {
     if (!manager_.is_there()) return;
-    const std::uint64_t work = now.packets + now.event_windows + now.frames;
+    const std::uint64_t work = now.packets + now.event_windows + now.frames + now.waits;
     const bool waits = now.packets == 0 || !live_;
     if (manager_.watchdog() && (work != last_work_ || waits)) manager_.alive();
     last_work_ = work;

@@ -5,6 +5,7 @@
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <bit>
@@ -132,9 +133,8 @@ public:
     }
     /// Such that sums of times fit.
     SensorTime time(const std::string& key) const {
-        constexpr std::int64_t kFarthest = std::int64_t{1} << 60;
         const std::int64_t us = number(key);
-        if (us < -kFarthest || us > kFarthest)
+        if (us < -kFarthestTime_us || us > kFarthestTime_us)
             refuse("'" + key + "': expected a time that a clock can have, found " +
                    std::to_string(us));
         return from_us(us);
