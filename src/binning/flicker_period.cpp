@@ -76,12 +76,22 @@ void FlickerPeriod::restore(const State& state) {
 
 void FlickerPeriod::see(const Event& event) noexcept {
     if (((event.x + event.y) & 3) != 0) return;
-    if (!state_.block || event.t < *state_.block) begin_block(event.t);
+    if (!state_.block || event.t < *state_.block) {
+        forget_rises(event.t);
+        begin_block(event.t);
+    }
     if (event.t - *state_.block >= kBlock) {
         end_block();
         begin_block(event.t);
     }
     note(event);
+}
+
+/// Of a clock that begins at t: no pixel has risen by it.
+void FlickerPeriod::forget_rises(SensorTime t) noexcept {
+    constexpr SensorDuration kLongAgo{1'000'000};
+    const auto long_ago = std::uint32_t((t - kLongAgo).time_since_epoch().count()) << 1;
+    for (std::uint32_t& rise : state_.rises) rise = long_ago | (rise & 1);
 }
 
 /// Rises of a second ago, before a pause, are forgotten.

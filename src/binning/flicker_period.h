@@ -70,6 +70,7 @@ private:
         double whole = 0, between = 0;  // per bin
         double excess = 0;              // intervals
     };
+    void forget_rises(SensorTime t) noexcept;
     void begin_block(SensorTime t) noexcept;
     void note(const Event& event) noexcept;
     void clear_intervals() noexcept;

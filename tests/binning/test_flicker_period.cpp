@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 
 namespace eventide::test {
@@ -24,6 +25,25 @@ TEST(FlickerPeriod, IsThatOfTheLamp) {
                 period_of(lamp_events({.hz = hz, .share = share, .spread_us = .05e6 / hz}));
             EXPECT_NEAR(us, 1e6 / hz, .015e6 / hz) << hz << " Hz, seen in " << share;
         }
+}
+
+/// Pixels that have not risen yet did not rise at the clock's zero.
+TEST(FlickerPeriod, DoesNotHangOnWhereTheClockBegan) {
+    const auto seen_from = [](std::int64_t begin_us) {
+        std::vector<Event> events = lamp_events({.hz = 100, .share = .3, .spread_us = 500});
+        const SensorTime first = events.front().t;
+        FlickerPeriod period{32, 24};
+        for (Event& event : events) {
+            event.t = from_us(begin_us) + (event.t - first);
+            if (event.t > from_us(begin_us + 40'000)) break;  // of the first block
+            period.see(event);
+        }
+        return period.state().intervals;
+    };
+    const auto expected = seen_from(1'600'000'000'000'000);
+    EXPECT_GT(std::accumulate(expected.begin(), expected.end(), 0U), 0U);
+    for (const std::int64_t begin_us : {0L, 5'000L, 44'000L, 1'000'000L, 1L << 31})
+        EXPECT_EQ(seen_from(begin_us), expected) << begin_us;
 }
 
 TEST(FlickerPeriod, IsFoundWhereThingsMoveToo) {
