@@ -24,6 +24,11 @@ plain::RenderedFrame<double> DoubleRenderer::render(const Codes& codes, double f
                                                     SigmaRule rule) const {
     const bool fades = config_.live_edge == LiveEdge::fade && codes[1] != nullptr;
     const AxisSamples t = sample_time(fraction, codes[3] != nullptr, fades);
+    const AxisSamples still_t = sample_still_time(t, codes[3] != nullptr, fades);
+    Array2<std::uint8_t> still(geometry.part_height, geometry.part_width);
+    if (config_.encoder == EncoderKind::gated && still_t != t)
+        still = still_pixels(codes, codes_read(t.index, codes[3] != nullptr, codes[4] != nullptr),
+                             geometry, config_.latent_stride, config_.blend, config_.unfold / 2);
     const auto axis = [&](int at, int size, int sensor_size) {
         return sample_axis(at, size, sensor_size, config_.latent_stride, config_.blend);
     };
@@ -33,7 +38,7 @@ plain::RenderedFrame<double> DoubleRenderer::render(const Codes& codes, double f
         for (int column = 0; column < geometry.part_width; ++column) {
             const AxisSamples y = axis(geometry.y + row, geometry.height, geometry.sensor_height);
             const AxisSamples x = axis(geometry.x + column, geometry.width, geometry.sensor_width);
-            const Pixel pixel = blend(codes, t, y, x, rule);
+            const Pixel pixel = blend(codes, still(row, column) != 0 ? still_t : t, y, x, rule);
             frame.intensity(row, column) = pixel.intensity;
             frame.sigma(row, column) = pixel.sigma * config_.sigma_scale;
         }

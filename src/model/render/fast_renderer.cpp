@@ -81,21 +81,17 @@ void FastRenderer::lay_out(const FrameGeometry& geometry) {
     Size& size = sizes_[size_];
     if (geometry == size.geometry) return;
     size.geometry = {};  // until all is there
-    size.layout.make(geometry, config_.latent_stride, config_.blend, first_layer_.row_edges(),
-                     first_layer_.column_edges());
+    size.layout.make(
+        geometry, config_.latent_stride, config_.blend,
+        latent_row_edges(latent_samples(geometry.sensor_height, config_.latent_stride)),
+        latent_column_edges(latent_samples(geometry.sensor_width, config_.latent_stride)));
     size.kept.make_room(geometry, size.layout.tiles());
-    spans_.reserve(std::size_t(geometry.part_height) *
-                   std::size_t(size.layout.columns.count() / 2 + 1));
+    spans_.reserve(std::size_t(geometry.part_height) * std::size_t(size.layout.columns.count()));
     // Six rows of part_width numbers: mu, ln sigma and square, twice.
     // What members have given together, and what one gives.
     for (FloatBuffer& sums : row_sums_)
         sums.resize(std::max(sums.size(), 6 * std::size_t(geometry.part_width)));
     size.geometry = geometry;
-}
-
-AxisSamples FastRenderer::time_samples(const CodeChoice& codes) const noexcept {
-    const bool fades = config_.live_edge == LiveEdge::fade && codes.k > 1;
-    return sample_time(codes.fraction, codes.next[0], fades);
 }
 
 std::array<const FirstLayerCache::Sums*, 2> FastRenderer::bring_sums(
@@ -108,71 +104,63 @@ std::array<const FirstLayerCache::Sums*, 2> FastRenderer::bring_sums(
     return first_layer_.pair(k, whole, next_whole);
 }
 
+FastRenderer::Job FastRenderer::job_of(const CodeChoice& codes, const FrameGeometry& geometry,
+                                       SigmaRule rule) noexcept {
+    const bool fades = config_.live_edge == LiveEdge::fade && codes.k > 1;
+    const AxisSamples t = sample_time(codes.fraction, codes.next[0], fades);
+    // The thesis' network knows no stillness: its codes change for ever.
+    const AxisSamples still_t =
+        config_.encoder == EncoderKind::gated ? sample_still_time(t, codes.next[0], fades) : t;
+    return {geometry, rule, t, still_t, bring_sums(codes, t)};
+}
+
 void FastRenderer::render(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
                           Array2<float>& intensity, Array2<float>* sigma) noexcept {
     lay_out(geometry);
     needs_squares_ = sigma != nullptr && rule == SigmaRule::mixture;
-    const AxisSamples t = time_samples(codes);
-    const Job job{geometry, rule, t, bring_sums(codes, t)};
-    const Target out{intensity.values().data(),
-                     sigma != nullptr ? sigma->values().data() : nullptr};
-    if (!options_.skip_quiet) {
-        spans_.clear();
-        for (int row = 0; row < geometry.part_height; ++row)
-            spans_.push_back({row, 0, layout().columns.count()});
-        render_spans(job, out);
-        return;
-    }
+    const Job job = job_of(codes, geometry, rule);
     KeptFrame& kept = sizes_[size_].kept.choose(kind_of(codes, job, sigma != nullptr),
                                                 codes.fraction, options_.still_time);
-    find_outdated(codes, kept);
+    find_outdated(codes, job, kept);
     render_spans(job, {kept.intensity.data(), sigma != nullptr ? kept.sigma.data() : nullptr});
-    std::ranges::copy(kept.intensity, out.intensity);
-    if (sigma != nullptr) std::ranges::copy(kept.sigma, out.sigma);
+    std::ranges::copy(kept.intensity, intensity.values().data());
+    if (sigma != nullptr) std::ranges::copy(kept.sigma, sigma->values().data());
 }
 
-/// Codes read: sample k + index reads z_{k+index-1} up to `newest`.
-///
-///     t.index 0, next 2 known     z_{k-1} .. z_{k+2}
-///     t.index 0, next known       z_{k-1} .. z_{k+1}
-///     t.index 0                   z_{k-1}, z_k
-///     t.index -1, a fading edge   z_{k-2} .. z_k
 FrameKind FastRenderer::kind_of(const CodeChoice& codes, const Job& job,
                                 bool has_sigma) const noexcept {
-    const int index = job.t.index;
-    int newest = index;  // of the sample at `index`, then of the one after it
-    if (index == 0 && codes.next[0]) newest = codes.next[1] ? 2 : 1;
-    if (index < 0) newest = 0;
     return {.geometry = job.geometry,
             .rule = job.rule,
             .has_sigma = has_sigma,
-            .oldest = index - 1,
-            .newest = newest,
-            .time_index = index};
+            .read = codes_read(job.t.index, codes.next[0], codes.next[1]),
+            .time_index = job.t.index};
+}
+
+/// Whether every code that the pixels of a tile read is the same in all of z_from .. z_to.
+bool FastRenderer::is_still(int row, int column, std::int64_t from,
+                            std::int64_t to) const noexcept {
+    return layout().all_read(row, column,
+                             [&](std::size_t tile) { return first_layer_.still(tile, from, to); });
 }
 
 bool FastRenderer::is_up_to_date(const KeptFrame& kept, int row, int column,
-                                 const CodeChoice& codes) const noexcept {
-    const auto r = std::size_t(row), c = std::size_t(column);
-    const auto columns = std::size_t(layout().columns.count());
-    const KeptFrame::Stamp& stamp = kept.tiles[r * columns + c];
+                                 const CodeChoice& codes, double fraction) const noexcept {
+    if (!options_.skip_quiet) return false;
+    const KeptFrame::Stamp& stamp =
+        kept.tiles[std::size_t(row) * std::size_t(layout().columns.count()) + std::size_t(column)];
     if (stamp.k < 1 || stamp.k > codes.k) return false;
     // The same time again: of the event window the same codes are known, or its kind would differ.
-    if (stamp.k == codes.k && stamp.fraction == codes.fraction) return true;
-    if (std::abs(stamp.fraction - codes.fraction) > options_.still_time) return false;
-    for (std::size_t y = r; y <= r + layout().rows.reads_next[r]; ++y)
-        for (std::size_t x = c; x <= c + layout().columns.reads_next[c]; ++x)
-            if (!first_layer_.still(y * columns + x, stamp.k + kept.kind.oldest,
-                                    codes.k + kept.kind.newest))
-                return false;
-    return true;
+    if (stamp.k == codes.k && stamp.fraction == fraction) return true;
+    if (std::abs(stamp.fraction - fraction) > options_.still_time) return false;
+    return is_still(row, column, stamp.k + kept.kind.read.oldest, codes.k + kept.kind.read.newest);
 }
 
 /// Of a row of tiles with rows 10 to 41 and five tiles, of which o are out of date:
 ///
 ///     tiles     0    1    2    3    4
 ///               o    o         o         spans {10, 0, 2}, {10, 3, 4}, then {11, 0, 2}, ...
-void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept {
+void FastRenderer::find_outdated(const CodeChoice& codes, const Job& job,
+                                 KeptFrame& kept) noexcept {
     spans_.clear();
     const int columns = layout().columns.count();
     for (int r = 0; r < layout().rows.count(); ++r) {
@@ -181,21 +169,26 @@ void FastRenderer::find_outdated(const CodeChoice& codes, KeptFrame& kept) noexc
                   last_row = layout().rows.begin[std::size_t(r) + 1];
         for (int c = 0; c < columns; ++c) {
             KeptFrame::Stamp& stamp = kept.tiles[std::size_t(r * columns + c)];
-            const bool is_kept = is_up_to_date(kept, r, c, codes);
+            const bool shows_end =
+                job.still_t != job.t &&
+                is_still(r, c, codes.k + kept.kind.read.oldest, codes.k + kept.kind.read.newest);
+            const double fraction = shows_end ? 1 : codes.fraction;
+            const bool is_kept = is_up_to_date(kept, r, c, codes, fraction);
             stamp.k = codes.k;
             if (is_kept) continue;
-            stamp.fraction = codes.fraction;
+            stamp.fraction = fraction;
             if (first_row == last_row) continue;  // beside the part of the frame that is asked for
-            if (spans_.size() > begin && spans_.back().last == c)
+            if (spans_.size() > begin && spans_.back().last == c &&
+                spans_.back().is_still == shows_end)
                 spans_.back().last = c + 1;
             else
-                spans_.push_back({first_row, c, c + 1});
+                spans_.push_back({first_row, c, c + 1, shows_end});
         }
         // Rows below the first are cut as it is.
         const auto end = spans_.size();
         for (int row = first_row + 1; row < last_row; ++row)
             for (auto i = begin; i < end; ++i)
-                spans_.push_back({row, spans_[i].first, spans_[i].last});
+                spans_.push_back({row, spans_[i].first, spans_[i].last, spans_[i].is_still});
     }
 }
 
@@ -216,6 +209,7 @@ void FastRenderer::render_spans(const Job& job, const Target& target) noexcept {
 ///     mu = sum w mu_i,  ln sigma = sum w s_i  or  sigma^2 = sum w (sigma_i^2 + mu_i^2) - mu^2
 void FastRenderer::render_span(const Job& job, const Span& span, const Target& target,
                                std::size_t worker) noexcept {
+    const AxisSamples& t = span.is_still ? job.still_t : job.t;
     const int width = job.geometry.part_width;
     const auto count = std::size_t(width);
     const auto begin = std::size_t(layout().columns.begin[std::size_t(span.first)]),
@@ -229,10 +223,10 @@ void FastRenderer::render_span(const Job& job, const Span& span, const Target& t
     float* base = scratch;
     for (std::size_t n = 0; n < 4; ++n) {
         const std::size_t a = n / 2, b = n % 2;
-        const double weight = job.t.weight[a] * y.weight[b];
+        const double weight = t.weight[a] * y.weight[b];
         if (weight == 0) continue;
         for (std::size_t o = 0; o < std::size_t(first_); ++o)
-            base[o] = slope_[0][o] * float(job.t.offset[a]) + slope_[2][o] * float(y.offset[b]);
+            base[o] = slope_[0][o] * float(t.offset[a]) + slope_[2][o] * float(y.offset[b]);
         const int sample = y.index + int(b);
         const Array3<float>& sums = job.sums[a]->values;
         // The row of samples below is the next that rows of pixels further down read.

@@ -33,6 +33,7 @@ private:
     /// A stretch of a row to be rendered: that of the tiles first <= c < last.
     struct Span {
         int row, first, last;
+        bool is_still;  ///< shown at the window's end, whatever the frame's time (still_pixels.h)
     };
     /// What the two maps of a frame are written to.
     struct Target {
@@ -44,7 +45,7 @@ private:
     struct Job {
         const FrameGeometry& geometry;
         SigmaRule rule;
-        AxisSamples t;
+        AxisSamples t, still_t;                            ///< of its time, and of the window's end
         std::array<const FirstLayerCache::Sums*, 2> sums;  ///< of the samples with a weight
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
@@ -65,16 +66,18 @@ private:
         KeptFrames kept;
     };
 
-    AxisSamples time_samples(const CodeChoice& codes) const noexcept;
+    Job job_of(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule) noexcept;
     const FrameLayout& layout() const { return sizes_[size_].layout; }
     void lay_out(const FrameGeometry& geometry);
     std::array<const FirstLayerCache::Sums*, 2> bring_sums(const CodeChoice& codes,
                                                            const AxisSamples& t) noexcept;
     FrameKind kind_of(const CodeChoice& codes, const Job& job, bool has_sigma) const noexcept;
     /// Fills spans_ with what of the kept frame is out of date, and stamps it.
-    void find_outdated(const CodeChoice& codes, KeptFrame& kept) noexcept;
-    bool is_up_to_date(const KeptFrame& kept, int row, int column,
-                       const CodeChoice& codes) const noexcept;
+    void find_outdated(const CodeChoice& codes, const Job& job, KeptFrame& kept) noexcept;
+    bool is_still(int row, int column, std::int64_t from, std::int64_t to) const noexcept;
+    /// `fraction` of the window that the tile shows.
+    bool is_up_to_date(const KeptFrame& kept, int row, int column, const CodeChoice& codes,
+                       double fraction) const noexcept;
     /// Spans are shared among workers; no two write the same pixels.
     void render_spans(const Job& job, const Target& target) noexcept;
     void render_span(const Job& job, const Span& span, const Target& target,

@@ -150,13 +150,12 @@ void FirstLayerCache::note_changes(std::int64_t k, const LatentHistory& history)
     const PaddedMap& mine = *code(k);
     const PaddedMap* before = code(k - 1);
     std::vector<std::uint8_t>& changed = changed_[std::size_t(k % kChangesKept)];
-    const bool comparable = before != nullptr && options_.skip_quiet;
     const StaleTiles since{histories_[LatentWindow::slot(k - 1)], history};
     for_each_tile(options_.parallel_for, int(tiles_.size()), [&](int, int n) {
         // A sample at the tile's edge may read codes beyond it.
         const Tile near = tiles_[std::size_t(n)].grown(reach_, height_, width_);
         const auto bytes = std::size_t(near.width()) * std::size_t(mine.channels()) * sizeof(float);
-        bool same = comparable;
+        bool same = before != nullptr;
         const bool may_differ = same && around(n, since);
         for (int y = near.y0; may_differ && same && y < near.y1; ++y)
             same = std::memcmp(mine.at(y, near.x0), before->at(y, near.x0), bytes) == 0;
@@ -179,7 +178,7 @@ bool FirstLayerCache::around(int tile, const StaleTiles& since) const noexcept {
 /// the one read then.
 bool FirstLayerCache::unchanged(const Sums& from, std::int64_t k, bool whole,
                                 std::size_t tile) const noexcept {
-    if (from.k < 1 || from.whole != whole || k < from.k) return false;
+    if (!options_.skip_quiet || from.k < 1 || from.whole != whole || k < from.k) return false;
     return still(tile, from.k - 1, whole ? k + 1 : k);
 }
 
@@ -189,21 +188,6 @@ bool FirstLayerCache::still(std::size_t tile, std::int64_t from, std::int64_t to
     for (std::int64_t j = from + 1; j <= to; ++j)
         if (changed_[std::size_t(j % kChangesKept)][tile] != 0) return false;
     return true;
-}
-
-std::vector<int> FirstLayerCache::row_edges() const {
-    std::vector<int> edges;
-    for (std::size_t i = 0; i < tiles_.size(); i += std::size_t(tile_columns_))
-        edges.push_back(tiles_[i].y0);
-    edges.push_back(height_);
-    return edges;
-}
-
-std::vector<int> FirstLayerCache::column_edges() const {
-    std::vector<int> edges;
-    for (std::size_t i = 0; i < std::size_t(tile_columns_); ++i) edges.push_back(tiles_[i].x0);
-    edges.push_back(width_);
-    return edges;
 }
 
 const FirstLayerCache::Sums* FirstLayerCache::find(std::int64_t k, bool whole) const noexcept {

@@ -51,9 +51,6 @@ public:
 
     /// Whether every code that the samples of a tile read is the same in all of z_from .. z_to.
     bool still(std::size_t tile, std::int64_t from, std::int64_t to) const noexcept;
-    /// Where tiles begin along an axis, and where the last ends.
-    std::vector<int> row_edges() const;
-    std::vector<int> column_edges() const;
 
 private:
     bool is_as_held(const LatentCodes& latent) const noexcept;

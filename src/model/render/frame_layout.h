@@ -10,10 +10,16 @@
 
 namespace eventide {
 
+/// Where the tiles of a latent map (latent_tiles()) begin along its rows or columns, and where the
+/// last ends.
+std::vector<int> latent_row_edges(int height);
+std::vector<int> latent_column_edges(int width);
+
 /// One axis of a frame cut where its samples go over from one latent tile to the next.
 struct AxisTiles {
-    std::vector<int> begin;                ///< first pixel of each tile; one more than tiles
-    std::vector<std::uint8_t> reads_next;  ///< per tile: whether it reads samples of the next too
+    std::vector<int> begin;  ///< first pixel of each tile; one more than tiles
+    /// Per tile: whether pixels of the whole frame in it read samples of the next too.
+    std::vector<std::uint8_t> reads_next;
 
     int count() const { return int(reads_next.size()); }
 };
@@ -44,6 +50,15 @@ struct FrameLayout {
     void make(const FrameGeometry& geometry, int latent_stride, Blend blend,
               const std::vector<int>& row_edges, const std::vector<int>& column_edges);
     std::size_t tiles() const { return std::size_t(rows.count()) * std::size_t(columns.count()); }
+    /// Whether `holds(tile)` of every latent tile that pixels in the one at row, column read.
+    template <typename Holds>
+    bool all_read(int row, int column, const Holds& holds) const {
+        const auto r = std::size_t(row), c = std::size_t(column);
+        for (std::size_t y = r; y <= r + rows.reads_next[r]; ++y)
+            for (std::size_t x = c; x <= c + columns.reads_next[c]; ++x)
+                if (!holds(y * std::size_t(columns.count()) + x)) return false;
+        return true;
+    }
 };
 
 }  // namespace eventide

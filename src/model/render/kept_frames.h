@@ -16,8 +16,7 @@ struct FrameKind {
     FrameGeometry geometry;
     SigmaRule rule{};
     bool has_sigma = false;
-    /// Codes it reads, as event windows relative to its own: oldest and newest.
-    int oldest = 0, newest = 0;
+    CodesRead read;
     int time_index = 0;  ///< AxisSamples::index of its time
     friend bool operator==(const FrameKind&, const FrameKind&) = default;
 };

@@ -4,6 +4,7 @@
 
 #include "src/model/model_file.h"
 #include "src/model/render/sampling.h"
+#include "src/model/render/still_pixels.h"
 #include "src/nn/load_weights.h"
 
 #include <algorithm>
@@ -49,6 +50,12 @@ public:
         for (std::size_t n = 0; n < 2; ++n)
             if (t.weight[n] != 0) first_layers[n] = first_layer_of(codes, t.index + int(n));
         const int stride = config_.latent_stride;
+        const AxisSamples still_t = sample_still_time(t, codes[3] != nullptr, fades);
+        Array2<std::uint8_t> still(geometry.part_height, geometry.part_width);
+        if (config_.encoder == EncoderKind::gated && still_t != t)
+            still =
+                still_pixels(codes, codes_read(t.index, codes[3] != nullptr, codes[4] != nullptr),
+                             geometry, config_.latent_stride, config_.blend, config_.unfold / 2);
         RenderedFrame<T> out{{geometry.part_height, geometry.part_width},
                              {geometry.part_height, geometry.part_width}};
         for (int row = 0; row < geometry.part_height; ++row) {
@@ -57,7 +64,8 @@ public:
             for (int column = 0; column < geometry.part_width; ++column) {
                 const AxisSamples x = sample_axis(geometry.x + column, geometry.width,
                                                   geometry.sensor_width, stride, config_.blend);
-                const Pixel pixel = blend(first_layers, t, y, x, rule);
+                const Pixel pixel =
+                    blend(first_layers, still(row, column) != 0 ? still_t : t, y, x, rule);
                 out.intensity(row, column) = pixel.intensity;
                 out.sigma(row, column) = pixel.sigma;
             }

@@ -21,6 +21,7 @@ struct AxisSamples {
     int index = 0;
     std::array<double, 2> weight{1, 0};
     std::array<double, 2> offset{0, -1};
+    friend bool operator==(const AxisSamples&, const AxisSamples&) = default;
 };
 
 /// Weight of the sample at `fraction` = 1, of two at 0 and 1. Smooth weights leave no creases at
@@ -76,6 +77,29 @@ inline AxisSamples sample_time(double fraction, bool next_known, bool from_befor
         found.offset = {fraction, fraction - 1};
     }
     return found;
+}
+
+/// The same for what does not change, of a time sampled as `t`: the window's end; at its very begin
+/// that of the window before is shown anyway.
+inline AxisSamples sample_still_time(const AxisSamples& t, bool next_known, bool from_before) {
+    const AxisSamples end = sample_time(1, next_known, from_before);
+    return end.weight[1] != 0 && t.weight[1] == 0 ? t : end;
+}
+
+/// Codes that frames of a time read, as event windows relative to its own. Sample k + index reads
+/// z_{k+index-1} and on, up to `newest`.
+///
+///     index 0, next 2 known     z_{k-1} .. z_{k+2}
+///     index 0, next known       z_{k-1} .. z_{k+1}
+///     index 0                   z_{k-1}, z_k
+///     index -1, a fading edge   z_{k-2} .. z_k
+struct CodesRead {
+    int oldest = 0, newest = 0;
+    friend bool operator==(const CodesRead&, const CodesRead&) = default;
+};
+inline CodesRead codes_read(int time_index, bool next_known, bool second_known) {
+    if (time_index < 0) return {time_index - 1, 0};
+    return {-1, next_known ? second_known ? 2 : 1 : 0};
 }
 
 /// The frame a renderer is asked for, in whole numbers.
