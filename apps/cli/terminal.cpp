@@ -40,20 +40,26 @@ public:
     }
 };
 
-/// What journald takes for a line's priority.
-class Priority final : public spdlog::custom_flag_formatter {
+/// The same, each line behind what journald takes for its priority.
+class JournalMessage final : public spdlog::custom_flag_formatter {
 public:
     void format(const spdlog::details::log_msg& message, const std::tm&,
                 spdlog::memory_buf_t& into) override {
         const bool serious = message.level >= spdlog::level::err;
-        const std::string_view priority = serious                                ? "<3>"
-                                          : message.level == spdlog::level::warn ? "<4>"
-                                          : message.level == spdlog::level::info ? "<6>"
-                                                                                 : "<7>";
-        into.append(priority.data(), priority.data() + priority.size());
+        const std::string priority = serious                                ? "<3>"
+                                     : message.level == spdlog::level::warn ? "<4>"
+                                     : message.level == spdlog::level::info ? "<6>"
+                                                                            : "<7>";
+        std::string text = priority;
+        for (const char c :
+             printable({message.payload.data(), message.payload.size()}, Lines::keep)) {
+            text += c;
+            if (c == '\n') text += priority;
+        }
+        into.append(text.data(), text.data() + text.size());
     }
     std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
-        return std::make_unique<Priority>();
+        return std::make_unique<JournalMessage>();
     }
 };
 
@@ -65,8 +71,8 @@ void start_log(const LogSettings& settings) {
     auto logger = std::make_shared<spdlog::logger>("eventide", std::move(sink));
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
     // The journal knows the program's name and keeps the priority apart.
-    formatter->add_flag<PrintableMessage>('*').add_flag<Priority>('&').set_pattern(
-        writes_to_journal() ? "%&%*" : "%n: %^%l%$: %*");
+    formatter->add_flag<PrintableMessage>('*').add_flag<JournalMessage>('&').set_pattern(
+        writes_to_journal() ? "%&" : "%n: %^%l%$: %*");
     logger->set_formatter(std::move(formatter));
     auto level = spdlog::level::from_str(settings.log_level);
     if (settings.quiet) level = std::max(level, spdlog::level::warn);

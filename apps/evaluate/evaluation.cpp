@@ -44,6 +44,7 @@ EvaluateReport Evaluation::finish(const std::string& settings_text) {
     const SigmaRule rule = settings_.sigma_rule.value_or(model_.config.sigma_rule);
     report_.settings =
         "lookahead " + std::to_string(settings_.lookahead) + ", " + settings_text +
+        ", lamp flicker " + settings_.lamp_flicker +
         (noise_filter_ ? ", noise filter " + noise_filter_text(*noise_filter_) : "") +
         (rule == SigmaRule::mixture ? ", mixture sigma" : ", blended ln sigma");
     report_.overall = overall_scores(report_.sequences);

@@ -58,12 +58,25 @@ void add_line(Text& text, const Snapshot& now) {
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         text.line("damaged_total", "{reason=\"" + std::string{name_of(DamageReason(i))} + "\"}",
                   double(now.damaged[DamageReason(i)]));
+    text.counter("time_resets_total", "Times the source's clock began anew.",
+                 now.slicing.time_resets);
+    text.counter("late_events_total", "Events that came after their window was cut.",
+                 now.slicing.late);
+    text.gauge("flicker_hertz", "Light that flickers now; 0: none does.", now.flicker.hz);
+    text.counter("flicker_events_total", "Events left out as flicker added them.",
+                 now.flicker.left_out);
     text.counter("event_windows_total", "Event windows cut.", now.event_windows);
+    text.counter("silent_windows_total", "Of those, without events.", now.silent_windows);
     text.counter("merged_windows_total", "Event windows that became one with the one before.",
                  now.merged_windows);
+    text.counter("state_resets_total", "Times the network's state was reset.", now.state_resets);
     text.counter("frames_total", "Frames written.", now.frames);
     text.counter("skipped_frames_total", "Frames left out to keep the latency.",
                  now.skipped_frames);
+    text.counter("used_images_total", "Images of the camera that corrected frames.",
+                 now.used_images);
+    text.counter("dropped_images_total",
+                 "Images of the camera that came too late or were too many.", now.dropped_images);
     text.gauge("newest_frame_seconds", "Sensor time of the newest frame.",
                now.frames > 0 ? double(to_us(now.newest_frame)) / 1e6 : 0);
     text.summary("latency_seconds", "From the last packet a frame saw to the frame written.",

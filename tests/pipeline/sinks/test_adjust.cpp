@@ -106,6 +106,7 @@ struct Spy : Sink {
     void lookahead_is(int windows) override { lookahead = windows; }
     void close() override { ++closed; }
     bool wants_more() const override { return wants; }
+    HostTime::duration held() const override { return std::chrono::seconds{1}; }
 };
 
 TEST(AdjustSink, HandsEachFrameToAllAndEndsWithTheFirstThatHasEnough) {
@@ -120,6 +121,7 @@ TEST(AdjustSink, HandsEachFrameToAllAndEndsWithTheFirstThatHasEnough) {
     sink.lookahead_is(2);
     EXPECT_EQ(a.lookahead + b.lookahead, 4);
     EXPECT_TRUE(sink.wants_more());
+    EXPECT_EQ(sink.held(), std::chrono::seconds{2});
     b.wants = false;
     EXPECT_FALSE(sink.wants_more());
     sink.close();

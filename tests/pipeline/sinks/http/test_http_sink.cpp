@@ -218,6 +218,9 @@ TEST(HttpSink, PauseEndsWhenNobodyIsLeftToEndIt) {
     ASSERT_EQ(client_of(*sink).Post("/controls", R"({"pause": 1})", "application/json")->status,
               200);
     sink->write(ramp_frame(64, 48, 0, odd_time(0)));  // would never return
+    EXPECT_GE(sink->held(), std::chrono::milliseconds{40}) << "no work";
+    sink->write(ramp_frame(64, 48, 1, odd_time(1)));
+    EXPECT_LT(sink->held(), std::chrono::milliseconds{40});
     EXPECT_THAT(client_of(*sink).Get("/controls")->body, HasSubstr("\"value\":0.0"));
 }
 
