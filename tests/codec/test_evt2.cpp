@@ -246,6 +246,23 @@ TEST(Evt21, SplitsCutsAndFlippedBitsAreBorne) {
     expect_bears_damage(make, bytes, kWidth, kHeight);
 }
 
+TEST(EvtHeader, WithoutAWordOnItEarlySystemsSwapTheHalvesOfEvt21) {
+    const auto swapped = [](const std::string& lines) {
+        return read_evt_header(to_bytes("% evt 2.1\n" + lines)).halves_swapped;
+    };
+    for (const char* lines :
+         {"% system_ID 49\n", "% system_ID 54\n% integrator_name Prophesee\n",
+          "% plugin_integrator_name Prophesee\n% camera_integrator_name Prophesee\n"
+          "% system_ID 49\n"})
+        EXPECT_TRUE(swapped(lines)) << lines;
+    for (const char* lines :
+         {"", "% system_ID 0\n", "% system_ID 55\n", "% system_ID 49\n% endianness little\n",
+          "% system_ID 49\n% format EVT21;endianness=little\n",
+          "% system_ID 49\n% camera_integrator_name Other\n",
+          "% system_ID 49\n% plugin_integrator_name Other\n"})
+        EXPECT_FALSE(swapped(lines)) << lines;
+}
+
 TEST(EvtHeader, SaysFormatAndSizeInManyWays) {
     struct Case {
         const char* text;

@@ -6,6 +6,7 @@
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
+#include <array>
 
 namespace eventide {
 
@@ -72,6 +73,27 @@ void find_size(const PercentLines& lines, StreamHeader& stream) {
     }
 }
 
+/// Files from before 2023 name one integrator for camera and plugin, older ones none.
+bool is_of_prophesee(const PercentLines& lines) {
+    constexpr std::array kKeys{"plugin_integrator_name", "camera_integrator_name",
+                               "integrator_name"};
+    return std::all_of(kKeys.begin(), kKeys.end(), [&](std::string_view key) {
+        const std::string_view name = lines.value(key);
+        return name.empty() || name == "Prophesee";
+    });
+}
+
+/// Of EVT2.1: systems before number 0x37 swapped the halves and did not say it (OpenEB,
+/// psee_raw_file_header.cpp, check_header()).
+bool are_halves_swapped(const PercentLines& lines) {
+    constexpr int kFirstInOrder = 0x37;
+    for (const std::string_view stated :
+         {option_of(lines.value("format"), "endianness"), lines.value("endianness")})
+        if (!stated.empty()) return stated == "legacy";
+    const int system = number_in<int>(lines.value("system_ID")).value_or(0);
+    return is_of_prophesee(lines) && system > 0 && system < kFirstInOrder;
+}
+
 }  // namespace
 
 std::string_view PercentLines::value(std::string_view key) const {
@@ -110,8 +132,7 @@ std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes)
     if (header.stream.sensor_name.empty()) header.stream.sensor_name = lines.value("system_ID");
     header.stream.source_text = lines.value("plugin_name");
     find_size(lines, header.stream);
-    header.halves_swapped = lines.value("endianness") == "legacy" ||
-                            option_of(lines.value("format"), "endianness") == "legacy";
+    header.halves_swapped = name == "evt21" && are_halves_swapped(lines);
     // Nearer to the ends of time than this, sums could overflow.
     const auto base = number_in<std::int64_t>(lines.value("time_base_us")).value_or(0);
     if (base > -(std::int64_t(1) << 61) && base < (std::int64_t(1) << 61))
