@@ -1,6 +1,8 @@
 // AEDAT 3.1, from packets spelled out and from the writer.
 #include "src/codec/aedat/aedat3.h"
 
+#include "src/codec/aedat/aedat3_records.h"
+#include "src/codec/aedat4/aedat4_records.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/codec/parser_checks.h"
@@ -78,10 +80,12 @@ TEST(Aedat3, SpecialEventsAreTriggers) {
     const Bytes bytes =
         packet_header(0, 8, 7) + words({special(2), 10, special(3), 11, special(4), 12, special(0),
                                         13, special(7), 14, special(12), 15, special(16), 16});
-    const std::vector<Trigger> expected{
-        {from_us(10), Kind::rising, 0}, {from_us(11), Kind::falling, 0},
-        {from_us(12), Kind::pulse, 0},  {from_us(14), Kind::falling, 1},
-        {from_us(15), Kind::rising, 3}, {from_us(16), Kind::exposure_begin, 0}};
+    const std::vector<Trigger> expected{{from_us(10), Kind::rising, 0},
+                                        {from_us(11), Kind::falling, 0},
+                                        {from_us(12), Kind::pulse, 0},
+                                        {from_us(14), Kind::falling, 1},
+                                        {from_us(15), Kind::rising, Trigger::kGenerator},
+                                        {from_us(16), Kind::exposure_begin, 0}};
     EXPECT_EQ(parse_whole(make_parser(), bytes).data.triggers, expected);
 }
 
@@ -151,6 +155,19 @@ Batch everything(unsigned seed, std::int64_t first_us) {
         for (const int source : {0, 1, 2, 3, 9, 255})
             batch.triggers.push_back({time(kind), Trigger::Kind(kind), std::uint8_t(source)});
     return batch;
+}
+
+TEST(Aedat3, TheGeneratorIsTheSameInAedat4AndNoInputIsTakenForIt) {
+    const auto in_aedat4 = [](Aedat3Special number) {
+        return aedat4_trigger_number(*read_special(1U | std::uint32_t(number) << 1));
+    };
+    EXPECT_EQ(in_aedat4(Aedat3Special::generator_rising), 4);
+    EXPECT_EQ(in_aedat4(Aedat3Special::generator_falling), 5);
+    EXPECT_EQ(in_aedat4(Aedat3Special::rising), 1);
+    for (const Aedat3Special of_others :
+         {Aedat3Special::rising_1, Aedat3Special::falling_1, Aedat3Special::pulse_1,
+          Aedat3Special::rising_2, Aedat3Special::falling_2, Aedat3Special::pulse_2})
+        EXPECT_EQ(in_aedat4(of_others), -1) << int(of_others);
 }
 
 TEST(Aedat3, WhatIsWrittenIsReadBack) {

@@ -11,13 +11,13 @@ namespace {
 
 using Kind = Trigger::Kind;
 
-// External input 0, the camera's own pulse generator 1.
+// Of inputs, only the first has numbers.
 constexpr std::array<Trigger, 10> kTriggers{{{{}, Kind::timestamp_reset, 0},
                                              {{}, Kind::rising, 0},
                                              {{}, Kind::falling, 0},
                                              {{}, Kind::pulse, 0},
-                                             {{}, Kind::rising, 1},
-                                             {{}, Kind::falling, 1},
+                                             {{}, Kind::rising, Trigger::kGenerator},
+                                             {{}, Kind::falling, Trigger::kGenerator},
                                              {{}, Kind::frame_begin, 0},
                                              {{}, Kind::frame_end, 0},
                                              {{}, Kind::exposure_begin, 0},
