@@ -126,6 +126,17 @@ void check_number(const NumpyField& field, const std::string& what) {
                                           "'");
 }
 
+/// The records of Metavision's arrays, whose times are microseconds: {x, y, p, t}.
+bool is_event_cd(const NumpyArray& array) {
+    constexpr std::array<std::pair<std::string_view, char>, 4> kEventCd{
+        {{"x", 'u'}, {"y", 'u'}, {"p", 'i'}, {"t", 'i'}}};
+    constexpr auto kIs = [](const NumpyField& field, const auto& known) {
+        return field.name == known.first && field.kind == known.second &&
+               field.bytes == (known.first == "t" ? 8 : 2);
+    };
+    return std::ranges::equal(array.fields, kEventCd, kIs);
+}
+
 /// Records with the four fields. False where they have others.
 bool find_records(const std::shared_ptr<ByteSource>& source, const NumpyArray& array,
                   const std::string& name, NumpyEvents& found) {
@@ -138,6 +149,7 @@ bool find_records(const std::shared_ptr<ByteSource>& source, const NumpyArray& a
         found.columns.push_back({0, field, which == 0 ? field.name : canonical(field.name)});
     }
     if (found.columns.size() != 4) return false;
+    if (is_event_cd(array)) found.columns.back().name = "t_us";
     found.rows = {{source, array.data_offset, array.record_bytes}};
     found.count = array.rows();
     return true;

@@ -187,7 +187,9 @@ TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
     for (const Case& c : {Case{0, 10, TextTimeUnit::microseconds, false},
                           Case{1'600'000'000'000'000, 10, TextTimeUnit::microseconds, false},
                           Case{0, 500, TextTimeUnit::microseconds, true},
+                          Case{0, 5'000, TextTimeUnit::microseconds, true},
                           Case{0, 20'000, TextTimeUnit::nanoseconds, true},
+                          Case{1'600'000'000'000'000, 20'000, TextTimeUnit::microseconds, true},
                           Case{1'600'000'000'000'000'000, 500, TextTimeUnit::nanoseconds, true},
                           Case{0, 50'000'000'000, TextTimeUnit::microseconds, true}}) {
         const TextHeader header = header_of(c.first, c.step);

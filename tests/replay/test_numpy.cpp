@@ -167,6 +167,18 @@ TEST(Numpy, ARowWithoutATimeHidesNothingFromASeek) {
     EXPECT_GE(found.size(), 30'000U - 5'000U - 2U);
 }
 
+TEST(Numpy, MetavisionsRecordsAreOfMicrosecondsHoweverFewTheyAre) {
+    const TestFolder folder;
+    std::vector<Event> events = some_events(500, 2'500'000, 20, 240, 180);
+    for (std::size_t i = 0; i < events.size(); ++i) events[i].t = from_us(std::int64_t(i) * 20'000);
+    std::string data;
+    for (const Event& e : events)
+        data += raw(e.x) + raw(e.y) + raw(std::int16_t(e.polarity)) + raw(to_us(e.t));
+    const auto recording = open_recording(folder.write(
+        "a.npy", npy("[('x', '<u2'), ('y', '<u2'), ('p', '<i2'), ('t', '<i8')]", "500,", data)));
+    EXPECT_TRUE(read_everything(*recording).events == events);
+}
+
 std::string refusal(const std::string& path, ErrorKind kind = ErrorKind::input,
                     const OpenOptions& options = {}) {
     try {

@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t kFewestRows = 100;                           // that tell a rate
 constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
+constexpr double kSparse = 100;                                    // events/s of a still scene
 constexpr double kNanosecondsIn2001 = 1e18;
+constexpr double kMicrosecondsIn2001 = 1e15, kMicrosecondsIn2096 = 4e15;
 
 struct Unit {
     TextTimeUnit unit;
@@ -39,6 +41,9 @@ struct Times {
     }
     bool make_sense(const Unit& unit) const {
         return rate(unit) >= kSlowest && rate(unit) <= kFastest;
+    }
+    bool are_sparse(const Unit& unit) const {
+        return rate(unit) >= kSparse && rate(unit) < kSlowest;
     }
 };
 
@@ -97,6 +102,11 @@ std::string remark_on(const std::string& what, const Times& times, const Unit& u
 /// Of whole numbers; null: none makes sense.
 const Unit* likeliest_unit(const Times& times) {
     if (times.least >= kNanosecondsIn2001) return &kNanoseconds;
+    if (times.least >= kMicrosecondsIn2001 && times.largest < kMicrosecondsIn2096)
+        return &kMicroseconds;
+    // Few events are likelier than another unit, down to where no sensor's noise alone is so
+    // little.
+    if (times.are_sparse(kMicroseconds)) return &kMicroseconds;
     for (const Unit& unit : kByLikelihood)
         if (times.make_sense(unit)) return &unit;
     return nullptr;
@@ -117,7 +127,8 @@ TextTimeUnit guess_time_unit(std::span<const std::string_view> texts,
     const Unit& unit = likeliest != nullptr ? *likeliest : kMicroseconds;
     if (likeliest == nullptr || times.points || unit.unit != TextTimeUnit::microseconds ||
         times.rate(unit) < kDoubtful)
-        remarks.push_back(remark_on("times are whole numbers", times, unit, likeliest == nullptr));
+        remarks.push_back(
+            remark_on("times are whole numbers", times, unit, !times.make_sense(unit)));
     return unit.unit;
 }
 
