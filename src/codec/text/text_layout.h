@@ -40,6 +40,7 @@ struct TextLayout {
                                                TextField::polarity};
     std::size_t n_columns = 4;                  ///< further ones on a line are ignored
     TextTimeUnit unit = TextTimeUnit::seconds;  ///< never automatic
+    int off = 0, on = 1;  ///< polarities, not negative; with 0 and 1, -1 is off, too
 };
 
 struct TextHeader {
