@@ -104,6 +104,20 @@ TEST(Text, TheSizeLineIsRead) {
     EXPECT_EQ(header.layout.unit, TextTimeUnit::seconds);
 }
 
+TEST(Text, ACommentMaySayTheSize) {
+    for (const char* text :
+         {"%geometry:346,260\n0.1 1 2 1\n", "# c\n# geometry: 346, 260\n0.1 1 2 1\n",
+          "% date 1 1\n%geometry:346,260\n%end\nt,x,y,p\n0.1,1,2,1\n",
+          "%geometry:9,9\n346 260\n0.1 1 2 1\n", "# geometry: 346,260\n"}) {
+        EXPECT_TRUE(looks_like_text(to_bytes(text))) << text;
+        const TextHeader header = read_text_header(to_bytes(text), {});
+        EXPECT_EQ(header.stream.width, 346) << text;
+        EXPECT_EQ(header.stream.height, 260) << text;
+    }
+    EXPECT_EQ(read_text_header(to_bytes("# 346 260\n0.1 1 2 1\n"), {}).stream.width, 0);
+    EXPECT_THROW(read_text_header(to_bytes("%geometry:0,260\n0.1 1 2 1\n"), {}), Error);
+}
+
 TEST(Text, WithoutARowTheSizeOrTheColumnsAreEnough) {
     for (const char* text : {"346 260\n", "346 260", "# c\n346 260\n# c\n", "t,x,y,p\n"}) {
         const Parsed parsed = parse_text(text);
@@ -360,7 +374,7 @@ TEST(Text, WhatIsWrittenIsReadBack) {
         header.width = 1280;
         header.height = 720;
         Bytes bytes;
-        TextWriter writer;
+        TextWriter writer(first == 0 ? TextSize::in_a_comment : TextSize::in_a_line);
         writer.begin(header, bytes);
         writer.write(batch, bytes);
         writer.finish(bytes);

@@ -25,6 +25,30 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 using Fields = TextFields;
 
+using Sides = std::array<std::int64_t, 2>;  // width and height, px
+
+/// The "width height" of a first line of two whole numbers.
+std::optional<Sides> geometry_of(const Fields& fields) {
+    if (fields.size() != 2) return {};
+    Sides sides{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto value = parse_decimal(fields[i]);
+        if (!value || value->fractional || value->negative) return {};
+        const auto side = scaled_integer(*value, 0);
+        if (!side) return {};
+        sides[i] = *side;
+    }
+    return sides;
+}
+
+/// "%geometry:1280,720", as Metavision writes it.
+std::optional<Sides> size_in_comment(std::string_view line) {
+    constexpr std::string_view kTitle = "geometry:";
+    const std::size_t begin = std::min(line.find_first_not_of(" \t#%"), line.size());
+    if (!line.substr(begin).starts_with(kTitle)) return {};
+    return geometry_of(split_fields(line.substr(begin + kTitle.size())));
+}
+
 /// The lines that carry something, one after the other, with their place.
 class Lines {
 public:
@@ -39,14 +63,18 @@ public:
             line_begin_ = position_;
             position_ = std::min(end + 1, text_.size());
             if (!is_comment(line)) return line;
+            if (!size_) size_ = size_in_comment(line);
         }
         return {};
     }
+    /// The sensor's, from a comment so far.
+    std::optional<Sides> size() const { return size_; }
     std::size_t line_begin() const { return line_begin_; }  ///< of the line next() gave
 
 private:
     std::string_view text_;
     std::size_t position_ = 0, line_begin_ = 0;
+    std::optional<Sides> size_;
 };
 
 std::string_view as_text(std::span<const std::byte> bytes) {
@@ -67,27 +95,13 @@ bool is_row(const Fields& fields) {
     return numbers == 4 || (numbers == 3 && std::any_of(fields.begin(), fields.end(), is_word));
 }
 
-/// The "width height" of a first line of two whole numbers.
-std::optional<std::array<std::int64_t, 2>> geometry_of(const Fields& fields) {
-    if (fields.size() != 2) return {};
-    std::array<std::int64_t, 2> sides{};
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto value = parse_decimal(fields[i]);
-        if (!value || value->fractional || value->negative) return {};
-        const auto side = scaled_integer(*value, 0);
-        if (!side) return {};
-        sides[i] = *side;
-    }
-    return sides;
-}
-
-void check_geometry(const std::array<std::int64_t, 2>& sides, std::string_view line) {
+void check_geometry(const Sides& sides) {
     const auto [least, largest] = std::ranges::minmax(sides);
     if (least < 1 || largest > kLargestRecordedSide)
         throw Error(ErrorKind::input,
-                    "text recording: expected a sensor's size in the line of two numbers, "
-                    "each from 1 to 65536, found \"" +
-                        std::string(line.substr(0, 60)) + "\"");
+                    "text recording: expected a sensor's size before the rows, each side from 1 to "
+                    "65536, found \"" +
+                        std::to_string(sides[0]) + " " + std::to_string(sides[1]) + "\"");
 }
 
 struct ColumnName {
@@ -190,8 +204,8 @@ bool looks_like_text(std::span<const std::byte> first_bytes) {
         as_text(first_bytes.first(std::min<std::size_t>(first_bytes.size(), 65536)));
     Lines lines(text);
     auto line = lines.next();
-    if (!line || !is_printable(text.substr(0, std::min<std::size_t>(text.size(), 512))))
-        return false;
+    if (!is_printable(text.substr(0, std::min<std::size_t>(text.size(), 512)))) return false;
+    if (!line) return lines.size().has_value();
     Fields fields = split_fields(*line);
     if (geometry_of(fields)) {
         line = lines.next();
@@ -206,13 +220,17 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     header.stream.format = "text";
     Lines lines(as_text(first_bytes));
     auto line = lines.next();
+    auto size = lines.size();
     if (line)
-        if (const auto geometry = geometry_of(split_fields(*line))) {
-            check_geometry(*geometry, *line);
-            header.stream.width = int((*geometry)[0]);
-            header.stream.height = int((*geometry)[1]);
+        if (const auto stated = geometry_of(split_fields(*line))) {
+            size = stated;
             line = lines.next();
         }
+    if (size) {
+        check_geometry(*size);
+        header.stream.width = int((*size)[0]);
+        header.stream.height = int((*size)[1]);
+    }
     std::optional<TextLayout> named;
     if (line && !is_row(split_fields(*line))) {
         named = layout_named(titles_of(*line));
