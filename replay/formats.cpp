@@ -81,7 +81,11 @@ OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat3Parser>(header, stream.width, stream.height);
     };
-    return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}};
+    std::vector<std::string> remarks;
+    for (const Aedat3Source& other : header.others)
+        remarks.push_back("source " + std::to_string(other.number) + " (" + other.name +
+                          ") is left out: of several sources the first is read");
+    return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}, remarks};
 }
 
 OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {

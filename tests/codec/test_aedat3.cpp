@@ -272,6 +272,15 @@ TEST(Aedat3, OtherTypesArePassedOverAndOtherSourcesCounted) {
     const Parsed counted = parse_whole(make_parser(), good + other);
     EXPECT_EQ(counted.data.events.size(), 1U);
     EXPECT_EQ(counted.damage[DamageReason::unknown_word], 1U);
+    const auto named = [] {
+        Aedat3Header header;
+        header.source = 1;
+        header.others = {{2, "DAVIS240C"}};
+        return std::make_unique<Aedat3Parser>(header, kWidth, kHeight);
+    };
+    const Parsed left_out = parse_whole(named, good + other + good);
+    EXPECT_EQ(left_out.data.events.size(), 2U);
+    EXPECT_EQ(left_out.damage.total(), 0U);
 }
 
 TEST(Aedat3, AFrameLargerThanItsRecordIsDamage) {
@@ -305,6 +314,12 @@ TEST(Aedat3, HeadersAreChecked) {
     EXPECT_EQ(header.stream.width, 240);
     EXPECT_FALSE(header.lower_left);
     EXPECT_TRUE(read("#!AER-DAT3.0\r\n").lower_left);
+    const auto two = read("#!AER-DAT3.1\r\n#Source 1: DAVIS346\r\n#Source 2:  DVS128 \r\n");
+    EXPECT_EQ(two.source, 1);
+    EXPECT_EQ(two.stream.sensor_name, "DAVIS346");
+    ASSERT_EQ(two.others.size(), 1U);
+    EXPECT_EQ(two.others[0].number, 2);
+    EXPECT_EQ(two.others[0].name, "DVS128");
 }
 
 }  // namespace

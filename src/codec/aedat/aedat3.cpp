@@ -29,6 +29,7 @@ struct PolarityWord {
 Aedat3Parser::Aedat3Parser(const Aedat3Header& header, int width, int height)
     : lower_left_(header.lower_left),
       source_(header.source),
+      others_(header.others),
       validator_(std::uint64_t(width), std::uint64_t(height)) {}
 
 void Aedat3Parser::move_clock(std::int64_t t_us) {
@@ -73,7 +74,9 @@ void Aedat3Parser::begin_packet(const Aedat3Packet& packet) {
     unit_.clear();
     packet_ = packet;
     const bool of_other_source = source_ && packet.source != *source_;
-    if (of_other_source) damage_.count(DamageReason::unknown_word);
+    const bool is_named =
+        std::ranges::find(others_, int(packet.source), &Aedat3Source::number) != others_.end();
+    if (of_other_source && !is_named) damage_.count(DamageReason::unknown_word);
     if (of_other_source || packet.type > std::int16_t(Aedat3Type::imu9)) {
         left_ = std::uint64_t(packet.record_bytes) * packet.number;
         state_ = State::passing_over;

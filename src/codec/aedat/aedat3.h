@@ -8,20 +8,28 @@
 #include "src/codec/stream.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace eventide {
 
+struct Aedat3Source {
+    int number = 0;
+    std::string name;  ///< "DAVIS346"
+};
+
 struct Aedat3Header {
-    StreamHeader stream;        ///< width and height where the source's name tells them
-    bool lower_left = false;    ///< AEDAT 3.0: the origin is at the lower left
-    std::optional<int> source;  ///< number of the first source named
+    StreamHeader stream;                 ///< width and height where the source's name tells them
+    bool lower_left = false;             ///< AEDAT 3.0: the origin is at the lower left
+    std::optional<int> source;           ///< number of the first source named
+    std::vector<Aedat3Source> others{};  ///< the sources named behind it, which are not read
 };
 
 /// Throws Error (input) when it is no RAW AEDAT 3 file.
 Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes);
 
-/// Reads the packets of one source: those of others count as unknown_word. After a timestamp reset
+/// Reads the packets of one source: those of others that the header names are passed over, and of
+/// any other count as unknown_word. After a timestamp reset
 /// that sets the clock back, time goes on from where it was. Packets of types beyond IMU9 are
 /// passed over.
 class Aedat3Parser final : public Parser {
@@ -53,6 +61,7 @@ private:
 
     bool lower_left_;
     std::optional<int> source_;
+    std::vector<Aedat3Source> others_;
     EventValidator validator_;
     Damage damage_;
 
