@@ -221,6 +221,22 @@ TEST(Numpy, WhatIsNoTableOfEventsIsRefusedWithWhatItIs) {
     EXPECT_THAT(refusal(folder.write("d.npz", fewer)), HasSubstr("as many numbers as t, 100"));
 }
 
+TEST(Numpy, AFileThatIsCutGivesItsWholeRows) {
+    const TestFolder folder;
+    std::vector<Event> events = some_events(20'000, 2'500'000, 20, 240, 180);
+    for (const std::string& whole : {records(events), matrix(events, "txyp", false)}) {
+        const auto path = folder.write("a.npy", whole.substr(0, whole.size() - 7));
+        EXPECT_TRUE(read_everything(*open_recording(path)).events ==
+                    std::vector<Event>(events.begin(), events.end() - 1));
+        const Summary sum = summarize(*open_recording(path));
+        EXPECT_EQ(sum.damaged[DamageReason::truncated], 1U);
+        EXPECT_EQ(sum.damaged.total(), 1U);
+    }
+    const std::string columns_first = matrix(events, "txyp", false, true);
+    EXPECT_THAT(refusal(folder.write("b.npy", columns_first.substr(0, columns_first.size() - 7))),
+                HasSubstr("do not hold"));
+}
+
 TEST(Numpy, HeadersThatPromiseMoreThanThereIsAreRefused) {
     const TestFolder folder;
     EXPECT_THAT(refusal(folder.write("a.npy", npy("'<f8'", "100000000000, 4", "few"))),
