@@ -109,17 +109,32 @@ TEST(Aedat3, FramesCarryTheirExposure) {
     EXPECT_EQ(parsed.clock, from_us(181));
 }
 
-TEST(Aedat3, AfterATimestampResetTimeGoesOn) {
+TEST(Aedat3, BehindATimestampResetTimeBeginsAnew) {
     const Bytes bytes = packet_header(1, 8, 1) + words({polarity(1, 1, true), 5000}) +
                         packet_header(0, 8, 1) + words({special(1), 0x7FFFFFFF}) +
                         packet_header(1, 8, 2) +
                         words({polarity(1, 1, true), 10, polarity(1, 1, true), 20});
     const Parsed parsed = parse_whole(make_parser(), bytes);
     ASSERT_EQ(parsed.data.events.size(), 3U);
-    EXPECT_EQ(to_us(parsed.data.events[1].t), 5010);
-    EXPECT_EQ(to_us(parsed.data.events[2].t), 5020);
+    EXPECT_EQ(to_us(parsed.data.events[1].t), 10);
+    EXPECT_EQ(to_us(parsed.data.events[2].t), 20);
+    EXPECT_EQ(parsed.clock, from_us(20));
     ASSERT_EQ(parsed.data.triggers.size(), 1U);
     EXPECT_EQ(parsed.data.triggers[0], (Trigger{from_us(5000), Trigger::Kind::timestamp_reset, 0}));
+    EXPECT_EQ(parsed.damage.total(), 0U);
+}
+
+TEST(Aedat3, AResetIsReadBackAsItWasWritten) {
+    Batch batch;
+    batch.events = random_events(1, 5000, kWidth, kHeight, 60'000'000);
+    const auto behind = random_events(2, 5000, kWidth, kHeight, 1'000);
+    batch.events.insert(batch.events.end(), behind.begin(), behind.end());
+    batch.triggers = {{behind.front().t, Trigger::Kind::timestamp_reset, 0}};
+    Bytes bytes;
+    Aedat3Writer().write(batch, bytes);
+    const Parsed parsed = parse_whole(make_parser(), bytes);
+    EXPECT_TRUE(parsed.data.events == batch.events);
+    EXPECT_TRUE(parsed.data.triggers == batch.triggers);
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 
