@@ -81,7 +81,11 @@ OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat3Parser>(header, stream.width, stream.height);
     };
-    return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}};
+    std::vector<std::string> remarks;
+    for (const Aedat3Source& other : header.others)
+        remarks.push_back("source " + std::to_string(other.number) + " (" + other.name +
+                          ") is left out: of several sources the first is read");
+    return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}, remarks};
 }
 
 OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
@@ -105,16 +109,24 @@ bool is_evt(Bytes first_bytes) {
 }
 constexpr char kEvt2[] = "evt2", kEvt21[] = "evt21", kEvt3[] = "evt3";
 
-OpenedStream open_evt2(Bytes first_bytes, const OpenOptions&) {
+/// A file without a header is believed to be what the user says.
+EvtHeader evt_header(Bytes first_bytes, const OpenOptions& options) {
+    const bool is_stated = !options.format.empty() && options.width > 0;
+    if (is_stated && !find_evt_header(first_bytes))
+        return stated_evt_header(first_bytes, options.format);
+    return read_evt_header(first_bytes);
+}
+
+OpenedStream open_evt2(Bytes first_bytes, const OpenOptions& options) {
     const auto make_parser = [](const StreamHeader& stream) {
         return std::make_unique<Evt2Parser>(stream.width, stream.height);
     };
-    return {read_evt_header(first_bytes).stream, make_parser, by_skimming<Evt2Parser>()};
+    return {evt_header(first_bytes, options).stream, make_parser, by_skimming<Evt2Parser>()};
 }
 
-OpenedStream open_evt21(Bytes first_bytes, const OpenOptions&) {
+OpenedStream open_evt21(Bytes first_bytes, const OpenOptions& options) {
     using Order = Evt21Parser::Order;
-    const EvtHeader header = read_evt_header(first_bytes);
+    const EvtHeader header = evt_header(first_bytes, options);
     const Order order = header.halves_swapped ? Order::upper_half_first : Order::lower_half_first;
     const auto make_parser = [order](const StreamHeader& stream) {
         return std::make_unique<Evt21Parser>(stream.width, stream.height, order);
@@ -122,8 +134,8 @@ OpenedStream open_evt21(Bytes first_bytes, const OpenOptions&) {
     return {header.stream, make_parser, by_skimming<Evt21Parser>()};
 }
 
-OpenedStream open_evt3(Bytes first_bytes, const OpenOptions&) {
-    const EvtHeader header = read_evt_header(first_bytes);
+OpenedStream open_evt3(Bytes first_bytes, const OpenOptions& options) {
+    const EvtHeader header = evt_header(first_bytes, options);
     const auto make_parser = [base_us = header.time_base_us](const StreamHeader& stream) {
         return std::make_unique<Evt3Parser>(stream.width, stream.height, base_us);
     };

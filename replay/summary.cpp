@@ -37,9 +37,14 @@ void add(const Batch& batch, FlickerSeen& flicker, Summary& sum) {
     flicker.add(batch.events, sum);
     sum.events += batch.events.size();
     for (const Event& event : batch.events) sum.on += event.polarity == Polarity::on;
-    if (!batch.events.empty()) {
-        if (!sum.first) sum.first = batch.events.front().t;
-        sum.last = batch.events.back().t;
+    for (const Event& event : batch.events) {
+        if (!sum.first) sum.first = sum.last = event.t;
+        // Parsers leave out what goes back for any other reason.
+        if (event.t < *sum.last)
+            ++sum.clock_resets;
+        else
+            sum.span += event.t - *sum.last;
+        sum.last = event.t;
     }
     sum.frames += batch.images.size();
     sum.imu += batch.imu.size();

@@ -18,6 +18,8 @@ struct Summary {
     std::uint64_t on = 0;  ///< of the events
     /// Of the events; empty where there are none.
     std::optional<SensorTime> first, last;
+    SensorDuration span{};           ///< from first to last, by each of the clocks in turn
+    std::uint64_t clock_resets = 0;  ///< how often the sensor's clock began anew
     std::uint64_t frames = 0, imu = 0, triggers = 0;
     /// Of the events, those that came while light flickered, as FlickerPeriod finds it, and at how
     /// many Hz it did on the average of them; 0 where it did not.

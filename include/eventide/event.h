@@ -92,7 +92,10 @@ struct Trigger {
     };
     SensorTime t{};           ///< when it was
     Kind kind = Kind::other;  ///< what it marks
-    std::uint8_t source = 0;  ///< number of the input
+    std::uint8_t source = 0;  ///< number of the input, from 0, or kGenerator
+
+    /// Not an input, but the camera's own generator of pulses.
+    static constexpr std::uint8_t kGenerator = 255;
 
     friend bool operator==(const Trigger&, const Trigger&) = default;  ///< all members
 };

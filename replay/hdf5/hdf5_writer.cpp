@@ -199,7 +199,7 @@ private:
                           space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
             h5.H5Dclose};
         const double seconds = double(to_us(image.t)) / 1e6;
-        const auto event = std::int64_t(rows_) - 1;
+        const auto event = std::int64_t(rows_ > 0 ? rows_ - 1 : 0);
         check(set.good() &&
               h5.H5Dwrite(set.id(), h5.H5T_NATIVE_UINT16_g, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                           pixels.data()) >= 0 &&

@@ -123,6 +123,17 @@ bool parse(std::string_view text, NumpyArray& array) {
     return literal.take('}') && array.record_bytes > 0;
 }
 
+/// To the whole rows in so many bytes. False where the rows are not one behind the other, or none.
+bool cut_to(std::uint64_t bytes, NumpyArray& array) {
+    const bool in_rows =
+        array.shape.size() == 1 || (array.shape.size() == 2 && array.shape[1] == 4);
+    if (!in_rows || array.columns_first) return false;
+    const std::uint64_t row = array.record_bytes * (array.shape.size() == 2 ? 4 : 1);
+    array.shape[0] = bytes / row;
+    array.is_cut = true;
+    return array.shape[0] > 0;
+}
+
 }  // namespace
 
 bool NumpyField::is_number() const {
@@ -143,7 +154,7 @@ const NumpyField* NumpyArray::field(const std::string& name) const {
     return found == fields.end() ? nullptr : &*found;
 }
 
-NumpyArray read_numpy_header(ByteSource& bytes, const std::string& name) {
+NumpyArray read_numpy_header(ByteSource& bytes, const std::string& name, CutArrays cut) {
     const auto refuse = [&](const std::string& what) {
         throw Error(ErrorKind::input, name + ": expected a NumPy array, found " + what);
     };
@@ -168,9 +179,11 @@ NumpyArray read_numpy_header(ByteSource& bytes, const std::string& name) {
         if (side != 0 && items > kMaxItems / side) refuse("a shape too large");
         items *= side;
     }
+    const std::uint64_t held = bytes.size() - array.data_offset;
+    const std::string shape = array.shape_text();
     if (array.record_bytes > kLongestHeader ||
-        items > (bytes.size() - array.data_offset) / array.record_bytes)
-        refuse("a shape " + array.shape_text() + " that its " + std::to_string(bytes.size()) +
+        (items > held / array.record_bytes && !(cut == CutArrays::read && cut_to(held, array))))
+        refuse("a shape " + shape + " that its " + std::to_string(bytes.size()) +
                " bytes do not hold");
     return array;
 }

@@ -23,6 +23,7 @@ struct NumpyArray {
     std::vector<std::uint64_t> shape;
     bool columns_first = false;  ///< Fortran order
     std::uint64_t data_offset = 0;
+    bool is_cut = false;  ///< the shape is of the whole rows that there are, and was larger
 
     bool is_of_records() const { return !fields.empty() && !fields.front().name.empty(); }
     std::uint64_t rows() const { return shape.empty() ? 1 : shape.front(); }
@@ -31,9 +32,13 @@ struct NumpyArray {
     const NumpyField* field(const std::string& name) const;
 };
 
+enum class CutArrays { refused, read };
+
 /// Throws Error (input) beginning with `name`: no header, of kinds that are not read (big endian,
-/// objects), or with a shape that the bytes do not hold.
-NumpyArray read_numpy_header(ByteSource& bytes, const std::string& name);
+/// objects), or with a shape that the bytes do not hold. Where that is read, rows one behind the
+/// other of records or of four numbers are enough, if there is one.
+NumpyArray read_numpy_header(ByteSource& bytes, const std::string& name,
+                             CutArrays cut = CutArrays::refused);
 
 /// A number of the field, `at` its first byte.
 double numpy_number(const NumpyField& field, const std::byte* at);

@@ -48,13 +48,21 @@ int field_of(const std::string& name) {
 /// The file stays open for the arrays in it.
 class NumpyReader final : public DataReader {
 public:
+    /// `is_cut`: the file ends inside a row.
     NumpyReader(std::unique_ptr<ByteFile> file, std::unique_ptr<TableReader> table,
-                std::vector<std::string> remarks)
-        : file_(std::move(file)), table_(std::move(table)), remarks_(std::move(remarks)) {
+                std::vector<std::string> remarks, bool is_cut)
+        : file_(std::move(file)),
+          table_(std::move(table)),
+          remarks_(std::move(remarks)),
+          is_cut_(is_cut) {
         std::ranges::copy(table_->remarks(), std::back_inserter(remarks_));
     }
     const StreamHeader& header() const override { return table_->header(); }
-    bool read(Batch& into, Damage& damage) override { return table_->read(into, damage); }
+    bool read(Batch& into, Damage& damage) override {
+        const bool goes_on = table_->read(into, damage);
+        if (!goes_on && std::exchange(is_cut_, false)) damage.count(DamageReason::truncated);
+        return goes_on;
+    }
     void seek(SensorTime t) override { table_->seek(t); }
     double progress() const override { return table_->progress(); }
     std::vector<std::string> remarks() const override { return remarks_; }
@@ -63,6 +71,7 @@ private:
     std::unique_ptr<ByteFile> file_;
     std::unique_ptr<TableReader> table_;
     std::vector<std::string> remarks_;
+    bool is_cut_;  ///< and it is not counted yet
 };
 
 /// The beginning as a text would have it, for the same rules on columns and units.
@@ -113,10 +122,11 @@ std::unique_ptr<DataReader> make_reader(std::unique_ptr<ByteFile> file, NumpyEve
     }
     StreamHeader header;
     header.format = format;
+    const bool is_cut = found.is_cut;
     auto table = std::make_unique<TableReader>(
         path, header, make_numpy_table(std::move(found), text.layout), nullptr, options);
-    return std::make_unique<NumpyReader>(std::move(file), std::move(table),
-                                         std::move(text.remarks));
+    return std::make_unique<NumpyReader>(std::move(file), std::move(table), std::move(text.remarks),
+                                         is_cut);
 }
 
 void check_number(const NumpyField& field, const std::string& what) {
@@ -124,6 +134,17 @@ void check_number(const NumpyField& field, const std::string& what) {
         throw Error(ErrorKind::input, what + ": expected numbers, found an array of kind '" +
                                           std::string(1, field.kind) + std::to_string(field.bytes) +
                                           "'");
+}
+
+/// The records of Metavision's arrays, whose times are microseconds: {x, y, p, t}.
+bool is_event_cd(const NumpyArray& array) {
+    constexpr std::array<std::pair<std::string_view, char>, 4> kEventCd{
+        {{"x", 'u'}, {"y", 'u'}, {"p", 'i'}, {"t", 'i'}}};
+    constexpr auto kIs = [](const NumpyField& field, const auto& known) {
+        return field.name == known.first && field.kind == known.second &&
+               field.bytes == (known.first == "t" ? 8 : 2);
+    };
+    return std::ranges::equal(array.fields, kEventCd, kIs);
 }
 
 /// Records with the four fields. False where they have others.
@@ -138,8 +159,10 @@ bool find_records(const std::shared_ptr<ByteSource>& source, const NumpyArray& a
         found.columns.push_back({0, field, which == 0 ? field.name : canonical(field.name)});
     }
     if (found.columns.size() != 4) return false;
+    if (is_event_cd(array)) found.columns.back().name = "t_us";
     found.rows = {{source, array.data_offset, array.record_bytes}};
     found.count = array.rows();
+    found.is_cut = array.is_cut;
     return true;
 }
 
@@ -168,6 +191,7 @@ bool find_matrix(const std::shared_ptr<ByteSource>& source, const NumpyArray& ar
         found.columns.push_back({behind ? std::size_t(i) : 0, field, ""});
     }
     found.named = false;
+    found.is_cut = array.is_cut;
     return true;
 }
 
@@ -225,7 +249,7 @@ bool find_columns(const ByteFile& file, const std::vector<NamedArray>& arrays, N
 std::unique_ptr<DataReader> open_npy(const std::string& path, const OpenOptions& options) {
     auto file = std::make_unique<ByteFile>(path);
     const auto source = std::make_shared<StoredBytes>(*file, 0, file->size());
-    const NumpyArray array = read_numpy_header(*source, path);
+    const NumpyArray array = read_numpy_header(*source, path, CutArrays::read);
     NumpyEvents found;
     if (find_records(source, array, path, found) ||
         find_matrix(source, array, path, found = NumpyEvents{}))

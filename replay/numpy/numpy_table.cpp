@@ -32,6 +32,7 @@ public:
         for (std::size_t i = 0; i < found.columns.size(); ++i)
             columns_[std::size_t(layout.columns[i])] = std::move(found.columns[i]);
         us_ = us_per(layout.unit);
+        off_ = layout.off;
     }
 
     std::uint64_t rows() const override { return count_; }
@@ -49,7 +50,7 @@ public:
             into.t_us[i] = time_of(at(0, i));
             into.x[i] = place(columns_[1].field, at(1, i));
             into.y[i] = place(columns_[2].field, at(2, i));
-            into.on[i] = std::uint8_t(numpy_number(columns_[3].field, at(3, i)) > 0);
+            into.on[i] = std::uint8_t(numpy_number(columns_[3].field, at(3, i)) > off_);
         }
         return true;
     }
@@ -97,7 +98,8 @@ private:
     std::vector<NumpyRows> rows_;
     std::array<NumpyColumn, 4> columns_;
     std::uint64_t count_ = 0;
-    double us_ = 1;  // per unit of time
+    double us_ = 1;   // per unit of time
+    double off_ = 0;  // the largest polarity that is off
 };
 
 }  // namespace

@@ -37,6 +37,7 @@ struct NumpyEvents {
     std::vector<NumpyColumn> columns;  ///< four, in the order of the file
     std::uint64_t count = 0;
     bool named = true;
+    bool is_cut = false;  ///< there were to be more
 };
 
 /// `layout`: which column is what, and the unit of time.

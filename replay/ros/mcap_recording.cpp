@@ -38,8 +38,12 @@ protected:
         const auto kind = std::to_integer<std::uint8_t>(head[0]);
         const auto length = load_little<std::uint64_t>(head.data() + 1);
         if (kind == footer) return false;
-        if (length > file_.size() - at_ - kHeadBytes) return cut_short(damage, true);
-        const std::uint64_t content = at_ + kHeadBytes;
+        const std::uint64_t content = at_ + kHeadBytes, held = file_.size() - content;
+        if (length > held) {
+            if (kind == chunk && held <= kLongest)
+                take_cut_chunk(content, std::size_t(held), damage);
+            return cut_short(damage, true);
+        }
         at_ = content + length;
         if (kind < schema || kind > chunk) return true;
         if (length > kLongest) {
@@ -74,11 +78,28 @@ private:
         const auto bytes = bare ? std::optional(packed) : unpacker_.unpack(packed);
         if (!bytes || (!bare && packing != "lz4" && packing != "zstd"))
             return damage.count(DamageReason::bad_compression);
-        for (BlockReader records{*bytes};;) {
+        if (!take_records(*bytes, damage)) damage.count(DamageReason::bad_length);
+    }
+
+    /// Where its records are not packed, those before the end are whole.
+    void take_cut_chunk(std::uint64_t content, std::size_t held, Damage& damage) {
+        record_.resize(held);
+        if (file_.read_at(content, record_) < held) return;
+        BlockReader reader{record_};
+        reader.take(28);
+        const std::string_view packing = text_of(reader.block());
+        reader.number<std::uint64_t>();
+        if (!reader.good() || (!packing.empty() && packing != "none")) return;
+        take_records(std::span(record_).subspan(28 + 4 + packing.size() + 8), damage);
+    }
+
+    /// False where the last is cut short.
+    bool take_records(std::span<const std::byte> bytes, Damage& damage) {
+        for (BlockReader records{bytes};;) {
             const auto kind = records.number<std::uint8_t>();
-            if (!records.good()) return;
+            if (!records.good()) return true;
             const auto content = records.take(std::size_t(records.number<std::uint64_t>()));
-            if (!records.good()) return damage.count(DamageReason::bad_length);
+            if (!records.good()) return false;
             take(kind, content, damage);
         }
     }

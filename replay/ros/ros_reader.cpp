@@ -22,10 +22,10 @@ bool has_events(RosKind kind) {
 void RosReader::open(std::string_view format, const OpenOptions& options) {
     Damage damage;
     for (int parts = 0; data_.width() == 0 || parts < kPartsToLookAt; ++parts) {
-        if (!read_part(damage)) break;
+        const bool goes_on = read_part(damage);
         for (const Message& message : messages_) look_at(message, damage);
         messages_.clear();
-        if (data_.width() > 0 && has_all_sizes()) break;
+        if (!goes_on || (data_.width() > 0 && has_all_sizes())) break;
     }
     if (data_.width() == 0) refuse(damage);
     opening_ = false;

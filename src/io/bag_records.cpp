@@ -16,6 +16,28 @@ constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kLongest = 1U << 28;
 constexpr std::uint32_t kLongestHeader = 1U << 16;  // of what is passed over
 
+bool is_bare_chunk(std::span<const std::byte> header) {
+    const auto fields = bag_fields(header);
+    const auto op = fields.find("op"), packing = fields.find("compression");
+    return op != fields.end() && op->second == std::string_view("\5") &&
+           (packing == fields.end() || packing->second == "none");
+}
+
+/// The record in front, which is taken from the bytes; empty where it is cut short.
+std::optional<BagRecord> take_record(std::span<const std::byte>& bytes) {
+    BlockReader reader{bytes};
+    const auto header = reader.block();
+    BagRecord record;
+    record.data = reader.block();
+    if (!reader.good()) return {};
+    bytes = bytes.subspan(8 + header.size() + record.data.size());
+    record.fields = bag_fields(header);
+    const auto op = record.fields.find("op");
+    if (op != record.fields.end() && op->second.size() == 1)
+        record.op = static_cast<unsigned char>(op->second[0]);
+    return record;
+}
+
 }  // namespace
 
 std::map<std::string, std::string_view, std::less<>> bag_fields(std::span<const std::byte> bytes) {
@@ -72,10 +94,14 @@ void BagRecords::refuse_short(std::uint64_t wanted) const {
 }
 
 bool BagRecords::read(const std::function<void(const BagRecord&)>& use) {
-    const auto bytes = next_bytes();
-    if (!bytes) return false;
-    std::span<const std::byte> rest{*bytes};
+    const auto next = next_bytes();
+    if (!next) return false;
+    std::span<const std::byte> rest{next->bytes};
     const BagRecord record = parse(rest);
+    if (next->missing > 0) {
+        for (rest = record.data; const auto whole = take_record(rest);) use(*whole);
+        refuse_short(next->missing);
+    }
     if (record.op != BagRecord::chunk) {
         use(record);
         return true;
@@ -86,9 +112,10 @@ bool BagRecords::read(const std::function<void(const BagRecord&)>& use) {
 }
 
 /// The two lengths and what they announce, in one piece.
-std::optional<std::vector<std::byte>> BagRecords::next_bytes() {
+std::optional<BagRecords::Bytes> BagRecords::next_bytes() {
     if (left_ == 0) return {};
-    std::vector<std::byte> bytes;
+    Bytes next;
+    std::vector<std::byte>& bytes = next.bytes;
     for (int part = 0; part < 2; ++part) {
         const auto grow = [&](std::size_t n) {
             if (n > left_) refuse_short(n);
@@ -99,28 +126,27 @@ std::optional<std::vector<std::byte>> BagRecords::next_bytes() {
             left_ -= n;
             return bytes.data() + at;
         };
-        const auto length = load_little<std::uint32_t>(grow(4));
+        auto length = load_little<std::uint32_t>(grow(4));
         if (length > kLongest)
             refuse("expected records of at most 256 MiB, found one of " + std::to_string(length) +
                        " bytes",
                    DamageReason::bad_length);
+        if (part == 1 && length > left_ &&
+            is_bare_chunk(std::span{bytes}.subspan(4, bytes.size() - 8))) {
+            next.missing = length - left_;
+            length = std::uint32_t(left_);
+            bytes.resize(bytes.size() - 4);
+            append_little(bytes, length);
+        }
         grow(length);
     }
-    return bytes;
+    return next;
 }
 
 BagRecord BagRecords::parse(std::span<const std::byte>& bytes) const {
-    BlockReader reader{bytes};
-    const auto header = reader.block();
-    BagRecord record;
-    record.data = reader.block();
-    if (!reader.good()) refuse("expected whole records inside a chunk, found one cut short");
-    bytes = bytes.subspan(8 + header.size() + record.data.size());
-    record.fields = bag_fields(header);
-    const auto op = record.fields.find("op");
-    if (op != record.fields.end() && op->second.size() == 1)
-        record.op = static_cast<unsigned char>(op->second[0]);
-    return record;
+    const auto record = take_record(bytes);
+    if (!record) refuse("expected whole records inside a chunk, found one cut short");
+    return *record;
 }
 
 std::uint32_t BagRecords::number(const BagRecord& record, std::string_view field) const {

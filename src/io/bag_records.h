@@ -86,7 +86,9 @@ class BagRecords {
 public:
     explicit BagRecords(const std::filesystem::path& path);
 
-    /// Gives the next record, or each of those in it when it is a chunk; false at the end.
+    /// Gives the next record, or each of those in it when it is a chunk; false at the end. Of a
+    /// chunk that is not packed and cut short, gives the whole records before it throws
+    /// (truncated).
     bool read(const std::function<void(const BagRecord&)>& use);
 
     /// Where the next record begins, for go_to(). Bytes.
@@ -102,7 +104,11 @@ public:
                              DamageReason reason = DamageReason::bad_record) const;
 
 private:
-    std::optional<std::vector<std::byte>> next_bytes();  ///< of one record; none at the end
+    struct Bytes {
+        std::vector<std::byte> bytes;
+        std::uint64_t missing = 0;  ///< at the end, of a chunk that is not packed
+    };
+    std::optional<Bytes> next_bytes();  ///< of one record; none at the end
     BagRecord parse(std::span<const std::byte>& bytes) const;
     std::vector<std::byte> unpack(const BagRecord& chunk) const;
     [[noreturn]] void refuse_short(std::uint64_t wanted) const;

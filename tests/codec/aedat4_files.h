@@ -55,8 +55,8 @@ inline Batch some_of_everything(unsigned seed = 1) {
          {Kind::timestamp_reset, Kind::rising, Kind::falling, Kind::pulse, Kind::frame_begin,
           Kind::frame_end, Kind::exposure_begin, Kind::exposure_end})
         batch.triggers.push_back({t + SensorDuration(int(kind)), kind, 0});
-    batch.triggers.push_back({t + SensorDuration(20), Kind::rising, 1});
-    batch.triggers.push_back({t + SensorDuration(20), Kind::falling, 1});
+    batch.triggers.push_back({t + SensorDuration(20), Kind::rising, Trigger::kGenerator});
+    batch.triggers.push_back({t + SensorDuration(20), Kind::falling, Trigger::kGenerator});
     batch.triggers.push_back({t + SensorDuration(21), Kind::other, 99});
     return batch;
 }

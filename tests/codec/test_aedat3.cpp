@@ -1,6 +1,8 @@
 // AEDAT 3.1, from packets spelled out and from the writer.
 #include "src/codec/aedat/aedat3.h"
 
+#include "src/codec/aedat/aedat3_records.h"
+#include "src/codec/aedat4/aedat4_records.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
 #include "tests/codec/parser_checks.h"
@@ -78,10 +80,12 @@ TEST(Aedat3, SpecialEventsAreTriggers) {
     const Bytes bytes =
         packet_header(0, 8, 7) + words({special(2), 10, special(3), 11, special(4), 12, special(0),
                                         13, special(7), 14, special(12), 15, special(16), 16});
-    const std::vector<Trigger> expected{
-        {from_us(10), Kind::rising, 0}, {from_us(11), Kind::falling, 0},
-        {from_us(12), Kind::pulse, 0},  {from_us(14), Kind::falling, 1},
-        {from_us(15), Kind::rising, 3}, {from_us(16), Kind::exposure_begin, 0}};
+    const std::vector<Trigger> expected{{from_us(10), Kind::rising, 0},
+                                        {from_us(11), Kind::falling, 0},
+                                        {from_us(12), Kind::pulse, 0},
+                                        {from_us(14), Kind::falling, 1},
+                                        {from_us(15), Kind::rising, Trigger::kGenerator},
+                                        {from_us(16), Kind::exposure_begin, 0}};
     EXPECT_EQ(parse_whole(make_parser(), bytes).data.triggers, expected);
 }
 
@@ -105,17 +109,32 @@ TEST(Aedat3, FramesCarryTheirExposure) {
     EXPECT_EQ(parsed.clock, from_us(181));
 }
 
-TEST(Aedat3, AfterATimestampResetTimeGoesOn) {
+TEST(Aedat3, BehindATimestampResetTimeBeginsAnew) {
     const Bytes bytes = packet_header(1, 8, 1) + words({polarity(1, 1, true), 5000}) +
                         packet_header(0, 8, 1) + words({special(1), 0x7FFFFFFF}) +
                         packet_header(1, 8, 2) +
                         words({polarity(1, 1, true), 10, polarity(1, 1, true), 20});
     const Parsed parsed = parse_whole(make_parser(), bytes);
     ASSERT_EQ(parsed.data.events.size(), 3U);
-    EXPECT_EQ(to_us(parsed.data.events[1].t), 5010);
-    EXPECT_EQ(to_us(parsed.data.events[2].t), 5020);
+    EXPECT_EQ(to_us(parsed.data.events[1].t), 10);
+    EXPECT_EQ(to_us(parsed.data.events[2].t), 20);
+    EXPECT_EQ(parsed.clock, from_us(20));
     ASSERT_EQ(parsed.data.triggers.size(), 1U);
     EXPECT_EQ(parsed.data.triggers[0], (Trigger{from_us(5000), Trigger::Kind::timestamp_reset, 0}));
+    EXPECT_EQ(parsed.damage.total(), 0U);
+}
+
+TEST(Aedat3, AResetIsReadBackAsItWasWritten) {
+    Batch batch;
+    batch.events = random_events(1, 5000, kWidth, kHeight, 60'000'000);
+    const auto behind = random_events(2, 5000, kWidth, kHeight, 1'000);
+    batch.events.insert(batch.events.end(), behind.begin(), behind.end());
+    batch.triggers = {{behind.front().t, Trigger::Kind::timestamp_reset, 0}};
+    Bytes bytes;
+    Aedat3Writer().write(batch, bytes);
+    const Parsed parsed = parse_whole(make_parser(), bytes);
+    EXPECT_TRUE(parsed.data.events == batch.events);
+    EXPECT_TRUE(parsed.data.triggers == batch.triggers);
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 
@@ -151,6 +170,19 @@ Batch everything(unsigned seed, std::int64_t first_us) {
         for (const int source : {0, 1, 2, 3, 9, 255})
             batch.triggers.push_back({time(kind), Trigger::Kind(kind), std::uint8_t(source)});
     return batch;
+}
+
+TEST(Aedat3, TheGeneratorIsTheSameInAedat4AndNoInputIsTakenForIt) {
+    const auto in_aedat4 = [](Aedat3Special number) {
+        return aedat4_trigger_number(*read_special(1U | std::uint32_t(number) << 1));
+    };
+    EXPECT_EQ(in_aedat4(Aedat3Special::generator_rising), 4);
+    EXPECT_EQ(in_aedat4(Aedat3Special::generator_falling), 5);
+    EXPECT_EQ(in_aedat4(Aedat3Special::rising), 1);
+    for (const Aedat3Special of_others :
+         {Aedat3Special::rising_1, Aedat3Special::falling_1, Aedat3Special::pulse_1,
+          Aedat3Special::rising_2, Aedat3Special::falling_2, Aedat3Special::pulse_2})
+        EXPECT_EQ(in_aedat4(of_others), -1) << int(of_others);
 }
 
 TEST(Aedat3, WhatIsWrittenIsReadBack) {
@@ -255,6 +287,15 @@ TEST(Aedat3, OtherTypesArePassedOverAndOtherSourcesCounted) {
     const Parsed counted = parse_whole(make_parser(), good + other);
     EXPECT_EQ(counted.data.events.size(), 1U);
     EXPECT_EQ(counted.damage[DamageReason::unknown_word], 1U);
+    const auto named = [] {
+        Aedat3Header header;
+        header.source = 1;
+        header.others = {{2, "DAVIS240C"}};
+        return std::make_unique<Aedat3Parser>(header, kWidth, kHeight);
+    };
+    const Parsed left_out = parse_whole(named, good + other + good);
+    EXPECT_EQ(left_out.data.events.size(), 2U);
+    EXPECT_EQ(left_out.damage.total(), 0U);
 }
 
 TEST(Aedat3, AFrameLargerThanItsRecordIsDamage) {
@@ -288,6 +329,12 @@ TEST(Aedat3, HeadersAreChecked) {
     EXPECT_EQ(header.stream.width, 240);
     EXPECT_FALSE(header.lower_left);
     EXPECT_TRUE(read("#!AER-DAT3.0\r\n").lower_left);
+    const auto two = read("#!AER-DAT3.1\r\n#Source 1: DAVIS346\r\n#Source 2:  DVS128 \r\n");
+    EXPECT_EQ(two.source, 1);
+    EXPECT_EQ(two.stream.sensor_name, "DAVIS346");
+    ASSERT_EQ(two.others.size(), 1U);
+    EXPECT_EQ(two.others[0].number, 2);
+    EXPECT_EQ(two.others[0].name, "DVS128");
 }
 
 }  // namespace

@@ -113,11 +113,16 @@ TEST(Aedat4, TheTableLeadsToATime) {
 }
 
 TEST(Aedat4, BehindAResetThatATriggerTellsTimeBeginsAnew) {
-    const auto before = random_events(1, 500, kWidth, kHeight, 60'000'000),
-               after = random_events(2, 500, kWidth, kHeight, 1'000);
-    auto all = before;
-    all.insert(all.end(), after.begin(), after.end());
-    for (const bool told : {true, false}) {
+    const auto after = random_events(2, 500, kWidth, kHeight, 1'000);
+    struct Case {
+        std::int64_t first_us;
+        bool told;
+    };
+    for (const auto& [first_us, told] :
+         {Case{60'000'000, true}, Case{60'000'000, false}, Case{500'000, true}}) {
+        const auto before = random_events(1, 500, kWidth, kHeight, first_us);
+        auto all = before;
+        all.insert(all.end(), after.begin(), after.end());
         auto packets = in_packets(all, 1);
         packets.emplace_back();  // as --record has it: with events from before and behind
         packets[1].events.assign(all.begin() + 100, all.end());
@@ -127,6 +132,17 @@ TEST(Aedat4, BehindAResetThatATriggerTellsTimeBeginsAnew) {
         EXPECT_EQ(parsed.damage[DamageReason::time_backwards], told ? 0U : after.size());
         EXPECT_EQ(parsed.clock, told ? after.back().t : before.back().t);
     }
+}
+
+TEST(Aedat4, WhereTimeGoesOnBehindAResetAnEventInThePastIsDamage) {
+    auto packets = in_packets(random_events(1, 100, kWidth, kHeight, 60'000'000), 1);
+    packets[0].triggers = {{packets[0].events[50].t, Trigger::Kind::timestamp_reset, 0}};
+    auto later = random_events(2, 200, kWidth, kHeight, 61'500'000);
+    later[150].t = from_us(61'200'000);
+    for (const Batch& packet : in_packets(later, 2)) packets.push_back(packet);
+    const Parsed parsed = parse_file(write_file(packets, Aedat4Compression::lz4));
+    EXPECT_EQ(parsed.data.events.size(), 299U);
+    EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 1U);
 }
 
 TEST(Aedat4, OfTwoCamerasTheFirstIsRead) {

@@ -131,6 +131,19 @@ TEST(DavisWords, WhatMakesNoSenseIsCountedByReason) {
     EXPECT_THAT(parsed.data.events, ElementsAre(event(10, 1, 1, Polarity::on)));
 }
 
+TEST(DavisWords, EdgesSayWhetherTheyAreOfTheInputOrTheGenerator) {
+    const auto parsed =
+        parse({time(10), special(2), special(3), special(4), special(16), special(17)});
+    using Kind = Trigger::Kind;
+    constexpr std::uint8_t kGenerator = Trigger::kGenerator;
+    const std::vector<Trigger> expected{{from_us(10), Kind::falling, 0},
+                                        {from_us(10), Kind::rising, 0},
+                                        {from_us(10), Kind::pulse, 0},
+                                        {from_us(10), Kind::falling, kGenerator},
+                                        {from_us(10), Kind::rising, kGenerator}};
+    EXPECT_EQ(parsed.data.triggers, expected);
+}
+
 TEST(DavisWords, NothingIsGuessedAfterALoss) {
     DavisParser parser{davis240()};
     Batch data;

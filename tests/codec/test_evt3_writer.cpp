@@ -38,6 +38,7 @@ Bytes write(const Batch& batch) {
     header.width = kWidth;
     header.height = kHeight;
     header.serial = "00001034";
+    header.sensor_name = "IMX636";
     Bytes out;
     writer.begin(header, out);
     writer.write(batch, out);
@@ -90,6 +91,13 @@ TEST(Evt3, FlippedBitsAreBorne) {
     const Bytes file = write(busy_batch(4, 1000, 0));
     const auto offset = std::ptrdiff_t(read_evt_header(file).stream.data_offset);
     expect_bears_damage(kMake, Bytes(file.begin() + offset, file.end()), kWidth, kHeight);
+}
+
+TEST(Evt3Writer, NamesTheSensorAsOpenEbReadsIt) {
+    const Bytes file = write(busy_batch(4, 10, 0));
+    const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
+    EXPECT_NE(text.find("\n% sensor_name IMX636\n"), text.npos);
+    EXPECT_EQ(read_evt_header(file).stream.sensor_name, "IMX636");
 }
 
 TEST(Evt3, ARealRecordingGivesItsNumbers) {

@@ -48,7 +48,18 @@ TEST(Text, TheSameEventsInEveryLayout) {
              "x,y,timestamp,polarity\n96,133,0.003811,0\n127,171,1.003820,1\n",
              "x y p t_us\n96 133 0 3811\n127 171 1 1003820\n",
              "time_ns,y,x,pol,index\n3811000,133,96,0,5\n1003820000,171,127,1,6\n",
+             "t [us],x,y,p\n3811,96,133,0\n1003820,127,171,1\n",
+             "time (us) x y p\n3811 96 133 0\n1003820 127 171 1\n",
+             "x, y, timestamp (ms), polarity\n96, 133, 3.811, 0\n127, 171, 1003.820, 1\n",
+             "0.003811,96,133,OFF\n1.003820,127,171,On\n",
+             "3811 96 133 f\n1003820 127 171 t\n",
              "96 133 0.003811 0\n127 171 1.003820 1\n",
+             "0.003811 0 96 133\n1.003820 1 127 171\n",
+             "0 96 133 0.003811\n1 127 171 1.003820\n",
+             "3811 -1 96 133\n1003820 1 127 171\n",
+             "0,96,133,3811\n1,127,171,1003820\n",
+             "3811 96 133 0\n1003820 127 171 255\n",
+             "96 133 1 0.003811\n127 171 2 1.003820\n",
              "96 133 0 0.003811\n127 171 1 1.003820\n",
              "96,133,0,3811\n127,171,1,1003820\n",
              "96,133,3811,0\n127,171,1003820,1\n",
@@ -93,6 +104,20 @@ TEST(Text, TheSizeLineIsRead) {
     EXPECT_EQ(header.layout.unit, TextTimeUnit::seconds);
 }
 
+TEST(Text, ACommentMaySayTheSize) {
+    for (const char* text :
+         {"%geometry:346,260\n0.1 1 2 1\n", "# c\n# geometry: 346, 260\n0.1 1 2 1\n",
+          "% date 1 1\n%geometry:346,260\n%end\nt,x,y,p\n0.1,1,2,1\n",
+          "%geometry:9,9\n346 260\n0.1 1 2 1\n", "# geometry: 346,260\n"}) {
+        EXPECT_TRUE(looks_like_text(to_bytes(text))) << text;
+        const TextHeader header = read_text_header(to_bytes(text), {});
+        EXPECT_EQ(header.stream.width, 346) << text;
+        EXPECT_EQ(header.stream.height, 260) << text;
+    }
+    EXPECT_EQ(read_text_header(to_bytes("# 346 260\n0.1 1 2 1\n"), {}).stream.width, 0);
+    EXPECT_THROW(read_text_header(to_bytes("%geometry:0,260\n0.1 1 2 1\n"), {}), Error);
+}
+
 TEST(Text, WithoutARowTheSizeOrTheColumnsAreEnough) {
     for (const char* text : {"346 260\n", "346 260", "# c\n346 260\n# c\n", "t,x,y,p\n"}) {
         const Parsed parsed = parse_text(text);
@@ -111,6 +136,31 @@ TEST(Text, WholeNumbersAreTakenInTheOrderThatMakesMostEvents) {
     // A damaged row does not overrule the others.
     EXPECT_EQ(parse_text("90,3,1,70000\n20,9,0,80000\n1,1,7,1\n50,1,1,90000\n").data.events.size(),
               3U);
+}
+
+TEST(Text, RowsThatFitNoLayoutAreRefusedInWords) {
+    for (const char* text : {"0.1 7 8 9\n0.2 5 6 7\n", "t x y p\n0.1 7 8 9\n0.2 5 6 7\n",
+                             "1 2 3 0\n4 5 6 255\n7 8 9 2\n7 8 9 3\n7 8 9 4\n"}) {
+        try {
+            read_text_header(to_bytes(text), {});
+            ADD_FAILURE() << text;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::input);
+            EXPECT_NE(std::string(error.what()).find("rows \"t x y p\" with polarities"),
+                      std::string::npos)
+                << error.what();
+        }
+    }
+    EXPECT_THROW(read_text_header(to_bytes("9 2 3 1\n"), {"pxyt", {}}), Error) << "stated";
+}
+
+TEST(Text, ADamagedPolarityIsNoOtherWayToWriteThem) {
+    std::string text;
+    for (int i = 0; i < 50; ++i) text += std::to_string(100 + i) + " 7 2 1\n";
+    const Parsed parsed = parse_text(text + "150 7 2 2\n");
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+    ASSERT_EQ(parsed.data.events.size(), 50U);
+    EXPECT_EQ(parsed.data.events[0].polarity, Polarity::on);
 }
 
 TEST(Text, ASizeThatNoSensorHasIsRefused) {
@@ -187,13 +237,18 @@ TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
     for (const Case& c : {Case{0, 10, TextTimeUnit::microseconds, false},
                           Case{1'600'000'000'000'000, 10, TextTimeUnit::microseconds, false},
                           Case{0, 500, TextTimeUnit::microseconds, true},
+                          Case{0, 5'000, TextTimeUnit::microseconds, true},
                           Case{0, 20'000, TextTimeUnit::nanoseconds, true},
+                          Case{1'600'000'000'000'000, 20'000, TextTimeUnit::microseconds, true},
                           Case{1'600'000'000'000'000'000, 500, TextTimeUnit::nanoseconds, true},
                           Case{0, 50'000'000'000, TextTimeUnit::microseconds, true}}) {
         const TextHeader header = header_of(c.first, c.step);
         EXPECT_EQ(header.layout.unit, c.unit) << c.first << " " << c.step;
         EXPECT_EQ(!header.remarks.empty(), c.is_said) << c.first << " " << c.step;
     }
+    std::string of_ticks;  // microseconds of a sensor, in nanoseconds
+    for (int i = 0; i < 500; ++i) of_ticks += std::to_string((5 * i + i * i % 3) * 1000) + " 1 2 1\n";
+    EXPECT_EQ(read_text_header(to_bytes(of_ticks), {}).layout.unit, TextTimeUnit::nanoseconds);
     // A first time of another clock, which readers leave out, tells nothing either.
     std::string text = "0 1 2 1\n";
     for (int i = 0; i < 500; ++i)
@@ -299,6 +354,20 @@ TEST(Text, TheQuickWayAndTheCarefulWayAgree) {
     expect_same(a, b, "padded");
 }
 
+TEST(Text, OtherPolaritiesAreTheSameBothWays) {
+    std::string quick, careful;
+    for (int i = 0; i < 1500; ++i) {
+        const char* const polarities[] = {" 255", " 0", " 1", " -1", " -255", " -0", " on"};
+        const std::string row =
+            std::to_string(100 + i) + " 7 2" + polarities[i < 1000 ? i % 2 : i % 7];
+        quick += row + "\n";
+        careful += " " + row + " \n";
+    }
+    const Parsed a = parse_text(quick), b = parse_text(careful);
+    EXPECT_GT(a.data.events.size(), 1000U);
+    expect_same(a, b, "padded");
+}
+
 TEST(Text, WhatIsWrittenIsReadBack) {
     for (const std::int64_t first :
          {std::int64_t(0), std::int64_t(-5'000'000), std::int64_t(1'633'953'690'975'950)}) {
@@ -308,7 +377,7 @@ TEST(Text, WhatIsWrittenIsReadBack) {
         header.width = 1280;
         header.height = 720;
         Bytes bytes;
-        TextWriter writer;
+        TextWriter writer(first == 0 ? TextSize::in_a_comment : TextSize::in_a_line);
         writer.begin(header, bytes);
         writer.write(batch, bytes);
         writer.finish(bytes);

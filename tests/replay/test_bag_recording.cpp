@@ -91,6 +91,20 @@ TEST_P(BagRecordings, CutShortGiveWhatIsThere) {
     EXPECT_LT(sum.events, events_.size() * 2 / 3);
 }
 
+TEST(BagRecording, AChunkThatIsCutShortGivesItsWholeMessages) {
+    const TestFolder folder;
+    const auto events = some_events(1'000);
+    BagBytes messages = connection(kEvents, "dvs_msgs/EventArray");
+    for (std::size_t i = 0; i < events.size(); i += 100)
+        messages += message(kEvents, event_array(128, 128, std::span(events).subspan(i, 100)));
+    BagBytes bytes = bag(chunk("none", messages));
+    bytes.resize(bytes.find(messages) + messages.size() - 50);
+    const Summary sum = summarize(*open_recording(folder.write("a.bag", bytes)));
+    EXPECT_EQ(sum.events, 900U);
+    EXPECT_EQ(sum.damaged[DamageReason::truncated], 1U);
+    EXPECT_EQ(sum.damaged.total(), 1U);
+}
+
 TEST(BagRecording, ADamagedChunkCostsOnlyItself) {
     const TestFolder folder;
     const auto events = some_events(20'000);
@@ -315,6 +329,16 @@ TEST(McapRecording, GivesTheEventsThatWereWritten) {
             summarize(*open_recording(folder.write("b.mcap", bytes + bytes.substr(8, 30))));
         EXPECT_EQ(cut.events, events.size());
     }
+    const BagBytes bytes =
+        BagBytes("\x89MCAP0\r\n", 8) +
+        mcap_record(6, BagBytes(16, '\0') + little(std::uint64_t(records.size())) +
+                           BagBytes(4, '\0') + block("") + little(std::uint64_t(records.size())) +
+                           records);
+    const Summary part =
+        summarize(*open_recording(folder.write("c.mcap", bytes.substr(0, bytes.size() - 50))));
+    EXPECT_EQ(part.events, events.size() - 100) << "whole messages of a chunk that is cut short";
+    EXPECT_EQ(part.damaged[DamageReason::truncated], 1U);
+    EXPECT_EQ(part.damaged.total(), 1U);
 }
 
 }  // namespace

@@ -38,6 +38,29 @@ TEST(Hdf5Writing, KeepsDsecsPromisesOfItsIndex) {
     }
 }
 
+TEST(Hdf5Writing, AnImageBeforeAllEventsBelongsToTheFirst) {
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = header.height = 128;
+    RecordingFile writer(folder.path("a.h5"), OutputOptions{}, *find_format("hdf5"), header);
+    ReferenceImage image;
+    image.pixels = Array2<std::uint16_t>(128, 128);
+    Batch before, behind;
+    before.images = {image};
+    behind.events = some_events(10);
+    writer.write(before);
+    writer.write(behind);
+    writer.finish();
+    const hid_t file = H5Fopen(folder.path("a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t attribute =
+        H5Aopen_by_name(file, "images/image000000000", "event_idx", H5P_DEFAULT, H5P_DEFAULT);
+    std::int64_t event = -7;
+    EXPECT_GE(H5Aread(attribute, H5T_NATIVE_INT64, &event), 0);
+    EXPECT_EQ(event, 0);
+    H5Aclose(attribute);
+    H5Fclose(file);
+}
+
 TEST(Hdf5Writing, LeavesNothingBehindWhereItFails) {
     const TestFolder folder;
     const std::string precious = folder.write("a.h5", "precious");

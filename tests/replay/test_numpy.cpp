@@ -167,6 +167,18 @@ TEST(Numpy, ARowWithoutATimeHidesNothingFromASeek) {
     EXPECT_GE(found.size(), 30'000U - 5'000U - 2U);
 }
 
+TEST(Numpy, MetavisionsRecordsAreOfMicrosecondsHoweverFewTheyAre) {
+    const TestFolder folder;
+    std::vector<Event> events = some_events(500, 2'500'000, 20, 240, 180);
+    for (std::size_t i = 0; i < events.size(); ++i) events[i].t = from_us(std::int64_t(i) * 20'000);
+    std::string data;
+    for (const Event& e : events)
+        data += raw(e.x) + raw(e.y) + raw(std::int16_t(e.polarity)) + raw(to_us(e.t));
+    const auto recording = open_recording(folder.write(
+        "a.npy", npy("[('x', '<u2'), ('y', '<u2'), ('p', '<i2'), ('t', '<i8')]", "500,", data)));
+    EXPECT_TRUE(read_everything(*recording).events == events);
+}
+
 std::string refusal(const std::string& path, ErrorKind kind = ErrorKind::input,
                     const OpenOptions& options = {}) {
     try {
@@ -207,6 +219,22 @@ TEST(Numpy, WhatIsNoTableOfEventsIsRefusedWithWhatItIs) {
                           [](const Event& e) { return raw(e.x); })}},
             false);
     EXPECT_THAT(refusal(folder.write("d.npz", fewer)), HasSubstr("as many numbers as t, 100"));
+}
+
+TEST(Numpy, AFileThatIsCutGivesItsWholeRows) {
+    const TestFolder folder;
+    std::vector<Event> events = some_events(20'000, 2'500'000, 20, 240, 180);
+    for (const std::string& whole : {records(events), matrix(events, "txyp", false)}) {
+        const auto path = folder.write("a.npy", whole.substr(0, whole.size() - 7));
+        EXPECT_TRUE(read_everything(*open_recording(path)).events ==
+                    std::vector<Event>(events.begin(), events.end() - 1));
+        const Summary sum = summarize(*open_recording(path));
+        EXPECT_EQ(sum.damaged[DamageReason::truncated], 1U);
+        EXPECT_EQ(sum.damaged.total(), 1U);
+    }
+    const std::string columns_first = matrix(events, "txyp", false, true);
+    EXPECT_THAT(refusal(folder.write("b.npy", columns_first.substr(0, columns_first.size() - 7))),
+                HasSubstr("do not hold"));
 }
 
 TEST(Numpy, HeadersThatPromiseMoreThanThereIsAreRefused) {

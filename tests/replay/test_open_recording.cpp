@@ -43,6 +43,28 @@ TEST(OpenRecording, TheContentCountsAndNotTheName) {
     }
 }
 
+TEST(OpenRecording, SourcesOfAedat3ThatAreLeftOutAreNamed) {
+    const TestFolder folder;
+    std::string bytes = read_text(write_recording(folder.path("a"), "aedat3", some_events(100)));
+    bytes.insert(bytes.find("#!END-HEADER"), "#Source 7: DAVIS240C\r\n");
+    const auto recording = open_recording(folder.write("b", bytes));
+    EXPECT_EQ(read_everything(*recording).events.size(), 100U);
+    ASSERT_EQ(recording->remarks().size(), 1U);
+    EXPECT_THAT(recording->remarks()[0], HasSubstr("source 7 (DAVIS240C) is left out"));
+}
+
+TEST(OpenRecording, RawWithoutAHeaderIsWhatItIsSaidToBe) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const std::string bytes = read_text(write_recording(folder.path("a"), "evt3", events));
+    const std::string path = folder.write("b", bytes.substr(bytes.find("% end\n") + 6));
+    EXPECT_THAT(refusal(path), HasSubstr("an unrecognised format"));
+    EXPECT_THAT(refusal(path, {.format = "evt3"}), HasSubstr("--input-size state both"));
+    OpenOptions stated{.format = "evt3"};
+    stated.width = stated.height = 128;
+    EXPECT_TRUE(read_everything(*open_recording(path, stated)).events == events);
+}
+
 TEST(OpenRecording, WhatIsNoRecordingIsRefusedByName) {
     const TestFolder folder;
     EXPECT_THAT(refusal(folder.path("missing")), HasSubstr("missing: cannot open"));

@@ -2,6 +2,7 @@
 #include "replay/summary.h"
 
 #include "replay/formats.h"
+#include "replay/recording_file.h"
 #include "tests/replay/recording_files.h"
 #include "tests/support/flickering_light.h"
 
@@ -42,6 +43,34 @@ TEST(Summary, IsOneObjectWithTheKnownKeys) {
     EXPECT_EQ(json["in_flicker"], 0);
     EXPECT_EQ(json["damaged"]["bad_record"], 1);
     EXPECT_TRUE(nlohmann::json::parse(to_json({}))["first_us"].is_null());
+}
+
+TEST(Summary, GoesOnWhereTheClockBeginsAnew) {
+    const TestFolder folder;
+    const auto open = [&](const std::vector<Event>& events, std::vector<Trigger> triggers) {
+        StreamHeader header;
+        header.width = header.height = 128;
+        RecordingFile file(folder.path("a.aedat4"), OutputOptions{.overwrite = true},
+                           *find_format("aedat4"), header);
+        Batch batch;
+        batch.events = events;
+        batch.triggers = std::move(triggers);
+        file.write(batch);
+        file.finish();
+        return open_recording(folder.path("a.aedat4"));
+    };
+    auto events = some_events(1000, 60'000'000);
+    const SensorDuration once = events.back().t - events.front().t;
+    const Summary steady = summarize(*open(events, {}));
+    EXPECT_EQ(steady.span, once);
+    EXPECT_EQ(steady.clock_resets, 0U);
+    const auto again = some_events(1000, 5'000);
+    events.insert(events.end(), again.begin(), again.end());
+    const Summary sum =
+        summarize(*open(events, {{again.front().t, Trigger::Kind::timestamp_reset, 0}}));
+    EXPECT_EQ(sum.events, 2000U);
+    EXPECT_EQ(sum.clock_resets, 1U);
+    EXPECT_EQ(sum.span, once + (again.back().t - again.front().t));
 }
 
 TEST(Summary, TellsFlickeringLight) {

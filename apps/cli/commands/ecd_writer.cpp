@@ -1,7 +1,7 @@
 // A recording as a folder in the manner of the Event Camera Dataset.
 #include "apps/cli/commands/ecd_writer.h"
 
-#include "replay/formats.h"
+#include "src/codec/text/text.h"
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/whole_sensor.h"
@@ -30,7 +30,8 @@ void EcdWriter::begin() {
     header.width = width_;
     header.height = height_;
     events_ = std::make_unique<RecordingFile>((folder_.path() / "events.txt").string(), false,
-                                              open_writer("text"), header);
+                                              std::make_unique<TextWriter>(TextSize::in_a_comment),
+                                              header);
 }
 
 void EcdWriter::write(const Batch& batch) {

@@ -7,6 +7,7 @@
 #include "replay/formats.h"
 #include "replay/summary.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/model/model_file.h"
 #include "src/model/model_metadata.h"
 
@@ -41,13 +42,14 @@ void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t
     if (bytes > 0) line("bytes", whole(bytes));
     line("events", whole(summary.events) + " (" + whole(summary.on) + " on)");
     if (summary.first && summary.last) {
-        const double seconds =
-            std::chrono::duration<double>(*summary.last - *summary.first).count();
+        const double seconds = std::chrono::duration<double>(summary.span).count();
         char text[96];
         std::snprintf(text, sizeof text, "%lld .. %lld us (%.6f s)",
                       static_cast<long long>(to_us(*summary.first)),
                       static_cast<long long>(to_us(*summary.last)), seconds);
-        line("time", text);
+        line("time", summary.clock_resets == 0 ? text
+                                               : text + (", the clock began anew " +
+                                                         counted(summary.clock_resets, "time")));
         if (seconds > 0) line("rate", short_count(double(summary.events) / seconds) + " events/s");
     }
     line("images", whole(summary.frames));

@@ -13,9 +13,6 @@ namespace {
 constexpr std::uint32_t kInvalidStamp = 1U << 31;  // and above: stamps have 31 bits
 constexpr std::uint32_t kLastStamp = kInvalidStamp - 1;
 
-// Frames and IMU samples come up to a packet's time after events that are newer.
-constexpr std::int64_t kLatestPacket = 1'000'000;  // us
-
 struct PolarityWord {
     std::uint32_t bits;
     bool is_valid() const { return (bits & 1) != 0; }
@@ -29,6 +26,7 @@ struct PolarityWord {
 Aedat3Parser::Aedat3Parser(const Aedat3Header& header, int width, int height)
     : lower_left_(header.lower_left),
       source_(header.source),
+      others_(header.others),
       validator_(std::uint64_t(width), std::uint64_t(height)) {}
 
 void Aedat3Parser::move_clock(std::int64_t t_us) {
@@ -73,14 +71,16 @@ void Aedat3Parser::begin_packet(const Aedat3Packet& packet) {
     unit_.clear();
     packet_ = packet;
     const bool of_other_source = source_ && packet.source != *source_;
-    if (of_other_source) damage_.count(DamageReason::unknown_word);
+    const bool is_named =
+        std::ranges::find(others_, int(packet.source), &Aedat3Source::number) != others_.end();
+    if (of_other_source && !is_named) damage_.count(DamageReason::unknown_word);
     if (of_other_source || packet.type > std::int16_t(Aedat3Type::imu9)) {
         left_ = std::uint64_t(packet.record_bytes) * packet.number;
         state_ = State::passing_over;
     } else {
         if (!source_) source_ = packet.source;
         left_ = packet.number;
-        base_us_ = (std::int64_t(packet.overflow) << 31) + offset_us_;
+        base_us_ = std::int64_t(packet.overflow) << 31;
         state_ = State::records;
     }
     if (left_ == 0) state_ = State::header;
@@ -93,20 +93,16 @@ std::span<const std::byte> Aedat3Parser::pass_over(std::span<const std::byte> by
     return bytes.subspan(n);
 }
 
-/// A reset sets the camera's clock to zero; ours goes on. Files written after the fact have no step
-/// back, and need nothing.
-void Aedat3Parser::rebase_after_reset(std::uint32_t stamp) {
-    if (!was_reset_ || !newest_us_) return;
-    const std::int64_t t = base_us_ + stamp;
-    const bool is_events = Aedat3Type(packet_.type) == Aedat3Type::polarity;
-    const auto last_event = validator_.newest_us();
-    const bool stepped_back =
-        is_events ? last_event && t < *last_event : t < *newest_us_ - kLatestPacket;
-    if (stepped_back) {
-        base_us_ += *newest_us_ - offset_us_;
-        offset_us_ = *newest_us_;
+/// A reset sets the camera's clock to zero, and a new stream begins. Files written after the fact
+/// have no step back, and need nothing.
+void Aedat3Parser::begin_anew_after_reset(std::int64_t t_us, Batch& into) {
+    const auto last = validator_.newest_us();
+    if (was_reset_ && last && t_us < *last) {
+        validator_.finish(into, damage_);
+        validator_.resync(damage_);
+        newest_us_.reset();
     }
-    if (stepped_back || is_events) was_reset_ = false;
+    was_reset_ = false;
 }
 
 void Aedat3Parser::take_event(const std::byte* record, Batch& into) {
@@ -117,7 +113,7 @@ void Aedat3Parser::take_event(const std::byte* record, Batch& into) {
         damage_.count(DamageReason::bad_record);
         return;
     }
-    rebase_after_reset(stamp);
+    begin_anew_after_reset(base_us_ + stamp, into);
     std::uint64_t y = word.y();
     if (lower_left_) y = validator_.height() - 1 - y;
     validator_.add(base_us_ + stamp, word.x(), y, word.is_on(), into, damage_);
@@ -185,7 +181,6 @@ void Aedat3Parser::take_special(const std::byte* record, Batch& into) {
     if (is_reset && stamp == kLastStamp) {
         trigger->t = from_us(newest_us_.value_or(base_us_));
     } else {
-        rebase_after_reset(stamp);
         move_clock(base_us_ + stamp);
         if (trigger) trigger->t = from_us(base_us_ + stamp);
     }
@@ -195,7 +190,6 @@ void Aedat3Parser::take_special(const std::byte* record, Batch& into) {
 
 void Aedat3Parser::take_frame(std::span<const std::byte> record, Batch& into) {
     if ((load_little<std::uint32_t>(record.data()) & 1) == 0) return;
-    rebase_after_reset(load_little<std::uint32_t>(&record[12]));
     auto image = read_frame(record, base_us_, lower_left_, int(validator_.height()));
     if (!image) {
         damage_.count(DamageReason::bad_record);
@@ -219,7 +213,6 @@ void Aedat3Parser::take(std::span<const std::byte> record, Batch& into) {
         case Aedat3Type::imu6:
         case Aedat3Type::imu9:
             if ((load_little<std::uint32_t>(record.data()) & 1) == 0) break;
-            rebase_after_reset(load_little<std::uint32_t>(&record[4]));
             into.imu.push_back(read_imu(record, base_us_));
             move_clock(to_us(into.imu.back().t));
             break;
@@ -284,7 +277,6 @@ void Aedat3Parser::finish(Batch& into) {
 void Aedat3Parser::resync() {
     unit_.clear();
     state_ = State::searching;
-    offset_us_ = 0;
     was_reset_ = false;
     newest_us_.reset();
     validator_.resync(damage_);

@@ -8,22 +8,29 @@
 #include "src/codec/stream.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace eventide {
 
+struct Aedat3Source {
+    int number = 0;
+    std::string name;  ///< "DAVIS346"
+};
+
 struct Aedat3Header {
-    StreamHeader stream;        ///< width and height where the source's name tells them
-    bool lower_left = false;    ///< AEDAT 3.0: the origin is at the lower left
-    std::optional<int> source;  ///< number of the first source named
+    StreamHeader stream;                 ///< width and height where the source's name tells them
+    bool lower_left = false;             ///< AEDAT 3.0: the origin is at the lower left
+    std::optional<int> source;           ///< number of the first source named
+    std::vector<Aedat3Source> others{};  ///< the sources named behind it, which are not read
 };
 
 /// Throws Error (input) when it is no RAW AEDAT 3 file.
 Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes);
 
-/// Reads the packets of one source: those of others count as unknown_word. After a timestamp reset
-/// that sets the clock back, time goes on from where it was. Packets of types beyond IMU9 are
-/// passed over.
+/// Reads the packets of one source: those of others that the header names are passed over, and of
+/// any other count as unknown_word. Events that a timestamp reset sets back in time begin a new
+/// stream. Packets of types beyond IMU9 are passed over.
 class Aedat3Parser final : public Parser {
 public:
     Aedat3Parser(const Aedat3Header& header, int width, int height);
@@ -48,11 +55,12 @@ private:
     void take_event(const std::byte* record, Batch& into);
     void take_special(const std::byte* record, Batch& into);
     void take_frame(std::span<const std::byte> record, Batch& into);
-    void rebase_after_reset(std::uint32_t stamp);
+    void begin_anew_after_reset(std::int64_t t_us, Batch& into);
     void move_clock(std::int64_t t_us);
 
     bool lower_left_;
     std::optional<int> source_;
+    std::vector<Aedat3Source> others_;
     EventValidator validator_;
     Damage damage_;
 
@@ -60,8 +68,7 @@ private:
     std::vector<std::byte> unit_;  ///< the beginning of a header or record whose end has not come
     Aedat3Packet packet_;          ///< whose records are being read
     std::uint64_t left_ = 0;       ///< records of it to come; in passing_over: bytes
-    std::int64_t base_us_ = 0;     ///< what its overflow adds, and the offset
-    std::int64_t offset_us_ = 0;   ///< time before the last reset
+    std::int64_t base_us_ = 0;     ///< what its overflow adds
     bool was_reset_ = false;       ///< since the last packet of events
     std::optional<std::int64_t> newest_us_;
 };

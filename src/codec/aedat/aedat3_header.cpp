@@ -44,6 +44,23 @@ void set_size(StreamHeader& header, std::string_view geometry) {
     header.height = height;
 }
 
+/// "Source 1: DAVIS346", one a line.
+std::vector<Aedat3Source> sources_in(const AedatHeaderLines& lines) {
+    constexpr std::string_view kKey = "Source ";
+    std::vector<Aedat3Source> sources;
+    for (const std::string_view line : lines.lines) {
+        const std::size_t key = line.find_first_not_of(" \t");
+        if (key == line.npos || !line.substr(key).starts_with(kKey)) continue;
+        std::string_view name = line.substr(key + kKey.size());
+        const auto number = take_number<int>(name);
+        if (!number) continue;
+        name.remove_prefix(std::min(name.find_first_not_of(" \t:"), name.size()));
+        sources.push_back(
+            {*number, std::string(name.substr(0, name.find_last_not_of(" \t\r") + 1))});
+    }
+    return sources;
+}
+
 }  // namespace
 
 Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes) {
@@ -60,14 +77,11 @@ Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes) {
     header.stream.format = "aedat3";
     header.stream.data_offset = lines.end;
     header.stream.source_text = find_value(lines, "Start-Time");
-    // "Source 1: DAVIS346"
-    const std::string_view source = find_value(lines, "Source ");
-    std::string_view digits = source;
-    if (const auto number = take_number<int>(digits)) header.source = *number;
-    const std::size_t colon = source.find(':');
-    if (colon != source.npos) {
-        const std::string_view name = source.substr(colon + 1);
-        header.stream.sensor_name = name.substr(std::min(name.find_first_not_of(' '), name.size()));
+    for (const Aedat3Source& source : sources_in(lines)) {
+        if (header.source && source.number != *header.source) header.others.push_back(source);
+        if (header.source) continue;
+        header.source = source.number;
+        header.stream.sensor_name = source.name;
     }
     set_size_by_name(header.stream);
     set_size(header.stream, find_value(lines, "Geometry"));

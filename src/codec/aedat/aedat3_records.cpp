@@ -29,8 +29,8 @@ constexpr std::array kMeanings{
     SpecialMeaning{Aedat3Special::rising_2, Kind::rising, 2},
     SpecialMeaning{Aedat3Special::falling_2, Kind::falling, 2},
     SpecialMeaning{Aedat3Special::pulse_2, Kind::pulse, 2},
-    SpecialMeaning{Aedat3Special::generator_rising, Kind::rising, kGeneratorSource},
-    SpecialMeaning{Aedat3Special::generator_falling, Kind::falling, kGeneratorSource},
+    SpecialMeaning{Aedat3Special::generator_rising, Kind::rising, Trigger::kGenerator},
+    SpecialMeaning{Aedat3Special::generator_falling, Kind::falling, Trigger::kGenerator},
     SpecialMeaning{Aedat3Special::frame_begin, Kind::frame_begin, 0},
     SpecialMeaning{Aedat3Special::frame_end, Kind::frame_end, 0},
     SpecialMeaning{Aedat3Special::exposure_begin, Kind::exposure_begin, 0},
@@ -62,7 +62,11 @@ std::optional<Trigger> read_special(std::uint32_t word) {
     const auto data = std::uint8_t(word >> 8);
     for (const SpecialMeaning& meaning : kMeanings)
         if (meaning.number == number)
-            return Trigger{{}, meaning.kind, std::uint8_t(meaning.source + data)};
+            return Trigger{{},
+                           meaning.kind,
+                           meaning.source == Trigger::kGenerator
+                               ? meaning.source
+                               : std::uint8_t(meaning.source + data)};
     return Trigger{{}, Kind::other, data};
 }
 

@@ -35,8 +35,6 @@ enum class Aedat3Special : std::uint8_t {
     other = 127
 };
 
-constexpr std::uint8_t kGeneratorSource = 3;  ///< Trigger::source of the camera's own generator
-
 /// The trigger of a special event's first word, without its time; empty for wraps and row-only
 /// marks, which say nothing beside their time.
 std::optional<Trigger> read_special(std::uint32_t word);

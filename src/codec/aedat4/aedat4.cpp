@@ -177,8 +177,7 @@ bool Aedat4Parser::take_payload(std::int32_t stream, std::span<const std::byte> 
 /// Most cameras' time goes on where their clock is reset; a sender that began anew is in the past.
 void Aedat4Parser::note_reset(const Trigger& trigger) {
     const auto newest = validator_.newest_us();
-    if (trigger.kind == Trigger::Kind::timestamp_reset && newest &&
-        to_us(trigger.t) < *newest - kAedat4LeastResetUs)
+    if (trigger.kind == Trigger::Kind::timestamp_reset && newest && to_us(trigger.t) < *newest)
         anew_us_ = to_us(trigger.t);
 }
 

@@ -11,13 +11,13 @@ namespace {
 
 using Kind = Trigger::Kind;
 
-// External input 0, the camera's own pulse generator 1.
+// Of inputs, only the first has numbers.
 constexpr std::array<Trigger, 10> kTriggers{{{{}, Kind::timestamp_reset, 0},
                                              {{}, Kind::rising, 0},
                                              {{}, Kind::falling, 0},
                                              {{}, Kind::pulse, 0},
-                                             {{}, Kind::rising, 1},
-                                             {{}, Kind::falling, 1},
+                                             {{}, Kind::rising, Trigger::kGenerator},
+                                             {{}, Kind::falling, Trigger::kGenerator},
                                              {{}, Kind::frame_begin, 0},
                                              {{}, Kind::frame_end, 0},
                                              {{}, Kind::exposure_begin, 0},
@@ -59,13 +59,19 @@ bool take_plain(std::span<const std::byte> records, EventValidator& validator, B
     return true;
 }
 
+/// Whether a clock that was reset to `anew_us` tells this time, after `newest_us`. Cameras whose
+/// times go on have triggers a little in the past, and no event before another.
+bool is_anew(std::int64_t t_us, std::int64_t anew_us, std::int64_t newest_us) {
+    return t_us >= anew_us && t_us < newest_us &&
+           (t_us < newest_us - kAedat4ResetUs || t_us < anew_us + kAedat4ResetUs);
+}
+
 void take_one_by_one(std::span<const std::byte> records, EventValidator& validator,
                      std::optional<std::int64_t>& anew_us, Batch& into, Damage& damage) {
     for (; !records.empty(); records = records.subspan(kAedat4EventBytes)) {
         const WireEvent event = load_event(records.data());
         const auto newest = validator.newest_us();
-        if (anew_us && newest && event.t_us >= *anew_us &&
-            event.t_us < *newest - kAedat4LeastResetUs) {
+        if (anew_us && newest && is_anew(event.t_us, *anew_us, *newest)) {
             validator.finish(into, damage);
             validator.resync(damage);
             anew_us.reset();

@@ -13,8 +13,9 @@ namespace eventide {
 
 constexpr std::size_t kAedat4EventBytes = 16;
 
-/// Of a time that goes back: less is disorder, whatever triggers say.
-constexpr std::int64_t kAedat4LeastResetUs = 1'000'000;
+/// A time that goes back by more is where a trigger said that the clock was reset; by less, only
+/// one that is no further behind the trigger.
+constexpr std::int64_t kAedat4ResetUs = 1'000'000;
 
 /// Beyond these (year 75,000) a time is damage; differences of such times do not overflow.
 constexpr std::int64_t kAedat4LatestUs = std::int64_t(1) << 61;

@@ -19,8 +19,8 @@ class FlatWriter;
 /// vendor's readers do not know. An image of known exposure is read back with t in its middle.
 /// Throws Error (usage) for coordinates above 32767, times before -2^61 us or after 2^61 us, images
 /// of other channel counts, and triggers the format has no number for: rising and falling edges
-/// have sources 0 (input) and 1 (generator), all other kinds source 0, Kind::other sources 10 to
-/// 127.
+/// have sources 0 (input) and Trigger::kGenerator, all other kinds source 0, Kind::other sources 10
+/// to 127.
 class Aedat4Writer final : public StreamWriter {
 public:
     static constexpr std::size_t kPacketEvents = 16384;

@@ -148,7 +148,7 @@ void DavisParser::trigger(Trigger::Kind kind, std::uint8_t source, Batch& into) 
 
 void DavisParser::special(std::uint16_t data, Batch& into) {
     using Frame = DavisFrameAssembler;
-    constexpr std::uint8_t kInput = 0, kGenerator = 1;
+    constexpr std::uint8_t kInput = 0;
     const SensorTime now = clock_.now();
     switch (data) {
         case 0:
@@ -201,9 +201,9 @@ void DavisParser::special(std::uint16_t data, Batch& into) {
         case 15:
             return frame_.exposure_end(now);
         case 16:
-            return trigger(Trigger::Kind::falling, kGenerator, into);
+            return trigger(Trigger::Kind::falling, Trigger::kGenerator, into);
         case 17:
-            return trigger(Trigger::Kind::rising, kGenerator, into);
+            return trigger(Trigger::Kind::rising, Trigger::kGenerator, into);
         default:
             return damage_.count(DamageReason::unknown_word);
     }

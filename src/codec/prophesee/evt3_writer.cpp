@@ -64,7 +64,7 @@ void Evt3Writer::write_header(std::int64_t first_us, std::vector<std::byte>& out
     }
     text += "\n";
     if (!header_.sensor_name.empty())
-        text += "% camera_integration_name " + on_one_line(header_.sensor_name) + "\n";
+        text += "% sensor_name " + on_one_line(header_.sensor_name) + "\n";
     if (!header_.serial.empty()) text += "% serial_number " + on_one_line(header_.serial) + "\n";
     if (base_us_ != 0) text += "% time_base_us " + std::to_string(base_us_) + "\n";
     append_text(out, text + "% end\n");

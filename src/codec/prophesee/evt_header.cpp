@@ -1,11 +1,13 @@
 // Keys of RAW headers through the years (docs/protocols.md D.4).
 #include "src/codec/prophesee/evt_header.h"
 
+#include "src/codec/prophesee/evt_systems.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
+#include <array>
 
 namespace eventide {
 
@@ -35,13 +37,34 @@ std::string_view option_of(std::string_view format, std::string_view key) {
     return {};
 }
 
+/// Files from before 2023 name one integrator for camera and plugin, older ones none.
+bool is_of_prophesee(const PercentLines& lines) {
+    constexpr std::array kKeys{"plugin_integrator_name", "camera_integrator_name",
+                               "integrator_name"};
+    return std::all_of(kKeys.begin(), kKeys.end(), [&](std::string_view key) {
+        const std::string_view name = lines.value(key);
+        return name.empty() || name == "Prophesee";
+    });
+}
+
+int system_of(const PercentLines& lines) {
+    return number_in<int>(lines.value("system_ID")).value_or(0);
+}
+
+/// Null where it is unknown, or another maker's.
+const EvtSystem* known_system(const PercentLines& lines) {
+    return is_of_prophesee(lines) ? find_evt_system(system_of(lines)) : nullptr;
+}
+
 std::string_view format_name(const PercentLines& lines) {
     const std::string_view format = lines.value("format"), version = lines.value("evt");
     const std::string_view name = format.substr(0, format.find(';'));
     if (name == "EVT2" || version == "2.0") return "evt2";
     if (name == "EVT21" || name == "EVT2.1" || version == "2.1") return "evt21";
     if (name == "EVT3" || version == "3.0") return "evt3";
-    return {};
+    const EvtSystem* const system = known_system(lines);
+    return system != nullptr && format.empty() && version.empty() ? system->format
+                                                                  : std::string_view{};
 }
 
 void find_size(const PercentLines& lines, StreamHeader& stream) {
@@ -55,21 +78,46 @@ void find_size(const PercentLines& lines, StreamHeader& stream) {
     }
     if (stream.width > 0 && stream.height > 0) return;
     // Before 2021 only the system's number, or the name of its plugin, tells the sensor.
-    const int system = number_in<int>(lines.value("system_ID")).value_or(0);
+    const EvtSystem* const system = known_system(lines);
     const std::string_view plugin = lines.value("plugin_name");
     const auto named = [&](std::string_view sensor) {
         return plugin.find(sensor) != std::string_view::npos;
     };
     stream.width = stream.height = 0;
-    if (system == 48 || system == 49 || named("gen4") || named("imx636")) {
+    if (system != nullptr) {
+        stream.width = system->width;
+        stream.height = system->height;
+    } else if (named("gen4") || named("imx636")) {
         stream.width = 1280;
         stream.height = 720;
-    } else if (system == 21 || named("gen3")) {
+    } else if (named("gen3")) {
         stream.width = 640;
         stream.height = 480;
     } else if (named("genx320")) {
         stream.width = stream.height = 320;
     }
+}
+
+/// Of EVT2.1: systems before number 0x37 swapped the halves and did not say it (OpenEB,
+/// psee_raw_file_header.cpp, check_header()).
+bool are_halves_swapped(const PercentLines& lines) {
+    constexpr int kFirstInOrder = 0x37;
+    for (const std::string_view stated :
+         {option_of(lines.value("format"), "endianness"), lines.value("endianness")})
+        if (!stated.empty()) return stated == "legacy";
+    const int system = system_of(lines);
+    return is_of_prophesee(lines) && system > 0 && system < kFirstInOrder;
+}
+
+std::string sensor_name(const PercentLines& lines) {
+    // The second is of files that eventide wrote earlier.
+    for (const std::string_view key : {"sensor_name", "camera_integration_name"})
+        if (const auto name = lines.value(key); !name.empty()) return std::string(name);
+    const std::string_view generation = lines.value("sensor_generation");
+    if (generation == "4.2") return "IMX636";
+    if (!generation.empty()) return "Gen" + std::string(generation);
+    const EvtSystem* const system = known_system(lines);
+    return std::string(system != nullptr ? system->sensor : lines.value("system_ID"));
 }
 
 }  // namespace
@@ -106,16 +154,21 @@ std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes)
     header.stream.format = name;
     header.stream.data_offset = lines.bytes;
     header.stream.serial = lines.value("serial_number");
-    header.stream.sensor_name = lines.value("camera_integration_name");
-    if (header.stream.sensor_name.empty()) header.stream.sensor_name = lines.value("system_ID");
+    header.stream.sensor_name = sensor_name(lines);
     header.stream.source_text = lines.value("plugin_name");
     find_size(lines, header.stream);
-    header.halves_swapped = lines.value("endianness") == "legacy" ||
-                            option_of(lines.value("format"), "endianness") == "legacy";
+    header.halves_swapped = name == "evt21" && are_halves_swapped(lines);
     // Nearer to the ends of time than this, sums could overflow.
     const auto base = number_in<std::int64_t>(lines.value("time_base_us")).value_or(0);
     if (base > -(std::int64_t(1) << 61) && base < (std::int64_t(1) << 61))
         header.time_base_us = base;
+    return header;
+}
+
+EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_view format) {
+    EvtHeader header;
+    header.stream.format = format;
+    header.stream.data_offset = read_percent_lines(first_bytes).bytes;
     return header;
 }
 
@@ -124,7 +177,8 @@ EvtHeader read_evt_header(std::span<const std::byte> first_bytes) {
     if (!header)
         throw Error(ErrorKind::input,
                     "RAW header: expected a line \"% format EVT2|EVT21|EVT3\" or \"% evt "
-                    "2.0|2.1|3.0\", found none");
+                    "2.0|2.1|3.0\", found none; without one, --input-format and --input-size "
+                    "state both");
     return *header;
 }
 

@@ -33,6 +33,9 @@ struct EvtHeader {
 /// Empty when it is no RAW file of a format read here.
 std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes);
 
+/// Of a RAW file whose lines, if any, do not say the format.
+EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_view format);
+
 /// Throws Error (input) naming what was found.
 EvtHeader read_evt_header(std::span<const std::byte> first_bytes);
 

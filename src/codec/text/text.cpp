@@ -120,6 +120,11 @@ const char* TextParser::parse_quickly(const char* p, const char* end, Batch& int
     const std::size_t columns = layout_.n_columns;
     if (columns > kQuickColumns) return p;
     const int shift = decimal_shift(layout_.unit);
+    const auto off = std::uint64_t(layout_.off), on = std::uint64_t(layout_.on);
+    const auto is_polarity = [off, on](const QuickNumber& number) {
+        return number.negative ? on == 1 && number.whole <= 1
+                               : number.whole == on || number.whole == off;
+    };
     const std::ptrdiff_t reach = kFieldReach * std::ptrdiff_t(columns) + 8;
     std::array<QuickNumber, kQuickColumns> numbers;
     while (end - p >= reach) {
@@ -137,10 +142,10 @@ const char* TextParser::parse_quickly(const char* p, const char* end, Batch& int
         const QuickNumber &x = numbers[x_column_], &y = numbers[y_column_],
                           &polarity = numbers[polarity_column_];
         std::int64_t t_us = 0;
-        if (!to_microseconds(numbers[time_column_], shift, t_us) || polarity.whole > 1 ||
+        if (!to_microseconds(numbers[time_column_], shift, t_us) || !is_polarity(polarity) ||
             (x.decimals | y.decimals | polarity.decimals) != 0 || x.negative || y.negative)
             return p;
-        place(t_us, x.whole, y.whole, polarity.whole == 1 && !polarity.negative, into);
+        place(t_us, x.whole, y.whole, polarity.whole == on && !polarity.negative, into);
         p = cursor + 1;
     }
     return p;

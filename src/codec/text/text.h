@@ -52,13 +52,22 @@ private:
     Damage damage_;
 };
 
-/// Writes a "width height" line where the size is known, then "t x y p" with t in seconds, six
+/// Where the size is known, it is in the first line: "width height", as E2VID's files have it, or a
+/// comment "# geometry: width,height", which readers of the Event Camera Dataset pass over.
+enum class TextSize : std::uint8_t { in_a_line, in_a_comment };
+
+/// Writes the size, then "t x y p" with t in seconds, six
 /// decimals, and p 0 or 1. Holds events only.
 class TextWriter final : public StreamWriter {
 public:
+    explicit TextWriter(TextSize size = TextSize::in_a_line) : size_(size) {}
+
     void begin(const StreamHeader& header, std::vector<std::byte>& out) override;
     void write(const Batch& batch, std::vector<std::byte>& out) override;
     void finish(std::vector<std::byte>&) override {}
+
+private:
+    TextSize size_;
 };
 
 }  // namespace eventide

@@ -1,6 +1,7 @@
 // Finds out how a text recording is written from its first lines.
 #include "src/codec/text/text_layout.h"
 
+#include "src/codec/text/text_guess.h"
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
 #include "src/codec/text/text_time_unit.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -23,7 +23,31 @@ namespace {
 constexpr std::size_t kRowsToLookAt = 1000;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-using Fields = std::vector<std::string_view>;
+using Fields = TextFields;
+
+using Sides = std::array<std::int64_t, 2>;  // width and height, px
+
+/// The "width height" of a first line of two whole numbers.
+std::optional<Sides> geometry_of(const Fields& fields) {
+    if (fields.size() != 2) return {};
+    Sides sides{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto value = parse_decimal(fields[i]);
+        if (!value || value->fractional || value->negative) return {};
+        const auto side = scaled_integer(*value, 0);
+        if (!side) return {};
+        sides[i] = *side;
+    }
+    return sides;
+}
+
+/// "%geometry:1280,720", as Metavision writes it.
+std::optional<Sides> size_in_comment(std::string_view line) {
+    constexpr std::string_view kTitle = "geometry:";
+    const std::size_t begin = std::min(line.find_first_not_of(" \t#%"), line.size());
+    if (!line.substr(begin).starts_with(kTitle)) return {};
+    return geometry_of(split_fields(line.substr(begin + kTitle.size())));
+}
 
 /// The lines that carry something, one after the other, with their place.
 class Lines {
@@ -39,14 +63,18 @@ public:
             line_begin_ = position_;
             position_ = std::min(end + 1, text_.size());
             if (!is_comment(line)) return line;
+            if (!size_) size_ = size_in_comment(line);
         }
         return {};
     }
+    /// The sensor's, from a comment so far.
+    std::optional<Sides> size() const { return size_; }
     std::size_t line_begin() const { return line_begin_; }  ///< of the line next() gave
 
 private:
     std::string_view text_;
     std::size_t position_ = 0, line_begin_ = 0;
+    std::optional<Sides> size_;
 };
 
 std::string_view as_text(std::span<const std::byte> bytes) {
@@ -61,34 +89,19 @@ bool is_row(const Fields& fields) {
     if (fields.size() < 4) return false;
     const auto numbers = std::count_if(fields.begin(), fields.begin() + 4, is_number);
     // One of the four may be a polarity in words.
-    const auto is_truth = [](std::string_view field) {
-        return field == "true" || field == "false" || field == "True" || field == "False" ||
-               field == "T" || field == "F" || field == "TRUE" || field == "FALSE";
+    const auto is_word = [](std::string_view field) {
+        return polarity_in_words(field).has_value();
     };
-    return numbers == 4 || (numbers == 3 && std::any_of(fields.begin(), fields.end(), is_truth));
+    return numbers == 4 || (numbers == 3 && std::any_of(fields.begin(), fields.end(), is_word));
 }
 
-/// The "width height" of a first line of two whole numbers.
-std::optional<std::array<std::int64_t, 2>> geometry_of(const Fields& fields) {
-    if (fields.size() != 2) return {};
-    std::array<std::int64_t, 2> sides{};
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto value = parse_decimal(fields[i]);
-        if (!value || value->fractional || value->negative) return {};
-        const auto side = scaled_integer(*value, 0);
-        if (!side) return {};
-        sides[i] = *side;
-    }
-    return sides;
-}
-
-void check_geometry(const std::array<std::int64_t, 2>& sides, std::string_view line) {
+void check_geometry(const Sides& sides) {
     const auto [least, largest] = std::ranges::minmax(sides);
     if (least < 1 || largest > kLargestRecordedSide)
         throw Error(ErrorKind::input,
-                    "text recording: expected a sensor's size in the line of two numbers, "
-                    "each from 1 to 65536, found \"" +
-                        std::string(line.substr(0, 60)) + "\"");
+                    "text recording: expected a sensor's size before the rows, each side from 1 to "
+                    "65536, found \"" +
+                        std::to_string(sides[0]) + " " + std::to_string(sides[1]) + "\"");
 }
 
 struct ColumnName {
@@ -104,7 +117,7 @@ ColumnName column_named(std::string_view title) {
     if (name == "y") return {TextField::y, {}};
     if (name == "p" || name == "pol" || name == "polarity" || name == "on")
         return {TextField::polarity, {}};
-    const std::size_t end = std::min(name.find_first_of("_[("), name.size());
+    const std::size_t end = std::min(name.find_first_of(" _[("), name.size());
     const std::string stem = name.substr(0, end);
     if (stem != "t" && stem != "ts" && stem != "time" && stem != "timestamp" &&
         stem != "timestamps")
@@ -118,6 +131,19 @@ ColumnName column_named(std::string_view title) {
     if (unit == "us") return {TextField::time, TextTimeUnit::microseconds};
     if (unit == "ns") return {TextField::time, TextTimeUnit::nanoseconds};
     return {};
+}
+
+/// The titles of a header row; a unit behind a space belongs to the one before: "t [us]".
+Fields titles_of(std::string_view line) {
+    Fields titles;
+    for (const std::string_view field : split_fields(line)) {
+        if (!titles.empty() && (field.starts_with('[') || field.starts_with('(')))
+            titles.back() = {titles.back().data(),
+                             std::size_t(field.data() + field.size() - titles.back().data())};
+        else
+            titles.push_back(field);
+    }
+    return titles;
 }
 
 /// The layout a header row gives; empty when it does not name all four columns.
@@ -153,46 +179,6 @@ TextLayout layout_stated(std::string_view columns) {
     return layout;
 }
 
-bool is_fractional(std::string_view field) {
-    const auto value = parse_decimal(field);
-    return value && value->fractional;
-}
-
-/// How many of the rows of whole numbers can be events in this order, none before the last.
-std::size_t rows_that_fit(const std::vector<Fields>& rows, std::string_view order) {
-    std::size_t fit = 0;
-    std::int64_t last = std::numeric_limits<std::int64_t>::min();
-    for (const Fields& row : rows) {
-        const auto whole = [&](char column) {
-            const auto value = parse_decimal(row[order.find(column)]);
-            return value ? scaled_integer(*value, 0) : std::nullopt;
-        };
-        const auto t = whole('t'), x = whole('x'), y = whole('y'), p = whole('p');
-        // A polarity in words is no number.
-        if (!t || !x || !y || *t < last || (p && (*p < -1 || *p > 1))) continue;
-        if (*x < 0 || *x >= kLargestRecordedSide || *y < 0 || *y >= kLargestRecordedSide) continue;
-        last = *t;
-        ++fit;
-    }
-    return fit;
-}
-
-/// Without names the order is t x y p, unless exactly one other column has fractions (only times
-/// can), or all are whole and another common order makes events of more rows.
-TextLayout layout_guessed(const std::vector<Fields>& rows) {
-    std::array<bool, 4> fractions{};
-    for (const Fields& row : rows)
-        for (std::size_t i = 0; i < 4; ++i) fractions[i] |= is_fractional(row[i]);
-    const auto n = std::count(fractions.begin(), fractions.end(), true);
-    if (n == 1 && fractions[2]) return layout_stated("xytp");
-    if (n == 1 && fractions[3]) return layout_stated("xypt");
-    std::string_view best = "txyp";
-    if (n == 0)
-        for (const std::string_view order : {"xytp", "xypt"})
-            if (rows_that_fit(rows, order) > rows_that_fit(rows, best)) best = order;
-    return layout_stated(best);
-}
-
 /// What the rows have in the column of the time.
 std::vector<std::string_view> times_in(const std::vector<Fields>& rows, const TextLayout& layout) {
     const auto column =
@@ -218,15 +204,15 @@ bool looks_like_text(std::span<const std::byte> first_bytes) {
         as_text(first_bytes.first(std::min<std::size_t>(first_bytes.size(), 65536)));
     Lines lines(text);
     auto line = lines.next();
-    if (!line || !is_printable(text.substr(0, std::min<std::size_t>(text.size(), 512))))
-        return false;
+    if (!is_printable(text.substr(0, std::min<std::size_t>(text.size(), 512)))) return false;
+    if (!line) return lines.size().has_value();
     Fields fields = split_fields(*line);
     if (geometry_of(fields)) {
         line = lines.next();
         if (!line) return true;
         fields = split_fields(*line);
     }
-    return is_row(fields) || layout_named(fields);
+    return is_row(fields) || layout_named(titles_of(*line));
 }
 
 TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOptions& options) {
@@ -234,16 +220,20 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     header.stream.format = "text";
     Lines lines(as_text(first_bytes));
     auto line = lines.next();
+    auto size = lines.size();
     if (line)
-        if (const auto geometry = geometry_of(split_fields(*line))) {
-            check_geometry(*geometry, *line);
-            header.stream.width = int((*geometry)[0]);
-            header.stream.height = int((*geometry)[1]);
+        if (const auto stated = geometry_of(split_fields(*line))) {
+            size = stated;
             line = lines.next();
         }
+    if (size) {
+        check_geometry(*size);
+        header.stream.width = int((*size)[0]);
+        header.stream.height = int((*size)[1]);
+    }
     std::optional<TextLayout> named;
     if (line && !is_row(split_fields(*line))) {
-        named = layout_named(split_fields(*line));
+        named = layout_named(titles_of(*line));
         if (named) line = lines.next();
     }
     // A recording of no events, as convert writes it, still says its size or its columns.
@@ -261,13 +251,15 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     if (!options.columns.empty())
         header.layout = layout_stated(options.columns);
     else
-        header.layout = named ? *named : layout_guessed(rows);
+        header.layout = named ? *named : layout_stated(guess_columns(rows));
+    guess_polarities(rows, header.layout);
     if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
     const auto times = times_in(rows, header.layout);
     if (header.layout.unit == TextTimeUnit::automatic)
         header.layout.unit = guess_time_unit(times, header.remarks);
     else if (options.unit != TextTimeUnit::automatic)
         doubt_time_unit(times, options.unit, header.remarks);
+    check_rows(rows, header.layout);
     return header;
 }
 

@@ -40,16 +40,18 @@ struct TextLayout {
                                                TextField::polarity};
     std::size_t n_columns = 4;                  ///< further ones on a line are ignored
     TextTimeUnit unit = TextTimeUnit::seconds;  ///< never automatic
+    int off = 0, on = 1;  ///< polarities, not negative; with 0 and 1, -1 is off, too
 };
 
 struct TextHeader {
-    StreamHeader stream;  ///< width and height from a "width height" first line, else 0
+    StreamHeader stream;  ///< width and height from a first line or a comment, else 0
     TextLayout layout;
     std::vector<std::string> remarks{};  ///< on what was guessed with little to go by
 };
 
 /// True when the bytes look like a text recording: printable, and the first lines are comments, a
-/// header row, a "width height" line, or rows of at least four numbers.
+/// header row, a "width height" line, or rows of at least four numbers. Comments alone are no
+/// recording, unless one says the size.
 bool looks_like_text(std::span<const std::byte> first_bytes);
 
 /// Throws Error (input) when the bytes hold neither a line of data nor one that says the size or

@@ -2,9 +2,11 @@
 #include "src/codec/text/text_row.h"
 
 #include "src/codec/text/text_number.h"
+#include "src/core/lower_case.h"
 
 #include <algorithm>
 #include <cstdlib>
+#include <string>
 
 namespace eventide {
 
@@ -12,11 +14,17 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\n";
 
-bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
-    return std::any_of(words.begin(), words.end(), [&](std::string_view w) { return w == word; });
+std::optional<bool> parse_polarity(std::string_view field, const TextLayout& layout) {
+    if (const auto word = polarity_in_words(field)) return word;
+    const auto value = whole_number(field);
+    if (value == layout.on) return true;
+    if (value == layout.off || (value == -1 && layout.on == 1)) return false;
+    return {};
 }
 
-std::optional<std::int64_t> parse_integer(std::string_view field) {
+}  // namespace
+
+std::optional<std::int64_t> whole_number(std::string_view field) {
     const auto value = parse_decimal(field);
     if (!value) return {};
     const auto whole = scaled_integer(*value, 0);
@@ -29,15 +37,14 @@ std::optional<std::int64_t> parse_integer(std::string_view field) {
     return whole;
 }
 
-std::optional<bool> parse_polarity(std::string_view field) {
-    if (is_one_of(field, {"true", "True", "TRUE", "t", "T", "on", "ON"})) return true;
-    if (is_one_of(field, {"false", "False", "FALSE", "f", "F", "off", "OFF"})) return false;
-    const auto value = parse_integer(field);
-    if (!value || *value < -1 || *value > 1) return {};
-    return *value == 1;
+std::optional<bool> polarity_in_words(std::string_view field) {
+    constexpr std::size_t kLongest = 5;
+    if (field.empty() || field.size() > kLongest) return {};
+    const std::string word = lower_case(field);
+    if (word == "on" || word == "true" || word == "t") return true;
+    if (word == "off" || word == "false" || word == "f") return false;
+    return {};
 }
-
-}  // namespace
 
 std::vector<std::string_view> split_fields(std::string_view line) {
     std::vector<std::string_view> fields;
@@ -73,7 +80,11 @@ int decimal_shift(TextTimeUnit unit) {
 }
 
 std::optional<TextRow> parse_row(std::string_view line, const TextLayout& layout) {
-    const auto fields = split_fields(line);
+    return parse_row(split_fields(line), layout);
+}
+
+std::optional<TextRow> parse_row(std::span<const std::string_view> fields,
+                                 const TextLayout& layout) {
     if (fields.size() < layout.n_columns) return {};
     TextRow row;
     for (std::size_t i = 0; i < layout.n_columns; ++i) {
@@ -87,13 +98,13 @@ std::optional<TextRow> parse_row(std::string_view line, const TextLayout& layout
                 row.t_us = value.value_or(0);
                 break;
             case TextField::x:
-                value = parse_integer(fields[i]), row.x = value.value_or(0);
+                value = whole_number(fields[i]), row.x = value.value_or(0);
                 break;
             case TextField::y:
-                value = parse_integer(fields[i]), row.y = value.value_or(0);
+                value = whole_number(fields[i]), row.y = value.value_or(0);
                 break;
             case TextField::polarity:
-                if (const auto on = parse_polarity(fields[i]))
+                if (const auto on = parse_polarity(fields[i], layout))
                     row.on = *on;
                 else
                     value = {};

@@ -7,13 +7,16 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace eventide {
 namespace {
 
 constexpr std::size_t kFewestRows = 100;                           // that tell a rate
 constexpr double kSlowest = 1e3, kFastest = 1e9, kDoubtful = 1e4;  // events/s
+constexpr double kSparse = 100;                                    // events/s of a still scene
 constexpr double kNanosecondsIn2001 = 1e18;
+constexpr double kMicrosecondsIn2001 = 1e15, kMicrosecondsIn2096 = 4e15;
 
 struct Unit {
     TextTimeUnit unit;
@@ -32,6 +35,7 @@ struct Times {
     double least = 0, largest = 0;
     bool points = false;     ///< written with a decimal point or an exponent
     bool fractions = false;  ///< and not whole numbers all the same
+    std::uint64_t tick = 0;  ///< what divides all steps from time to time; 0 where there is none
 
     bool tell_rate() const { return count >= kFewestRows && largest > least; }
     double rate(const Unit& unit) const {  ///< events/s
@@ -39,6 +43,9 @@ struct Times {
     }
     bool make_sense(const Unit& unit) const {
         return rate(unit) >= kSlowest && rate(unit) <= kFastest;
+    }
+    bool are_sparse(const Unit& unit) const {
+        return rate(unit) >= kSparse && rate(unit) < kSlowest;
     }
 };
 
@@ -58,11 +65,17 @@ bool is_apart(const std::vector<double>& times) {
 Times read_times(std::span<const std::string_view> texts) {
     Times times;
     std::vector<double> all;
+    std::uint64_t last = 0;
     for (const std::string_view text : texts) {
         const auto value = parse_decimal(text);
         if (!value || !scaled_integer(*value, 0)) continue;
         times.points |= value->fractional;
         times.fractions |= !is_whole(*value);
+        const auto whole = std::uint64_t(*scaled_integer(*value, 0));
+        const auto step = std::int64_t(whole - last);
+        const auto size_of_step = step < 0 ? 0 - std::uint64_t(step) : std::uint64_t(step);
+        if (!all.empty()) times.tick = std::gcd(times.tick, size_of_step);
+        last = whole;
         const double size = double(value->digits) * std::pow(10.0, value->exponent);
         all.push_back(value->negative ? -size : size);
     }
@@ -97,6 +110,11 @@ std::string remark_on(const std::string& what, const Times& times, const Unit& u
 /// Of whole numbers; null: none makes sense.
 const Unit* likeliest_unit(const Times& times) {
     if (times.least >= kNanosecondsIn2001) return &kNanoseconds;
+    if (times.least >= kMicrosecondsIn2001 && times.largest < kMicrosecondsIn2096)
+        return &kMicroseconds;
+    // Few events are likelier than another unit, down to where no sensor's noise alone is so
+    // little; unless a sensor's microseconds can be seen in nanoseconds.
+    if (times.are_sparse(kMicroseconds) && times.tick != 1000) return &kMicroseconds;
     for (const Unit& unit : kByLikelihood)
         if (times.make_sense(unit)) return &unit;
     return nullptr;
@@ -117,7 +135,8 @@ TextTimeUnit guess_time_unit(std::span<const std::string_view> texts,
     const Unit& unit = likeliest != nullptr ? *likeliest : kMicroseconds;
     if (likeliest == nullptr || times.points || unit.unit != TextTimeUnit::microseconds ||
         times.rate(unit) < kDoubtful)
-        remarks.push_back(remark_on("times are whole numbers", times, unit, likeliest == nullptr));
+        remarks.push_back(
+            remark_on("times are whole numbers", times, unit, !times.make_sense(unit)));
     return unit.unit;
 }
 

@@ -34,8 +34,10 @@ char* write_seconds(char* p, std::int64_t us) {
 }  // namespace
 
 void TextWriter::begin(const StreamHeader& header, std::vector<std::byte>& out) {
-    if (header.width > 0 && header.height > 0)
-        append(out, std::to_string(header.width) + " " + std::to_string(header.height) + "\n");
+    if (header.width <= 0 || header.height <= 0) return;
+    const std::string width = std::to_string(header.width), height = std::to_string(header.height);
+    append(out, size_ == TextSize::in_a_comment ? "# geometry: " + width + "," + height + "\n"
+                                                : width + " " + height + "\n");
 }
 
 void TextWriter::write(const Batch& batch, std::vector<std::byte>& out) {
