@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace eventide {
 namespace {
@@ -34,6 +35,7 @@ struct Times {
     double least = 0, largest = 0;
     bool points = false;     ///< written with a decimal point or an exponent
     bool fractions = false;  ///< and not whole numbers all the same
+    std::uint64_t tick = 0;  ///< what divides all steps from time to time; 0 where there is none
 
     bool tell_rate() const { return count >= kFewestRows && largest > least; }
     double rate(const Unit& unit) const {  ///< events/s
@@ -63,11 +65,17 @@ bool is_apart(const std::vector<double>& times) {
 Times read_times(std::span<const std::string_view> texts) {
     Times times;
     std::vector<double> all;
+    std::uint64_t last = 0;
     for (const std::string_view text : texts) {
         const auto value = parse_decimal(text);
         if (!value || !scaled_integer(*value, 0)) continue;
         times.points |= value->fractional;
         times.fractions |= !is_whole(*value);
+        const auto whole = std::uint64_t(*scaled_integer(*value, 0));
+        const auto step = std::int64_t(whole - last);
+        const auto size_of_step = step < 0 ? 0 - std::uint64_t(step) : std::uint64_t(step);
+        if (!all.empty()) times.tick = std::gcd(times.tick, size_of_step);
+        last = whole;
         const double size = double(value->digits) * std::pow(10.0, value->exponent);
         all.push_back(value->negative ? -size : size);
     }
@@ -105,8 +113,8 @@ const Unit* likeliest_unit(const Times& times) {
     if (times.least >= kMicrosecondsIn2001 && times.largest < kMicrosecondsIn2096)
         return &kMicroseconds;
     // Few events are likelier than another unit, down to where no sensor's noise alone is so
-    // little.
-    if (times.are_sparse(kMicroseconds)) return &kMicroseconds;
+    // little; unless a sensor's microseconds can be seen in nanoseconds.
+    if (times.are_sparse(kMicroseconds) && times.tick != 1000) return &kMicroseconds;
     for (const Unit& unit : kByLikelihood)
         if (times.make_sense(unit)) return &unit;
     return nullptr;
