@@ -247,7 +247,8 @@ TEST(Text, TheUnitOfWholeNumbersFollowsFromTheirRate) {
         EXPECT_EQ(!header.remarks.empty(), c.is_said) << c.first << " " << c.step;
     }
     std::string of_ticks;  // microseconds of a sensor, in nanoseconds
-    for (int i = 0; i < 500; ++i) of_ticks += std::to_string((5 * i + i * i % 3) * 1000) + " 1 2 1\n";
+    for (int i = 0; i < 500; ++i)
+        of_ticks += std::to_string((5 * i + i * i % 3) * 1000) + " 1 2 1\n";
     EXPECT_EQ(read_text_header(to_bytes(of_ticks), {}).layout.unit, TextTimeUnit::nanoseconds);
     // A first time of another clock, which readers leave out, tells nothing either.
     std::string text = "0 1 2 1\n";
