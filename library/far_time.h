@@ -12,7 +12,7 @@ namespace eventide {
 
 /// Beyond Reconstructor::kFarthestTime.
 inline bool is_far(SensorTime t) {
-    static_assert(Reconstructor::kFarthestTime == kFarthestTime_us);
+    static_assert(Reconstructor::kFarthestTime == kFarthestUs);
     return to_us(t) > Reconstructor::kFarthestTime || to_us(t) < -Reconstructor::kFarthestTime;
 }
 

@@ -23,13 +23,11 @@ bool is_before(std::int64_t row_us, std::int64_t t_us) {
 
 std::int64_t us_from_seconds(double seconds) {
     const double us = seconds * 1e6;
-    return std::abs(us) <= double(kFarthestTime_us) ? std::llround(us) : kNoTimeUs;  // NaN is not
+    return std::abs(us) <= double(kFarthestUs) ? std::llround(us) : kNoTimeUs;  // NaN is not
 }
 
 std::int64_t us_from_integer(std::int64_t us, std::int64_t base_us) {
-    const auto near = [](std::int64_t t) {
-        return t >= -kFarthestTime_us && t <= kFarthestTime_us;
-    };
+    const auto near = [](std::int64_t t) { return t >= -kFarthestUs && t <= kFarthestUs; };
     return near(us) && near(base_us) ? us + base_us : kNoTimeUs;
 }
 

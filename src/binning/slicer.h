@@ -160,7 +160,7 @@ private:
     struct Reference {
         std::uint64_t clock;
         SensorTime t;
-        auto operator<=>(const Reference&) const = default;
+        auto operator<=>(const Reference&) const = default;  // NOLINT(modernize-use-nullptr)
     };
     std::vector<Reference> references_;  // ascending
     std::vector<Position> gaps_;         // that no window given carries yet

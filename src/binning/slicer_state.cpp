@@ -24,7 +24,7 @@ std::optional<Slicer::State> Slicer::state() const {
 }
 
 void Slicer::restore(const State& state) {
-    constexpr SensorTime kFarthest{SensorDuration{kFarthestTime_us}};
+    constexpr SensorTime kFarthest{SensorDuration{kFarthestUs}};
     const auto in_order = [](const Event& a, const Event& b) { return a.t < b.t; };
     if (state.heard > kFarthest || state.origin < SensorTime{-kFarthest.time_since_epoch()} ||
         state.newest > kFarthest || state.origin > state.begin || state.begin > state.newest ||

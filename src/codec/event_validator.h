@@ -27,7 +27,7 @@ public:
     enum class LeapEnds { with_next_event, with_next_packet };
     static constexpr std::int64_t kLongestStep = 100'000;  // us; no more is lost to one bad time
     static constexpr std::int64_t kLongestFirstPause = 60'000'000;  // us
-    static constexpr std::int64_t kFarthest = kFarthestTime_us;
+    static constexpr std::int64_t kFarthest = kFarthestUs;
 
     /// px
     EventValidator(std::uint64_t width, std::uint64_t height,

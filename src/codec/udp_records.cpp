@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kNoTime = 1U << 31;
 constexpr std::int64_t kFarUs = 1'000'000;
-constexpr auto kLatestUs = std::uint64_t(kFarthestTime_us);
+constexpr auto kLatestUs = std::uint64_t(kFarthestUs);
 
 }  // namespace
 

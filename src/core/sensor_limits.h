@@ -12,7 +12,7 @@ constexpr int kLargestSensorSide = 4096;
 constexpr int kLargestRecordedSide = 65536;
 
 /// us: no time is further from zero (36000 years), so that sums of times fit.
-constexpr std::int64_t kFarthestTime_us = std::int64_t{1} << 60;
+constexpr std::int64_t kFarthestUs = std::int64_t{1} << 60;
 
 /// Event windows after its own that a frame may wait for.
 constexpr int kMaxLookahead = 2;

@@ -99,7 +99,7 @@ PipelineSettings Run::pipeline_settings() {
     settings.event_windows.slicer = slicer_;
     settings.rate = rate_;
     settings.frames_from = span_.frames_from;
-    if (settings_.out.empty()) settings.frames_from = from_us(kFarthestTime_us);  // none
+    if (settings_.out.empty()) settings.frames_from = from_us(kFarthestUs);  // none
     if (resumed_) settings.resume = &resumed_->stream;
     settings.state_stops = {states_at_,
                             [this](const PipelineState& memory) { keep_state(memory); }};

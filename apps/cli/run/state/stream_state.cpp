@@ -134,7 +134,7 @@ public:
     /// Such that sums of times fit.
     SensorTime time(const std::string& key) const {
         const std::int64_t us = number(key);
-        if (us < -kFarthestTime_us || us > kFarthestTime_us)
+        if (us < -kFarthestUs || us > kFarthestUs)
             refuse("'" + key + "': expected a time that a clock can have, found " +
                    std::to_string(us));
         return from_us(us);
