@@ -41,7 +41,7 @@ inline void fuzz_recording_at(const std::string& path, const std::string& format
         const auto recording = open_recording(path, options);
         const auto [width, height] = std::pair{recording->info().width, recording->info().height};
         const RecordedForFuzzer all = read_for_fuzzer(*recording);
-        require_order(all.data.events);
+        require_order(all.data);
         for (const Event& event : all.data.events) require(event.x < width && event.y < height);
         recording->seek(SensorTime::min());
         const RecordedForFuzzer again = read_for_fuzzer(*recording);
@@ -50,7 +50,7 @@ inline void fuzz_recording_at(const std::string& path, const std::string& format
         require(without_tables(again.damage) == without_tables(all.damage));
         if (all.data.events.empty()) return;
         recording->seek(all.data.events[all.data.events.size() / 2].t);
-        require_order(read_for_fuzzer(*recording).data.events);
+        require_order(read_for_fuzzer(*recording).data);
     } catch (const Error&) {
     }
 }
