@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <new>
-#include <ratio>
 #include <string>
 #include <utility>
 

@@ -19,6 +19,11 @@ Model load_tried_model(const std::filesystem::path& file) {
     return model;
 }
 
+EngineOptions of_one_view(EngineOptions engine) {
+    engine.self_ensemble = 1;
+    return engine;
+}
+
 template <typename Part>
 Part made_for(const Model& model, const SensorInfo& sensor, const EngineOptions& engine) {
     try {
@@ -46,15 +51,11 @@ Network::Network(const RunSettings& settings, const SensorInfo& sensor)
       renderer_{made_for<Renderer>(model_, sensor, engine_)} {}
 
 Encoder Network::make_encoder(const SensorInfo& sensor) const {
-    EngineOptions engine = engine_;
-    engine.self_ensemble = 1;
-    return made_for<Encoder>(model_, sensor, engine);
+    return made_for<Encoder>(model_, sensor, of_one_view(engine_));
 }
 
 Renderer Network::make_renderer(const SensorInfo& sensor) const {
-    EngineOptions engine = engine_;
-    engine.self_ensemble = 1;
-    return made_for<Renderer>(model_, sensor, engine);
+    return made_for<Renderer>(model_, sensor, of_one_view(engine_));
 }
 
 }  // namespace eventide::app

@@ -25,10 +25,7 @@ plain::RenderedFrame<double> DoubleRenderer::render(const Codes& codes, double f
     const bool fades = config_.live_edge == LiveEdge::fade && codes[1] != nullptr;
     const AxisSamples t = sample_time(fraction, codes[3] != nullptr, fades);
     const AxisSamples still_t = sample_still_time(t, codes[3] != nullptr, fades);
-    Array2<std::uint8_t> still(geometry.part_height, geometry.part_width);
-    if (config_.encoder == EncoderKind::gated && still_t != t)
-        still = still_pixels(codes, codes_read(t.index, codes[3] != nullptr, codes[4] != nullptr),
-                             geometry, config_.latent_stride, config_.blend, config_.unfold / 2);
+    const Array2<std::uint8_t> still = still_pixels(config_, codes, t, still_t, geometry);
     const auto axis = [&](int at, int size, int sensor_size) {
         return sample_axis(at, size, sensor_size, config_.latent_stride, config_.blend);
     };

@@ -51,11 +51,7 @@ public:
             if (t.weight[n] != 0) first_layers[n] = first_layer_of(codes, t.index + int(n));
         const int stride = config_.latent_stride;
         const AxisSamples still_t = sample_still_time(t, codes[3] != nullptr, fades);
-        Array2<std::uint8_t> still(geometry.part_height, geometry.part_width);
-        if (config_.encoder == EncoderKind::gated && still_t != t)
-            still =
-                still_pixels(codes, codes_read(t.index, codes[3] != nullptr, codes[4] != nullptr),
-                             geometry, config_.latent_stride, config_.blend, config_.unfold / 2);
+        const Array2<std::uint8_t> still = still_pixels(config_, codes, t, still_t, geometry);
         RenderedFrame<T> out{{geometry.part_height, geometry.part_width},
                              {geometry.part_height, geometry.part_width}};
         for (int row = 0; row < geometry.part_height; ++row) {

@@ -3,6 +3,7 @@
 
 #include "src/core/error.h"
 #include "src/core/frame_stamp.h"
+#include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 #include "src/model/cores.h"
 #include "src/model/mirrors.h"
@@ -44,12 +45,9 @@ bool lies_within(int size, int at, int part) {
 void check_part(const FrameGeometry& g) {
     if (lies_within(g.width, g.x, g.part_width) && lies_within(g.height, g.y, g.part_height))
         return;
-    const auto size = [](int width, int height) {
-        return std::to_string(width) + "x" + std::to_string(height);
-    };
-    throw Error(ErrorKind::usage, "region (roi) exceeds the " + size(g.width, g.height) +
+    throw Error(ErrorKind::usage, "region (roi) exceeds the " + size_text(g.width, g.height) +
                                       " frame: expected a part of it, found " +
-                                      size(g.part_width, g.part_height) + " from " +
+                                      size_text(g.part_width, g.part_height) + " from " +
                                       std::to_string(g.x) + "," + std::to_string(g.y));
 }
 

@@ -15,17 +15,22 @@ namespace eventide {
 /// samples in it (and in those beside it that they are blended with) read is the same in all event
 /// windows the frame reads; docs/model.md, "Renderer".
 ///
-/// `codes`: z_{k-2} .. z_{k+2}, null where unknown; `reach`: px that samples read around them.
-/// Returns 1 for the pixels of the frame's part that are in such tiles.
+/// Of a frame whose time is sampled as `t`, in the place of which `still_t` may be shown: without
+/// a difference, and of the thesis' network, whose codes change for ever, nothing is still.
+/// `codes`: z_{k-2} .. z_{k+2}, null where unknown. Returns 1 for the pixels of the frame's part
+/// that are in such tiles.
 template <typename T>
-Array2<std::uint8_t> still_pixels(const std::array<const Array3<T>*, 5>& codes,
-                                  const CodesRead& read, const FrameGeometry& geometry,
-                                  int latent_stride, Blend blend, int reach) {
+Array2<std::uint8_t> still_pixels(const ModelConfig& config,
+                                  const std::array<const Array3<T>*, 5>& codes,
+                                  const AxisSamples& t, const AxisSamples& still_t,
+                                  const FrameGeometry& geometry) {
     Array2<std::uint8_t> still(geometry.part_height, geometry.part_width);
+    if (config.encoder != EncoderKind::gated || still_t == t) return still;
+    const CodesRead read = codes_read(t.index, codes[3] != nullptr, codes[4] != nullptr);
     const Array3<T>& newest = *codes[2];
     const auto tiles = latent_tiles(newest.height(), newest.width());
     const auto is_still = [&](std::size_t n) {
-        const Tile near = tiles[n].grown(reach, newest.height(), newest.width());
+        const Tile near = tiles[n].grown(config.unfold / 2, newest.height(), newest.width());
         for (int dk = read.oldest; dk <= read.newest; ++dk) {
             const Array3<T>* z = codes[std::size_t(2 + dk)];
             if (z == nullptr) return false;
@@ -37,7 +42,7 @@ Array2<std::uint8_t> still_pixels(const std::array<const Array3<T>*, 5>& codes,
         return true;
     };
     FrameLayout layout;
-    layout.make(geometry, latent_stride, blend, latent_row_edges(newest.height()),
+    layout.make(geometry, config.latent_stride, config.blend, latent_row_edges(newest.height()),
                 latent_column_edges(newest.width()));
     for (int r = 0; r < layout.rows.count(); ++r)
         for (int c = 0; c < layout.columns.count(); ++c) {
