@@ -5,6 +5,7 @@
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
 #include "src/core/error.h"
+#include "src/core/whole_sensor.h"
 #include "src/io/input_file.h"
 
 #include <algorithm>
@@ -126,8 +127,13 @@ EcdImages read_ecd_images(const std::string& folder) {
     return images;
 }
 
-EcdParser::EcdParser(std::unique_ptr<Parser> events, EcdImages images, bool in_the_middle)
-    : events_(std::move(events)), images_(std::move(images)), jumped_(in_the_middle) {
+EcdParser::EcdParser(std::unique_ptr<Parser> events, EcdImages images, int width, int height,
+                     bool in_the_middle)
+    : events_(std::move(events)),
+      images_(std::move(images)),
+      width_(width),
+      height_(height),
+      jumped_(in_the_middle) {
     image_damage_.count(DamageReason::bad_record, images_.bad_entries);
 }
 
@@ -137,7 +143,8 @@ void EcdParser::emit_until(std::optional<SensorTime> t, std::size_t first, Batch
         const auto& entry = images_.entries[next_image_];
         if (t && entry.t > *t) break;
         std::optional<ReferenceImage> image = read_image_file(entry.path);
-        if (!image) {
+        // An image of another size is another camera's: nothing says where its pixels lie.
+        if (!image || !covers_sensor(*image, width_, height_)) {
             image_damage_.count(DamageReason::bad_record);
             continue;
         }
@@ -186,6 +193,13 @@ const Damage& EcdParser::damaged() const {
 std::vector<std::string> EcdRecording::remarks() const {
     std::vector<std::string> all = events_->remarks();
     all.insert(all.end(), images_.remarks.begin(), images_.remarks.end());
+    const auto size = [](int width, int height) {
+        return std::to_string(width) + "x" + std::to_string(height);
+    };
+    if (images_.width > 0 && (images_.width != info().width || images_.height != info().height))
+        all.push_back("images.txt: expected images of the sensor's size, " +
+                      size(info().width, info().height) + ", found one of " +
+                      size(images_.width, images_.height) + "; such images are left out");
     return all;
 }
 

@@ -31,11 +31,13 @@ struct EcdImages {
 EcdImages read_ecd_images(const std::string& folder);
 
 /// Events with the folder's images as reference images: each comes out once the events have
-/// passed its time, the rest at finish(). Images that cannot be read count as bad_record.
+/// passed its time, the rest at finish(). Images that cannot be read, or are not of the sensor's
+/// size (`width` x `height`, px), are left out and count as bad_record.
 class EcdParser final : public Parser {
 public:
     /// `in_the_middle`: of the recording; images before the first event that comes are left out.
-    EcdParser(std::unique_ptr<Parser> events, EcdImages images, bool in_the_middle = false);
+    EcdParser(std::unique_ptr<Parser> events, EcdImages images, int width, int height,
+              bool in_the_middle = false);
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
@@ -48,6 +50,7 @@ private:
 
     std::unique_ptr<Parser> events_;
     EcdImages images_;
+    int width_, height_;
     std::size_t next_image_ = 0;
     bool jumped_ = false;  ///< since the last event: the next image is to be found anew
     Damage image_damage_;
@@ -63,8 +66,8 @@ public:
     ReadStatus read(RawPacket& into) override { return events_->read(into); }
     void stop() noexcept override { events_->stop(); }
     std::unique_ptr<Parser> make_parser() const override {
-        return std::make_unique<EcdParser>(events_->make_parser(), images_,
-                                           events_->begins_in_the_middle());
+        return std::make_unique<EcdParser>(events_->make_parser(), images_, info().width,
+                                           info().height, events_->begins_in_the_middle());
     }
     std::unique_ptr<Parser> make_clock() const override { return events_->make_parser(); }
     std::vector<std::string> remarks() const override;

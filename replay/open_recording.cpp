@@ -2,6 +2,7 @@
 #include "replay/data_recording.h"
 #include "replay/ecd_folder.h"
 #include "replay/formats.h"
+#include "replay/image_file.h"
 #include "replay/stream/aedat4_streams.h"
 #include "replay/stream/scan_geometry.h"
 #include "replay/unsupported_formats.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
 namespace eventide {
 
@@ -94,13 +96,18 @@ void check_size(const OpenOptions& options) {
                                           std::to_string(options.height));
 }
 
-void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOptions& options) {
+/// `of_images`: of the images beside the events, which decides where nothing states the sensor's.
+void complete_geometry(const ByteFile& file, OpenedStream& stream, const OpenOptions& options,
+                       ImageSize of_images) {
     StreamHeader& header = stream.header;
     check_size(options);
     if (options.width > 0) {
         header.width = options.width;
         header.height = options.height;
     }
+    if (header.width > 0 && header.height > 0) return;
+    header.width = of_images.width;
+    header.height = of_images.height;
     if (header.width > 0 && header.height > 0) return;
     if (!file.is_seekable())
         throw Error(ErrorKind::input,
@@ -123,11 +130,12 @@ std::unique_ptr<Recording> open_by_path(const ByteFile& file, const Format& form
 }
 
 std::unique_ptr<FileRecording> open_as_stream(ByteFile file, std::vector<std::byte> head,
-                                              const Format& format, const OpenOptions& options) {
+                                              const Format& format, const OpenOptions& options,
+                                              ImageSize of_images = {}) {
     OpenedStream stream = open_stream(file, format, head, options);
     if (file.is_seekable() && stream.header.format == "aedat4")
         stream.remarks = compare_aedat4_streams(file, read_aedat4_header(head));
-    complete_geometry(file, stream, options);
+    complete_geometry(file, stream, options, of_images);
     const std::size_t header_bytes = std::min<std::size_t>(stream.header.data_offset, head.size());
     head.erase(head.begin(), head.begin() + std::ptrdiff_t(header_bytes));
     if (file.is_seekable()) head.clear();
@@ -142,25 +150,21 @@ std::unique_ptr<Recording> open_file(const std::string& path, const OpenOptions&
     return open_as_stream(std::move(file), std::move(head), format, options);
 }
 
-std::unique_ptr<FileRecording> open_events_of(const std::string& folder,
-                                              const OpenOptions& options) {
+std::unique_ptr<FileRecording> open_events_of(const std::string& folder, const OpenOptions& options,
+                                              ImageSize of_images) {
     ByteFile file((std::filesystem::path(folder) / "events.txt").string(), options.while_waiting);
     std::vector<std::byte> head = read_head(file, options);
     const Format& format = choose_format(file, head, options);
-    return open_as_stream(std::move(file), std::move(head), format, options);
+    return open_as_stream(std::move(file), std::move(head), format, options, of_images);
 }
 
 }  // namespace
 
 std::unique_ptr<Recording> open_recording(const std::string& path, const OpenOptions& options) {
     if (const auto folder = find_ecd_folder(path)) {
-        OpenOptions completed = options;
-        const EcdImages images = read_ecd_images(*folder);
-        if (options.width == 0 && options.height == 0) {
-            completed.width = images.width;
-            completed.height = images.height;
-        }
-        return std::make_unique<EcdRecording>(open_events_of(*folder, completed), images);
+        EcdImages images = read_ecd_images(*folder);
+        auto events = open_events_of(*folder, options, {images.width, images.height});
+        return std::make_unique<EcdRecording>(std::move(events), std::move(images));
     }
     return open_file(path, options);
 }

@@ -122,6 +122,34 @@ TEST(EcdFolder, AStatedSizeIsTaken) {
     EXPECT_EQ(open_recording(folder.path("r"), {.width = 64, .height = 48})->info().width, 64);
 }
 
+TEST(EcdFolder, AnImageOfAnotherSizeIsLeftOut) {
+    const TestFolder folder;
+    write_folder(folder);
+    folder.write("r/events.txt", "20 10\n0.10 1 2 1\n0.20 3 4 0\n0.30 5 6 1\n0.40 7 8 1\n");
+    folder.write("r/images/b.pgm", photo(10, 20, 'b'));
+    folder.write("r/images/c.pgm", photo(40, 20, 'c'));
+    const auto recording = open_recording(folder.path("r"));
+    EXPECT_EQ(recording->remarks().size(), 2U);  // the missing image and the line without a time
+    const Batch batch = read_everything(*recording);
+    ASSERT_EQ(batch.images.size(), 2U);
+    EXPECT_EQ(batch.images[0].pixels(0, 0), 'a' * 257);
+    EXPECT_EQ(batch.images[1].pixels(0, 0), 'd' * 257);
+    EXPECT_EQ(summarize(*open_recording(folder.path("r"))).damaged[DamageReason::bad_record], 4U);
+}
+
+TEST(EcdFolder, SaysThatImagesAreNotOfTheSensorsSize) {
+    const TestFolder folder;
+    folder.write("r/events.txt", "64 48\n0.10 1 2 1\n0.20 3 4 0\n");
+    folder.write("r/images/a.pgm", photo(20, 10, 'a'));
+    folder.write("r/images.txt", "0.11 images/a.pgm\n");
+    const auto recording = open_recording(folder.path("r"));
+    ASSERT_EQ(recording->remarks().size(), 1U);
+    EXPECT_NE(recording->remarks()[0].find("the sensor's size, 64x48, found one of 20x10"),
+              std::string::npos)
+        << recording->remarks()[0];
+    EXPECT_TRUE(read_everything(*recording).images.empty());
+}
+
 TEST(EcdFolder, WithoutImagesTheSizeIsThatOfTheEvents) {
     const TestFolder folder;
     folder.write("r/events.txt", "0.10 1 2 1\n0.20 3 4 0\n");
