@@ -138,6 +138,19 @@ TEST(Text, WholeNumbersAreTakenInTheOrderThatMakesMostEvents) {
               3U);
 }
 
+TEST(Text, PolaritiesAsFloatingPointAreNoTimes) {
+    for (const char* text :
+         {"90 3 1 1.0\n95 9 0 -1.0\n99 7 1 1.0\n", "90,3,1,1.0\n95,9,0,0.0\n99,7,1,1.0\n",
+          "3 1 1.0 90\n9 0 0.0 95\n7 1 1.0 99\n"}) {
+        const Parsed parsed = parse_text(text);
+        ASSERT_EQ(parsed.data.events.size(), 3U) << text;
+        EXPECT_EQ(parsed.data.events[1], (Event{from_us(95), 9, 0, Polarity::off})) << text;
+        EXPECT_EQ(parsed.data.events[2], (Event{from_us(99), 7, 1, Polarity::on})) << text;
+    }
+    // Whole seconds as times are not taken for polarities while others are there.
+    EXPECT_EQ(parse_text("0.0 3 1 1\n1.0 9 0 0\n2.0 7 1 1\n").data.events.size(), 3U);
+}
+
 TEST(Text, RowsThatFitNoLayoutAreRefusedInWords) {
     for (const char* text : {"0.1 7 8 9\n0.2 5 6 7\n", "t x y p\n0.1 7 8 9\n0.2 5 6 7\n",
                              "1 2 3 0\n4 5 6 255\n7 8 9 2\n7 8 9 3\n7 8 9 4\n"}) {

@@ -55,13 +55,21 @@ std::pair<std::size_t, std::size_t> rows_that_fit(std::span<const TextFields> ro
     return {fit, forward};
 }
 
-/// The one column that has fractions, 0 to 3; 4 where none or several have.
+/// A polarity as floating point: "1.0", "-1.00"; not the fraction of a second that begins alike.
+bool is_polarity_with_point(std::string_view field) {
+    const std::size_t point = field.find('.');
+    return point != field.npos && is_usual_polarity(field.substr(0, point)) &&
+           field.find_first_not_of('0', point + 1) == field.npos;
+}
+
+/// The one column that has fractions, 0 to 3; 4 where none or several have. Polarities as floating
+/// point are none.
 std::size_t fractional_column(std::span<const TextFields> rows) {
     std::array<bool, 4> fractions{};
     for (const TextFields& row : rows)
         for (std::size_t i = 0; i < 4; ++i) {
             const auto value = parse_decimal(row[i]);
-            fractions[i] |= value && value->fractional;
+            fractions[i] |= value && value->fractional && !is_polarity_with_point(row[i]);
         }
     if (std::count(fractions.begin(), fractions.end(), true) != 1) return 4;
     return std::size_t(std::find(fractions.begin(), fractions.end(), true) - fractions.begin());
