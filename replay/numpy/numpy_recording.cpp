@@ -223,6 +223,23 @@ std::vector<NamedArray> arrays_of(const ByteFile& file) {
     return arrays;
 }
 
+/// The first text recording, by its name, of an archive without arrays; empty where there is none.
+std::string only_text(const ByteFile& file) {
+    std::string first;
+    for (const ZipEntry& entry : read_zip_directory(file)) {
+        if (entry.name.ends_with(".npy")) return {};
+        const bool is_text = entry.name.ends_with(".txt") || entry.name.ends_with(".csv");
+        // The name is part of a command that people copy.
+        const bool is_plain = std::ranges::all_of(entry.name, [](char c) {
+            return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                   c == '.' || c == '_' || c == '-' || c == '/';
+        });
+        if (first.empty() && is_text && is_plain && !entry.name.starts_with('-'))
+            first = entry.name;
+    }
+    return first;
+}
+
 /// An array for each column.
 bool find_columns(const ByteFile& file, const std::vector<NamedArray>& arrays, NumpyEvents& found) {
     std::array<bool, 4> seen{};
@@ -272,6 +289,10 @@ std::unique_ptr<DataReader> open_npz(const std::string& path, const OpenOptions&
             find_matrix(each.source, each.array, name, found = NumpyEvents{}))
             return make_reader(std::move(file), std::move(found), "npz", options);
     }
+    if (const std::string text = only_text(*file); !text.empty())
+        throw Error(ErrorKind::input, path + ": expected an archive of NumPy arrays, found " +
+                                          text + "; unzip -p FILE " + text +
+                                          " | eventide run - reads it");
     std::string names;
     for (const NamedArray& each : arrays)
         names += (names.empty() ? "" : ", ") + each.name + " " + each.array.shape_text();

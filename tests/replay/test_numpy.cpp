@@ -221,6 +221,17 @@ TEST(Numpy, WhatIsNoTableOfEventsIsRefusedWithWhatItIs) {
     EXPECT_THAT(refusal(folder.write("d.npz", fewer)), HasSubstr("as many numbers as t, 100"));
 }
 
+TEST(Numpy, AnArchiveWithATextRecordingSaysHowToReadIt) {
+    const TestFolder folder;
+    // As the data of rpg_e2vid come.
+    std::string archive = npz({{"events", "240 180\n0.1 1 2 1\n"}}, true);
+    for (auto at = archive.find(".npy"); at != archive.npos; at = archive.find(".npy"))
+        archive.replace(at, 4, ".txt");
+    EXPECT_THAT(refusal(folder.write("events.zip", archive)),
+                AllOf(HasSubstr("found events.txt"),
+                      HasSubstr("unzip -p FILE events.txt | eventide run - reads it")));
+}
+
 TEST(Numpy, AFileThatIsCutGivesItsWholeRows) {
     const TestFolder folder;
     std::vector<Event> events = some_events(20'000, 2'500'000, 20, 240, 180);
