@@ -274,6 +274,13 @@ std::string names_of_writable() {
     return names;
 }
 
+std::string extensions_of_writable() {
+    std::string all;
+    for (const Format& format : kFormats)
+        if (format.is_written()) all += (all.empty() ? "" : ", ") + std::string{format.extension};
+    return all;
+}
+
 const Format* find_format(std::string_view name) {
     const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                     [&](const Format& format) { return format.name == name; });

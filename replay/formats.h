@@ -68,6 +68,8 @@ constexpr std::size_t kHeadBytes = std::size_t(1) << 20;
 std::span<const Format> all_formats();
 /// "aedat4, evt3, ...": of those that are written.
 std::string names_of_writable();
+/// ".aedat4, .raw, ...": of the same, in the same order.
+std::string extensions_of_writable();
 
 /// Null when there is no format of that name.
 const Format* find_format(std::string_view name);

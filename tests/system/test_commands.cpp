@@ -89,6 +89,20 @@ TEST_F(Commands, ConvertWritesAFolderOfTheEventCameraDatasetAndReadsItBack) {
     EXPECT_EQ(eventide({"convert", recording(), "b/", "--to-format", "text"}).exit_code, 2);
 }
 
+TEST_F(Commands, ConvertSaysWhatItWritesWhereTheTargetIsNoneOfThat) {
+    const Result csv = eventide({"convert", recording(), "a.csv"});
+    EXPECT_EQ(csv.exit_code, 2);
+    EXPECT_NE(csv.error.find(".aedat4, "), std::string::npos) << csv.error;
+    EXPECT_NE(csv.error.find(".txt"), std::string::npos) << csv.error;
+    for (const char* name : {"evt2", "csv"}) {  // one is read only, the other is none at all
+        const Result result = eventide({"convert", recording(), "a.raw", "--to-format", name});
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_NE(result.error.find("--to-format: expected one of aedat4"), std::string::npos)
+            << result.error;
+        EXPECT_NE(result.error.find("hdf5"), std::string::npos) << result.error;
+    }
+}
+
 TEST_F(Commands, ConvertWritesTextToStandardOutput) {
     const Result result =
         eventide({"convert", recording(), "-", "--to-format", "text", "--to", "10ms"});

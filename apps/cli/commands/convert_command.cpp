@@ -33,11 +33,14 @@ const Format* target_format(const std::string& file, const std::string& name) {
                         file + ", which is written as events.txt, images.txt and images/");
     }
     const Format* format = name == "auto" ? format_for_writing(file) : find_format(name);
+    if (name != "auto" && (format == nullptr || !format->is_written()))
+        throw Error(ErrorKind::usage, "--to-format: expected one of " + names_of_writable() +
+                                          ", found '" + name + "'");
     if (format == nullptr)
-        throw Error(ErrorKind::usage, file +
-                                          ": expected a folder (ending in /) or an extension of a "
-                                          "format that can be written; --to-format takes " +
-                                          names_of_writable());
+        throw Error(ErrorKind::usage,
+                    file + ": expected a folder (ending in /) or the extension of a format that " +
+                        "can be written, " + extensions_of_writable() + "; --to-format takes " +
+                        names_of_writable());
     return format;
 }
 
