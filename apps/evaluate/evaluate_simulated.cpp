@@ -18,6 +18,10 @@ void check(const SimulatedSettings& what) {
     need(what.width >= 16 && what.height >= 16, "a sensor of at least 16x16");
     need(what.scale >= 1 && what.scale <= 8, "a scale of 1 to 8");
     need(what.score_every >= 1 && what.skip_frames >= 0, "to score one frame in 1 or more");
+    need(what.event_windows >= what.skip_frames + what.score_every,
+         "at least " + std::to_string(what.skip_frames + what.score_every) +
+             " event windows, of which the last is scored, found " +
+             std::to_string(what.event_windows));
     need(what.frame_width.count() >= 1000, "event windows of at least 1 ms");
     for (const double phase : what.phases)
         need(phase > 0 && phase <= 1, "times within the event window, more than 0 and at most 1");

@@ -222,6 +222,12 @@ TEST(EvaluateSimulated, ComparesAtAnyLookaheadScaleAndTime) {
     EXPECT_THROW(evaluate_simulated(small_simulation(), how), Error);
 }
 
+TEST(EvaluateSimulated, TooFewEventWindowsToScoreOneAreRefused) {
+    SimulatedSettings what = small_simulation();
+    what.event_windows = what.skip_frames + what.score_every - 1;
+    EXPECT_THROW(evaluate_simulated(what, {}), Error);
+}
+
 TEST(Report, IsJsonWithTheAgreedKeysAndNullForWhatWasNotMeasured) {
     const fs::path folder = write_recording(fresh_folder("json"), .5, .002, .1);
     RecordingSettings what;
