@@ -57,7 +57,9 @@ void refuse_wrong(const EncoderSettings& settings, const VideoKind& kind,
         std::snprintf(text, sizeof text,
                       ": expected at most %g frames per second of video, found %g", kind.most_fps,
                       settings.fps);
-        throw Error(ErrorKind::usage, path.string() + text + "; a lower --fps, or --slow, does it");
+        throw Error(ErrorKind::usage,
+                    path.string() + text +
+                        "; a lower --fps does it, and --slow N shows N times as many moments");
     }
     if (!is_h264(kind)) return;
     constexpr std::array<std::string_view, 9> kPresets{"ultrafast", "superfast", "veryfast",
