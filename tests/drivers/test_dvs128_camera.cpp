@@ -93,6 +93,16 @@ TEST(Dvs128Camera, StartsAndStopsWithItsOwnRequests) {
     EXPECT_EQ((std::vector<Request>{requests.begin() + 1, requests.end()}), rest);
 }
 
+TEST(Dvs128Camera, ASlaveBeginsWithoutTheMarkThatOnlyAMasterSends) {
+    PluggedIn side;
+    Dvs128Options options = at_once();
+    options.settings.master = false;
+    Dvs128Camera camera{options};
+    const Batch got = stream_scene(camera, side.bed, *side.model);
+    EXPECT_EQ(got.events, side.seen.events);
+    EXPECT_EQ(got.triggers, side.seen.triggers);
+}
+
 TEST(Dvs128Camera, OldFirmwareAndUnknownBiasesAreRefused) {
     const PluggedIn side{1, 13};
     EXPECT_THAT(words_of(ErrorKind::device, [] { Dvs128Camera{at_once()}; }),
