@@ -96,6 +96,15 @@ TEST(DavisExposure, GoesWhereTheMeanIsRightAndStaysThere) {
     }
 }
 
+TEST(UsbStreamSettings, FitTheBusWhereNothingElseIsSaid) {
+    const auto all = [](const UsbStreamSettings& s) { return std::pair{s.transfers, s.bytes}; };
+    EXPECT_EQ(all(fitting({}, true)), std::pair(32, std::size_t{128} << 10));
+    EXPECT_EQ(all(fitting({}, false)), std::pair(128, std::size_t{8} << 10));
+    EXPECT_EQ(all(fitting({16, 4096}, false)), std::pair(16, std::size_t{4096}));
+    EXPECT_EQ(all(fitting({0, 1 << 20}, false)), std::pair(32, std::size_t{1} << 20))
+        << "128 of them would need 128 MiB";
+}
+
 TEST(DavisSettings, ShippedFileSaysTheDefaults) {
     const DavisSettings shipped = load_davis_settings(std::filesystem::path{EVENTIDE_SOURCE_DIR} /
                                                       "config/cameras/davis346.toml");
