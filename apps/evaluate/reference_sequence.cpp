@@ -62,9 +62,11 @@ private:
     bool begun_ = false;
 };
 
+/// A file's name without its extension, all of a folder's: "speed.5".
 std::string name_of(const std::filesystem::path& path) {
-    const auto plain = path.lexically_normal();
-    return (plain.has_filename() ? plain : plain.parent_path()).stem().string();
+    auto plain = path.lexically_normal();
+    if (!plain.has_filename()) plain = plain.parent_path();
+    return (std::filesystem::is_directory(plain) ? plain.filename() : plain.stem()).string();
 }
 
 void read_recording(const std::filesystem::path& path, const OpenOptions& input, Keeper& keeper,

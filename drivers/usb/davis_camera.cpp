@@ -19,6 +19,7 @@ using namespace davis;
 
 constexpr int kFirmwareFx2 = 4, kFirmwareFx3 = 6;
 constexpr std::uint32_t kPatch = 1;
+constexpr int kMaxRefusals = 3;  // in a row, of an exposure
 
 UsbKind kind() {
     return {"DAVIS", "davis:", {kDavisFx3, kDavisFx2}};
@@ -171,12 +172,22 @@ std::unique_ptr<Parser> DavisCamera::make_parser() const {
     return std::make_unique<ExposingDavisParser>(sensor_, settings_.exposure_us, exposure_request_);
 }
 
-/// On the source thread: a control request inside event handling would wait for itself.
+/// On the source thread: a control request inside event handling would wait for itself. One that
+/// fails is no reason to end: the frames go on with the exposure they have, and it is tried again.
 void DavisCamera::between_transfers(UsbDevice& device) {
     const int wanted_us = exposure_request_->exchange(0, std::memory_order_relaxed);
     if (wanted_us <= 0) return;
     settings_.exposure_us = wanted_us;  // also where the camera has to be opened again
-    device.write_register({kApsExposure, adc_cycles(wanted_us, features_)});
+    try {
+        device.write_register({kApsExposure, adc_cycles(wanted_us, features_)});
+        refusals_ = 0;
+    } catch (const UsbDisconnected&) {
+        throw;
+    } catch (const Error&) {
+        if (++refusals_ == kMaxRefusals) throw;
+        int nothing = 0;  // unless a newer one is waiting
+        exposure_request_->compare_exchange_strong(nothing, wanted_us, std::memory_order_relaxed);
+    }
 }
 
 std::vector<CameraDescription> list_davis_cameras() {

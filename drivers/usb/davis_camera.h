@@ -45,6 +45,7 @@ private:
     DavisSettings settings_;
     DavisSensor sensor_;
     DavisFeatures features_;
+    int refusals_ = 0;  ///< in a row, of an exposure
     std::shared_ptr<ExposureRequest> exposure_request_ = std::make_shared<ExposureRequest>(0);
 };
 

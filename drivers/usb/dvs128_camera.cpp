@@ -93,9 +93,11 @@ void Dvs128Camera::reset_time(UsbDevice& device) {
     device.vendor_out(kResetTime, 0, 0, {});
 }
 
-/// The reset is a record of its own; a wrap has the bit above it.
+/// The reset is a record of its own; a wrap has the bit above it. A slave's time is reset only by
+/// its master, over the cable: it leaves out the host's request, and no mark follows.
 std::optional<std::size_t> Dvs128Camera::find_begin(std::span<const std::byte> bytes) const {
     constexpr std::uint16_t kWrapBit = 0x8000, kResetBit = 0x4000;
+    if (!settings_.master && bytes.size() >= word_bytes()) return 0;
     for (std::size_t at = 0; at + 4 <= bytes.size(); at += 4)
         if ((load_little<std::uint16_t>(&bytes[at + 2]) & (kWrapBit | kResetBit)) == kResetBit)
             return at;

@@ -15,7 +15,7 @@ namespace {
 
 using namespace davis;
 
-constexpr int kFirmware = 8;
+constexpr int kFirmware = 8, kSecondGeneration = 10;
 constexpr std::uint32_t kPatch = 2;
 constexpr std::uint8_t kCx3Board = 4;
 constexpr std::uint32_t kLiteChip = 19;
@@ -37,6 +37,11 @@ DvxplorerCamera::~DvxplorerCamera() {
 
 SensorInfo DvxplorerCamera::set_up(UsbDevice& device) {
     require_firmware(device.identity(), kFirmware);
+    // A CX3 board keeps its type with it, and refuses every request for a register.
+    if (device.identity().firmware >= kSecondGeneration)
+        refuse("has firmware " + std::to_string(device.identity().firmware) +
+               ", iniVation's second generation, which cannot be taken back: its protocol is not "
+               "supported");
     require_logic(device, kPatch);
     features_.mini = device.identity().board_type == kCx3Board;
     features_.lite = device.read_register(kChipId) == kLiteChip;

@@ -85,7 +85,7 @@ void UsbCamera::start() {
     device_->clear_halt(kind_.data_endpoint);
     stream_ = std::make_unique<UsbStream>(device_->context(), device_->handle(),
                                           UsbEndpoints{kind_.data_endpoint, message_endpoint()},
-                                          transfers_);
+                                          fitting(transfers_, device_->identity().superspeed));
     start_data(*device_);
     reset_time(*device_);
     if (!wait_for_begin() && !stopped_)

@@ -51,6 +51,7 @@ UsbIdentity identity_of(libusb_device* device, const libusb_device_descriptor& d
     identity.product = descriptor.idProduct;
     identity.firmware = std::uint8_t(descriptor.bcdDevice & 0xFF);
     identity.board_type = std::uint8_t(descriptor.bcdDevice >> 8);
+    identity.superspeed = libusb_get_device_speed(device) >= LIBUSB_SPEED_SUPER;
     identity.bus = libusb_get_bus_number(device);
     identity.address = libusb_get_device_address(device);
     identity.port = port_of(device);

@@ -23,6 +23,7 @@ struct UsbIdentity {
     std::uint16_t vendor = 0, product = 0;
     std::uint8_t firmware = 0;    ///< low byte of bcdDevice
     std::uint8_t board_type = 0;  ///< high byte of bcdDevice
+    bool superspeed = false;      ///< on USB 3; else slower, as far as is known
     int bus = 0, address = 0;     ///< the address is another each time it is plugged in
     std::string port;             ///< "1-4.2": the bus and the ports on the way
     std::string serial;  ///< at most 8 characters; "TMP" and five digits where the device has none

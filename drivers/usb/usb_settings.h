@@ -16,8 +16,8 @@ struct SensorRegion {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Which events the camera sends. Flat: all, without saying which way the brightness went (they
-/// read as ON).
+/// Which events the camera sends. Flat: all, without saying which way the brightness went (a
+/// DAVIS's read as OFF).
 enum class SentPolarity : std::uint8_t { both, on, off, flat };
 
 /// Throws Error (usage) unless the region lies in a sensor of this size; `name` is the setting's.

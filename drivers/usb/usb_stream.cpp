@@ -27,6 +27,16 @@ struct UsbStream::Transfer {
     ~Transfer() { libusb_free_transfer(raw); }
 };
 
+UsbStreamSettings fitting(UsbStreamSettings settings, bool superspeed) {
+    constexpr UsbStreamSettings kUsb3{32, 128 * 1024}, kUsb2{128, 8 * 1024};
+    const UsbStreamSettings& usual = superspeed ? kUsb3 : kUsb2;
+    // As many as there are of the small ones would be too much memory for a user's larger ones.
+    if (settings.transfers == 0)
+        settings.transfers = settings.bytes == 0 ? usual.transfers : kUsb3.transfers;
+    if (settings.bytes == 0) settings.bytes = usual.bytes;
+    return settings;
+}
+
 UsbStream::UsbStream(libusb_context* context, libusb_device_handle* handle, UsbEndpoints endpoints,
                      const UsbStreamSettings& settings)
     : context_(context),

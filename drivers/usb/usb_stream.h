@@ -15,10 +15,17 @@ struct libusb_transfer;
 
 namespace eventide {
 
+/// 0: as fits the bus.
 struct UsbStreamSettings {
-    int transfers = 32;              ///< in flight
-    std::size_t bytes = 128 * 1024;  ///< of each; a multiple of the endpoint's packet (1024)
+    int transfers = 0;      ///< in flight
+    std::size_t bytes = 0;  ///< of each; a multiple of the endpoint's packet (1024)
 };
+
+/// Settles what was left open. A camera ends a transfer early only with a buffer that did not fill
+/// within a millisecond: 512 bytes on USB 2, 8 KiB on USB 3 (docs/protocols.md A.2). Above that
+/// rate a transfer lasts until it is full, so its size bounds the latency: 16 ms with 8 KiB on USB
+/// 2 and with 128 KiB on USB 3.
+UsbStreamSettings fitting(UsbStreamSettings settings, bool superspeed);
 
 /// Where the bytes come from.
 struct UsbEndpoints {

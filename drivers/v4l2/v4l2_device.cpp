@@ -38,9 +38,7 @@ V4l2Device::V4l2Device(const std::filesystem::path& node, int buffers)
     map_buffers(buffers);
     for (std::uint32_t i = 0; i < buffers_.size(); ++i)
         if (const int error = queue(i); error != 0) fail("does not take a buffer", error);
-    int type = int(type_);
-    if (const int error = v4l2_ioctl(fd_.get(), VIDIOC_STREAMON, &type); error != 0)
-        fail("does not start streaming", error);
+    start_streaming();
 }
 
 V4l2Device::~V4l2Device() {
@@ -52,11 +50,26 @@ V4l2Device::Buffer::~Buffer() {
     if (!bytes_.empty()) ::munmap(bytes_.data(), bytes_.size());
 }
 
-void V4l2Device::fail(const std::string& what, int error) const {
+void V4l2Device::fail(const std::string& what, int error, const std::string& way_out) const {
     throw Error(ErrorKind::device,
                 "the camera " + node_.string() + " " + what + ": " +
                     explain_v4l2_error(error, "is the driver loaded and the sensor connected?",
-                                       "in use by another program"));
+                                       "in use by another program") +
+                    way_out);
+}
+
+/// On boards where sensor and receiver are parts of a media graph, only this request looks whether
+/// they fit.
+void V4l2Device::start_streaming() {
+    int type = int(type_);
+    const int error = v4l2_ioctl(fd_.get(), VIDIOC_STREAMON, &type);
+    if (error == 0) return;
+    const char* way_out =
+        error == EPIPE ? " (formats differ between the sensor and this node: set them alike with "
+                         "media-ctl)"
+        : error == ENOLINK ? " (no sensor is linked to this node: link one with media-ctl)"
+                           : "";
+    fail("does not start streaming", error, way_out);
 }
 
 void V4l2Device::query() {

@@ -57,8 +57,10 @@ private:
     };
     void query();
     void map_buffers(int wanted);
+    void start_streaming();
     int queue(std::uint32_t index);  ///< 0 or errno
-    [[noreturn]] void fail(const std::string& what, int error) const;
+    [[noreturn]] void fail(const std::string& what, int error,
+                           const std::string& way_out = "") const;
 
     std::filesystem::path node_;
     FileDescriptor fd_;

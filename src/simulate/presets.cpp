@@ -101,6 +101,44 @@ SensorSettings demo_sensor() {
     return s;
 }
 
+/// All that differs from sequence to sequence is where things are: light and speed are what an
+/// experiment sets.
+SceneSettings camera_scene() {
+    SceneSettings s = demo_scene();
+    s.wander.usual_speed = {100, 100};
+    s.wander.leg_s = {.3, .3};
+    s.object_size = {.15, .5};
+    s.object_speed = {.5, 1.5};
+    s.pause_start = 0;
+    s.white_lux = {100, 100};
+    s.target_mean = {.4, .4};
+    s.target_deviation = {.2, .2};
+    return s;
+}
+
+/// In the order of magnitude of what is published: a bandwidth that grows with the light up to 3
+/// kHz (Lichtsteiner et al. 2008), thresholds, leak and noise in the dark (Hu et al. 2021, v2e).
+SensorSettings camera_sensor() {
+    SensorSettings s = SensorSettings::ideal(.2);
+    s.mismatch = {.03, .03};
+    s.random_phase = true;
+    s.dark_lux = {.02, .02};
+    s.bandwidth_hz = {3000, 3000};
+    s.bandwidth_hz_per_lux = {20, 20};
+    s.refractory_s = {.0003, .0003};
+    s.leak_hz = {.1, .1};
+    s.leak_mismatch = {.2, .2};
+    s.shot_hz = {10, 10};
+    s.shot_lux = {5, 5};
+    s.shot_return_s = {.009, .009};
+    s.shot_mismatch = {.5, .5};
+    s.hot_share = {.0002, .0002};
+    s.jitter_s = {.00005, .00005};
+    s.arbiter_hz_per_pixel = {280, 280};
+    s.no_noise = s.ideal_photoreceptor = s.ideal_readout = 0;
+    return s;
+}
+
 }  // namespace
 
 const std::vector<SimulationPreset>& simulation_presets() {
@@ -112,7 +150,9 @@ const std::vector<SimulationPreset>& simulation_presets() {
         {"wide", "everything at once: what networks are trained on", SceneSettings{},
          SensorSettings{}},
         {"demo", "a few recognisable objects before a moving background, with a pause",
-         demo_scene(), demo_sensor(), 12}};
+         demo_scene(), demo_sensor(), 12},
+        {"camera", "a noisy camera that moves before photographs, at a set light and speed",
+         camera_scene(), camera_sensor()}};
     return kPresets;
 }
 

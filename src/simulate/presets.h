@@ -21,6 +21,7 @@ struct SimulationPreset {
 /// thesis_train, thesis_test: the thesis' scenes before a sensor of its threshold, .35.
 /// wide: what our networks are trained on.
 /// demo: few, slow, bright, recognisable objects; a clean sensor.
+/// camera: what an experiment on light, speed and glare begins with (conditions.h).
 const std::vector<SimulationPreset>& simulation_presets();
 
 /// Throws Error (usage), naming the known ones.

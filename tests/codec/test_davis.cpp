@@ -166,8 +166,8 @@ TEST(DavisWords, LostWrapsAreFoundFromTheHostsClock) {
     EXPECT_EQ(to_us(data.events.at(0).t), 3 * 32768 + 1000);
 }
 
-/// A frame of 2 x 2 pixels at (10, 20).
-Words small_frame(bool with_last_column_end = true) {
+/// A frame of 2 x 2 pixels at (10, 20). `brighter` is added to the samples of the first.
+Words small_frame(bool with_last_column_end = true, int brighter = 0) {
     Words words{time(100), special(kGlobalFrame)};
     for (const int corner : {10, 20, 11, 21}) {
         words.push_back(roi_high(corner >> 8));
@@ -178,11 +178,11 @@ Words small_frame(bool with_last_column_end = true) {
         if (end) words.push_back(special(kColumnEnd));
     };
     // DAVIS240 sends half of what the samples mean: 500 means 1000.
-    column(kResetColumn, 500, 500);
+    column(kResetColumn, 500 + brighter, 500);
     column(kResetColumn, 500, 100);
     words.insert(words.end(),
                  {time(110), special(kExposureStart), time(210), special(kExposureEnd)});
-    column(kSignalColumn, 450, 400);
+    column(kSignalColumn, 450 + brighter, 400);
     column(kSignalColumn, 0, 90, with_last_column_end);
     words.insert(words.end(), {exposure(10), exposure(1), special(kFrameEnd)});
     return words;
@@ -206,6 +206,12 @@ TEST(DavisFrame, IsResetMinusSignalWithItsTimesAndPlace) {
     EXPECT_EQ(image.pixels(0, 1), 65535);  // signal 0: over-exposed
     EXPECT_EQ(image.pixels(1, 1), 65535);  // reset level too low: over-exposed before it began
     EXPECT_EQ(parsed.facts.exposure_us, (1U * 1024 + 10) / 30);
+}
+
+TEST(DavisFrame, ADavis240sDoubledSamplesAreSubtractedBeforeTheyAreLimited) {
+    const auto parsed = parse(small_frame(true, 100));  // reset 1200, signal 1100
+    ASSERT_EQ(parsed.data.images.size(), 1U);
+    EXPECT_EQ(parsed.data.images[0].pixels(0, 0), wide(100));
 }
 
 TEST(DavisFrame, MissingColumnEndLosesTheFrameAndIsCounted) {

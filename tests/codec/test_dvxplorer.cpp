@@ -147,15 +147,27 @@ TEST(DvxplorerMini, ColumnsOfAFrameShareItsTime) {
     EXPECT_EQ(parsed.damaged.total(), 0U);
 }
 
-TEST(DvxplorerMini, AColumnThatDoesNotRiseTellsOfALossUntilTheNextFrame) {
+// A lost reference leaves later frames a millisecond or more too early, unless they wait for one.
+TEST(DvxplorerMini, AColumnThatDoesNotRiseTellsOfALossUntilTheNextReference) {
+    const auto one = pair(0, 0, 1, 0, false, false);
+    const auto parsed = parse(
+        DvxplorerMiniParser{{}},
+        bytes_of<std::uint32_t>({reference(1), frame32(5, 1), one, column32(4), one, column32(6),
+                                 one, frame32(7, 2), one, reference(4), frame32(8, 3), one}));
+    EXPECT_THAT(parsed.data.events,
+                ElementsAre(event(1001, 5, 0, Polarity::on), event(4003, 8, 0, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
+}
+
+TEST(DvxplorerMini, AFrameBeforeTheLastTellsOfALossUntilTheNextReference) {
     const auto one = pair(0, 0, 1, 0, false, false);
     const auto parsed =
         parse(DvxplorerMiniParser{{}},
-              bytes_of<std::uint32_t>({reference(1), frame32(5, 1), one, column32(4), one,
-                                       column32(6), one, frame32(7, 2), one}));
+              bytes_of<std::uint32_t>({reference(1), frame32(5, 700), one, frame32(5, 200), one,
+                                       frame32(5, 800), one, reference(3), frame32(5, 10), one}));
     EXPECT_THAT(parsed.data.events,
-                ElementsAre(event(1001, 5, 0, Polarity::on), event(1002, 7, 0, Polarity::on)));
-    EXPECT_EQ(parsed.damaged[DamageReason::bad_record], 1U);
+                ElementsAre(event(1700, 5, 0, Polarity::on), event(3010, 5, 0, Polarity::on)));
+    EXPECT_EQ(parsed.damaged[DamageReason::time_backwards], 1U);
 }
 
 TEST(DvxplorerMini, ACameraThatCameBackCountsFromZeroAndTimeGoesOn) {

@@ -30,7 +30,7 @@ Batch davis_scene(const DavisSensor& sensor, SceneSettings settings) {
         image.pixels = Array2<std::uint16_t>{sensor.height(), sensor.width()};
         for (auto& pixel : image.pixels.values()) {
             // DAVIS240 sends half of each level, so its values are even.
-            const auto value = unsigned(rng() % 511) * 2 + (sensor.is_davis240() ? 1 : 0);
+            const auto value = unsigned(rng() % 511) * 2;
             pixel = std::uint16_t((value << 6) | (value >> 4));
         }
         batch.images.push_back(std::move(image));

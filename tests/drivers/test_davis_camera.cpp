@@ -82,6 +82,27 @@ TEST(DavisCamera, ACameraInRealTimeLosesNothingAndTellsTheTimeInSilence) {
     EXPECT_EQ(got.images, camera_side.seen.images);
 }
 
+// There a full packet of 512 bytes begins the wait for a short one anew, so that at any but the
+// lowest rate a transfer ends only when it is full.
+TEST(DavisCamera, BehindUsb2NoTransferHoldsBackEventsForLong) {
+    DavisModelSettings settings = davis240_fx2();
+    settings.now = [t = std::int64_t{0}]() mutable { return from_us(t += 20); };
+    PluggedIn camera_side{settings, {.events = 40'000, .longest_pause_us = 4}};
+    DavisOptions options = at_once();
+    options.settings.frames = options.settings.imu = false;
+    DavisCamera camera{options};
+    const auto parser = camera.make_parser();
+    std::size_t got = 0;
+    for (RawPacket packet; got < camera_side.seen.events.size();) {
+        if (camera.read(packet) != ReadStatus::data) continue;
+        Batch events;
+        parser->parse(packet.bytes, events);
+        if (events.events.empty()) continue;
+        got += events.events.size();
+        EXPECT_LT(events.events.back().t - events.events.front().t, SensorDuration{5'000});
+    }
+}
+
 TEST(DavisCamera, SaysWhatToDoWhenItCannotStart) {
     UsbTestbed bed;
     EXPECT_THAT(failure_of([] { DavisCamera{DavisOptions{}}; }), HasSubstr("no DAVIS found"));

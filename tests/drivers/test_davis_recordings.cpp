@@ -22,7 +22,7 @@ using testing_support::UsbTestbed;
 ReferenceImage as_measured(ReferenceImage image, const DavisSensor& sensor) {
     for (std::uint16_t& pixel : image.pixels.values()) {
         int value = pixel >> 6;
-        if (sensor.is_davis240()) value = 1023 - std::min(2 * ((1023 - value + 1) / 2), 1023);
+        if (sensor.is_davis240()) value = std::min(2 * ((value + 1) / 2), 1023);
         pixel = std::uint16_t((value << 6) | (value >> 4));
     }
     image.t = image.exposure_begin + (image.exposure_end - image.exposure_begin) / 2;

@@ -45,6 +45,29 @@ TEST(DavisExposure, FollowsTheFramesAndIsKeptWhenTheCameraComesBack) {
     EXPECT_EQ(exposure(camera_side), 30U * 8000);
 }
 
+TEST(DavisExposure, IsAskedForAgainWhereTheCameraRefusesItButNotForEver) {
+    for (const int refusals : {1, 2, 3}) {
+        PluggedIn camera_side;
+        camera_side.model->show(dark(camera_side.model->settings().sensor));
+        DavisCamera camera{at_once()};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        camera_side.bed.stall_control(refusals);
+        const auto go_on = [&] {
+            stream(camera, camera_side.bed, *camera_side.model);
+            for (int i = 0; i < refusals; ++i) camera.read(packet);
+        };
+        if (refusals == 3) {
+            EXPECT_THAT(failure_of(go_on), HasSubstr("the camera refused the request"));
+            continue;
+        }
+        go_on();
+        std::uint32_t cycles = 0;
+        camera_side.bed.look([&] { cycles = camera_side.model->read(davis::kApsExposure); });
+        EXPECT_EQ(cycles, 30U * 8000) << refusals;
+    }
+}
+
 TEST(DavisExposure, OnlyOneOfTwoParsersAdjustsIt) {
     PluggedIn camera_side;
     const DavisCamera camera{at_once()};
@@ -71,6 +94,15 @@ TEST(DavisExposure, GoesWhereTheMeanIsRightAndStaysThere) {
         EXPECT_NEAR(light * exposure_us, 0.4, 0.07);
         EXPECT_EQ(changes, 0) << "it hunts";
     }
+}
+
+TEST(UsbStreamSettings, FitTheBusWhereNothingElseIsSaid) {
+    const auto all = [](const UsbStreamSettings& s) { return std::pair{s.transfers, s.bytes}; };
+    EXPECT_EQ(all(fitting({}, true)), std::pair(32, std::size_t{128} << 10));
+    EXPECT_EQ(all(fitting({}, false)), std::pair(128, std::size_t{8} << 10));
+    EXPECT_EQ(all(fitting({16, 4096}, false)), std::pair(16, std::size_t{4096}));
+    EXPECT_EQ(all(fitting({0, 1 << 20}, false)), std::pair(32, std::size_t{1} << 20))
+        << "128 of them would need 128 MiB";
 }
 
 TEST(DavisSettings, ShippedFileSaysTheDefaults) {

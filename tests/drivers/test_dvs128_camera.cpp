@@ -93,6 +93,37 @@ TEST(Dvs128Camera, StartsAndStopsWithItsOwnRequests) {
     EXPECT_EQ((std::vector<Request>{requests.begin() + 1, requests.end()}), rest);
 }
 
+TEST(Dvs128Camera, ASlaveBeginsWithoutTheMarkThatOnlyAMasterSends) {
+    PluggedIn side;
+    Dvs128Options options = at_once();
+    options.settings.master = false;
+    Dvs128Camera camera{options};
+    const Batch got = stream_scene(camera, side.bed, *side.model);
+    EXPECT_EQ(got.events, side.seen.events);
+    EXPECT_EQ(got.triggers, side.seen.triggers);
+}
+
+// 128 events in 9 ms fill a packet, and from there on a transfer ends only when it is full.
+TEST(Dvs128Camera, NoTransferHoldsBackEventsForLong) {
+    constexpr std::int64_t kPauseUs = 9'000 / 128;
+    PluggedIn side;
+    Batch steady;
+    for (int i = 0; i < 5'000; ++i)
+        steady.events.push_back({from_us(i * kPauseUs), 1, 2, Polarity::on});
+    side.model->show(steady);
+    Dvs128Camera camera{at_once()};
+    const auto parser = camera.make_parser();
+    std::size_t got = 0;
+    for (RawPacket packet; got < steady.events.size();) {
+        if (camera.read(packet) != ReadStatus::data) continue;
+        Batch part;
+        parser->parse(packet.bytes, part);
+        if (part.events.empty()) continue;
+        got += part.events.size();
+        EXPECT_LT(part.events.back().t - part.events.front().t, SensorDuration{20'000});
+    }
+}
+
 TEST(Dvs128Camera, OldFirmwareAndUnknownBiasesAreRefused) {
     const PluggedIn side{1, 13};
     EXPECT_THAT(words_of(ErrorKind::device, [] { Dvs128Camera{at_once()}; }),

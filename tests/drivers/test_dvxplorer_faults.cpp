@@ -33,6 +33,11 @@ TEST(DvxplorerFaults, SaysWhatToDoWhenItCannotStart) {
         return words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; });
     };
     EXPECT_THAT(with([](auto& s) { s.firmware = 7; }), HasSubstr("firmware 7, at least 8"));
+    EXPECT_THAT(with([](auto& s) {
+                    s.mini = true;
+                    s.firmware = 10;
+                }),
+                HasSubstr("has firmware 10, iniVation's second generation"));
     EXPECT_THAT(with([](auto& s) { s.logic = 17; }), HasSubstr("logic version 17"));
     EXPECT_THAT(with([](auto& s) { s.patch = 1; }),
                 HasSubstr("FPGA logic version 18 patch 1, expected 18 patch 2"));

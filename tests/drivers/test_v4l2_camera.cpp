@@ -210,6 +210,18 @@ TEST(V4l2Camera, SaysWhyItCannotBeUsed) {
     EXPECT_THAT(failure_of([] { open(); }), HasSubstr("does not capture"));
 }
 
+// VIDIOC_STREAMON's words for formats that differ along the way, and for links that are not there.
+TEST(V4l2Camera, SaysWhatIsWrongBetweenTheSensorAndTheReceiver) {
+    V4l2Testbed bed{sensor()};
+    bed.fail_next("STREAMON", EPIPE);
+    EXPECT_THAT(failure_of([] { open(); }),
+                HasSubstr("does not start streaming: Broken pipe (formats differ between the "
+                          "sensor and this node: set them alike with media-ctl)"));
+    bed.fail_next("STREAMON", ENOLINK);
+    EXPECT_THAT(failure_of([] { open(); }),
+                HasSubstr("(no sensor is linked to this node: link one with media-ctl)"));
+}
+
 }  // namespace
 }  // namespace eventide
 

@@ -11,6 +11,7 @@
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/simulate/colour_recording.h"
+#include "src/simulate/conditions.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/scene/textures_folder.h"
 
@@ -102,6 +103,20 @@ SettingTable SimulateCommand::settings() {
                      "a folder/ with events.txt, images.txt and images/.");
     out.short_flag = "-o";
     add(std::move(out));
+    const auto add_condition = [&](const char* key, std::optional<double>& value, const char* unit,
+                                   const char* help) {
+        add(open_setting<double>(
+            key, value, unit, help, "scene",
+            [](const std::string& text) { return parse_number(text, 1e-3, 1e6); },
+            [](const double& v) { return show_number(v); }));
+    };
+    add_condition("lux", lux_, "LUX",
+                  "Light on the chip where the scene is white; scene: as it draws it.");
+    add_condition("speed", speed_, "PX/S",
+                  "Speed of the camera, which that of things follows, pixels a second; scene: as "
+                  "it draws it.");
+    add_condition("lamp", lamp_, "TIMES",
+                  "A lamp in view, so many times as bright as white; scene: none.");
     add(number_setting("seconds", seconds_, "S", "Recording duration, seconds.", 0.001, 1e6));
     add(parsed_setting<Size>("size", size_, "WxH", "Sensor size in pixels.", parse_size,
                              show_size));
@@ -138,7 +153,8 @@ SettingTable SimulateCommand::settings() {
 }
 
 SimRecordingSettings SimulateCommand::plan() const {
-    const SimulationPreset& preset = simulation_preset(scene_);
+    const SimulationPreset preset =
+        under({.lux = lux_, .speed = speed_, .lamp = lamp_}, simulation_preset(scene_));
     SimRecordingSettings plan;
     plan.scene = preset.scene;
     plan.sensor = preset.sensor;

@@ -7,6 +7,7 @@
 #include "src/simulate/colour_recording.h"
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace eventide::app {
@@ -32,6 +33,7 @@ private:
     std::string seed_ = "auto";
     ColourFilter bayer_ = ColourFilter::none;
     Size size_{240, 180};
+    std::optional<double> lux_, speed_, lamp_;
     double seconds_ = 4, images_per_second_ = 25, truths_per_second_ = 25, truth_scale_ = 1;
     bool overwrite_ = false, list_ = false;
 };

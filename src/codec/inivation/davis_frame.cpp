@@ -71,9 +71,10 @@ void DavisFrameAssembler::sample(std::uint16_t adc, SensorTime t) {
     sampled_[read] = true;
 
     const int column = columns_[read];
+    // A DAVIS240's converter uses half its range. Only the difference of two samples has a limit.
     if (column < device_columns() && row_ < device_rows())
         samples_[read][std::size_t(column) * std::size_t(device_rows()) + std::size_t(row_)] =
-            sensor_.is_davis240() ? std::min<std::uint16_t>(std::uint16_t(adc * 2), kAdcMax) : adc;
+            sensor_.is_davis240() ? std::uint16_t(adc * 2) : adc;
     ++row_;
 }
 

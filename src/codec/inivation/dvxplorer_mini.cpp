@@ -78,6 +78,12 @@ void DvxplorerMiniParser::settle(std::int64_t us) {
     if (far_off || base_ + us < time_) base_ = std::max(time_, expected) - us;
 }
 
+/// Words were lost, a reference perhaps among them, and without it what follows would be too early.
+void DvxplorerMiniParser::forget_reference(DamageReason why) {
+    reference_ = -1;
+    damage_.count(why);
+}
+
 /// Bits 9-0 x; 20-11 the frame's time after the reference, where bit 21 marks its first column.
 void DvxplorerMiniParser::column(std::uint32_t w) {
     const int x = int(w & 0x3FF);
@@ -87,11 +93,11 @@ void DvxplorerMiniParser::column(std::uint32_t w) {
     column_ = -1;
     if (begins_frame) {
         const std::int64_t time = base_ + reference_ + ((w >> 11) & 0x3FF);
-        if (time < time_) return damage_.count(DamageReason::time_backwards);
+        if (time < time_) return forget_reference(DamageReason::time_backwards);
         time_ = time;
     }
     if (x >= sensor_.columns()) return damage_.count(DamageReason::out_of_range);
-    if (x <= before) return damage_.count(DamageReason::bad_record);
+    if (x <= before) return forget_reference(DamageReason::bad_record);
     column_ = x;
 }
 

@@ -22,8 +22,8 @@ void frame_mini_message(std::vector<std::byte>& message);
 
 /// 32-bit words of the CX3 board (Mini, Micro). The sensor is read out frame by frame: the first
 /// column of a frame says its time, as microseconds after the last reference, which comes every
-/// millisecond; within a frame the columns rise, so a column that does not tells of a loss, and
-/// what follows is left out until the next frame.
+/// millisecond; within a frame the columns rise. A column that does not, or a frame before the
+/// last, tells of a loss, and what follows is left out until the next reference.
 class DvxplorerMiniParser final : public Parser {
 public:
     explicit DvxplorerMiniParser(const DvxplorerSensor& sensor)
@@ -42,6 +42,7 @@ private:
     void word(std::uint32_t word, Batch& into);
     void reference(std::int64_t us);
     void settle(std::int64_t us);
+    void forget_reference(DamageReason why);
     void column(std::uint32_t word);
     void group(int first_row, std::uint32_t mask, bool off, Batch& into);
     void begin_message(std::uint32_t header);

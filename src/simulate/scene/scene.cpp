@@ -56,6 +56,7 @@ Scene::Scene(const SceneSettings& settings, std::shared_ptr<const TextureLibrary
         for (int i = random_.integer(0, settings.pinned_max); i > 0; --i)
             add_object(settings, true);
     for (int i = 0; i < objects; ++i) add_object(settings, false);
+    if (settings.lamp > 0) add_lamp(settings);
 }
 
 void Scene::draw_light(const SceneSettings& settings) {
@@ -168,6 +169,21 @@ void Scene::add_object(const SceneSettings& settings, bool pinned) {
                               0,
                               cut * layer.texture->aspect() * layer.half_height / layer.half_width,
                               random_.uniform()};
+    layers_.push_back(std::move(layer));
+}
+
+/// An eighth of the shorter side across, always in view, and as bright all over.
+void Scene::add_lamp(const SceneSettings& settings) {
+    Layer layer;
+    layer.texture = &(*textures_)[0];
+    layer.tone = {.offset = float(white_lux_ * settings.lamp), .factor = 0, .rate = 0};
+    const double length = std::min(width_, height_) / 8.;
+    layer.half_width = layer.half_height = length / 2;
+    SceneSettings inside = settings;
+    inside.object_reach = -.5;
+    set_moving(layer, inside, length);
+    layer.shape = Shape::disc();
+    layer.softness_px = 1;
     layers_.push_back(std::move(layer));
 }
 

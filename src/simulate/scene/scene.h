@@ -66,6 +66,7 @@ private:
     ToneCurve tone_curve(double gain) const;
     void add_background(const SceneSettings& settings);
     void add_object(const SceneSettings& settings, bool pinned);
+    void add_lamp(const SceneSettings& settings);
     void set_moving(Layer& layer, const SceneSettings& settings, double length);
     void draw_shape(Layer& layer, const SceneSettings& settings);
     double layer_time(const Layer& layer, double scene_s) const;

@@ -68,6 +68,7 @@ struct SceneSettings {
     double ring_probability = .1;
     Range edge_softness_px{0, 2};  ///< width of the blur at an object's edge
     Range opacity{1, 1};           ///< of objects; below 1 they are glass
+    double lamp = 0;  ///< light of a disc that roams before all else, over that of white; 0: none
 
     double pause_start = .05, pause_stay = .9;  ///< per `pause_step_s`, of the whole scene
     double pause_step_s = .05;

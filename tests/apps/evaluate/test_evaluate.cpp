@@ -39,6 +39,12 @@ TEST(ReferenceWindows, HoldEachEventBetweenTheImagesExactlyOnce) {
     EXPECT_EQ(events, 400U);  // (0, .4] s, one each millisecond
 }
 
+TEST(ReferenceSequence, IsCalledAsItsFolder) {
+    const fs::path folder = write_recording(fresh_folder("at.5"), .5, .001, .1);
+    EXPECT_EQ(read_reference_sequence(folder).name, "eventide_at.5");
+    EXPECT_EQ(read_reference_sequence(folder / "").name, "eventide_at.5");
+}
+
 TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
     ReferenceSequence sequence{"noise", 64, 48, {}, {}, {}, {}};
     const auto add = [&](std::int64_t t_us, int x, int y) {

@@ -3,6 +3,7 @@
 #include "tests/support/usb/register_requests.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace eventide::testing_support {
 
@@ -154,7 +155,7 @@ std::size_t DavisModel::send(std::span<std::byte> out) {
         if (words_.size() == before) break;
     }
     const std::size_t n = std::min(out.size(), words_.size() - sent_);
-    if (n < out.size() && is_too_early_for_part_of_a_packet()) return 0;
+    if (n < out.size() && is_too_early_for_part_of_a_packet(n)) return 0;
     std::copy_n(words_.begin() + std::ptrdiff_t(sent_), n, out.begin());
     sent_ += n;
     bytes_sent_ += n;
@@ -162,13 +163,18 @@ std::size_t DavisModel::send(std::span<std::byte> out) {
     return n;
 }
 
-/// In real time a packet that is not full waits for more, but not for long (USB register 1).
-bool DavisModel::is_too_early_for_part_of_a_packet() {
+/// In real time a buffer that is not full waits for more, but not for long (USB register 1), and
+/// only then does a transfer end early. Each full one begins the wait anew.
+bool DavisModel::is_too_early_for_part_of_a_packet(std::size_t queued) {
+    constexpr std::size_t kHighSpeedBuffer = 512, kSuperSpeedBuffer = 8192;
     if (!settings_.now) return false;
     const SensorDuration delay{read(kUsbEarlyPacketDelay) / read(kUsbMhz)};
     const SensorTime t = settings_.now();
-    if (t - last_packet_ < delay) return true;
-    last_packet_ = t;
+    const std::size_t full =
+        queued / (identity().superspeed ? kSuperSpeedBuffer : kHighSpeedBuffer);
+    if (std::exchange(full_buffers_, full) != full) waits_since_ = t;
+    if (t - waits_since_ < delay) return true;
+    waits_since_ = t;
     return false;
 }
 

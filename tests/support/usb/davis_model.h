@@ -74,7 +74,7 @@ public:
 
 private:
     bool has(davis::Register at) const;
-    bool is_too_early_for_part_of_a_packet();
+    bool is_too_early_for_part_of_a_packet(std::size_t queued);
     SensorTime now() const;
     void begin_time();
     void begin_scene(SensorDuration after);
@@ -89,7 +89,8 @@ private:
     std::vector<davis::Write> writes_;
     Batch scene_;
     std::size_t event_ = 0, image_ = 0, imu_ = 0, trigger_ = 0;  ///< next of the scene
-    SensorTime last_packet_{};
+    std::size_t full_buffers_ = 0;  ///< of those that no transfer has taken yet
+    SensorTime waits_since_{};      ///< the buffer that is not full
     SensorTime time_began_{};       ///< on settings_.now
     SensorDuration scene_began_{};  ///< after that
     bool scene_runs_ = false;

@@ -28,12 +28,13 @@ int Dvs128Model::control(const UsbSetup& setup, std::span<std::uint8_t> data) {
             if (running_) begin_scene(false);
             break;
         case kResetTime:
-            begin_scene(true);
+            if (master_) begin_scene(true);
             break;
         case kSetBiases:
             if (data.size() != kBiasBytes) return -1;
             break;
         case kSetMaster:
+            master_ = setup.value != 0;
             break;
         default:
             return -1;

@@ -13,7 +13,7 @@
 namespace eventide::testing_support {
 
 /// Records flow, and the scene begins, from START to STOP. A reset of the time drops what was
-/// queued, sends its mark, and the scene begins anew.
+/// queued, sends its mark, and the scene begins anew; a slave does not listen to it.
 class Dvs128Model final : public UsbModel {
 public:
     struct Request {
@@ -40,7 +40,7 @@ private:
     std::uint8_t firmware_;
     std::vector<Request> requests_;
     Batch scene_;
-    bool running_ = false, begun_ = false;
+    bool running_ = false, begun_ = false, master_ = true;
     std::vector<std::byte> bytes_;
     std::size_t sent_ = 0;  ///< of bytes_
 };

@@ -65,6 +65,8 @@ UsbModelIdentity DvxplorerModel::identity() const {
 }
 
 int DvxplorerModel::control(const UsbSetup& setup, std::span<std::uint8_t> data) {
+    constexpr int kSecondGeneration = 10;  // asks for eight bytes
+    if (settings_.firmware >= kSecondGeneration) return -1;
     return answer_register_request(*this, setup, data);
 }
 

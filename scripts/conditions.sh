@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# How good a model is in fast motion, in the dark and in glare: simulates cameras under each condition and writes the table
+# docs/accuracy/conditions.md, or prints it for another MODEL than the default.
+#   scripts/conditions.sh DATA [MODEL]
+# DATA holds images/bsds500/, whose last 100 photographs no shipped model was trained on, and
+# perceptual/lpips_squeeze_v0.1.npz; MODEL is a name or a file (default). EVENTIDE names the program; else
+# build/release/apps/cli/eventide. SEEDS: how many scenes for each condition (4). Recordings are kept in out/conditions.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+[ $# -ge 1 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+DATA=$1
+model=${2:-default}
+program=${EVENTIDE:-build/release/apps/cli/eventide}
+seeds=${SEEDS:-4}
+kept=out/conditions
+mkdir -p "$kept/photographs"
+find "$DATA/images/bsds500" -type f | sort | tail -100 | while read -r file; do
+  ln -sf "$(realpath "$file")" "$kept/photographs/"
+done
+
+# One row: all scenes of a condition, as one table's last line.
+row() { # TEXT OPTIONS OF SIMULATE...
+  local text=$1 name recordings=() seed
+  shift
+  for seed in $(seq "$seeds"); do
+    name=$kept/$(echo "$*" | tr -d ' -')_$seed
+    [ -e "$name/run.json" ] || "$program" --quiet simulate --scene camera --seed "$seed" "$@" --seconds 2 --images-per-second 20 \
+      --textures "$kept/photographs" --out "$name/" >&2
+    recordings+=("$name")
+  done
+  echo "conditions: $text" >&2
+  "$program" --quiet evaluate "${recordings[@]}" --model "$model" --window auto --lpips "$DATA/perceptual/lpips_squeeze_v0.1.npz" \
+    --csv - | awk -F, -v text="$text" -v events="$(cat "${recordings[@]/%//events.txt}" | wc -l)" -v seconds=$((2 * seeds)) '
+    $1 == "all" || NR == 2 { last = $0 } END { split(last, c, ",")
+      printf "| %s | %.2f | %.4f %.3f %.3f | %.4f %.3f %.3f | %.2f | %.2f |\n", text, events / seconds / 1e6,
+        c[3], c[4], c[5], c[6], c[7], c[8], c[10], c[11] }'
+}
+
+table() {
+  echo "| condition | million events/s | raw MSE SSIM LPIPS | after an affine fit | PICP80 | LL |"
+  echo "|---|---:|---|---|---|---|"
+  row "100 px/s, 100 lux"
+  for speed in 10 30 300 1000 3000; do row "$speed px/s" --speed $speed; done
+  for lux in 10000 10 3 1 0.3 0.1; do row "$lux lux" --lux $lux; done
+  for lamp in 10 1000; do row "a lamp $lamp times as bright as white" --lamp $lamp; done
+  row "1000 px/s, 3 lux" --speed 1000 --lux 3
+}
+if [ "$model" != default ]; then
+  table
+  exit
+fi
+table > "$kept/table.md"
+{
+  echo "# Conditions, of the default model, written by scripts/conditions.sh"
+  echo
+  cat "$kept/table.md"
+} > docs/accuracy/conditions.md
