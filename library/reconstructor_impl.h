@@ -38,6 +38,7 @@ public:
 
 private:
     bool step();
+    std::uint64_t most_waiting() const;
     bool keeps_frames() const;
     void bin(const EventWindow& event_window);
     void encode();

@@ -3,7 +3,9 @@
 #include "tests/library/library_test.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -91,6 +93,47 @@ TEST_F(AskedFrames, LeaveAllThoseOfTheFrameClock) {
         }
         EXPECT_TRUE(frames[0] == frames[1]) << lookahead;
         EXPECT_FALSE(frames[0].empty());
+    }
+}
+
+/// Those of next(), with frames of the newest time asked for before each batch's. From the batch
+/// on in which `first` of them have been given.
+std::vector<Frame> frames_beside_newer_ones(const std::string& recording,
+                                            Reconstructor& reconstructor, std::size_t first) {
+    EventReader reader{recording};
+    std::vector<Frame> frames;
+    Frame frame, other;
+    for (Batch batch; reader.read(batch);) {
+        reconstructor.push(batch);
+        const bool asks = frames.size() >= first;
+        if (const auto newest = asks ? reconstructor.newest() : std::nullopt)
+            reconstructor.render(*newest, other);
+        while (reconstructor.next(frame)) frames.push_back(frame);
+    }
+    return frames;
+}
+
+TEST_F(AskedFrames, LeaveImagesWhereTheyCorrectThoseOfTheFrameClock) {
+    constexpr std::size_t kNever = 1'000'000;
+    for (const int lookahead : {0, 1, 2}) {
+        const ReconstructorOptions options = repeatable("7ms", lookahead);
+        Reconstructor alone = reconstructor(options);
+        const auto expected = frames_beside_newer_ones(recording(), alone, kNever);
+        ASSERT_GT(alone.counters().used_images, 5U);
+        for (const std::size_t first : {0, 1}) {
+            Reconstructor mixed = reconstructor(options);
+            const auto frames = frames_beside_newer_ones(recording(), mixed, first);
+            EXPECT_GT(frames.size(), expected.size() / 2);
+            if (first > 0) {
+                EXPECT_EQ(frames.size(), expected.size()) << "none is left out";
+            }
+            for (const Frame& frame : frames) {
+                const Frame& right = expected.at(frame.index);
+                ASSERT_EQ(frame.t, right.t);
+                EXPECT_EQ(frame.intensity, right.intensity) << frame.index << ", " << lookahead;
+                EXPECT_EQ(frame.sigma, right.sigma) << frame.index << ", " << lookahead;
+            }
+        }
     }
 }
 
