@@ -166,6 +166,13 @@ void add_events_in(Class& it) {
             "As constructed: a new stream begins.");
 }
 
+/// Copies nothing of bytes.
+py::bytes bytes_of(const py::buffer& buffer) {
+    PyObject* const bytes = PyBytes_FromObject(buffer.ptr());
+    if (bytes == nullptr) throw py::error_already_set();
+    return py::reinterpret_steal<py::bytes>(bytes);
+}
+
 template <typename Class>
 void add_state(Class& it) {
     it.def(
@@ -177,11 +184,14 @@ void add_state(Class& it) {
           "What the network remembers of the scene, as bytes for restore().")
         .def(
             "restore",
-            [](SizedReconstructor& self, std::string_view state) {
-                self.with([&](Reconstructor& r) { r.restore(std::as_bytes(std::span{state})); });
+            [](SizedReconstructor& self, const py::buffer& state) {
+                const auto bytes = bytes_of(state);
+                const std::string_view view = bytes;
+                self.with([&](Reconstructor& r) { r.restore(std::as_bytes(std::span{view})); });
             },
             py::arg("state"),
-            "A new stream begins with what state() told, of the same model and sensor size.")
+            "A new stream begins with what state() told, of the same model and sensor size: bytes, "
+            "or what holds some (a memoryview, an array of uint8).")
         .def(
             "save_state",
             [](SizedReconstructor& self, const std::filesystem::path& file, bool overwrite) {
@@ -220,7 +230,8 @@ void add_frames_out(Class& it) {
         .def("render", &render, py::arg("t"), py::arg("size") = py::none(),
              py::arg("roi") = py::none(),
              "(intensity, sigma) at a time (us) that is ready: float32 arrays [y, x]. size is "
-             "(width, height), roi (x, y, width, height) of the part wanted; else as constructed.")
+             "(width, height), roi (x, y, width, height) of the part wanted. Without both: as "
+             "constructed; with size alone: all of the frame.")
         .def_property_readonly(
             "width", [](SizedReconstructor& self) { return self.it.width(); }, "px, of the sensor")
         .def_property_readonly(

@@ -148,8 +148,12 @@ class Frames(RecordedTest):
         from_memory = frames(lambda it: it.restore(state))
         np.testing.assert_array_equal(from_memory, frames(lambda it: it.restore_state(file)))
         self.assertFalse(np.array_equal(from_memory, frames(lambda it: None)))
+        for held in (bytearray(state), memoryview(state), np.frombuffer(state, np.uint8)):
+            np.testing.assert_array_equal(frames(lambda it: it.restore(held)), from_memory)
         with self.assertRaisesRegex(eventide.InputError, "state: "):
             reconstructor.restore(state[:-1])
+        with self.assertRaises(TypeError):
+            reconstructor.restore("text")
         self.assertEqual(reconstructor.state(), state)
 
     def test_errors_have_the_library_s_words(self):
