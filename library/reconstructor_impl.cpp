@@ -106,21 +106,16 @@ void Reconstructor::Impl::encode() {
     if (grid_.gap_before && options_.reset_on_gap) encoder_.reset();
     encoder_.encode(grid_, latent_);
     renderer_.take(latent_);
-    take_images();
+    correct();
     ++counters_.event_windows;
     note_window();
 }
 
-/// Those that the stream had told when the window at hand was cut.
-void Reconstructor::Impl::take_images() {
+/// By the images that the stream had told when the window at hand was cut.
+void Reconstructor::Impl::correct() {
     if (!fused_) return;
-    while (auto image = intake_.next_image()) {
-        has_images_ = true;
-        if (grid_.reset_before)
-            ++of_old_clock_;
-        else
-            fused_->give(std::move(*image));
-    }
+    const auto next = [this] { return intake_.next_image(); };
+    has_images_ = fused_->give_all(grid_.reset_before, next) || has_images_;
     if (!has_images_) return;
     count_events(grid_, latent_.events_per_pixel);
     fused_->push(grid_.window, latent_.events_per_pixel);
@@ -129,7 +124,7 @@ void Reconstructor::Impl::take_images() {
 
 void Reconstructor::Impl::note_images() noexcept {
     counters_.used_images = fused_->used();
-    counters_.dropped_images = fused_->dropped() + of_old_clock_;
+    counters_.dropped_images = fused_->dropped();
 }
 
 /// Where render() went ahead of next(), the frames of windows that the network cannot show any more
