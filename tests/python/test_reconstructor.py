@@ -156,6 +156,11 @@ class Frames(RecordedTest):
             reconstructor.restore("text")
         self.assertEqual(reconstructor.state(), state)
 
+    def test_what_takes_a_reconstructor_says_so(self):
+        reader = eventide.open(self.recording)
+        with self.assertRaisesRegex(TypeError, r"reconstructor: eventide\._eventide\.Reconstructor\)"):
+            reader.read_into("default")
+
     def test_errors_have_the_library_s_words(self):
         for options, words in [
             ({"window": "5 bananas"}, "5 bananas"),
