@@ -33,6 +33,7 @@ int main(int argc, char** argv) try {
                 out.write(reinterpret_cast<const char*>(plane->values().data()),
                           std::streamsize(plane->values().size_bytes()));
     }
+    if (!out.flush()) return std::cerr << argv[2] << ": cannot be written\n", 1;
 } catch (const eventide::Error& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -7,8 +7,8 @@ int main(int argc, char** argv) {
     eventide_reconstructor* network;
     eventide_options options;
     eventide_frame frame;
-    FILE* out = argc == 3 ? fopen(argv[2], "wb") : NULL;
-    if (out == NULL) return fprintf(stderr, "reconstruct RECORDING OUT\n"), 1;
+    FILE* out = fopen(argc == 3 ? argv[2] : "", "wb");
+    if (out == NULL) return perror("reconstruct RECORDING OUT"), 1;
     eventide_options_init(&options, sizeof options), options.precision = "f32";
     options.window = "auto", options.lookahead = 2, options.lamp_flicker = "16ms";
     eventide_status status = eventide_recording_open(argv[1], NULL, 0, 0, &source);
@@ -17,6 +17,6 @@ int main(int argc, char** argv) {
         fwrite(frame.intensity, sizeof(float) * (size_t)frame.width, (size_t)frame.height, out);
         fwrite(frame.sigma, sizeof(float) * (size_t)frame.width, (size_t)frame.height, out);
     }
-    if (status != EVENTIDE_NONE) fprintf(stderr, "%s\n", eventide_error_message());
-    return status == EVENTIDE_NONE && fclose(out) == 0 ? 0 : 1;
+    if (status != EVENTIDE_NONE) return fprintf(stderr, "%s\n", eventide_error_message()), 1;
+    return fflush(out) || ferror(out) ? perror(argv[2]), 1 : 0;
 }

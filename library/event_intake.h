@@ -38,6 +38,7 @@ public:
     /// The next of those that the stream had told when the event window given last could first be
     /// cut: however late it was taken, the same. In grey.
     std::optional<ReferenceImage> next_image();
+    bool has_images() const { return !images_.empty(); }
 
     void reset();
 

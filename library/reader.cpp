@@ -1,4 +1,5 @@
 // Recordings behind the public face.
+#include "library/later_part.h"
 #include "library/source_filters.h"
 #include "replay/formats.h"
 #include "replay/summary.h"
@@ -49,8 +50,10 @@ public:
             pieces_.put(parsed_);
             more = pieces_.next(batch) || !ended_;
         }
-        if (more) filters_.process(batch);
-        return more;
+        if (!more) return false;
+        filters_.process(batch);
+        later_.take(batch);
+        return true;
     }
 
     /// What cannot go back stays where it is, and its parser with it.
@@ -64,6 +67,7 @@ public:
         parser_ = recording_->make_parser();
         ended_ = false;
         pieces_ = {};
+        later_.begin(t);
     }
 
     void stop() noexcept {
@@ -90,6 +94,7 @@ private:
     const bool can_go_back_;  // a pipe does not tell its size
     std::unique_ptr<Parser> parser_;
     SourceFilters filters_;
+    LaterPart later_;
     RawPacket packet_;
     Batch parsed_;
     BatchPieces pieces_;

@@ -79,13 +79,21 @@ bool Reconstructor::Impl::step() {
     return true;
 }
 
+/// Event windows that may have been encoded and not opened by next(). The codes of that many are
+/// kept. A correction by images follows the newest window that frames may see, and does not go
+/// back.
+std::uint64_t Reconstructor::Impl::most_waiting() const {
+    const bool is_corrected = fused_ && (has_images_ || intake_.has_images());
+    return std::uint64_t(is_corrected ? options_.lookahead : FrameOutput::kMaxLookahead);
+}
+
 /// Whether a step leaves all frames to next() that it has not given, or nobody calls it.
 bool Reconstructor::Impl::keeps_frames() const {
     const std::uint64_t waiting = encoded_ - opened_;
     if (!follows_) return true;
     if (new_clock_) return waiting == 0 && schedule_.due() == 0;
-    return waiting < FrameOutput::kMaxLookahead ||
-           (waiting == FrameOutput::kMaxLookahead && schedule_.due() == 0);
+    const std::uint64_t most = most_waiting();
+    return waiting < most || (waiting == most && schedule_.due() == 0);
 }
 
 void Reconstructor::Impl::bin(const EventWindow& event_window) {
@@ -98,21 +106,16 @@ void Reconstructor::Impl::encode() {
     if (grid_.gap_before && options_.reset_on_gap) encoder_.reset();
     encoder_.encode(grid_, latent_);
     renderer_.take(latent_);
-    take_images();
+    correct();
     ++counters_.event_windows;
     note_window();
 }
 
-/// Those that the stream had told when the window at hand was cut.
-void Reconstructor::Impl::take_images() {
+/// By the images that the stream had told when the window at hand was cut.
+void Reconstructor::Impl::correct() {
     if (!fused_) return;
-    while (auto image = intake_.next_image()) {
-        has_images_ = true;
-        if (grid_.reset_before)
-            ++of_old_clock_;
-        else
-            fused_->give(std::move(*image));
-    }
+    const auto next = [this] { return intake_.next_image(); };
+    has_images_ = fused_->give_all(grid_.reset_before, next) || has_images_;
     if (!has_images_) return;
     count_events(grid_, latent_.events_per_pixel);
     fused_->push(grid_.window, latent_.events_per_pixel);
@@ -121,18 +124,19 @@ void Reconstructor::Impl::take_images() {
 
 void Reconstructor::Impl::note_images() noexcept {
     counters_.used_images = fused_->used();
-    counters_.dropped_images = fused_->dropped() + of_old_clock_;
+    counters_.dropped_images = fused_->dropped();
 }
 
 /// Where render() went ahead of next(), the frames of windows that the network cannot show any more
-/// are left out: those of the open window first, then those of the oldest that waits.
+/// as they were are left out: those of the open window first, then those of the oldest that waits.
 void Reconstructor::Impl::note_window() {
     copy_stamp(grid_, seen(encoded_++));
-    const std::uint64_t waiting = encoded_ - opened_;
-    if (waiting > FrameOutput::kMaxLookahead) schedule_.skip(schedule_.due());
-    if (waiting <= FrameOutput::kMaxLookahead + 1) return;
-    open_next();
-    schedule_.skip(schedule_.due());
+    const std::uint64_t most = most_waiting();
+    if (encoded_ - opened_ > most) schedule_.skip(schedule_.due());
+    while (encoded_ - opened_ > most + 1) {
+        open_next();
+        schedule_.skip(schedule_.due());
+    }
 }
 
 void Reconstructor::Impl::forget_stream() {

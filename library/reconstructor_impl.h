@@ -38,10 +38,11 @@ public:
 
 private:
     bool step();
+    std::uint64_t most_waiting() const;
     bool keeps_frames() const;
     void bin(const EventWindow& event_window);
     void encode();
-    void take_images();
+    void correct();
     void note_images() noexcept;
     void note_window();
     void forget_stream();
@@ -61,7 +62,6 @@ private:
     Encoder encoder_;
     Renderer renderer_;
     std::optional<FusedRenderer> fused_;  // none: images do not correct frames
-    std::uint64_t of_old_clock_ = 0;      // images
     bool has_images_ = false;             // one has come
     VoxelGrid grid_;
     LatentMap latent_;

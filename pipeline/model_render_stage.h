@@ -32,7 +32,7 @@ public:
     Frame make_output() const override { return renderer_.make_output(request_); }
     void take(LatentMap& latent) noexcept override {
         renderer_.take(latent);
-        take_images(latent);
+        correct(latent);
     }
     void finish() noexcept override { renderer_.finish(); }
     void reset() noexcept override {
@@ -69,19 +69,14 @@ public:
     /// many to be kept.
     std::uint64_t used_images() const { return used_.value(); }
     std::uint64_t dropped_images() const {
-        return fused_ ? images_->dropped() + dropped_.value() + of_old_clock_.value() : 0;
+        return fused_ ? images_->dropped() + dropped_.value() : 0;
     }
 
 private:
-    /// Those that came before the map's window was cut.
-    void take_images(const LatentMap& latent) noexcept {
+    /// By the images that came before the map's window was cut.
+    void correct(const LatentMap& latent) noexcept {
         if (!fused_) return;
-        while (auto image = images_->take(latent.images)) {
-            if (latent.reset_before)
-                of_old_clock_.add();
-            else
-                fused_->give(std::move(*image));
-        }
+        fused_->give_all(latent.reset_before, [&] { return images_->take(latent.images); });
         fused_->push(latent.window, latent.events_per_pixel);
         note_images();
     }
@@ -94,7 +89,7 @@ private:
     RenderRequest request_;
     ImagesOnTheWay* images_ = nullptr;
     std::optional<FusedRenderer> fused_;
-    Counter used_, dropped_, of_old_clock_;  // images
+    Counter used_, dropped_;  // images
 };
 
 }  // namespace eventide

@@ -31,7 +31,13 @@ struct Guarded {
     std::mutex mutex;
 };
 
-using GuardedReconstructor = Guarded<Reconstructor>;
+/// With the size of its options, which render() starts from.
+struct GuardedReconstructor : Guarded<Reconstructor> {
+    GuardedReconstructor(const std::string& model, int width, int height,
+                         const ReconstructorOptions& options)
+        : Guarded(model, width, height, options), size(options.size) {}
+    FrameSize size;
+};
 
 inline std::optional<std::int64_t> us_of(std::optional<SensorTime> t) {
     return t ? std::optional{to_us(*t)} : std::nullopt;

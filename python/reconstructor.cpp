@@ -20,22 +20,14 @@ namespace py = pybind11;
 
 namespace {
 
-/// With the size of its options, which render() starts from.
-struct SizedReconstructor : GuardedReconstructor {
-    SizedReconstructor(const std::string& model, int width, int height,
-                       const ReconstructorOptions& options)
-        : GuardedReconstructor(model, width, height, options), size(options.size) {}
-    FrameSize size;
-};
-
-std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int width, int height,
-                                         std::string window, int lookahead, const py::object& fps,
-                                         Size size, Roi roi, bool sigma,
-                                         const std::filesystem::path& hot_pixels,
-                                         std::string noise_filter, const std::string& precision,
-                                         const std::string& kernels, int threads, bool reset_on_gap,
-                                         bool allow_silence, bool images, std::string lamp_flicker,
-                                         int self_ensemble) {
+std::unique_ptr<GuardedReconstructor> make(const std::filesystem::path& model, int width,
+                                           int height, std::string window, int lookahead,
+                                           const py::object& fps, Size size, Roi roi, bool sigma,
+                                           const std::filesystem::path& hot_pixels,
+                                           std::string noise_filter, const std::string& precision,
+                                           const std::string& kernels, int threads,
+                                           bool reset_on_gap, bool allow_silence, bool images,
+                                           std::string lamp_flicker, int self_ensemble) {
     const ReconstructorOptions options{
         .window = std::move(window),
         .lookahead = lookahead,
@@ -53,10 +45,10 @@ std::unique_ptr<SizedReconstructor> make(const std::filesystem::path& model, int
         .reset_on_gap = reset_on_gap,
         .allow_silence = allow_silence};
     const py::gil_scoped_release released;
-    return std::make_unique<SizedReconstructor>(model.string(), width, height, options);
+    return std::make_unique<GuardedReconstructor>(model.string(), width, height, options);
 }
 
-void push(SizedReconstructor& self, const py::array& events, bool resets) {
+void push(GuardedReconstructor& self, const py::array& events, bool resets) {
     Batch batch;
     append_events(events, batch.events);
     self.with([&](Reconstructor& it) {
@@ -67,7 +59,7 @@ void push(SizedReconstructor& self, const py::array& events, bool resets) {
     });
 }
 
-void push_image(SizedReconstructor& self, std::int64_t t, const py::array& pixels,
+void push_image(GuardedReconstructor& self, std::int64_t t, const py::array& pixels,
                 const std::optional<std::pair<std::int64_t, std::int64_t>>& exposure,
                 std::pair<int, int> at) {
     Batch batch;
@@ -81,12 +73,12 @@ void push_image(SizedReconstructor& self, std::int64_t t, const py::array& pixel
     self.with([&](Reconstructor& it) { it.push(batch); });
 }
 
-FramePointer next(SizedReconstructor& self) {
+FramePointer next(GuardedReconstructor& self) {
     auto frame = std::make_shared<Frame>();
     return self.with([&](Reconstructor& it) { return it.next(*frame); }) ? frame : nullptr;
 }
 
-py::tuple render(SizedReconstructor& self, std::int64_t t, const Size& size, const Roi& roi) {
+py::tuple render(GuardedReconstructor& self, std::int64_t t, const Size& size, const Roi& roi) {
     auto frame = std::make_shared<Frame>();
     const FrameSize wanted = size_of(size, roi, self.size);
     self.with([&](Reconstructor& it) { it.render(from_us(t), wanted, *frame); });
@@ -94,7 +86,7 @@ py::tuple render(SizedReconstructor& self, std::int64_t t, const Size& size, con
     return py::make_tuple(array_of(frame->intensity, owner), sigma_of(frame, owner));
 }
 
-std::map<std::string, std::uint64_t> counters(SizedReconstructor& self) {
+std::map<std::string, std::uint64_t> counters(GuardedReconstructor& self) {
     const auto c = self.with([](Reconstructor& it) { return it.counters(); });
     return {{"events", c.events},
             {"off_sensor", c.off_sensor},
@@ -113,7 +105,7 @@ std::map<std::string, std::uint64_t> counters(SizedReconstructor& self) {
 /// What `for frame in reconstructor.frames()` goes through.
 struct Frames {
     py::object owner;
-    SizedReconstructor& of;
+    GuardedReconstructor& of;
 };
 
 void add_iterator(py::module_& module) {
@@ -143,17 +135,17 @@ void add_events_in(Class& it) {
             "corrected by it. read_into() of a Reader or Camera does this by itself.")
         .def(
             "advance",
-            [](SizedReconstructor& self, std::int64_t now) {
+            [](GuardedReconstructor& self, std::int64_t now) {
                 self.with([&](Reconstructor& r) { r.advance(from_us(now)); });
             },
             py::arg("now"), "Every event before now (us) was pushed: time goes on in silence.")
         .def(
             "mark_gap",
-            [](SizedReconstructor& self) { self.with([](Reconstructor& r) { r.mark_gap(); }); },
+            [](GuardedReconstructor& self) { self.with([](Reconstructor& r) { r.mark_gap(); }); },
             "Data were lost here: the next frame carries gap_before.")
         .def(
             "finish",
-            [](SizedReconstructor& self, std::optional<std::int64_t> end) {
+            [](GuardedReconstructor& self, std::optional<std::int64_t> end) {
                 self.with([&](Reconstructor& r) {
                     r.finish(end ? std::optional{from_us(*end)} : std::nullopt);
                 });
@@ -162,35 +154,45 @@ void add_events_in(Class& it) {
             "The stream has ended, at end (us) where its clock went on after the last event.")
         .def(
             "reset",
-            [](SizedReconstructor& self) { self.with([](Reconstructor& r) { r.reset(); }); },
+            [](GuardedReconstructor& self) { self.with([](Reconstructor& r) { r.reset(); }); },
             "As constructed: a new stream begins.");
+}
+
+/// Copies nothing of bytes.
+py::bytes bytes_of(const py::buffer& buffer) {
+    PyObject* const bytes = PyBytes_FromObject(buffer.ptr());
+    if (bytes == nullptr) throw py::error_already_set();
+    return py::reinterpret_steal<py::bytes>(bytes);
 }
 
 template <typename Class>
 void add_state(Class& it) {
     it.def(
           "state",
-          [](SizedReconstructor& self) {
+          [](GuardedReconstructor& self) {
               const auto state = self.with([](Reconstructor& r) { return r.state(); });
               return py::bytes(reinterpret_cast<const char*>(state.data()), state.size());
           },
           "What the network remembers of the scene, as bytes for restore().")
         .def(
             "restore",
-            [](SizedReconstructor& self, std::string_view state) {
-                self.with([&](Reconstructor& r) { r.restore(std::as_bytes(std::span{state})); });
+            [](GuardedReconstructor& self, const py::buffer& state) {
+                const auto bytes = bytes_of(state);
+                const std::string_view view = bytes;
+                self.with([&](Reconstructor& r) { r.restore(std::as_bytes(std::span{view})); });
             },
             py::arg("state"),
-            "A new stream begins with what state() told, of the same model and sensor size.")
+            "A new stream begins with what state() told, of the same model and sensor size: bytes, "
+            "or what holds some (a memoryview, an array of uint8).")
         .def(
             "save_state",
-            [](SizedReconstructor& self, const std::filesystem::path& file, bool overwrite) {
+            [](GuardedReconstructor& self, const std::filesystem::path& file, bool overwrite) {
                 self.with([&](Reconstructor& r) { r.save_state(file, overwrite); });
             },
             py::arg("file"), py::arg("overwrite") = false, "state() as a file.")
         .def(
             "restore_state",
-            [](SizedReconstructor& self, const std::filesystem::path& file) {
+            [](GuardedReconstructor& self, const std::filesystem::path& file) {
                 self.with([&](Reconstructor& r) { r.restore_state(file); });
             },
             py::arg("file"), "restore() from a file.");
@@ -202,32 +204,34 @@ void add_frames_out(Class& it) {
         .def(
             "frames",
             [](const py::object& self) {
-                return Frames{self, self.cast<SizedReconstructor&>()};
+                return Frames{self, self.cast<GuardedReconstructor&>()};
             },
             "An iterator over the frames that the events pushed so far give.")
         .def(
             "ready",
-            [](SizedReconstructor& self, std::int64_t t) {
+            [](GuardedReconstructor& self, std::int64_t t) {
                 return self.with([&](Reconstructor& r) { return r.ready(from_us(t)); });
             },
             py::arg("t"), "Whether the frame of this time (us) can be rendered.")
         .def(
             "newest",
-            [](SizedReconstructor& self) {
+            [](GuardedReconstructor& self) {
                 return us_of(self.with([](Reconstructor& r) { return r.newest(); }));
             },
             "The newest time (us) that can be rendered, or None.")
         .def("render", &render, py::arg("t"), py::arg("size") = py::none(),
              py::arg("roi") = py::none(),
              "(intensity, sigma) at a time (us) that is ready: float32 arrays [y, x]. size is "
-             "(width, height), roi (x, y, width, height) of the part wanted; else as constructed.")
+             "(width, height), roi (x, y, width, height) of the part wanted. Without both: as "
+             "constructed; with size alone: all of the frame.")
         .def_property_readonly(
-            "width", [](SizedReconstructor& self) { return self.it.width(); }, "px, of the sensor")
-        .def_property_readonly(
-            "height", [](SizedReconstructor& self) { return self.it.height(); },
+            "width", [](GuardedReconstructor& self) { return self.it.width(); },
             "px, of the sensor")
         .def_property_readonly(
-            "description", [](SizedReconstructor& self) { return self.it.description(); },
+            "height", [](GuardedReconstructor& self) { return self.it.height(); },
+            "px, of the sensor")
+        .def_property_readonly(
+            "description", [](GuardedReconstructor& self) { return self.it.description(); },
             "which kernels and numbers run")
         .def_property_readonly("counters", &counters, "what became of what was pushed");
 }
@@ -237,8 +241,7 @@ void add_frames_out(Class& it) {
 void add_reconstructor(py::module_& module) {
     add_frame(module);
     add_iterator(module);
-    const py::class_<GuardedReconstructor> guarded(module, "_Guarded");
-    py::class_<SizedReconstructor, GuardedReconstructor> it(
+    py::class_<GuardedReconstructor> it(
         module, "Reconstructor",
         "Events in, frames with uncertainty out.\n"
         "\n"

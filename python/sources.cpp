@@ -166,7 +166,9 @@ void add_reader(py::module_& module) {
                     it.seek(from_us(t));
                 });
             },
-            py::arg("t"), "Goes on from t (us); does nothing on standard input and on pipes.")
+            py::arg("t"),
+            "Goes on from t (us) with the first event and image from then on. A Reconstructor that "
+            "saw others wants reset() first. Does nothing on standard input and on pipes.")
         .def(
             "span",
             [](Source<EventReader>& s) -> py::object {

@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 namespace eventide::app {
 
@@ -37,6 +38,10 @@ ServiceManager::ServiceManager() : address_{variable("NOTIFY_SOCKET")} {
 
 ServiceManager::~ServiceManager() {
     if (socket_ >= 0) close(socket_);
+}
+
+void ServiceManager::ready() {
+    if (!std::exchange(is_ready_, true)) send("READY=1");
 }
 
 void ServiceManager::status(const std::string& text) {

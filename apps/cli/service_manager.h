@@ -23,7 +23,8 @@ public:
     /// How often the manager wants to hear alive(), at least; empty: it does not.
     std::optional<std::chrono::microseconds> watchdog() const { return watchdog_; }
 
-    void ready() { send("READY=1"); }
+    /// Once: later calls say nothing.
+    void ready();
     void alive() { send("WATCHDOG=1"); }
     void stopping() { send("STOPPING=1"); }
     /// One line, which the manager shows.
@@ -33,6 +34,7 @@ private:
     void send(const std::string& message);
 
     int socket_ = -1;
+    bool is_ready_ = false;
     std::string address_;  ///< as the socket wants it: a leading 0 for abstract names
     std::optional<std::chrono::microseconds> watchdog_;
 };

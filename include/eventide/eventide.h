@@ -259,8 +259,9 @@ EVENTIDE_API eventide_status eventide_read_frame(eventide_source* source,
 /** The newest time the source told so far; EVENTIDE_NONE before the first. */
 EVENTIDE_API eventide_status eventide_source_clock(const eventide_source* source, int64_t* t);
 
-/** Of a recording: goes on from `t`; does nothing on standard input and on pipes. EVENTIDE_USAGE
- * for a camera. */
+/** Of a recording: goes on from `t`, with the first event and image from then on. A reconstructor
+ * that saw others wants eventide_reset() first. Does nothing on standard input and on pipes.
+ * EVENTIDE_USAGE for a camera. */
 EVENTIDE_API eventide_status eventide_seek(eventide_source* source, int64_t t);
 
 /** A recording being written. */

@@ -57,8 +57,9 @@ public:
     /// Throws Error (input) where the file cannot be read; damaged bytes are left out and counted.
     bool read(Batch& batch) override;
 
-    /// Goes on from `t`: the next events are those from then on, and perhaps some before. Does
-    /// nothing on standard input and on pipes. Throws Error (input).
+    /// Goes on from `t`, forwards or back: the next events and images are those from then on. A
+    /// Reconstructor that saw others wants reset() first. Does nothing on standard input and on
+    /// pipes. Throws Error (input).
     void seek(SensorTime t);
 
     /// The newest time the recording told so far, which may lie after its newest event; at the end

@@ -81,9 +81,10 @@ struct ReconstructorCounters {
 ///
 /// Frames are found in two ways, which may be mixed: next() gives those at a constant rate, one
 /// after the other; render() gives any time, as long as ready() says so. The network remembers some
-/// five event windows, so ask in the order of time. Once next() has given a frame it gives every
-/// one after it, and ready() and newest() go no further ahead than it can follow: call it until it
-/// is false first. Before, frames that it would have given are left out.
+/// five event windows, so ask in the order of time; where images correct frames, one of an earlier
+/// event window than the newest reached so far is corrected less well. Once next() has given a
+/// frame it gives every one after it, and ready() and newest() go no further ahead than it can
+/// follow: call it until it is false first. Before, frames that it would have given are left out.
 ///
 /// How the events are split into calls changes nothing. With the same model, window, lookahead,
 /// precision and kernels (not automatic ones, which are measured anew in each process) frames are

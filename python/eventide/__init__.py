@@ -92,6 +92,7 @@ def simulate(scene="demo", size=(240, 180), seconds=4, **options):
 
     scene is one of Simulation.scenes(), size (width, height) of the sensor in pixels, seconds the
     length, 0 without end. Options: seed (0: the scene's own), truths_per_second (25), truth_scale
-    (1), textures (a folder of images). Raises UsageError, InputError.
+    (1: the sensor's size; s: (width - 1) s + 1 columns, corners stay corners), textures (a folder
+    of images). Raises UsageError, InputError.
     """
     return Simulation(scene, size, seconds, **options)

@@ -1,5 +1,4 @@
 // The library's frames are those of `eventide run`, bit for bit, however it is asked.
-#include "src/model/model_file.h"
 #include "tests/library/library_test.h"
 
 #include <algorithm>
@@ -133,63 +132,6 @@ TEST_F(Frames, AreTheSameHoweverTheEventsAreSplit) {
     EXPECT_TRUE(frames_with(17) == at_once);
 }
 
-TEST_F(Frames, OfATimeThatIsAskedForAreThoseOfTheFrameClock) {
-    const std::vector<Event> events = events_of(recording());
-    Reconstructor clocked = reconstructor(repeatable("7ms", 2));
-    Reconstructor asked = reconstructor(repeatable("7ms", 2));
-    for (Reconstructor* one : {&clocked, &asked}) {
-        one->push(events);
-        one->finish();
-    }
-    Frame expected, frame;
-    for (std::uint64_t index = 0; clocked.next(expected); ++index) {
-        EXPECT_EQ(expected.index, index);
-        // The first frame of all stands at the begin of the first window, just outside.
-        const SensorTime t = std::max(expected.t, expected.window.begin + SensorDuration{1});
-        ASSERT_TRUE(asked.ready(t)) << index;
-        asked.render(t, frame);
-        EXPECT_EQ(frame.t, t);
-        EXPECT_EQ(frame.window, expected.window);
-        EXPECT_EQ(frame.intensity, expected.intensity) << index;
-        EXPECT_EQ(frame.sigma, expected.sigma) << index;
-    }
-    EXPECT_EQ(asked.counters().frames, clocked.counters().frames);
-}
-
-TEST_F(Frames, OfTheFrameClockAreRightAndAllThereWhereRenderWentAhead) {
-    const std::vector<Event> events = events_of(recording());
-    ReconstructorOptions options = repeatable("7ms", 0);
-    options.fps = "500";
-    // A network that looks back two windows, so that forgetting one too early shows.
-    Model network = load_model(model());
-    network.config.live_edge = LiveEdge::fade;
-    const std::string fading = temp_ / "fading.safetensors";
-    save_model(fading, network);
-    Reconstructor alone{fading, 64, 48, options};
-    alone.push(events);
-    std::vector<Frame> expected;
-    for (Frame frame; alone.next(frame);) expected.push_back(frame);
-    for (int ahead_ms = 1; ahead_ms < 60; ahead_ms += 7) {
-        Reconstructor mixed{fading, 64, 48, options};
-        mixed.push(events);
-        Frame frame;
-        std::size_t given = 0;
-        for (; given < 20; ++given) ASSERT_TRUE(mixed.next(frame));
-        const SensorTime ahead = frame.t + SensorDuration{1000 * ahead_ms};
-        if (mixed.ready(ahead))
-            mixed.render(ahead, frame);
-        else
-            EXPECT_GT(ahead_ms, 8) << "a window at least";
-        for (; mixed.next(frame); ++given) {
-            const Frame& right = expected.at(frame.index);
-            ASSERT_EQ(frame.t, right.t);
-            ASSERT_EQ(frame.intensity, right.intensity) << frame.index << ", ahead " << ahead_ms;
-            ASSERT_EQ(frame.sigma, right.sigma) << frame.index << ", ahead " << ahead_ms;
-        }
-        EXPECT_EQ(given, expected.size());
-    }
-}
-
 TEST_F(Frames, HaveTheSizeAndTheRegionThatWereAskedFor) {
     ReconstructorOptions options = repeatable("7ms", 0);
     options.size = {160, 120, {16, 8, 100, 90}};
@@ -198,60 +140,6 @@ TEST_F(Frames, HaveTheSizeAndTheRegionThatWereAskedFor) {
     auto arguments = repeatable_arguments("7ms", 0);
     arguments.insert(arguments.end(), {"--size", "160x120", "--roi", "16,8,100x90"});
     EXPECT_TRUE(frames == frames_of_run(arguments));
-}
-
-TEST_F(Frames, AreAllGivenByNextWhateverElseIsAsked) {
-    const std::vector<Event> events = events_of(recording());
-    for (const int lookahead : {0, 1, 2}) {
-        std::string frames[2];
-        for (const bool asks : {false, true}) {
-            Reconstructor reconstructor = this->reconstructor(repeatable("7ms", lookahead));
-            Frame frame, other;
-            for (std::size_t at = 0; at < events.size(); at += 5'000) {
-                const auto part = std::span{events}.subspan(at);
-                reconstructor.push(part.first(std::min<std::size_t>(part.size(), 5'000)));
-                // At first there is nothing that may not be passed over.
-                if (asks && at > 0) {
-                    if (const auto newest = reconstructor.newest())
-                        reconstructor.render(*newest, other);
-                    reconstructor.ready(events.back().t);
-                }
-                while (reconstructor.next(frame)) append_frame(frame, frames[asks]);
-            }
-        }
-        EXPECT_TRUE(frames[0] == frames[1]) << lookahead;
-        EXPECT_FALSE(frames[0].empty());
-    }
-}
-
-TEST_F(Frames, OfAnySizeFromOneMemory) {
-    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
-    reconstructor.push(events_of(recording()));
-    const auto newest = reconstructor.newest();
-    ASSERT_TRUE(newest);
-    Frame whole, part;
-    reconstructor.render(*newest, {96, 72}, whole);
-    reconstructor.render(*newest, {96, 72, {10, 20, 30, 40}}, part);
-    ASSERT_EQ(part.intensity.height(), 40);
-    ASSERT_EQ(part.intensity.width(), 30);
-    for (int y = 0; y < 40; ++y)
-        for (int x = 0; x < 30; ++x) {
-            EXPECT_EQ(part.intensity(y, x), whole.intensity(y + 20, x + 10));
-            EXPECT_EQ(part.sigma(y, x), whole.sigma(y + 20, x + 10));
-        }
-}
-
-TEST_F(Frames, GoOnInSilenceAsFarAsTheClockIsKnown) {
-    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
-    const Event one{from_us(1'000'000), 5, 5, Polarity::on};
-    reconstructor.push({&one, 1});
-    EXPECT_EQ(reconstructor.readiness(from_us(1'000'000)), Readiness::later);
-    reconstructor.advance(from_us(1'020'000));
-    EXPECT_EQ(reconstructor.readiness(from_us(1'000'000)), Readiness::ready);
-    EXPECT_EQ(reconstructor.readiness(from_us(1'025'000)), Readiness::later);
-    EXPECT_EQ(reconstructor.readiness(from_us(900'000)), Readiness::gone);
-    reconstructor.advance(from_us(1'500'000));
-    EXPECT_EQ(reconstructor.newest(), from_us(1'479'999 + 20'000));
 }
 
 TEST_F(Frames, AreReadFromASourceOneByOne) {
@@ -282,78 +170,6 @@ TEST_F(Frames, MayBeMovedAwayAndAskedForAgain) {
     const std::string expected = frames_of(false);
     EXPECT_GT(expected.size(), 0U);
     EXPECT_TRUE(frames_of(true) == expected);
-}
-
-TEST_F(Frames, CarryTheMarkOfLostDataHoweverLateTheyAreAskedFor) {
-    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
-    const auto events = events_of(recording());
-    const auto half = events.size() / 2;
-    reconstructor.push(std::span{events}.first(half));
-    reconstructor.mark_gap();
-    reconstructor.push(std::span{events}.subspan(half));
-    reconstructor.finish();
-    int marked = 0;
-    for (Frame frame; reconstructor.next(frame);) {
-        const bool has_lost =
-            frame.window.begin < events[half].t && events[half].t <= frame.window.end;
-        EXPECT_EQ(frame.gap_before, has_lost) << to_us(frame.t);
-        marked += frame.gap_before ? 1 : 0;
-    }
-    EXPECT_GT(marked, 0);
-}
-
-TEST_F(Frames, CarryTheMarkOfLostData) {
-    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
-    const auto events = events_of(recording());
-    const auto half = events.size() / 2;
-    reconstructor.push(std::span{events}.first(half));
-    Frame frame;
-    while (reconstructor.next(frame)) EXPECT_FALSE(frame.gap_before);
-    reconstructor.mark_gap();
-    reconstructor.push(std::span{events}.subspan(half));
-    ASSERT_TRUE(reconstructor.next(frame));
-    EXPECT_TRUE(frame.gap_before);
-    reconstructor.render(frame.t, frame);
-    EXPECT_TRUE(frame.gap_before);
-}
-
-TEST_F(Frames, TellOfLostDataThoughTheirWindowsAreMany) {
-    ReconstructorOptions options = repeatable("2ms", 0);
-    options.fps = "50";  // ten event windows for each frame
-    Reconstructor reconstructor = this->reconstructor(options);
-    const auto events = events_of(recording());
-    const auto half = events.size() / 2;
-    Frame frame;
-    int marked = 0;
-    const auto count = [&] {
-        while (reconstructor.next(frame)) marked += frame.gap_before ? 1 : 0;
-    };
-    reconstructor.push(std::span{events}.first(half));
-    count();
-    EXPECT_EQ(marked, 0);
-    reconstructor.mark_gap();
-    reconstructor.push(std::span{events}.subspan(half));
-    reconstructor.finish();
-    count();
-    EXPECT_EQ(marked, 1);
-}
-
-TEST_F(Frames, TellOfNoLossBeforeAReset) {
-    ReconstructorOptions options = repeatable("2ms", 0);
-    options.fps = "1";
-    Reconstructor reconstructor = this->reconstructor(options);
-    const auto events = events_of(recording());
-    const auto half = events.size() / 2;
-    Frame frame;
-    reconstructor.push(std::span{events}.first(half));
-    ASSERT_TRUE(reconstructor.next(frame));
-    reconstructor.mark_gap();
-    reconstructor.push(std::span{events}.subspan(half));
-    ASSERT_FALSE(reconstructor.next(frame)) << "no frame has told of the gap";
-    reconstructor.reset();
-    reconstructor.push(events);
-    ASSERT_TRUE(reconstructor.next(frame));
-    EXPECT_FALSE(frame.gap_before);
 }
 
 }  // namespace

@@ -86,6 +86,9 @@ TEST_F(Installed, FindPackageGivesAProgramTheSameFrames) {
              "-DCMAKE_PREFIX_PATH=" + prefix()});
     succeed({EVENTIDE_CMAKE, "--build", temp_ / "build"});
     expect_frames_of_run({temp_ / "build/reconstruct"});
+    const Result full = run({temp_ / "build/reconstruct", recording(), "/dev/full"});
+    EXPECT_EQ(full.exit_code, 1);
+    EXPECT_NE(full.error.find("/dev/full: cannot be written"), std::string::npos) << full.error;
     const Result tracked =
         run({temp_ / "build/tracker", recording()}, {.environment = {{"EVENTIDE_MODELS", ""}}});
     EXPECT_EQ(tracked.exit_code, 0) << tracked.error;
@@ -146,8 +149,9 @@ TEST_F(Installed, PkgConfigGivesAProgramInCTheSameFrames) {
              "cc -std=c11 -Wall -Wextra -Wpedantic -Werror " + example("reconstruct.c") + " -o " +
                  (temp_ / "reconstruct") + " $(pkg-config --cflags --libs eventide)"},
             where);
-    expect_frames_of_run({temp_ / "reconstruct"},
-                         {.environment = {{"LD_LIBRARY_PATH", library_folder()}}});
+    const ProcessSettings with{.environment = {{"LD_LIBRARY_PATH", library_folder()}}};
+    expect_frames_of_run({temp_ / "reconstruct"}, with);
+    EXPECT_EQ(run({temp_ / "reconstruct", recording(), "/dev/full"}, with).exit_code, 1);
 }
 
 /// Lines that are neither empty nor comments.

@@ -1,8 +1,12 @@
 // Recordings through the library: read whole, from a time on, and written again.
 #include "tests/library/library_test.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <unistd.h>
 
@@ -10,6 +14,21 @@ namespace eventide::test {
 namespace {
 
 class Recordings : public LibraryTest {};
+
+/// What is left to read.
+Batch rest_of(EventReader& reader) {
+    Batch rest;
+    for (Batch batch; reader.read(batch);) {
+        std::ranges::copy(batch.events, std::back_inserter(rest.events));
+        std::ranges::copy(batch.images, std::back_inserter(rest.images));
+    }
+    return rest;
+}
+
+Batch all_of(const std::string& file) {
+    EventReader reader{file};
+    return rest_of(reader);
+}
 
 TEST_F(Recordings, TellTheirSensorTheirTimesAndTheirImages) {
     EventReader reader{recording()};
@@ -26,7 +45,8 @@ TEST_F(Recordings, TellTheirSensorTheirTimesAndTheirImages) {
     EXPECT_GT(events.size(), 1000U);
     EXPECT_EQ(images, 11U);
     EXPECT_EQ(reader.damaged(), 0U);
-    Batch left{events, {}, {}, {}};
+    Batch left;
+    left.events = events;
     EXPECT_FALSE(reader.read(left)) << "the end stays the end";
     EXPECT_TRUE(left.events.empty()) << "a batch is emptied before it is filled";
     EXPECT_GE(reader.clock(), events.back().t);
@@ -37,19 +57,20 @@ TEST_F(Recordings, TellTheirSensorTheirTimesAndTheirImages) {
 }
 
 TEST_F(Recordings, AreReadFromATimeOn) {
-    const std::vector<Event> events = events_of(recording());
-    const SensorTime middle = events[events.size() / 2].t;
+    const Batch all = all_of(recording());
+    const SensorTime middle = all.events[all.events.size() / 2].t;
     EventReader reader{recording()};
-    Batch batch;
-    while (reader.read(batch)) {
-    }
+    for (Batch batch; reader.read(batch);) continue;
     reader.seek(middle);
-    std::vector<Event> rest;
-    while (reader.read(batch)) rest.insert(rest.end(), batch.events.begin(), batch.events.end());
-    ASSERT_GE(events.size(), rest.size());
-    ASSERT_FALSE(rest.empty());
-    EXPECT_LE(rest.front().t, middle);
-    EXPECT_EQ(rest.back(), events.back());
+    const Batch rest = rest_of(reader);
+    const auto is_early = [&](const auto& it) { return it.t < middle; };
+    const auto first = std::ranges::find_if_not(all.events, is_early);
+    EXPECT_EQ(rest.events, std::vector<Event>(first, all.events.end()));
+    EXPECT_LT(rest.images.size(), all.images.size());
+    EXPECT_TRUE(std::ranges::none_of(rest.images, is_early));
+    EXPECT_EQ(rest.images.back(), all.images.back());
+    reader.seek(all.events.back().t + SensorDuration{1});
+    EXPECT_TRUE(rest_of(reader).events.empty());
 }
 
 TEST_F(Recordings, ThatCannotGoBackLoseNothingByASeek) {

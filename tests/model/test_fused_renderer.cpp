@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -125,6 +126,24 @@ TEST(FusedRenderer, AnImageThatIsOlderThanTheOneBeforeIsDropped) {
     EXPECT_NEAR(given.shown, .6, 1e-3);
     EXPECT_EQ(given.used, 1U);
     EXPECT_EQ(given.dropped, 1U);
+}
+
+TEST(FusedRenderer, ImagesOfTheClockBeforeAreDropped) {
+    Chain chain{0};
+    const Window window = chain.encode_next(Kind::patch);
+    int left = 0;
+    const auto next = [&] {
+        return left-- > 0 ? std::optional{image_of(ramp(), window.end)} : std::nullopt;
+    };
+    EXPECT_FALSE(chain.fused.give_all(true, next));
+    left = 3;
+    EXPECT_TRUE(chain.fused.give_all(true, next));
+    EXPECT_EQ(chain.fused.dropped(), 3U);
+    left = 1;
+    EXPECT_TRUE(chain.fused.give_all(false, next));
+    chain.push(1);
+    EXPECT_EQ(chain.fused.used(), 1U);
+    EXPECT_EQ(chain.fused.dropped(), 3U);
 }
 
 TEST(FusedRenderer, AFloodOfImagesIsBounded) {

@@ -148,9 +148,18 @@ class Frames(RecordedTest):
         from_memory = frames(lambda it: it.restore(state))
         np.testing.assert_array_equal(from_memory, frames(lambda it: it.restore_state(file)))
         self.assertFalse(np.array_equal(from_memory, frames(lambda it: None)))
+        for held in (bytearray(state), memoryview(state), np.frombuffer(state, np.uint8)):
+            np.testing.assert_array_equal(frames(lambda it: it.restore(held)), from_memory)
         with self.assertRaisesRegex(eventide.InputError, "state: "):
             reconstructor.restore(state[:-1])
+        with self.assertRaises(TypeError):
+            reconstructor.restore("text")
         self.assertEqual(reconstructor.state(), state)
+
+    def test_what_takes_a_reconstructor_says_so(self):
+        reader = eventide.open(self.recording)
+        with self.assertRaisesRegex(TypeError, r"reconstructor: eventide\._eventide\.Reconstructor\)"):
+            reader.read_into("default")
 
     def test_errors_have_the_library_s_words(self):
         for options, words in [

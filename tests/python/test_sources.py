@@ -26,8 +26,9 @@ class Sources(RecordedTest):
         self.assertEqual(reader.span(), (events["t"][0], events["t"][-1]))
         self.assertEqual(reader.damaged, 0)
         self.assertEqual(images[0][1].shape, (48, 64))
-        reader.seek(int(events["t"][len(events) // 2]))
-        self.assertEqual(list(reader)[-1][-1], events[-1])
+        middle = int(events["t"][len(events) // 2])
+        reader.seek(middle)
+        np.testing.assert_array_equal(np.concatenate(list(reader)), events[events["t"] >= middle])
 
     def test_images_without_events_are_those_of_the_next_ones(self):
         file = self.folder / "many_images.aedat4"

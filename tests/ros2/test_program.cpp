@@ -1,6 +1,7 @@
 // eventide run between ROS 2 topics, as a user starts it.
 #include "src/core/byte_order.h"
 #include "tests/ros2/topics.h"
+#include "tests/support/manager_socket.h"
 #include "tests/system/program_test.h"
 
 #include <gmock/gmock.h>
@@ -152,6 +153,21 @@ TEST_F(Ros2Program, AnInterruptEndsItsWaitForSubscribersAndForMessages) {
     source.signal(SIGINT);
     const Result result = source.wait();
     EXPECT_THAT(result.error, HasSubstr("stopped before the first message"));
+}
+
+TEST_F(Ros2Program, AServiceThatWaitsForItsDriverHasStartedAndIsAlive) {
+    ManagerSocket socket{temp_ / "notify"};
+    Process process = start(
+        {"run", "ros2:" + name_ + "/events", "--reconnect", "--out", "null"},
+        {.environment = {{"NOTIFY_SOCKET", temp_ / "notify"}, {"WATCHDOG_USEC", "30000000"}}});
+    std::vector<std::string> messages;
+    while (process.running() && (messages.empty() || messages.back() != "WATCHDOG=1"))
+        if (const std::string next = socket.next(); next != "nothing") messages.push_back(next);
+    process.signal(SIGTERM);
+    EXPECT_EQ(process.wait().exit_code, 0);
+    EXPECT_THAT(messages,
+                testing::ElementsAre("READY=1", "STATUS=waiting for ros2:" + name_ + "/events",
+                                     "WATCHDOG=1"));
 }
 
 /// Events in, images out: a driver, eventide and a node of ROS 2.

@@ -5,8 +5,10 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
+#include "apps/cli/run/source_wait.h"
 #include "apps/cli/run/state/run_state.h"
 #include "apps/cli/run/state/state_folder.h"
+#include "drivers/devices.h"
 #include "pipeline/first_error.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
@@ -88,7 +90,7 @@ Run::Run(Program& program, RunSettings& settings)
     : program_{program},
       settings_{settings},
       speed_{speed_of(settings)},
-      opened_{open_source(settings, speed_, [&program] { return program.signals.stopping(); })},
+      opened_{open_source(settings, speed_, give_up_waiting())},
       filters_{settings.filter, size_of(*opened_.source)},
       sensor_{filters_.behind(opened_.source->info())},
       state_{state_in_of(settings)},
@@ -126,6 +128,16 @@ Run::Run(Program& program, RunSettings& settings)
     go_to_begin();
     open_outputs();
     make_pipeline();
+}
+
+/// Asked while the source is waited for. What waits for a limited time has not started before it
+/// is there.
+std::function<bool()> Run::give_up_waiting() {
+    const bool has_limit = names_camera(settings_.source) && !settings_.reconnect;
+    return [this, has_limit, wait = SourceWait{manager_, settings_.source}]() mutable {
+        if (!has_limit) wait.go_on();
+        return program_.signals.stopping();
+    };
 }
 
 /// Of a recording: where the asked span begins.
@@ -227,6 +239,7 @@ int Run::run() {
                   std::move(stats_),
                   program_.quiet,
                   live(),
+                  manager_,
                   quality};
     run_pipeline();
     if (!settings_.state_out.empty())

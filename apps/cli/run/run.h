@@ -14,12 +14,14 @@
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run_plan.h"
 #include "apps/cli/run/state/stream_state.h"
+#include "apps/cli/service_manager.h"
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -40,6 +42,7 @@ public:
     int run();
 
 private:
+    std::function<bool()> give_up_waiting();
     void go_to_begin();
     void open_outputs();
     void make_pipeline();
@@ -68,6 +71,7 @@ private:
 
     Program& program_;
     RunSettings& settings_;
+    ServiceManager manager_;
     const double speed_;
     OpenedSource opened_;
     FilterChain filters_;

@@ -25,6 +25,20 @@ public:
     /// the oldest are dropped; so are those that there is no memory for. One without pixels tells
     /// nothing.
     void give(ReferenceImage image) noexcept;
+    /// give() of those that came before a window: what `next` returns until it is empty. Where the
+    /// window begins anew (WindowStamp::reset_before) they are of the clock before, and dropped.
+    /// Returns whether there was one.
+    template <typename Next>
+    bool give_all(bool reset_before, Next next) noexcept {
+        bool any = false;
+        for (; std::optional<ReferenceImage> image = next(); any = true) {
+            if (reset_before)
+                ++dropped_;
+            else
+                give(std::move(*image));
+        }
+        return any;
+    }
 
     /// After Renderer::push() of the same window; events per pixel, [y][x] of the sensor.
     void push(const Window& window, const Array2<float>& events) noexcept;

@@ -18,13 +18,15 @@ constexpr int kTicksPerStats = 4;  // one line of JSON a second
 }  // namespace
 
 Status::Status(std::function<Snapshot()> snapshot, RunProgress fixed,
-               std::unique_ptr<OutputFile> stats, bool quiet, bool live, Quality quality)
+               std::unique_ptr<OutputFile> stats, bool quiet, bool live, ServiceManager& manager,
+               Quality quality)
     : snapshot_{std::move(snapshot)},
       quality_{std::move(quality)},
       fixed_{std::move(fixed)},
       stats_{std::move(stats)},
       live_{live},
       line_{quiet},
+      manager_{manager},
       begun_{Clock::now()} {
     manager_.ready();
     thread_ = std::jthread{[this] { tick(); }};

@@ -22,11 +22,12 @@ class Status {
 public:
     /// `snapshot` may be called from any thread. `stats` may be null; it shows under its name with
     /// its first line and grows from then on. `live`: of a camera, which works in silence, too.
-    /// `quality` is asked on the thread of the line, 4 times a second, and may change it.
+    /// `quality` is asked on the thread of the line, 4 times a second, and may change it. `manager`
+    /// is borrowed.
     using Quality =
         std::function<QualityState(const Snapshot&, std::chrono::duration<double> elapsed)>;
     Status(std::function<Snapshot()> snapshot, RunProgress fixed, std::unique_ptr<OutputFile> stats,
-           bool quiet, bool live, Quality quality = {});
+           bool quiet, bool live, ServiceManager& manager, Quality quality = {});
     ~Status();
     Status(const Status&) = delete;
     Status& operator=(const Status&) = delete;
@@ -49,7 +50,7 @@ private:
     std::exception_ptr stats_failure_;
     const bool live_;
     ProgressLine line_;
-    ServiceManager manager_;
+    ServiceManager& manager_;
     bool flicker_said_ = false;
     std::uint64_t last_work_ = 0;  // packets, event windows and frames when the manager was told
     std::chrono::steady_clock::time_point begun_;

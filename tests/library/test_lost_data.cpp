@@ -1,0 +1,84 @@
+// Frames tell of data that were lost before them.
+#include "tests/library/library_test.h"
+
+#include <span>
+
+namespace eventide::test {
+namespace {
+
+class LostData : public LibraryTest {};
+
+TEST_F(LostData, IsMarkedInItsFrameHoweverLateThatIsAskedFor) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    const auto events = events_of(recording());
+    const auto half = events.size() / 2;
+    reconstructor.push(std::span{events}.first(half));
+    reconstructor.mark_gap();
+    reconstructor.push(std::span{events}.subspan(half));
+    reconstructor.finish();
+    int marked = 0;
+    for (Frame frame; reconstructor.next(frame);) {
+        const bool has_lost =
+            frame.window.begin < events[half].t && events[half].t <= frame.window.end;
+        EXPECT_EQ(frame.gap_before, has_lost) << to_us(frame.t);
+        marked += frame.gap_before ? 1 : 0;
+    }
+    EXPECT_GT(marked, 0);
+}
+
+TEST_F(LostData, IsMarkedInTheNextFrame) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    const auto events = events_of(recording());
+    const auto half = events.size() / 2;
+    reconstructor.push(std::span{events}.first(half));
+    Frame frame;
+    while (reconstructor.next(frame)) EXPECT_FALSE(frame.gap_before);
+    reconstructor.mark_gap();
+    reconstructor.push(std::span{events}.subspan(half));
+    ASSERT_TRUE(reconstructor.next(frame));
+    EXPECT_TRUE(frame.gap_before);
+    reconstructor.render(frame.t, frame);
+    EXPECT_TRUE(frame.gap_before);
+}
+
+TEST_F(LostData, IsToldByAFrameOfManyWindows) {
+    ReconstructorOptions options = repeatable("2ms", 0);
+    options.fps = "50";  // ten event windows for each frame
+    Reconstructor reconstructor = this->reconstructor(options);
+    const auto events = events_of(recording());
+    const auto half = events.size() / 2;
+    Frame frame;
+    int marked = 0;
+    const auto count = [&] {
+        while (reconstructor.next(frame)) marked += frame.gap_before ? 1 : 0;
+    };
+    reconstructor.push(std::span{events}.first(half));
+    count();
+    EXPECT_EQ(marked, 0);
+    reconstructor.mark_gap();
+    reconstructor.push(std::span{events}.subspan(half));
+    reconstructor.finish();
+    count();
+    EXPECT_EQ(marked, 1);
+}
+
+TEST_F(LostData, IsForgottenByAReset) {
+    ReconstructorOptions options = repeatable("2ms", 0);
+    options.fps = "1";
+    Reconstructor reconstructor = this->reconstructor(options);
+    const auto events = events_of(recording());
+    const auto half = events.size() / 2;
+    Frame frame;
+    reconstructor.push(std::span{events}.first(half));
+    ASSERT_TRUE(reconstructor.next(frame));
+    reconstructor.mark_gap();
+    reconstructor.push(std::span{events}.subspan(half));
+    ASSERT_FALSE(reconstructor.next(frame)) << "no frame has told of the gap";
+    reconstructor.reset();
+    reconstructor.push(events);
+    ASSERT_TRUE(reconstructor.next(frame));
+    EXPECT_FALSE(frame.gap_before);
+}
+
+}  // namespace
+}  // namespace eventide::test
