@@ -1,6 +1,7 @@
 // The real driver, through the real libusb, against a DAVIS in software.
 #include "drivers/devices.h"
 #include "tests/drivers/davis_streams.h"
+#include "tests/drivers/usb_sessions.h"
 #include "tests/support/preload.h"
 
 #include <gmock/gmock.h>
@@ -91,16 +92,8 @@ TEST(DavisCamera, BehindUsb2NoTransferHoldsBackEventsForLong) {
     DavisOptions options = at_once();
     options.settings.frames = options.settings.imu = false;
     DavisCamera camera{options};
-    const auto parser = camera.make_parser();
-    std::size_t got = 0;
-    for (RawPacket packet; got < camera_side.seen.events.size();) {
-        if (camera.read(packet) != ReadStatus::data) continue;
-        Batch events;
-        parser->parse(packet.bytes, events);
-        if (events.events.empty()) continue;
-        got += events.events.size();
-        EXPECT_LT(events.events.back().t - events.events.front().t, SensorDuration{5'000});
-    }
+    expect_events_held_back_less_than(SensorDuration{5'000}, camera,
+                                      camera_side.seen.events.size());
 }
 
 TEST(DavisCamera, SaysWhatToDoWhenItCannotStart) {

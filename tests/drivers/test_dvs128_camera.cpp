@@ -112,16 +112,7 @@ TEST(Dvs128Camera, NoTransferHoldsBackEventsForLong) {
         steady.events.push_back({from_us(i * kPauseUs), 1, 2, Polarity::on});
     side.model->show(steady);
     Dvs128Camera camera{at_once()};
-    const auto parser = camera.make_parser();
-    std::size_t got = 0;
-    for (RawPacket packet; got < steady.events.size();) {
-        if (camera.read(packet) != ReadStatus::data) continue;
-        Batch part;
-        parser->parse(packet.bytes, part);
-        if (part.events.empty()) continue;
-        got += part.events.size();
-        EXPECT_LT(part.events.back().t - part.events.front().t, SensorDuration{20'000});
-    }
+    expect_events_held_back_less_than(SensorDuration{20'000}, camera, steady.events.size());
 }
 
 TEST(Dvs128Camera, OldFirmwareAndUnknownBiasesAreRefused) {

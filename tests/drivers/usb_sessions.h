@@ -50,6 +50,21 @@ Batch stream_scene(Camera& camera, testing_support::UsbTestbed& bed, const Model
     return data;
 }
 
+/// Reads so many events; those of each transfer lie within less than `most`.
+inline void expect_events_held_back_less_than(SensorDuration most, Camera& camera,
+                                              std::size_t events) {
+    const auto parser = camera.make_parser();
+    std::size_t got = 0;
+    for (RawPacket packet; got < events;) {
+        if (camera.read(packet) != ReadStatus::data) continue;
+        Batch part;
+        parser->parse(packet.bytes, part);
+        if (part.events.empty()) continue;
+        got += part.events.size();
+        EXPECT_LT(part.events.back().t - part.events.front().t, most);
+    }
+}
+
 /// A camera that reconnects and is sending is unplugged and plugged in again: its data go on, and
 /// say that some are missing.
 template <typename Model>
