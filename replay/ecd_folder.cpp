@@ -5,6 +5,7 @@
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/core/whole_sensor.h"
 #include "src/io/input_file.h"
 
@@ -193,13 +194,10 @@ const Damage& EcdParser::damaged() const {
 std::vector<std::string> EcdRecording::remarks() const {
     std::vector<std::string> all = events_->remarks();
     all.insert(all.end(), images_.remarks.begin(), images_.remarks.end());
-    const auto size = [](int width, int height) {
-        return std::to_string(width) + "x" + std::to_string(height);
-    };
     if (images_.width > 0 && (images_.width != info().width || images_.height != info().height))
         all.push_back("images.txt: expected images of the sensor's size, " +
-                      size(info().width, info().height) + ", found one of " +
-                      size(images_.width, images_.height) + "; such images are left out");
+                      size_text(info().width, info().height) + ", found one of " +
+                      size_text(images_.width, images_.height) + "; such images are left out");
     return all;
 }
 

@@ -222,6 +222,14 @@ const std::array kFormats{
            make<TextWriter>},
 };
 
+/// What `member` says of each format that is written: "aedat4, evt3, ...".
+std::string list_of_writable(std::string_view Format::*member) {
+    std::string list;
+    for (const Format& format : kFormats)
+        if (format.is_written()) list += (list.empty() ? "" : ", ") + std::string{format.*member};
+    return list;
+}
+
 template <typename T>
 std::uint64_t remove_unless(std::vector<T>& items, bool held) {
     const std::uint64_t n = held ? 0 : items.size();
@@ -268,17 +276,11 @@ std::span<const Format> all_formats() {
 }
 
 std::string names_of_writable() {
-    std::string names;
-    for (const Format& format : kFormats)
-        if (format.is_written()) names += (names.empty() ? "" : ", ") + std::string{format.name};
-    return names;
+    return list_of_writable(&Format::name);
 }
 
 std::string extensions_of_writable() {
-    std::string all;
-    for (const Format& format : kFormats)
-        if (format.is_written()) all += (all.empty() ? "" : ", ") + std::string{format.extension};
-    return all;
+    return list_of_writable(&Format::extension);
 }
 
 const Format* find_format(std::string_view name) {

@@ -114,12 +114,11 @@ void Scene::add_background(const SceneSettings& settings) {
     layers_.push_back(std::move(layer));
 }
 
-/// Where it starts and how it goes on from there.
-void Scene::set_moving(Layer& layer, const SceneSettings& settings, double length) {
+/// Where it starts and how it goes on from there, up to so far beyond the sensor.
+void Scene::set_moving(Layer& layer, const SceneSettings& settings, double reach_px) {
     const double speed = std::clamp(speed_ * random_.log_uniform(settings.object_speed),
                                     settings.wander.speed.low, settings.wander.speed.high);
-    const double reach = settings.object_reach * length;
-    const Home home{-reach, -reach, width_ + reach, height_ + reach};
+    const Home home{-reach_px, -reach_px, width_ + reach_px, height_ + reach_px};
     const Point start{random_.uniform({0, double(width_)}), random_.uniform({0, double(height_)})};
     layer.motion =
         wander_motion(settings.wander, speed, layer.half_width, start, home, random_.fork());
@@ -153,7 +152,7 @@ void Scene::add_object(const SceneSettings& settings, bool pinned) {
                         .after(Affine::rotation(random_.uniform({0, 2 * std::numbers::pi})))
                         .after(Affine::translation(place(width_), place(height_)));
     } else {
-        set_moving(layer, settings, length);
+        set_moving(layer, settings, settings.object_reach * length);
     }
     draw_shape(layer, settings);
     layer.opacity = random_.uniform(settings.opacity);
@@ -179,9 +178,7 @@ void Scene::add_lamp(const SceneSettings& settings) {
     layer.tone = {.offset = float(white_lux_ * settings.lamp), .factor = 0, .rate = 0};
     const double length = std::min(width_, height_) / 8.;
     layer.half_width = layer.half_height = length / 2;
-    SceneSettings inside = settings;
-    inside.object_reach = -.5;
-    set_moving(layer, inside, length);
+    set_moving(layer, settings, -length / 2);
     layer.shape = Shape::disc();
     layer.softness_px = 1;
     layers_.push_back(std::move(layer));
