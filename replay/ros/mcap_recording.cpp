@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 
 namespace eventide {
 
@@ -58,7 +60,11 @@ protected:
             take(kind, record_, damage);
         return true;
     }
-    void rewind() override { at_ = kMagicBytes; }
+    void rewind() override {
+        at_ = kMagicBytes;
+        types_of_schemas_.clear();
+        channels_.clear();
+    }
 
 private:
     static bool cut_short(Damage& damage, bool counts) {
@@ -114,11 +120,17 @@ private:
             const auto type = types_of_schemas_.find(reader.number<std::uint16_t>());
             const std::string_view name = text_of(reader.block());
             const std::string_view wire = text_of(reader.block());
-            if (reader.good() && type != types_of_schemas_.end() && wire == "cdr")
+            if (!reader.good()) return damage.count(DamageReason::bad_record);
+            channels_.insert(number);
+            if (type != types_of_schemas_.end() && wire == "cdr")
                 add_topic(number, name, type->second);
         } else if (kind == message) {
             reader.take(20);  // sequence number, times of writing and sending
-            if (reader.good()) add_message(number, content.subspan(22));
+            // Of a channel that only comes later nobody knows what it holds, also at a second
+            // reading.
+            if (!reader.good() || !channels_.contains(number))
+                return damage.count(DamageReason::bad_record);
+            add_message(number, content.subspan(22));
         } else {
             return;
         }
@@ -130,6 +142,7 @@ private:
     std::vector<std::byte> record_;
     Aedat4Unpacker unpacker_;
     std::map<std::uint16_t, std::string> types_of_schemas_;
+    std::set<std::uint16_t> channels_;  ///< read so far
 };
 
 }  // namespace

@@ -258,6 +258,7 @@ void EventPacketParser::finish(Batch& into) {
 void EventPacketParser::resync() {
     drop();
     evt3_.resync();
+    evt3_.parse({}, evt3_batch_);  // events of a packet whose rest is lost go with it
     evt3_batch_.clear();
     after_gap_ = true;
 }

@@ -200,6 +200,20 @@ TEST(EventPacket, AfterAGapTimeGoesOnAndOnlyADriverThatBeganAnewSetsIt) {
     EXPECT_EQ(parser.damaged().total(), 0U);
 }
 
+TEST(EventPacket, OfAnEvt3PacketThatIsCutByAGapNothingComesWithTheNext) {
+    const auto stream = [](unsigned high_word) {
+        return packet({0, kStamp}, bytes_of({evt_high(high_word), evt_low(0), evt_row(1),
+                                             evt_x(1, true), evt_x(2, true)}));
+    };
+    const Bytes cut = stream(9);
+    EventPacketParser parser(EventPacketEncoding::evt3, kWidth, kHeight);
+    Batch batch;
+    parser.parse(std::span(cut).first(cut.size() - 2), batch);
+    parser.resync();
+    parser.parse(stream(1), batch);
+    EXPECT_THAT(batch.events, ElementsAre(at(kStampUs, 1, 1, true), at(kStampUs, 2, 1, true)));
+}
+
 /// Random packets of each encoding.
 Bytes random_stream(EventPacketEncoding encoding, unsigned seed) {
     std::mt19937 random(seed);

@@ -304,24 +304,52 @@ BagBytes cdr_event_array(int width, int height, std::span<const Event> events) {
     return BagBytes("\0\1\0\0", 4) + bytes;
 }
 
+const BagBytes kMcapBegin = BagBytes("\x89MCAP0\r\n", 8);
+
+BagBytes mcap_channel(int number, const BagBytes& name, const BagBytes& type) {
+    return mcap_record(3,
+                       little(std::uint16_t(number)) + block(type) + block("ros2msg") + block("")) +
+           mcap_record(4, little(std::uint16_t(number)) + little(std::uint16_t(number)) +
+                              block(name) + block("cdr") + block(""));
+}
+
+BagBytes mcap_events(int channel, std::span<const Event> events) {
+    return mcap_record(
+        5, little(std::uint16_t(channel)) + BagBytes(20, '\0') + cdr_event_array(128, 128, events));
+}
+
+TEST(McapRecording, AMessageBeforeItsChannelIsDamageAtEveryReading) {
+    const TestFolder folder;
+    const auto events = some_events(300, 1'500'000'000'000'000);
+    const auto part = [&](std::size_t i) { return std::span(events).subspan(100 * i, 100); };
+    const BagBytes bytes = kMcapBegin + mcap_channel(7, "/events", "dvs_msgs/msg/EventArray") +
+                           mcap_events(8, part(0)) + mcap_events(7, part(1)) +
+                           mcap_channel(8, "/events", "dvs_msgs/msg/EventArray") +
+                           mcap_events(8, part(2));
+    const auto recording = open_recording(folder.write("a.mcap", bytes));
+    const std::vector<Event> expected(events.begin() + 100, events.end());
+    EXPECT_TRUE(read_everything(*recording).events == expected);
+    recording->seek(SensorTime::min());
+    const Summary again = summarize(*recording);
+    EXPECT_EQ(again.events, 200U);
+    EXPECT_EQ(again.damaged[DamageReason::bad_record], 1U);
+    EXPECT_EQ(again.damaged.total(), 1U);
+}
+
 TEST(McapRecording, GivesTheEventsThatWereWritten) {
     const TestFolder folder;
     const auto events = some_events(5'000, 1'500'000'000'000'000);
-    BagBytes records = mcap_record(3, little(std::uint16_t{1}) + block("dvs_msgs/msg/EventArray") +
-                                          block("ros2msg") + block("")) +
-                       mcap_record(4, little(std::uint16_t{7}) + little(std::uint16_t{1}) +
-                                          block("/events") + block("cdr") + block(""));
+    BagBytes records = mcap_channel(7, "/events", "dvs_msgs/msg/EventArray");
     for (std::size_t i = 0; i < events.size(); i += 100)
-        records += mcap_record(5, little(std::uint16_t{7}) + BagBytes(20, '\0') +
-                                      cdr_event_array(128, 128, std::span(events).subspan(i, 100)));
+        records += mcap_events(7, std::span(events).subspan(i, 100));
     for (const char* packing : {"", "lz4"}) {
         const BagBytes packed_records = packed(packing, records);
         const BagBytes bytes =
-            BagBytes("\x89MCAP0\r\n", 8) + mcap_record(1, block("ros2") + block("test")) +
+            kMcapBegin + mcap_record(1, block("ros2") + block("test")) +
             mcap_record(6, BagBytes(16, '\0') + little(std::uint64_t(records.size())) +
                                BagBytes(4, '\0') + block(packing) +
                                little(std::uint64_t(packed_records.size())) + packed_records) +
-            mcap_record(2, BagBytes(20, '\0')) + BagBytes("\x89MCAP0\r\n", 8);
+            mcap_record(2, BagBytes(20, '\0')) + kMcapBegin;
         const auto recording = open_recording(folder.write("a.mcap", bytes));
         EXPECT_EQ(recording->info().width, 128);
         EXPECT_TRUE(read_everything(*recording).events == events) << packing;
@@ -330,10 +358,9 @@ TEST(McapRecording, GivesTheEventsThatWereWritten) {
         EXPECT_EQ(cut.events, events.size());
     }
     const BagBytes bytes =
-        BagBytes("\x89MCAP0\r\n", 8) +
-        mcap_record(6, BagBytes(16, '\0') + little(std::uint64_t(records.size())) +
-                           BagBytes(4, '\0') + block("") + little(std::uint64_t(records.size())) +
-                           records);
+        kMcapBegin + mcap_record(6, BagBytes(16, '\0') + little(std::uint64_t(records.size())) +
+                                        BagBytes(4, '\0') + block("") +
+                                        little(std::uint64_t(records.size())) + records);
     const Summary part =
         summarize(*open_recording(folder.write("c.mcap", bytes.substr(0, bytes.size() - 50))));
     EXPECT_EQ(part.events, events.size() - 100) << "whole messages of a chunk that is cut short";
