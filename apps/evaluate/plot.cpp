@@ -66,7 +66,8 @@ struct Axes {
 };
 
 bool has_labels(const Plot& plot) {
-    return std::ranges::any_of(plot.series, [](const Series& s) { return !s.labels.empty(); });
+    return !plot.marks.empty() ||
+           std::ranges::any_of(plot.series, [](const Series& s) { return !s.labels.empty(); });
 }
 
 Axes axes_of(const Plot& plot) {
@@ -82,6 +83,10 @@ Axes axes_of(const Plot& plot) {
             y0 = std::min(y0, s.y[i] - spread);
             y1 = std::max(y1, s.y[i] + spread);
         }
+    for (const Mark& mark : plot.marks) {
+        x0 = std::min(x0, mark.x);
+        x1 = std::max(x1, mark.x);
+    }
     if (x0 > x1) x0 = plot.log_x ? 1 : 0, x1 = plot.log_x ? 10 : 1, y0 = 0, y1 = 1;
     if (y0 > 0 && y0 < .6 * y1) y0 = 0;  // show zero where it is near
     if (y1 <= y0) y0 = std::min(0., y0), y1 = y1 > 0 ? 1.25 * y1 : y0 + 1;
@@ -129,18 +134,19 @@ std::string frame_of(const Plot& plot, const Axes& axes) {
 /// Where labels of points stand, so that none lies on another.
 class LabelPlaces {
 public:
+    static double width(const std::string& label) { return 5.8 * double(label.size()); }
+
     /// The base line of a label for the point at (x, y): above it, below it, or further away.
     double place(double x, double y, const std::string& label) {
-        constexpr double kHeightOfLine = 11, kCharacter = 5.8;  // at font size 10
-        Box box{x, x + kCharacter * double(label.size()), 0};
-        for (const double offset :
-             {-5., 13., -5 - kHeightOfLine, 13 + kHeightOfLine, 13 + 2 * kHeightOfLine}) {
+        constexpr double kHeightOfLine = 11;  // at font size 10
+        Box box{x, x + width(label), 0};
+        for (const double offset : {-5., 13., -16., 24., -27., 35., -38., 46.}) {
             box.y = y + offset;
             const bool free = std::ranges::none_of(taken_, [&](const Box& other) {
                 return box.x0 < other.x1 && other.x0 < box.x1 &&
                        std::abs(box.y - other.y) < kHeightOfLine;
             });
-            if (free && box.y > kTop + kHeightOfLine) break;
+            if (free && box.y > kTop + kHeightOfLine && box.y < kHeight - kBottom) break;
         }
         taken_.push_back(box);
         return box.y;
@@ -176,6 +182,14 @@ std::string drawn(const Series& s, const Axes& axes, const std::string& colour,
         out += "<polyline points='" + path + "' fill='none' stroke='" + colour +
                "' stroke-width='1.8'/>\n";
     return out + dots;
+}
+
+/// Its label stands to the left: beyond the last may be no room.
+std::string drawn(const Mark& mark, const Axes& axes, LabelPlaces& places) {
+    const double x = axes.x.at(mark.x);
+    const double y = places.place(x - 5 - LabelPlaces::width(mark.label), kTop + 8, mark.label);
+    return line(x, kTop, x, kHeight - kBottom, "stroke='#888' stroke-dasharray='5 4'") +
+           text(x - 5, y, mark.label, "text-anchor='end' font-size='10' fill='#666'");
 }
 
 /// Pixels beside the drawing that the labels of its series need; 0 where a title says it all.
@@ -217,8 +231,11 @@ std::string svg(const Plot& plot) {
                     "stroke='#888' stroke-dasharray='5 4'");
     }
     LabelPlaces places;
-    for (std::size_t i = 0; i < plot.series.size(); ++i)
-        out += drawn(plot.series[i], axes, kColours[i % kColours.size()], places);
+    for (const Mark& mark : plot.marks) out += drawn(mark, axes, places);
+    for (const bool joined : {true, false})  // points over lines
+        for (std::size_t i = 0; i < plot.series.size(); ++i)
+            if (plot.series[i].joined == joined)
+                out += drawn(plot.series[i], axes, kColours[i % kColours.size()], places);
     return out + legend_of(plot) + "</svg>\n";
 }
 

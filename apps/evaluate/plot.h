@@ -15,10 +15,17 @@ struct Series {
     bool joined = true;                 ///< by lines; else points alone
 };
 
+/// A vertical line across the drawing: what has an x and no y.
+struct Mark {
+    double x = 0;
+    std::string label{};
+};
+
 struct Plot {
     std::string name{};  ///< of the files
     std::string title{}, x_label{}, y_label{};
     std::vector<Series> series{};
+    std::vector<Mark> marks{};
     bool log_x = false;     ///< points with x <= 0 are drawn at the left edge
     bool diagonal = false;  ///< what would be perfect: y = x
 };

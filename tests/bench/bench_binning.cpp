@@ -1,5 +1,6 @@
-// Speed of slicing and binning on one core, whole-grid finalisation included.
+// Speed of the noise filter, slicing and binning on one core, whole-grid finalisation included.
 #include "src/binning/binner.h"
+#include "src/binning/noise_filter.h"
 #include "src/binning/slicer.h"
 
 #include <benchmark/benchmark.h>
@@ -81,5 +82,23 @@ void event_window(benchmark::State& state, WindowRule rule) {
 }
 BENCHMARK_CAPTURE(event_window, duration, WindowRule::duration);
 BENCHMARK_CAPTURE(event_window, count, WindowRule::count);
+
+void noise_filter(benchmark::State& state, int width, int height) {
+    const auto n = std::size_t(state.range(0));
+    std::vector<Event> events = moving_edges(width, height, n, 0), kept;
+    NoiseFilter filter(width, height, {});
+    for (auto _ : state) {
+        state.PauseTiming();
+        for (Event& event : events) event.t += SensorDuration{kWidth_us};
+        kept = events;
+        state.ResumeTiming();
+        filter.process(kept);
+        benchmark::DoNotOptimize(kept.size());
+    }
+    state.SetItemsProcessed(std::int64_t(state.iterations()) * std::int64_t(n));
+}
+BENCHMARK_CAPTURE(noise_filter, 240x180, 240, 180)->Arg(50'000)->ArgName("events");
+BENCHMARK_CAPTURE(noise_filter, 640x480, 640, 480)->Arg(200'000)->ArgName("events");
+BENCHMARK_CAPTURE(noise_filter, 1280x720, 1280, 720)->Arg(400'000)->ArgName("events");
 
 }  // namespace

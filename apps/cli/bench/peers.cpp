@@ -27,7 +27,7 @@ bool read_row(const std::string& line, PeerRow& row) {
     row.engine = cells[1];
     row.instructions = cells[2];
     return read_number(cells[3], row.sensor.width) && read_number(cells[4], row.sensor.height) &&
-           read_number(cells[5], row.threads) && read_number(cells[6], row.cpu_ms);
+           read_number(cells[5], row.threads) && read_number(cells[7], row.wall_ms);
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ struct PeerRow {
     std::string network, engine, instructions;
     Size sensor;
     int threads = 1;
-    double cpu_ms = 0;  ///< an event window and a frame of it
+    /// An event window and a frame of it, by the clock: libtorch's threads spin while they wait.
+    double wall_ms = 0;
 };
 
 /// One way to run a network: what it takes for an event window and a frame of it, on one thread,

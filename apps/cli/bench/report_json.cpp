@@ -47,7 +47,7 @@ std::string json_of(const Report& report) {
                                  {"width", row.sensor.width},
                                  {"height", row.sensor.height},
                                  {"threads", row.threads},
-                                 {"cpu_ms", row.cpu_ms}});
+                                 {"wall_ms", row.wall_ms}});
     json["activity"] = bench::activity_json(report.activity);
     for (const LoadRow& row : report.loads)
         json["loads"].push_back({{"events_per_s", row.events_per_s},

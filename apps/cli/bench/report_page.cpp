@@ -111,7 +111,7 @@ std::string peer_table(const Report& report) {
     std::vector<Cells> rows;
     for (const PeerRow& row : report.peers)
         rows.push_back({row.network, row.engine, row.instructions, show_size(row.sensor),
-                        std::to_string(row.threads), number(row.cpu_ms)});
+                        std::to_string(row.threads), number(row.wall_ms)});
     return table({"network", "engine", "instructions", "sensor", "threads", "ms"}, rows);
 }
 
@@ -124,13 +124,14 @@ std::string page_of(const Report& report) {
                 "Processor time of one thread, medians: encoding an event window in which "
                 "everything moves, and a fresh frame of it; error of the frames against the "
                 "simulated truth. The front: nothing of its size is both faster and nearer. Rows "
-                "with other windows than 50 ms are of whole runs.",
+                "with other windows than 50 ms are of whole runs. Dashed: other networks, whose "
+                "error was not measured.",
                 svg(plots[0]) + speed_table(report)) +
         (report.peers.empty()
              ? ""
              : section("Other networks",
                        "Their published shapes with random weights in libtorch, beside ours in one "
-                       "run of bench_peers: processor time of an event window and a frame of it.",
+                       "run of bench_peers: an event window and a frame of it, by the clock.",
                        peer_table(report))) +
         section("Frame rate",
                 "The whole pipeline as fast as possible, all threads: 1 is real time.",

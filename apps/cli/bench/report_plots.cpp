@@ -1,6 +1,7 @@
 // The report's drawings.
 #include "apps/cli/bench/report.h"
 
+#include <algorithm>
 #include <map>
 #include <string_view>
 
@@ -12,11 +13,27 @@ std::string label_of(const SpeedRow& row) {
     return row.model + ", " + show_size(row.sensor);
 }
 
-/// What a point differs in from others of its series: arithmetic, and windows of other lengths.
+/// What a point differs in from others of its series: arithmetic, and windows of other lengths. By
+/// which instructions a processor does bf16 is the same for all.
 std::string point_label(const SpeedRow& row) {
     constexpr std::string_view kEngine = "fast, ", kUsualWindow = "50ms";
     const std::size_t from = row.engine.starts_with(kEngine) ? kEngine.size() : 0;
-    return row.engine.substr(from) + (row.window == kUsualWindow ? "" : ", " + row.window);
+    const std::string arithmetic = row.engine.substr(from, row.engine.find(" (") - from);
+    return arithmetic + (row.window == kUsualWindow ? "" : ", " + row.window);
+}
+
+/// Of each network that is not ours and each size, the quickest way to run it on one thread.
+std::vector<Mark> peer_marks(const Report& report) {
+    std::map<std::string, double> quickest;
+    for (const PeerRow& row : report.peers) {
+        if (row.threads != 1 || !row.engine.starts_with("libtorch")) continue;
+        const std::string label = row.network + ", " + show_size(row.sensor);
+        const auto [at, is_new] = quickest.try_emplace(label, row.wall_ms);
+        if (!is_new) at->second = std::min(at->second, row.wall_ms);
+    }
+    std::vector<Mark> marks;
+    for (const auto& [label, ms] : quickest) marks.push_back({ms, label});
+    return marks;
 }
 
 /// One series of points for each model and size, and the front of each size as a line.
@@ -25,6 +42,7 @@ Plot speed_plot(const Report& report) {
               .title = "Error against time per event window and frame",
               .x_label = "processor time, ms",
               .y_label = "MSE",
+              .marks = peer_marks(report),
               .log_x = true};
     std::map<std::string, Series> points;
     std::map<std::string, std::map<double, double>> fronts;

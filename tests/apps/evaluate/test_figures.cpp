@@ -78,6 +78,21 @@ TEST(Plot, NamesOfNearPointsDoNotLieOnEachOther) {
         EXPECT_GT(std::abs(y_of(one) - y_of(other)), 10) << one << " and " << other;
 }
 
+TEST(Plot, AMarkIsALineAcrossThatItsLabelNames) {
+    const Plot plot{.name = "p",
+                    .series = {{"s", {1, 2}, {3, 4}, {}}},
+                    .marks = {{10, "a < b"}},
+                    .log_x = true};
+    const std::string drawn = svg(plot);
+    EXPECT_EQ(count(drawn, "stroke-dasharray"), 1);
+    EXPECT_NE(drawn.find("a &lt; b"), std::string::npos);
+    const auto x_of = [&](const std::string& mark) {
+        const auto at = drawn.find(mark);
+        return std::stod(drawn.substr(drawn.rfind("x1='", at) + 4));
+    };
+    EXPECT_GT(x_of("stroke-dasharray"), 300) << "the axis reaches as far as the mark";
+}
+
 TEST(Plot, QuotesLabelsThatWouldEndAColumn) {
     const Plot plot{.name = "p",
                     .series = {{"default, 240x180", {1}, {2}, {}}, {"a \"b\"", {1}, {2}, {}}}};
