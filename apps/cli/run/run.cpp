@@ -209,6 +209,8 @@ Source& Run::source() {
 
 Snapshot Run::counters() const {
     Snapshot now = pipeline_->snapshot();
+    if (const auto* camera = dynamic_cast<const Camera*>(opened_.source.get()))
+        now.camera = camera->counters();
     now.events += filters_.left_out();
     now.filtered_events += filters_.left_out();
     now.waits = waits_.value();

@@ -61,11 +61,10 @@ private:
     void keep_state(const PipelineState& memory);
     void run_pipeline();
     bool wrote_all_data() const;
-    CameraCounters camera_counters() const;
     RunProgress progress() const;
     std::string run_json();
     std::vector<HttpControl> controls();
-    /// What the filters left out counts as read.
+    /// The pipeline's, and those of all around it. What the filters left out counts as read.
     Snapshot counters() const;
     Snapshot snapshot() const { return pipeline_made_ ? counters() : Snapshot{}; }
 
