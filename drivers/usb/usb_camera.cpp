@@ -62,11 +62,14 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
 }
 
 void UsbCamera::open() {
-    device_ = std::make_unique<UsbDevice>(selector_);
-    const UsbIdentity& identity = device_->identity();
     const bool first = info_.width == 0;
-    if (first) info_.serial = identity.serial;  // for what set_up() may have to say
-    SensorInfo info = set_up(*device_);
+    SensorInfo info;
+    const auto set_up_device = [&](UsbDevice& device) {
+        if (first) info_.serial = device.identity().serial;  // for what set_up() may have to say
+        info = set_up(device);
+    };
+    device_ = UsbDevice::open(selector_, set_up_device, options_.warn);
+    const UsbIdentity& identity = device_->identity();
     info.serial = identity.serial;
     // Of a camera without a serial number only the port is known.
     if (!first && (info.name != info_.name || info.width != info_.width ||

@@ -28,7 +28,7 @@ struct UsbWaits {
 
 /// Which camera, and what is to happen when it is unplugged.
 struct UsbCameraOptions {
-    std::string serial;          ///< empty: the first camera found
+    std::string serial;          ///< empty: the first camera that can be used
     int bus = -1, address = -1;  ///< -1: any
     bool reconnect = false;  ///< wait for the camera to come back instead of ending with an error
     std::function<void(const std::string&)> warn = {};  ///< as CameraOptions::warn

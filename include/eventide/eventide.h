@@ -215,9 +215,9 @@ EVENTIDE_API eventide_status eventide_recording_open(const char* path, const cha
                                                      int width, int height,
                                                      eventide_source** opened);
 
-/** "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL", "v4l2:/dev/video0",
- * "ros2:/TOPIC", "udp://HOST:PORT?size=640x480", "sim:demo"; `settings` may be NULL, or a file of
- * settings; `reconnect` not 0: an unplugged camera is waited for. */
+/** "davis:", "dvxplorer:", "dvs128:" (the first one that can be used), "davis:SERIAL",
+ * "v4l2:/dev/video0", "ros2:/TOPIC", "udp://HOST:PORT?size=640x480", "sim:demo"; `settings` may be
+ * NULL, or a file of settings; `reconnect` not 0: an unplugged camera is waited for. */
 EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
                                                   int reconnect, eventide_source** opened);
 /** Frees it; NULL may be closed. */
