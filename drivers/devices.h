@@ -25,6 +25,10 @@ struct CameraOptions {
 /// Whether a source on the command line names a camera rather than a file: "davis:", "v4l2:", ...
 bool names_camera(std::string_view source);
 
+/// "; did you mean davis:?" where a source that is none is nearly one, with a colon or without;
+/// else empty.
+std::string source_suggestion(std::string_view source);
+
 /// davis:              the first DAVIS that can be used
 /// davis:SERIAL        the one with this serial number
 /// davis:BUS:ADDRESS   the one at this place (lsusb)
