@@ -13,6 +13,7 @@
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run_plan.h"
+#include "apps/cli/run/start_watch.h"
 #include "apps/cli/run/state/stream_state.h"
 #include "apps/cli/service_manager.h"
 #include "pipeline/filters/filter_chain.h"
@@ -72,6 +73,7 @@ private:
     RunSettings& settings_;
     ServiceManager manager_;
     const double speed_;
+    StartWatch start_;  // until run()
     OpenedSource opened_;
     FilterChain filters_;
     const SensorInfo sensor_;
