@@ -1,24 +1,17 @@
 // A source that is a device: what all cameras can be told and asked.
 #pragma once
 
+#include "pipeline/camera_counters.h"
+#include "pipeline/counter.h"
 #include "pipeline/source.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace eventide {
-
-/// What happened between the device and the host.
-struct CameraCounters {
-    std::uint64_t transfers = 0, bytes = 0;
-    std::uint64_t reconnects = 0;
-    std::uint64_t halts = 0;          ///< times the data endpoint stalled and went on
-    std::uint64_t odd_transfers = 0;  ///< ended within a word, which was left out
-    std::uint64_t device_dropped =
-        0;  ///< events the camera itself dropped, as its own counters say (after the run)
-    std::uint64_t host_dropped = 0;  ///< datagrams or buffers that came and were not taken in time
-};
 
 /// What to do about a camera that went away, after the words that say so; users of the program and
 /// of the library read it.
@@ -29,7 +22,19 @@ inline constexpr const char* kReconnect =
 class Camera : public Source {
 public:
     bool is_live() const noexcept override { return true; }
-    virtual CameraCounters counters() const = 0;  ///< source thread, or after the run
+    CameraCounters counters() const {  ///< any thread, at any time
+        CameraCounters now;
+        for (std::size_t i = 0; i < kCameraCounts; ++i) now.set(CameraCount(i), counts_[i].value());
+        return now;
+    }
+
+protected:
+    void count(CameraCount what, std::uint64_t n = 1) noexcept {  ///< source thread
+        counts_[std::size_t(what)].add(n);
+    }
+
+private:
+    std::array<Counter, kCameraCounts> counts_;
 };
 
 /// A camera that was found, usable or not.

@@ -1,8 +1,10 @@
 #include "drivers/devices.h"
 
+#include "drivers/simulated/simulated_name.h"
 #include "drivers/udp/udp_source.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/settings/suggestion.h"
 
 #ifdef EVENTIDE_HAS_USB
 #include "drivers/usb/davis_camera.h"
@@ -103,13 +105,22 @@ bool names_camera(std::string_view source) {
     return kind_of(source) != nullptr;
 }
 
+std::string source_suggestion(std::string_view source) {
+    std::vector<std::string> schemes{std::string{kSimulatedScheme}};
+    for (const Kind& kind : kKinds) schemes.emplace_back(kind.scheme);
+    const std::string scheme{source.substr(0, source.find(':'))};
+    return scheme.empty() || scheme.find('/') != scheme.npos ? ""
+                                                             : suggestion(scheme + ":", schemes);
+}
+
 std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options) {
     const Kind* kind = kind_of(source);
     if (kind == nullptr)
         throw Error(
             ErrorKind::usage,
             "source '" + std::string{source} +
-                "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2:, ros2: or udp:");
+                "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2:, ros2: or udp:" +
+                source_suggestion(source));
     if (kind->open == nullptr)
         throw Error(ErrorKind::usage, "source '" + std::string{source} +
                                           "': this eventide was built without " +

@@ -17,15 +17,19 @@ struct CameraOptions {
     bool reconnect = false;          ///< wait for an unplugged camera to come back
     /// Asked while a camera that has to be waited for is opened: true gives up. May be empty.
     std::function<bool()> give_up = {};
-    /// For people: why a camera that is waited for is not back yet, once each. Source thread. May
-    /// be empty.
+    /// For people: why a camera was passed over, or is waited for and not back yet, once each.
+    /// Source thread. May be empty.
     std::function<void(const std::string&)> warn = {};
 };
 
 /// Whether a source on the command line names a camera rather than a file: "davis:", "v4l2:", ...
 bool names_camera(std::string_view source);
 
-/// davis:              the first DAVIS found
+/// "; did you mean davis:?" where a source that is none is nearly one, with a colon or without;
+/// else empty.
+std::string source_suggestion(std::string_view source);
+
+/// davis:              the first DAVIS that can be used
 /// davis:SERIAL        the one with this serial number
 /// davis:BUS:ADDRESS   the one at this place (lsusb)
 /// dvxplorer:, dvs128: in the same way

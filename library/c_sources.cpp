@@ -33,8 +33,19 @@ eventide_status eventide_recording_open(const char* path, const char* format, in
 
 eventide_status eventide_camera_open(const char* name, const char* settings, int reconnect,
                                      eventide_source** opened) {
+    return eventide_camera_open_until(name, settings, reconnect, nullptr, nullptr, opened);
+}
+
+eventide_status eventide_camera_open_until(const char* name, const char* settings, int reconnect,
+                                           eventide_give_up give_up, void* context,
+                                           eventide_source** opened) {
     return c_call([&] {
-        const CameraSettings chosen{settings == nullptr ? "" : settings, reconnect != 0};
+        CameraSettings chosen{settings == nullptr ? "" : settings, reconnect != 0};
+        chosen.while_waiting = [=] {
+            if (give_up != nullptr && give_up(context) != 0)
+                throw Error(ErrorKind::failed,
+                            std::string{name} + ": given up before it was there");
+        };
         return open_source<EventCamera>(opened, &given(name, "a camera"), chosen);
     });
 }

@@ -1,6 +1,8 @@
 // What went through the pipeline, and what did not, by reason.
 #pragma once
 
+#include "pipeline/camera_counters.h"
+#include "pipeline/counter.h"
 #include "pipeline/pace/latency.h"
 #include "pipeline/stages.h"
 #include "src/binning/slicer.h"
@@ -8,26 +10,17 @@
 #include "src/core/frame_data.h"
 
 #include <array>
-#include <atomic>
 #include <cstdint>
+#include <optional>
 
 namespace eventide {
-
-/// Counted by one thread, read by any.
-class Counter {
-public:
-    void add(std::uint64_t n = 1) noexcept { set(value() + n); }
-    void set(std::uint64_t n) noexcept { value_.store(n, std::memory_order_relaxed); }
-    std::uint64_t value() const noexcept { return value_.load(std::memory_order_relaxed); }
-
-private:
-    std::atomic<std::uint64_t> value_{0};
-};
 
 /// The counters at one moment. Lost: could not be taken. Skipped: left out on purpose. Damaged:
 /// made no sense.
 struct Snapshot {
     // read
+    /// Of the source, where it is a camera. Set by whoever has it.
+    std::optional<CameraCounters> camera{};
     std::uint64_t packets = 0, bytes = 0;            ///< read from the source, also the lost ones
     std::uint64_t lost_packets = 0, lost_bytes = 0;  ///< of those: every buffer was in use
 

@@ -9,7 +9,7 @@ namespace eventide::app {
 
 /// Says nothing where no manager asked: NOTIFY_SOCKET names its socket, a path or "@name" of Linux'
 /// abstract ones. Messages that do not go through are lost: no run ends for them. Thread: one at a
-/// time.
+/// time, alive() excepted.
 class ServiceManager {
 public:
     /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID.

@@ -149,4 +149,10 @@ std::string short_count(double n) {
     return text;
 }
 
+std::string tight_count(std::uint64_t n) {
+    std::string text = short_count(double(n));
+    std::erase(text, ' ');
+    return text;
+}
+
 }  // namespace eventide::app

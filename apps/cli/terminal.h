@@ -49,5 +49,7 @@ private:
 
 /// 12,345,678 -> "12.3 M"; for rates and counts in lines people read.
 std::string short_count(double n);
+/// The same without the space before the unit.
+std::string tight_count(std::uint64_t n);
 
 }  // namespace eventide::app

@@ -18,10 +18,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kReadTimeout = 20ms;
 constexpr std::size_t kEnoughBytes = 256 << 10;  // of messages at once
 
-void append(const EventMessage& message, std::vector<std::byte>& bytes) {
-    append_event_packet({message.time_base, message.stamp_ns}, message.payload, bytes);
-}
-
 std::string list_text(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -112,12 +108,10 @@ ReadStatus Ros2Source::read(RawPacket& into) {
     }
     if (into.bytes.empty()) return stopped_ ? ReadStatus::end : ReadStatus::timeout;
     if (!std::exchange(is_there_, true)) {
-        ++counters_.reconnects;
+        count(CameraCount::reconnects);
         into.gap_before = true;
     }
     into.arrived = Clock::now();
-    ++counters_.transfers;
-    counters_.bytes += into.bytes.size();
     return ReadStatus::data;
 }
 
@@ -158,8 +152,16 @@ bool Ros2Source::is_of_this_publisher(const EventMessage& message) {
     return true;
 }
 
+void Ros2Source::append(const EventMessage& message, std::vector<std::byte>& bytes) {
+    append_event_packet({message.time_base, message.stamp_ns}, message.payload, bytes);
+    count(CameraCount::transfers);
+    count(CameraCount::bytes, message.payload.size());
+}
+
+/// A jump forward is as many messages lost; back, that the publisher counts anew.
 bool Ros2Source::is_gap_before(const EventMessage& message) {
     const bool jump = message.seq != next_seq_ && message.seq + 1 != next_seq_;
+    if (message.seq > next_seq_) count(CameraCount::lost_transfers, message.seq - next_seq_);
     next_seq_ = message.seq + 1;
     return std::exchange(gap_before_held_, false) || jump;
 }

@@ -28,12 +28,12 @@ public:
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override;
     std::unique_ptr<Parser> make_parser() const override;
-    CameraCounters counters() const override { return counters_; }
 
 private:
     void wait_for_first(const std::function<bool()>& give_up);
     void begin(const EventMessage& message);
     void take_messages(RawPacket& into);
+    void append(const EventMessage& message, std::vector<std::byte>& bytes);
     bool is_of_this_publisher(const EventMessage& message);
     bool is_gap_before(const EventMessage& message);
     void check_same(const EventMessage& message) const;
@@ -46,7 +46,6 @@ private:
     SensorInfo info_;
     std::string encoding_name_;
     EventPacketEncoding encoding_ = EventPacketEncoding::evt3;
-    CameraCounters counters_;
     std::vector<std::byte> held_;  ///< the first message, or one behind a gap
     bool gap_before_held_ = false;
     std::uint64_t publisher_ = 0, next_seq_ = 0;

@@ -53,8 +53,8 @@ ReadStatus SimulatedCamera::read(RawPacket& into) {
         if (is_live() && into.bytes.empty() && when >= silent_until) return ReadStatus::timeout;
     }
     into.arrived = std::chrono::steady_clock::now();
-    ++counters_.transfers;
-    counters_.bytes += into.bytes.size();
+    count(CameraCount::transfers);
+    count(CameraCount::bytes, into.bytes.size());
     return ReadStatus::data;
 }
 

@@ -31,7 +31,6 @@ public:
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override;
     std::unique_ptr<Parser> make_parser() const override;
-    CameraCounters counters() const override { return counters_; }
 
 private:
     bool wait_until(HostTime due);
@@ -43,7 +42,6 @@ private:
     Aedat3Writer writer_;
     Batch batch_;
     std::vector<Truth> truths_;  // stays empty
-    CameraCounters counters_;
     struct Anchor {
         HostTime host;
         SensorTime sensor;

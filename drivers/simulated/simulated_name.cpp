@@ -11,8 +11,6 @@ namespace eventide {
 
 namespace {
 
-constexpr std::string_view kPrefix = "sim:";
-
 [[noreturn]] void refuse(std::string_view key, std::string_view expected, std::string_view found) {
     throw Error(ErrorKind::usage, "simulated source, " + std::string(key) + ": expected " +
                                       std::string(expected) + ", found '" + std::string(found) +
@@ -58,13 +56,13 @@ void set(SimulatedSourceSettings& s, std::string_view key, std::string_view valu
 }  // namespace
 
 bool names_simulation(std::string_view source) {
-    return source.starts_with(kPrefix);
+    return source.starts_with(kSimulatedScheme);
 }
 
 SimulatedSourceSettings parse_simulated_name(std::string_view source) {
     if (!names_simulation(source)) refuse("name", "sim:SCENE", source);
     SimulatedSourceSettings settings;
-    const auto [scene, keys] = split(source.substr(kPrefix.size()), '?');
+    const auto [scene, keys] = split(source.substr(kSimulatedScheme.size()), '?');
     if (!scene.empty()) settings.scene = scene;
     const SimulationPreset& preset = simulation_preset(settings.scene);
     settings.recording.scene = preset.scene;

@@ -15,6 +15,9 @@ struct SimulatedSourceSettings {
     std::string textures;  ///< folder of images or pack of textures; empty: procedural
 };
 
+/// What its name begins with.
+inline constexpr std::string_view kSimulatedScheme = "sim:";
+
 bool names_simulation(std::string_view source);
 
 /// sim:SCENE?KEY=VALUE&..., all optional:

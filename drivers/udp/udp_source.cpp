@@ -73,18 +73,18 @@ ReadStatus UdpSource::read(RawPacket& into) {
     }
     if (into.bytes.empty()) return ReadStatus::timeout;
     const std::uint64_t lost = socket_.take_lost();
-    counters_.host_dropped += lost;
+    count(CameraCount::lost_transfers, lost);
     into.gap_before = lost > 0;
-    counters_.bytes += into.bytes.size();
+    count(CameraCount::bytes, into.bytes.size());
     return ReadStatus::data;
 }
 
 void UdpSource::take(std::span<const std::byte> datagram, RawPacket& into) {
     const std::size_t whole = whole_udp_records(records_, datagram);
-    if (whole != datagram.size()) ++counters_.odd_transfers;
+    if (whole != datagram.size()) count(CameraCount::cut_transfers);
     if (whole == 0) return;
     into.bytes.insert(into.bytes.end(), datagram.begin(), datagram.begin() + std::ptrdiff_t(whole));
-    into.sequence = ++counters_.transfers;
+    count(CameraCount::transfers);
 }
 
 std::unique_ptr<Parser> UdpSource::make_parser() const {

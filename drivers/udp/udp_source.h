@@ -27,9 +27,6 @@ public:
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override { stopped_ = true; }
     std::unique_ptr<Parser> make_parser() const override;
-    /// transfers: datagrams; odd_transfers: those that ended within a record; host_dropped:
-    /// datagrams lost.
-    CameraCounters counters() const override { return counters_; }
 
     std::uint16_t port() const { return socket_.port(); }
 
@@ -41,7 +38,6 @@ private:
     UdpRecords records_ = UdpRecords::t64;
     UdpSocket socket_;
     std::vector<std::byte> datagram_;
-    CameraCounters counters_;
     std::atomic<bool> stopped_{false};
 };
 

@@ -14,6 +14,7 @@ constexpr std::uint32_t kLogicWanted = 18;
 constexpr std::uint8_t kSecondGenerationBoard = 5;
 constexpr auto kReadTimeout = 20ms;
 constexpr auto kBeginTimeout = 1000ms;
+constexpr auto kDropsEvery = 1s;
 
 /// "DAVIS346B of 346x260 px"
 std::string model_text(const SensorInfo& info) {
@@ -61,11 +62,14 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
 }
 
 void UsbCamera::open() {
-    device_ = std::make_unique<UsbDevice>(selector_);
-    const UsbIdentity& identity = device_->identity();
     const bool first = info_.width == 0;
-    if (first) info_.serial = identity.serial;  // for what set_up() may have to say
-    SensorInfo info = set_up(*device_);
+    SensorInfo info;
+    const auto set_up_device = [&](UsbDevice& device) {
+        if (first) info_.serial = device.identity().serial;  // for what set_up() may have to say
+        info = set_up(device);
+    };
+    device_ = UsbDevice::open(selector_, set_up_device, options_.warn);
+    const UsbIdentity& identity = device_->identity();
     info.serial = identity.serial;
     // Of a camera without a serial number only the port is known.
     if (!first && (info.name != info_.name || info.width != info_.width ||
@@ -79,7 +83,9 @@ void UsbCamera::open() {
 }
 
 void UsbCamera::start() {
-    dropped_before_ = dropped(*device_);
+    dropped_until_now_ = dropped(*device_);
+    drops_are_told_ = true;
+    look_at_drops_ = std::chrono::steady_clock::now() + kDropsEvery;
     make_idle(*device_);
     std::this_thread::sleep_for(options_.waits.idle);
     device_->clear_halt(kind_.data_endpoint);
@@ -104,7 +110,7 @@ bool UsbCamera::wait_for_begin() {
         if (status == UsbStream::Status::lost)
             throw UsbDisconnected("USB: the camera was unplugged");
         if (const auto halts = stream_->take_halts(); halts > 0) {
-            counters_.halts += halts;
+            count(CameraCount::stalls, halts);
             reset_time(*device_);  // the begin may be lost with them
         }
         if (status != UsbStream::Status::data) continue;
@@ -126,6 +132,7 @@ ReadStatus UsbCamera::read(RawPacket& into) {
             return ReadStatus::end;
         }
         between_transfers(*device_);
+        look_at_drops();
         return read_stream(into);
     } catch (const UsbDisconnected&) {
         into.bytes.clear();
@@ -150,13 +157,13 @@ ReadStatus UsbCamera::read_stream(RawPacket& into) {
             case UsbStream::Status::data:
                 gap_ = gap_ || stream_->gap_before();
         }
-        counters_.halts += stream_->take_halts();
+        count(CameraCount::stalls, stream_->take_halts());
     }
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, false);
     into.reopened = std::exchange(reopened_, false);
-    ++counters_.transfers;
-    counters_.bytes += into.bytes.size();
+    count(CameraCount::transfers);
+    count(CameraCount::bytes, into.bytes.size());
     leave_out_half_word(into.bytes);
     return ReadStatus::data;
 }
@@ -167,8 +174,33 @@ void UsbCamera::leave_out_half_word(std::vector<std::byte>& bytes) {
     const std::size_t half = bytes.size() % word_bytes();
     if (half == 0) return;
     bytes.resize(bytes.size() - half);
-    ++counters_.odd_transfers;
+    count(CameraCount::cut_transfers);
     gap_ = true;
+}
+
+void UsbCamera::count_drops() {
+    const std::uint64_t now = dropped(*device_);
+    // Less than before: the logic began to count anew.
+    count(CameraCount::dropped_events, now - (now < dropped_until_now_ ? 0 : dropped_until_now_));
+    dropped_until_now_ = now;
+}
+
+/// Between transfers: the requests are short, but a camera that does not answer them would hold up
+/// the stream each time.
+void UsbCamera::look_at_drops() {
+    const auto now = std::chrono::steady_clock::now();
+    if (!drops_are_told_ || now < look_at_drops_) return;
+    look_at_drops_ = now + kDropsEvery;
+    try {
+        count_drops();
+    } catch (const UsbDisconnected&) {
+        throw;
+    } catch (const Error& error) {
+        drops_are_told_ = false;
+        if (options_.warn)
+            options_.warn(std::string{"the "} + kind_.name + " '" + info_.serial +
+                          "' no longer tells how many events it drops: " + error.what());
+    }
 }
 
 /// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.
@@ -184,7 +216,7 @@ ReadStatus UsbCamera::wait_for_return() {
         open();
         start();
         if (stopped_) return ReadStatus::timeout;  // before it began
-        ++counters_.reconnects;
+        count(CameraCount::reconnects);
         gap_ = reopened_ = true;
         warnings_.is_back();
     } catch (const Error& error) {  // not there yet, or not yet ready: the next look will tell
@@ -210,9 +242,7 @@ void UsbCamera::stop_device() noexcept {
     if (!device_) return;
     try {
         if (stream_) {
-            const std::uint64_t now = dropped(*device_);
-            // Less than before: the logic began to count anew.
-            counters_.device_dropped += now - (now < dropped_before_ ? 0 : dropped_before_);
+            if (drops_are_told_) count_drops();
             make_idle(*device_);
         }
         power_down(*device_);

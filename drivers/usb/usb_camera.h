@@ -28,7 +28,7 @@ struct UsbWaits {
 
 /// Which camera, and what is to happen when it is unplugged.
 struct UsbCameraOptions {
-    std::string serial;          ///< empty: the first camera found
+    std::string serial;          ///< empty: the first camera that can be used
     int bus = -1, address = -1;  ///< -1: any
     bool reconnect = false;  ///< wait for the camera to come back instead of ending with an error
     std::function<void(const std::string&)> warn = {};  ///< as CameraOptions::warn
@@ -48,7 +48,6 @@ public:
     const SensorInfo& info() const override { return info_; }
     ReadStatus read(RawPacket& into) final;
     void stop() noexcept final;
-    CameraCounters counters() const final { return counters_; }
     const std::string& logic() const { return logic_; }  ///< "18 patch 1"; empty where it has none
 
 protected:
@@ -93,6 +92,8 @@ private:
     void start();
     bool wait_for_begin();
     ReadStatus read_stream(RawPacket& into);
+    void count_drops();
+    void look_at_drops();
     void leave_out_half_word(std::vector<std::byte>& bytes);
     void close();
     ReadStatus lost();
@@ -105,11 +106,12 @@ private:
     UsbStreamSettings transfers_;
     SensorInfo info_;
     std::string logic_;
-    CameraCounters counters_;
     std::unique_ptr<UsbDevice> device_;
     std::unique_ptr<UsbStream> stream_;            ///< after device_: it must end first
     std::optional<std::vector<std::byte>> first_;  ///< bytes from where time began
-    std::uint64_t dropped_before_ = 0;             ///< by the device, when it was started
+    std::uint64_t dropped_until_now_ = 0;          ///< by the device, as far as was counted
+    bool drops_are_told_ = false;                  ///< since it was started
+    HostTime look_at_drops_{};                     ///< when next
     bool gap_ = false, reopened_ = false;
     std::atomic<bool> stopped_{false};
 };

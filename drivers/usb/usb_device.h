@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -52,9 +53,13 @@ std::vector<UsbIdentity> list_usb_devices(const UsbSelector& selector);
 
 class UsbDevice {
 public:
-    /// Opens the first device that fits, sets configuration 1 and claims interface 0. Throws Error
-    /// (device), saying what to do: not there, no permission (udev rule), in use.
-    explicit UsbDevice(const UsbSelector& selector);
+    /// The first device that fits and can be used: opened, in configuration 1, interface 0 claimed,
+    /// and `set_up` threw no Error of kind device. `warn` (may be empty) hears why others were
+    /// passed over. Throws Error (device) where there is none, saying of each what keeps it from
+    /// being used and what to do: no permission (udev rule), in use.
+    static std::unique_ptr<UsbDevice> open(const UsbSelector& selector,
+                                           const std::function<void(UsbDevice&)>& set_up,
+                                           const std::function<void(const std::string&)>& warn);
     ~UsbDevice();
     UsbDevice(const UsbDevice&) = delete;
     UsbDevice& operator=(const UsbDevice&) = delete;
@@ -79,9 +84,12 @@ public:
     void clear_halt(std::uint8_t endpoint);
 
 private:
-    std::unique_ptr<libusb_context, FreeUsbContext> context_;
-    std::unique_ptr<libusb_device_handle, CloseUsbDevice> handle_;
+    using Handle = std::unique_ptr<libusb_device_handle, CloseUsbDevice>;
+    UsbDevice(UsbIdentity identity, Handle handle, const std::string& label);
+
+    std::unique_ptr<libusb_context, FreeUsbContext> context_;  ///< once it is the one to be used
     UsbIdentity identity_;
+    Handle handle_;
 };
 
 /// The device is not there any more, or the connection to it broke off.

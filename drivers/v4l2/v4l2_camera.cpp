@@ -149,8 +149,9 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(gap_, filled.damaged);  // a damaged buffer may lack its end
     into.reopened = std::exchange(reopened_, false);
-    ++counters_.transfers;
-    counters_.bytes += bytes.size();
+    count(CameraCount::transfers);
+    count(CameraCount::bytes, bytes.size());
+    if (filled.damaged) count(CameraCount::damaged_transfers);
     return ReadStatus::data;
 }
 
@@ -160,7 +161,7 @@ void V4l2Camera::note_sequence(std::uint32_t sequence) {
     constexpr std::uint32_t kBackwards = std::uint32_t{1} << 31;
     const std::uint32_t step = sequence - last_sequence_.value_or(sequence);
     if (step > 1) gap_ = true;
-    if (step > 1 && step < kBackwards) counters_.host_dropped += step - 1;
+    if (step > 1 && step < kBackwards) count(CameraCount::lost_transfers, step - 1);
     last_sequence_ = sequence;
 }
 
@@ -170,7 +171,7 @@ ReadStatus V4l2Camera::lost() {
     device_.reset();
     try {
         open();
-        ++counters_.reconnects;
+        count(CameraCount::reconnects);
         gap_ = reopened_ = true;
         warnings_.is_back();
     } catch (const Error& error) {  // not there yet: the next look will tell

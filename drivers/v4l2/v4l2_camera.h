@@ -60,7 +60,6 @@ public:
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override { stopped_ = true; }
     std::unique_ptr<Parser> make_parser() const override;
-    CameraCounters counters() const override { return counters_; }
 
 private:
     void open();
@@ -73,7 +72,6 @@ private:
     WaitWarnings warnings_;
     SensorInfo info_;
     EvtEncoding encoding_ = EvtEncoding::evt3;
-    CameraCounters counters_;
     std::unique_ptr<V4l2Device> device_;
     std::optional<std::uint32_t> last_sequence_;
     bool gap_ = false, reopened_ = false;

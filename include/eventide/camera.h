@@ -30,7 +30,7 @@ struct CameraSettings {
 /// A camera that sends events from the first read() on. Thread: one at a time, stop() excepted.
 class EVENTIDE_API EventCamera final : public EventSource {
 public:
-    /// "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
+    /// "davis:", "dvxplorer:", "dvs128:" (the first one that can be used), "davis:SERIAL",
     /// "v4l2:/dev/video0"; "ros2:/TOPIC", event packets of a ROS 2 driver;
     /// "udp://HOST:PORT?size=640x480", events that another program sends to this address of this
     /// machine; "sim:SCENE" is one in software. Throws Error: usage for a name that makes no sense,

@@ -215,11 +215,21 @@ EVENTIDE_API eventide_status eventide_recording_open(const char* path, const cha
                                                      int width, int height,
                                                      eventide_source** opened);
 
-/** "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL", "v4l2:/dev/video0",
- * "ros2:/TOPIC", "udp://HOST:PORT?size=640x480", "sim:demo"; `settings` may be NULL, or a file of
- * settings; `reconnect` not 0: an unplugged camera is waited for. */
+/** "davis:", "dvxplorer:", "dvs128:" (the first one that can be used), "davis:SERIAL",
+ * "v4l2:/dev/video0", "ros2:/TOPIC", "udp://HOST:PORT?size=640x480", "sim:demo"; `settings` may be
+ * NULL, or a file of settings; `reconnect` not 0: an unplugged camera is waited for. */
 EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
                                                   int reconnect, eventide_source** opened);
+
+/** Whether to give up waiting: not 0 does. Called on the thread that waits, every 20 ms or so, with
+ * what was given along with it. */
+typedef int (*eventide_give_up)(void* context);
+
+/** The same, asking `give_up` while the first message of a topic is waited for, which with
+ * `reconnect` may be for ever: EVENTIDE_FAILED where it gave up. */
+EVENTIDE_API eventide_status eventide_camera_open_until(const char* name, const char* settings,
+                                                        int reconnect, eventide_give_up give_up,
+                                                        void* context, eventide_source** opened);
 /** Frees it; NULL may be closed. */
 EVENTIDE_API void eventide_source_close(eventide_source* source);
 

@@ -71,7 +71,7 @@ def open(path, format="", width=0, height=0, filters=()):
 def open_camera(name, settings="", filters=(), reconnect=False):
     """Open a camera; iterate it for arrays of events.
 
-    name is "davis:", "dvxplorer:", "dvs128:" (the first one found), "davis:SERIAL",
+    name is "davis:", "dvxplorer:", "dvs128:" (the first one that can be used), "davis:SERIAL",
     "v4l2:/dev/video0", "ros2:/TOPIC", "udp://HOST:PORT?size=640x480" or "sim:demo", settings a
     file, filters as in open(); with reconnect an unplugged camera is waited for. Raises
     DeviceError, or UsageError for a name that makes no sense.

@@ -154,8 +154,9 @@ TEST(DavisFaults, HalfAWordAtATransfersEndIsAGapAndNothingBehindItIsGarbled) {
     options.settings.transfers.bytes = 8 << 10;
     DavisCamera camera{options};
     const Streamed got = stream(camera, camera_side.bed, *camera_side.model);
-    EXPECT_GT(camera.counters().odd_transfers, 5U);
-    EXPECT_GE(got.gaps.size() + 1, camera.counters().odd_transfers) << "none follows the last";
+    EXPECT_GT(camera.counters()[CameraCount::cut_transfers], 5U);
+    EXPECT_GE(got.gaps.size() + 1, camera.counters()[CameraCount::cut_transfers])
+        << "none follows the last";
     EXPECT_TRUE(is_part_of(got.data.events, camera_side.seen.events));
     EXPECT_GT(got.data.events.size(), camera_side.seen.events.size() * 9 / 10);
     EXPECT_EQ(got.damaged.total(), 0U);
@@ -170,7 +171,7 @@ TEST(DavisFaults, AHaltedEndpointIsClearedAndTheStreamGoesOnBehindAGap) {
     ASSERT_EQ(camera.read(packet), ReadStatus::data);
     camera_side.bed.halt_data(3);
     const Streamed got = stream(camera, camera_side.bed, *camera_side.model);
-    EXPECT_EQ(camera.counters().halts, 3U);
+    EXPECT_EQ(camera.counters()[CameraCount::stalls], 3U);
     EXPECT_GE(got.gaps.size(), 1U);
     EXPECT_TRUE(is_part_of(got.data.events, camera_side.seen.events));
     EXPECT_GT(got.data.events.size(), camera_side.seen.events.size() / 4);
@@ -264,7 +265,7 @@ TEST(DavisFaults, WhatTheCameraItselfDropsInABurstIsCountedByItAndTheRestIsWhole
 
     const std::size_t missing = camera_side.seen.events.size() - got.events.size();
     EXPECT_GT(missing, 100'000U);
-    EXPECT_EQ(camera.counters().device_dropped, missing);
+    EXPECT_EQ(camera.counters()[CameraCount::dropped_events], missing);
     EXPECT_TRUE(is_part_of(got.events, camera_side.seen.events));
     EXPECT_EQ(parser->damaged().total(), 0U);
 }
@@ -279,7 +280,7 @@ TEST(DavisFaults, ACounterOfDropsThatBeganAnewIsNotTakenForALotOfThem) {
     camera_side.bed.look([&] { camera_side.model->write({kDroppedLow, 3}); });
     camera.stop();
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
-    EXPECT_EQ(camera.counters().device_dropped, 3U);
+    EXPECT_EQ(camera.counters()[CameraCount::dropped_events], 3U);
 }
 
 TEST(DavisFaults, DropsAreReadWhereTheMultiplexerCountsThem) {
@@ -296,8 +297,41 @@ TEST(DavisFaults, DropsAreReadWhereTheMultiplexerCountsThem) {
         camera_side.bed.look([&] { camera_side.model->write({kDroppedLow, 1007}); });
         camera.stop();
         EXPECT_EQ(camera.read(packet), ReadStatus::end);
-        EXPECT_EQ(camera.counters().device_dropped, counts ? 7U : 0U);
+        EXPECT_EQ(camera.counters()[CameraCount::dropped_events], counts ? 7U : 0U);
     }
+}
+
+TEST(DavisFaults, DropsAreCountedWhileItRuns) {
+    PluggedIn camera_side;
+    constexpr davis::Register kDroppedLow{davis::mux, 84};
+    DavisCamera camera{at_once()};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    camera_side.bed.look([&] { camera_side.model->write({kDroppedLow, 7}); });
+    while (camera.counters()[CameraCount::dropped_events] == 0) camera.read(packet);
+    EXPECT_EQ(camera.counters()[CameraCount::dropped_events], 7U);
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+    EXPECT_EQ(camera.counters()[CameraCount::dropped_events], 7U);
+}
+
+TEST(DavisFaults, ACameraThatRefusesToTellItsDropsGoesOnAndIsNotAskedAgain) {
+    PluggedIn camera_side;
+    std::vector<std::string> warnings;
+    DavisOptions options = at_once();
+    options.settings.auto_exposure = false;
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DavisCamera camera{options};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    camera_side.bed.stall_control(1);
+    while (warnings.empty()) camera.read(packet);
+    EXPECT_THAT(warnings.front(), HasSubstr("no longer tells how many events it drops: USB: "
+                                            "reading register 0.83: the camera refused"));
+    const int requests = camera_side.bed.requests();
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+    EXPECT_GT(camera_side.bed.requests(), requests) << "it is still made idle";
 }
 
 }  // namespace

@@ -50,7 +50,8 @@ TEST(DavisOverload, WhatThePipelineCannotTakeIsCountedAndTheStreamCarriesAGap) {
     const Snapshot end = pipeline.snapshot();
     EXPECT_GT(end.lost_packets, 0U);
     EXPECT_GT(end.lost_bytes, 0U);
-    EXPECT_EQ(end.bytes, camera.counters().bytes) << "every byte was taken or counted as lost";
+    EXPECT_EQ(end.bytes, camera.counters()[CameraCount::bytes])
+        << "every byte was taken or counted as lost";
     EXPECT_GE(end.gaps, 1U);
     EXPECT_TRUE(std::any_of(sink.seen.begin(), sink.seen.end(),
                             [](const ToySink::Seen& frame) { return frame.gap; }));

@@ -57,7 +57,7 @@ TEST(DavisUnplugged, ACameraThatIsStoppedBeforeItBeginsAgainHasNotComeBack) {
     };
     bed.plug_in(std::make_shared<DavisModel>(settings));
     while (camera.read(packet) != ReadStatus::end) continue;
-    EXPECT_EQ(camera.counters().reconnects, 0U);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
 }
 
 /// Opens, starts, streams to the scene's end, stops; the words of the error, or nothing.
@@ -124,7 +124,7 @@ TEST(DavisUnplugged, AtAnyMomentAfterOpeningItComesBackWhenToldToWait) {
         bed.plug_in(camera_before(3'000));
         read_until(camera, ReadStatus::data);
         EXPECT_TRUE(packet.gap_before) << "at request " << request;
-        EXPECT_EQ(camera.counters().reconnects, 1U);
+        EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
         bed.unplug();
     }
 }
@@ -147,7 +147,7 @@ TEST(DavisUnplugged, AHundredTimesItComesBackMarksTheGapAndLeaksNothing) {
         if (time == kSettled) early = holdings();
     }
     const Holdings late = holdings_down_to(*early);
-    EXPECT_EQ(camera->counters().reconnects, unsigned(kTimes - 1));
+    EXPECT_EQ(camera->counters()[CameraCount::reconnects], unsigned(kTimes - 1));
     EXPECT_LE(late.files, early->files);
     EXPECT_EQ(late.threads, early->threads);
     // A leak of one transfer's buffer in each cycle would be 6 MB.
@@ -165,7 +165,7 @@ TEST(DavisUnplugged, TheFirstLookAfterItIsBackOpensItAndNothingWaitsForASecond) 
     for (int look = 0; look < 5; ++look) ASSERT_EQ(camera.read(packet), ReadStatus::timeout);
     bed.plug_in(camera_before(2'000));
     ASSERT_EQ(camera.read(packet), ReadStatus::timeout);
-    EXPECT_EQ(camera.counters().reconnects, 1U);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
     EXPECT_EQ(camera.read(packet), ReadStatus::data);
     // What a real camera needs between the steps of that look is the only waiting in it.
     const UsbWaits waits;
@@ -186,7 +186,7 @@ TEST(DavisUnplugged, OnlyTheSameCameraIsTakenBack) {
     other.serial = "00000007";
     bed.plug_in(std::make_shared<DavisModel>(other));
     for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
-    EXPECT_EQ(camera.counters().reconnects, 0U);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
     camera.stop();
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
 }
@@ -246,7 +246,7 @@ TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {
     while (camera.read(packet) != ReadStatus::timeout) continue;
     plug_in({.port = 3, .address = 6});
     for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
-    EXPECT_EQ(camera.counters().reconnects, 0U);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
     bed.unplug();
     const DavisSensor sensor = std::exchange(settings.sensor, testing_support::davis240());
     plug_in({.port = 2, .address = 7});
@@ -260,7 +260,7 @@ TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {
     plug_in({.port = 2, .address = 8});
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_TRUE(packet.gap_before);
-    EXPECT_EQ(camera.counters().reconnects, 1U);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
 }
 
 }  // namespace

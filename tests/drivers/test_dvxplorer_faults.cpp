@@ -66,7 +66,7 @@ TEST(DvxplorerFaults, CountsWhatTheCameraItselfDropped) {
     side.bed.look([&] { side.model->write({kLow, 1007}); });
     camera.stop();
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
-    EXPECT_EQ(camera.counters().device_dropped, 7U);
+    EXPECT_EQ(camera.counters()[CameraCount::dropped_events], 7U);
 }
 
 TEST(DvxplorerFaults, UnpluggedItComesBackBehindAGap) {

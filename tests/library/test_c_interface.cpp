@@ -256,6 +256,21 @@ TEST_F(CInterface, CamerasPushWhatTheyRead) {
     eventide_source_close(source);
 }
 
+TEST_F(CInterface, ACameraThatIsWaitedForCanBeGivenUp) {
+    int asked = 0;
+    const auto third_time = [](void* context) {
+        return ++*static_cast<int*>(context) == 3 ? 1 : 0;
+    };
+    eventide_source* source = nullptr;
+    const eventide_status status = eventide_camera_open_until(
+        "ros2:/eventide/nobody/publishes", nullptr, 1, third_time, &asked, &source);
+    EXPECT_EQ(source, nullptr);
+    if (said("built without")) GTEST_SKIP() << eventide_error_message();
+    EXPECT_EQ(status, EVENTIDE_FAILED);
+    EXPECT_TRUE(said("ros2:/eventide/nobody/publishes: given up")) << eventide_error_message();
+    EXPECT_EQ(asked, 3);
+}
+
 TEST_F(CInterface, PutsFiltersBehindASource) {
     for (const bool is_camera : {false, true}) {
         eventide_source* source = nullptr;

@@ -135,6 +135,8 @@ TEST_F(Ros2SourceTest, AJumpOfTheNumbersIsAGap) {
     for (const std::uint64_t k : {1, 2, 5, 6, 9}) publisher.publish(message(k));
     const Heard heard = read(*source, *parser, 6);
     EXPECT_EQ(heard.gaps, 2);
+    EXPECT_EQ(source->counters()[CameraCount::lost_transfers], 4U);
+    EXPECT_EQ(source->counters()[CameraCount::transfers], 6U);
     EXPECT_THAT(heard.events,
                 ElementsAre(event(0), event(1), event(2), event(5), event(6), event(9)));
 }
@@ -163,7 +165,7 @@ TEST_F(Ros2SourceTest, EndsWithItsPublisherOrWaitsForTheNext) {
         const Heard heard = waiting.get();
         EXPECT_EQ(heard.gaps, 1);
         EXPECT_THAT(heard.events, ElementsAre(event(500)));
-        EXPECT_EQ(source->counters().reconnects, 1U);
+        EXPECT_EQ(source->counters()[CameraCount::reconnects], 1U);
     }
 }
 
@@ -209,7 +211,7 @@ TEST_F(Ros2SourceTest, WhenTheNewOfTwoPublishersEndsTheOtherIsReadAgain) {
     const std::uint64_t first = k + 1 - batch.events.size();
     for (std::size_t i = 0; i < batch.events.size(); ++i)
         EXPECT_EQ(batch.events[i], event(first + i)) << i;
-    EXPECT_EQ(source->counters().reconnects, 0U);
+    EXPECT_EQ(source->counters()[CameraCount::reconnects], 0U);
 }
 
 TEST_F(Ros2SourceTest, StopsWhileItWaits) {

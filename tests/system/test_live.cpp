@@ -154,8 +154,9 @@ TEST_P(LiveReturn, GoesOnWhenTheCameraComesBack) {
     process.signal(SIGINT);
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_THAT(result.error, HasSubstr("came back 1"));
+    EXPECT_THAT(result.error, HasSubstr("camera: reconnects 1"));
     const Json stats = last_stats();
+    EXPECT_EQ(stats["camera"]["reconnects"], 1);
     EXPECT_EQ(stats["gaps"], 1);
     EXPECT_EQ(stats["state_resets"], reset ? 1 : 0);
 
@@ -199,14 +200,39 @@ TEST_F(Live, StrictlyWhatTheCameraItselfDroppedIsLostData) {
         const auto camera = std::make_shared<DavisModel>(settings);
         camera->show(scene);
         bed_.plug_in(camera);
-        std::vector<std::string> arguments{"run",        "davis:", "--fps", "50",
-                                           "--duration", "200ms",  "--out", "null"};
+        std::vector<std::string> arguments{"run",   "davis:", "--fps",   "50",         "--duration",
+                                           "200ms", "--out",  "frames/", "--overwrite"};
         if (strict) arguments.push_back("--strict");
         const Result result = eventide(arguments);
         EXPECT_EQ(result.exit_code, strict ? 5 : 0) << result.error;
-        EXPECT_THAT(result.error, HasSubstr("dropped by itself"));
+        EXPECT_THAT(result.error, HasSubstr("camera: dropped events "));
+        const Json run = Json::parse(read_text(temp_ / "frames/run.json"));
+        EXPECT_GT(run["counters"]["camera"]["dropped_events"], 0);
         bed_.unplug();
     }
+}
+
+TEST_F(Live, WhatTheCameraCountsIsToldWhileItRuns) {
+    constexpr davis::Register kDroppedLow{davis::mux, 84};
+    const auto camera = plug_in(scene(), true);
+    Process process =
+        start({"run", "davis:", "--fps", "50", "--out", "gray8:-", "--stats", "stats.jsonl"},
+              {.output_to_pipe = true});
+    ASSERT_TRUE(read_frames(process, 8));
+    bed_.look([&] { camera->write({kDroppedLow, 7}); });
+    constexpr int kFramesOfAMinute = 3000;
+    Json counts;
+    for (int frames = 0; frames < kFramesOfAMinute && counts["dropped_events"] != 7; ++frames) {
+        ASSERT_TRUE(read_frames(process, 1));
+        const Json stats = last_stats();
+        if (!stats.is_null()) counts = stats["camera"];
+    }
+    EXPECT_EQ(counts["dropped_events"], 7);
+    EXPECT_GT(counts["transfers"], 0);
+    EXPECT_EQ(counts["reconnects"], 0);
+    process.signal(SIGINT);
+    EXPECT_EQ(process.wait().exit_code, 0);
+    EXPECT_EQ(last_stats()["camera"]["dropped_events"], 7) << "none is counted twice";
 }
 
 TEST_F(Live, ListsCamerasThatCanBeUsedAndThoseThatCannot) {

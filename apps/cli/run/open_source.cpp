@@ -19,17 +19,20 @@ namespace eventide::app {
 
 namespace {
 
-/// "metavision:" is no file that is missing.
-void refuse_unknown_prefix(const std::string& source) {
-    const std::size_t colon = source.find(':');
+/// "metavision:" is no file that is missing, and "davis" probably none.
+void refuse_unknown_source(const std::string& source) {
     std::error_code none;
-    if (colon == source.npos || source.find('/') < colon || std::filesystem::exists(source, none))
-        return;
-    throw Error(ErrorKind::usage,
-                source +
-                    ": unknown source; expected a file or folder, davis:, dvxplorer:, dvs128:, "
-                    "v4l2:/dev/videoN, ros2:/TOPIC, udp://HOST:PORT, sim:SCENE, or - for standard "
-                    "input");
+    if (source == "-" || std::filesystem::exists(source, none)) return;
+    const std::string meant = source_suggestion(source);
+    const std::size_t colon = source.find(':');
+    if (colon != source.npos && source.find('/') > colon)
+        throw Error(ErrorKind::usage,
+                    source +
+                        ": unknown source; expected a file or folder, davis:, dvxplorer:, dvs128:, "
+                        "v4l2:/dev/videoN, ros2:/TOPIC, udp://HOST:PORT, sim:SCENE, or - for "
+                        "standard input" +
+                        meant);
+    if (!meant.empty()) throw Error(ErrorKind::input, "'" + source + "': no such file" + meant);
 }
 
 /// Of what has a pace of its own.
@@ -45,7 +48,7 @@ void refuse_speed(const RunSettings& settings) {
 
 OpenedSource open_file(const RunSettings& settings, double speed,
                        const std::function<bool()>& give_up) {
-    refuse_unknown_prefix(settings.source);
+    refuse_unknown_source(settings.source);
     auto recording = open_input(settings.source, settings.input, give_up);
     OpenedSource opened;
     if (speed > 0) {

@@ -5,7 +5,6 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/run/report/status.h"
-#include "apps/cli/run/source_wait.h"
 #include "apps/cli/run/state/run_state.h"
 #include "apps/cli/run/state/state_folder.h"
 #include "drivers/devices.h"
@@ -90,6 +89,7 @@ Run::Run(Program& program, RunSettings& settings)
     : program_{program},
       settings_{settings},
       speed_{speed_of(settings)},
+      start_{manager_, settings.source},
       opened_{open_source(settings, speed_, give_up_waiting())},
       filters_{settings.filter, size_of(*opened_.source)},
       sensor_{filters_.behind(opened_.source->info())},
@@ -134,8 +134,8 @@ Run::Run(Program& program, RunSettings& settings)
 /// is there.
 std::function<bool()> Run::give_up_waiting() {
     const bool has_limit = names_camera(settings_.source) && !settings_.reconnect;
-    return [this, has_limit, wait = SourceWait{manager_, settings_.source}]() mutable {
-        if (!has_limit) wait.go_on();
+    return [this, has_limit] {
+        if (!has_limit) start_.source_is_waited_for();
         return program_.signals.stopping();
     };
 }
@@ -155,9 +155,10 @@ void Run::go_to_begin() {
 
 void Run::open_outputs() {
     const OutputOptions growing{
-        .overwrite = settings_.overwrite,
-        .appears = Appears::growing,
-        .give_up = [&program = program_] { return program.signals.stopping(); }};
+        .overwrite = settings_.overwrite, .appears = Appears::growing, .give_up = [this] {
+            start_.goes_on();
+            return program_.signals.stopping();
+        }};
     recorded_ = recorder_of(settings_, *opened_.source, growing);
     events_out_ = events_out_of(settings_, sensor_, colour_filter_, span_, filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
@@ -209,6 +210,8 @@ Source& Run::source() {
 
 Snapshot Run::counters() const {
     Snapshot now = pipeline_->snapshot();
+    if (const auto* camera = dynamic_cast<const Camera*>(opened_.source.get()))
+        now.camera = camera->counters();
     now.events += filters_.left_out();
     now.filtered_events += filters_.left_out();
     now.waits = waits_.value();
@@ -234,6 +237,7 @@ int Run::run() {
         quality_.look(now, elapsed, pace(), changes_);
         return quality_.state();
     };
+    start_.end();
     Status status{[this] { return counters(); },
                   progress(),
                   std::move(stats_),

@@ -13,6 +13,7 @@
 #include "apps/cli/run/reference_images.h"
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run_plan.h"
+#include "apps/cli/run/start_watch.h"
 #include "apps/cli/run/state/stream_state.h"
 #include "apps/cli/service_manager.h"
 #include "pipeline/filters/filter_chain.h"
@@ -61,11 +62,10 @@ private:
     void keep_state(const PipelineState& memory);
     void run_pipeline();
     bool wrote_all_data() const;
-    CameraCounters camera_counters() const;
     RunProgress progress() const;
     std::string run_json();
     std::vector<HttpControl> controls();
-    /// What the filters left out counts as read.
+    /// The pipeline's, and those of all around it. What the filters left out counts as read.
     Snapshot counters() const;
     Snapshot snapshot() const { return pipeline_made_ ? counters() : Snapshot{}; }
 
@@ -73,6 +73,7 @@ private:
     RunSettings& settings_;
     ServiceManager manager_;
     const double speed_;
+    StartWatch start_;  // until run()
     OpenedSource opened_;
     FilterChain filters_;
     const SensorInfo sensor_;

@@ -23,8 +23,7 @@ std::string dropped_text(std::uint64_t images) {
 /// Says what came out. Returns the exit code.
 int Run::report(const RunProgress& end) const {
     const Snapshot end_counters = counters();
-    const CameraCounters camera = camera_counters();
-    spdlog::info("{}{}", summary_text(end_counters, end), camera_text(camera));
+    spdlog::info("{}", summary_text(end_counters, end));
     if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
     if (const std::string remark = flicker_remark(end_counters.flicker); !remark.empty())
         spdlog::info("{}", remark);
@@ -49,8 +48,7 @@ int Run::report(const RunProgress& end) const {
     const std::uint64_t unsent = events_out_ ? events_out_->lost() : 0;
     if (unsent > 0) spdlog::warn("{}: lost {}", settings_.events_out, lost_datagrams(unsent));
     const bool all_written = wrote_all_data();
-    const bool lost = lost_data(end_counters) || camera.device_dropped > 0 ||
-                      camera.host_dropped > 0 || unsent > 0 || !all_written;
+    const bool lost = lost_data(end_counters) || unsent > 0 || !all_written;
     return settings_.strict && lost ? exit_data_lost : exit_done;
 }
 
@@ -64,11 +62,6 @@ bool Run::wrote_all_data() const {
     if (recorded_) say(settings_.record, recorded_->data());
     if (events_out_) say(settings_.events_out, events_out_->data());
     return all;
-}
-
-CameraCounters Run::camera_counters() const {
-    const auto* camera = dynamic_cast<const Camera*>(opened_.source.get());
-    return camera == nullptr ? CameraCounters{} : camera->counters();
 }
 
 }  // namespace eventide::app

@@ -46,6 +46,7 @@ SinkPlan Run::sink_plan() {
     plan.reference_caption = reference_caption(sensor_);
     plan.questions.stopping = [this] {
         waits_.add();
+        start_.goes_on();
         return program_.signals.stopping();
     };
     plan.questions.lost = [this] { return pipeline_->snapshot().lost(); };

@@ -1,11 +1,16 @@
 // What the user may say about an input.
 #include "apps/cli/settings/input_settings.h"
 
+#include "drivers/devices.h"
+#include "drivers/simulated/simulated_name.h"
 #include "pipeline/filters/data_filter.h"
 #include "replay/formats.h"
+#include "src/core/error.h"
 
 #include <spdlog/spdlog.h>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace eventide::app {
@@ -73,8 +78,25 @@ Setting filter_setting(std::vector<std::string>& filters) {
                             data_filter_names() + ".");
 }
 
+namespace {
+
+/// Of a command that reads recordings only.
+void refuse_camera(const std::string& path) {
+    std::error_code none;
+    if (!names_camera(path) && !names_simulation(path)) return;
+    if (std::filesystem::exists(path, none)) return;
+    throw Error(ErrorKind::usage,
+                "'" + path + "': expected a recording, found the name of a " +
+                    (names_camera(path)
+                         ? "camera; eventide run " + path + " --record FILE makes a recording of it"
+                         : "simulation; eventide simulate makes a recording"));
+}
+
+}  // namespace
+
 std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input,
                                       std::function<bool()> give_up) {
+    refuse_camera(path);
     OpenOptions options = input.options();
     options.give_up = std::move(give_up);
     auto recording = open_recording(path, options);

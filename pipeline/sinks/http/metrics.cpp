@@ -43,9 +43,18 @@ private:
     std::string text_;
 };
 
+void add_camera(Text& text, const CameraCounters& camera) {
+    for (std::size_t i = 0; i < kCameraCounts; ++i) {
+        const CameraCountWords& words = words_of(CameraCount(i));
+        text.counter("camera_" + std::string{words.name} + "_total", words.help,
+                     camera[CameraCount(i)]);
+    }
+}
+
 void add_line(Text& text, const Snapshot& now) {
     text.counter("packets_total", "Packets read from the source.", now.packets);
     text.counter("bytes_total", "Bytes read from the source.", now.bytes);
+    if (now.camera) add_camera(text, *now.camera);
     text.counter("lost_packets_total", "Packets that no buffer was free for.", now.lost_packets);
     text.counter("lost_bytes_total", "Bytes of lost packets.", now.lost_bytes);
     text.counter("gaps_total", "Places where bytes are missing.", now.gaps);

@@ -46,6 +46,24 @@ TEST(RunReport, JsonIsOneLineWithEveryCounter) {
     EXPECT_TRUE(nlohmann::json::parse(stats_json({}, {}, false))["flicker_hz"].is_null());
 }
 
+TEST(RunReport, EveryCountOfACameraIsInJsonAndWhatWentWrongInTheSummary) {
+    EXPECT_TRUE(nlohmann::json::parse(stats_json(busy(), {}, false))["camera"].is_null());
+    Snapshot now = busy();
+    now.camera.emplace();
+    EXPECT_EQ(summary_text(now, {}).find("camera"), std::string::npos);
+    for (std::size_t i = 0; i < kCameraCounts; ++i)
+        now.camera->set(CameraCount(i), 1000 * std::uint64_t(i + 1));
+    const auto json = nlohmann::json::parse(stats_json(now, {}, false))["camera"];
+    EXPECT_EQ(json.size(), kCameraCounts);
+    EXPECT_EQ(json["transfers"], 1000);
+    EXPECT_EQ(json["dropped_events"], 3000);
+    EXPECT_EQ(json["reconnects"], 8000);
+    EXPECT_TRUE(summary_text(now, {}).ends_with(
+        "\ncamera: dropped events 3000, lost transfers 4000, damaged transfers 5000, cut transfers "
+        "6000, stalls 7000, reconnects 8000"))
+        << summary_text(now, {});
+}
+
 TEST(RunReport, JsonNamesAModelWhoseFileNameIsNoUtf8) {
     RunProgress progress;
     progress.quality.emplace();
@@ -101,6 +119,13 @@ TEST(RunReport, StrictMeansLossAndDamageAndNotSkippedFrames) {
     Snapshot now;
     now.skipped_frames = 9;
     EXPECT_FALSE(lost_data(now));
+    now.camera.emplace();
+    now.camera->set(CameraCount::bytes, 9);
+    now.camera->set(CameraCount::reconnects, 1);
+    EXPECT_FALSE(lost_data(now));
+    now.camera->set(CameraCount::lost_transfers, 1);
+    EXPECT_TRUE(lost_data(now));
+    now.camera.reset();
     now.gaps = 1;
     EXPECT_TRUE(lost_data(now));
     EXPECT_TRUE(lost_data(busy()));

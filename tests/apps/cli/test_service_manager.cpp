@@ -1,4 +1,5 @@
 // What a service manager hears, by the protocol of sd_notify(3).
+#include "apps/cli/run/start_watch.h"
 #include "apps/cli/service_manager.h"
 #include "tests/support/manager_socket.h"
 #include "tests/system/process.h"
@@ -9,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 
 namespace eventide::app {
@@ -63,6 +65,30 @@ TEST_F(ServiceManagerTest, TheWatchdogOfAnotherProcessIsNotOurs) {
     setenv("WATCHDOG_PID", std::to_string(getpid()).c_str(), 1);
     setenv("WATCHDOG_USEC", "often", 1);
     EXPECT_FALSE(ServiceManager{}.watchdog());
+}
+
+TEST_F(ServiceManagerTest, AStartIsAliveBehindAWaitForItsSourceButNotForEver) {
+    test::ManagerSocket socket{temp_ / "notify"};
+    setenv("NOTIFY_SOCKET", (temp_ / "notify").c_str(), 1);
+    setenv("WATCHDOG_USEC", "30000000", 1);
+    ServiceManager manager;
+    {
+        StartWatch start{manager, "events.fifo"};
+        start.source_is_waited_for();  // and then it is there, and the rest is opened
+        EXPECT_EQ(socket.next(), "READY=1");
+        EXPECT_EQ(socket.next(), "STATUS=waiting for events.fifo");
+        const auto until = std::chrono::steady_clock::now() + std::chrono::seconds{60};
+        int beats = 0;
+        while (beats < 3 && std::chrono::steady_clock::now() < until)
+            beats += socket.next() == "WATCHDOG=1" ? 1 : 0;
+        EXPECT_EQ(beats, 3);
+    }
+    while (socket.next() != "nothing") continue;
+    StartWatch hangs{manager, "events.fifo", std::chrono::milliseconds{0}};
+    hangs.source_is_waited_for();
+    hangs.end();
+    EXPECT_EQ(socket.next(), "STATUS=waiting for events.fifo");
+    EXPECT_EQ(socket.next(), "nothing");
 }
 
 TEST_F(ServiceManagerTest, TheJournalsStreamIsKnownByDeviceAndInode) {

@@ -46,6 +46,9 @@ TEST(StatusLine, FitsAnyWidth) {
     Snapshot crowded = busy();
     crowded.lost_packets = crowded.skipped_frames = 123'456'789;
     crowded.damaged.count(DamageReason::unknown_word, 123'456'789);
+    crowded.camera.emplace();
+    for (std::size_t i = 0; i < kCameraCounts; ++i)
+        crowded.camera->set(CameraCount(i), 123'456'789);
     RunProgress live = of_a_recording();
     live.in_step = true;
     for (std::size_t columns = 20; columns <= 200; ++columns)
@@ -68,6 +71,20 @@ TEST(StatusLine, KeepsWhatMattersOnATerminalOf40Columns) {
     live.in_step = true;
     live.elapsed = 5s;
     expect_parts(status_line(busy(), live, 39), {"12/34 ms", "lost 2", "skipped 3", "damaged 5"});
+}
+
+TEST(StatusLine, ShowsWhatWentWrongWithTheCamera) {
+    Snapshot now = busy();
+    now.camera.emplace();
+    now.camera->set(CameraCount::transfers, 9);
+    EXPECT_EQ(status_line(now, of_a_recording(), 200).find("camera"), std::string::npos);
+    now.camera->set(CameraCount::dropped_events, 1'200'000);
+    now.camera->set(CameraCount::reconnects, 1);
+    expect_parts(status_line(now, of_a_recording(), 200),
+                 {"damaged 5  camera: dropped events 1200000, reconnects 1"});
+    expect_parts(status_line(now, of_a_recording(), 120), {"damaged 5  camera drop 1.2M back 1"});
+    expect_parts(status_line(now, of_a_recording(), 39),
+                 {"50 %", "1.8x", "0:05", "lost 2", "skip 3", "dam 5"});
 }
 
 TEST(StatusLine, LatencyIsOfRunsInStepWithTheWorldAndSpeedOfTheOthers) {

@@ -33,6 +33,7 @@ int UsbTestbed::Parts::answer(gulong request, UMockdevIoctlData* arg) {
         case USBDEVFS_CLEAR_HALT:
             return clear_halt(arg);
         case USBDEVFS_CLAIMINTERFACE:
+            return faults.claimed ? EBUSY : 0;
         case USBDEVFS_RELEASEINTERFACE:
         case USBDEVFS_SETCONFIGURATION:
         case USBDEVFS_SETINTERFACE:

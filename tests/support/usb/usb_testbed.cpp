@@ -10,14 +10,25 @@
 
 namespace eventide::testing_support {
 
-UsbTestbed::UsbTestbed() : parts_(std::make_unique<Parts>()) {
+namespace {
+
+UMockdevTestbed* new_bus() {
     if (!runs_in_testbed())
         throw std::runtime_error("the USB testbed needs umockdev's preload library");
-    parts_->testbed.reset(umockdev_testbed_new());
-    parts_->handler.reset(umockdev_ioctl_base_new());
-    g_signal_connect(parts_->handler.get(), "handle-ioctl", G_CALLBACK(&Parts::on_ioctl),
-                     parts_.get());
+    return umockdev_testbed_new();
 }
+
+}  // namespace
+
+UsbTestbed::Parts::Parts(UMockdevTestbed* bus) : testbed(bus), handler(umockdev_ioctl_base_new()) {
+    g_signal_connect(handler.get(), "handle-ioctl", G_CALLBACK(&Parts::on_ioctl), this);
+}
+
+UsbTestbed::UsbTestbed() : parts_(std::make_unique<Parts>(new_bus())) {}
+
+UsbTestbed::UsbTestbed(UsbTestbed& same_bus)
+    : parts_(std::make_unique<Parts>(
+          static_cast<UMockdevTestbed*>(g_object_ref(same_bus.parts_->testbed.get())))) {}
 
 UsbTestbed::~UsbTestbed() {
     unplug();
@@ -80,6 +91,11 @@ void UsbTestbed::unplug_after(int requests) {
 int UsbTestbed::requests() const {
     const std::lock_guard lock{parts_->mutex};
     return parts_->requests;
+}
+
+void UsbTestbed::give_to_another_program() {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.claimed = true;
 }
 
 void UsbTestbed::stall_control(int requests) {

@@ -11,11 +11,13 @@
 
 namespace eventide::testing_support {
 
-/// One bus with at most one camera on it. The camera may be plugged in and out at any time from any
-/// thread.
+/// A bus with a place for one camera, and for more where there are several of these. The camera may
+/// be plugged in and out at any time from any thread.
 class UsbTestbed {
 public:
     UsbTestbed();
+    /// One more place on the same bus.
+    explicit UsbTestbed(UsbTestbed& same_bus);
     ~UsbTestbed();
     UsbTestbed(const UsbTestbed&) = delete;
     UsbTestbed& operator=(const UsbTestbed&) = delete;
@@ -30,6 +32,8 @@ public:
 
     // Faults of the bus; each lasts until it is set back.
 
+    /// Another program has claimed the camera.
+    void give_to_another_program();
     /// The next control requests stall.
     void stall_control(int requests);
     /// Control requests are answered only after somebody looked so many times whether they were;

@@ -31,12 +31,15 @@ struct UsbUrb {
 
 /// What goes wrong; see UsbTestbed.
 struct UsbFaults {
+    bool claimed = false;  // by another program
     int control_stalls = 0, control_delay = 0, halts = 0, loses_byte_of_every = 0;
     int unplug_after = -1, message_error = 0;
     std::size_t transfer_limit = 0, memory = SIZE_MAX;
 };
 
 struct UsbTestbed::Parts {
+    explicit Parts(UMockdevTestbed* bus);
+
     Owned<UMockdevTestbed> testbed;
     Owned<UMockdevIoctlBase> handler;
     std::mutex mutex;  // for all below: requests come on umockdev's thread

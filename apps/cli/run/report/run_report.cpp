@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace eventide::app {
@@ -32,6 +33,13 @@ Json json_of(const Damage& damage) {
     Json counts = Json::object();
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         counts[std::string{name_of(DamageReason(i))}] = damage[DamageReason(i)];
+    return counts;
+}
+
+Json json_of(const CameraCounters& camera) {
+    Json counts = Json::object();
+    for (std::size_t i = 0; i < kCameraCounts; ++i)
+        counts[std::string{words_of(CameraCount(i)).name}] = camera[CameraCount(i)];
     return counts;
 }
 
@@ -63,7 +71,7 @@ std::uint64_t events_within(const Snapshot& end) {
 
 bool lost_data(const Snapshot& end) {
     return end.lost_packets > 0 || end.gaps > 0 || end.damaged.total() > 0 ||
-           end.slicing.too_many > 0;
+           end.slicing.too_many > 0 || (end.camera && end.camera->lost_data());
 }
 
 std::string summary_text(const Snapshot& end, const RunProgress& progress) {
@@ -80,6 +88,9 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     for (std::size_t i = 0; i < kDamageReasons; ++i)
         if (const auto n = end.damaged[DamageReason(i)]; n > 0)
             text += "\n  " + std::string{name_of(DamageReason(i))} + ": " + std::to_string(n);
+    if (end.camera)
+        if (const std::string camera = camera_text(*end.camera, false); !camera.empty())
+            text += "\n" + camera;
     return text;
 }
 
@@ -102,18 +113,20 @@ std::string why_no_frames(const Snapshot& end) {
     return "no frame: what was asked for is shorter than the time between two frames (--fps)";
 }
 
-std::string camera_text(const CameraCounters& camera) {
+std::string camera_text(const CameraCounters& camera, bool brief) {
     std::string text;
-    const auto say = [&](const char* what, std::uint64_t n) {
-        if (n > 0)
-            text += (text.empty() ? "\ncamera: " : ", ") + std::string{what} + std::to_string(n);
-    };
-    say("events dropped by itself ", camera.device_dropped);
-    say("datagrams or buffers that were not taken in time ", camera.host_dropped);
-    say("came back ", camera.reconnects);
-    say("stalls cleared ", camera.halts);
-    say("transfers cut within a word ", camera.odd_transfers);
-    return text;
+    for (std::size_t i = 0; i < kCameraCounts; ++i) {
+        const CameraCountWords& words = words_of(CameraCount(i));
+        const std::uint64_t n = camera[CameraCount(i)];
+        if (words.kind == CameraCountKind::traffic || n == 0) continue;
+        std::string name{brief ? words.brief : words.name};
+        std::ranges::replace(name, '_', ' ');
+        if (brief)
+            text += " " + name + " " + tight_count(n);
+        else
+            text += (text.empty() ? ": " : ", ") + name + " " + std::to_string(n);
+    }
+    return text.empty() ? "" : "camera" + text;
 }
 
 std::string stats_json(const Snapshot& now, const RunProgress& progress, bool final) {
@@ -131,6 +144,7 @@ std::string stats_json(const Snapshot& now, const RunProgress& progress, bool fi
     json["bytes"] = now.bytes;
     json["lost_packets"] = now.lost_packets;
     json["lost_bytes"] = now.lost_bytes;
+    json["camera"] = now.camera ? json_of(*now.camera) : Json(nullptr);
     json["gaps"] = now.gaps;
     json["filtered_events"] = now.filtered_events;
     json["flicker_hz"] = now.flicker.hz > 0 ? Json(now.flicker.hz) : Json(nullptr);

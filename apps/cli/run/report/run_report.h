@@ -2,7 +2,6 @@
 #pragma once
 
 #include "apps/cli/run/quality/quality_report.h"
-#include "drivers/camera.h"
 #include "pipeline/counters.h"
 
 #include <chrono>
@@ -29,8 +28,9 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress);
 /// Why a run gave no frame, for people; empty when it gave some.
 std::string why_no_frames(const Snapshot& end);
 
-/// What happened between a camera and the pipeline; empty where nothing did.
-std::string camera_text(const CameraCounters& camera);
+/// "camera: dropped events 12, reconnects 1": what went wrong between it and this machine; empty
+/// where nothing did. Of `brief` words: "camera drop 12 back 1".
+std::string camera_text(const CameraCounters& camera, bool brief);
 
 /// One JSON object in one line. docs/usage.md names the keys.
 std::string stats_json(const Snapshot& now, const RunProgress& progress, bool final);

@@ -12,10 +12,22 @@ namespace eventide::app {
 
 namespace {
 
-enum Part : std::size_t { share, speed, left, rate, window, frames, quality, latency, losses };
+enum Part : std::size_t {
+    share,
+    speed,
+    left,
+    rate,
+    window,
+    frames,
+    quality,
+    latency,
+    losses,
+    camera
+};
 // What people watch a run for goes last.
-constexpr std::size_t kGivesWay[]{quality, window,  share,  frames, quality, rate, losses, share,
-                                  speed,   latency, losses, left,   latency, left, speed};
+constexpr std::size_t kGivesWay[]{camera, quality, window,  share, frames,  quality,
+                                  rate,   losses,  share,   speed, latency, losses,
+                                  camera, left,    latency, left,  speed};
 
 template <typename... Args>
 std::string text_of(const char* format, Args... args) {
@@ -26,13 +38,6 @@ std::string text_of(const char* format, Args... args) {
 
 double milliseconds(std::chrono::nanoseconds duration) {
     return std::chrono::duration<double, std::milli>(duration).count();
-}
-
-/// Without the space before the unit.
-std::string tight_count(std::uint64_t n) {
-    std::string text = short_count(double(n));
-    std::erase(text, ' ');
-    return text;
 }
 
 LinePart losses_part(const Snapshot& now) {
@@ -97,7 +102,7 @@ double share_done(const Snapshot& now, const RunProgress& progress) {
 std::string status_line(const Snapshot& now, const RunProgress& progress, std::size_t columns) {
     const bool ends = progress.total_bytes > 0 || progress.end || progress.duration;
     const double done = share_done(now, progress);
-    std::vector<LinePart> parts(losses + 1);
+    std::vector<LinePart> parts(camera + 1);
     if (ends) parts[share] = share_part(done);
     if (ends) parts[left] = left_part(progress.elapsed, done);
     parts[speed] = speed_part(now, progress);
@@ -107,6 +112,8 @@ std::string status_line(const Snapshot& now, const RunProgress& progress, std::s
     parts[quality] = quality_part(progress);
     parts[latency] = latency_part(now, progress);
     parts[losses] = losses_part(now);
+    if (now.camera)
+        parts[camera] = {camera_text(*now.camera, false), camera_text(*now.camera, true), ""};
     return fitted_line(parts, kGivesWay, columns);
 }
 

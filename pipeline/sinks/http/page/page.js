@@ -350,12 +350,20 @@ const plots = {
   latency: new Plot($("plot-latency"), ["--warn", "--accent"], milliseconds),
 };
 
+/// What went wrong between a camera and the machine: beside it only traffic is counted.
+function incidents(camera) {
+  return Object.entries(camera || {})
+    .filter(([name, count]) => name !== "transfers" && name !== "bytes" && count > 0)
+    .map(([name, count]) => ["Camera: " + name.replaceAll("_", " "), count, true]);
+}
+
 function showCounters(run) {
   const lines = [
     ["Events", run.events], ["Event windows", run.event_windows], ["Frames", run.frames],
     ["Lost packets", run.lost_packets, true], ["Skipped frames", run.skipped_frames, true],
     ["Merged windows", run.merged_windows, true], ["Gaps", run.gaps, true],
     ["Damaged", Object.values(run.damaged).reduce((a, b) => a + b, 0), true],
+    ...incidents(run.camera),
   ];
   $("counters").replaceChildren(...lines.map(([name, value, warns]) => {
     const row = document.createElement("tr");

@@ -147,12 +147,16 @@ TEST(HttpSink, TellsCountersAsPrometheusReadsThem) {
     settings.snapshot = [] {
         Snapshot now;
         now.events = 12'345'678'901;
+        now.camera.emplace();
+        now.camera->set(CameraCount::dropped_events, 7);
         return now;
     };
     const auto sink = open_page(std::move(settings));
     const auto answer = client_of(*sink).Get("/metrics");
     EXPECT_THAT(answer->get_header_value("Content-Type"), HasSubstr("version=0.0.4"));
     EXPECT_THAT(answer->body, HasSubstr("\neventide_events_total 12345678901\n"));
+    EXPECT_THAT(answer->body, HasSubstr("\neventide_camera_dropped_events_total 7\n"));
+    EXPECT_THAT(answer->body, HasSubstr("\neventide_camera_reconnects_total 0\n"));
     const std::regex comment{"# (HELP|TYPE) eventide_[a-z_]+ .+"},
         sample{R"re(eventide_[a-z_]+(\{[a-z]+="[a-z0-9_.]+"\})? [0-9.e+-]+)re"};
     std::istringstream lines{answer->body};

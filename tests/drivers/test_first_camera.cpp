@@ -1,0 +1,99 @@
+// Several cameras of a kind on one bus: the first that can be used is the one that is opened.
+#include "drivers/usb/dvs128_camera.h"
+#include "tests/drivers/davis_streams.h"
+#include "tests/drivers/usb_sessions.h"
+#include "tests/support/usb/dvs128_model.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eventide::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using testing_support::DavisModel;
+using testing_support::DavisModelSettings;
+using testing_support::Dvs128Model;
+using testing_support::UsbTestbed;
+
+/// Two places, of which libusb may list either first.
+class FirstCamera : public testing::TestWithParam<int> {
+protected:
+    UsbTestbed& one() { return GetParam() == 0 ? bed_ : neighbour_; }
+    UsbTestbed& other() { return GetParam() == 0 ? neighbour_ : bed_; }
+    void plug_in(std::shared_ptr<testing_support::UsbModel> into_one,
+                 std::shared_ptr<testing_support::UsbModel> into_other) {
+        one().plug_in(std::move(into_one), {.port = 2 + GetParam(), .address = 5 + GetParam()});
+        other().plug_in(std::move(into_other), {.port = 3 - GetParam(), .address = 6 - GetParam()});
+    }
+    static std::shared_ptr<DavisModel> davis(const char* serial, std::uint32_t logic = 18) {
+        DavisModelSettings settings;
+        settings.serial = serial;
+        settings.logic = logic;
+        return std::make_shared<DavisModel>(settings);
+    }
+    DavisOptions any() {
+        DavisOptions options = at_once();
+        options.warn = [this](const std::string& text) { warnings_.push_back(text); };
+        return options;
+    }
+
+    UsbTestbed bed_, neighbour_{bed_};
+    std::vector<std::string> warnings_;
+};
+INSTANTIATE_TEST_SUITE_P(AtEitherPlace, FirstCamera, testing::Values(0, 1));
+
+TEST_P(FirstCamera, IsOneThatNoOtherProgramHas) {
+    plug_in(davis("00000042"), davis("00000043"));
+    one().give_to_another_program();
+    for (int times = 0; times < 2; ++times) EXPECT_EQ(DavisCamera{any()}.info().serial, "00000043");
+    for (const std::string& warning : warnings_)
+        EXPECT_THAT(warning,
+                    AllOf(HasSubstr("'00000042'"), HasSubstr("in use by another program")));
+}
+
+TEST_P(FirstCamera, IsOneWhoseProtocolIsKnown) {
+    plug_in(davis("00000042", 20), davis("00000043"));
+    EXPECT_EQ(DavisCamera{any()}.info().serial, "00000043");
+    for (const std::string& warning : warnings_)
+        EXPECT_THAT(warning, AllOf(HasSubstr("'00000042'"), HasSubstr("another protocol")));
+}
+
+TEST_P(FirstCamera, WhereNoneCanBeUsedEachSaysWhy) {
+    plug_in(davis("00000042"), davis("00000043", 20));
+    one().give_to_another_program();
+    EXPECT_THAT(failure_of([&] { DavisCamera{any()}; }),
+                AllOf(HasSubstr("none of the 2 DAVIS found can be used"),
+                      HasSubstr("the DAVIS '00000042'"), HasSubstr("in use by another program"),
+                      HasSubstr("the DAVIS '00000043'"), HasSubstr("another protocol")));
+    EXPECT_THAT(warnings_, ElementsAre());
+}
+
+TEST_P(FirstCamera, IsNoOtherThanTheOneThatWasNamed) {
+    plug_in(davis("00000042"), davis("00000043"));
+    one().give_to_another_program();
+    DavisOptions named = any();
+    named.serial = "00000042";
+    EXPECT_THAT(failure_of([&] { DavisCamera{named}; }),
+                AllOf(HasSubstr("'00000042'"), HasSubstr("in use by another program"),
+                      Not(HasSubstr("00000043"))));
+}
+
+TEST_P(FirstCamera, OfAnotherKindIsFoundInTheSameWay) {
+    plug_in(std::make_shared<Dvs128Model>(), std::make_shared<Dvs128Model>());
+    one().give_to_another_program();
+    Dvs128Options options;
+    options.waits = kNoWaits;
+    EXPECT_EQ(Dvs128Camera{options}.info().name, "DVS128");
+}
+
+}  // namespace
+}  // namespace eventide::test
