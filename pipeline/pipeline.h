@@ -16,6 +16,7 @@
 #include "pipeline/stop_request.h"
 #include "src/binning/binner.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <thread>
@@ -32,6 +33,14 @@ struct PipelineBuffers {
 /// Of a recording, which waits: it needs no more than one being filled and one being read, and of
 /// the small packets a few.
 inline constexpr PipelineBuffers kBuffersOfRecording{.packets = 8, .grids = 2, .latents = 2};
+
+/// Packets of a live source, each of so many bytes at most, that hold a burst of 8 MiB: a fifth of
+/// a second of a full USB 2 bus. 64 where that is not known, and never less.
+constexpr std::size_t packets_of_burst(std::size_t packet_bytes) {
+    constexpr std::size_t kBurstBytes = std::size_t{8} << 20, kFewest = 64, kMost = 1024;
+    if (packet_bytes == 0) return kFewest;
+    return std::clamp(kBurstBytes / packet_bytes, kFewest, kMost);
+}
 
 struct PipelineSettings {
     int bins = 5;  ///< B of the model

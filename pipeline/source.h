@@ -6,6 +6,7 @@
 
 #include <eventide/event.h>
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -29,6 +30,9 @@ public:
     /// sources may set `into.gap_before`. Throws Error of kind device when a camera is lost, of
     /// kind input when a file cannot be read.
     virtual ReadStatus read(RawPacket& into) = 0;
+
+    /// What one packet holds at most; 0: any number of bytes.
+    virtual std::size_t packet_bytes() const { return 0; }
 
     virtual void stop() noexcept = 0;  ///< any thread; a waiting read() returns end soon
     virtual std::unique_ptr<Parser> make_parser() const = 0;

@@ -82,6 +82,10 @@ void UsbCamera::open() {
     selector_.bus = selector_.address = -1;
 }
 
+std::size_t UsbCamera::packet_bytes() const {
+    return device_ ? fitting(transfers_, device_->identity().superspeed).bytes : 0;
+}
+
 void UsbCamera::start() {
     dropped_until_now_ = dropped(*device_);
     drops_are_told_ = true;

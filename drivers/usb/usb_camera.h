@@ -47,6 +47,7 @@ class UsbCamera : public Camera {
 public:
     const SensorInfo& info() const override { return info_; }
     ReadStatus read(RawPacket& into) final;
+    std::size_t packet_bytes() const final;
     void stop() noexcept final;
     const std::string& logic() const { return logic_; }  ///< "18 patch 1"; empty where it has none
 

@@ -54,6 +54,7 @@ TEST(Dvs128Camera, GivesTheEventsThatTheCameraSawAtEachTransferSize) {
         Dvs128Options options = at_once();
         options.settings.transfers.bytes = kib << 10;
         Dvs128Camera camera{options};
+        EXPECT_EQ(camera.packet_bytes(), kib << 10);
         const Batch got = stream_scene(camera, side.bed, *side.model);
         EXPECT_EQ(got.events, side.seen.events) << kib << " KiB";
         ASSERT_EQ(got.triggers.size(), 2U);

@@ -39,6 +39,14 @@ TEST(Pipeline, ARecordingWaitsForASlowSinkAndLosesNothing) {
     EXPECT_LE(furthest, 4U + 2U + 2U + 4U) << "pressure must walk back to the source";
 }
 
+TEST(Pipeline, HoldsABurstOfALiveSourceHoweverSmallItsPacketsAre) {
+    EXPECT_EQ(packets_of_burst(0), 64U);
+    EXPECT_EQ(packets_of_burst(std::size_t{128} << 10), 64U);
+    EXPECT_EQ(packets_of_burst(std::size_t{8} << 10), 1024U)
+        << "8 MiB, a fifth of a second at USB 2";
+    EXPECT_EQ(packets_of_burst(1024), 1024U);
+}
+
 TEST(Pipeline, ALiveSourceLosesWhatASlowModelCannotTakeAndSaysSo) {
     constexpr std::size_t kPackets = 400, kReleasedAt = 200;
     PipelineSettings settings = quick_settings();

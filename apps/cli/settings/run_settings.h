@@ -116,7 +116,7 @@ struct RunSettings {
     int sheet_rows = 4;
 
     // machinery
-    int buffers_packets = 64;
+    std::optional<int> buffers_packets;                 ///< empty: as many as a burst needs
     std::optional<int> buffers_grids, buffers_latents;  ///< empty: 3 of a live source, else 2
     bool sequential = false;
 
