@@ -33,10 +33,10 @@ public:
         SensorDuration silence_margin{30'000};
     };
 
-    /// filter and observer may be null; both are borrowed.
     /// Live: a clock that is farther ahead at once was set.
     static constexpr SensorDuration kMostAhead{60'000'000};
 
+    /// filter and observer may be null; both are borrowed.
     EventWindows(const Source& source, const Settings& settings, EventFilter* filter,
                  DataObserver* observer, Counters& counters);
 

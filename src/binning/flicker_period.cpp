@@ -127,14 +127,14 @@ void FlickerPeriod::note(const Event& event) noexcept {
     ++counted_;
 }
 
-FlickerPeriod::Sums FlickerPeriod::sums() const noexcept {
-    Sums sums{};
-    std::partial_sum(state_.intervals.begin(), state_.intervals.end(), sums.begin() + 1);
-    return sums;
+FlickerPeriod::Cumulative FlickerPeriod::cumulative() const noexcept {
+    Cumulative before{};
+    std::partial_sum(state_.intervals.begin(), state_.intervals.end(), before.begin() + 1);
+    return before;
 }
 
 /// Of bins whose middle lies within.
-FlickerPeriod::Comb FlickerPeriod::comb(const Sums& sums, double period_us) noexcept {
+FlickerPeriod::Comb FlickerPeriod::comb(const Cumulative& before, double period_us) noexcept {
     double whole = 0, between = 0;
     int wholes = 0, betweens = 0;
     const auto add = [&](double from, double to, double& intervals, int& bins) {
@@ -142,7 +142,7 @@ FlickerPeriod::Comb FlickerPeriod::comb(const Sums& sums, double period_us) noex
             return std::clamp(int(std::ceil(periods * period_us / kBinUs - .5)), 0, kBins);
         };
         const int first = edge(from), end = edge(to);
-        intervals += sums[std::size_t(end)] - sums[std::size_t(first)];
+        intervals += before[std::size_t(end)] - before[std::size_t(first)];
         bins += end - first;
     };
     for (int n = 0; n <= kPeriods; ++n) {
@@ -208,12 +208,12 @@ bool FlickerPeriod::is_in_step(double period_us, double excess, double least) co
 
 /// 0 where there is none.
 double FlickerPeriod::period_of_block() const noexcept {
-    const Sums sums = this->sums();
+    const Cumulative before = cumulative();
     Comb best;
     double found = 0;
     const auto look_at = [&](double period) {
         const bool known = is_as_before(period, state_.period_us);
-        const Comb tried = comb(sums, period);
+        const Comb tried = comb(before, period);
         if (!is_periodic(tried, known ? kContrastAsBefore : kContrast)) return;
         if (tried.excess <= best.excess) return;
         if (!is_in_step(period, tried.excess, known ? kInStepAsBefore : kInStep)) return;

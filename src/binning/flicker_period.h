@@ -79,9 +79,9 @@ private:
     bool is_in_step(double period_us, double excess, double least) const noexcept;
     double in_phase(double period_us, int part) const noexcept;
     void end_block() noexcept;
-    using Sums = std::array<std::uint32_t, kBins + 1>;  // of the intervals in all bins before
-    Sums sums() const noexcept;
-    static Comb comb(const Sums& sums, double period_us) noexcept;
+    using Cumulative = std::array<std::uint32_t, kBins + 1>;  // intervals in all bins before
+    Cumulative cumulative() const noexcept;
+    static Comb comb(const Cumulative& before, double period_us) noexcept;
     double refined(double period_us) const noexcept;
     double period_of_block() const noexcept;
 

@@ -40,8 +40,11 @@ void mirror(const VoxelGrid& grid, Mirror axes, VoxelGrid& into) noexcept {
                       into.touched.values().data());
 }
 
-void mirror(const Array2<float>& map, Mirror axes, Array2<float>& into) noexcept {
-    mirror_pixels(map.values().data(), map.height(), map.width(), 1, axes, into.values().data());
+void mirror(Array2<float>& map, Mirror axes) noexcept {
+    const int height = map.height();
+    for (int y = 0; axes.x && y < height; ++y) std::ranges::reverse(map.row(y));
+    for (int y = 0; axes.y && y < height / 2; ++y)
+        std::ranges::swap_ranges(map.row(y), map.row(height - 1 - y));
 }
 
 FrameGeometry mirror(FrameGeometry geometry, Mirror axes) noexcept {

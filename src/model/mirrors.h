@@ -18,9 +18,10 @@ struct Mirror {
 constexpr std::array<Mirror, 4> kMirrors{
     {{false, false}, {true, true}, {true, false}, {false, true}}};
 
-/// Of the same size, with the stamp.
+/// Into one of the same size, with the stamp.
 void mirror(const VoxelGrid& grid, Mirror axes, VoxelGrid& into) noexcept;
-void mirror(const Array2<float>& map, Mirror axes, Array2<float>& into) noexcept;
+/// In place.
+void mirror(Array2<float>& map, Mirror axes) noexcept;
 /// The same part of the frame where it lies in the mirrored frame.
 FrameGeometry mirror(FrameGeometry geometry, Mirror axes) noexcept;
 

@@ -24,13 +24,13 @@ bool pays_by_winograd(const plain::ConvWeights<float>& weights, int stride,
 
 PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                        const Backend& backend, std::vector<Extent> extents,
-                       std::vector<int> sources, Sums sums)
+                       std::vector<int> sources, Summation summation)
     : stride_(stride),
       side_(weights.side),
       inputs_(weights.in),
       outputs_(weights.out),
       sources_(std::move(sources)),
-      as_one_(sums == Sums::as_one),
+      as_one_(summation == Summation::as_one),
       numbers_(backend) {
     if (sources_.empty()) sources_ = {weights.in};
     assert(std::accumulate(sources_.begin(), sources_.end(), 0) == weights.in);
@@ -41,7 +41,7 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
                                                      std::move(extents));
         return;
     }
-    if (sums != Sums::by_pixel && pays_by_winograd(weights, stride, backend)) {
+    if (summation != Summation::by_pixel && pays_by_winograd(weights, stride, backend)) {
         winograd_ = std::make_shared<const WinogradConv>(weights, sources_, relu, backend);
         return;
     }

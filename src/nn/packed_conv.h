@@ -14,7 +14,7 @@
 namespace eventide {
 
 /// How a layer's products are summed up.
-enum class Sums {
+enum class Summation {
     best,      ///< map by map, or by Winograd's sums of a group of outputs where those pay
     as_one,    ///< the same, as if all channels lay in one map
     by_pixel,  ///< map by map: no output's bits hang on what its neighbours read
@@ -28,7 +28,7 @@ public:
     /// where it is empty.
     PackedConv(const plain::ConvWeights<float>& weights, int stride, bool relu,
                const Backend& backend, std::vector<Extent> extents = {},
-               std::vector<int> sources = {}, Sums sums = Sums::best);
+               std::vector<int> sources = {}, Summation summation = Summation::best);
 
     const Numbers& numbers() const { return numbers_; }
     /// Outputs of a row that are rounded together, counted from a region's first: where what one of

@@ -176,6 +176,18 @@ TEST(Binner, AHotPixelOfTenMillionEventsNeitherOverflowsNorLosesItsSpread) {
     }
 }
 
+TEST(Binner, ABusyPixelKeepsItsSpreadAcrossAWideBin) {
+    // As many as the sums of squares times their number still fit, and just more.
+    for (const int n : {60'000, 65'535, 65'536}) {
+        std::vector<Event> events(static_cast<std::size_t>(n));
+        for (int i = 0; i < n; ++i)
+            events[std::size_t(i)] = event(1 + std::int64_t(i) * 500'000 / n, 0, 0);
+        const EventWindow window = event_window_of(events, 0, 500'000);
+        const VoxelGrid grid = grid_of(window, 1);
+        EXPECT_NEAR(grid.values(0, 0, 2), oracle(window, 1, 1, 1)(0, 0, 2), 1e-6F) << n;
+    }
+}
+
 TEST(Binner, CountsFramesSinceTheLastEvent) {
     Binner binner(2, kHeight, kWidth);
     VoxelGrid grid = binner.make_output();

@@ -39,6 +39,17 @@ TEST(HotPixels, AreTakenBackWhenTheyHaveCalmedDown) {
     EXPECT_FALSE(hot.is_hot(at(5'000'000, 7, 9)));
 }
 
+TEST(HotPixels, StayHotUntilTheyFireLessThanHalfAsOften) {
+    // Hot at 20 Hz; then 12 Hz for a while, then 8 Hz: six and four in half a second.
+    HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+    int ms = 0;
+    for (; ms < 1000; ms += 10) hot.is_hot(at(1000 * ms, 7, 9));
+    for (; ms < 4000; ms += 83) hot.is_hot(at(1000 * ms, 7, 9));
+    EXPECT_EQ(hot.count(), 1U) << "12 Hz";
+    for (; ms < 6000; ms += 125) hot.is_hot(at(1000 * ms, 7, 9));
+    EXPECT_EQ(hot.count(), 0U) << "8 Hz";
+}
+
 TEST(HotPixels, AreForgottenByAReset) {
     HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
     const HotPixels::State fresh = hot.state();

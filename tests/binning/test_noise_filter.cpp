@@ -170,6 +170,24 @@ TEST(NoiseFilter, LeavesOutTheNoiseOfAStillSceneAndKeepsWhatMovesInIt) {
     EXPECT_GT(edge.size(), all * 9 / 10);
 }
 
+TEST(NoiseFilter, WhatFiresFarMoreThanTheRestIsNoNoiseHoweverLongItGoesOn) {
+    // 1 Hz of noise for 20 s; one part of the sensor fires seven times as much, and alone.
+    constexpr int kSide = 64;
+    NoiseFilter filter{kSide, kSide, {}};
+    Events events = random_events(80'000, kSide, kSide, 1e6 / (1. * kSide * kSide));
+    for (const Event& event : random_events(7'680, 8, 8, 1e6 / (6. * 8 * 8)))
+        events.push_back(event);
+    std::ranges::stable_sort(events, {}, &Event::t);
+    filter.process(events);
+    const std::vector<NoiseFilter::Tile> tiles = filter.state().tiles;
+    const double quiet = filter.noise_hz() * 8 * 8 * .25;  // events of a tile and an interval
+    EXPECT_GT(quiet, 0);
+    for (const NoiseFilter::Tile& tile : tiles) {
+        EXPECT_GE(tile.noise, quiet * .999);
+        EXPECT_LE(tile.noise, 4 * quiet * 1.001);
+    }
+}
+
 TEST(NoiseFilter, LeavesOutHotPixelsAndTheirSupport) {
     constexpr int kSide = 32;
     Events events = random_events(10'000, kSide, kSide, 1e6 / (1. * kSide * kSide));

@@ -57,6 +57,21 @@ TEST(SlicerContent, OneHotPixelEndsNoWindow) {
                     event_window.end_us - event_window.begin_us == 50'000);
 }
 
+TEST(SlicerContent, ATileFullOfHotPixelsEndsNoWindowOfAnySensor) {
+    // Of few tiles: a sixteenth of them is less than two.
+    const std::vector<Event> events = moving(1, 1, 2000, 200);
+    for (const auto& [width, height] : {std::pair{64, 32}, {128, 96}, {160, 120}}) {
+        Slicer slicer(by_content(.4), width, height);
+        slicer.push(events);
+        std::vector<Kept> event_windows;
+        take(slicer, event_windows);
+        ASSERT_GE(event_windows.size(), 3U);
+        for (const Kept& event_window : event_windows)
+            EXPECT_EQ(event_window.end_us - event_window.begin_us, 50'000)
+                << width << 'x' << height;
+    }
+}
+
 /// A contour as high as the sensor that passes a pixel in `us_per_px`, each with `each` events.
 std::vector<Event> passing(int each, int us_per_px) {
     std::vector<Event> events;

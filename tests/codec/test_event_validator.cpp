@@ -54,5 +54,22 @@ TEST(EventValidator, TimesThatAreNoneAreLeftOutWhereverTheyStand) {
     }
 }
 
+// A leap of a second, and what follows it: at the same time, later, or before it.
+TEST(EventValidator, ALeapIsBelievedWhenWhatFollowsDoesNotLieBeforeIt) {
+    const auto events_of = [](std::int64_t next_us) {
+        EventValidator validator(10, 10);
+        Batch batch;
+        Damage damage;
+        for (const std::int64_t t :
+             {std::int64_t{100}, std::int64_t{200}, std::int64_t{1'000'200}, next_us})
+            validator.add(t, 1, 1, true, batch, damage);
+        return batch.events.size();
+    };
+    EXPECT_EQ(events_of(1'000'200), 4U);
+    EXPECT_EQ(events_of(1'000'300), 4U);
+    EXPECT_EQ(events_of(1'000'199), 2U) << "and is a leap itself";
+    EXPECT_EQ(events_of(300), 3U);
+}
+
 }  // namespace
 }  // namespace eventide

@@ -160,6 +160,29 @@ TEST(LossyClock, ALostWrapIsSeenByATimeThatWouldGoBack) {
     EXPECT_EQ(damage[DamageReason::time_corrected], 1U);
 }
 
+/// What the camera's own words say is not taken back, however early they seem.
+TEST(LossyClock, TakesBackNoMoreThanItGuessed) {
+    IniVationClock<15> clock;
+    Damage damage;
+    const auto arrives = [&](std::int64_t us) {
+        clock.arrives(HostTime{std::chrono::microseconds{us}}, damage);
+    };
+    arrives(0);
+    clock.timestamp(0, damage);
+    arrives(10'000);
+    clock.timestamp(10'000, damage);
+    clock.forget();
+    arrives(60'000);
+    clock.timestamp(20'000, damage);
+    EXPECT_EQ(clock.us(), 32'768 + 20'000) << "one wrap is guessed";
+    arrives(61'000);
+    clock.wrap(3, damage);
+    arrives(62'000);  // so much was impossible by two wraps, of which one was a guess
+    clock.wrap(2, damage);
+    EXPECT_EQ(clock.us(), (3 + 2) * 32'768);
+    EXPECT_EQ(damage[DamageReason::time_corrected], 2U);
+}
+
 TEST(LossyClock, WithoutALossNothingIsSetRight) {
     const Minute minute = run({.late_us = 40'000, .stall_us = 200'000, .host_rate = 1.0001});
     EXPECT_EQ(minute.errors.events, 48'000U - 1);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -100,6 +101,49 @@ TEST(SigmaScale, FindsTheFactorThatIsMissing) {
     scale.add(drawn.mu, drawn.sigma, drawn.truth);
     EXPECT_NEAR(scale.by_likelihood(), 1.7, .02);
     EXPECT_NEAR(scale.by_coverage(), 1.7, .03);
+}
+
+TEST(SigmaScale, ByCoverageIsRightToHalfAPercent) {
+    // Errors of one size: 80 % of them are inside where the interval just reaches them.
+    Array2<float> mu(3, 4), sigma(3, 4), truth(3, 4);
+    std::ranges::fill(sigma.values(), .125F);
+    for (float z = .25F; z < 4; z *= 1.0037F) {
+        std::ranges::fill(truth.values(), z * .125F);
+        SigmaScale scale;
+        scale.add(mu, sigma, truth);
+        EXPECT_NEAR(scale.by_coverage() * 1.2815516 / double(z), 1, .0052) << z;
+    }
+}
+
+TEST(SigmaScale, SaysWhatAFactorWillDo) {
+    const Drawn drawn{1.3F};
+    SigmaScale scale;
+    scale.add(drawn.mu, drawn.sigma, drawn.truth);
+    for (const float factor : {.7F, 1.F, 1.003F, 1.006F, 1.3F, 2.F}) {
+        const Array2<float> sigma = mapped(drawn.sigma, [&](float s) { return factor * s; });
+        EXPECT_NEAR(scale.coverage_80_after(double(factor)),
+                    coverage_80(drawn.mu, sigma, drawn.truth), .001)
+            << factor;
+        EXPECT_NEAR(scale.log_likelihood_after(double(factor)),
+                    log_likelihood(drawn.mu, sigma, drawn.truth), 1e-5)
+            << factor;
+    }
+}
+
+TEST(SigmaScale, OfTwoPartsIsThatOfTheWhole) {
+    const Drawn first{.6F}, second{1.9F};
+    SigmaScale whole, part;
+    whole.add(first.mu, first.sigma, first.truth);
+    whole.add(second.mu, second.sigma, second.truth);
+    part.add(second.mu, second.sigma, second.truth);
+    SigmaScale sum;
+    sum.add(first.mu, first.sigma, first.truth);
+    sum += part;
+    EXPECT_EQ(sum.pixels(), whole.pixels());
+    EXPECT_EQ(sum.by_coverage(), whole.by_coverage());
+    EXPECT_NEAR(sum.by_likelihood(), whole.by_likelihood(), 1e-12);
+    EXPECT_NEAR(sum.log_likelihood_after(1.1), whole.log_likelihood_after(1.1), 1e-12);
+    EXPECT_NEAR(sum.coverage_80_after(1.1), whole.coverage_80_after(1.1), 1e-12);
 }
 
 TEST(SigmaScale, IsOneBeforeAnyImage) {

@@ -160,6 +160,12 @@ TEST(Encoder, AStateOfAnotherModelOrSizeIsRefused) {
     EXPECT_EQ(refusal(encoder, encoder.state()), "accepted");
 }
 
+TEST(Encoder, AModelWhoseShapeCannotBeIsRefused) {
+    Model model = test::random_model(test::small_config(), 1);
+    model.config.latent_stride = 0;
+    EXPECT_THROW(Encoder(model, 16, 16), Error);
+}
+
 TEST(Encoder, ImpossibleSizesAreRefused) {
     const Model model = test::random_model(test::small_config(), 1);
     EXPECT_THROW(Encoder(model, 0, 10), Error);

@@ -128,6 +128,13 @@ TEST(FusedRenderer, AnImageThatIsOlderThanTheOneBeforeIsDropped) {
     EXPECT_EQ(given.dropped, 1U);
 }
 
+TEST(FusedRenderer, OfTwoImagesOfOneTimeTheLaterCounts) {
+    const GivenInSilence given = given_in_silence({{.3F, 0}, {.6F, 0}});
+    EXPECT_NEAR(given.shown, .6, 1e-3);
+    EXPECT_EQ(given.used, 2U);
+    EXPECT_EQ(given.dropped, 0U);
+}
+
 TEST(FusedRenderer, ImagesOfTheClockBeforeAreDropped) {
     Chain chain{0};
     const Window window = chain.encode_next(Kind::patch);

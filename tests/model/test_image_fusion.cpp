@@ -68,6 +68,8 @@ TEST_F(ImageFusionTest, AnImageComesInOverItsWindowWithoutAJump) {
     advance(150);
     EXPECT_NEAR(shown(100.001).intensity(9, 9), .8F, 1e-4);
     EXPECT_NEAR(shown(75).intensity(9, 9), .6F, 1e-4) << "of the window before, too";
+    advance(200);
+    EXPECT_NEAR(shown(75).intensity(9, 9), .6F, 1e-4) << "and of the one before that";
 }
 
 TEST_F(ImageFusionTest, FromItsTimeOnAnImageCountsWhole) {

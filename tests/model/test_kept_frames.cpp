@@ -2,6 +2,7 @@
 // within the stated bound elsewhere, and work that follows what changes.
 #include "src/model/encode/encoder.h"
 #include "src/model/render/renderer.h"
+#include "src/nn/tiling.h"
 #include "tests/model/streams.h"
 #include "tests/support/random_model.h"
 
@@ -9,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -114,6 +117,10 @@ protected:
         renderer.render(request, frame);
         return frame;
     }
+    void expect_same(Renderer& copying, Renderer& judge, int thousandths) const {
+        const Frame a = render(copying, thousandths), b = render(judge, thousandths);
+        EXPECT_TRUE(std::ranges::equal(a.intensity.values(), b.intensity.values()));
+    }
     /// The most that outputs can differ where the first layer's inputs differ by `change` at most.
     double most_of(const std::vector<double>& change) const {
         std::vector<double> reach = change;
@@ -197,6 +204,40 @@ TEST_F(KeptFramesOfCodes, TimeStaysWithinTheBound) {
         EXPECT_LE(test::worst(a.intensity.values(), b.intensity.values()), most + 1e-5) << k;
     }
     EXPECT_LT(copying.pixels_rendered(), judge.pixels_rendered() / 2);
+}
+
+TEST_F(KeptFramesOfCodes, WhatChangedAfterAFrameOfLongAgoIsSeen) {
+    // Changes are kept account of for 16 windows.
+    Renderer copying{model_, kWidth, kHeight, with_copies(0, 0)};
+    Renderer judge{model_, kWidth, kHeight, without_copies()};
+    for (int k = 1; k <= 30; ++k) {
+        next_window();
+        if (k == 4) latent_.values.pixel(110, 170)[0] += .5F;
+        push(copying);
+        push(judge);
+        if (k == 2 || k == 30) expect_same(copying, judge, 600);
+    }
+}
+
+TEST_F(KeptFramesOfCodes, WhatChangesAcrossATilesEdgeIsSeen) {
+    // The encoder says whose codes are new; samples at the edges of the tiles beside read them.
+    const std::vector<Tile> tiles = latent_tiles(kHeight, kWidth);
+    const std::size_t middle = tiles.size() / 2 + 5;
+    const Tile tile = tiles[middle];
+    Renderer copying{model_, kWidth, kHeight, with_copies(0, 0)};
+    Renderer judge{model_, kWidth, kHeight, without_copies()};
+    latent_.history = {1, 1, std::vector<std::uint64_t>(tiles.size(), 1)};
+    for (const auto& [y, x] : {std::pair{tile.y0, tile.x0}, {tile.y1 - 1, tile.x1 - 1}})
+        for (int k = 0; k < 5; ++k, ++latent_.history.step) {
+            next_window();
+            if (k == 4) {
+                latent_.values.pixel(y, x)[0] += .5F;
+                latent_.history.changed[middle] = latent_.history.step;
+            }
+            push(copying);
+            push(judge);
+            expect_same(copying, judge, 1000);
+        }
 }
 
 TEST_F(KeptFramesOfCodes, ResetForgetsThem) {

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <string>
 #include <utility>
 
 namespace eventide {
@@ -96,6 +99,57 @@ TEST(Renderer, SaysWhatItCanRender) {
     EXPECT_EQ(renderer.readiness(end_of(6) + SensorDuration{1}, 0), Readiness::gone);
     renderer.reset();
     EXPECT_EQ(renderer.readiness(end_of(6), 0), Readiness::later);
+}
+
+TEST(Renderer, AFrameArrivedWithTheNewestWindowItMayRead) {
+    const ModelConfig config = config_of(1);
+    Renderer renderer{test::random_model(config, 3), 13, 9};
+    const auto at = [](int k) { return HostTime{std::chrono::milliseconds{k}}; };
+    for (int k = 1; k <= 4; ++k) {
+        LatentMap latent = random_latent(config, 9, 13, k);
+        latent.arrived = at(k);
+        renderer.push(latent);
+    }
+    renderer.finish();
+    const auto arrived = [&](int k, int lookahead) {
+        const RenderRequest request{.t = random_latent(config, 1, 1, k).window.end,
+                                    .lookahead = lookahead};
+        Frame frame = renderer.make_output(request);
+        renderer.render(request, frame);
+        return frame.arrived;
+    };
+    EXPECT_EQ(arrived(3, 0), at(3));
+    EXPECT_EQ(arrived(3, 1), at(4));
+    EXPECT_EQ(arrived(4, 2), at(4)) << "the live edge";
+}
+
+TEST(Renderer, SigmaOfAMixtureIsANumberWhereItsMembersAreAlike) {
+    // Members that say the same, and are sure of it: what rounding leaves of the variance is as
+    // often below 0 as above.
+    ModelConfig config = config_of(1);
+    config.log_sigma_min = -40;
+    Model model = test::random_model(config, 3);
+    std::ranges::fill(model.weights.at("renderer.mlp.0.weight").values, 0.0F);
+    const std::string last = "renderer.mlp." + std::to_string(config.mlp.size());
+    model.weights.at(last + ".bias").values[1] = -1000;
+    for (const Engine engine : {Engine::plain, Engine::fast}) {
+        EngineOptions options;
+        options.engine = engine;
+        Renderer renderer{model, 13, 9, options};
+        for (int k = 1; k <= 3; ++k) renderer.push(random_latent(config, 9, 13, k));
+        const Window window = random_latent(config, 1, 1, 2).window;
+        const RenderRequest request{.t = window.begin + window.width() / 3,
+                                    .width = 40,
+                                    .height = 31,
+                                    .lookahead = 1,
+                                    .sigma_rule = SigmaRule::mixture};
+        Frame frame = renderer.make_output(request);
+        renderer.render(request, frame);
+        for (const float sigma : frame.sigma.values()) {
+            ASSERT_GE(sigma, 0);
+            ASSERT_LT(sigma, 1e-2F);
+        }
+    }
 }
 
 TEST(Renderer, ImpossibleRequestsAreRefused) {

@@ -159,7 +159,7 @@ TEST(Quads, AMapInThreeGivesTheSameBits) {
         const float* first = split.data();
         const std::ptrdiff_t pitch = std::ptrdiff_t(kSide) * units;
         EXPECT_EQ(
-            run({weights, 1, true, backend, {}, {8, 8, 8}, Sums::as_one},
+            run({weights, 1, true, backend, {}, {8, 8, 8}, Summation::as_one},
                 {.in = {{{first, pitch}, {first + plane, pitch}, {first + 2 * plane, pitch}}}}),
             run({weights, 1, true, backend}, {.in = {{{whole.data(), 3 * pitch}}}}))
             << name_of(backend);

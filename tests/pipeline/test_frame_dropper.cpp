@@ -44,9 +44,11 @@ TEST(FrameDropper, KeepsAsManyAsThereIsTimeForEvenlyAndTheNewest) {
 
 TEST(FrameDropper, KeepsTheNewestHoweverSlowRenderingIs) {
     FrameDropper dropper(2);
-    const auto kept = kept_of(dropper, 7, 500ms, 50);
-    EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 1);
-    EXPECT_TRUE(kept.back());
+    for (const std::size_t waiting : {0U, 1U}) {
+        const auto kept = kept_of(dropper, 7, 500ms, 50, waiting);
+        EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 1);
+        EXPECT_TRUE(kept.back());
+    }
 }
 
 TEST(FrameDropper, RecoversWhenRenderingIsQuickAgain) {
@@ -59,6 +61,35 @@ TEST(FrameDropper, LeavesFramesOutWhileEventWindowsPileUp) {
     FrameDropper dropper(2);
     for (const bool kept : kept_of(dropper, 10, 1ms, 5, 2)) EXPECT_FALSE(kept);
     for (const bool kept : kept_of(dropper, 10, 1ms, 5, 1)) EXPECT_TRUE(kept);
+}
+
+TEST(FrameDropper, CountsTheFramesOfAHalvedRateByTheirNumbersOnTheClock) {
+    // Every fourth number, wherever the window begins.
+    const auto kept = [](std::uint64_t first, std::uint64_t frames) {
+        FrameDropper dropper(2);
+        dropper.open({.first = first, .frames = frames, .halvings = 2, .in_time = 1}, HostTime{});
+        std::vector<std::uint64_t> numbers;
+        for (std::uint64_t number = first; number < first + frames; ++number)
+            if (dropper.keeps_next(0)) numbers.push_back(number);
+        return numbers;
+    };
+    EXPECT_EQ(kept(5, 7), (std::vector<std::uint64_t>{8})) << "all there are";
+    EXPECT_EQ(kept(5, 8), (std::vector<std::uint64_t>{12})) << "one of two: the newer";
+    EXPECT_TRUE(kept(5, 3).empty());
+}
+
+TEST(FrameDropper, OfAWindowThatIsTooLateTheNewestFrameIsKeptWhereNothingNewerIsThere) {
+    const auto kept = [](double in_time, std::size_t waiting) {
+        FrameDropper dropper(2);
+        dropper.open({.frames = 6, .in_time = in_time}, HostTime{});
+        std::vector<std::uint64_t> numbers;
+        for (std::uint64_t i = 0; i < 6; ++i)
+            if (dropper.keeps_next(waiting)) numbers.push_back(i);
+        return numbers;
+    };
+    EXPECT_EQ(kept(2, 1), (std::vector<std::uint64_t>{2, 5}));
+    EXPECT_EQ(kept(0, 0), (std::vector<std::uint64_t>{5}));
+    EXPECT_TRUE(kept(0, 1).empty()) << "the next window's frames will be newer";
 }
 
 }  // namespace

@@ -227,6 +227,30 @@ TEST(LatencyKeeper, OneLongPauseMakesItLeaveNothingOut) {
     EXPECT_FALSE(keeper.takes_packet(64)) << "it has become slow for good";
 }
 
+TEST(LatencyKeeper, LearnsFromTheQuickestOfTheFirst) {
+    LatencyKeeper keeper{200ms};
+    keeper.packet_took(1ms);
+    keeper.packet_took(30ms);  // memory of its own is cold
+    EXPECT_TRUE(keeper.takes_packet(50));
+    EXPECT_FALSE(keeper.takes_packet(51));
+}
+
+TEST(LatencyKeeper, AnIdleEncoderTakesAWindowHoweverLongItWillBusyIt) {
+    LatencyKeeper keeper{200ms};
+    for (int i = 0; i < 8; ++i) keeper.window_took(400ms);
+    EXPECT_TRUE(keeper.hands_on(0)) << "waiting would make it no sooner";
+    EXPECT_FALSE(keeper.hands_on(1));
+}
+
+TEST(LatencyKeeper, NoFrameOfAWindowOlderThanTheBoundIsInTime) {
+    LatencyKeeper keeper{200ms};
+    EXPECT_FALSE(keeper.frames_in_time(0ms)) << "nothing is known";
+    keeper.frame_took(20ms);
+    EXPECT_NEAR(keeper.frames_in_time(100ms).value(), 5, 1e-9);
+    EXPECT_EQ(keeper.frames_in_time(1s), 0);
+    EXPECT_FALSE((LatencyKeeper{{}}.frames_in_time(0ms)));
+}
+
 TEST(LatencyKeeper, TakesPacketsWhileTheyCanBeParsedInTime) {
     LatencyKeeper keeper{200ms};
     EXPECT_TRUE(keeper.takes_packet(64)) << "nothing is known";
@@ -243,6 +267,20 @@ EventWindow event_window_of(std::int64_t begin_us, std::int64_t end_us,
     event_window.events = events;
     event_window.arrived = HostTime{std::chrono::microseconds{end_us}};
     return event_window;
+}
+
+TEST(EncoderGate, NeverHasMoreWindowsWithTheEncoderThanThereAreBuffers) {
+    // Nothing is known yet, so no window is thought to be late; but a fourth would wait.
+    LatencyKeeper keeper{200ms};
+    std::size_t lent = 0;
+    EncoderGate gate{
+        keeper, {.most = 3}, [&] { return lent; }, [&](const EventWindow&) { ++lent; }};
+    for (int k = 0; k < 6; ++k) gate.take(event_window_of(10'000 * k, 10'000 * (k + 1), {}));
+    EXPECT_EQ(lent, 3U);
+    EXPECT_EQ(gate.merged(), 2U) << "the fourth waits, and two more with it";
+    lent = 2;
+    gate.look_again();
+    EXPECT_EQ(lent, 3U);
 }
 
 TEST(WindowMerger, IsAllItsWindowsAndNothingElse) {
@@ -269,6 +307,9 @@ TEST(WindowMerger, IsAllItsWindowsAndNothingElse) {
     EXPECT_TRUE(merger.empty());
     merger.add(event_window_of(20, 30, first));
     EXPECT_EQ(merger.take().events.size(), 1U);
+    merger.add(broken);
+    merger.add(event_window_of(20, 30, {}));
+    EXPECT_TRUE(merger.take().gap_before) << "before the first of them";
 }
 
 }  // namespace

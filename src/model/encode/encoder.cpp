@@ -23,15 +23,13 @@ void check_size(int width, int height) {
 }  // namespace
 
 Encoder::Encoder(const Model& model, int width, int height, const EngineOptions& options)
-    : width_(width),
-      height_(height),
-      bins_(model.config.bins),
-      latent_height_(latent_samples(height, model.config.latent_stride)),
-      latent_width_(latent_samples(width, model.config.latent_stride)),
-      latent_channels_(model.config.latent) {
+    : width_(width), height_(height), bins_(model.config.bins) {
     check_size(width, height);
     check_model(model, "encoder");
     check_self_ensemble(options.self_ensemble);
+    latent_height_ = latent_samples(height, model.config.latent_stride);
+    latent_width_ = latent_samples(width, model.config.latent_stride);
+    latent_channels_ = model.config.latent;
     identity_ = encoder_identity(model);
     for (int view = 0; view < options.self_ensemble; ++view)
         cores_.push_back(options.engine == Engine::plain

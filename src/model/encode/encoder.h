@@ -46,9 +46,9 @@ private:
     /// `grid` is [height][width][4 bins + 1].
     void step(const VoxelGrid& grid, LatentMap& latent) noexcept override;
 
-    // identity_: encoder_identity() of the model, which saved states carry.
-    int width_, height_, bins_, latent_height_, latent_width_, latent_channels_;
-    std::string identity_;
+    int width_, height_, bins_;
+    int latent_height_ = 0, latent_width_ = 0, latent_channels_ = 0;
+    std::string identity_;  // encoder_identity() of the model, which saved states carry
     // One for each view of the ensemble (kMirrors).
     std::vector<std::unique_ptr<EncoderCore>> cores_;
     VoxelGrid mirrored_;  // the grid as a view sees it

@@ -19,9 +19,10 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
       latent_size_(levels[top_].size()) {
     const auto conv = [&](const std::string& name, bool relu, const std::vector<Tile>& tiles,
                           Extent size, const std::vector<int>& sources = {},
-                          Sums sums = Sums::best) {
-        return PackedConv{plain::conv_weights<float>(model.weights, name), 1,       relu, backend,
-                          extents_of(tiles, 0, size.height, size.width),   sources, sums};
+                          Summation summation = Summation::best) {
+        return PackedConv{
+            plain::conv_weights<float>(model.weights, name), 1,       relu,     backend,
+            extents_of(tiles, 0, size.height, size.width),   sources, summation};
     };
     // A worker's scratch: what is joined for a layer, then what the layer needs itself.
     const auto need = [&](std::size_t joined, const PackedConv& made, int side) {
@@ -47,10 +48,10 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
     // layer, 64 of the sensor's; and so small a map gains no time by them.
     for (std::size_t i = 0; i < std::size_t(model.config.res_blocks); ++i) {
         const std::string name = encoder_layer("res", i);
-        const Block& block = blocks_.emplace_back(
-            Block{conv(name + ".0", true, deepest.tiles(), deepest.size(), {}, Sums::by_pixel),
-                  conv(name + ".1", false, deepest.tiles(), deepest.size(), {}, Sums::by_pixel),
-                  map, map, sum});
+        const Block& block = blocks_.emplace_back(Block{
+            conv(name + ".0", true, deepest.tiles(), deepest.size(), {}, Summation::by_pixel),
+            conv(name + ".1", false, deepest.tiles(), deepest.size(), {}, Summation::by_pixel), map,
+            map, sum});
         // A row of h in float32, for add().
         need(std::size_t(deepest.side() * widths_.back()), block.first, deepest.side());
         need(0, block.second, deepest.side());

@@ -53,8 +53,8 @@ InputMaps input_maps(int channels, const Backend& backend) {
     return best;
 }
 
-/// With zeros for channels that are not there.
-/// (outputs x inputs x taps) to (outputs x more inputs x taps): an output's weights stay in front.
+/// With zeros for channels that are not there: (outputs x inputs x taps) to (outputs x more inputs
+/// x taps), an output's weights in front.
 plain::ConvWeights<float> with_inputs(const plain::ConvWeights<float>& weights, int inputs) {
     plain::ConvWeights<float> wider{weights.out, inputs, {}, weights.bias, weights.side};
     const std::size_t taps = std::size_t(weights.side) * std::size_t(weights.side),
@@ -93,7 +93,7 @@ GatedLevel::GatedLevel(const Model& model, std::size_t number, Extent size, cons
            backend,
            extents_of(tiles_, gru_.reach(), size.height, size.width),
            std::vector<int>(std::size_t(maps_), map_channels_),
-           maps_ > 1 ? Sums::as_one : Sums::best};
+           maps_ > 1 ? Summation::as_one : Summation::best};
 }
 
 void GatedLevel::make_gru(const Model& model, const Backend& backend) {
@@ -115,9 +115,6 @@ void GatedLevel::make_gru(const Model& model, const Backend& backend) {
 //     held         the next state of a tile | what feed() needs
 //     feed()       top: the grid, [map][y][x][channels] with a rim | a row of it, then in_'s
 //                  below: in_'s
-//
-// Scratch of a level that is not recurrent: a tile's next state, and what feed() needs. Of the top
-// level: the compressed grid as layers read it, then a row of it in float32.
 std::size_t GatedLevel::scratch_size() const {
     const int side = side_ + 2 * gru_.reach();
     const auto wide = std::size_t(side + 2);
@@ -161,7 +158,8 @@ void GatedLevel::write(PaddedMap& h, const Tile& tile, const float* next) const 
     }
 }
 
-/// a_l in a region.
+/// a_l in a region:
+///
 /// a_0 = relu(in * T(grid)), a_l = relu(down.l * h_{l-1}) with stride 2, so that output (y, x) is
 /// centred on (2 y, 2 x) of the level above, and its first input is (2 y - 1, 2 x - 1).
 void GatedLevel::feed(const Array3<float>& grid, const std::vector<StateMap>& states,

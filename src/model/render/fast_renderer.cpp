@@ -94,7 +94,7 @@ void FastRenderer::lay_out(const FrameGeometry& geometry) {
     size.geometry = geometry;
 }
 
-std::array<const FirstLayerCache::Sums*, 2> FastRenderer::bring_sums(
+std::array<const FirstLayerCache::WindowSums*, 2> FastRenderer::bring_sums(
     const CodeChoice& codes, const AxisSamples& t) noexcept {
     const std::int64_t k = codes.k + t.index;
     // What a fading live edge shows of the event window before was made without z_k.

@@ -45,8 +45,8 @@ private:
     struct Job {
         const FrameGeometry& geometry;
         SigmaRule rule;
-        AxisSamples t, still_t;                            ///< of its time, and of the window's end
-        std::array<const FirstLayerCache::Sums*, 2> sums;  ///< of the samples with a weight
+        AxisSamples t, still_t;  ///< of its time, and of the window's end
+        std::array<const FirstLayerCache::WindowSums*, 2> sums;  ///< of the samples with a weight
     };
     /// One member of the local ensemble for a whole row: a sample row, and what its offset adds.
     struct Member {
@@ -69,8 +69,8 @@ private:
     Job job_of(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule) noexcept;
     const FrameLayout& layout() const { return sizes_[size_].layout; }
     void lay_out(const FrameGeometry& geometry);
-    std::array<const FirstLayerCache::Sums*, 2> bring_sums(const CodeChoice& codes,
-                                                           const AxisSamples& t) noexcept;
+    std::array<const FirstLayerCache::WindowSums*, 2> bring_sums(const CodeChoice& codes,
+                                                                 const AxisSamples& t) noexcept;
     FrameKind kind_of(const CodeChoice& codes, const Job& job, bool has_sigma) const noexcept;
     /// Fills spans_ with what of the kept frame is out of date, and stamps it.
     void find_outdated(const CodeChoice& codes, const Job& job, KeptFrame& kept) noexcept;

@@ -56,7 +56,7 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
     // Read again for each row (a pitch of 0): a tile's width and its rim.
     zeros_ = {1, kLatentSide, numbers_.units(depth_)};
     for (LatentHistory& history : histories_) history.changed.reserve(tiles_.size());
-    for (Sums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
+    for (WindowSums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
     // All count as changed until push() says otherwise.
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
     active_.reserve(tiles_.size());
@@ -67,7 +67,7 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
 }
 
 void FirstLayerCache::reset() noexcept {
-    for (Sums& sums : kept_) sums.k = 0;
+    for (WindowSums& sums : kept_) sums.k = 0;
     newest_ = 0;
 }
 
@@ -176,7 +176,7 @@ bool FirstLayerCache::around(int tile, const StaleTiles& since) const noexcept {
 
 /// Whether a tile of `from` already holds what event window k would give: every code it reads is
 /// the one read then.
-bool FirstLayerCache::unchanged(const Sums& from, std::int64_t k, bool whole,
+bool FirstLayerCache::unchanged(const WindowSums& from, std::int64_t k, bool whole,
                                 std::size_t tile) const noexcept {
     if (!options_.skip_quiet || from.k < 1 || from.whole != whole || k < from.k) return false;
     return still(tile, from.k - 1, whole ? k + 1 : k);
@@ -190,30 +190,31 @@ bool FirstLayerCache::still(std::size_t tile, std::int64_t from, std::int64_t to
     return true;
 }
 
-const FirstLayerCache::Sums* FirstLayerCache::find(std::int64_t k, bool whole) const noexcept {
-    for (const Sums& there : kept_)
+const FirstLayerCache::WindowSums* FirstLayerCache::find(std::int64_t k,
+                                                         bool whole) const noexcept {
+    for (const WindowSums& there : kept_)
         if (there.k == k && there.whole == whole) return &there;
     return nullptr;
 }
 
-std::array<const FirstLayerCache::Sums*, 2> FirstLayerCache::pair(std::int64_t k, bool whole,
-                                                                  bool next_whole) noexcept {
+std::array<const FirstLayerCache::WindowSums*, 2> FirstLayerCache::pair(std::int64_t k, bool whole,
+                                                                        bool next_whole) noexcept {
     // The later one, if there already, must not be overwritten by the earlier.
-    const Sums& first = bring(k, whole, find(k + 1, next_whole));
+    const WindowSums& first = bring(k, whole, find(k + 1, next_whole));
     return {&first, &bring(k + 1, next_whole, &first)};
 }
 
 /// Brings one of the two kept maps to event window k; never the one to `keep`.
-const FirstLayerCache::Sums& FirstLayerCache::bring(std::int64_t k, bool whole,
-                                                    const Sums* keep) noexcept {
-    if (const Sums* there = find(k, whole)) return *there;
+const FirstLayerCache::WindowSums& FirstLayerCache::bring(std::int64_t k, bool whole,
+                                                          const WindowSums* keep) noexcept {
+    if (const WindowSums* there = find(k, whole)) return *there;
     // The one that shares most with what is wanted: of the same kind, and newest.
-    const auto worth = [&](const Sums& there) {
+    const auto worth = [&](const WindowSums& there) {
         // Sums of a later event window than wanted tell nothing: unchanged() looks forward only.
         if (&there == keep) return std::int64_t{-2};
         return there.whole == whole && there.k <= k ? there.k : std::int64_t{-1};
     };
-    Sums& to = worth(kept_[1]) > worth(kept_[0]) ? kept_[1] : kept_[0];
+    WindowSums& to = worth(kept_[1]) > worth(kept_[0]) ? kept_[1] : kept_[0];
     active_.clear();
     for (std::size_t i = 0; i < tiles_.size(); ++i)
         if (!unchanged(to, k, whole, i)) active_.push_back(int(i));
@@ -227,7 +228,7 @@ const FirstLayerCache::Sums& FirstLayerCache::bring(std::int64_t k, bool whole,
 }
 
 /// The convolution over the codes of a tile and its rim, each read where it lies.
-void FirstLayerCache::compute_tile(Sums& to, const Tile& tile, float* scratch) noexcept {
+void FirstLayerCache::compute_tile(WindowSums& to, const Tile& tile, float* scratch) noexcept {
     ConvArea call;
     for (std::size_t c = 0; c < (to.whole ? 3 : 2); ++c) {
         // The maps' own borders of zeros are what lies outside.

@@ -27,7 +27,7 @@ namespace eventide {
 class FirstLayerCache {
 public:
     /// Layer 1 without its offset part, at every sample of event window k.
-    struct Sums {
+    struct WindowSums {
         std::int64_t k = 0;  ///< 0: nothing yet
         bool whole = false;  ///< over z_{k-1..k+1}; else over z_{k-1}, z_k
         /// [y][x][H_1] in latent pixels, of the numbers that layers read
@@ -45,20 +45,21 @@ public:
     void reset() noexcept;
 
     /// The sums of event window k; valid until the call after the next.
-    const Sums& at(std::int64_t k, bool whole) noexcept { return bring(k, whole, nullptr); }
+    const WindowSums& at(std::int64_t k, bool whole) noexcept { return bring(k, whole, nullptr); }
     /// Those of k and of k + 1 together.
-    std::array<const Sums*, 2> pair(std::int64_t k, bool whole, bool next_whole) noexcept;
+    std::array<const WindowSums*, 2> pair(std::int64_t k, bool whole, bool next_whole) noexcept;
 
     /// Whether every code that the samples of a tile read is the same in all of z_from .. z_to.
     bool still(std::size_t tile, std::int64_t from, std::int64_t to) const noexcept;
 
 private:
     bool is_as_held(const LatentCodes& latent) const noexcept;
-    const Sums* find(std::int64_t k, bool whole) const noexcept;
-    const Sums& bring(std::int64_t k, bool whole, const Sums* keep) noexcept;
-    void compute_tile(Sums& to, const Tile& tile, float* scratch) noexcept;
+    const WindowSums* find(std::int64_t k, bool whole) const noexcept;
+    const WindowSums& bring(std::int64_t k, bool whole, const WindowSums* keep) noexcept;
+    void compute_tile(WindowSums& to, const Tile& tile, float* scratch) noexcept;
     bool around(int tile, const StaleTiles& since) const noexcept;
-    bool unchanged(const Sums& from, std::int64_t k, bool whole, std::size_t tile) const noexcept;
+    bool unchanged(const WindowSums& from, std::int64_t k, bool whole,
+                   std::size_t tile) const noexcept;
     /// Writes a tile of z_k; where still_codes allows, z_{k-1} as it is held in its place, so that
     /// what is held never drifts further off.
     void hold_tile(std::int64_t k, const Tile& tile, const LatentCodes& latent,
@@ -83,7 +84,7 @@ private:
     static constexpr std::int64_t kChangesKept = 16;
     std::array<std::vector<std::uint8_t>, kChangesKept> changed_;
     std::int64_t newest_ = 0;
-    std::array<Sums, 2> kept_;
+    std::array<WindowSums, 2> kept_;
     std::vector<int> active_;           // tiles to be computed
     std::vector<FloatBuffer> scratch_;  // per worker
 };

@@ -32,8 +32,7 @@ public:
 
     /// Intensities, [y][x], clipped to [0, 1]. `events`: per pixel since then; the fewer there
     /// were, the better a patch must fit elsewhere before it is taken to have moved; without any it
-    /// has not. `motion`:
-    /// where to begin, and what was found.
+    /// has not. `motion`: where to begin, and what was found.
     void find(const Array2<float>& now, const Array2<float>& then, const Array2<float>& events,
               MotionField& motion) noexcept;
 

@@ -139,7 +139,6 @@ void Renderer::make_room(const RenderRequest& request, Frame& frame) {
         cores_[view]->make_room(mirror(geometry, kMirrors[view]));
     if (cores_.size() == 1) return;
     fit(geometry, request.want_sigma, view_);
-    fit(geometry, request.want_sigma, mirrored_);
 }
 
 /// mu = mean of mu_i,  sigma = e sqrt(mean of sigma_i^2), e = error_of_mean()
@@ -149,19 +148,18 @@ void Renderer::render_views(const CodeChoice& codes, const FrameGeometry& geomet
     cores_.front()->render(codes, geometry, rule, frame.intensity, sigma);
     if (cores_.size() == 1) return;
     fit(geometry, sigma != nullptr, view_);
-    fit(geometry, sigma != nullptr, mirrored_);
     if (sigma != nullptr)
         for (float& s : sigma->values()) s *= s;
     for (std::size_t view = 1; view < cores_.size(); ++view) {
         const Mirror axes = kMirrors[view];
         cores_[view]->render(codes, mirror(geometry, axes), rule, view_.intensity,
                              sigma != nullptr ? &view_.sigma : nullptr);
-        mirror(view_.intensity, axes, mirrored_.intensity);
-        std::ranges::transform(frame.intensity.values(), mirrored_.intensity.values(),
+        mirror(view_.intensity, axes);
+        std::ranges::transform(frame.intensity.values(), view_.intensity.values(),
                                frame.intensity.values().begin(), std::plus{});
         if (sigma == nullptr) continue;
-        mirror(view_.sigma, axes, mirrored_.sigma);
-        std::ranges::transform(sigma->values(), mirrored_.sigma.values(), sigma->values().begin(),
+        mirror(view_.sigma, axes);
+        std::ranges::transform(sigma->values(), view_.sigma.values(), sigma->values().begin(),
                                [](float sum, float s) { return sum + s * s; });
     }
     const auto views = int(cores_.size());

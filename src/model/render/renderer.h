@@ -74,16 +74,16 @@ public:
     std::uint64_t pixels_rendered() const noexcept;
 
 private:
-    ModelConfig config_;
-    int sensor_width_, sensor_height_;
-    LatentWindow window_;
     /// Of the ensemble's views, in `frame` as it fits.
     void render_views(const CodeChoice& codes, const FrameGeometry& geometry, SigmaRule rule,
                       Frame& frame) noexcept;
 
+    ModelConfig config_;
+    int sensor_width_, sensor_height_;
+    LatentWindow window_;
     // One for each view of the ensemble (kMirrors).
     std::vector<std::unique_ptr<RendererCore>> cores_;
-    Frame view_, mirrored_;  // what one gives, and as the sensor sees it
+    Frame view_;  // what one of them gives
 };
 
 }  // namespace eventide

@@ -80,8 +80,10 @@ void ResidualPyramid::know(const Array2<float>& where) noexcept {
 /// m_k: mean of the residual over 2^k x 2^k px, weighted by where it is known, whose own mean is
 /// w_k; from the coarsest on
 ///
-///     r_k = c_k (m_k - up(m'_{k+1})),    m'_k = up(m'_{k+1}) + r_k,    c_k = min(1, 4 w_k), c_0 =
-///     w_0 correction = sum over k of up(rho_k r_k)
+///     r_k = c_k (m_k - up(m'_{k+1})),    m'_k = up(m'_{k+1}) + r_k
+///     c_k = min(1, 4 w_k),    c_0 = w_0
+///
+///     correction = sum over k of up(rho_k r_k)
 void ResidualPyramid::correct(const Array2<float>& residual, Array2<float>& correction) noexcept {
     copy(residual, bands_.front().mean);
     for (std::size_t k = 1; k < bands_.size(); ++k) {
