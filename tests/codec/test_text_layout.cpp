@@ -222,6 +222,22 @@ TEST(Text, OtherBytesDoNotLookLikeText) {
     EXPECT_FALSE(looks_like_text(to_bytes(std::string_view("1 2 3 0\n\0\0\1\2", 12))));
 }
 
+TEST(Text, AStatedUnitThatNoStillSceneExplainsIsSaid) {
+    std::string rows;
+    for (int i = 0; i < 500; ++i) rows += std::to_string(50 * i) + " 1 2 1\n";
+    const TextHeader seconds = read_text_header(to_bytes(rows), {.unit = TextTimeUnit::seconds});
+    EXPECT_EQ(seconds.layout.unit, TextTimeUnit::seconds) << "as stated all the same";
+    ASSERT_EQ(seconds.remarks.size(), 1U);
+    EXPECT_NE(seconds.remarks[0].find("0.02 events/s, which is slow for a sensor; taken for "
+                                      "microseconds they were 2e+04 events/s"),
+              std::string::npos)
+        << seconds.remarks[0];
+    for (const TextTimeUnit unit :
+         {TextTimeUnit::milliseconds, TextTimeUnit::microseconds, TextTimeUnit::nanoseconds})
+        EXPECT_EQ(read_text_header(to_bytes(rows), {.unit = unit}).remarks.size(),
+                  unit == TextTimeUnit::milliseconds ? 1U : 0U);
+}
+
 TEST(Text, AStatedUnitIsTakenAndAnImpossibleOneIsSaid) {
     std::string rows;
     for (int i = 0; i < 500; ++i) rows += std::to_string(5 + 1e-5 * i) + " 1 2 1\n";
