@@ -2,9 +2,9 @@
 #include "apps/cli/command_line.h"
 
 #include "apps/cli/program.h"
-#include "apps/cli/suggestion.h"
 #include "apps/cli/version.h"
 #include "src/core/error.h"
+#include "src/settings/suggestion.h"
 
 #include <CLI/CLI.hpp>
 

@@ -4,10 +4,10 @@
 #include "apps/cli/command_line.h"
 #include "apps/cli/manual.h"
 #include "apps/cli/settings/config.h"
-#include "apps/cli/suggestion.h"
 #include "apps/cli/terminal.h"
 #include "src/core/error.h"
 #include "src/io/system_words.h"
+#include "src/settings/suggestion.h"
 
 #include <poll.h>
 #include <spdlog/spdlog.h>

@@ -4,6 +4,7 @@
 #include "apps/cli/printable.h"
 #include "src/core/environment.h"
 #include "src/core/error.h"
+#include "src/settings/suggestion.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -103,8 +104,9 @@ void refuse_unknown_keys(const ConfigFile& file, const std::vector<const Setting
         for (const Setting& setting : table->settings) known.push_back(path_of(*table, setting));
     for (const auto& [path, value] : file)
         if (std::ranges::find(known, path) == known.end())
-            throw Error(ErrorKind::usage, value.place + ": unknown key '" + path +
-                                              "'; `eventide --default-config` shows all keys");
+            throw Error(ErrorKind::usage, value.place + ": unknown key '" + path + "'" +
+                                              suggestion(path, known) +
+                                              "; `eventide --default-config` shows all keys");
 }
 
 std::vector<std::string> unknown_variables(const char* const* environment,

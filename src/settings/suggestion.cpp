@@ -1,9 +1,9 @@
 // By the number of letters to insert, remove, replace or swap.
-#include "apps/cli/suggestion.h"
+#include "src/settings/suggestion.h"
 
 #include <algorithm>
 
-namespace eventide::app {
+namespace eventide {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::string suggestion(std::string_view typed, const std::vector<std::string>& w
     return best ? "; did you mean " + *best + "?" : "";
 }
 
-}  // namespace eventide::app
+}  // namespace eventide

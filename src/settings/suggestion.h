@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-namespace eventide::app {
+namespace eventide {
 
 /// "; did you mean --fps?" for the nearest of the words, empty where none is near.
 std::string suggestion(std::string_view typed, const std::vector<std::string>& words);
 
-}  // namespace eventide::app
+}  // namespace eventide

@@ -1,9 +1,9 @@
 // Words that were not understood, and what may have been meant.
-#include "apps/cli/suggestion.h"
+#include "src/settings/suggestion.h"
 
 #include <gtest/gtest.h>
 
-namespace eventide::app {
+namespace eventide {
 namespace {
 
 const std::vector<std::string> kFlags{"--fps", "--from", "--size", "--uncertainty"};
@@ -22,4 +22,4 @@ TEST(Suggestion, IsEmptyWhereNothingIsNear) {
 }
 
 }  // namespace
-}  // namespace eventide::app
+}  // namespace eventide
