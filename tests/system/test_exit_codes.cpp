@@ -168,6 +168,15 @@ TEST_F(ExitCodes, ARecordingOfWhichMostIsLeftOutIsSaidByEveryCommand) {
         << off_sensor.error;
 }
 
+TEST_F(ExitCodes, TwoIsAFileWithoutAName) {
+    for (const char* option : {"--state-out", "--state-in", "--states-out", "--record",
+                               "--events-out", "--stats", "--undistort", "--camera"})
+        expect(2, {"run", recording(), "--out", "null", option, ""},
+               std::string{option} + ": expected ");
+    expect(2, {"simulate", "--out", ""}, "--out: expected FILE|FOLDER/, found ''");
+    expect(2, {"--config", "", "info", recording()}, "--config: expected FILE, found ''");
+}
+
 TEST_F(ExitCodes, TwoIsAlsoAFullFolderWithoutOverwrite) {
     std::filesystem::create_directory(temp_ / "a");
     write_text(temp_ / "a/mine.txt", "x");
