@@ -1,5 +1,7 @@
 // Between NumPy's arrays and the library's types.
 #include "python/arrays.h"
+
+#include "python/signals.h"
 #include "src/core/sensor_limits.h"
 
 #include <eventide/error.h>
@@ -109,6 +111,19 @@ void append_events(const py::array& array, std::vector<Event>& into) {
     for (std::size_t i = 0; i < count; ++i)
         into.push_back({from_us(t.data()[i]), coordinate(x.data()[i]), coordinate(y.data()[i]),
                         on.data()[i] > 0 ? Polarity::on : Polarity::off});
+}
+
+void in_pieces(const py::array& array, std::vector<Event>& piece,
+               const std::function<void()>& take) {
+    constexpr py::ssize_t kPiece = 65536;  // events, a few milliseconds
+    check_events(array);
+    const py::ssize_t size = array.size();
+    for (py::ssize_t begin = 0; begin == 0 || begin < size; begin += kPiece) {
+        if (begin > 0) check_signals();
+        piece.clear();
+        append_events(array[py::slice(begin, std::min(begin + kPiece, size), 1)], piece);
+        take();
+    }
 }
 
 py::array array_of(std::vector<Event> events) {
