@@ -1,6 +1,7 @@
 #include "drivers/settings_file.h"
 
 #include "src/core/error.h"
+#include "src/settings/suggestion.h"
 
 #include <algorithm>
 
@@ -13,10 +14,14 @@ void read_camera_settings(const std::filesystem::path& file, const std::vector<S
         throw Error(ErrorKind::usage, "camera settings '" + file.string() +
                                           "': expected TOML as in config/cameras, found a .bias "
                                           "file of Prophesee's, which is for v4l2: cameras");
+    std::vector<std::string> known;
+    known.reserve(settings.size());
+    for (const Setting& setting : settings) known.push_back(setting.key);
     for (const SettingValue& value : read_settings_file(file).items) {
         const auto setting = std::ranges::find(settings, value.key, &Setting::key);
         if (setting == settings.end())
-            throw Error(ErrorKind::usage, value.place + ": unknown key '" + value.key + "'");
+            throw Error(ErrorKind::usage, value.place + ": unknown key '" + value.key + "'" +
+                                              suggestion(value.key, known));
         setting->set(value);
     }
 }

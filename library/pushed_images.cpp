@@ -24,6 +24,11 @@ void check_image(const ReferenceImage& image) {
                     "image: expected a corner at most " + std::to_string(kLargestSensorSide) +
                         " px from the sensor's, found one at " + std::to_string(image.x0) + "," +
                         std::to_string(image.y0));
+    if (image.exposure_end < image.exposure_begin)
+        throw Error(ErrorKind::usage,
+                    "image: expected an exposure_end not before exposure_begin, found " +
+                        std::to_string(to_us(image.exposure_end)) + " us before " +
+                        std::to_string(to_us(image.exposure_begin)) + " us");
 }
 
 /// 1 2 1 along both axes: every square of 2 x 2 sites has the same share in each pixel. Beyond an

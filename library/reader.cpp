@@ -82,7 +82,10 @@ public:
                                               "': expected a file that can be read twice, found " +
                                               (path_ == "-" ? "standard input" : "a pipe"));
         const auto again = open_recording(path_, options_);
-        const Summary summary = summarize(*again);
+        const Summary summary = summarize(*again, [this] {
+            if (options_.while_waiting) options_.while_waiting();
+            return true;
+        });
         if (!summary.first) return std::nullopt;
         return Window{*summary.first, *summary.last};
     }

@@ -1,5 +1,6 @@
 // Recordings being written, behind the public face.
 #include "library/far_time.h"
+#include "library/pushed_images.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
 #include "src/core/error.h"
@@ -75,6 +76,7 @@ private:
                                               ": expected a recording that is being written, "
                                               "found one after finish()");
         refuse_others();
+        for (const ReferenceImage& image : held_.images) check_image(image);
         refuse_steps_back();
         if (!held_.empty()) file_.write(held_);
         if (!held_.events.empty()) newest_ = held_.events.back().t;

@@ -1,6 +1,7 @@
 // Between NumPy's arrays and the library's types.
 #include "python/arrays.h"
 
+#include "python/signals.h"
 #include "src/core/sensor_limits.h"
 
 #include <eventide/error.h>
@@ -61,6 +62,26 @@ Numbers field(const py::array& array, std::initializer_list<const char*> names) 
                                       std::string(py::str(array.dtype().attr("names"))));
 }
 
+/// As numbers, what is masked would be there again.
+void refuse_mask(const py::array& array, const char* what) {
+    if (py::isinstance(array, py::module_::import("numpy.ma").attr("MaskedArray")))
+        throw Error(ErrorKind::usage,
+                    std::string{what} +
+                        ": expected an array without a mask, found a masked one; leave out what is "
+                        "masked, or take all with numpy.asarray()");
+}
+
+void check_events(const py::array& array) {
+    refuse_mask(array, "events");
+    if (array.dtype().kind() != 'V' || array.dtype().attr("fields").is_none())
+        throw Error(ErrorKind::usage,
+                    "events: expected a structured array with fields t, x, y and p, found " +
+                        std::string(py::str(array.dtype())));
+    if (array.ndim() != 1)
+        throw Error(ErrorKind::usage, "events: expected an array of one dimension, found " +
+                                          std::to_string(array.ndim()));
+}
+
 std::uint16_t coordinate(std::int64_t value) {
     return value < 0 || value > 0xffff ? 0xffff : std::uint16_t(value);
 }
@@ -82,13 +103,7 @@ py::dtype event_dtype() {
 }  // namespace
 
 void append_events(const py::array& array, std::vector<Event>& into) {
-    if (array.dtype().kind() != 'V' || array.dtype().attr("fields").is_none())
-        throw Error(ErrorKind::usage,
-                    "events: expected a structured array with fields t, x, y and p, found " +
-                        std::string(py::str(array.dtype())));
-    if (array.ndim() != 1)
-        throw Error(ErrorKind::usage, "events: expected an array of one dimension, found " +
-                                          std::to_string(array.ndim()));
+    check_events(array);
     const Numbers t = field(array, {"t", "ts", "timestamp", "time"}), x = field(array, {"x"}),
                   y = field(array, {"y"}), on = field(array, {"p", "on", "pol", "polarity"});
     const auto count = std::size_t(array.size());
@@ -96,6 +111,19 @@ void append_events(const py::array& array, std::vector<Event>& into) {
     for (std::size_t i = 0; i < count; ++i)
         into.push_back({from_us(t.data()[i]), coordinate(x.data()[i]), coordinate(y.data()[i]),
                         on.data()[i] > 0 ? Polarity::on : Polarity::off});
+}
+
+void in_pieces(const py::array& array, std::vector<Event>& piece,
+               const std::function<void()>& take) {
+    constexpr py::ssize_t kPiece = 65536;  // events, a few milliseconds
+    check_events(array);
+    const py::ssize_t size = array.size();
+    for (py::ssize_t begin = 0; begin == 0 || begin < size; begin += kPiece) {
+        if (begin > 0) check_signals();
+        piece.clear();
+        append_events(array[py::slice(begin, std::min(begin + kPiece, size), 1)], piece);
+        take();
+    }
 }
 
 py::array array_of(std::vector<Event> events) {
@@ -118,6 +146,7 @@ py::array_t<float> array_of(Array2<float> plane) {
 }
 
 Array2<float> plane_of(const py::array& array, const char* what) {
+    refuse_mask(array, what);
     if (array.ndim() != 2)
         throw Error(ErrorKind::usage, std::string{what} + ": expected an array [y, x], found " +
                                           std::to_string(array.ndim()) + " dimensions");
@@ -140,6 +169,7 @@ py::array array_of(const ReferenceImage& image) {
 }
 
 ReferenceImage image_of(const py::array& array) {
+    refuse_mask(array, "image");
     const char kind = array.dtype().kind();
     const auto size = array.dtype().itemsize();
     const bool is_grey = array.ndim() == 2, is_colour = array.ndim() == 3 && array.shape(2) == 3;

@@ -6,6 +6,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <functional>
 #include <vector>
 
 namespace eventide::python {
@@ -14,6 +15,11 @@ namespace eventide::python {
 /// `into`. Coordinates that no sensor has become ones outside every sensor. Throws Error (usage)
 /// naming the field.
 void append_events(const pybind11::array& array, std::vector<Event>& into);
+
+/// The same of a large array, piece by piece: `take` is called with each in `piece`, and signals
+/// are heard between them. An array without events is one piece.
+void in_pieces(const pybind11::array& array, std::vector<Event>& piece,
+               const std::function<void()>& take);
 
 /// A structured array (t, x, y, on) that owns these events; nothing is copied.
 pybind11::array array_of(std::vector<Event> events);

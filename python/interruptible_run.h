@@ -2,7 +2,7 @@
 // into Python.
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "python/signals.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -30,7 +30,7 @@ public:
                 close();
             }};
             while (wait()) {
-                if (!interruption && (interruption = error_of(check_signals))) stop();
+                if (!interruption && (interruption = error_of(hear_signals))) stop();
                 answer(interruption);
             }
         }
@@ -50,10 +50,6 @@ public:
 private:
     static constexpr std::chrono::milliseconds kHearsEvery{20};
 
-    static void check_signals() {
-        const pybind11::gil_scoped_acquire locked;
-        if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
-    }
     template <typename Body>
     static std::exception_ptr error_of(const Body& body) {
         try {

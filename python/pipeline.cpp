@@ -3,6 +3,7 @@
 #include "python/interruptible_run.h"
 #include "python/parts.h"
 #include "python/run_source.h"
+#include "python/signals.h"
 
 #include <eventide/error.h>
 #include <eventide/pipeline.h>
@@ -59,7 +60,7 @@ public:
 private:
     bool call(const Frame& frame) {
         const py::gil_scoped_acquire locked;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        check_signals();
         return !callable_(std::make_shared<Frame>(frame)).is(py::bool_(false));
     }
 

@@ -2,6 +2,7 @@
 #include "python/arrays.h"
 #include "python/parts.h"
 #include "python/reconstructor_options.h"
+#include "python/signals.h"
 #include "src/core/arithmetic_words.h"
 
 #include <pybind11/stl.h>
@@ -50,12 +51,13 @@ std::unique_ptr<GuardedReconstructor> make(const std::filesystem::path& model, i
 
 void push(GuardedReconstructor& self, const py::array& events, bool resets) {
     Batch batch;
-    append_events(events, batch.events);
-    self.with([&](Reconstructor& it) {
-        if (resets)
-            it.push(batch);
-        else
-            it.push(std::span<const Event>{batch.events});
+    in_pieces(events, batch.events, [&] {
+        self.with([&](Reconstructor& it) {
+            if (resets)
+                it.push(batch);
+            else
+                it.push(std::span<const Event>{batch.events});
+        });
     });
 }
 
@@ -112,7 +114,7 @@ void add_iterator(py::module_& module) {
     py::class_<Frames>(module, "_Frames")
         .def("__iter__", [](const py::object& self) { return self; })
         .def("__next__", [](Frames& self) {
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            check_signals();
             FramePointer frame = next(self.of);
             if (!frame) throw py::stop_iteration();
             return frame;
@@ -125,7 +127,8 @@ void add_events_in(Class& it) {
           "push", &push, py::arg("events"), py::arg("resets") = false,
           "Events in order of time: a structured array with the fields t (us), x, y and p, on, pol "
           "or polarity. One earlier than the one before is left out and counted or, with resets, "
-          "begins a new stream, as after a reset of the camera's clock.")
+          "begins a new stream, as after a reset of the camera's clock. Ctrl-C ends it between "
+          "two events: counters tell how many are in.")
         .def(
             "push_image", &push_image, py::arg("t"), py::arg("image"),
             py::arg("exposure") = py::none(), py::arg("at") = std::pair{0, 0},

@@ -3,6 +3,7 @@
 
 #include "python/arrays.h"
 #include "python/parts.h"
+#include "python/signals.h"
 #include "python/sources.h"
 
 #include <eventide/error.h>
@@ -50,7 +51,7 @@ public:
     void stop() noexcept override { source_.it.stop(); }
 
     bool read(Batch& batch) override {
-        if (hears_signals_) check_signals();
+        if (hears_signals_) hear_signals();
         const bool more = source_.it.read(batch);
         const std::lock_guard lock{source_.mutex};
         source_.running = source_.now();
@@ -71,11 +72,6 @@ public:
     }
 
 private:
-    static void check_signals() {
-        const py::gil_scoped_acquire locked;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    }
-
     py::object owner_;
     Source<T>& source_;
     SensorInfo info_;

@@ -1,6 +1,7 @@
 // Simulations for Python.
 #include "python/arrays.h"
 #include "python/parts.h"
+#include "python/signals.h"
 
 #include <eventide/simulation.h>
 
@@ -21,7 +22,7 @@ using Simulation = Guarded<EventSimulation>;
 
 /// (events, [(t, truth), ...]) of the next 10 ms.
 py::tuple next(Simulation& simulation) {
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    check_signals();
     Batch batch;
     std::vector<TrueImage> truths;
     if (!simulation.with([&](EventSimulation& it) { return it.read(batch, truths); }))

@@ -2,6 +2,7 @@
 #include "python/sources.h"
 
 #include "python/arrays.h"
+#include "python/signals.h"
 
 #include <eventide/error.h>
 #include <eventide/pipeline.h>
@@ -22,16 +23,6 @@ namespace eventide::python {
 namespace py = pybind11;
 
 namespace {
-
-void check_signals() {
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
-/// Of a library that waits without Python's lock.
-void hear_signals() {
-    const py::gil_scoped_acquire locked;
-    check_signals();
-}
 
 template <typename T>
 void check_free(const Source<T>& source) {

@@ -214,9 +214,10 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     app.fallthrough();
     Invocation invocation;
     bool print_defaults = false;
-    app.add_option("--config", invocation.config_file, "TOML file with settings")
-        ->type_name("FILE")
-        ->envname("EVENTIDE_CONFIG");
+    const CLI::Option* const config =
+        app.add_option("--config", invocation.config_file, "TOML file with settings")
+            ->type_name("FILE")
+            ->envname("EVENTIDE_CONFIG");
     app.add_flag("--print-config", invocation.print_config,
                  wrapped("Show each value of the command and where it comes from, and exit"));
     app.add_flag("--default-config", print_defaults,
@@ -250,6 +251,8 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     } catch (const CLI::ParseError& error) {
         throw Error(ErrorKind::usage, in_our_words(error.what()) + help_hint(command_of(app)));
     }
+    if (config->count() > 0 && invocation.config_file.empty())
+        throw Error(ErrorKind::usage, "--config: expected FILE, found ''" + help_hint({}));
     if (print_defaults) {
         std::cout << default_config();
         return {};

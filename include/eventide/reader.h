@@ -21,7 +21,8 @@ struct ReaderOptions {
     int width = 0;       ///< px, of the sensor; 0: what the recording says. Both or neither
     int height = 0;      ///< px, likewise
     /// Called every 20 ms while standard input or a pipe has no bytes: what it throws comes out of
-    /// the constructor or of read(), which may then be called again. May be empty.
+    /// the constructor or of read(), which may then be called again. Also called now and then by
+    /// span(). May be empty.
     std::function<void()> while_waiting{};
 };
 

@@ -73,6 +73,16 @@ std::multimap<std::uint64_t, fs::path> numbered_in(const fs::path& folder,
                     " says which), found another; --overwrite does not replace it");
 }
 
+/// Those that held them alone go with them; next() makes what is wanted again.
+void remove_empty_folders(const fs::path& folder, const std::vector<fs::path>& of) {
+    for (const fs::path& file : of) {
+        const fs::path parent = file.parent_path();
+        std::error_code holds_something;
+        if (parent != folder && fs::is_directory(fs::symlink_status(parent)))
+            fs::remove(parent, holds_something);
+    }
+}
+
 /// The existing files that this run would replace or mix with its own, all of an earlier run.
 std::vector<fs::path> earlier_files(const fs::path& folder, const RunFolderFiles& files) {
     const auto owned = read_record(folder, files);
@@ -131,6 +141,7 @@ void RunFolder::begin() {
     if (std::exchange(begun_, true)) return;
     try {
         for (const fs::path& file : earlier_) fs::remove(file);
+        remove_empty_folders(folder_, earlier_);
     } catch (const fs::filesystem_error& error) {
         throw Error(ErrorKind::failed,
                     error.path1().string() + ": cannot be removed: " + error.code().message());

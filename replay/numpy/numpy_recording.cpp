@@ -115,6 +115,7 @@ std::unique_ptr<DataReader> make_reader(std::unique_ptr<ByteFile> file, NumpyEve
         try {
             TextOptions stated = options.text;
             if (found.named) stated.columns.clear();
+            stated.reorder = {};  // arrays are not sorted
             text = read_text_header(std::as_bytes(std::span(rows)), stated);
         } catch (const Error& error) {
             throw Error(error.kind(), path + ": read as rows: " + error.what());

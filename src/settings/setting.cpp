@@ -60,6 +60,13 @@ Setting text_setting(std::string key, std::string& value, std::string value_name
                                        std::move(help), same_text, same_text);
 }
 
+Setting path_setting(std::string key, std::string& value, std::string value_name,
+                     std::string help) {
+    Setting setting = text_setting(std::move(key), value, std::move(value_name), std::move(help));
+    setting.names_file = true;
+    return setting;
+}
+
 Setting file_setting(std::string key, std::function<void(const SettingValue&)> set) {
     return {std::move(key), {}, {}, {}, {}, {}, std::move(set), {}};
 }

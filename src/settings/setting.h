@@ -30,6 +30,7 @@ struct Setting {
 
     std::string origin = "default";  ///< "default", "file eventide.toml:3", "environment
                                      ///< EVENTIDE_RUN_FPS", "flag --fps"
+    bool names_file = false;         ///< or a folder; empty: none, which no flag says
 };
 
 /// The settings of one command, or those all commands share (section empty).
@@ -52,6 +53,7 @@ std::string environment_of(const SettingTable& table, const Setting& setting);
 void set_from(const std::string& origin, const Setting& setting, const SettingValue& value);
 
 Setting text_setting(std::string key, std::string& value, std::string value_name, std::string help);
+Setting path_setting(std::string key, std::string& value, std::string value_name, std::string help);
 Setting flag_setting(std::string key, bool& value, std::string help = {});
 Setting list_setting(std::string key, std::vector<std::string>& value, std::string value_name,
                      std::string help);

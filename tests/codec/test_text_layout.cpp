@@ -1,9 +1,13 @@
 // What a text says of itself, and what is guessed: size, order of columns, polarities, units.
+#include "src/codec/text/text_row.h"
 #include "src/core/error.h"
 #include "tests/codec/text_checks.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -109,6 +113,61 @@ TEST(Text, WholeNumbersAreTakenInTheOrderThatMakesMostEvents) {
               3U);
 }
 
+/// Events that a sensor sends in 20 ms, in rows that a hash table, say, put in any order.
+std::vector<TextRow> rows_in_no_order() {
+    std::vector<TextRow> rows;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const std::uint32_t k = (i * 603) % 1000;
+        rows.push_back({20 * std::int64_t(k), (k * 7919) % 240, (k * 104729) % 180, k % 2 == 1});
+    }
+    return rows;
+}
+
+std::string text_of(const std::vector<TextRow>& rows, std::string_view order) {
+    std::string text;
+    for (const TextRow& row : rows)
+        for (const char column : order)
+            text += std::to_string(column == 't'   ? row.t_us
+                                   : column == 'x' ? row.x
+                                   : column == 'y' ? row.y
+                                                   : std::int64_t(row.on)) +
+                    (column == order.back() ? "\n" : " ");
+    return text;
+}
+
+TEST(Text, RowsInNoOrderOfTimeKeepTheirColumns) {
+    const TextOptions in_a_second{.reorder = std::chrono::seconds(1)};
+    for (const char* size : {"", "240 180\n"})
+        for (const char* order : {"txyp", "xytp", "xypt", "tpxy", "pxyt"}) {
+            const Parsed parsed =
+                parse_text(size + text_of(rows_in_no_order(), order), in_a_second);
+            EXPECT_EQ(parsed.data.events.size(), 1000U) << size << order;
+            EXPECT_EQ(parsed.damage.total(), 0U) << size << order;
+        }
+}
+
+TEST(Text, RowsOfWhichMostComeTooLateAreRefusedInWords) {
+    const std::string text = text_of(rows_in_no_order(), "txyp");
+    const TextOptions in_a_millisecond{.reorder = std::chrono::milliseconds(1)};
+    try {
+        read_text_header(to_bytes(text), in_a_millisecond);
+        ADD_FAILURE() << "nothing was refused";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        const std::string words = error.what();
+        EXPECT_NE(words.find("rows \"t x y p\" in order of time, at most 1ms late"), words.npos)
+            << words;
+        EXPECT_NE(words.find(" of 1000 later than that"), words.npos) << words;
+        EXPECT_NE(words.find("--reorder"), words.npos) << words;
+    }
+    // A few rows tell nothing yet, and one wrong time is no disorder.
+    EXPECT_NO_THROW(read_text_header(to_bytes("500000 1 1 1\n4 1 1 1\n3 1 1 1\n"), {}));
+    std::vector<TextRow> ordered = rows_in_no_order();
+    std::ranges::sort(ordered, {}, &TextRow::t_us);
+    ordered[1].t_us = 5'000'000;
+    EXPECT_NO_THROW(read_text_header(to_bytes(text_of(ordered, "txyp")), in_a_millisecond));
+}
+
 TEST(Text, PolaritiesAsFloatingPointAreNoTimes) {
     for (const char* text :
          {"90 3 1 1.0\n95 9 0 -1.0\n99 7 1 1.0\n", "90,3,1,1.0\n95,9,0,0.0\n99,7,1,1.0\n",
@@ -161,6 +220,22 @@ TEST(Text, OtherBytesDoNotLookLikeText) {
                              "1 2\n3 4\n", "{\"t\": 1}\n", "<xml>\n"})
         EXPECT_FALSE(looks_like_text(to_bytes(text))) << text;
     EXPECT_FALSE(looks_like_text(to_bytes(std::string_view("1 2 3 0\n\0\0\1\2", 12))));
+}
+
+TEST(Text, AStatedUnitThatNoStillSceneExplainsIsSaid) {
+    std::string rows;
+    for (int i = 0; i < 500; ++i) rows += std::to_string(50 * i) + " 1 2 1\n";
+    const TextHeader seconds = read_text_header(to_bytes(rows), {.unit = TextTimeUnit::seconds});
+    EXPECT_EQ(seconds.layout.unit, TextTimeUnit::seconds) << "as stated all the same";
+    ASSERT_EQ(seconds.remarks.size(), 1U);
+    EXPECT_NE(seconds.remarks[0].find("0.02 events/s, which is slow for a sensor; taken for "
+                                      "microseconds they were 2e+04 events/s"),
+              std::string::npos)
+        << seconds.remarks[0];
+    for (const TextTimeUnit unit :
+         {TextTimeUnit::milliseconds, TextTimeUnit::microseconds, TextTimeUnit::nanoseconds})
+        EXPECT_EQ(read_text_header(to_bytes(rows), {.unit = unit}).remarks.size(),
+                  unit == TextTimeUnit::milliseconds ? 1U : 0U);
 }
 
 TEST(Text, AStatedUnitIsTakenAndAnImpossibleOneIsSaid) {

@@ -170,7 +170,7 @@ TEST(V4l2Settings, ShippedFileReadsAndUnknownKeysAreRefused) {
     const auto file = std::filesystem::path{testing::TempDir()} / "v4l2.toml";
     std::ofstream{file} << "size = [1280, 720]\nencodng = \"evt3\"\n";
     EXPECT_THAT(failure_of([&] { load_v4l2_settings(file); }),
-                HasSubstr("v4l2.toml:2: unknown key 'encodng'"));
+                HasSubstr("v4l2.toml:2: unknown key 'encodng'; did you mean encoding?"));
 }
 
 }  // namespace

@@ -79,6 +79,11 @@ TEST(PushedImages, ThatMakeNoSenseAreRefused) {
     image.channels = 1;
     image.y0 = INT_MIN;
     EXPECT_THAT(refusal_of(image), HasSubstr("found one at 0,-2147483648"));
+    image.y0 = 0;
+    image.exposure_begin = image.exposure_end = from_us(9);
+    EXPECT_EQ(refusal_of(image), "none");
+    image.exposure_end = from_us(8);
+    EXPECT_THAT(refusal_of(image), HasSubstr("exposure_end not before exposure_begin, found 8 us"));
 }
 
 }  // namespace

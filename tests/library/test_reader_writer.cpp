@@ -172,6 +172,24 @@ TEST_F(Recordings, ComeBackAsTheyWereWritten) {
     EXPECT_EQ(again.width(), 64);
 }
 
+TEST_F(Recordings, HoldNoImageWhoseExposureEndsBeforeItBegins) {
+    Batch batch;
+    batch.images.resize(1);
+    batch.images[0].pixels = Array2<std::uint16_t>(4, 6);
+    batch.images[0].t = batch.images[0].exposure_begin = from_us(9);
+    batch.images[0].exposure_end = from_us(8);
+    EventWriter writer{temp_ / "images.aedat4", {"", "", "", 64, 48}};
+    EXPECT_NE(error_of([&] { writer.write(batch); }).find("exposure_end not before"),
+              std::string::npos);
+    batch.images[0].exposure_end = from_us(9);
+    writer.write(batch);
+    writer.finish();
+    EventReader reader{temp_ / "images.aedat4"};
+    std::size_t images = 0;
+    for (Batch read; reader.read(read);) images += read.images.size();
+    EXPECT_EQ(images, 1U);
+}
+
 TEST_F(Recordings, AreWrittenInTheOrderOfTimeOnly) {
     const auto at = [](std::int64_t t) { return Event{from_us(t), 1, 2, Polarity::on}; };
     for (const std::string format : {"aedat4", "aedat3", "evt3", "text"}) {

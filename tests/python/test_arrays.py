@@ -90,6 +90,7 @@ class Arrays(RecordedTest):
             (np.zeros(3, [("t", "i8"), ("x", "i2"), ("y", "i2")]), "p, on, pol, polarity"),
             (np.zeros(3, [("t", "f8"), ("x", "i2"), ("y", "i2"), ("p", "?")]), "'t'.*float64"),
             (np.zeros((3, 2), DTYPE), "one dimension"),
+            (np.ma.zeros(3, DTYPE), "events: expected an array without a mask"),
             (np.zeros(3, [("t", "i8"), ("x", "i2", (2,)), ("y", "i2"), ("p", "?")]), "'x': expected one number"),
             (np.zeros(3, [("t", "i8", (0,)), ("x", "i2"), ("y", "i2"), ("p", "?")]), "'t': expected one number"),
         ]:

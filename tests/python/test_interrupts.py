@@ -5,6 +5,7 @@ import contextlib
 import errno
 import fcntl
 import functools
+import operator
 import os
 import signal
 import tempfile
@@ -59,6 +60,30 @@ class Interrupts(RecordedTest):
         reconstructor.finish()
         self.interrupt(lambda: consume(reconstructor.frames()), lambda: reconstructor.counters["frames"] > 100)
         self.assertIsNotNone(reconstructor.next(), "the next frame comes after an interruption")
+
+    def test_a_push_of_many_events_ends_and_what_follows_goes_on(self):
+        reconstructor = self.reconstructor(window="50ms")
+        events = np.zeros(4_000_000, DTYPE)
+        events["t"] = np.arange(len(events))
+        self.interrupt(lambda: reconstructor.push(events), lambda: reconstructor.counters["events"] > 0)
+        pushed = reconstructor.counters["events"]
+        self.assertLess(pushed, len(events))
+        reconstructor.push(events[pushed:])
+        counters = reconstructor.counters
+        self.assertEqual((counters["events"], counters["time_backwards"]), (len(events), 0))
+
+    def test_looking_for_the_span_of_a_long_recording_ends(self):
+        path = self.folder / "long.npy"
+        events = np.zeros(2_000_000, DTYPE)
+        events["t"] = np.arange(len(events))
+        events["x"][0], events["y"][0] = 63, 47
+        np.save(path, events)
+        reader = eventide.open(path, width=64, height=48)
+        begun, spans = [], []
+        span_of = operator.methodcaller("span")
+        self.interrupt(lambda: begun.append(1) or spans.extend(map(span_of, [reader])), lambda: begun)
+        self.assertEqual(spans, [])
+        self.assertEqual(reader.span(), (0, len(events) - 1))
 
     def test_a_camera_ends(self):
         camera = eventide.open_camera(ENDLESS_CAMERA)

@@ -63,6 +63,10 @@ class Frames(RecordedTest):
         for image in (still.astype(np.float32), still[0], np.stack(2 * [still], axis=2)):
             with self.assertRaisesRegex(eventide.UsageError, "expected uint8 or uint16"):
                 reconstructor.push_image(70_000, image)
+        with self.assertRaisesRegex(eventide.UsageError, "exposure_end not before exposure_begin, found 60000 us"):
+            reconstructor.push_image(70_000, still, exposure=(80_000, 60_000))
+        with self.assertRaisesRegex(eventide.UsageError, "image: expected an array without a mask"):
+            reconstructor.push_image(70_000, np.ma.masked_greater(still, 100))
 
     def test_outlive_what_made_them(self):
         reconstructor = self.reconstructor()

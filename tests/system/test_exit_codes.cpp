@@ -145,6 +145,38 @@ TEST_F(ExitCodes, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
     EXPECT_EQ(eventide({"info", "mixed.txt", "--reorder", "1s", "--strict"}).exit_code, 0);
 }
 
+TEST_F(ExitCodes, ARecordingOfWhichMostIsLeftOutIsSaidByEveryCommand) {
+    std::string text = "16 16\n";  // the first rows are in order, and those behind go back
+    for (int i = 0; i < 5000; ++i)
+        text += std::to_string(1'000'000 + (i < 1000 ? 500 * i : 100 * (i % 1000))) + " 1 2 1\n";
+    write_text(temp_ / "backwards.txt", text);
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"info", "backwards.txt"},
+          {"run", "backwards.txt", "--out", "null", "--quiet"},
+          {"convert", "backwards.txt", "backwards.aedat4"}}) {
+        const Result result = eventide(command);
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_NE(result.error.find("warning: backwards.txt: 80 % of it were left out"),
+                  std::string::npos)
+            << command[0] << "\n"
+            << result.error;
+    }
+    const Result off_sensor = eventide({"info", "backwards.txt", "--input-size", "1x1"});
+    EXPECT_NE(off_sensor.error.find("100 % of it were left out as damaged: out_of_range 5000; "
+                                    "--input-size"),
+              std::string::npos)
+        << off_sensor.error;
+}
+
+TEST_F(ExitCodes, TwoIsAFileWithoutAName) {
+    for (const char* option : {"--state-out", "--state-in", "--states-out", "--record",
+                               "--events-out", "--stats", "--undistort", "--camera"})
+        expect(2, {"run", recording(), "--out", "null", option, ""},
+               std::string{option} + ": expected ");
+    expect(2, {"simulate", "--out", ""}, "--out: expected FILE|FOLDER/, found ''");
+    expect(2, {"--config", "", "info", recording()}, "--config: expected FILE, found ''");
+}
+
 TEST_F(ExitCodes, TwoIsAlsoAFullFolderWithoutOverwrite) {
     std::filesystem::create_directory(temp_ / "a");
     write_text(temp_ / "a/mine.txt", "x");

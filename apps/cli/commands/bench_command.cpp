@@ -94,16 +94,16 @@ void BenchCommand::add_measured(SettingTable& table) {
 
 void BenchCommand::add_outputs(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(text_setting("json", json_, "FILE", "Also as JSON."));
-    add(text_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
-    add(text_setting("report", report_, "FOLDER",
+    add(path_setting("json", json_, "FILE", "Also as JSON."));
+    add(path_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
+    add(path_setting("report", report_, "FOLDER",
                      "Instead of all this: a page, index.html, of speed against error for models, "
                      "arithmetic and lengths of event windows, frame rate, activity, latency by "
                      "rate of events, and memory, with its plots and JSON; minutes, of --sizes, "
                      "--models and --seconds."));
     add(text_setting("lpips", settings_.lpips, "FILE",
                      "With --report: LPIPS weights, as in evaluate."));
-    add(text_setting("peers", peers_, "FILE",
+    add(path_setting("peers", peers_, "FILE",
                      "With --report: other networks, as bench_peers --table measured them."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
 }

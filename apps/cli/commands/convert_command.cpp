@@ -2,7 +2,7 @@
 #include "apps/cli/commands/convert_command.h"
 
 #include "apps/cli/commands/command_files.h"
-#include "apps/cli/commands/disorder.h"
+#include "apps/cli/commands/left_out.h"
 #include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
@@ -51,7 +51,7 @@ void say(const std::string& source, const std::string& source_format, const std:
     for (const std::string& remark : report.data.remarks(file)) spdlog::warn("{}", remark);
     if (report.lost > 0) spdlog::warn("{}: lost {}", file, lost_datagrams(report.lost));
     if (const std::string why =
-            disorder_text(source, source_format, report.events_read, report.damaged);
+            left_out_text(source, source_format, report.events_read, report.damaged);
         !why.empty())
         spdlog::warn("{}", why);
     for (std::size_t i = 0; i < kDamageReasons; ++i)

@@ -80,7 +80,7 @@ SettingTable EvaluateCommand::settings() {
                         {Protocol::evreal, "evreal"},
                         {Protocol::simulated, "simulated"},
                         {Protocol::folders, "folders"}}));
-    add(text_setting("model", model_, "NAME|FILE", "As in eventide run."));
+    add(path_setting("model", model_, "NAME|FILE", "As in eventide run."));
     add(text_setting(
         "lpips", lpips_, "FILE",
         "Weights of LPIPS as npz (lpips_squeeze_v0.1.npz); empty: LPIPS is left out."));
@@ -128,11 +128,11 @@ SettingTable EvaluateCommand::settings() {
                        0.1, 16));
     add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
 
-    add(text_setting("json", json_, "FILE",
+    add(path_setting("json", json_, "FILE",
                      "All measures as JSON; -: on standard output, instead of "
                      "the table."));
-    add(text_setting("csv", csv_, "FILE", "A line per sequence; - as for --json."));
-    add(text_setting("frame_csv", frame_csv_, "FILE", "A line per frame; - as for --json."));
+    add(path_setting("csv", csv_, "FILE", "A line per sequence; - as for --json."));
+    add(path_setting("frame_csv", frame_csv_, "FILE", "A line per frame; - as for --json."));
     std::string names;
     for (const std::string& figure : figure_names()) names += (names.empty() ? "" : ", ") + figure;
     add(list_setting(
@@ -140,7 +140,7 @@ SettingTable EvaluateCommand::settings() {
         "Figures as SVG and CSV: " + names +
             "; spatial, temporal and silence from simulated sequences of their own, instead of a "
             "table; the others beside the table, of what is evaluated."));
-    add(text_setting("plots", plots_, "FOLDER", "Where figures go."));
+    add(path_setting("plots", plots_, "FOLDER", "Where figures go."));
     add(choice_setting("calibration", calibration_,
                        "What --calibrated fits: coverage (PICP80 becomes .8), cautious (in the "
                        "sequence that needs it most) or likelihood.",

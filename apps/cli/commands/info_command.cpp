@@ -1,7 +1,7 @@
 // eventide info: reads a recording to its end and says what was in it.
 #include "apps/cli/commands/info_command.h"
 
-#include "apps/cli/commands/disorder.h"
+#include "apps/cli/commands/left_out.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "replay/formats.h"
@@ -115,7 +115,7 @@ int InfoCommand::run(Program& program) {
     progress.clear();
     if (program.signals.stopping()) throw Error(ErrorKind::failed, "stopped before the end");
     if (const std::string why =
-            disorder_text(file_, summary.format, summary.events, summary.damaged);
+            left_out_text(file_, summary.format, summary.events, summary.damaged);
         !why.empty())
         spdlog::warn("{}", why);
     if (json_)

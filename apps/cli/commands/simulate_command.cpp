@@ -98,7 +98,7 @@ SettingTable SimulateCommand::settings() {
     add(text_setting("scene", scene_, "NAME", "Scene to simulate; --list shows the names."));
     add(flag_setting("list", list_, "List the scenes, and exit."));
     Setting out =
-        text_setting("out", out_, "FILE|FOLDER/",
+        path_setting("out", out_, "FILE|FOLDER/",
                      "Where the recording goes: x.aedat4 or another format with images, or "
                      "a folder/ with events.txt, images.txt and images/.");
     out.short_flag = "-o";
@@ -131,7 +131,7 @@ SettingTable SimulateCommand::settings() {
         [](const std::string& text) { return text; }));
     add(number_setting("images_per_second", images_per_second_, "N",
                        "Reference images in the recording; 0: none.", 0, 1e5));
-    add(text_setting("truth", truth_, "FOLDER",
+    add(path_setting("truth", truth_, "FOLDER",
                      "Also write the truth as frames, laid out as the "
                      "folder sink does."));
     add(number_setting("truths_per_second", truths_per_second_, "N", "Rate of the truth.", 0.001,

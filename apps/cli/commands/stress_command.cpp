@@ -145,8 +145,8 @@ SettingTable StressCommand::settings() {
                        0, 1e4));
     add(choice_setting("instructions", instructions_, "As in eventide bench.", kInstructionWords));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
-    add(text_setting("json", json_, "FILE", "Also as JSON."));
-    add(text_setting("plots", plots_, "FOLDER",
+    add(path_setting("json", json_, "FILE", "Also as JSON."));
+    add(path_setting("plots", plots_, "FOLDER",
                      "Of --soak: memory, latency and states, SVG and "
                      "CSV."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));

@@ -1,5 +1,5 @@
 // What a run says at its end.
-#include "apps/cli/commands/disorder.h"
+#include "apps/cli/commands/left_out.h"
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run.h"
 #include "pipeline/filters/event_filter.h"
@@ -27,7 +27,7 @@ int Run::report(const RunProgress& end) const {
     if (!filters_.empty()) spdlog::info("filters left out: {}", filters_.report());
     if (const std::string remark = flicker_remark(end_counters.flicker); !remark.empty())
         spdlog::info("{}", remark);
-    if (const std::string why = disorder_text(settings_.source, sensor_.format, end_counters.events,
+    if (const std::string why = left_out_text(settings_.source, sensor_.format, end_counters.events,
                                               end_counters.damaged);
         !why.empty())
         spdlog::warn("{}", why);

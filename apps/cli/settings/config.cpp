@@ -4,6 +4,7 @@
 #include "apps/cli/printable.h"
 #include "src/core/environment.h"
 #include "src/core/error.h"
+#include "src/settings/suggestion.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -82,6 +83,14 @@ bool fits(ValueKind wanted, ValueKind found) {
     return found == ValueKind::text || found == ValueKind::number;
 }
 
+/// A variable of a script that is not set, where a file was meant, is no wish for none.
+void set_from_flag(Setting& setting, const std::vector<std::string>& words) {
+    const std::string origin = "flag " + flag_of(setting);
+    if (setting.names_file && words.back().empty())
+        throw Error(ErrorKind::usage, origin + ": expected " + setting.value_name + ", found ''");
+    set(setting, words, origin);
+}
+
 void set_from_file(Setting& setting, SettingValue value) {
     if (!fits(setting.kind, value.kind))
         throw Error(ErrorKind::usage, value.place + ": " + value.name + ": expected " +
@@ -103,8 +112,9 @@ void refuse_unknown_keys(const ConfigFile& file, const std::vector<const Setting
         for (const Setting& setting : table->settings) known.push_back(path_of(*table, setting));
     for (const auto& [path, value] : file)
         if (std::ranges::find(known, path) == known.end())
-            throw Error(ErrorKind::usage, value.place + ": unknown key '" + path +
-                                              "'; `eventide --default-config` shows all keys");
+            throw Error(ErrorKind::usage, value.place + ": unknown key '" + path + "'" +
+                                              suggestion(path, known) +
+                                              "; `eventide --default-config` shows all keys");
 }
 
 std::vector<std::string> unknown_variables(const char* const* environment,
@@ -130,7 +140,7 @@ void resolve_settings(SettingTable& table, const ConfigFile& file,
         const char* const from_environment = environment_value(variable.c_str());
         const std::string path = path_of(table, setting);
         if (const auto flag = flags.find(setting.key); flag != flags.end()) {
-            set(setting, flag->second, "flag " + flag_of(setting));
+            set_from_flag(setting, flag->second);
         } else if (from_environment != nullptr && *from_environment != '\0') {
             set(setting,
                 setting.kind == ValueKind::list ? SettingValue{split(from_environment, ';')}

@@ -26,7 +26,7 @@ std::string check_latency(const std::string& text) {
 /// With which network, and what it remembers.
 void RunSettings::add_network(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(noted(text_setting(
+    add(noted(path_setting(
                   "model", model, "NAME|FILE",
                   "A name from the models folder (default, small, thesis) or a safetensors file."),
               model_given));
@@ -51,11 +51,11 @@ void RunSettings::add_network(SettingTable& table) {
                       "Average the frames of so many networks that see the scene mirrored: a "
                       "smaller error for that many times the work.",
                       1, 4));
-    add(text_setting("state_in", state_in, "FILE",
+    add(path_setting("state_in", state_in, "FILE",
                      "Continue from the state that an earlier run saved: the network's "
                      "(--state-out) or the complete one (--states-out)."));
-    add(text_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
-    add(text_setting("states_out", states_out, "FOLDER",
+    add(path_setting("state_out", state_out, "FILE", "Save the network's state at the end."));
+    add(path_setting("states_out", states_out, "FOLDER",
                      "Save the complete state of the run at each time of --states-at, on one "
                      "thread: a run with such a file as --state-in gives the frames of one "
                      "uninterrupted run. Without --out nothing is rendered."));
@@ -90,7 +90,7 @@ void RunSettings::add_machinery(SettingTable& table) {
         "single frames, half of the frame rate, event windows (merged into one), packets. none: as "
         "late as the buffers allow; auto: 250ms.",
         check_latency, same_text));
-    add(text_setting("camera", camera, "FILE",
+    add(path_setting("camera", camera, "FILE",
                      "Camera settings: a file as in config/cameras; for v4l2: also a .bias or JSON "
                      "file of Metavision."));
     add(flag_setting("reconnect", reconnect, "Wait for an unplugged camera to come back."));

@@ -98,14 +98,14 @@ void RunSettings::add_outputs(SettingTable& table) {
     add(list_setting("http_name", http_name, "NAME",
                      "A name under which browsers reach the live page (of a proxy, for example); "
                      "others are refused, except localhost and addresses."));
-    add(text_setting("record", record, "FILE",
+    add(path_setting("record", record, "FILE",
                      "Also write what the source sends, before anything can be lost, in the format "
                      "of the extension; .aedat4 holds events, images, IMU samples and triggers."));
-    add(text_setting(
+    add(path_setting(
         "events_out", events_out, "TO",
         "Also write the events after all filters: in the format of the extension, as FORMAT:PATH "
         "(a pipe, or - for standard output), folder/, or udp://HOST:PORT."));
-    add(text_setting("stats", stats, "FILE",
+    add(path_setting("stats", stats, "FILE",
                      "Counters as JSON, a line each second and a last one with \"final\": true."));
     add(flag_setting("strict", strict, "End with exit code 5 when data were lost or damaged."));
 }
@@ -131,7 +131,7 @@ void RunSettings::add_adjustments(SettingTable& table) {
         "Events wait as long as the second of a pair may come: TIME; auto: 16 ms of a recording, "
         "three quarters of a period of a camera.",
         check_lamp_flicker, same_text));
-    add(text_setting(
+    add(path_setting(
         "undistort", undistort, "FILE",
         "Undistort the frames: YAML of ROS' camera_calibration or Kalibr's camchain, for "
         "the whole sensor. The contact sheet stays as the camera sees it."));

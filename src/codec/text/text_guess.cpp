@@ -1,8 +1,11 @@
 // First rows -> their layout, by trial.
 #include "src/codec/text/text_guess.h"
 
+#include "src/codec/event_validator.h"
+#include "src/codec/reorder.h"
 #include "src/codec/text/text_number.h"
 #include "src/codec/text/text_row.h"
+#include "src/core/duration_text.h"
 #include "src/core/error.h"
 #include "src/core/sensor_limits.h"
 
@@ -20,10 +23,11 @@ namespace {
 constexpr std::array<std::string_view, 5> kOrders{"txyp", "xytp", "xypt", "tpxy", "pxyt"};
 constexpr std::array<std::pair<int, int>, 2> kOtherPolarities{{{0, 255}, {1, 2}}};
 constexpr std::size_t kDamageIsOneIn = 10;  // rows; what is more frequent is meant
+constexpr std::size_t kRowsThatTell = 100;  // whether they come in order of time
 
-bool is_place(std::string_view field) {
+bool is_place(std::string_view field, std::int64_t side) {
     const auto place = whole_number(field);
-    return place && *place >= 0 && *place < kLargestRecordedSide;
+    return place && *place >= 0 && *place < side;
 }
 
 bool is_usual_polarity(std::string_view field) {
@@ -32,27 +36,44 @@ bool is_usual_polarity(std::string_view field) {
 }
 
 /// In any unit, where the row can be an event in this order.
-std::optional<std::int64_t> time_of_event(const TextFields& row, std::string_view order) {
+std::optional<std::int64_t> time_of_event(const TextFields& row, std::string_view order,
+                                          const TextSensor& sensor) {
     const auto field = [&](char column) { return row[order.find(column)]; };
-    if (!is_place(field('x')) || !is_place(field('y')) || !is_usual_polarity(field('p'))) return {};
+    if (!is_place(field('x'), sensor.width) || !is_place(field('y'), sensor.height) ||
+        !is_usual_polarity(field('p')))
+        return {};
     const auto time = parse_decimal(field('t'));
     return time ? scaled_integer(*time, time->fractional ? 6 : 0) : std::nullopt;
 }
 
-/// How many of the rows can be events in this order, and of these, how many are not before the
-/// last: rows may be a little out of order.
-std::pair<std::size_t, std::size_t> rows_that_fit(std::span<const TextFields> rows,
-                                                  std::string_view order) {
-    std::size_t fit = 0, forward = 0;
+/// How well the rows can be events in an order.
+struct Fit {
+    std::size_t rows = 0;
+    std::size_t forward = 0;  ///< of them, not before the last: rows may be a little out of order
+    double least = std::numeric_limits<double>::infinity(), largest = -least;  ///< times
+
+    bool is_in_order() const { return rows < kRowsThatTell || forward * 10 >= rows * 9; }
+    /// Where no order has the times ascend, one of four columns of random numbers seems to most.
+    bool is_better_than(const Fit& other) const {
+        if (rows != other.rows) return rows > other.rows;
+        if (is_in_order() || other.is_in_order()) return forward > other.forward;
+        return largest - least > other.largest - other.least;
+    }
+};
+
+Fit fit_of(std::span<const TextFields> rows, std::string_view order, const TextSensor& sensor) {
+    Fit fit;
     std::int64_t last = std::numeric_limits<std::int64_t>::min();
     for (const TextFields& row : rows) {
-        const auto t = time_of_event(row, order);
+        const auto t = time_of_event(row, order, sensor);
         if (!t) continue;
-        ++fit;
-        forward += *t >= last;
+        ++fit.rows;
+        fit.forward += *t >= last;
         last = *t;
+        fit.least = std::min(fit.least, double(*t));
+        fit.largest = std::max(fit.largest, double(*t));
     }
-    return {fit, forward};
+    return fit;
 }
 
 /// A polarity as floating point: "1.0", "-1.00"; not the fraction of a second that begins alike.
@@ -84,14 +105,14 @@ std::string order_text(const TextLayout& layout) {
 
 }  // namespace
 
-std::string_view guess_columns(std::span<const TextFields> rows) {
+std::string_view guess_columns(std::span<const TextFields> rows, const TextSensor& sensor) {
     const std::size_t times = fractional_column(rows);
     std::string_view best = kOrders.front();
-    std::pair<std::size_t, std::size_t> most{0, 0};
+    Fit most;
     for (const std::string_view order : kOrders) {
         if (times < 4 && order[times] != 't') continue;
-        const auto fit = rows_that_fit(rows, order);
-        if (fit <= most) continue;
+        const Fit fit = fit_of(rows, order, sensor);
+        if (!fit.is_better_than(most)) continue;
         most = fit;
         best = order;
     }
@@ -133,6 +154,29 @@ void check_rows(std::span<const TextFields> rows, const TextLayout& layout) {
             text.substr(0, 60) + "\", and " + std::to_string(rows.size() - fit) +
             " rows like it of " + std::to_string(rows.size()) +
             "; --input-columns states another order");
+}
+
+void check_order(std::span<const TextFields> rows, const TextLayout& layout,
+                 SensorDuration reorder) {
+    if (rows.size() < kRowsThatTell || reorder == SensorDuration{0}) return;
+    Reorder in_order{reorder};
+    EventValidator validator{1, 1};
+    Batch taken;
+    Damage damage;
+    const auto take = [&](const Event& event) {
+        validator.add(to_us(event.t), 0, 0, true, taken, damage);
+    };
+    for (const TextFields& row : rows)
+        if (const auto event = parse_row(row, layout)) in_order.push({from_us(event->t_us)}, take);
+    in_order.flush(take);
+    const std::uint64_t late = damage[DamageReason::time_backwards];
+    if (2 * late <= rows.size()) return;
+    throw Error(ErrorKind::input,
+                "text recording: expected rows \"" + order_text(layout) +
+                    "\" in order of time, at most " + duration_text(reorder) + " late; found " +
+                    std::to_string(late) + " of " + std::to_string(rows.size()) +
+                    " later than that; sort the rows by time, or state a larger --reorder or "
+                    "another order of columns (--input-columns)");
 }
 
 }  // namespace eventide

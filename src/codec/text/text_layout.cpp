@@ -248,10 +248,11 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     for (; line && rows.size() < kRowsToLookAt; line = lines.next())
         if (Fields fields = split_fields(*line); is_row(fields)) rows.push_back(std::move(fields));
 
+    const TextSensor sensor = size ? TextSensor{(*size)[0], (*size)[1]} : TextSensor{};
     if (!options.columns.empty())
         header.layout = layout_stated(options.columns);
     else
-        header.layout = named ? *named : layout_stated(guess_columns(rows));
+        header.layout = named ? *named : layout_stated(guess_columns(rows, sensor));
     guess_polarities(rows, header.layout);
     if (options.unit != TextTimeUnit::automatic) header.layout.unit = options.unit;
     const auto times = times_in(rows, header.layout);
@@ -260,6 +261,7 @@ TextHeader read_text_header(std::span<const std::byte> first_bytes, const TextOp
     else if (options.unit != TextTimeUnit::automatic)
         doubt_time_unit(times, options.unit, header.remarks);
     check_rows(rows, header.layout);
+    check_order(rows, header.layout, options.reorder);
     return header;
 }
 

@@ -144,9 +144,16 @@ void doubt_time_unit(std::span<const std::string_view> texts, TextTimeUnit state
                      std::vector<std::string>& remarks) {
     const Times times = read_times(texts);
     const auto unit = std::ranges::find(kByLikelihood, stated, &Unit::unit);
-    if (unit == kByLikelihood.end() || !times.tell_rate() || times.rate(*unit) <= kFastest) return;
-    remarks.push_back("in the stated unit of time these are " + rate_text(times.rate(*unit)) +
-                      ", which no sensor sends; --input-time-unit states another");
+    if (unit == kByLikelihood.end() || !times.tell_rate()) return;
+    const double rate = times.rate(*unit);
+    if (rate >= kSparse && rate <= kFastest) return;
+    const Unit* const likeliest = times.fractions ? &kSeconds : likeliest_unit(times);
+    const bool is_other = likeliest != nullptr && likeliest->unit != stated;
+    remarks.push_back("in the stated unit of time these are " + rate_text(rate) + doubt_of(rate) +
+                      (is_other ? std::string{"; taken for "} + likeliest->name + " they were " +
+                                      rate_text(times.rate(*likeliest))
+                                : "") +
+                      "; --input-time-unit states another");
 }
 
 }  // namespace eventide

@@ -18,8 +18,9 @@ namespace eventide {
 TextTimeUnit guess_time_unit(std::span<const std::string_view> times,
                              std::vector<std::string>& remarks);
 
-/// A stated unit is taken at its word, but seconds stated as microseconds all become one moment:
-/// adds a remark where no sensor sends so many events.
+/// A stated unit is taken at its word, but seconds stated as microseconds all become one moment,
+/// and microseconds stated as seconds years of frames: adds a remark where no sensor sends so many
+/// events, or its noise alone is more.
 void doubt_time_unit(std::span<const std::string_view> times, TextTimeUnit stated,
                      std::vector<std::string>& remarks);
 

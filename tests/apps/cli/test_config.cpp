@@ -91,6 +91,9 @@ TEST(Config, MistakesAreNamedWithTheirLine) {
     EXPECT_NE(complaint("[example]\nname = \"a\"\nnmae = \"b\"\n").find("c.toml:3: unknown key"),
               std::string::npos);
     EXPECT_NE(complaint("\nexample.rates = 2\n").find("c.toml:2"), std::string::npos);
+    EXPECT_NE(complaint("\nexample.rates = 2\n").find("'; did you mean example.rate?"),
+              std::string::npos);
+    EXPECT_EQ(complaint("top = 1\n").find("did you mean"), std::string::npos);
     EXPECT_NE(complaint("top = 1\n").find("c.toml:1"), std::string::npos);
     EXPECT_NE(complaint("[example]\nrate = 99\n").find("c.toml:2: expected a number"),
               std::string::npos);

@@ -120,6 +120,34 @@ TEST(FolderSink, ARunThatWasKilledCanBeReplaced) {
     EXPECT_EQ(files_in(temp / "out/frames"), 1U);
 }
 
+TEST(FolderSink, AFolderThatOnlyAnEarlierRunFilledGoesWithIt) {
+    const TempFolder temp;
+    FolderSettings settings{.path = temp / "out", .overwrite = true, .events = true};
+    const auto run = [&settings] {
+        Frame frame = test::ramp_frame(8, 8, 0, test::odd_time(0));
+        frame.event_preview = Array2<float>{8, 8};
+        FolderSink sink{settings};
+        sink.write(frame);
+        sink.close();
+    };
+    run();
+    ASSERT_TRUE(std::filesystem::exists(temp / "out/events"));
+    settings.events = false;
+    run();
+    EXPECT_FALSE(std::filesystem::exists(temp / "out/events"));
+    EXPECT_EQ(files_in(temp / "out/frames"), 1U);
+    // One with something else in it stays, and so does a link to a folder elsewhere.
+    settings.events = true;
+    run();
+    test::write_text(temp / "out/events/notes.txt", "mine");
+    std::filesystem::rename(temp / "out/frames", temp / "elsewhere");
+    std::filesystem::create_directory_symlink(temp / "elsewhere", temp / "out/frames");
+    settings.events = false;
+    run();
+    EXPECT_EQ(files_in(temp / "out/events"), 1U);
+    EXPECT_EQ(files_in(temp / "elsewhere"), 1U);
+}
+
 /// Another sink, or the run itself, may refuse to start after this one did; and a run may have no
 /// frame.
 TEST(FolderSink, AnEarlierRunStaysUntilTheFirstFrame) {

@@ -1,0 +1,66 @@
+// Shares of what was read.
+#include "apps/cli/commands/left_out.h"
+
+#include <cstdio>
+
+namespace eventide::app {
+
+namespace {
+
+std::string share_text(std::uint64_t part, std::uint64_t of) {
+    const double percent = 100 * double(part) / double(of);
+    char share[32];
+    std::snprintf(share, sizeof share, percent < 10 ? "%.2g %%" : "%.0f %%", percent);
+    return share;
+}
+
+/// Of what was set right nothing is missing.
+bool is_left_out(DamageReason reason) {
+    return reason != DamageReason::bad_table && reason != DamageReason::time_corrected;
+}
+
+std::string what_to_do(DamageReason reason, const std::string& format) {
+    const bool is_text = format == "text";
+    if (reason == DamageReason::time_backwards)
+        return is_text ? "; a larger --reorder puts them in order, sorting the file does, too"
+               : format == "npy" || format == "npz" ? "; sorting them by time puts them in order"
+                                                    : "";
+    if (reason == DamageReason::out_of_range)
+        return std::string{"; --input-size states the sensor's size"} +
+               (is_text ? ", --input-columns the order of the columns" : "");
+    return is_text ? "; --input-columns and --input-time-unit state how the rows are meant"
+                   : "; --input-format states another format";
+}
+
+/// Where more records were left out than events were taken.
+std::string most_left_out(const std::string& name, const std::string& format, std::uint64_t events,
+                          const Damage& damaged) {
+    std::uint64_t lost = 0;
+    std::string reasons;
+    auto most = DamageReason::truncated;
+    for (std::size_t i = 0; i < kDamageReasons; ++i) {
+        const auto reason = DamageReason(i);
+        if (damaged[reason] == 0 || !is_left_out(reason)) continue;
+        lost += damaged[reason];
+        reasons += (reasons.empty() ? "" : ", ") + std::string{name_of(reason)} + " " +
+                   std::to_string(damaged[reason]);
+        if (damaged[reason] > damaged[most]) most = reason;
+    }
+    if (lost <= events) return {};
+    return name + ": " + share_text(lost, events + lost) +
+           " of it were left out as damaged: " + reasons + what_to_do(most, format);
+}
+
+}  // namespace
+
+std::string left_out_text(const std::string& name, const std::string& format, std::uint64_t events,
+                          const Damage& damaged) {
+    if (std::string most = most_left_out(name, format, events, damaged); !most.empty()) return most;
+    const std::uint64_t late = damaged[DamageReason::time_backwards];
+    if (late == 0) return {};
+    return name + ": " + std::to_string(late) + " events (" + share_text(late, events + late) +
+           ") left out, their times lie before those of events already read" +
+           what_to_do(DamageReason::time_backwards, format);
+}
+
+}  // namespace eventide::app
