@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
 
 namespace eventide {
 
@@ -63,7 +62,7 @@ protected:
     void rewind() override {
         at_ = kMagicBytes;
         types_of_schemas_.clear();
-        channels_.clear();
+        readable_channels_.clear();
     }
 
 private:
@@ -121,16 +120,17 @@ private:
             const std::string_view name = text_of(reader.block());
             const std::string_view wire = text_of(reader.block());
             if (!reader.good()) return damage.count(DamageReason::bad_record);
-            channels_.insert(number);
-            if (type != types_of_schemas_.end() && wire == "cdr")
-                add_topic(number, name, type->second);
+            const bool readable = type != types_of_schemas_.end() && wire == "cdr";
+            readable_channels_[number] = readable;
+            if (readable) add_topic(number, name, type->second);
         } else if (kind == message) {
             reader.take(20);  // sequence number, times of writing and sending
             // Of a channel that only comes later nobody knows what it holds, also at a second
             // reading.
-            if (!reader.good() || !channels_.contains(number))
+            const auto channel = readable_channels_.find(number);
+            if (!reader.good() || channel == readable_channels_.end())
                 return damage.count(DamageReason::bad_record);
-            add_message(number, content.subspan(22));
+            if (channel->second) add_message(number, content.subspan(22));
         } else {
             return;
         }
@@ -142,7 +142,7 @@ private:
     std::vector<std::byte> record_;
     Aedat4Unpacker unpacker_;
     std::map<std::uint16_t, std::string> types_of_schemas_;
-    std::set<std::uint16_t> channels_;  ///< read so far
+    std::map<std::uint16_t, bool> readable_channels_;  ///< of those told so far: what is in CDR
 };
 
 }  // namespace

@@ -306,11 +306,12 @@ BagBytes cdr_event_array(int width, int height, std::span<const Event> events) {
 
 const BagBytes kMcapBegin = BagBytes("\x89MCAP0\r\n", 8);
 
-BagBytes mcap_channel(int number, const BagBytes& name, const BagBytes& type) {
+BagBytes mcap_channel(int number, const BagBytes& name, const BagBytes& type,
+                      const BagBytes& wire = "cdr") {
     return mcap_record(3,
                        little(std::uint16_t(number)) + block(type) + block("ros2msg") + block("")) +
            mcap_record(4, little(std::uint16_t(number)) + little(std::uint16_t(number)) +
-                              block(name) + block("cdr") + block(""));
+                              block(name) + block(wire) + block(""));
 }
 
 BagBytes mcap_events(int channel, std::span<const Event> events) {
@@ -334,6 +335,22 @@ TEST(McapRecording, AMessageBeforeItsChannelIsDamageAtEveryReading) {
     EXPECT_EQ(again.events, 200U);
     EXPECT_EQ(again.damaged[DamageReason::bad_record], 1U);
     EXPECT_EQ(again.damaged.total(), 1U);
+}
+
+TEST(McapRecording, AChannelThatIsToldAnewIsReadFromThereOnAtEveryReading) {
+    const TestFolder folder;
+    const auto events = some_events(300, 1'500'000'000'000'000);
+    const auto part = [&](std::size_t i) { return std::span(events).subspan(100 * i, 100); };
+    const char* type = "dvs_msgs/msg/EventArray";
+    const BagBytes bytes = kMcapBegin + mcap_channel(8, "/events", type, "json") +
+                           mcap_channel(7, "/events", type) + mcap_events(8, part(0)) +
+                           mcap_events(7, part(1)) + mcap_channel(8, "/events", type) +
+                           mcap_events(8, part(2));
+    const auto recording = open_recording(folder.write("a.mcap", bytes));
+    const std::vector<Event> expected(events.begin() + 100, events.end());
+    EXPECT_TRUE(read_everything(*recording).events == expected);
+    recording->seek(SensorTime::min());
+    EXPECT_TRUE(read_everything(*recording).events == expected);
 }
 
 TEST(McapRecording, GivesTheEventsThatWereWritten) {

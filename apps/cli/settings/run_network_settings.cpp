@@ -8,10 +8,11 @@ namespace eventide::app {
 namespace {
 
 /// A number of buffers, or auto.
-Setting buffers_setting(std::string key, std::optional<int>& value, int most, std::string help) {
+template <int kMost>
+Setting buffers_setting(std::string key, std::optional<int>& value, std::string help) {
     return open_setting<int>(
         std::move(key), value, "N", std::move(help), "auto",
-        [most](const std::string& text) { return parse_whole(text, 1, most); },
+        [](const std::string& text) { return parse_whole(text, 1, kMost); },
         [](const int& n) { return std::to_string(n); });
 }
 
@@ -94,15 +95,17 @@ void RunSettings::add_machinery(SettingTable& table) {
                      "Camera settings: a file as in config/cameras; for v4l2: also a .bias or JSON "
                      "file of Metavision."));
     add(flag_setting("reconnect", reconnect, "Wait for an unplugged camera to come back."));
-    add(buffers_setting("buffers_packets", buffers_packets, 1 << 16,
-                        "Packets between reading and binning: the burst a live source may send; "
-                        "auto: 64, and of a camera with small transfers as many as hold 8 MiB. A "
-                        "recording, which waits, uses at most 8."));
-    add(buffers_setting("buffers_grids", buffers_grids, 1024,
-                        "Event windows between binning and the network; auto: 3 for a live source, "
-                        "2 for a recording."));
-    add(buffers_setting(
-        "buffers_latents", buffers_latents, 1024,
+    add(buffers_setting<1 << 16>(
+        "buffers_packets", buffers_packets,
+        "Packets between reading and binning: the burst a live source may send; "
+        "auto: 64, and of a camera with small transfers as many as hold 8 MiB. A "
+        "recording, which waits, uses at most 8."));
+    add(buffers_setting<1024>(
+        "buffers_grids", buffers_grids,
+        "Event windows between binning and the network; auto: 3 for a live source, "
+        "2 for a recording."));
+    add(buffers_setting<1024>(
+        "buffers_latents", buffers_latents,
         "Event windows between the network and rendering: more bridge longer bursts and allow more "
         "latency. auto: 3 for a live source, 2 for a recording."));
     add(flag_setting("sequential", sequential,
