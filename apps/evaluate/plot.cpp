@@ -83,7 +83,7 @@ Axes axes_of(const Plot& plot) {
             y0 = std::min(y0, s.y[i] - spread);
             y1 = std::max(y1, s.y[i] + spread);
         }
-    for (const Mark& mark : plot.marks) {
+    for (const VerticalLine& mark : plot.marks) {
         x0 = std::min(x0, mark.x);
         x1 = std::max(x1, mark.x);
     }
@@ -185,7 +185,7 @@ std::string drawn(const Series& s, const Axes& axes, const std::string& colour,
 }
 
 /// Its label stands to the left: beyond the last may be no room.
-std::string drawn(const Mark& mark, const Axes& axes, LabelPlaces& places) {
+std::string drawn(const VerticalLine& mark, const Axes& axes, LabelPlaces& places) {
     const double x = axes.x.at(mark.x);
     const double y = places.place(x - 5 - LabelPlaces::width(mark.label), kTop + 8, mark.label);
     return line(x, kTop, x, kHeight - kBottom, "stroke='#888' stroke-dasharray='5 4'") +
@@ -231,7 +231,7 @@ std::string svg(const Plot& plot) {
                     "stroke='#888' stroke-dasharray='5 4'");
     }
     LabelPlaces places;
-    for (const Mark& mark : plot.marks) out += drawn(mark, axes, places);
+    for (const VerticalLine& mark : plot.marks) out += drawn(mark, axes, places);
     for (const bool joined : {true, false})  // points over lines
         for (std::size_t i = 0; i < plot.series.size(); ++i)
             if (plot.series[i].joined == joined)

@@ -16,7 +16,7 @@ struct Series {
 };
 
 /// A vertical line across the drawing: what has an x and no y.
-struct Mark {
+struct VerticalLine {
     double x = 0;
     std::string label{};
 };
@@ -25,7 +25,7 @@ struct Plot {
     std::string name{};  ///< of the files
     std::string title{}, x_label{}, y_label{};
     std::vector<Series> series{};
-    std::vector<Mark> marks{};
+    std::vector<VerticalLine> marks{};
     bool log_x = false;     ///< points with x <= 0 are drawn at the left edge
     bool diagonal = false;  ///< what would be perfect: y = x
 };

@@ -23,7 +23,7 @@ std::string point_label(const SpeedRow& row) {
 }
 
 /// Of each network that is not ours and each size, the quickest way to run it on one thread.
-std::vector<Mark> peer_marks(const Report& report) {
+std::vector<VerticalLine> peer_marks(const Report& report) {
     std::map<std::string, double> quickest;
     for (const PeerRow& row : report.peers) {
         if (row.threads != 1 || !row.engine.starts_with("libtorch")) continue;
@@ -31,7 +31,7 @@ std::vector<Mark> peer_marks(const Report& report) {
         const auto [at, is_new] = quickest.try_emplace(label, row.wall_ms);
         if (!is_new) at->second = std::min(at->second, row.wall_ms);
     }
-    std::vector<Mark> marks;
+    std::vector<VerticalLine> marks;
     for (const auto& [label, ms] : quickest) marks.push_back({ms, label});
     return marks;
 }
