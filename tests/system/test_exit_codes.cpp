@@ -156,13 +156,13 @@ TEST_F(ExitCodes, ARecordingOfWhichMostIsLeftOutIsSaidByEveryCommand) {
           {"convert", "backwards.txt", "backwards.aedat4"}}) {
         const Result result = eventide(command);
         EXPECT_EQ(result.exit_code, 0);
-        EXPECT_NE(result.error.find("warning: backwards.txt: 80 % of it were left out"),
+        EXPECT_NE(result.error.find("warning: backwards.txt: 80 % of it was left out"),
                   std::string::npos)
             << command[0] << "\n"
             << result.error;
     }
     const Result off_sensor = eventide({"info", "backwards.txt", "--input-size", "1x1"});
-    EXPECT_NE(off_sensor.error.find("100 % of it were left out as damaged: out_of_range 5000; "
+    EXPECT_NE(off_sensor.error.find("100 % of it was left out as damaged: out_of_range 5000; "
                                     "--input-size"),
               std::string::npos)
         << off_sensor.error;

@@ -48,7 +48,7 @@ std::string most_left_out(const std::string& name, const std::string& format, st
     }
     if (lost <= events) return {};
     return name + ": " + share_text(lost, events + lost) +
-           " of it were left out as damaged: " + reasons + what_to_do(most, format);
+           " of it was left out as damaged: " + reasons + what_to_do(most, format);
 }
 
 }  // namespace
