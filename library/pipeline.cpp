@@ -75,18 +75,19 @@ void check_latency(std::chrono::microseconds latency) {
                                           " s, found " + std::to_string(latency.count()) + " us");
 }
 
-PipelineSettings settings_of(const PipelineOptions& options, const ModelConfig& config, bool live) {
+PipelineSettings settings_of(const PipelineOptions& options, const ModelConfig& config,
+                             const Source& source) {
     check_latency(options.latency);
     PipelineSettings settings;
     settings.bins = config.bins;
     settings.event_windows.slicer = slicer_of(options.frames, config);
     settings.rate = rate_of(options.frames);
     settings.lookahead = options.frames.lookahead;
-    if (live && options.latency.count() > 0) settings.latency = options.latency;
+    if (source.is_live() && options.latency.count() > 0) settings.latency = options.latency;
     settings.reset_on_gap = options.frames.reset_on_gap;
     settings.allow_silence = options.frames.allow_silence;
     settings.events_per_pixel = options.frames.images;
-    if (!live) settings.buffers = kBuffersOfRecording;
+    settings.buffers = buffers_for(source);
     return settings;
 }
 
@@ -110,7 +111,7 @@ public:
                       ? ModelRenderStage{renderer_, request_of(options.frames, width, height),
                                          width, height, kept(source)}
                       : ModelRenderStage{renderer_, request_of(options.frames, width, height)}),
-          pipeline_(parts(), settings_of(options, model.config, source.is_live())) {}
+          pipeline_(parts(), settings_of(options, model.config, source_)) {}
 
     void run() {
         if (std::exchange(ran_, true))

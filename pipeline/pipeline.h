@@ -42,6 +42,12 @@ constexpr std::size_t packets_of_burst(std::size_t packet_bytes) {
     return std::clamp(kBurstBytes / packet_bytes, kFewest, kMost);
 }
 
+/// Of a live source more packets where they are small, of a recording fewer of all.
+inline PipelineBuffers buffers_for(const Source& source) {
+    return source.is_live() ? PipelineBuffers{.packets = packets_of_burst(source.packet_bytes())}
+                            : kBuffersOfRecording;
+}
+
 struct PipelineSettings {
     int bins = 5;  ///< B of the model
     EventWindows::Settings event_windows;

@@ -60,6 +60,7 @@ public:
     FilteredSource(Source& source, FilterChain& chain);
     const SensorInfo& info() const override { return info_; }
     bool is_live() const noexcept override { return source_.is_live(); }
+    std::size_t packet_bytes() const override { return source_.packet_bytes(); }
     ReadStatus read(RawPacket& into) override { return source_.read(into); }
     void stop() noexcept override { source_.stop(); }
     std::unique_ptr<Parser> make_parser() const override;

@@ -44,6 +44,13 @@ Events random_events(int n, int width, int height, double us_between) {
     return events;
 }
 
+/// In order of time.
+Events together(Events some, const Events& others) {
+    some.insert(some.end(), others.begin(), others.end());
+    std::ranges::stable_sort(some, {}, &Event::t);
+    return some;
+}
+
 TEST(NoiseFilter, AnEventStaysWhereTwoOfItsNeighboursJustHadOne) {
     const Events events{at(0, 2, 2), at(10, 3, 2), at(20, 3, 3), at(1009, 2, 3)};
     // The third has two neighbours, the fourth all three within 1 ms less the first.
@@ -147,10 +154,8 @@ TEST(NoiseFilter, LeavesOutTheNoiseOfAStillSceneAndKeepsWhatMovesInIt) {
     // 1 Hz of noise, three times that in one quarter: once learned, next to nothing of it stays.
     constexpr int kSide = 64;
     NoiseFilter filter{kSide, kSide, {}};
-    Events noise = random_events(60'000, kSide, kSide, 1e6 / (1. * kSide * kSide));
-    for (const Event& event : random_events(30'000, 32, 32, 1e6 / (2. * 32 * 32)))
-        noise.push_back(event);
-    std::ranges::stable_sort(noise, {}, &Event::t);
+    const Events noise = together(random_events(60'000, kSide, kSide, 1e6 / (1. * kSide * kSide)),
+                                  random_events(30'000, 32, 32, 1e6 / (2. * 32 * 32)));
     const SensorTime learned = from_us(10'000'000), moves = from_us(14'000'000);
     Events events;
     for (const Event& event : noise)
@@ -174,10 +179,8 @@ TEST(NoiseFilter, WhatFiresFarMoreThanTheRestIsNoNoiseHoweverLongItGoesOn) {
     // 1 Hz of noise for 20 s; one part of the sensor fires seven times as much, and alone.
     constexpr int kSide = 64;
     NoiseFilter filter{kSide, kSide, {}};
-    Events events = random_events(80'000, kSide, kSide, 1e6 / (1. * kSide * kSide));
-    for (const Event& event : random_events(7'680, 8, 8, 1e6 / (6. * 8 * 8)))
-        events.push_back(event);
-    std::ranges::stable_sort(events, {}, &Event::t);
+    Events events = together(random_events(80'000, kSide, kSide, 1e6 / (1. * kSide * kSide)),
+                             random_events(7'680, 8, 8, 1e6 / (6. * 8 * 8)));
     filter.process(events);
     const std::vector<NoiseFilter::Tile> tiles = filter.state().tiles;
     const double quiet = filter.noise_hz() * 8 * 8 * .25;  // events of a tile and an interval

@@ -24,6 +24,7 @@ public:
 
     const SensorInfo& info() const override { return source_.info(); }
     bool is_live() const noexcept override { return source_.is_live(); }
+    std::size_t packet_bytes() const override { return source_.packet_bytes(); }
     ReadStatus read(RawPacket& into) override;
     void stop() noexcept override { source_.stop(); }
     std::unique_ptr<Parser> make_parser() const override { return source_.make_parser(); }

@@ -112,10 +112,12 @@ PipelineSettings Run::pipeline_settings() {
     settings.changes = page_ || quality_.changes_while_running() ? &changes_ : nullptr;
     settings.halvings = quality_.halvings();
     settings.events_per_pixel = render_.fused() != nullptr;
-    settings.buffers = live() ? PipelineBuffers{.latents = 3} : kBuffersOfRecording;
-    if (live()) settings.buffers.packets = packets_of_burst(opened_.source->packet_bytes());
-    if (const auto packets = std::size_t(settings_.buffers_packets.value_or(0)); packets > 0)
+    settings.buffers = buffers_for(*opened_.source);
+    if (live()) settings.buffers.latents = 3;
+    if (settings_.buffers_packets) {
+        const auto packets = std::size_t(*settings_.buffers_packets);
         settings.buffers.packets = live() ? packets : std::min(settings.buffers.packets, packets);
+    }
     if (settings_.buffers_grids) settings.buffers.grids = std::size_t(*settings_.buffers_grids);
     if (settings_.buffers_latents)
         settings.buffers.latents = std::size_t(*settings_.buffers_latents);
