@@ -86,6 +86,7 @@ void ReferenceImages::draw(const ReferenceImage& image, cv::Size sensor, cv::Mat
     shown = cv::Mat::zeros(sensor, CV_8UC1);
     const cv::Rect whole{{0, 0}, sensor};
     const cv::Rect place = cv::Rect{image.x0, image.y0, grey.cols, grey.rows} & whole;
+    if (place.empty()) return;  // nothing of it lies on the sensor
     grey(place - cv::Point{image.x0, image.y0}).copyTo(shown(place));
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace eventide::app {
 namespace {
 
@@ -42,6 +44,19 @@ TEST(ReferenceImages, OfAClockThatBeganAnewAreTheNewOnes) {
     show_images(references, 0, 100);
     EXPECT_TRUE(truth_at(references, 10'010).empty());
     EXPECT_FALSE(truth_at(references, 10).empty());
+}
+
+TEST(ReferenceImages, OneBesideTheSensorShowsNothingOfIt) {
+    ReferenceImages references;
+    Batch batch;
+    ReferenceImage& image = batch.images.emplace_back();
+    image.pixels = Array2<std::uint16_t>(2, 3);
+    std::ranges::fill(image.pixels.values(), std::uint16_t{65535});
+    image.x0 = 40;
+    references.see(batch);
+    const cv::Mat shown = truth_at(references, 0);
+    EXPECT_EQ(shown.size(), cv::Size(3, 2));
+    EXPECT_EQ(cv::countNonZero(shown), 0);
 }
 
 }  // namespace
