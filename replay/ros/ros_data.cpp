@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace eventide {
 
@@ -216,7 +217,7 @@ bool RosData::take_packet(Reader& reader, Batch& into, Damage& damage) {
     header.stamp_ns = reader.header();
     const auto height = reader.template number<std::uint32_t>(),
                width = reader.template number<std::uint32_t>();
-    reader.template number<std::uint64_t>();  // sequence number: of one recording, without gaps
+    const auto sequence = reader.template number<std::uint64_t>();
     header.time_base_ns = reader.template number<std::uint64_t>();
     const std::string encoding{reader.text()};
     reader.template number<std::uint8_t>();  // of all encodings the bytes are little endian
@@ -229,6 +230,10 @@ bool RosData::take_packet(Reader& reader, Batch& into, Damage& damage) {
         encoding_ = encoding;
         packet_damage_ = {};
     }
+    if (is_gap_before(sequence)) {
+        packets_->resync();
+        damage.count(DamageReason::bad_record);
+    }
     packet_.clear();
     append_event_packet(header, payload, packet_);
     packets_->parse(packet_, into);
@@ -237,6 +242,12 @@ bool RosData::take_packet(Reader& reader, Batch& into, Damage& damage) {
                      packets_->damaged()[DamageReason(i)] - packet_damage_[DamageReason(i)]);
     packet_damage_ = packets_->damaged();
     return true;
+}
+
+/// Who records may lose messages. Not all drivers count: the same number once more is no gap.
+bool RosData::is_gap_before(std::uint64_t sequence) {
+    const auto before = std::exchange(sequence_, sequence);
+    return before && sequence != *before && sequence != *before + 1;
 }
 
 template <typename Reader>
@@ -273,6 +284,7 @@ bool RosData::take_image(Reader& reader, Batch& into) {
 void RosData::restart() {
     packets_.reset();
     packet_damage_ = {};
+    sequence_.reset();
 }
 
 }  // namespace eventide
