@@ -47,8 +47,8 @@ TEST(Aedat2, FramesOfADavis240HaveTheirWholeRange) {
     };
     const Parsed parsed = parse_whole(
         davis240,
-        join({aps(false, 0, 0, 300, 1, 1), aps(false, 1, 0, 300, 2, 1), aps(false, 2, 0, 191, 3, 1),
-              aps(true, 0, 0, 200, 4, 1), aps(true, 1, 0, 0, 5, 1), aps(true, 2, 0, 180, 6, 1)}));
+        join({aps(false, 0, 0, 192, 1, 1), aps(false, 1, 0, 300, 2, 1), aps(false, 2, 0, 191, 3, 1),
+              aps(true, 0, 0, 92, 4, 1), aps(true, 1, 0, 0, 5, 1), aps(true, 2, 0, 180, 6, 1)}));
     ASSERT_EQ(parsed.data.images.size(), 1U);
     EXPECT_EQ(parsed.data.images[0].pixels(0, 0), of_16_bits(2 * 100));
     EXPECT_EQ(parsed.data.images[0].pixels(0, 1), 65535) << "at the end of the scale";
