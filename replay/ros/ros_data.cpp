@@ -83,13 +83,26 @@ struct ImageKind {
     std::string_view encoding;
     int channels, bytes;
     bool rgb;  ///< in OpenCV's other order
+    ColourFilter filter = ColourFilter::none;
 };
 constexpr std::array kImageKinds{
-    ImageKind{"mono8", 1, 1, false},  ImageKind{"8UC1", 1, 1, false},
-    ImageKind{"mono16", 1, 2, false}, ImageKind{"16UC1", 1, 2, false},
-    ImageKind{"bgr8", 3, 1, false},   ImageKind{"8UC3", 3, 1, false},
-    ImageKind{"rgb8", 3, 1, true},    ImageKind{"bgra8", 4, 1, false},
+    ImageKind{"mono8", 1, 1, false},
+    ImageKind{"8UC1", 1, 1, false},
+    ImageKind{"mono16", 1, 2, false},
+    ImageKind{"16UC1", 1, 2, false},
+    ImageKind{"bgr8", 3, 1, false},
+    ImageKind{"8UC3", 3, 1, false},
+    ImageKind{"rgb8", 3, 1, true},
+    ImageKind{"bgra8", 4, 1, false},
     ImageKind{"rgba8", 4, 1, true},
+    ImageKind{"bayer_rggb8", 1, 1, false, ColourFilter::rggb},
+    ImageKind{"bayer_grbg8", 1, 1, false, ColourFilter::grbg},
+    ImageKind{"bayer_gbrg8", 1, 1, false, ColourFilter::gbrg},
+    ImageKind{"bayer_bggr8", 1, 1, false, ColourFilter::bggr},
+    ImageKind{"bayer_rggb16", 1, 2, false, ColourFilter::rggb},
+    ImageKind{"bayer_grbg16", 1, 2, false, ColourFilter::grbg},
+    ImageKind{"bayer_gbrg16", 1, 2, false, ColourFilter::gbrg},
+    ImageKind{"bayer_bggr16", 1, 2, false, ColourFilter::bggr},
 };
 
 bool is_size(std::uint32_t width, std::uint32_t height) {
@@ -267,6 +280,7 @@ bool RosData::take_image(Reader& reader, Batch& into) {
     // Before the first event nobody knows whose image it is; who reads on does.
     if (width_ > 0 && (int(width) != width_ || int(height) != height_)) return false;
     image.channels = kind->channels;
+    image.filter = kind->filter;
     image.pixels = Array2<std::uint16_t>(int(height), int(width) * kind->channels);
     for (std::uint32_t y = 0; y < height; ++y) {
         const auto row = image.pixels.row(int(y));

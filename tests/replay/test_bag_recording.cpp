@@ -128,6 +128,22 @@ TEST(BagRecording, ImagesOfAnotherCameraAreLeftOutAndNamed) {
     EXPECT_TRUE(batch.images.empty());
 }
 
+TEST(BagRecording, AMosaicSaysItsColourFilter) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const auto recording = open_recording(folder.write(
+        "a.bag", bag(chunk("none", connection(kEvents, "dvs_msgs/EventArray") +
+                                       connection(kImages, "sensor_msgs/Image") +
+                                       message(kEvents, event_array(128, 128, events)) +
+                                       message(kImages, image(some_image(events.back().t, 128, 128),
+                                                              "bayer_grbg8"))))));
+    const Batch batch = read_everything(*recording);
+    ASSERT_EQ(batch.images.size(), 1U);
+    ReferenceImage expected = some_image(events.back().t, 128, 128);
+    expected.filter = ColourFilter::grbg;
+    EXPECT_TRUE(batch.images[0] == expected);
+}
+
 TEST(BagRecording, OfSeveralTopicsWithImagesTheFirstOfTheEventsSizeIsReadAndTheOthersNamed) {
     const TestFolder folder;
     const auto events = some_events(100);
