@@ -166,5 +166,24 @@ TEST(Evt2, AfterAJumpBackReadingGoesOnThere) {
     EXPECT_EQ(parser.damaged().total(), 0U);
 }
 
+/// While its first time is in doubt every word goes the careful way.
+TEST(Evt2, TheQuickWayAndTheCarefulWayAgree) {
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        std::mt19937 random{seed};
+        const auto pick = [&](unsigned n) { return unsigned(random() % n); };
+        Words words{time_high(9)};
+        for (unsigned i = 0; i < 300; ++i)
+            words.push_back(pick(9) == 0 ? ext_trigger(pick(64), pick(32), pick(2) == 0)
+                                         : cd(std::min(63U, i / 5 + pick(2)), 630 + pick(12),
+                                              470 + pick(12), pick(2) == 0));
+        const Parsed careful = parse(words);
+        words.insert(words.begin(), time_high(9));
+        const Parsed quick = parse(words);
+        EXPECT_EQ(quick.data.events, careful.data.events) << seed;
+        EXPECT_EQ(quick.data.triggers, careful.data.triggers) << seed;
+        EXPECT_TRUE(quick.damage == careful.damage) << seed;
+    }
+}
+
 }  // namespace
 }  // namespace eventide::evt2
