@@ -20,6 +20,21 @@ TEST(EventPacket, Evt3IsShiftedToItsStamp) {
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 
+/// A first time is believed with the end of its message, as its stamp dates it; no other is.
+TEST(EventPacket, ALeapAtTheEndOfAMessageWaitsForTheNext) {
+    const auto message = [](int ms, unsigned high_word, unsigned x) {
+        return packet({0, kStamp + ms * 1'000'000LL},
+                      bytes_of({evt_high(high_word), evt_low(0), evt_row(1), evt_x(x, true)}));
+    };
+    const Parsed parsed =
+        parse_whole(parser_of(EventPacketEncoding::evt3),
+                    message(0, 0, 1) + message(4, 1, 2) + message(8, 900, 3) + message(12, 3, 4));
+    EXPECT_THAT(parsed.data.events,
+                ElementsAre(at(kStampUs, 1, 1, true), at(kStampUs + 4096, 2, 1, true),
+                            at(kStampUs + 3 * 4096, 4, 1, true)));
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 2U);
+}
+
 TEST(EventPacket, AfterAGapTimeGoesOnAndOnlyADriverThatBeganAnewSetsIt) {
     const auto stream = [](std::int64_t stamp_us, unsigned high_word) {
         return packet({0, stamp_us * 1000},

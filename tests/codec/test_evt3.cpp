@@ -12,6 +12,15 @@ TEST(Evt3, AnEventIsARowAColumnAndATime) {
                    event(3 * kHigh + 9, 6, 4), event(3 * kHigh + 9, 1279, 1)});
 }
 
+/// Bit 11 of a row says which of two cameras it is of.
+TEST(Evt3, ARowHasElevenBits) {
+    for (const Words& begin : {Words{time_high(3)}, Words{time_high(3), time_high(3)}}) {
+        Words words = begin;
+        words.insert(words.end(), {addr_y(0x800 | 4), addr_x(5)});
+        expect_events(parse(words), {event(3 * kHigh, 5, 4)});
+    }
+}
+
 TEST(Evt3, AVectorIsTwelveOrEightColumns) {
     expect_events(parse({time_high(1), addr_y(4), vect_base_x(100, true), vect_12(0x801),
                          vect_12(0), vect_8(0x81), vect_8(1)}),
