@@ -9,39 +9,6 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000, kMs = 1'000;  // us
 
-TEST(HostReference, ThePacketThatCameSoonestBoundsTheOthers) {
-    HostReference reference;
-    reference.begin(1000, 1500);
-    EXPECT_EQ(reference.latest(2000), 1500);
-    reference.see(3000, 3100, false);
-    EXPECT_EQ(reference.latest(5000), 4900) << "sooner than the first";
-    reference.see(4000, 4900, false);
-    EXPECT_NEAR(double(reference.latest(5000)), 4900, 1) << "a late one changes nothing";
-}
-
-/// Each may be 100 ppm off.
-TEST(HostReference, FallsBackNoFasterThanTwoClocksDrift) {
-    constexpr std::int64_t kStart = 1'000 * kSecond;
-    HostReference reference;
-    reference.begin(0, kStart);
-    for (int second = 1; second <= 10; ++second)
-        reference.see(second * kSecond - 500 * kMs, kStart + second * kSecond, false);
-    EXPECT_NEAR(double(reference.latest(kStart + 10 * kSecond)), 10 * kSecond - 2 * kMs, 1);
-    reference.see(20 * kSecond - 4 * kMs, kStart + 20 * kSecond, false);
-    EXPECT_NEAR(double(reference.latest(kStart + 20 * kSecond)), 20 * kSecond - 4 * kMs, 1)
-        << "a camera that is as slow as may be comes on time";
-}
-
-TEST(HostReference, ATimeInDoubtMovesItNoFasterThanDrift) {
-    HostReference sure, in_doubt;
-    sure.begin(0, 0);
-    in_doubt.begin(0, 0);
-    sure.see(kSecond + 30 * kMs, kSecond, false);
-    in_doubt.see(kSecond + 30 * kMs, kSecond, true);
-    EXPECT_EQ(sure.latest(kSecond), kSecond + 30 * kMs);
-    EXPECT_EQ(in_doubt.latest(kSecond), kSecond + 200);
-}
-
 /// A camera of 15 bits, whose words come in packets.
 class Camera {
 public:
@@ -117,6 +84,31 @@ TEST(IniVationClock, ADeviceThatComesBackAndCountsFromZeroGoesOnByTheHostsClock)
     EXPECT_EQ(camera.damage.total(), 0U);
 }
 
+/// However little time has passed by the host's clock, which was late with the packet before.
+TEST(IniVationClock, ATimeThatWouldGoBackTellsOfALostWrap) {
+    Camera camera;
+    camera.packet(0, 10'000);
+    camera.clock.forget();
+    camera.packet(1'000, 11'000);
+    camera.clock.forget();
+    EXPECT_TRUE(camera.packet(1'100, 5'000));
+    EXPECT_EQ(camera.clock.us(), Camera::kWrap + 5'000);
+    EXPECT_EQ(camera.damage[DamageReason::time_backwards], 0U);
+}
+
+/// The first is taken for 15 ms later than any packet can tell.
+TEST(IniVationClock, AGuessIsNoMeasureForTheNext) {
+    Camera camera;
+    camera.packet(0, 0);
+    camera.packet(10 * kMs, 10'000);
+    camera.clock.forget();
+    camera.packet(60 * kMs, 10'000);
+    EXPECT_EQ(camera.clock.us(), 2 * Camera::kWrap + 10'000);
+    camera.clock.forget();
+    camera.packet(100 * kMs, 20'000);
+    EXPECT_EQ(camera.clock.us(), 2 * Camera::kWrap + 20'000);
+}
+
 /// A packet held up for half a wrap and more makes it guess one too many.
 void guess_too_much(Camera& camera) {
     camera.packet(0, 0);
@@ -141,6 +133,30 @@ TEST(IniVationClock, AGuessThatProvesImpossibleIsTakenBackAndTimeWaits) {
     EXPECT_TRUE(camera.packet(96 * kMs, 14'100));
     EXPECT_EQ(camera.clock.us(), kTooEarly + 100) << "it goes on where the camera caught up";
     EXPECT_EQ(camera.damage.total(), camera.corrected());
+}
+
+TEST(IniVationClock, WhatIsTakenBackIsForgottenByALossAtTheSameTime) {
+    Camera camera;
+    guess_too_much(camera);
+    camera.packet(61 * kMs);
+    camera.clock.wrap(1, camera.damage);
+    camera.clock.timestamp(14'000, camera.damage);
+    camera.clock.forget();
+    camera.packet(62 * kMs, 14'500);
+    EXPECT_EQ(camera.corrected(), 2U) << "the guess, and that it was one";
+    EXPECT_EQ(camera.clock.us(), 2 * Camera::kWrap + 14'000);
+}
+
+/// What the camera's own words say is not, however early they seem.
+TEST(IniVationClock, NoMoreIsTakenBackThanWasGuessed) {
+    Camera camera;
+    guess_too_much(camera);
+    camera.packet(61 * kMs);
+    camera.clock.wrap(3, camera.damage);
+    camera.packet(62 * kMs);
+    camera.clock.wrap(2, camera.damage);
+    EXPECT_EQ(camera.clock.us(), (3 + 2) * Camera::kWrap);
+    EXPECT_EQ(camera.corrected(), 2U);
 }
 
 TEST(IniVationClock, AResetEndsTheDoubt) {
@@ -193,15 +209,47 @@ TEST(IniVationClock, AWrapThatStaysMissingIsAddedAfterAWhile) {
     EXPECT_EQ(camera.corrected(), 2U);
 }
 
+/// A second loss takes a wrap with it that does not show at once, as the packet before it was late.
+TEST(IniVationClock, TheDoubtLastsAWhileAfterTheLastLoss) {
+    constexpr std::int64_t kWrap = Camera::kWrap;
+    Camera camera;
+    camera.packet(0, 0);
+    camera.packet(10 * kMs, 10'000);
+    camera.clock.forget();
+    camera.packet(11 * kMs, 11'000);
+    for (int wrap = 1; wrap <= 6; ++wrap) {
+        camera.packet(wrap * kWrap);
+        camera.clock.wrap(1, camera.damage);
+    }
+    camera.packet(6 * kWrap + 31 * kMs, 1'000);
+    camera.clock.forget();
+    camera.packet(7 * kWrap + 2 * kMs, 2'000);
+    EXPECT_EQ(camera.clock.us(), 6 * kWrap + 2'000);
+    for (int wrap = 8; wrap <= 30; ++wrap) {
+        camera.packet(wrap * kWrap);
+        camera.clock.wrap(1, camera.damage);
+    }
+    EXPECT_EQ(camera.clock.us(), 30 * kWrap);
+    EXPECT_EQ(camera.corrected(), 1U);
+}
+
+/// Between losses, while it still looks for wraps that are missing.
 TEST(IniVationClock, PacketsThatTellNoTimeAreNotLate) {
     Camera camera;
     camera.packet(0, 0);
     camera.packet(10 * kMs, 10'000);
     camera.clock.forget();
     camera.packet(11 * kMs, 11'000);
-    for (int i = 1; i <= 10; ++i) camera.packet(11 * kMs + i * 100 * kMs);
-    camera.clock.wrap(31, camera.damage);
-    EXPECT_EQ(camera.clock.us(), 31 * Camera::kWrap);
+    camera.clock.forget();
+    camera.packet(200 * kMs);
+    camera.clock.wrap(6, camera.damage);
+    camera.packet(320 * kMs);
+    camera.clock.wrap(3, camera.damage);
+    camera.clock.timestamp(25'000, camera.damage);
+    for (int ms = 420; ms < 800; ms += 100) camera.packet(ms * kMs);
+    camera.packet(800 * kMs);
+    camera.clock.wrap(15, camera.damage);
+    EXPECT_EQ(camera.clock.us(), 24 * Camera::kWrap);
     EXPECT_EQ(camera.corrected(), 0U);
 }
 
