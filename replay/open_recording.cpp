@@ -73,7 +73,7 @@ const Format& choose_format(const ByteFile& file, std::span<const std::byte> hea
                     "format: expected one of " + names + ", found \"" + options.format + "\"");
     throw Error(ErrorKind::input,
                 file.path() + ": expected a recording (" + names + "), found " +
-                    (foreign.empty() ? "an unrecognised format" : std::string(foreign)));
+                    (foreign.empty() ? describe_unread(head) : std::string(foreign)));
 }
 
 OpenedStream open_stream(const ByteFile& file, const Format& format,

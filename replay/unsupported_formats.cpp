@@ -1,6 +1,8 @@
 // Known by their first bytes.
 #include "replay/unsupported_formats.h"
 
+#include "src/codec/prophesee/evt_header.h"
+
 #include <algorithm>
 #include <array>
 
@@ -47,6 +49,11 @@ std::string_view describe_foreign(std::span<const std::byte> first_bytes) {
         return text.substr(std::min(each.offset, text.size())).starts_with(each.magic);
     });
     return found == kForeign.end() ? std::string_view{} : found->description;
+}
+
+std::string describe_unread(std::span<const std::byte> first_bytes) {
+    const std::string raw = evt_format_said(first_bytes);
+    return raw.empty() ? "an unrecognised format" : "a Prophesee RAW file of format " + raw;
 }
 
 }  // namespace eventide

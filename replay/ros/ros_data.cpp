@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace eventide {
 
@@ -82,13 +83,26 @@ struct ImageKind {
     std::string_view encoding;
     int channels, bytes;
     bool rgb;  ///< in OpenCV's other order
+    ColourFilter filter = ColourFilter::none;
 };
 constexpr std::array kImageKinds{
-    ImageKind{"mono8", 1, 1, false},  ImageKind{"8UC1", 1, 1, false},
-    ImageKind{"mono16", 1, 2, false}, ImageKind{"16UC1", 1, 2, false},
-    ImageKind{"bgr8", 3, 1, false},   ImageKind{"8UC3", 3, 1, false},
-    ImageKind{"rgb8", 3, 1, true},    ImageKind{"bgra8", 4, 1, false},
+    ImageKind{"mono8", 1, 1, false},
+    ImageKind{"8UC1", 1, 1, false},
+    ImageKind{"mono16", 1, 2, false},
+    ImageKind{"16UC1", 1, 2, false},
+    ImageKind{"bgr8", 3, 1, false},
+    ImageKind{"8UC3", 3, 1, false},
+    ImageKind{"rgb8", 3, 1, true},
+    ImageKind{"bgra8", 4, 1, false},
     ImageKind{"rgba8", 4, 1, true},
+    ImageKind{"bayer_rggb8", 1, 1, false, ColourFilter::rggb},
+    ImageKind{"bayer_grbg8", 1, 1, false, ColourFilter::grbg},
+    ImageKind{"bayer_gbrg8", 1, 1, false, ColourFilter::gbrg},
+    ImageKind{"bayer_bggr8", 1, 1, false, ColourFilter::bggr},
+    ImageKind{"bayer_rggb16", 1, 2, false, ColourFilter::rggb},
+    ImageKind{"bayer_grbg16", 1, 2, false, ColourFilter::grbg},
+    ImageKind{"bayer_gbrg16", 1, 2, false, ColourFilter::gbrg},
+    ImageKind{"bayer_bggr16", 1, 2, false, ColourFilter::bggr},
 };
 
 bool is_size(std::uint32_t width, std::uint32_t height) {
@@ -216,7 +230,7 @@ bool RosData::take_packet(Reader& reader, Batch& into, Damage& damage) {
     header.stamp_ns = reader.header();
     const auto height = reader.template number<std::uint32_t>(),
                width = reader.template number<std::uint32_t>();
-    reader.template number<std::uint64_t>();  // sequence number: of one recording, without gaps
+    const auto sequence = reader.template number<std::uint64_t>();
     header.time_base_ns = reader.template number<std::uint64_t>();
     const std::string encoding{reader.text()};
     reader.template number<std::uint8_t>();  // of all encodings the bytes are little endian
@@ -229,6 +243,10 @@ bool RosData::take_packet(Reader& reader, Batch& into, Damage& damage) {
         encoding_ = encoding;
         packet_damage_ = {};
     }
+    if (is_gap_before(sequence)) {
+        packets_->resync();
+        damage.count(DamageReason::bad_record);
+    }
     packet_.clear();
     append_event_packet(header, payload, packet_);
     packets_->parse(packet_, into);
@@ -237,6 +255,12 @@ bool RosData::take_packet(Reader& reader, Batch& into, Damage& damage) {
                      packets_->damaged()[DamageReason(i)] - packet_damage_[DamageReason(i)]);
     packet_damage_ = packets_->damaged();
     return true;
+}
+
+/// Who records may lose messages. Not all drivers count: the same number once more is no gap.
+bool RosData::is_gap_before(std::uint64_t sequence) {
+    const auto before = std::exchange(sequence_, sequence);
+    return before && sequence != *before && sequence != *before + 1;
 }
 
 template <typename Reader>
@@ -256,6 +280,7 @@ bool RosData::take_image(Reader& reader, Batch& into) {
     // Before the first event nobody knows whose image it is; who reads on does.
     if (width_ > 0 && (int(width) != width_ || int(height) != height_)) return false;
     image.channels = kind->channels;
+    image.filter = kind->filter;
     image.pixels = Array2<std::uint16_t>(int(height), int(width) * kind->channels);
     for (std::uint32_t y = 0; y < height; ++y) {
         const auto row = image.pixels.row(int(y));
@@ -273,6 +298,7 @@ bool RosData::take_image(Reader& reader, Batch& into) {
 void RosData::restart() {
     packets_.reset();
     packet_damage_ = {};
+    sequence_.reset();
 }
 
 }  // namespace eventide

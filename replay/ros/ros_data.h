@@ -65,12 +65,14 @@ private:
     template <typename Reader>
     bool take_image(Reader& reader, Batch& into);
     bool take_size(std::uint32_t width, std::uint32_t height);
+    bool is_gap_before(std::uint64_t sequence);
 
     RosWire wire_;
     int width_ = 0, height_ = 0;
     std::optional<EventPacketParser> packets_;
     std::string encoding_;
-    Damage packet_damage_;  ///< of packets_, what was counted already
+    Damage packet_damage_;                   ///< of packets_, what was counted already
+    std::optional<std::uint64_t> sequence_;  ///< of the packet before
     std::vector<std::byte> packet_;
 };
 

@@ -21,11 +21,10 @@ bool has_events(RosKind kind) {
 
 void RosReader::open(std::string_view format, const OpenOptions& options) {
     Damage damage;
-    for (int parts = 0; data_.width() == 0 || parts < kPartsToLookAt; ++parts) {
-        const bool goes_on = read_part(damage);
-        for (const Message& message : messages_) look_at(message, damage);
-        messages_.clear();
-        if (!goes_on || (data_.width() > 0 && has_all_sizes())) break;
+    look_for_sizes(damage);
+    while (data_.width() == 0 && choose_other_events()) {
+        begin_anew();
+        look_for_sizes(damage);
     }
     if (data_.width() == 0) refuse(damage);
     opening_ = false;
@@ -37,14 +36,40 @@ void RosReader::open(std::string_view format, const OpenOptions& options) {
     begin_anew();
 }
 
+void RosReader::look_for_sizes(Damage& damage) {
+    for (int parts = 0; data_.width() == 0 || parts < kPartsToLookAt; ++parts) {
+        const bool goes_on = read_part(damage);
+        for (const Message& message : messages_) look_at(message, damage);
+        messages_.clear();
+        if (!goes_on || (data_.width() > 0 && has_all_sizes())) break;
+    }
+}
+
 void RosReader::look_at(const Message& message, Damage& damage) {
     Batch unused;
-    auto& size = topics_[message.topic].size;
+    Topic& topic = topics_[message.topic];
+    topic.has_messages = true;
     if (message.kind != RosKind::images) {
-        if (data_.width() == 0) data_.take(message.kind, message.bytes, unused, damage);
-    } else if (!size) {
-        size = data_.image_size(message.bytes);
+        if (data_.width() == 0 && is_read(message.topic))
+            data_.take(message.kind, message.bytes, unused, damage);
+    } else if (!topic.size) {
+        topic.size = data_.image_size(message.bytes);
     }
+}
+
+/// Of the one chosen there is no message that can be read: the next that has some. Recorders name
+/// topics of which nothing came.
+bool RosReader::choose_other_events() {
+    if (!events_) return false;
+    for (auto& [number, topic] : topics_)
+        topic.is_void |= is_read(number) && has_events(topic.kind);
+    const auto next = std::ranges::find_if(topics_, [](const auto& each) {
+        const Topic& topic = each.second;
+        return has_events(topic.kind) && topic.has_messages && !topic.is_void;
+    });
+    if (next == topics_.end()) return false;
+    events_ = next->first;
+    return true;
 }
 
 bool RosReader::has_all_sizes() const {
@@ -92,7 +117,7 @@ void RosReader::add_message(std::uint32_t number, std::span<const std::byte> byt
     const auto found = topics_.find(number);
     if (found == topics_.end()) return;
     const RosKind kind = found->second.kind;
-    if (is_read(number) || (opening_ && kind == RosKind::images))
+    if (is_read(number) || (opening_ && (kind == RosKind::images || has_events(kind))))
         messages_.push_back({kind, number, std::vector(bytes.begin(), bytes.end())});
 }
 
@@ -139,7 +164,10 @@ void RosReader::name_other_topics() {
         if (is_read(number) || (!images && !has_events(topic.kind))) continue;
         const std::string what = (images ? "the images of " : "the events of ") + topic.name;
         if (!named.insert(what).second) continue;
-        if (images && topic.size && !has_size_of_events(topic))
+        if (topic.is_void)
+            remarks_.push_back(topic.name + " has no events that can be read; those of " +
+                               topics_[*events_].name + " are read");
+        else if (images && topic.size && !has_size_of_events(topic))
             remarks_.push_back(what + " are left out: they are " +
                                size_text(topic.size->width, topic.size->height) +
                                " px, the events' sensor has " +

@@ -19,8 +19,8 @@
 namespace eventide {
 
 /// Reads the first topic with events (dvs_msgs/EventArray, prophesee_event_msgs/EventArray,
-/// event_camera_msgs/EventPacket) and the first with images (sensor_msgs/Image) of the events'
-/// size; remarks name what is left out.
+/// event_camera_msgs/EventPacket) that can be read, and the first with images (sensor_msgs/Image)
+/// of the events' size; remarks name what is left out.
 class RosReader : public DataReader {
 public:
     const StreamHeader& header() const override { return header_; }
@@ -63,8 +63,12 @@ private:
         std::string name;
         RosKind kind = RosKind::other;
         std::optional<RosImageSize> size = {};  ///< of images, where one was seen
+        bool has_messages = false;              ///< of those looked at
+        bool is_void = false;                   ///< of events: none that can be read
     };
+    void look_for_sizes(Damage& damage);
     void look_at(const Message& message, Damage& damage);
+    bool choose_other_events();
     bool has_all_sizes() const;
     bool has_size_of_events(const Topic& topic) const;
     void choose_images();

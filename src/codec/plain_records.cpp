@@ -1,6 +1,7 @@
 // Data as records of 16 bytes, and back.
 #include "src/codec/plain_records.h"
 
+#include "src/core/bayer.h"
 #include "src/core/byte_order.h"
 #include "src/core/sensor_limits.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 enum class Kind : std::uint8_t { none, event, image, imu, trigger, damage };
 
-constexpr std::size_t kImageFields = 24;  // exposure's begin and end, x0, y0
+constexpr std::size_t kImageFields = 28;  // exposure's begin and end, x0, y0, colour filter
 constexpr std::size_t kImuFields = 40;
 
 struct Head {
@@ -40,6 +41,7 @@ void append(const ReferenceImage& image, std::vector<std::byte>& out) {
     append_little(out, to_us(image.exposure_end));
     append_little(out, std::int32_t(image.x0));
     append_little(out, std::int32_t(image.y0));
+    append_little(out, number_of(image.filter));
     for (const std::uint16_t value : image.pixels.values()) append_little(out, value);
 }
 
@@ -165,6 +167,8 @@ void PlainRecordsParser::end_image(Batch& into) {
     image.exposure_end = from_us(load_little<std::int64_t>(payload_.data() + 8));
     image.x0 = load_little<std::int32_t>(payload_.data() + 16);
     image.y0 = load_little<std::int32_t>(payload_.data() + 20);
+    image.filter = colour_filter_of_number(load_little<std::uint32_t>(payload_.data() + 24))
+                       .value_or(ColourFilter::none);
     image.channels = std::to_integer<int>(head_[1]);
     image.pixels =
         Array2<std::uint16_t>(load_little<std::uint16_t>(head_.data() + 4),
@@ -213,10 +217,8 @@ void PlainRecordsParser::resync() {
 }
 
 std::optional<SensorTime> PlainRecordsParser::clock() const {
-    const auto events = validator_.newest_us();
-    if (!events && !newest_us_) return std::nullopt;
-    return from_us(std::max(events.value_or(*(newest_us_ ? newest_us_ : events)),
-                            newest_us_.value_or(*(events ? events : newest_us_))));
+    const auto newest = std::max(validator_.newest_us(), newest_us_);  // none is less than any
+    return newest ? std::optional(from_us(*newest)) : std::nullopt;
 }
 
 }  // namespace eventide

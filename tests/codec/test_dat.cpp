@@ -38,6 +38,12 @@ TEST(Dat, VersionTwoHasWidePlaces) {
     EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 1U);
 }
 
+TEST(Dat, WithoutASizePlacesAreAsLargeAsTheirBits) {
+    const MakeParser any_size = [] { return std::make_unique<DatParser>(Record::events_v2); };
+    const Parsed parsed = parse_whole(any_size, to_stream({7, place(16383, 16383, true)}));
+    EXPECT_EQ(parsed.data.events, std::vector{event(7, 16383, 16383, true)});
+}
+
 TEST(Dat, VersionOneHasNarrowOnes) {
     const Parsed parsed =
         parse_whole(make(Record::events_v1), to_stream({7, 303U | 239U << 9 | 1U << 17, 8, 5}));
@@ -51,6 +57,24 @@ TEST(Dat, TriggersHaveAnInputAndAnEdge) {
     const std::vector<Trigger> expected{{from_us(7), Trigger::Kind::rising, 6},
                                         {from_us(8), Trigger::Kind::falling, 6}};
     EXPECT_TRUE(parsed.data.triggers == expected);
+}
+
+/// Inputs may rise at one time, the first two of a file among them.
+TEST(Dat, TriggersOfOneTimeAreNoneBeforeEachOther) {
+    DatParser parser(Record::triggers);
+    Batch batch;
+    parser.parse(to_stream({7, 30U << 8 | 1U, 7, 31U << 8 | 1U, 9, 30U << 8, 9, 31U << 8}), batch);
+    const std::vector<Trigger> expected{{from_us(7), Trigger::Kind::rising, 30},
+                                        {from_us(7), Trigger::Kind::rising, 31},
+                                        {from_us(9), Trigger::Kind::falling, 30},
+                                        {from_us(9), Trigger::Kind::falling, 31}};
+    EXPECT_EQ(batch.triggers, expected) << "and none waits for another";
+    parser.parse(to_stream({8, 1U}), batch);
+    EXPECT_EQ(parser.damaged()[DamageReason::time_backwards], 1U);
+    parser.resync();
+    parser.parse(to_stream({2, 1U, 3, 0U}), batch);
+    EXPECT_EQ(batch.triggers.size(), 6U) << "after a jump back";
+    EXPECT_EQ(parser.damaged().total(), 1U);
 }
 
 TEST(Dat, TimeWrapsAndLeapsAreConfirmed) {

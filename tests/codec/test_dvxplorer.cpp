@@ -86,6 +86,18 @@ TEST(Dvxplorer, OutsideTheSensorIsCounted) {
     EXPECT_EQ(parsed.damaged[DamageReason::out_of_range], 3U);
 }
 
+TEST(Dvxplorer, EdgesSayWhetherTheyAreOfTheInputOrTheGenerator) {
+    using Kind = Trigger::Kind;
+    const auto parsed = fx3({2, time(9), 2, 3, 4, time(10), 16, 17});
+    const std::vector<Trigger> expected{{from_us(9), Kind::falling, 0},
+                                        {from_us(9), Kind::rising, 0},
+                                        {from_us(9), Kind::pulse, 0},
+                                        {from_us(10), Kind::falling, Trigger::kGenerator},
+                                        {from_us(10), Kind::rising, Trigger::kGenerator}};
+    EXPECT_EQ(parsed.data.triggers, expected) << "the first has no time";
+    EXPECT_EQ(parsed.damaged.total(), 0U);
+}
+
 TEST(Dvxplorer, ImuSendsYBeforeXAndHasItsOwnScales) {
     std::vector<std::uint16_t> words{
         time(9), 5, std::uint16_t(0x5300 | 0xE0 | (1 << 3) | 2)};  // 4 g, 500 deg/s

@@ -1,58 +1,10 @@
-// EVT2 and EVT2.1, word by word, and RAW headers through the years.
-#include "src/codec/prophesee/evt2.h"
+// EVT2, word by word.
 #include "src/codec/prophesee/evt_header.h"
-#include "src/core/byte_order.h"
-#include "src/core/error.h"
 #include "tests/codec/data_files.h"
-#include "tests/codec/parser_checks.h"
+#include "tests/codec/evt2_words.h"
 
-namespace eventide {
+namespace eventide::evt2 {
 namespace {
-
-constexpr int kWidth = 640, kHeight = 480;
-constexpr std::int64_t kHigh = 64;  // us
-using Order = Evt21Parser::Order;
-using Words = std::vector<std::uint32_t>;
-
-std::uint32_t cd(unsigned t, unsigned x, unsigned y, bool on) {
-    return std::uint32_t(on) << 28 | t << 22 | x << 11 | y;
-}
-std::uint32_t time_high(std::uint32_t t) {
-    return 0x80000000U | t;
-}
-std::uint32_t ext_trigger(unsigned t, unsigned id, bool rising) {
-    return 0xA0000000U | t << 22 | id << 8 | unsigned(rising);
-}
-
-Bytes to_stream(const Words& words) {
-    Bytes out;
-    for (const std::uint32_t w : words) append_little(out, w);
-    return out;
-}
-
-/// EVT2.1: {upper half, lower half}
-using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-Bytes to_stream(const Pairs& words, Order order) {
-    Bytes out;
-    for (const auto& [upper, lower] : words) {
-        append_little(out, order == Order::upper_half_first ? upper : lower);
-        append_little(out, order == Order::upper_half_first ? lower : upper);
-    }
-    return out;
-}
-
-const MakeParser kMake2 = [] { return std::make_unique<Evt2Parser>(kWidth, kHeight); };
-MakeParser make21(Order order) {
-    return [order] { return std::make_unique<Evt21Parser>(kWidth, kHeight, order); };
-}
-
-Parsed parse(const Words& words) {
-    return parse_whole(kMake2, to_stream(words));
-}
-
-Event event(std::int64_t t, int x, int y, bool on = false) {
-    return {from_us(t), std::uint16_t(x), std::uint16_t(y), Polarity(on)};
-}
 
 TEST(Evt2, EachWordIsAnEvent) {
     const Parsed parsed = parse({time_high(3), cd(0, 5, 4, false), cd(63, 639, 479, true)});
@@ -131,33 +83,17 @@ TEST(Evt2, NoMoreWaitsThanMemoryIsMeantFor) {
 }
 
 TEST(Evt2, OtherWordsAreNoEvents) {
-    const Parsed parsed = parse({cd(0, 9, 9, true), 0x99999999, time_high(1), 0xE0000014,
-                                 0xF1234567, 0x99999999, ext_trigger(5, 7, true), 0x50000000,
-                                 cd(6, 1, 2, true), cd(6, 640, 2, true), cd(6, 1, 480, true)});
+    const Parsed parsed =
+        parse({cd(0, 9, 9, true), 0x99999999, time_high(1), time_high(1), 0xE0000014, 0xF1234567,
+               0x99999999, ext_trigger(5, 23, true), 0x50000000, cd(6, 1, 2, true),
+               cd(6, 640, 2, true), cd(6, 1, 480, true)});
     const std::vector<Event> expected{event(70, 1, 2, true)};
     EXPECT_TRUE(parsed.data.events == expected);
-    const std::vector<Trigger> triggers{{from_us(69), Trigger::Kind::rising, 7}};
+    const std::vector<Trigger> triggers{{from_us(69), Trigger::Kind::rising, 23}};
     EXPECT_TRUE(parsed.data.triggers == triggers);
     EXPECT_EQ(parsed.damage[DamageReason::unknown_word], 1U);
     EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 2U);
     EXPECT_EQ(parsed.damage.total(), 3U);
-}
-
-Words some_words(unsigned seed, std::size_t n) {
-    std::mt19937 generator(seed);
-    const auto random = [&] { return unsigned(generator()); };
-    Words words;
-    std::uint32_t t = 1000;
-    while (words.size() < n) {
-        t += 1 + random() % 3;
-        words.push_back(time_high(t));
-        unsigned low = 0;
-        for (unsigned k = random() % 10; k > 0; --k)
-            words.push_back(cd(low = std::min(63U, low + random() % 9), random() % kWidth,
-                               random() % kHeight, random() % 2 == 1));
-        if (random() % 9 == 0) words.push_back(ext_trigger(low, random() % 32, random() % 2 == 1));
-    }
-    return words;
 }
 
 TEST(Evt2, SplitsCutsAndFlippedBitsAreBorne) {
@@ -210,105 +146,44 @@ TEST(Evt2, ACameraThatWasOpenedAgainGoesOnByTheHostsClock) {
                                          event(901 * kHigh + 6'000'000 + 3, 1, 2, true)}));
 }
 
-TEST(Evt21, AWordIsUpTo32Columns) {
-    for (const Order order : {Order::lower_half_first, Order::upper_half_first}) {
-        const Bytes bytes = to_stream({{time_high(3), 0},
-                                       {cd(5, 32, 4, true), 0x80000001},
-                                       {cd(6, 608, 5, false), 2},
-                                       {ext_trigger(7, 1, false), 0},
-                                       {0xE0000019, 0},
-                                       {0x99999999, 0x99999999},
-                                       {cd(8, 632, 5, false), 0x101}},
-                                      order);
-        const Parsed parsed = parse_whole(make21(order), bytes);
-        const std::vector<Event> expected{event(197, 32, 4, true), event(197, 63, 4, true),
-                                          event(198, 609, 5), event(200, 632, 5)};
-        EXPECT_TRUE(parsed.data.events == expected);
-        const std::vector<Trigger> triggers{{from_us(199), Trigger::Kind::falling, 1}};
-        EXPECT_TRUE(parsed.data.triggers == triggers);
-        EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 1U);
-        EXPECT_EQ(parsed.damage.total(), 1U);
+TEST(Evt2, TheClockGoesOnWithoutEvents) {
+    EXPECT_EQ(parse({}).clock, std::nullopt);
+    EXPECT_EQ(parse({time_high(5)}).clock, from_us(5 * kHigh));
+    EXPECT_EQ(parse({time_high(5), time_high(6)}).clock, from_us(6 * kHigh));
+    EXPECT_EQ(parse({time_high(5), time_high(6), ext_trigger(9, 0, true)}).clock,
+              from_us(6 * kHigh + 9));
+}
+
+TEST(Evt2, AfterAJumpBackReadingGoesOnThere) {
+    Evt2Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.parse(to_stream(Words{time_high(5000), time_high(5000), cd(5, 1, 2, true)}), batch);
+    parser.resync();
+    EXPECT_EQ(parser.clock(), std::nullopt);
+    batch.clear();
+    parser.parse(to_stream(Words{time_high(100), time_high(100), cd(6, 3, 4, true)}), batch);
+    EXPECT_EQ(batch.events, std::vector{event(100 * kHigh + 6, 3, 4, true)});
+    EXPECT_EQ(parser.damaged().total(), 0U);
+}
+
+/// While its first time is in doubt every word goes the careful way.
+TEST(Evt2, TheQuickWayAndTheCarefulWayAgree) {
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        std::mt19937 random{seed};
+        const auto pick = [&](unsigned n) { return unsigned(random() % n); };
+        Words words{time_high(9)};
+        for (unsigned i = 0; i < 300; ++i)
+            words.push_back(pick(9) == 0 ? ext_trigger(pick(64), pick(32), pick(2) == 0)
+                                         : cd(std::min(63U, i / 5 + pick(2)), 630 + pick(12),
+                                              470 + pick(12), pick(2) == 0));
+        const Parsed careful = parse(words);
+        words.insert(words.begin(), time_high(9));
+        const Parsed quick = parse(words);
+        EXPECT_EQ(quick.data.events, careful.data.events) << seed;
+        EXPECT_EQ(quick.data.triggers, careful.data.triggers) << seed;
+        EXPECT_TRUE(quick.damage == careful.damage) << seed;
     }
-}
-
-TEST(Evt21, SplitsCutsAndFlippedBitsAreBorne) {
-    std::mt19937 generator(7);
-    const auto random = [&] { return unsigned(generator()); };
-    Pairs words;
-    for (const std::uint32_t word : some_words(2, 500)) {
-        const bool is_event = word >> 28 <= 1;
-        words.emplace_back(is_event ? word & ~(31U << 11) : word, is_event ? random() : 0);
-    }
-    const Bytes bytes = to_stream(words, Order::upper_half_first);
-    const MakeParser make = make21(Order::upper_half_first);
-    expect_same_for_any_split(make, bytes);
-    expect_beginnings_for_any_cut(make, std::span(bytes).first(400));
-    expect_bears_damage(make, bytes, kWidth, kHeight);
-}
-
-TEST(EvtHeader, SaysTheSensorInManyWays) {
-    const auto name = [](const std::string& lines) {
-        return read_evt_header(to_bytes("% evt 3.0\n" + lines)).stream.sensor_name;
-    };
-    EXPECT_EQ(name("% sensor_name IMX646\n% sensor_generation 4.2\n% system_ID 49\n"), "IMX646");
-    EXPECT_EQ(name("% camera_integration_name DAVIS346\n"), "DAVIS346");
-    EXPECT_EQ(name("% sensor_generation 4.2\n"), "IMX636");
-    EXPECT_EQ(name("% sensor_generation 3.1\n"), "Gen3.1");
-    EXPECT_EQ(name("% system_ID 48\n"), "Gen4.1");
-    EXPECT_EQ(name("% system_ID 99\n"), "99");
-    EXPECT_EQ(name(""), "");
-}
-
-TEST(EvtHeader, WithoutAWordOnItEarlySystemsSwapTheHalvesOfEvt21) {
-    const auto swapped = [](const std::string& lines) {
-        return read_evt_header(to_bytes("% evt 2.1\n" + lines)).halves_swapped;
-    };
-    for (const char* lines :
-         {"% system_ID 49\n", "% system_ID 54\n% integrator_name Prophesee\n",
-          "% plugin_integrator_name Prophesee\n% camera_integrator_name Prophesee\n"
-          "% system_ID 49\n"})
-        EXPECT_TRUE(swapped(lines)) << lines;
-    for (const char* lines :
-         {"", "% system_ID 0\n", "% system_ID 55\n", "% system_ID 49\n% endianness little\n",
-          "% system_ID 49\n% format EVT21;endianness=little\n",
-          "% system_ID 49\n% camera_integrator_name Other\n",
-          "% system_ID 49\n% plugin_integrator_name Other\n"})
-        EXPECT_FALSE(swapped(lines)) << lines;
-}
-
-TEST(EvtHeader, SaysFormatAndSizeInManyWays) {
-    struct Case {
-        const char* text;
-        const char* format;
-        int width, height;
-        bool swapped;
-    };
-    for (const Case& c :
-         {Case{"% format EVT3;height=720;width=1280\n% end\n", "evt3", 1280, 720, false},
-          Case{"% evt 3.0\n% geometry 320x320\n", "evt3", 320, 320, false},
-          Case{"% evt 2.1\n% endianness legacy\n% system_ID 49\n", "evt21", 1280, 720, true},
-          Case{"% format EVT21;endianness=legacy;height=5;width=6\r\n", "evt21", 6, 5, true},
-          Case{"% evt 2.0\n% system_ID 21\n", "evt2", 640, 480, false},
-          Case{"% system_ID 21\n", "evt2", 640, 480, false},
-          Case{"% system_ID 40\n% integrator_name Prophesee\n", "evt3", 640, 480, false},
-          Case{"% system_ID 49\n% serial_number 1\n", "evt3", 1280, 720, false},
-          Case{"% evt 3.0\n% system_ID 49\n% plugin_integrator_name Other\n", "evt3", 0, 0, false},
-          Case{"% evt 2.0\n% geometry -5xfoo\n", "evt2", 0, 0, false}}) {
-        Bytes bytes = to_bytes(c.text);
-        const std::size_t header_bytes = bytes.size();
-        for (const int b : {0x25, 0x80, 0x0A, 0xFF}) bytes.push_back(std::byte(b));
-        const EvtHeader header = read_evt_header(bytes);
-        EXPECT_EQ(header.stream.format, c.format);
-        EXPECT_EQ(header.stream.width, c.width) << c.text;
-        EXPECT_EQ(header.stream.height, c.height);
-        EXPECT_EQ(header.halves_swapped, c.swapped);
-        EXPECT_EQ(header.stream.data_offset, header_bytes);
-    }
-    EXPECT_THROW(read_evt_header(to_bytes("% evt 9.0\n")), Error);
-    EXPECT_THROW(read_evt_header(to_bytes("% evt 9.0\n% system_ID 49\n")), Error);
-    EXPECT_THROW(read_evt_header(to_bytes("% system_ID 99\n")), Error);
-    EXPECT_THROW(read_evt_header(to_bytes("")), Error);
 }
 
 }  // namespace
-}  // namespace eventide
+}  // namespace eventide::evt2

@@ -87,6 +87,18 @@ TEST(Evt3, AfterALossItTakesUpAtTheNextTime) {
     EXPECT_TRUE(batch.events == expected);
 }
 
+TEST(Evt3, AfterAJumpBackReadingGoesOnThere) {
+    Evt3Parser parser(kWidth, kHeight);
+    Batch batch;
+    parser.parse(to_stream({time_high(500), time_high(500), addr_y(1), addr_x(1)}), batch);
+    parser.resync();
+    EXPECT_EQ(parser.clock(), std::nullopt);
+    batch.clear();
+    parser.parse(to_stream({time_high(100), time_high(100), addr_y(2), addr_x(3)}), batch);
+    EXPECT_EQ(batch.events, std::vector{event(100 * kHigh, 3, 2)});
+    EXPECT_EQ(parser.damaged().total(), 0U);
+}
+
 constexpr HostTime host_at(std::int64_t us) {
     return HostTime{std::chrono::microseconds{us}};
 }

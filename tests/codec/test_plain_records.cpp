@@ -20,6 +20,7 @@ Batch some_data() {
         image.x0 = n;
         image.y0 = -n;
         image.channels = n == 1 ? 3 : 1;
+        if (n == 2) image.filter = ColourFilter::gbrg;
         image.pixels = Array2<std::uint16_t>(5, 7 * image.channels);
         for (std::size_t i = 0; i < image.pixels.values().size(); ++i)
             image.pixels.values()[i] = std::uint16_t(i * 1'999);

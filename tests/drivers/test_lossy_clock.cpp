@@ -1,7 +1,6 @@
 // A DAVIS whose bytes are lost at random, for a minute of made time: what is recorded keeps the
 // camera's time, and what the host's clock had to set right is counted.
 #include "pipeline/event_windows.h"
-#include "src/codec/inivation/inivation_clock.h"
 #include "tests/drivers/davis_streams.h"
 
 #include <gtest/gtest.h>
@@ -143,44 +142,6 @@ Minute run(const Faults& faults) {
         for (EventWindow event_window; frames.next(event_window);) continue;
     }
     return {errors, counters.snapshot()};
-}
-
-/// The host may have been late with the packet before: then its clock shows no lost wrap.
-TEST(LossyClock, ALostWrapIsSeenByATimeThatWouldGoBack) {
-    IniVationClock<15> clock;
-    Damage damage;
-    const auto at = [](std::int64_t us) { return HostTime{std::chrono::microseconds{us}}; };
-    clock.arrives(at(1000), damage);
-    clock.timestamp(30'000, damage);
-    clock.forget();
-    clock.arrives(at(1100), damage);
-    EXPECT_TRUE(clock.timestamp(20'000, damage));
-    EXPECT_EQ(clock.us(), 32'768 + 20'000);
-    EXPECT_EQ(damage[DamageReason::time_backwards], 0U);
-    EXPECT_EQ(damage[DamageReason::time_corrected], 1U);
-}
-
-/// What the camera's own words say is not taken back, however early they seem.
-TEST(LossyClock, TakesBackNoMoreThanItGuessed) {
-    IniVationClock<15> clock;
-    Damage damage;
-    const auto arrives = [&](std::int64_t us) {
-        clock.arrives(HostTime{std::chrono::microseconds{us}}, damage);
-    };
-    arrives(0);
-    clock.timestamp(0, damage);
-    arrives(10'000);
-    clock.timestamp(10'000, damage);
-    clock.forget();
-    arrives(60'000);
-    clock.timestamp(20'000, damage);
-    EXPECT_EQ(clock.us(), 32'768 + 20'000) << "one wrap is guessed";
-    arrives(61'000);
-    clock.wrap(3, damage);
-    arrives(62'000);  // so much was impossible by two wraps, of which one was a guess
-    clock.wrap(2, damage);
-    EXPECT_EQ(clock.us(), (3 + 2) * 32'768);
-    EXPECT_EQ(damage[DamageReason::time_corrected], 2U);
 }
 
 TEST(LossyClock, WithoutALossNothingIsSetRight) {

@@ -128,6 +128,22 @@ TEST(BagRecording, ImagesOfAnotherCameraAreLeftOutAndNamed) {
     EXPECT_TRUE(batch.images.empty());
 }
 
+TEST(BagRecording, AMosaicSaysItsColourFilter) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const auto recording = open_recording(folder.write(
+        "a.bag", bag(chunk("none", connection(kEvents, "dvs_msgs/EventArray") +
+                                       connection(kImages, "sensor_msgs/Image") +
+                                       message(kEvents, event_array(128, 128, events)) +
+                                       message(kImages, image(some_image(events.back().t, 128, 128),
+                                                              "bayer_grbg8"))))));
+    const Batch batch = read_everything(*recording);
+    ASSERT_EQ(batch.images.size(), 1U);
+    ReferenceImage expected = some_image(events.back().t, 128, 128);
+    expected.filter = ColourFilter::grbg;
+    EXPECT_TRUE(batch.images[0] == expected);
+}
+
 TEST(BagRecording, OfSeveralTopicsWithImagesTheFirstOfTheEventsSizeIsReadAndTheOthersNamed) {
     const TestFolder folder;
     const auto events = some_events(100);
@@ -169,6 +185,24 @@ TEST(BagRecording, ATopicThatASeekPassesOverIsKnownFromTheIndex) {
     }
 }
 
+/// A recorder may name a camera from which nothing came, or whose messages make no sense.
+TEST(BagRecording, OfSeveralTopicsWithEventsTheFirstThatHasSomeIsRead) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const std::string type = "dvs_msgs/EventArray";
+    const BagBytes other = message(10, event_array(0, 0, {}));
+    for (const BagBytes& left : {BagBytes(), other}) {
+        const auto recording = open_recording(folder.write(
+            "a.bag", bag(chunk("none", connection(10, type, "/left") + left +
+                                           connection(11, type, "/right") +
+                                           message(11, event_array(128, 128, events))))));
+        EXPECT_TRUE(read_everything(*recording).events == events);
+        EXPECT_THAT(recording->remarks(),
+                    testing::ElementsAre(AllOf(HasSubstr("/left has no events"),
+                                               HasSubstr("those of /right are read"))));
+    }
+}
+
 TEST(BagRecording, WithoutEventsIsRefusedWithWhatItHas) {
     const TestFolder folder;
     const std::string path = folder.write(
@@ -180,36 +214,6 @@ TEST(BagRecording, WithoutEventsIsRefusedWithWhatItHas) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
         EXPECT_THAT(error.what(), AllOf(HasSubstr("a.bag"), HasSubstr("found sensor_msgs/Imu")));
     }
-}
-
-BagBytes packet_message(const std::string& encoding, SensorTime stamp,
-                        const std::vector<Event>& events) {
-    BagBytes payload;
-    for (const Event& event : events)
-        payload += little(std::uint64_t(to_us(event.t) - to_us(stamp)) * 1'000 |
-                          std::uint64_t(event.x) << 32 | std::uint64_t(event.y) << 48 |
-                          std::uint64_t(event.polarity) << 63);
-    return message_header(stamp) + little(std::uint32_t{128}) + little(std::uint32_t{128}) +
-           little(std::uint64_t{0}) + little(std::uint64_t(to_us(stamp)) * 1'000) +
-           block(encoding) + BagBytes(1, '\0') + block(payload);
-}
-
-TEST(BagRecording, EventPacketsHaveTheTimesOfRos) {
-    const TestFolder folder;
-    const auto events = some_events(5'000, 1'500'000'000);
-    BagBytes part = connection(kEvents, "event_camera_msgs/EventPacket");
-    for (std::size_t i = 0; i < events.size(); i += 100)
-        part += message(kEvents, packet_message("mono", events[i].t,
-                                                {events.begin() + std::ptrdiff_t(i),
-                                                 events.begin() + std::ptrdiff_t(i + 100)}));
-    const auto recording = open_recording(folder.write("a.bag", bag(chunk("lz4", part))));
-    EXPECT_TRUE(read_everything(*recording).events == events);
-    recording->seek(events[3'000].t);
-    std::vector<Event> late = read_everything(*recording).events, expected = events;
-    const auto early = [&](const Event& event) { return event.t < events[3'000].t; };
-    std::erase_if(late, early);
-    std::erase_if(expected, early);
-    EXPECT_TRUE(late == expected);
 }
 
 /// Null where it is not at hand or cannot be read by this build, and `why_not` tells.

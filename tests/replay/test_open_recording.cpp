@@ -65,6 +65,17 @@ TEST(OpenRecording, RawWithoutAHeaderIsWhatItIsSaidToBe) {
     EXPECT_TRUE(read_everything(*open_recording(path, stated)).events == events);
 }
 
+TEST(OpenRecording, RawOfAFormatThatIsNotReadIsRefusedByItsName) {
+    const TestFolder folder;
+    const std::string words("\x00\x80\x01\x02", 4);
+    const auto path =
+        folder.write("a.raw", "% format HISTO3D;height=320;width=320\n% end\n" + words);
+    EXPECT_THAT(refusal(path), HasSubstr("found a Prophesee RAW file of format HISTO3D"));
+    EXPECT_THAT(refusal(path, {.format = "evt3"}), HasSubstr("found HISTO3D"));
+    EXPECT_THAT(refusal(folder.write("b.raw", "% evt 1.0\n% geometry 304x240\n" + words)),
+                HasSubstr("found a Prophesee RAW file of format 1.0"));
+}
+
 TEST(OpenRecording, WhatIsNoRecordingIsRefusedByName) {
     const TestFolder folder;
     EXPECT_THAT(refusal(folder.path("missing")), HasSubstr("missing: cannot open"));

@@ -23,8 +23,8 @@ struct Chip {
 constexpr std::array kChips{
     Chip{"dvs128", "DVS128", Aedat2Sensor::dvs128, 128, 128},
     Chip{"tmpdiff128", "DVS128", Aedat2Sensor::dvs128, 128, 128},
-    Chip{"davis240", "DAVIS240", Aedat2Sensor::davis, 240, 180},
-    Chip{"sbret", "DAVIS240", Aedat2Sensor::davis, 240, 180},
+    Chip{"davis240", "DAVIS240", Aedat2Sensor::davis240, 240, 180},
+    Chip{"sbret", "DAVIS240", Aedat2Sensor::davis240, 240, 180},
     Chip{"davis346", "DAVIS346", Aedat2Sensor::davis, 346, 260},
     Chip{"davis208", "DAVIS208", Aedat2Sensor::davis, 208, 192},
     Chip{"davis128", "DAVIS128", Aedat2Sensor::davis, 128, 128},
@@ -67,7 +67,8 @@ Aedat2Header read_aedat2_header(std::span<const std::byte> first_bytes, int stat
         header.stream.sensor_name = "DVS128";
         header.stream.width = header.stream.height = 128;
     } else if (stated) {
-        header.sensor = Aedat2Sensor::davis;
+        const bool is_davis240 = stated_width == 240 && stated_height == 180;
+        header.sensor = is_davis240 ? Aedat2Sensor::davis240 : Aedat2Sensor::davis;
         header.stream.width = stated_width;
         header.stream.height = stated_height;
     } else {
@@ -85,8 +86,8 @@ Aedat2Parser::Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_
       width_(std::uint32_t(width)),
       height_(std::uint32_t(height)),
       dvs128_(one_is_on, width, height),
-      frame_(sensor == Aedat2Sensor::davis ? width : 0,
-             sensor == Aedat2Sensor::davis ? height : 0) {}
+      frame_(sensor == Aedat2Sensor::dvs128 ? 0 : width,
+             sensor == Aedat2Sensor::dvs128 ? 0 : height, sensor == Aedat2Sensor::davis240) {}
 
 void Aedat2Parser::add_event(std::uint32_t address, std::int64_t t_us, Batch& into) {
     // The chip's origin is at the lower left, and X is stored mirrored.

@@ -12,7 +12,8 @@
 
 namespace eventide {
 
-enum class Aedat2Sensor : std::uint8_t { dvs128, davis };
+/// A DAVIS240 for itself, as its images have half the range of the others'.
+enum class Aedat2Sensor : std::uint8_t { dvs128, davis, davis240 };
 
 struct Aedat2Header {
     StreamHeader stream;

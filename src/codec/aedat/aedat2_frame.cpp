@@ -1,6 +1,8 @@
 // APS reads of AEDAT 2.0 -> reference images.
 #include "src/codec/aedat/aedat2_frame.h"
 
+#include "src/codec/inivation/davis_pixel.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -8,25 +10,14 @@ namespace eventide {
 
 namespace {
 
-// As for the words of the camera itself (docs/protocols.md A.10): a pixel that was bright
-// already while it was reset, or that reached the end of the scale, would come out dark.
-constexpr int kMaxSample = 1023, kLeastReset = 384;
-constexpr int kTo16Bits = 64;
-
-std::uint16_t intensity_of(int reset, int signal) {
-    const bool overexposed = reset < kLeastReset || signal == 0;
-    const int value = overexposed ? kMaxSample : std::clamp(reset - signal, 0, kMaxSample);
-    return std::uint16_t(value * kTo16Bits);
-}
-
 void clear(Array2<std::uint16_t>& samples) {
     std::fill(samples.values().begin(), samples.values().end(), std::uint16_t{0});
 }
 
 }  // namespace
 
-Aedat2FrameAssembler::Aedat2FrameAssembler(int width, int height)
-    : reset_(height, width), signal_(height, width) {}
+Aedat2FrameAssembler::Aedat2FrameAssembler(int width, int height, bool is_davis240)
+    : is_davis240_(is_davis240), reset_(height, width), signal_(height, width) {}
 
 void Aedat2FrameAssembler::drop() {
     if (resets_ + signals_ > 0) {
@@ -53,7 +44,7 @@ void Aedat2FrameAssembler::read(bool is_signal, int x, int y, std::uint16_t samp
     }
     if (resets_ + signals_ == 0) box_ = {x, y, x, y};
     box_ = {std::min(box_.x0, x), std::min(box_.y0, y), std::max(box_.x1, x), std::max(box_.y1, y)};
-    samples(y, x) = std::uint16_t(sample + 1);
+    samples(y, x) = std::uint16_t(davis_sample(sample, is_davis240_) + 1);
     if (is_signal) {
         if (signals_++ == 0) first_signal_ = t;
     } else {
@@ -78,8 +69,8 @@ void Aedat2FrameAssembler::emit(Batch& into) {
     for (int y = 0; y < image.pixels.height(); ++y)
         for (int x = 0; x < image.pixels.width(); ++x) {
             const int from_y = box_.y0 + y, from_x = box_.x0 + x;
-            image.pixels(y, x) =
-                intensity_of(reset_(from_y, from_x) - 1, signal_(from_y, from_x) - 1);
+            image.pixels(y, x) = davis_intensity(std::uint16_t(reset_(from_y, from_x) - 1),
+                                                 std::uint16_t(signal_(from_y, from_x) - 1));
         }
     into.add_image(std::move(image));
     last_box_ = box_;

@@ -19,7 +19,7 @@ namespace eventide {
 /// reset.
 class Aedat2FrameAssembler {
 public:
-    Aedat2FrameAssembler(int width, int height);
+    Aedat2FrameAssembler(int width, int height, bool is_davis240);
 
     /// x, y in image coordinates, inside the sensor; `sample` of 10 bits.
     void read(bool is_signal, int x, int y, std::uint16_t sample, SensorTime t, Batch& into,
@@ -37,6 +37,7 @@ private:
     bool is_complete() const;
     void emit(Batch& into);
 
+    bool is_davis240_;
     Array2<std::uint16_t> reset_, signal_;  ///< [y][x], the sample plus one; 0 where not read yet
     int resets_ = 0, signals_ = 0;
     Box box_{};

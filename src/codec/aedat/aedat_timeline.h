@@ -37,7 +37,6 @@ public:
         const std::int64_t step = step_to(record.stamp);
         if (started_ && step < 0 && goes_on_in_the_past(record.stamp, step)) {
             last_stamp_ = record.stamp;
-            steps_back_ = 0;
             reset(last_);
         }
         place(record, take);
@@ -86,8 +85,8 @@ private:
 
     bool goes_on_in_the_past(std::int32_t stamp, std::int64_t step) {
         if (step >= -kJitter) return false;
-        const bool goes_on = steps_back_ > 0 && stamp >= past_stamp_ &&
-                             std::int64_t(stamp) - past_stamp_ <= kLongestSilence;
+        const bool goes_on =
+            stamp >= past_stamp_ && std::int64_t(stamp) - past_stamp_ <= kLongestSilence;
         steps_back_ = goes_on ? steps_back_ + 1 : 1;
         past_stamp_ = stamp;
         return steps_back_ > kResetRecords;

@@ -1,15 +1,13 @@
 #include "src/codec/inivation/davis_frame.h"
 
+#include "src/codec/inivation/davis_pixel.h"
+
 #include <algorithm>
 
 namespace eventide {
 namespace {
 
 constexpr int kRoiBytes = 8;
-constexpr std::uint16_t kAdcMax = 1023;
-/// A reset level this low means that the pixel was already saturated when it was reset (libcaer's
-/// threshold).
-constexpr std::uint16_t kLowestGoodReset = 384;
 
 SensorTime middle(SensorTime a, SensorTime b) {
     return a + (b - a) / 2;
@@ -71,10 +69,9 @@ void DavisFrameAssembler::sample(std::uint16_t adc, SensorTime t) {
     sampled_[read] = true;
 
     const int column = columns_[read];
-    // A DAVIS240's converter uses half its range. Only the difference of two samples has a limit.
     if (column < device_columns() && row_ < device_rows())
         samples_[read][std::size_t(column) * std::size_t(device_rows()) + std::size_t(row_)] =
-            sensor_.is_davis240() ? std::uint16_t(adc * 2) : adc;
+            davis_sample(adc, sensor_.is_davis240());
     ++row_;
 }
 
@@ -111,12 +108,9 @@ DavisFrameAssembler::End DavisFrameAssembler::end(SensorTime t, ReferenceImage& 
     return End::complete;
 }
 
-/// Correlated double sampling: reset minus signal; saturated pixels are white.
 std::uint16_t DavisFrameAssembler::pixel(int column, int row) const {
     const std::size_t at = std::size_t(column) * std::size_t(device_rows()) + std::size_t(row);
-    const std::uint16_t reset = samples_[0][at], signal = samples_[1][at];
-    if (reset < kLowestGoodReset || signal == 0) return kAdcMax;
-    return std::uint16_t(std::clamp(int(reset) - int(signal), 0, int(kAdcMax)));
+    return davis_intensity(samples_[0][at], samples_[1][at]);
 }
 
 void DavisFrameAssembler::write_image(ReferenceImage& into) const {
@@ -125,13 +119,10 @@ void DavisFrameAssembler::write_image(ReferenceImage& into) const {
         for (int row = 0; row < device_rows(); ++row) {
             const int x = sensor_.aps_flip_x ? device_columns() - 1 - column : column;
             const int y = sensor_.aps_flip_y ? device_rows() - 1 - row : row;
-            const std::uint16_t value = pixel(column, row);
-            // 10 bits fill 16 by repeating the highest, so that white is 65535.
-            const auto wide = std::uint16_t((value << 6) | (value >> 4));
             if (sensor_.aps_swapped)
-                into.pixels(x, y) = wide;
+                into.pixels(x, y) = pixel(column, row);
             else
-                into.pixels(y, x) = wide;
+                into.pixels(y, x) = pixel(column, row);
         }
 }
 

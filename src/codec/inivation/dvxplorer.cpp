@@ -108,9 +108,9 @@ void DvxplorerParser::special(std::uint16_t data, Batch& into) {
         case 7:
             return imu_end(into);
         case 16:
-            return trigger(Trigger::Kind::falling, 1);
+            return trigger(Trigger::Kind::falling, Trigger::kGenerator);
         case 17:
-            return trigger(Trigger::Kind::rising, 1);
+            return trigger(Trigger::Kind::rising, Trigger::kGenerator);
         default:
             return damage_.count(DamageReason::unknown_word);
     }

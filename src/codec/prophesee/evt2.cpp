@@ -68,10 +68,9 @@ void Evt2Base::take_let_go(const Batch& into, std::size_t before) {
 void Evt2Base::take_other(std::uint32_t upper, bool is_padding, Batch& into) {
     switch (upper >> 28) {
         case time_high: {
-            const bool first = !high_.is_known();
             const std::size_t before = into.events.size();
             high_.push(upper & 0x0FFFFFFF, into, damage_);
-            if (!first) take_let_go(into, before);  // else it was from before a gap
+            take_let_go(into, before);
             break;
         }
         case trigger:

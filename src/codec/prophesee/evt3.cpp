@@ -131,7 +131,7 @@ void Evt3Parser::take_one(std::uint16_t word, Batch& into) {
             high_.push(content, into, damage_);
             // The low bits follow in their own word and begin anew.
             if (first || high_.us() != high_us) t_us_ = high_.us();
-            if (!first) take_let_go(into, before);  // else it was from before a gap
+            take_let_go(into, before);
             break;
         }
         case trigger:

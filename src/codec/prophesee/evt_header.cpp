@@ -165,6 +165,15 @@ std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes)
     return header;
 }
 
+std::string evt_format_said(std::span<const std::byte> first_bytes) {
+    constexpr std::size_t kLongestName = 40;
+    const PercentLines lines = read_percent_lines(first_bytes);
+    const std::string_view format = lines.value("format");
+    const std::string_view name =
+        format.empty() ? lines.value("evt") : format.substr(0, format.find(';'));
+    return std::string(name.substr(0, kLongestName));
+}
+
 EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_view format) {
     EvtHeader header;
     header.stream.format = format;
@@ -173,13 +182,13 @@ EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_
 }
 
 EvtHeader read_evt_header(std::span<const std::byte> first_bytes) {
-    const auto header = find_evt_header(first_bytes);
-    if (!header)
-        throw Error(ErrorKind::input,
-                    "RAW header: expected a line \"% format EVT2|EVT21|EVT3\" or \"% evt "
-                    "2.0|2.1|3.0\", found none; without one, --input-format and --input-size "
-                    "state both");
-    return *header;
+    if (const auto header = find_evt_header(first_bytes)) return *header;
+    const std::string said = evt_format_said(first_bytes);
+    throw Error(ErrorKind::input,
+                "RAW header: expected a line \"% format EVT2|EVT21|EVT3\" or \"% evt "
+                "2.0|2.1|3.0\", found " +
+                    (said.empty() ? "none" : said) +
+                    "; without one, --input-format and --input-size state both");
 }
 
 }  // namespace eventide

@@ -33,6 +33,10 @@ struct EvtHeader {
 /// Empty when it is no RAW file of a format read here.
 std::optional<EvtHeader> find_evt_header(std::span<const std::byte> first_bytes);
 
+/// What a RAW file's lines call its format, also one that is not read: "EVT3", "2.0", "HISTO3D".
+/// Empty where they do not say it.
+std::string evt_format_said(std::span<const std::byte> first_bytes);
+
 /// Of a RAW file whose lines, if any, do not say the format.
 EvtHeader stated_evt_header(std::span<const std::byte> first_bytes, std::string_view format);
 

@@ -1,0 +1,77 @@
+// Event packets of ROS drivers: EVT3, whose times are the sensor's.
+#include "tests/codec/event_packets.h"
+
+#include <gmock/gmock.h>
+
+namespace eventide::event_packets {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(EventPacket, Evt3IsShiftedToItsStamp) {
+    const Bytes stream =
+        packet({0, kStamp}, bytes_of({evt_high(2), evt_low(5), evt_row(7), evt_x(8, true)})) +
+        packet({0, kStamp + 9'000},
+               bytes_of({evt_low(15), evt_x(9, false)}));  // goes on with row and high time
+    const Parsed parsed = parse_whole(parser_of(EventPacketEncoding::evt3), stream);
+    EXPECT_THAT(parsed.data.events,
+                ElementsAre(at(kStampUs, 8, 7, true), at(kStampUs + 10, 9, 7, false)));
+    EXPECT_EQ(parsed.damage.total(), 0U);
+}
+
+/// A first time is believed with the end of its message, as its stamp dates it; no other is.
+TEST(EventPacket, ALeapAtTheEndOfAMessageWaitsForTheNext) {
+    const auto message = [](int ms, unsigned high_word, unsigned x) {
+        return packet({0, kStamp + ms * 1'000'000LL},
+                      bytes_of({evt_high(high_word), evt_low(0), evt_row(1), evt_x(x, true)}));
+    };
+    const Parsed parsed =
+        parse_whole(parser_of(EventPacketEncoding::evt3),
+                    message(0, 0, 1) + message(4, 1, 2) + message(8, 900, 3) + message(12, 3, 4));
+    EXPECT_THAT(parsed.data.events,
+                ElementsAre(at(kStampUs, 1, 1, true), at(kStampUs + 4096, 2, 1, true),
+                            at(kStampUs + 3 * 4096, 4, 1, true)));
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 2U);
+}
+
+TEST(EventPacket, AfterAGapTimeGoesOnAndOnlyADriverThatBeganAnewSetsIt) {
+    const auto stream = [](std::int64_t stamp_us, unsigned high_word) {
+        return packet({0, stamp_us * 1000},
+                      bytes_of({evt_high(high_word), evt_low(0), evt_row(1), evt_x(1, true)}));
+    };
+    EventPacketParser parser(EventPacketEncoding::evt3, kWidth, kHeight);
+    Batch batch;
+    parser.parse(stream(kStampUs, 0), batch);
+    parser.resync();
+    parser.parse(stream(kStampUs + 8192 + 3000, 2),
+                 batch);  // the stamp is late; the sensor knows better
+    EXPECT_EQ(batch.events.back().t, from_us(kStampUs + 8192));
+    parser.resync();
+    parser.parse(stream(kStampUs + 60'000'000, 3), batch);  // the sensor's clock has wrapped unseen
+    EXPECT_EQ(batch.events.back().t, from_us(kStampUs + 60'000'000));
+    EXPECT_THAT(batch.triggers, IsEmpty());
+    parser.resync();
+    parser.parse(stream(kStampUs + 10'000'000, 4), batch);  // the driver's clock was set back
+    EXPECT_EQ(batch.events.back().t, from_us(kStampUs + 10'000'000));
+    ASSERT_EQ(batch.triggers.size(), 1U);
+    EXPECT_EQ(batch.triggers[0].kind, Trigger::Kind::timestamp_reset);
+    EXPECT_EQ(parser.damaged().total(), 0U);
+}
+
+TEST(EventPacket, OfAnEvt3PacketThatIsCutByAGapNothingComesWithTheNext) {
+    const auto stream = [](unsigned high_word) {
+        return packet({0, kStamp}, bytes_of({evt_high(high_word), evt_low(0), evt_row(1),
+                                             evt_x(1, true), evt_x(2, true)}));
+    };
+    const Bytes cut = stream(9);
+    EventPacketParser parser(EventPacketEncoding::evt3, kWidth, kHeight);
+    Batch batch;
+    parser.parse(std::span(cut).first(cut.size() - 2), batch);
+    parser.resync();
+    parser.parse(stream(1), batch);
+    EXPECT_THAT(batch.events, ElementsAre(at(kStampUs, 1, 1, true), at(kStampUs, 2, 1, true)));
+}
+
+}  // namespace
+}  // namespace eventide::event_packets
