@@ -5,6 +5,7 @@
 #include <eventide/camera.h>
 #include <eventide/reader.h>
 
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -19,34 +20,63 @@ eventide_status open_source(eventide_source** opened, Arguments&&... arguments) 
     return EVENTIDE_OK;
 }
 
+eventide_callbacks whole_callbacks(const eventide_callbacks* given_callbacks) {
+    eventide_callbacks callbacks{};
+    if (given_callbacks == nullptr) return callbacks;
+    const std::size_t size = given_callbacks->struct_size;
+    if (size > sizeof callbacks || size < sizeof(size_t))
+        throw Error(ErrorKind::usage, "callbacks: expected a struct_size of at most " +
+                                          std::to_string(sizeof callbacks) + ", found " +
+                                          std::to_string(size));
+    std::memcpy(&callbacks, given_callbacks, size);
+    return callbacks;
+}
+
+/// Into the options of a source of this name.
+template <typename Options>
+void call_back(const eventide_callbacks& c, const std::string& name, Options& options) {
+    if (c.give_up != nullptr)
+        options.while_waiting = [c, name] {
+            if (c.give_up(c.context) != 0)
+                throw Error(ErrorKind::failed, name + ": given up before it was there");
+        };
+    if (c.warn != nullptr)
+        options.warn = [c](const std::string& text) { c.warn(c.context, text.c_str()); };
+}
+
 }  // namespace
 
 extern "C" {
 
 eventide_status eventide_recording_open(const char* path, const char* format, int width, int height,
                                         eventide_source** opened) {
+    return eventide_recording_open_with(path, format, width, height, nullptr, opened);
+}
+
+eventide_status eventide_recording_open_with(const char* path, const char* format, int width,
+                                             int height, const eventide_callbacks* callbacks,
+                                             eventide_source** opened) {
     return c_call([&] {
-        const ReaderOptions options{format == nullptr ? "" : format, width, height};
-        return open_source<EventReader>(opened, &given(path, "a recording"), options);
+        const std::string name = &given(path, "a recording");
+        ReaderOptions options{format == nullptr ? "" : format, width, height};
+        call_back(whole_callbacks(callbacks), name, options);
+        return open_source<EventReader>(opened, name, options);
     });
 }
 
 eventide_status eventide_camera_open(const char* name, const char* settings, int reconnect,
                                      eventide_source** opened) {
-    return eventide_camera_open_until(name, settings, reconnect, nullptr, nullptr, opened);
+    return eventide_camera_open_with(name, settings, reconnect, nullptr, opened);
 }
 
-eventide_status eventide_camera_open_until(const char* name, const char* settings, int reconnect,
-                                           eventide_give_up give_up, void* context,
-                                           eventide_source** opened) {
+eventide_status eventide_camera_open_with(const char* name, const char* settings, int reconnect,
+                                          const eventide_callbacks* callbacks,
+                                          eventide_source** opened) {
     return c_call([&] {
+        const std::string camera = &given(name, "a camera");
         CameraSettings chosen{settings == nullptr ? "" : settings, reconnect != 0};
-        chosen.while_waiting = [=] {
-            if (give_up != nullptr && give_up(context) != 0)
-                throw Error(ErrorKind::failed,
-                            std::string{name} + ": given up before it was there");
-        };
-        return open_source<EventCamera>(opened, &given(name, "a camera"), chosen);
+        call_back(whole_callbacks(callbacks), camera, chosen);
+        return open_source<EventCamera>(opened, camera, chosen);
     });
 }
 

@@ -26,7 +26,7 @@ std::unique_ptr<Camera> open(const std::string& name, const CameraSettings& sett
         if (settings.while_waiting) settings.while_waiting();
         return false;
     };
-    return open_camera(name, {settings.file, settings.reconnect, give_up});
+    return open_camera(name, {settings.file, settings.reconnect, give_up, settings.warn});
 }
 
 }  // namespace

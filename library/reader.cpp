@@ -1,4 +1,6 @@
 // Recordings behind the public face.
+#include "drivers/devices.h"
+#include "drivers/simulated/simulated_name.h"
 #include "library/later_part.h"
 #include "library/source_filters.h"
 #include "replay/formats.h"
@@ -8,7 +10,9 @@
 
 #include <eventide/reader.h>
 
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 namespace eventide {
 namespace {
@@ -26,6 +30,21 @@ OpenOptions open_options(const ReaderOptions& options) {
     return open;
 }
 
+void refuse_camera(const std::string& path) {
+    std::error_code none;
+    if (!names_camera(path) && !names_simulation(path)) return;
+    if (std::filesystem::exists(path, none)) return;
+    throw Error(ErrorKind::usage,
+                "'" + path +
+                    "': expected a recording, found the name of a camera, which EventCamera opens "
+                    "(in C eventide_camera_open(), in Python open_camera())");
+}
+
+std::unique_ptr<Recording> open(const std::string& path, const OpenOptions& options) {
+    refuse_camera(path);
+    return open_recording(path, options);
+}
+
 }  // namespace
 
 class EventReader::Impl {
@@ -33,10 +52,14 @@ public:
     Impl(const std::string& path, const ReaderOptions& options)
         : path_(path),
           options_(open_options(options)),
-          recording_(open_recording(path, options_)),
+          recording_(open(path, options_)),
           can_go_back_(path != "-" && recording_->size_bytes() > 0),
           parser_(recording_->make_parser()),
-          filters_(recording_->info()) {}
+          filters_(recording_->info()) {
+        if (!options.warn) return;
+        for (const std::string& remark : recording_->remarks())
+            options.warn(std::string{path}.append(": ").append(remark));
+    }
 
     const Recording& recording() const { return *recording_; }
     const Parser& parser() const { return *parser_; }

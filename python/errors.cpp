@@ -1,10 +1,10 @@
 // The library's errors as exceptions of Python, with the same words.
+#include "python/messages.h"
 #include "python/parts.h"
 
 #include <eventide/error.h>
 
 #include <string>
-#include <string_view>
 
 namespace eventide::python {
 
@@ -41,11 +41,8 @@ PyObject* exception_of(ErrorKind kind) {
     return exceptions.error;
 }
 
-/// Names of files in a message may be no UTF-8.
 void raise(const Error& error) {
-    const std::string_view words = error.what();
-    const auto text = py::reinterpret_steal<py::object>(
-        PyUnicode_DecodeUTF8(words.data(), py::ssize_t(words.size()), "replace"));
+    const py::object text = text_of(error.what());
     if (text) PyErr_SetObject(exception_of(error.kind()), text.ptr());  // else: MemoryError is set
 }
 

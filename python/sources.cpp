@@ -2,6 +2,7 @@
 #include "python/sources.h"
 
 #include "python/arrays.h"
+#include "python/messages.h"
 #include "python/signals.h"
 
 #include <eventide/error.h>
@@ -132,13 +133,16 @@ py::class_<Source<T>> add_source(py::module_& module, const char* name, const ch
 }
 
 void add_reader(py::module_& module) {
-    add_source<EventReader>(module, "Reader",
-                            "A recording; iterate it for structured arrays (t, x, y, on).")
+    add_source<EventReader>(
+        module, "Reader",
+        "A recording; iterate it for structured arrays (t, x, y, on). What had to "
+        "be guessed is logged, too, as warnings of the logger \"eventide\".")
         .def(py::init([](const std::filesystem::path& path, std::string format, int width,
                          int height) {
                  const py::gil_scoped_release released;
                  return std::make_unique<Source<EventReader>>(
-                     path.string(), ReaderOptions{std::move(format), width, height, hear_signals});
+                     path.string(),
+                     ReaderOptions{std::move(format), width, height, hear_signals, log_warning});
              }),
              py::arg("path"), py::arg("format") = "", py::arg("width") = 0, py::arg("height") = 0)
         .def_property_readonly(
@@ -171,13 +175,15 @@ void add_reader(py::module_& module) {
 }
 
 void add_camera(py::module_& module) {
-    add_source<EventCamera>(module, "Camera",
-                            "A camera; iterate it for structured arrays (t, x, y, on).")
+    add_source<EventCamera>(
+        module, "Camera",
+        "A camera; iterate it for structured arrays (t, x, y, on). Why one was "
+        "passed over, or is waited for, are warnings of the logger \"eventide\".")
         .def(py::init([](const std::string& name, const std::filesystem::path& settings,
                          bool reconnect) {
                  const py::gil_scoped_release released;
                  return std::make_unique<Source<EventCamera>>(
-                     name, CameraSettings{settings, reconnect, hear_signals});
+                     name, CameraSettings{settings, reconnect, hear_signals, log_warning});
              }),
              py::arg("name"), py::arg("settings") = "", py::arg("reconnect") = false)
         .def_property_readonly(

@@ -2,6 +2,7 @@
 #include "replay/table_reader.h"
 
 #include "replay/stream/scan_geometry.h"
+#include "src/codec/event_validator.h"
 #include "src/core/error.h"
 #include "src/core/partition_row.h"
 #include "src/core/sensor_limits.h"
@@ -40,6 +41,7 @@ TableReader::TableReader(const std::string& path, StreamHeader header,
         header_.height = options.height;
     }
     if (header_.width <= 0 || header_.height <= 0) find_size(path);
+    if (events_->rows() > 0) check_order(path);
 }
 
 void TableReader::find_size(const std::string& path) {
@@ -56,6 +58,24 @@ void TableReader::find_size(const std::string& path) {
         batch.clear();
     }
     search.conclude(path, damage, header_, remarks_);
+}
+
+void TableReader::check_order(const std::string& path) {
+    constexpr std::size_t kRowsThatTell = 100;
+    Batch read, in_order;
+    Damage damage;
+    read_rows(0, read, damage);
+    damage = {};
+    EventValidator validator{1, 1};
+    for (const Event& event : read.events)
+        validator.add(to_us(event.t), 0, 0, true, in_order, damage);
+    const std::size_t events = read.events.size();
+    const std::uint64_t late = damage[DamageReason::time_backwards];
+    if (events < kRowsThatTell || 2 * late <= events) return;
+    throw Error(ErrorKind::input, path + ": expected events in order of time, found " +
+                                      std::to_string(late) + " of the first " +
+                                      std::to_string(events) +
+                                      " earlier than ones before them; sort them by time");
 }
 
 /// False where they cannot be read.

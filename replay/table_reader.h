@@ -17,7 +17,8 @@ public:
 
     /// `images` may be null. Where neither `header` nor `options` say the sensor's size, it is that
     /// of the smallest sensor known that holds the events of kSamples places of the file, and a
-    /// remark says so. Throws Error (input) where there is none.
+    /// remark says so. Throws Error (input) where there is none, and where most of the events at
+    /// the beginning would be left out because they come after later ones.
     TableReader(const std::string& path, StreamHeader header, std::unique_ptr<EventTable> events,
                 std::unique_ptr<ImageTable> images, const OpenOptions& options);
 
@@ -31,6 +32,7 @@ private:
     static constexpr std::uint64_t kSamples = 64;
 
     void find_size(const std::string& path);
+    void check_order(const std::string& path);
     bool read_rows(std::uint64_t first, Batch& into, Damage& damage);
     void take_rows(Batch& into, Damage& damage) const;
     void take_images(std::int64_t until_us, Batch& into, Damage& damage);

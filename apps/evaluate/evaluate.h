@@ -32,6 +32,9 @@ struct EvaluateSettings {
     /// Called now and then: which sequence, and how much of it is done (0 to 1). From whatever
     /// threads parallel_for has, possibly at once.
     std::function<void(const std::string& sequence, double share)> progress;
+    /// Told, in sentences for people, what had to be guessed of a recording, and where more of it
+    /// was left out than taken. From the same threads. May be empty.
+    std::function<void(const std::string&)> warn{};
 };
 
 /// Recordings with reference images, of any format open_recording() reads.

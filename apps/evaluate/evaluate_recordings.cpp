@@ -73,6 +73,8 @@ void require_scored(const ReferenceSequence& sequence, const ScoredImages& which
 
 SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence sequence,
                                  const std::string& window, const ScoredImages& which) {
+    if (evaluation.settings().warn)
+        for (const std::string& text : sequence.warnings) evaluation.settings().warn(text);
     const std::unique_ptr<EventFilter> filter =
         evaluation.filter_for(sequence.width, sequence.height);
     const std::vector<std::size_t> scored = scored_images(sequence, which);

@@ -3,6 +3,7 @@
 
 #include "pipeline/stages.h"
 #include "replay/formats.h"
+#include "replay/left_out.h"
 #include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 #include "src/core/grey.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -25,6 +27,7 @@ public:
         : into_(into), from_s_(from_s), to_s_(to_s) {}
 
     void take(Batch& batch) {
+        events_ += batch.events.size();
         if (!begun_ && !batch.events.empty()) begin(batch);
         if (!batch.events.empty()) last_event_ = batch.events.back().t;
         for (const Event& event : batch.events)
@@ -39,6 +42,8 @@ public:
         // Images may come a while after the events around them.
         return begun_ && to_s_ && last_event_ > to_ + SensorDuration{1'000'000};
     }
+    /// Of the recording, inside and outside those times.
+    std::uint64_t events() const { return events_; }
 
 private:
     void begin(const Batch& batch) {
@@ -59,6 +64,7 @@ private:
     std::optional<double> from_s_, to_s_;
     SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
     SensorTime last_event_ = SensorTime::min();
+    std::uint64_t events_ = 0;
     bool begun_ = false;
 };
 
@@ -75,6 +81,8 @@ void read_recording(const std::filesystem::path& path, const OpenOptions& input,
     const auto parser = recording->make_parser();
     into.width = recording->info().width;
     into.height = recording->info().height;
+    for (const std::string& remark : recording->remarks())
+        into.warnings.push_back(path.string() + ": " + remark);
     RawPacket packet;
     Batch batch;
     while (!keeper.past_end() && recording->read(packet) != ReadStatus::end) {
@@ -85,6 +93,10 @@ void read_recording(const std::filesystem::path& path, const OpenOptions& input,
     if (!keeper.past_end()) parser->finish(batch);
     keeper.take(batch);
     into.damaged = parser->damaged();
+    if (std::string text =
+            left_out_text(path.string(), recording->info().format, keeper.events(), into.damaged);
+        !text.empty())
+        into.warnings.push_back(std::move(text));
 }
 
 }  // namespace

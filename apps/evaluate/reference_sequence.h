@@ -25,6 +25,7 @@ struct ReferenceSequence {
     /// told from here.
     SensorTime first{};
     Damage damaged;                      ///< what was left out of it, by reason
+    std::vector<std::string> warnings;   ///< for people, with its path
     std::vector<Event> events;           ///< in order of time
     std::vector<ReferenceImage> images;  ///< in order of time
 };

@@ -25,6 +25,10 @@ struct CameraSettings {
     /// Called every 20 ms or so while a topic's first message is waited for: what it throws comes
     /// out of the constructor. May be empty.
     std::function<void()> while_waiting{};
+    /// Told, in sentences for people, what makes no call fail: why a camera was passed over for the
+    /// next one, why one is waited for and not back yet. Called by the constructor and by read(),
+    /// out of which comes what it throws. May be empty.
+    std::function<void(const std::string&)> warn{};
 };
 
 /// A camera that sends events from the first read() on. Thread: one at a time, stop() excepted.

@@ -221,15 +221,31 @@ EVENTIDE_API eventide_status eventide_recording_open(const char* path, const cha
 EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
                                                   int reconnect, eventide_source** opened);
 
-/** Whether to give up waiting: not 0 does. Called on the thread that waits, every 20 ms or so, with
- * what was given along with it. */
-typedef int (*eventide_give_up)(void* context);
+/** What a source asks and tells, on the thread that opens or reads it. Each function may be NULL.
+ */
+typedef struct eventide_callbacks {
+    size_t struct_size; /**< sizeof(eventide_callbacks) */
+    void* context;      /**< what the functions are called with */
+    /** Whether to give up waiting: not 0 does, and the call that waits is EVENTIDE_FAILED. Asked
+     * every 20 ms or so while the first message of a topic is waited for, which with `reconnect`
+     * may be for ever, and while standard input or a pipe has no bytes. */
+    int (*give_up)(void* context);
+    /** Told, in sentences for people, what makes no call fail: what had to be guessed of a
+     * recording, why a camera was passed over for the next one, why one is waited for and not back
+     * yet. `text` is valid until it returns. */
+    void (*warn)(void* context, const char* text);
+} eventide_callbacks;
 
-/** The same, asking `give_up` while the first message of a topic is waited for, which with
- * `reconnect` may be for ever: EVENTIDE_FAILED where it gave up. */
-EVENTIDE_API eventide_status eventide_camera_open_until(const char* name, const char* settings,
-                                                        int reconnect, eventide_give_up give_up,
-                                                        void* context, eventide_source** opened);
+/** eventide_recording_open() with callbacks, which are copied; NULL: none. */
+EVENTIDE_API eventide_status eventide_recording_open_with(const char* path, const char* format,
+                                                          int width, int height,
+                                                          const eventide_callbacks* callbacks,
+                                                          eventide_source** opened);
+/** eventide_camera_open() with callbacks, which are copied; NULL: none. */
+EVENTIDE_API eventide_status eventide_camera_open_with(const char* name, const char* settings,
+                                                       int reconnect,
+                                                       const eventide_callbacks* callbacks,
+                                                       eventide_source** opened);
 /** Frees it; NULL may be closed. */
 EVENTIDE_API void eventide_source_close(eventide_source* source);
 

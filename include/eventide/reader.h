@@ -24,6 +24,9 @@ struct ReaderOptions {
     /// the constructor or of read(), which may then be called again. Also called now and then by
     /// span(). May be empty.
     std::function<void()> while_waiting{};
+    /// Told each of remarks(), behind the path, by the constructor, out of which comes what it
+    /// throws. May be empty.
+    std::function<void(const std::string&)> warn{};
 };
 
 /// AEDAT 1 to 4, Prophesee RAW (EVT2, EVT2.1, EVT3) and DAT, HDF5 (of DSEC, MVSEC, M3ED, Prophesee,
@@ -33,7 +36,7 @@ struct ReaderOptions {
 class EVENTIDE_API EventReader final : public EventSource {
 public:
     /// "-" is standard input. Throws Error: input naming the path, what was expected and what was
-    /// found; usage for options that make no sense.
+    /// found; usage for the name of a camera and for options that make no sense.
     explicit EventReader(const std::string& path, const ReaderOptions& options = {});
     ~EventReader() override;
     EventReader(EventReader&&) noexcept;             ///< leaves the other empty

@@ -11,7 +11,9 @@ simulate() gives events with the truth they came from, evaluate() says how far a
 
 Times are whole microseconds of the sensor's clock, sizes (width, height) in pixels. Events are
 structured arrays with the fields t, x, y and p, on, pol or polarity, in any order and of any width
-of whole numbers. Everything that works long lets other threads run.
+of whole numbers. Everything that works long lets other threads run. What makes no call fail, as a
+camera passed over for the next one or a size that had to be guessed, is logged as a warning by the
+logger "eventide".
 """
 
 from ._eventide import (

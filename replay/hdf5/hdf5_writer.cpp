@@ -22,6 +22,8 @@ using Lock = std::lock_guard<std::recursive_mutex>;
 
 constexpr std::size_t kBlockRows = std::size_t{1} << 16;
 constexpr std::int64_t kUsPerMs = 1000;
+/// Of the sensor: what a killed run may lose of a file that others see.
+constexpr std::int64_t kFlushEveryUs = 1'000'000;
 /// Of one recording: its index has a number for each.
 constexpr std::int64_t kLongestMs = std::int64_t{7} * 24 * 3600 * 1000;
 
@@ -109,6 +111,7 @@ public:
         : name_(file.name()),
           width_(header.width),
           height_(header.height),
+          is_shown_(file.is_shown()),
           lock_(hdf5_mutex()),
           file_(make_file(file)),
           events_(make_group(file_.id(), "events")),
@@ -132,11 +135,12 @@ public:
             write(event);
         }
         for (; image != batch.images.end(); ++image) write(*image);
+        if (is_shown_ && newest_us_ - flushed_us_ >= kFlushEveryUs) flush();
     }
 
     void finish() override {
         const Lock lock{hdf5_mutex()};
-        write_offset();
+        if (!first_us_) write_offset(0);
         check(x_.close() && y_.close() && t_.close() && p_.close() && index_.close());
         check(events_.close() && images_.close() && file_.close());
     }
@@ -149,7 +153,7 @@ private:
     }
 
     void write(const Event& event) {
-        if (!first_us_) first_us_ = to_us(event.t);
+        if (!first_us_) write_offset(*(first_us_ = to_us(event.t)));
         const std::int64_t t = to_us(event.t) - *first_us_;
         if (t < 0 || t / kUsPerMs > kLongestMs)
             throw Error(ErrorKind::usage,
@@ -163,10 +167,19 @@ private:
         }
         x_.add(event.x);
         y_.add(event.y);
-        t_.add(t);
+        t_.add(newest_us_ = t);
         p_.add(std::uint8_t(event.polarity));
         ++rows_;
-        if (x_.is_full()) check(x_.flush() && y_.flush() && t_.flush() && p_.flush());
+        if (x_.is_full()) check(flush_columns());
+    }
+
+    bool flush_columns() { return x_.flush() && y_.flush() && t_.flush() && p_.flush(); }
+
+    /// To where others see it.
+    void flush() {
+        check(flush_columns() && index_.flush() &&
+              hdf5().H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
+        flushed_us_ = newest_us_;
     }
 
     void write(const ReferenceImage& image) {
@@ -207,19 +220,19 @@ private:
               write_attribute(set.id(), "event_idx", h5.H5T_NATIVE_INT64_g, 0, &event));
     }
 
-    void write_offset() {
+    void write_offset(std::int64_t offset) {
         const Hdf5Library& h5 = hdf5();
         const Hdf5Handle space{h5.H5Screate(H5S_SCALAR), h5.H5Sclose};
         const Hdf5Handle set{h5.H5Dcreate2(file_.id(), "t_offset", h5.H5T_NATIVE_INT64_g,
                                            space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                              h5.H5Dclose};
-        const std::int64_t offset = first_us_.value_or(0);
         check(set.good() && h5.H5Dwrite(set.id(), h5.H5T_NATIVE_INT64_g, H5S_ALL, H5S_ALL,
                                         H5P_DEFAULT, &offset) >= 0);
     }
 
     std::string name_;
-    int width_, height_;                           // px
+    int width_, height_;  // px
+    bool is_shown_;
     std::unique_lock<std::recursive_mutex> lock_;  // while the columns are made
     Hdf5Handle file_, events_, images_;
     Column<std::uint16_t> x_, y_;
@@ -227,6 +240,7 @@ private:
     Column<std::uint8_t> p_;
     Column<std::uint64_t> index_;
     std::optional<std::int64_t> first_us_;
+    std::int64_t newest_us_ = 0, flushed_us_ = 0;  // from the first event on
     std::int64_t next_ms_ = 0;
     std::uint64_t rows_ = 0, image_count_ = 0;
 };

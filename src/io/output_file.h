@@ -42,6 +42,8 @@ public:
 
     const std::string& name() const { return name_; }  ///< for messages
     bool is_seekable() const { return seekable_; }
+    /// Others see what is written as it is written.
+    bool is_shown() const { return part_.empty(); }
     /// Whoever read the pipe went away, or was given up: no error, but nothing is written any more.
     bool reader_gone() const { return reader_gone_; }
 

@@ -3,7 +3,13 @@
 
 #include <eventide/eventide.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstring>
+#include <string>
+#include <vector>
 
 namespace eventide::test {
 namespace {
@@ -261,14 +267,64 @@ TEST_F(CInterface, ACameraThatIsWaitedForCanBeGivenUp) {
     const auto third_time = [](void* context) {
         return ++*static_cast<int*>(context) == 3 ? 1 : 0;
     };
+    const eventide_callbacks callbacks{sizeof callbacks, &asked, third_time, nullptr};
     eventide_source* source = nullptr;
-    const eventide_status status = eventide_camera_open_until(
-        "ros2:/eventide/nobody/publishes", nullptr, 1, third_time, &asked, &source);
+    const eventide_status status = eventide_camera_open_with("ros2:/eventide/nobody/publishes",
+                                                             nullptr, 1, &callbacks, &source);
     EXPECT_EQ(source, nullptr);
     if (said("built without")) GTEST_SKIP() << eventide_error_message();
     EXPECT_EQ(status, EVENTIDE_FAILED);
     EXPECT_TRUE(said("ros2:/eventide/nobody/publishes: given up")) << eventide_error_message();
     EXPECT_EQ(asked, 3);
+}
+
+TEST_F(CInterface, WarnsOfWhatHadToBeGuessed) {
+    write_text(temp_ / "log.txt", "0.01 3 4 1\n0.02 5 6 0\n0.03 7 8 1\n");
+    std::vector<std::string> warnings;
+    const auto keep = [](void* context, const char* text) {
+        static_cast<std::vector<std::string>*>(context)->emplace_back(text);
+    };
+    eventide_callbacks callbacks{sizeof callbacks, &warnings, nullptr, keep};
+    const auto open_log = [&](int width, int height) {
+        eventide_source* source = nullptr;
+        const eventide_status status = eventide_recording_open_with(
+            (temp_ / "log.txt").c_str(), nullptr, width, height, &callbacks, &source);
+        eventide_source_close(source);
+        return status;
+    };
+    ASSERT_EQ(open_log(0, 0), EVENTIDE_OK) << eventide_error_message();
+    ASSERT_FALSE(warnings.empty());
+    EXPECT_TRUE(warnings[0].starts_with(temp_ / "log.txt: the recording does not say the sensor's"))
+        << warnings[0];
+    callbacks.warn = nullptr;
+    warnings.clear();
+    EXPECT_EQ(open_log(0, 0), EVENTIDE_OK) << "nobody to tell";
+    callbacks.struct_size = sizeof callbacks + 1;
+    EXPECT_EQ(open_log(64, 48), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("callbacks: expected a struct_size of at most")) << eventide_error_message();
+    EXPECT_EQ(warnings.size(), 0U);
+}
+
+TEST_F(CInterface, APipeThatSaysNothingCanBeGivenUp) {
+    const std::string pipe = temp_ / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const int writer = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);
+    const auto at_once = [](void*) { return 1; };
+    const eventide_callbacks callbacks{sizeof callbacks, nullptr, at_once, nullptr};
+    eventide_source* source = nullptr;
+    EXPECT_EQ(eventide_recording_open_with(pipe.c_str(), nullptr, 0, 0, &callbacks, &source),
+              EVENTIDE_FAILED);
+    EXPECT_TRUE(said("pipe: given up before it was there")) << eventide_error_message();
+    EXPECT_EQ(source, nullptr);
+    ::close(writer);
+}
+
+TEST_F(CInterface, ACameraIsNoRecording) {
+    eventide_source* source = nullptr;
+    EXPECT_EQ(eventide_recording_open("davis:", nullptr, 0, 0, &source), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("'davis:': expected a recording, found the name of a camera"))
+        << eventide_error_message();
+    EXPECT_TRUE(said("eventide_camera_open()")) << eventide_error_message();
 }
 
 TEST_F(CInterface, PutsFiltersBehindASource) {

@@ -1,6 +1,9 @@
 // A camera in software through the library.
 #include "tests/library/library_test.h"
 
+#include <filesystem>
+#include <string>
+
 namespace eventide::test {
 namespace {
 
@@ -46,6 +49,22 @@ TEST_F(Cameras, ThatCannotBeOpenedSayWhy) {
                   EventCamera{"sim:demo?size=64x48", {.file = "davis.json"}};
               }).find("'davis.json': expected a camera that has settings, found sim:demo"),
               std::string::npos);
+}
+
+TEST_F(Cameras, AreNoRecordings) {
+    for (const std::string name : {"davis:", "v4l2:/dev/video0", "sim:demo"}) {
+        const std::string words = error_of([&] { EventReader{name}; });
+        EXPECT_NE(words.find("'" + name +
+                             "': expected a recording, found the name of a camera, "
+                             "which EventCamera opens"),
+                  std::string::npos)
+            << words;
+    }
+    std::filesystem::copy(recording(), temp_ / "sim:file");
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(temp_.path());
+    EXPECT_EQ(EventReader{"sim:file"}.width(), 64) << "a file that is there is what is meant";
+    std::filesystem::current_path(before);
 }
 
 }  // namespace

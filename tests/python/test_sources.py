@@ -146,6 +146,21 @@ class Sources(RecordedTest):
             with self.assertRaisesRegex(eventide.InputError, "/caf\ufffd"):
                 eventide.simulate(textures=path)
 
+    def test_what_had_to_be_guessed_is_logged(self):
+        log = self.folder / "log.txt"
+        log.write_text("".join(f"{1e-5 * i:.6f} {i % 64} {i % 48} {i % 2}\n" for i in range(1000)))
+        with self.assertLogs("eventide", "WARNING") as logged:
+            reader = eventide.open(log)
+        self.assertEqual([r.getMessage() for r in logged.records], [f"{log}: {r}" for r in reader.remarks])
+        self.assertIn("does not say the sensor's size", logged.output[-1])
+        with self.assertRaises(AssertionError), self.assertLogs("eventide"):
+            eventide.open(log, width=64, height=48)
+
+    def test_a_camera_is_opened_as_one(self):
+        for name in ("davis:", "sim:demo"):
+            with self.assertRaisesRegex(eventide.UsageError, f"'{name}': expected a recording, .*open_camera"):
+                eventide.open(name)
+
     def test_everything_is_documented(self):
         for kind in (eventide.Reconstructor, eventide.Reader, eventide.Camera, eventide.Writer):
             for name, member in vars(kind).items():

@@ -100,5 +100,35 @@ TEST(Hdf5Writing, GrowsUnderItsNameWhereThatIsAskedFor) {
     EXPECT_TRUE(read_everything(*open_recording(folder.path("a.h5"))).events == events);
 }
 
+TEST(Hdf5Writing, WhatAKilledRunHasWrittenCanBeReadButForTheLastSecond) {
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = header.height = 128;
+    RecordingFile file(folder.path("a.h5"), OutputOptions{.appears = Appears::growing},
+                       *find_format("hdf5"), header);
+    const auto events = some_events(100'000, 7'000'000, 100);  // 5 s
+    for (std::size_t i = 0; i < events.size(); i += 500) {
+        Batch batch;
+        batch.events.assign(events.begin() + std::ptrdiff_t(i),
+                            events.begin() + std::ptrdiff_t(i + 500));
+        if (i % 10'000 == 0) {
+            batch.images.emplace_back().pixels = Array2<std::uint16_t>(128, 128);
+            batch.images[0].t = batch.events[0].t;
+        }
+        file.write(batch);
+    }
+    // What is on the disk now is what a killed program leaves; this one has the file open.
+    std::filesystem::copy_file(folder.path("a.h5"), folder.path("killed.h5"));
+    const auto left = open_recording(folder.path("killed.h5"));
+    const Batch found = read_everything(*left);
+    ASSERT_GT(found.events.size(), 0U);
+    EXPECT_GE(found.events.back().t, events.back().t - std::chrono::seconds{1});
+    EXPECT_TRUE(std::ranges::equal(found.events, std::span{events}.first(found.events.size())));
+    EXPECT_GE(found.images.size(), 8U);
+    const SensorTime middle = found.events[found.events.size() / 2].t;
+    left->seek(middle);
+    EXPECT_LE(read_everything(*left).events.front().t, middle);
+}
+
 }  // namespace
 }  // namespace eventide

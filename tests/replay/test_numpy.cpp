@@ -7,8 +7,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 
 namespace eventide {
 namespace {
@@ -219,6 +221,22 @@ TEST(Numpy, WhatIsNoTableOfEventsIsRefusedWithWhatItIs) {
                           [](const Event& e) { return raw(e.x); })}},
             false);
     EXPECT_THAT(refusal(folder.write("d.npz", fewer)), HasSubstr("as many numbers as t, 100"));
+}
+
+TEST(Numpy, EventsInNoOrderOfTimeAreRefusedAtOnce) {
+    const TestFolder folder;
+    std::vector<Event> events = some_events(5'000, 2'500'000, 20, 240, 180);
+    std::ranges::shuffle(events, std::mt19937{7});
+    for (const std::string& file : {folder.write("a.npy", records(events)),
+                                    folder.write("a.npz", columns(events, true, true)),
+                                    folder.write("b.npy", matrix(events, "txyp", false))})
+        EXPECT_THAT(refusal(file), AllOf(HasSubstr(file + ": expected events in order of time"),
+                                         HasSubstr(" of the first 5000 "), HasSubstr("sort")));
+    // Less than half of them late: as much as there is to read is read, and what is not is counted.
+    std::ranges::sort(events, {}, &Event::t);
+    for (std::size_t i = 0; i + 1 < events.size(); i += 3) std::swap(events[i], events[i + 1]);
+    const auto recording = open_recording(folder.write("c.npy", records(events)));
+    EXPECT_GT(read_everything(*recording).events.size(), 3'000U);
 }
 
 TEST(Numpy, AnArchiveWithATextRecordingSaysHowToReadIt) {

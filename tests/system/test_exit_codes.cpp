@@ -247,7 +247,8 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(2, {"run", "daviss:", "--out", "null"}, "did you mean davis:?");
     expect(3, {"run", "davis", "--out", "null"}, "'davis': no such file; did you mean davis:?");
     expect(3, {"run", "sim", "--out", "null"}, "did you mean sim:?");
-    expect(2, {"info", "davis:"}, "expected a recording, found the name of a camera");
+    for (const char* command : {"info", "evaluate"})
+        expect(2, {command, "davis:"}, "expected a recording, found the name of a camera");
     expect(2, {"convert", "sim:demo", "a.txt"}, "found the name of a simulation");
     expect(2, {"run", recording(), "--out", "gray8:"}, "--out gray8: needs a path");
     expect(2, {"run", recording(), "video.mp4"},

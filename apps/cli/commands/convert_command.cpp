@@ -2,7 +2,6 @@
 #include "apps/cli/commands/convert_command.h"
 
 #include "apps/cli/commands/command_files.h"
-#include "apps/cli/commands/left_out.h"
 #include "apps/cli/commands/look_ahead.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
@@ -13,6 +12,7 @@
 #include "pipeline/filters/filter_chain.h"
 #include "replay/convert.h"
 #include "replay/formats.h"
+#include "replay/left_out.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 

@@ -169,6 +169,7 @@ EvaluateSettings EvaluateCommand::how(Program& program) const {
     how.engine.self_ensemble = self_ensemble_;
     // Of recordings each is long: they come one by one, and the network takes all threads.
     if (protocol_ == Protocol::simulated) how.parallel_for = how.engine.parallel_for;
+    how.warn = [](const std::string& text) { spdlog::warn("{}", printable(text)); };
     how.progress = [progress = std::make_shared<Progress>(program.quiet),
                     &signals = program.signals](const std::string& sequence, double share) {
         progress->show(share, sequence);
@@ -202,6 +203,7 @@ void EvaluateCommand::require_inputs() const {
     if (expected != nullptr)
         throw Error(ErrorKind::usage,
                     std::string{"evaluate: expected "} + expected + ", found " + std::to_string(n));
+    if (protocol_ == Protocol::recordings) std::ranges::for_each(inputs_, refuse_camera);
 }
 
 void EvaluateCommand::require_outputs_that_fit() const {

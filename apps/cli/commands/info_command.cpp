@@ -1,10 +1,10 @@
 // eventide info: reads a recording to its end and says what was in it.
 #include "apps/cli/commands/info_command.h"
 
-#include "apps/cli/commands/left_out.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "replay/formats.h"
+#include "replay/left_out.h"
 #include "replay/summary.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"

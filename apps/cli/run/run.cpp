@@ -9,12 +9,9 @@
 #include "apps/cli/run/state/state_folder.h"
 #include "drivers/devices.h"
 #include "pipeline/first_error.h"
-#include "replay/formats.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
-
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -28,12 +25,6 @@ namespace {
 std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source,
                                             const OutputOptions& growing) {
     if (settings.record.empty()) return nullptr;
-    if (const Format* format = format_for_writing(settings.record);
-        format != nullptr && format->name == "hdf5")
-        spdlog::warn(
-            "{}: HDF5 can be read only once the run has ended properly; other formats keep "
-            "what a killed run had written",
-            settings.record);
     return std::make_unique<RecordedSource>(source, settings.record, growing);
 }
 

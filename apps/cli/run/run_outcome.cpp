@@ -1,8 +1,8 @@
 // What a run says at its end.
-#include "apps/cli/commands/left_out.h"
 #include "apps/cli/run/report/run_report.h"
 #include "apps/cli/run/run.h"
 #include "pipeline/filters/event_filter.h"
+#include "replay/left_out.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 

@@ -78,9 +78,6 @@ Setting filter_setting(std::vector<std::string>& filters) {
                             data_filter_names() + ".");
 }
 
-namespace {
-
-/// Of a command that reads recordings only.
 void refuse_camera(const std::string& path) {
     std::error_code none;
     if (!names_camera(path) && !names_simulation(path)) return;
@@ -91,8 +88,6 @@ void refuse_camera(const std::string& path) {
                          ? "camera; eventide run " + path + " --record FILE makes a recording of it"
                          : "simulation; eventide simulate makes a recording"));
 }
-
-}  // namespace
 
 std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input,
                                       std::function<bool()> give_up) {

@@ -25,7 +25,12 @@ struct InputSettings {
 /// --filter, for every command that hands events on.
 Setting filter_setting(std::vector<std::string>& filters);
 
-/// open_recording(), and its remarks as warnings. `give_up` as in OpenOptions.
+/// For commands that read recordings alone. Throws Error (usage) for the name of a camera or a
+/// simulation where there is no such file.
+void refuse_camera(const std::string& path);
+
+/// open_recording() behind refuse_camera(), and its remarks as warnings. `give_up` as in
+/// OpenOptions.
 std::unique_ptr<Recording> open_input(const std::string& path, const InputSettings& input,
                                       std::function<bool()> give_up);
 

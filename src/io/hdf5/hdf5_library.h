@@ -32,6 +32,7 @@ namespace eventide {
     X(H5Dwrite)                     \
     X(H5Fclose)                     \
     X(H5Fcreate)                    \
+    X(H5Fflush)                     \
     X(H5Fopen)                      \
     X(H5free_memory)                \
     X(H5Gclose)                     \

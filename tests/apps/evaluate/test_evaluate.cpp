@@ -46,7 +46,7 @@ TEST(ReferenceSequence, IsCalledAsItsFolder) {
 }
 
 TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
-    ReferenceSequence sequence{"noise", 64, 48, {}, {}, {}, {}};
+    ReferenceSequence sequence{"noise", 64, 48, {}, {}, {}, {}, {}};
     const auto add = [&](std::int64_t t_us, int x, int y) {
         sequence.events.push_back(
             {from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity::on});
@@ -87,6 +87,27 @@ TEST(EvaluateRecordings, ScoresEveryImageThatIsNotSkipped) {
         EXPECT_FALSE(report.overall.raw.lpips);
         EXPECT_LE(report.overall.affine.mse, report.overall.raw.mse);
     }
+}
+
+TEST(EvaluateRecordings, WarnWhereMoreIsLeftOutThanTaken) {
+    const fs::path folder = write_recording(fresh_folder("left_out"), .9, .01, .1);
+    RecordingSettings what;
+    what.recordings = {folder};
+    EvaluateSettings how = small_model();
+    std::vector<std::string> warnings;
+    how.warn = [&](const std::string& text) { warnings.push_back(text); };
+    evaluate_recordings(what, how);
+    EXPECT_TRUE(warnings.empty()) << warnings.front();
+    {
+        std::ofstream events{folder / "events.txt", std::ios::app};
+        for (int i = 0; i < 360; ++i) events << "0.9 " << kWidth << " 3 1\n";
+    }
+    evaluate_recordings(what, how);
+    ASSERT_FALSE(warnings.empty());
+    EXPECT_EQ(warnings.back().find(folder.string() +
+                                   ": 80 % of it was left out as damaged: out_of_range 360"),
+              0U)
+        << warnings.back();
 }
 
 TEST(EvaluateRecordings, WithOtherWindowsAlsoComparesAtTheImagesTimes) {

@@ -1,9 +1,9 @@
 // Shares of what was read.
-#include "apps/cli/commands/left_out.h"
+#include "replay/left_out.h"
 
 #include <cstdio>
 
-namespace eventide::app {
+namespace eventide {
 
 namespace {
 
@@ -63,4 +63,4 @@ std::string left_out_text(const std::string& name, const std::string& format, st
            what_to_do(DamageReason::time_backwards, format);
 }
 
-}  // namespace eventide::app
+}  // namespace eventide

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <string>
 
-namespace eventide::app {
+namespace eventide {
 
 /// How many events of `name` were left out because of their times, or what most of them were left
 /// out for, and what to do; empty where neither is so. `events` were taken.
 std::string left_out_text(const std::string& name, const std::string& format, std::uint64_t events,
                           const Damage& damaged);
 
-}  // namespace eventide::app
+}  // namespace eventide
