@@ -62,17 +62,13 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     // One thread per share: libgomp's barriers cost more than they give where cores are shared.
     at::set_num_threads(1);
     at::globalContext().setBenchmarkCuDNN(true);
-    {
-        const torch::NoGradGuard none;
-        for (Parameters* weights : {&optimiser_.parameters, &optimiser_.ema})
-            weights->at("encoder.in.weight") *= input_mask_;
-    }
     options_.data.bins = options.model.bins;
     options_.data.noise_filter = options.model.noise_filter;
     create_folder(options.out);
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
+    leave_out_inputs();
     choose_what_learns(options.train_only, optimiser_.parameters);
     progress_.options = OptionTable{options_}.record();
     begin_states();
@@ -84,6 +80,14 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     feed_ = std::make_unique<DataLoader>(
         options_.data, std::move(textures), options.threads * options.streams, options.groups,
         progress_.segment, device_.is_cuda() ? SimulatorPriority::behind : SimulatorPriority::same);
+}
+
+/// A run may go on with fewer inputs: what its moments hold of the others must not bring them back.
+void Trainer::leave_out_inputs() {
+    const torch::NoGradGuard none;
+    for (Parameters* numbers :
+         {&optimiser_.parameters, &optimiser_.moment1, &optimiser_.moment2, &optimiser_.ema})
+        numbers->at("encoder.in.weight") *= input_mask_;
 }
 
 /// A run may go on with other streams or another crop: its states then begin empty.

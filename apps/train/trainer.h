@@ -40,6 +40,7 @@ private:
         Parameters gradients;
         LossTerms terms;
     };
+    void leave_out_inputs();
     void begin_states();
     bool finished() const;
     double learning_rate() const;

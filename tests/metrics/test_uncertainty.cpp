@@ -38,6 +38,17 @@ TEST(Coverage, SeesASigmaThatIsTooSmallOrTooLarge) {
     EXPECT_GT(coverage_80(shy.mu, shy.sigma, shy.truth), .97);
 }
 
+TEST(Coverage, ReachesAsFarAsTheQuantileOfNineTenths) {
+    Array2<float> mu(1, 4), sigma(1, 4), truth(1, 4);
+    for (int x = 0; x < 4; ++x) {
+        sigma(0, x) = .25F;
+        mu(0, x) = .5F;
+        const float z = x < 2 ? 1.2814F : 1.2817F;  // about 1.28155
+        truth(0, x) = .5F + (x % 2 == 0 ? z : -z) * .25F;
+    }
+    EXPECT_EQ(coverage_80(mu, sigma, truth), .5);
+}
+
 TEST(LogLikelihood, IsTheFormula) {
     Array2<float> mu(1, 2), sigma(1, 2), truth(1, 2);
     mu(0, 0) = .25F;

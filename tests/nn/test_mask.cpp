@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -45,6 +48,24 @@ TEST(Mask, HalvingIsTheMaximumAroundEverySecondPixel) {
         for (int y = 0; y < half.height(); ++y)
             for (int x = 0; x < half.width(); ++x)
                 EXPECT_EQ(half(y, x) != 0, any_near(mask, 2 * y, 2 * x, 1));
+    }
+}
+
+TEST(Mask, DoublingReachesEveryPixelThatASampleIsReadFor) {
+    for (const auto& [height, width] :
+         std::vector<std::pair<int, int>>{{1, 1}, {2, 9}, {7, 4}, {13, 22}, {14, 21}}) {
+        const Mask mask = random_mask(height, width, 7);
+        const Mask below = random_mask((height + 1) / 2, (width + 1) / 2, 11);
+        Mask out{height, width};
+        join_doubled(mask, below, out);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                bool expected = mask(y, x) != 0;
+                for (const int sy : {y / 2, std::min((y + 1) / 2, below.height() - 1)})
+                    for (const int sx : {x / 2, std::min((x + 1) / 2, below.width() - 1)})
+                        expected |= below(sy, sx) != 0;
+                EXPECT_EQ(out(y, x) != 0, expected) << y << " " << x;
+            }
     }
 }
 

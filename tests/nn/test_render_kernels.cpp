@@ -110,8 +110,20 @@ TEST(RenderKernels, ASampleIsWeighedByItsShare) {
     });
 }
 
+/// Where pixels lie beside their samples: in frames of the sensor's size all at one place, which
+/// kernels take out of their loops.
+enum class Places { apart, alike, alike_but_the_last };
+
+std::vector<float> places(Places how, std::size_t count, test::Numbers& numbers) {
+    if (how == Places::apart) return numbers.many(count, Fill::ordinary);
+    std::vector<float> dx(count, 0.25F);
+    if (how == Places::alike_but_the_last && count > 0) dx.back() = -0.75F;
+    return dx;
+}
+constexpr Places kAllPlaces[] = {Places::apart, Places::alike, Places::alike_but_the_last};
+
 /// Offsets, a hidden layer and two outputs at once, against the same in double.
-void expect_hidden_rows(const Bf16Kernels& kernels) {
+void expect_hidden_rows(const Bf16Kernels& kernels, Places how) {
     constexpr int kColumns = 9;
     for (const auto& [width, outputs] :
          {std::pair{12, 20}, {12, 32}, {32, 20}, {32, 32}, {16, 16}, {6, 16}, {16, 9}})
@@ -120,8 +132,7 @@ void expect_hidden_rows(const Bf16Kernels& kernels) {
             const auto n = std::size_t(width), o = std::size_t(outputs),
                        count = std::size_t(pixels), lanes = std::size_t(outputs > 16 ? 32 : 16);
             const auto sums = numbers.many(kColumns * n, Fill::ordinary),
-                       dx = numbers.many(count, Fill::ordinary),
-                       base = numbers.many(n, Fill::ordinary),
+                       dx = places(how, count, numbers), base = numbers.many(n, Fill::ordinary),
                        slope = numbers.many(n, Fill::ordinary),
                        last = numbers.many(2 * o, Fill::ordinary);
             std::vector<float> hidden = numbers.many(n * o, Fill::ordinary), bias(32);
@@ -165,7 +176,8 @@ void expect_hidden_rows(const Bf16Kernels& kernels) {
 }
 TEST(RenderKernels, HiddenRowsAreTheLayersOneByOne) {
     if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
-    for (const Bf16Kernels* kernels : test::all_bf16_kernels()) expect_hidden_rows(*kernels);
+    for (const Bf16Kernels* kernels : test::all_bf16_kernels())
+        for (const Places how : kAllPlaces) expect_hidden_rows(*kernels, how);
 }
 
 /// Numbers for layers of `width` and `outputs` at `pixels` pixels, and the same as HiddenRows.
@@ -177,13 +189,13 @@ struct FloatRows {
     int pixels, width, outputs;
 
     FloatRows(const VectorKernels& kernels, int pixel_count, int inputs, int output_count,
-              bool is_alike)
+              Places how)
         : pixels(pixel_count), width(inputs), outputs(output_count) {
         test::Numbers numbers{4};
         const auto n = std::size_t(width), o = std::size_t(outputs), count = std::size_t(pixels),
                    lanes = std::size_t(kernels.lanes);
         sums = numbers.many(kColumns * n, Fill::ordinary);
-        dx = is_alike ? std::vector<float>(count, 0.25F) : numbers.many(count, Fill::ordinary);
+        dx = places(how, count, numbers);
         base = numbers.many(n, Fill::ordinary);
         slope = numbers.many(n, Fill::ordinary);
         last = numbers.many(2 * o, Fill::ordinary);
@@ -233,8 +245,8 @@ TEST(RenderKernels, HiddenRowsOfFloatsAreTheLayersOneByOne) {
         for (const auto& [width, outputs] :
              {std::pair{32, 32}, {16, 16}, {64, 64}, {32, 20}, {16, 40}, {48, 9}})
             for (const int pixels : {0, 1, 6, 13, 48, 61, 240})
-                for (const bool is_alike : {false, true}) {
-                    const FloatRows r{k, pixels, width, outputs, is_alike};
+                for (const Places how : kAllPlaces) {
+                    const FloatRows r{k, pixels, width, outputs, how};
                     const auto count = std::size_t(pixels);
                     test::Guarded mu{count}, log_sigma{count};
                     ASSERT_TRUE(k.hidden_rows(r.rows(0, pixels, mu.data(), log_sigma.data())));
@@ -249,7 +261,7 @@ TEST(RenderKernels, HiddenRowsOfFloatsAreTheLayersOneByOne) {
 
 TEST(RenderKernels, WhatAPixelGetsDoesNotDependOnThoseBesideIt) {
     with_each([&](const VectorKernels& k) {
-        const FloatRows r{k, 101, 32, 32, false};
+        const FloatRows r{k, 101, 32, 32, Places::apart};
         std::vector<float> mu(101), log_sigma(101);
         ASSERT_TRUE(k.hidden_rows(r.rows(0, 101, mu.data(), log_sigma.data())));
         // Alone, all have the same dx.
@@ -266,11 +278,11 @@ TEST(RenderKernels, HiddenRowsRefuseLayersTheyAreNotMadeFor) {
     with_each([&](const VectorKernels& k) {
         float mu = 7, log_sigma = 7;
         for (const auto& [width, outputs] : {std::pair{96, 32}, {32, 96}}) {
-            const FloatRows r{k, 1, width, outputs, true};
+            const FloatRows r{k, 1, width, outputs, Places::alike};
             EXPECT_FALSE(k.hidden_rows(r.rows(0, 1, &mu, &log_sigma)));
         }
         if (k.lanes > 1) {
-            const FloatRows r{k, 1, k.lanes + 1, 32, true};
+            const FloatRows r{k, 1, k.lanes + 1, 32, Places::alike};
             EXPECT_FALSE(k.hidden_rows(r.rows(0, 1, &mu, &log_sigma)));
         }
         EXPECT_EQ(mu, 7);

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -137,42 +139,82 @@ TEST(VectorKernels, SaturatedGatesAreExact) {
     });
 }
 
-/// The mean of four samples, of float32 and bf16 alike; the last sample stands for those behind it.
-TEST(VectorKernels, DoubledRowsAreMeansOfSamples) {
+TEST(VectorKernels, NormsAreScaledShiftedAndJoinedBeforeTheElu) {
     with_each([&](const VectorKernels& k) {
-        constexpr int kSamples = 5;
-        for (const int channels : {2, 8, 16, 22, 64}) {
-            test::Numbers numbers{8};
-            const auto n = std::size_t(channels);
-            const auto above = numbers.many(kSamples * n, Fill::ordinary),
-                       under = numbers.many(kSamples * n, Fill::ordinary);
-            std::vector<float> out(9 * n);
-            k.double_row({above.data(), under.data(), kSamples - 1, 1, 10, channels, out.data()});
-            std::vector<std::uint32_t> narrow_above(kSamples * n / 2),
-                narrow_under(kSamples * n / 2), narrow(9 * n / 2);
-            plain::bf16_kernels().pixels_to_bf16(above.data(), kSamples, channels,
-                                                 narrow_above.data());
-            plain::bf16_kernels().pixels_to_bf16(under.data(), kSamples, channels,
-                                                 narrow_under.data());
-            const auto expect_means = [&](const Bf16Kernels& kernels) {
-                kernels.double_row({narrow_above.data(), narrow_under.data(), kSamples - 1, 1, 10,
-                                    channels, narrow.data()});
-                const auto* doubled = reinterpret_cast<const std::uint16_t*>(narrow.data());
-                for (std::size_t i = 0; i < out.size(); ++i)
-                    ASSERT_NEAR(from_bf16(doubled[i]), out[i], 1.0 / 64) << channels;
-            };
-            expect_means(plain::bf16_kernels());
-            for (const Bf16Kernels* kernels : test::all_bf16_kernels()) expect_means(*kernels);
-            for (int x = 1; x < 10; ++x)
-                for (std::size_t c = 0; c < n; ++c) {
-                    const auto left = std::size_t(x / 2) * n + c,
-                               right = std::size_t(std::min((x + 1) / 2, kSamples - 1)) * n + c;
-                    const double mean =
-                        (double(above[left]) + above[right] + under[left] + under[right]) / 4;
-                    ASSERT_NEAR(out[std::size_t(x - 1) * n + c], mean, 1e-6);
+        constexpr std::size_t kPixels = 3;
+        for (const int channels : {1, 5, 8, 16, 24, 37}) {
+            test::Numbers numbers{13};
+            const auto c = std::size_t(channels), count = kPixels * c;
+            const auto a = numbers.many(count, Fill::ordinary),
+                       scale = numbers.many(c, Fill::ordinary),
+                       shift = numbers.many(c, Fill::ordinary),
+                       skip = numbers.many(count, Fill::ordinary);
+            for (const bool joined : {false, true}) {
+                test::Guarded out{count};
+                k.norm_elu(a.data(), scale.data(), shift.data(), joined ? skip.data() : nullptr,
+                           out.data(), kPixels, channels);
+                EXPECT_TRUE(out.intact()) << channels;
+                for (std::size_t i = 0; i < count; ++i) {
+                    const double sum = double(a[i]) * scale[i % c] + shift[i % c];
+                    ASSERT_NEAR(out.data()[i], plain::elu(sum + (joined ? skip[i] : 0)), 1e-6)
+                        << channels << " " << i;
                 }
+            }
         }
     });
+}
+
+/// Five samples a row, of which rows of pixels begin and end on a sample or between two.
+struct DoubledRow {
+    static constexpr int kSamples = 5;
+    std::size_t channels;
+    std::vector<float> above, under;
+
+    explicit DoubledRow(int c) : channels(std::size_t(c)) {
+        test::Numbers numbers{8};
+        above = numbers.many(kSamples * channels, Fill::ordinary);
+        under = numbers.many(kSamples * channels, Fill::ordinary);
+    }
+    double exact(int x, std::size_t c) const {
+        const auto left = std::size_t(x / 2) * channels + c,
+                   right = std::size_t(std::min((x + 1) / 2, kSamples - 1)) * channels + c;
+        return (double(above[left]) + above[right] + under[left] + under[right]) / 4;
+    }
+    void expect_floats(const VectorKernels& k, int x0, int x1) const {
+        test::Guarded out{std::size_t(x1 - x0) * channels};
+        k.double_row({above.data(), under.data(), kSamples - 1, x0, x1, int(channels), out.data()});
+        EXPECT_TRUE(out.intact()) << x0 << " to " << x1;
+        for (int x = x0; x < x1; ++x)
+            for (std::size_t c = 0; c < channels; ++c)
+                ASSERT_NEAR(out.data()[std::size_t(x - x0) * channels + c], exact(x, c), 1e-6)
+                    << x << " of " << x0 << " to " << x1;
+    }
+    void expect_bf16(const Bf16Kernels& k, int x0, int x1) const {
+        std::vector<std::uint32_t> a(above.size() / 2), b(a.size());
+        k.pixels_to_bf16(above.data(), kSamples, int(channels), a.data());
+        k.pixels_to_bf16(under.data(), kSamples, int(channels), b.data());
+        test::Guarded out{std::size_t(x1 - x0) * channels / 2};
+        k.double_row({a.data(), b.data(), kSamples - 1, x0, x1, int(channels), out.data()});
+        EXPECT_TRUE(out.intact()) << x0 << " to " << x1;
+        const auto* numbers = reinterpret_cast<const std::uint16_t*>(out.data());
+        for (int x = x0; x < x1; ++x)
+            for (std::size_t c = 0; c < channels; ++c)
+                ASSERT_NEAR(from_bf16(numbers[std::size_t(x - x0) * channels + c]), exact(x, c),
+                            1.0 / 128)
+                    << x << " of " << x0 << " to " << x1;
+    }
+};
+
+/// The mean of four samples, of float32 and bf16 alike; the last sample stands for those behind it.
+TEST(VectorKernels, DoubledRowsAreMeansOfSamples) {
+    for (const int channels : {2, 8, 16, 22, 64}) {
+        const DoubledRow row{channels};
+        for (const auto& [x0, x1] : {std::pair{0, 10}, {1, 10}, {0, 9}, {3, 8}, {4, 7}, {6, 7}}) {
+            with_each([&](const VectorKernels& k) { row.expect_floats(k, x0, x1); });
+            row.expect_bf16(plain::bf16_kernels(), x0, x1);
+            for (const Bf16Kernels* k : test::all_bf16_kernels()) row.expect_bf16(*k, x0, x1);
+        }
+    }
 }
 
 }  // namespace

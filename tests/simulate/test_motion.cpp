@@ -181,6 +181,15 @@ TEST(LightChanges, StaysInItsDepth) {
     EXPECT_LE(high, 0);
 }
 
+TEST(LightChanges, StaysAsItIsInHalfOfItsSteps) {
+    LightChanges light{.7, .1, Random{4}};
+    light.prepare(201);
+    int still = 0;
+    for (int k = 0; k < 2000; ++k)
+        still += light.log_gain((k + .25) * .1) == light.log_gain((k + .75) * .1);
+    EXPECT_NEAR(still / 2000., .5, .05);
+}
+
 TEST(Flicker, HasItsFrequencyAndDepth) {
     const Flicker flicker{.depth = .4, .frequency_hz = 100, .phase = 0};
     EXPECT_NEAR(flicker.at(.01), 1.4, 1e-9);

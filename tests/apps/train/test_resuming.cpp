@@ -41,6 +41,29 @@ TEST(Training, AKeptCheckpointHasNoStreamsAndGoesOn) {
     EXPECT_EQ(second->steps(), 5);
 }
 
+TEST(Training, AResumedRunLeavesOutTheInputsThatItIsToldTo) {
+    const fs::path out = empty_folder("narrows");
+    TrainOptions options = tiny_options(out);
+    options.steps = 3;
+    train(*trainer(options));  // with all inputs, and moments of all
+    options.resume = (out / "checkpoint.safetensors").string();
+    options.inputs = {"polarity", "since"};
+    options.steps = 6;
+    const auto run = trainer(options);
+    train(*run);
+    const Tensors mean = run->finished_model().weights;
+    const auto used = [&](const torch::Tensor& weight) {
+        return weight.detach().abs().sum(torch::IntArrayRef{0, 2, 3});
+    };
+    for (const auto& per_channel : {used(run->parameters().at("encoder.in.weight")),
+                                    used(to_torch(mean.at("encoder.in.weight"), torch::kCPU))}) {
+        for (const int channel : {0, 4, 8})
+            EXPECT_GT(per_channel[channel].item<float>(), 0) << channel;
+        for (const int channel : {1, 2, 3, 5, 6, 7})
+            EXPECT_EQ(per_channel[channel].item<float>(), 0) << channel;
+    }
+}
+
 TEST(Training, ACheckpointOfAnotherNetworkIsRefusedByName) {
     const fs::path out = empty_folder("refuses");
     TrainOptions options = tiny_options(out);

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <numeric>
 #include <sstream>
 
@@ -121,6 +123,24 @@ TEST(Training, AnInputThatIsNotUsedHasNoWeightInTheModel) {
         EXPECT_EQ(per_channel[channel].item<float>(), 0) << channel;
     options.inputs = {"colour"};
     EXPECT_THROW(trainer(options), Error);
+}
+
+TEST(Training, TheRateRisesStaysAndFallsAlongACosine) {
+    TrainOptions options = tiny_options(empty_folder("rate"));
+    options.steps = 20;
+    options.log_every = 1;
+    options.warm_up = 4;
+    options.learning_rate = 1e-3;
+    options.constant_share = .5;
+    options.final_rate = .02;
+    train(*trainer(options));
+    const auto rate = logged(options.out, 2);
+    ASSERT_EQ(rate.size(), 20U);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(rate[i], 2e-4 * double(i + 1), 1e-9) << i;
+    for (std::size_t i = 4; i <= 10; ++i) EXPECT_NEAR(rate[i], 1e-3, 1e-9) << i;
+    EXPECT_NEAR(rate[15], 1e-3 * (.02 + .98 / 2), 1e-8) << "half of the way down";
+    const double at_last = .5 * (1 + std::cos(.9 * std::numbers::pi));
+    EXPECT_NEAR(rate[19], 1e-3 * (.02 + .98 * at_last), 1e-8);
 }
 
 }  // namespace

@@ -68,6 +68,10 @@ std::unique_ptr<Trainer> expect_stopping_changes_nothing(TrainOptions options, i
     train(*resumed);
     for (const auto& [name, values] : expected->parameters())
         EXPECT_EQ((values - resumed->parameters().at(name)).abs().max().item<float>(), 0) << name;
+    // Nobody validates, so that the finished model is the running mean.
+    const Tensors mean = resumed->finished_model().weights;
+    for (const auto& [name, tensor] : expected->finished_model().weights)
+        EXPECT_EQ(tensor.values, mean.at(name).values) << "running mean of " << name;
     return expected;
 }
 

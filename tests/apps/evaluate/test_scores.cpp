@@ -1,0 +1,122 @@
+// What a frame's scores mean, on images small enough to be judged by hand.
+#include "apps/evaluate/reference_sequence.h"
+#include "apps/evaluate/scores.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace eventide {
+namespace {
+
+constexpr int kSide = 12;
+
+/// Four stripes, three columns of each value.
+Array2<float> stripes(const std::array<float, 4>& values) {
+    Array2<float> image(kSide, kSide);
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) image(y, x) = values[std::size_t(x / 3)];
+    return image;
+}
+
+Array2<float> all_of(float value) {
+    return stripes({value, value, value, value});
+}
+
+TEST(Judge, ClipsBeforeItComparesAndBeforeItFits) {
+    const FrameScores scores =
+        Judge{nullptr}.judge(stripes({-.5F, .25F, .5F, 3}), {}, stripes({0, .5F, 1, 1}));
+    // Shown are 0, .25, .5 and 1.
+    EXPECT_NEAR(scores.raw.mse, (.0625 + .25) / 4, 1e-7);
+    // Gain .13281 / .13672, offset .2: the last stripe would be 1.17, and is cut at 1.
+    EXPECT_NEAR(scores.affine.mse, (.04 + .0032653 + .0987755 + 0) / 4, 1e-6);
+    EXPECT_NEAR(*scores.correlation, .1328125 / std::sqrt(.13671875 * .171875), 1e-6);
+    EXPECT_FALSE(scores.picp80 || scores.ll || scores.mean_sigma || scores.lpips_corr);
+    EXPECT_FALSE(scores.raw.lpips || scores.affine.lpips);
+}
+
+TEST(Judge, AFitOfALineLeavesNothing) {
+    const FrameScores scores =
+        Judge{nullptr}.judge(stripes({.4F, .5F, .6F, .7F}), {}, stripes({.1F, .3F, .5F, .7F}));
+    EXPECT_NEAR(scores.raw.mse, (.09 + .04 + .01) / 4, 1e-7);
+    EXPECT_NEAR(scores.affine.mse, 0, 1e-10);
+    EXPECT_NEAR(*scores.correlation, 1, 1e-6);
+}
+
+TEST(Judge, SigmaIsThatOfTheClippedFrame) {
+    // Errors of the four stripes, over sigma: 0, 1.281, 1.282 and 2.
+    const FrameScores scores = Judge{nullptr}.judge(stripes({-1, .1281F, .1282F, .5F}),
+                                                    stripes({.1F, .1F, .1F, .25F}), all_of(0));
+    EXPECT_EQ(*scores.picp80, .5);
+    EXPECT_NEAR(*scores.mean_sigma, .1375, 1e-7);
+    const double z2 = (1.281 * 1.281 + 1.282 * 1.282 + 4) / 4,
+                 ln_sigma = (3 * std::log(.1) + std::log(.25)) / 4;
+    EXPECT_NEAR(*scores.ll, -.5 * std::log(2 * std::numbers::pi) - ln_sigma - .5 * z2, 1e-5);
+}
+
+TEST(Judge, SumsUpWhatFiguresShow) {
+    Judge judge{nullptr};
+    judge.judge(all_of(.5F), all_of(.1F), stripes({.5F, .6F, .7F, .8F}));
+    const Observations& seen = judge.observations();
+    EXPECT_EQ(seen.reliability.pixels(), 144U);
+    EXPECT_EQ(seen.reliability.below(9), .25) << "below the median: where there is no error";
+    // Mean of z^2: (0 + 1 + 4 + 9) / 4.
+    EXPECT_NEAR(seen.sigma_scale.by_likelihood(), std::sqrt(3.5), 1e-5);
+    std::uint64_t pixels = 0;
+    for (const Observations::SigmaBin& bin : seen.sigma_bins) {
+        if (bin.pixels == 0) continue;
+        pixels += bin.pixels;
+        EXPECT_NEAR(bin.sigma / double(bin.pixels), .1, 1e-6);
+        EXPECT_NEAR(bin.squared_error / double(bin.pixels), (.01 + .04 + .09) / 4, 1e-6);
+    }
+    EXPECT_EQ(pixels, 144U);
+    Observations twice = seen;
+    twice += seen;
+    EXPECT_EQ(twice.reliability.pixels(), 288U);
+    EXPECT_NEAR(twice.sigma_scale.by_likelihood(), std::sqrt(3.5), 1e-5);
+}
+
+TEST(MeanScores, WeighFramesEquallyAndLeaveOutWhatSomeHaveNot) {
+    std::vector<FrameScores> frames(3);
+    frames[0].raw = {.mse = .1, .ssim = .9, .lpips = .2};
+    frames[1].raw = {.mse = .3, .ssim = .5, .lpips = {}};
+    frames[2].raw = {.mse = .2, .ssim = .4, .lpips = .6};
+    frames[0].affine.mse = .03;
+    frames[1].lpips_corr = .5;
+    const SequenceScores mean = mean_scores("three", frames);
+    EXPECT_EQ(mean.frames, 3);
+    EXPECT_NEAR(mean.raw.mse, .2, 1e-12);
+    EXPECT_NEAR(mean.raw.ssim, .6, 1e-12);
+    EXPECT_NEAR(*mean.raw.lpips, .4, 1e-12);
+    EXPECT_NEAR(mean.affine.mse, .01, 1e-12);
+    EXPECT_EQ(*mean.lpips_corr, .5);
+    EXPECT_FALSE(mean.picp80 || mean.ll || mean.mean_sigma || mean.correlation);
+    EXPECT_TRUE(std::isnan(mean_scores("none", {}).raw.mse));
+}
+
+std::vector<std::int64_t> mended(const std::vector<std::int64_t>& times) {
+    std::vector<ReferenceImage> images(times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) images[i].t = from_us(times[i]);
+    mend_times(images);
+    std::vector<std::int64_t> after;
+    for (const ReferenceImage& image : images) after.push_back(to_us(image.t));
+    return after;
+}
+
+TEST(ImageTimes, OneThatLiesAfterTheNextIsTheMiddleOfItsNeighbours) {
+    using Times = std::vector<std::int64_t>;
+    EXPECT_EQ(mended({0, 100, 50, 150}), (Times{0, 25, 50, 150}));
+    EXPECT_EQ(mended({0, 10, 20, 30}), (Times{0, 10, 20, 30}));
+    EXPECT_EQ(mended({0, 10, 10, 30}), (Times{0, 10, 10, 30}));
+    // Of the first and the last there is no middle.
+    EXPECT_EQ(mended({40, 10, 20}), (Times{10, 20, 40}));
+    EXPECT_EQ(mended({7}), (Times{7}));
+    EXPECT_EQ(mended({}), Times{});
+}
+
+}  // namespace
+}  // namespace eventide
