@@ -169,8 +169,10 @@ std::unique_ptr<DataReader> open_hdf5(const std::string& path, const OpenOptions
         layout.header.sensor_name = file->text_attribute("/", "sensor_name");
     layout.header.serial = file->text_attribute("/", "serial_number");
     read_size(*file, layout.header);
-    if (const auto image = layout.images ? layout.images->read(0) : std::nullopt)
-        set_size(layout.header, image->pixels.width() / image->channels, image->pixels.height());
+    if (const auto image = layout.images ? layout.images->read(0) : std::nullopt) {
+        const int width = image->pixels.width() / image->channels;
+        set_size(layout.header, width, image->pixels.height());
+    }
     auto table =
         std::make_unique<TableReader>(path, std::move(layout.header), std::move(layout.events),
                                       std::move(layout.images), options);
