@@ -7,6 +7,8 @@
 #include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace eventide {
@@ -16,24 +18,37 @@ namespace {
 /// Keeps the file open for the tables that read it.
 class Hdf5Reader final : public DataReader {
 public:
-    Hdf5Reader(std::unique_ptr<Hdf5File> file, std::unique_ptr<TableReader> table)
-        : file_(std::move(file)), table_(std::move(table)) {}
+    Hdf5Reader(std::unique_ptr<Hdf5File> file, std::unique_ptr<TableReader> table,
+               std::vector<std::string> remarks)
+        : file_(std::move(file)), table_(std::move(table)), remarks_(std::move(remarks)) {
+        std::ranges::copy(table_->remarks(), std::back_inserter(remarks_));
+    }
     const StreamHeader& header() const override { return table_->header(); }
     bool read(Batch& into, Damage& damage) override { return table_->read(into, damage); }
     void seek(SensorTime t) override { table_->seek(t); }
     double progress() const override { return table_->progress(); }
-    std::vector<std::string> remarks() const override { return table_->remarks(); }
+    std::vector<std::string> remarks() const override { return remarks_; }
 
 private:
     std::unique_ptr<Hdf5File> file_;
     std::unique_ptr<TableReader> table_;
+    std::vector<std::string> remarks_;
 };
 
 struct Layout {
     StreamHeader header;
     std::unique_ptr<EventTable> events;
     std::unique_ptr<ImageTable> images;
+    std::vector<std::string> remarks{};
 };
+
+/// Of two cameras the left one is read. `events`: what tells that there is a right one.
+void name_right_camera(const Hdf5File& file, const std::string& cameras, const std::string& events,
+                       Layout& layout) {
+    if (file.has(cameras + "/right/" + events))
+        layout.remarks.push_back("the events of " + cameras + "/right are left out, those of " +
+                                 cameras + "/left are read");
+}
 
 bool is_side(double side) {
     return side >= 1 && side <= kLargestSensorSide && side == double(int(side));
@@ -71,6 +86,7 @@ Layout open_mvsec(const Hdf5File& file) {
     Layout layout;
     layout.header.sensor_name = "DAVIS346";
     layout.events = open_hdf5_matrix(file, "davis/left/events");
+    name_right_camera(file, "davis", "events", layout);
     if (file.has("davis/left/image_raw")) {
         layout.images = open_hdf5_stack(file, "davis/left/image_raw", "davis/left/image_raw_ts");
         const Hdf5Size size = size_of_images(file.data("davis/left/image_raw"), 1);
@@ -85,6 +101,7 @@ Layout open_m3ed(const Hdf5File& file) {
     const std::string camera = "prophesee/left/";
     layout.events = open_hdf5_columns(
         file, {camera + "x", camera + "y", camera + "t", camera + "p", "", camera + "ms_map_idx"});
+    name_right_camera(file, "prophesee", "t", layout);
     if (const std::string name = camera + "calib/resolution"; file.has(name))
         read_size(file.data(name), layout.header);
     return layout;
@@ -152,12 +169,15 @@ std::unique_ptr<DataReader> open_hdf5(const std::string& path, const OpenOptions
         layout.header.sensor_name = file->text_attribute("/", "sensor_name");
     layout.header.serial = file->text_attribute("/", "serial_number");
     read_size(*file, layout.header);
-    if (const auto image = layout.images ? layout.images->read(0) : std::nullopt)
-        set_size(layout.header, image->pixels.width() / image->channels, image->pixels.height());
+    if (const auto image = layout.images ? layout.images->read(0) : std::nullopt) {
+        const int width = image->pixels.width() / image->channels;
+        set_size(layout.header, width, image->pixels.height());
+    }
     auto table =
         std::make_unique<TableReader>(path, std::move(layout.header), std::move(layout.events),
                                       std::move(layout.images), options);
-    return std::make_unique<Hdf5Reader>(std::move(file), std::move(table));
+    return std::make_unique<Hdf5Reader>(std::move(file), std::move(table),
+                                        std::move(layout.remarks));
 }
 
 }  // namespace eventide

@@ -100,15 +100,18 @@ TEST(Aedat4, TheTableLeadsToATime) {
             std::copy_n(rest.begin(), n, into.begin());
             return n;
         };
-        const auto position = find_in_aedat4_table(header, read_at, events[250].t);
-        EXPECT_EQ(position.has_value(), with_end);
-        if (!position) continue;
-        Aedat4Parser parser(header, kWidth, kHeight);
-        parser.resync();
-        Batch batch;
-        parser.parse(std::span(bytes).subspan(std::size_t(*position)), batch);
-        ASSERT_FALSE(batch.events.empty());
-        EXPECT_TRUE(batch.events.front() == events[200]);
+        // The last of a packet is still in it.
+        for (const auto& [wanted, first] : {std::pair{250U, 200U}, std::pair{199U, 100U}}) {
+            const auto position = find_in_aedat4_table(header, read_at, events[wanted].t);
+            EXPECT_EQ(position.has_value(), with_end);
+            if (!position) continue;
+            Aedat4Parser parser(header, kWidth, kHeight);
+            parser.resync();
+            Batch batch;
+            parser.parse(std::span(bytes).subspan(std::size_t(*position)), batch);
+            ASSERT_FALSE(batch.events.empty());
+            EXPECT_TRUE(batch.events.front() == events[first]);
+        }
     }
 }
 
@@ -145,7 +148,33 @@ TEST(Aedat4, WhereTimeGoesOnBehindAResetAnEventInThePastIsDamage) {
     EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 1U);
 }
 
-TEST(Aedat4, OfTwoCamerasTheFirstIsRead) {
+/// Seconds may pass behind a reset before anything moves.
+TEST(Aedat4, ALateFirstEventBehindAResetBeginsAnewWhereItIsFarInThePast) {
+    for (const std::int64_t late_us : {3'000'000, 59'500'000}) {
+        const auto before = random_events(1, 100, kWidth, kHeight, 60'000'000);
+        const auto after = random_events(2, 100, kWidth, kHeight, late_us);
+        std::vector<Batch> packets = in_packets(before, 1);
+        packets.emplace_back().triggers = {{from_us(1'000), Trigger::Kind::timestamp_reset, 0}};
+        packets.push_back(in_packets(after, 1)[0]);
+        const Parsed parsed = parse_file(write_file(packets, Aedat4Compression::lz4));
+        const bool is_far = late_us < 59'000'000;
+        EXPECT_EQ(parsed.data.events.size(), is_far ? 200U : 100U);
+        EXPECT_EQ(parsed.damage[DamageReason::time_backwards], is_far ? 0U : 100U);
+    }
+}
+
+TEST(Aedat4, AnExposureMayBeginAtZero) {
+    Batch batch;
+    ReferenceImage image;
+    image.exposure_end = from_us(500);
+    image.t = from_us(250);
+    image.pixels = Array2<std::uint16_t>(2, 2);
+    batch.images = {image};
+    EXPECT_TRUE(parse_file(write_file({batch}, Aedat4Compression::none)).data.images ==
+                batch.images);
+}
+
+TEST(Aedat4, TheStreamsOfAHeaderAreFoundInItsText) {
     const auto streams = read_aedat4_streams(
         "<dv><node name=\"outInfo\">"
         "<node name=\"0\"><attr key=\"typeIdentifier\" type=\"string\">FRME</attr>"
@@ -178,6 +207,15 @@ TEST(Aedat4, WhatItCannotHoldIsRefusedByName) {
     trigger.triggers = {{from_us(0), Trigger::Kind::rising, 7}};
     refuses(event, "40000");
     refuses(trigger, "source 7");
+    Batch mark;
+    for (const int source : {9, 128}) {
+        mark.triggers = {{from_us(0), Trigger::Kind::other, std::uint8_t(source)}};
+        refuses(mark, "source");
+    }
+    mark.triggers = {{from_us(0), Trigger::Kind::other, 10},
+                     {from_us(0), Trigger::Kind::other, 127}};
+    EXPECT_TRUE(parse_file(write_file({mark}, Aedat4Compression::none)).data.triggers ==
+                mark.triggers);
 }
 
 }  // namespace

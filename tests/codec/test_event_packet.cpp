@@ -20,6 +20,58 @@ TEST(EventPacket, LibcaersEventsWrapAfter31Bits) {
     EXPECT_EQ(parsed.damage.total(), 1U) << "what a filter took out is none";
 }
 
+TEST(EventPacket, ATimeOfLibcaersThatGoesBackALittleIsNoWrap) {
+    const Bytes payload = libcaer_event(1, 2, true, 2'000'000'000) +
+                          libcaer_event(3, 4, true, 1'999'999'999) +
+                          libcaer_event(5, 6, true, 2'000'000'001);
+    const Parsed parsed =
+        parse_whole(parser_of(EventPacketEncoding::libcaer), packet({kStamp, 0}, payload));
+    EXPECT_THAT(parsed.data.events, ElementsAre(at(kStampUs + 2'000'000'000, 1, 2, true),
+                                                at(kStampUs + 2'000'000'001, 5, 6, true)));
+    EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 1U);
+}
+
+/// Wraps are of a packet: its time base counts from anew.
+TEST(EventPacket, WrapsOfOnePacketAreNotOfTheNext) {
+    const Bytes stream =
+        packet({kStamp, 0}, libcaer_event(1, 2, true, 0x7FFFFFFF) + libcaer_event(1, 2, true, 1)) +
+        packet({kStamp + 3'000'000'000'000ULL, 0}, libcaer_event(3, 4, true, 7));
+    EXPECT_EQ(parse_whole(parser_of(EventPacketEncoding::libcaer), stream).data.events.back(),
+              at(kStampUs + 3'000'000'007, 3, 4, true));
+}
+
+TEST(EventPacket, AfterAGapATimeLikeTheLastIsNoReset) {
+    const Bytes stream = packet({kStamp, 0}, libcaer_event(1, 2, true, 9));
+    EventPacketParser parser(EventPacketEncoding::libcaer, kWidth, kHeight);
+    Batch batch;
+    parser.parse(stream, batch);
+    parser.resync();
+    parser.parse(stream, batch);
+    EXPECT_EQ(batch.events.size(), 2U);
+    EXPECT_TRUE(batch.triggers.empty());
+}
+
+TEST(EventPacket, MonoHasPlacesOfFifteenAndSixteenBits) {
+    const MakeParser make = [] {
+        return std::make_unique<EventPacketParser>(EventPacketEncoding::mono, 65535, 32768);
+    };
+    const Parsed parsed =
+        parse_whole(make, packet({0, kStamp}, mono_event(65534, 32767, false, 0xFFFFFFFF)));
+    EXPECT_THAT(parsed.data.events, ElementsAre(at(kStampUs, 65534, 32767, false)));
+}
+
+TEST(EventPacket, AHeaderThatCannotBeIsDamageAndTheNextIsFound) {
+    const Bytes good = packet({kStamp, 0}, libcaer_event(1, 2, true, 9));
+    for (const std::size_t field : {4U, 8U, 16U}) {  // length, time base, stamp
+        Bytes bad = good;
+        for (std::size_t i = 0; i < (field == 4 ? 4U : 8U); ++i) bad[field + i] = std::byte{0xFF};
+        const Parsed parsed = parse_whole(parser_of(EventPacketEncoding::libcaer), bad + good);
+        EXPECT_EQ(parsed.data.events.size(), 1U) << field;
+        EXPECT_EQ(parsed.damage[DamageReason::bad_length], 1U) << field;
+        EXPECT_EQ(parsed.damage.total(), 1U) << field;
+    }
+}
+
 TEST(EventPacket, MonoIsShiftedToItsFirstStampAndStaysThere) {
     const Bytes stream =
         packet({5'000'000, kStamp}, mono_event(1, 2, true, 0) + mono_event(3, 4, false, 7'900)) +

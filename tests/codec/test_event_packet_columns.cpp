@@ -43,6 +43,14 @@ TEST(EventPacket, TimesOfACompressedPacketGoOnThoughItsHighBitsAreMissingOrWrap)
                     at(kStampUs + 4096 * 4096, 1, 2, true)));
 }
 
+TEST(EventPacket, ACompressedPacketBeginsWithoutAPlace) {
+    const Bytes stream = packet({kStamp, 0}, bytes_of({column(3), row(1, true), base(8, true)})) +
+                         packet({kStamp, 0}, bytes_of({row(2, true), column(4), mask(1)}));
+    const Parsed parsed = parse_whole(parser_of(EventPacketEncoding::libcaer_cmp), stream);
+    EXPECT_THAT(parsed.data.events, ElementsAre(at(kStampUs, 3, 1, true)));
+    EXPECT_EQ(parsed.damage[DamageReason::unknown_word], 2U);
+}
+
 TEST(EventPacket, CompressedWordsWithoutAPlaceAreDamage) {
     const Parsed parsed =
         parse_compressed({row(1, true), mask(1), column(3), mask(1), 0x6000, row(479, true),

@@ -20,6 +20,26 @@ TEST(EventPacket, Evt3IsShiftedToItsStamp) {
     EXPECT_EQ(parsed.damage.total(), 0U);
 }
 
+TEST(EventPacket, TheFirstThingOfAnEvt3PacketIsAtItsStamp) {
+    constexpr std::uint16_t kRisingEdge = 0xA001;
+    const Words events{evt_low(9), evt_row(7), evt_x(8, true), evt_low(20), evt_x(9, true)};
+    Words with_trigger{evt_high(2), evt_low(5), kRisingEdge}, without{evt_high(2)};
+    with_trigger.insert(with_trigger.end(), events.begin(), events.end());
+    without.insert(without.end(), events.begin(), events.end());
+    const auto parse = [](const Words& words) {
+        return parse_whole(parser_of(EventPacketEncoding::evt3),
+                           packet({0, kStamp}, bytes_of(words)));
+    };
+    EXPECT_THAT(parse(without).data.events,
+                ElementsAre(at(kStampUs, 8, 7, true), at(kStampUs + 11, 9, 7, true)));
+    const Parsed parsed = parse(with_trigger);
+    EXPECT_THAT(parsed.data.triggers,
+                ElementsAre(Trigger{from_us(kStampUs), Trigger::Kind::rising, 0}));
+    EXPECT_THAT(parsed.data.events,
+                ElementsAre(at(kStampUs + 4, 8, 7, true), at(kStampUs + 15, 9, 7, true)));
+    EXPECT_EQ(parsed.clock, from_us(kStampUs + 15));
+}
+
 /// A first time is believed with the end of its message, as its stamp dates it; no other is.
 TEST(EventPacket, ALeapAtTheEndOfAMessageWaitsForTheNext) {
     const auto message = [](int ms, unsigned high_word, unsigned x) {

@@ -71,5 +71,73 @@ TEST(EventValidator, ALeapIsBelievedWhenWhatFollowsDoesNotLieBeforeIt) {
     EXPECT_EQ(events_of(300), 3U);
 }
 
+struct Judged {
+    std::vector<std::int64_t> times;  // us, of the events taken
+    std::uint64_t bad = 0, backwards = 0;
+
+    friend bool operator==(const Judged&, const Judged&) = default;
+};
+
+/// Of packets with events at these times in us.
+Judged judge(const std::vector<std::vector<std::int64_t>>& packets,
+             EventValidator::LeapEnds leap_ends = EventValidator::LeapEnds::with_next_event) {
+    EventValidator validator(10, 10, leap_ends);
+    Batch batch;
+    Damage damage;
+    for (const auto& packet : packets) {
+        for (const std::int64_t t : packet) validator.add(t, 1, 1, true, batch, damage);
+        validator.end_packet();
+    }
+    validator.finish(batch, damage);
+    Judged judged;
+    for (const Event& event : batch.events) judged.times.push_back(to_us(event.t));
+    judged.bad = damage[DamageReason::bad_record];
+    judged.backwards = damage[DamageReason::time_backwards];
+    return judged;
+}
+
+constexpr std::int64_t kStep = 100'000, kPause = 60'000'000;  // us
+static_assert(kStep == EventValidator::kLongestStep);
+static_assert(kPause == EventValidator::kLongestFirstPause);
+
+TEST(EventValidator, ATenthOfASecondIsNoLeapAndMoreIsOne) {
+    EXPECT_EQ(judge({{0, 0, kStep, 50}}), (Judged{{0, 0, kStep}, 0, 1}));
+    EXPECT_EQ(judge({{0, 0, kStep + 1, 50}}), (Judged{{0, 0, 50}, 1, 0}));
+}
+
+TEST(EventValidator, AFirstEventATenthOfASecondTooLateIsBelievedAndALaterOneIsNot) {
+    EXPECT_EQ(judge({{kStep, 0, kStep}}), (Judged{{kStep, kStep}, 0, 1}));
+    EXPECT_EQ(judge({{kStep + 1, 0, 1}}), (Judged{{0, 1}, 1, 0}));
+}
+
+TEST(EventValidator, AFirstEventAMinuteTooEarlyIsBelievedAndAnEarlierOneIsNot) {
+    EXPECT_EQ(judge({{0, kPause, kPause}}), (Judged{{0, kPause, kPause}, 0, 0}));
+    EXPECT_EQ(judge({{0, kPause + 1, kPause + 1}}), (Judged{{kPause + 1, kPause + 1}, 1, 0}));
+}
+
+TEST(EventValidator, InPacketsALeapIsJudgedByTheNextPacketOrTheEnd) {
+    constexpr auto kPackets = EventValidator::LeapEnds::with_next_packet;
+    constexpr std::int64_t kFar = 5 * kPause;
+    EXPECT_EQ(judge({{0, 1, kFar, kFar, kFar + 1}, {3}}, kPackets), (Judged{{0, 1, 3}, 3, 0}));
+    EXPECT_EQ(judge({{0, 1, kFar, kFar, 2}, {3}}, kPackets), (Judged{{0, 1, 2, 3}, 2, 0}))
+        << "or by what lies before it";
+    EXPECT_EQ(judge({{0, 1, kFar, kFar + 5, kFar + 3, kFar + 5}, {kFar + 6}}, kPackets),
+              (Judged{{0, 1, kFar, kFar + 5, kFar + 5, kFar + 6}, 0, 1}));
+    EXPECT_EQ(judge({{0, 1, kFar, kFar}}, kPackets), (Judged{{0, 1, kFar, kFar}, 0, 0}));
+    EXPECT_EQ(judge({{0, kFar, kFar}}, kPackets), (Judged{{kFar, kFar}, 1, 0}))
+        << "two agree against the first";
+}
+
+TEST(EventValidator, AllThatIsHeldWhereALossBeginsIsLostAndCounted) {
+    EventValidator validator(10, 10, EventValidator::LeapEnds::with_next_packet);
+    Batch batch;
+    Damage damage;
+    for (const std::int64_t t : {std::int64_t{0}, kPause, kPause})
+        validator.add(t, 1, 1, true, batch, damage);
+    validator.resync(damage);
+    EXPECT_TRUE(batch.events.empty());
+    EXPECT_EQ(damage[DamageReason::truncated], 3U);
+}
+
 }  // namespace
 }  // namespace eventide

@@ -37,6 +37,18 @@ TEST(TextNumber, HalvesAreRoundedAwayFromZero) {
     EXPECT_EQ(microseconds("1e-300"), 0);
 }
 
+TEST(TextNumber, NumbersAtTheirLimits) {
+    const auto scaled = [](std::string_view text, int shift) {
+        return scaled_integer(*parse_decimal(text), shift);
+    };
+    EXPECT_EQ(scaled("9223372036854775807", 0), INT64_MAX);
+    EXPECT_EQ(scaled("9223372036854775808", 0), std::nullopt);
+    EXPECT_EQ(scaled("92233720368547758.07", 2), INT64_MAX);
+    EXPECT_EQ(scaled("12345678901234567890", -3), 12'345'678'901'234'568);  // twenty digits of ns
+    EXPECT_EQ(scaled("9e-20", 0), 0);
+    EXPECT_EQ(scaled("5e-1", 0), 1);
+}
+
 TEST(TextNumber, WhatIsNoNumberOrDoesNotFitIsRefused) {
     for (const char* text : {"", "-", ".", "e5", "1e", "1e+", "1.2.3", "1x", "0x10", "nan", "inf",
                              "1 ", "1e99999999999", "99999999999999999999", "1e30"})

@@ -2,6 +2,7 @@
 #include "replay/formats.h"
 #include "replay/summary.h"
 #include "src/simulate/sim_recording.h"
+#include "tests/replay/hdf5_files.h"
 #include "tests/replay/hdf5_layouts.h"
 #include "tests/replay/recording_files.h"
 
@@ -137,6 +138,40 @@ TEST_P(Hdf5Layouts, AreTheSameByEveryRouteOfBytes) {
     whole->finish(together);
     split->finish(apart);
     EXPECT_TRUE(together.events == apart.events);
+}
+
+/// Of stereo recordings.
+TEST(Hdf5Layout, TheOtherCameraOfAPairIsLeftOutAndNamed) {
+    const TestFolder folder;
+    const std::vector<double> rows{1, 2, 1.5e9, 1, 3, 4, 1.5e9 + 1e-3, -1};
+    const std::vector<std::uint16_t> places{1, 3};
+    const std::vector<std::int64_t> times{10, 20};
+    const std::vector<std::uint8_t> polarities{1, 0};
+    {
+        const test::Hdf5Made mvsec(folder.path("mvsec.h5")), m3ed(folder.path("m3ed.h5"));
+        for (const std::string side : {"left", "right"}) {
+            mvsec.array("davis/" + side + "/events", {2, 4}, H5T_NATIVE_DOUBLE, rows.data(),
+                        H5T_IEEE_F64LE);
+            const std::string camera = "prophesee/" + side + "/";
+            m3ed.column(camera + "x", places, H5T_STD_U16LE);
+            m3ed.column(camera + "y", places, H5T_STD_U16LE);
+            m3ed.column(camera + "t", times, H5T_STD_I64LE);
+            m3ed.column(camera + "p", polarities, H5T_STD_U8LE);
+        }
+    }
+    const auto mvsec = open_recording(folder.path("mvsec.h5"));
+    EXPECT_EQ(read_everything(*mvsec).events.size(), 2U);
+    EXPECT_THAT(mvsec->remarks(),
+                testing::ElementsAre("the events of davis/right are left out, those of davis/left "
+                                     "are read"));
+    OpenOptions options;
+    options.width = 1280;
+    options.height = 720;
+    const auto m3ed = open_recording(folder.path("m3ed.h5"), options);
+    EXPECT_EQ(read_everything(*m3ed).events.size(), 2U);
+    EXPECT_THAT(m3ed->remarks(),
+                testing::ElementsAre("the events of prophesee/right are left out, those of "
+                                     "prophesee/left are read"));
 }
 
 }  // namespace
