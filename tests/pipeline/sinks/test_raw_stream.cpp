@@ -223,10 +223,16 @@ TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
     for (const bool others : {true, false}) {
         const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
         int told = 0;
-        StreamSink sink{{.path = pipe, .format = StreamFormat::gray8, .reader_left = [&] {
-                             ++told;
-                             return others;
-                         }}};
+        std::uint64_t missing = 0;
+        StreamSink sink{{.path = pipe,
+                         .format = StreamFormat::gray8,
+                         .overload = Overload::repeat,
+                         .reader_left =
+                             [&] {
+                                 ++told;
+                                 return others;
+                             },
+                         .shorter_by = [&](std::uint64_t n) { missing += n; }}};
         sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
         EXPECT_TRUE(sink.is_watched());
         close(reader);
@@ -235,6 +241,7 @@ TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
         EXPECT_EQ(sink.wants_more(), others);
         EXPECT_FALSE(sink.is_watched());
         sink.close();
+        EXPECT_EQ(missing, 0U) << "who went away was not too slow";
     }
 }
 
