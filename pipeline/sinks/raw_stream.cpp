@@ -186,7 +186,9 @@ void StreamSink::append_raw(const Frame& frame) {
 }
 
 void StreamSink::close() {
-    if (const std::uint64_t owed = std::exchange(owed_, 0); owed > 0 && settings_.shorter_by)
+    // A reader that went away was told of; it was not too slow.
+    if (const std::uint64_t owed = std::exchange(owed_, 0);
+        owed > 0 && is_read() && settings_.shorter_by)
         settings_.shorter_by(owed);
     if (file_) file_->close();
     file_.reset();

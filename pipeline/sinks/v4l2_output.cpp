@@ -1,5 +1,6 @@
 #include "pipeline/sinks/v4l2_output.h"
 
+#include "pipeline/sinks/video/yuv.h"
 #include "src/core/error.h"
 
 #include <fcntl.h>
@@ -82,6 +83,7 @@ bool V4l2OutputSink::try_format(V4l2PixelFormat format, int width, int height) {
         int(wanted.fmt.pix.height) != height)
         return false;
     format_ = format;
+    luma_ = luma_table(format == V4l2PixelFormat::grey ? YuvRange::full : YuvRange::limited);
     width_ = width;
     height_ = height;
     bytes_.assign(bytes, kNoColour);
@@ -104,10 +106,8 @@ void V4l2OutputSink::pack(const cv::Mat& image) {
     for (int y = 0; y < height_; ++y) {
         const std::uint8_t* from = image.ptr<std::uint8_t>(y);
         const std::size_t at = std::size_t(y) * std::size_t(width_);
-        if (format_ == V4l2PixelFormat::yuyv)
-            for (int x = 0; x < width_; ++x) bytes_[2 * (at + std::size_t(x))] = from[x];
-        else
-            std::copy_n(from, width_, bytes_.data() + at);
+        const std::size_t step = format_ == V4l2PixelFormat::yuyv ? 2 : 1;
+        for (int x = 0; x < width_; ++x) bytes_[step * (at + std::size_t(x))] = luma_[from[x]];
     }
 }
 

@@ -5,6 +5,7 @@
 #include "pipeline/sinks/draw_frame.h"
 #include "pipeline/video_node.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -27,7 +28,8 @@ struct V4l2OutputSettings {
 };
 
 /// The size is fixed by the first frame; YUYV and YU12 need even sides, so an odd last column or
-/// row is left out.
+/// row is left out. Their black is 16 and their white 235: the default of V4L2 for YUV, which
+/// readers undo.
 ///
 /// The device keeps the newest frame for readers that are slow or absent: writing never waits. A
 /// frame the device will not take at once is skipped and counted.
@@ -53,6 +55,7 @@ private:
     FileDescriptor file_;
     int width_ = 0, height_ = 0;  // 0 until the first frame
     V4l2PixelFormat format_ = V4l2PixelFormat::grey;
+    std::array<std::uint8_t, 256> luma_{};  // [grey]
     cv::Mat image_;
     std::vector<std::uint8_t> bytes_;  // one frame as the device takes it
     std::uint64_t skipped_ = 0;

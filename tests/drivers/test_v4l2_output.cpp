@@ -67,19 +67,33 @@ TEST(V4l2Output, FixesTheFormatOnceAndWritesWholeGreyFrames) {
     EXPECT_THAT(bed.requests(), ElementsAre("QUERYCAP", "S_FMT", "S_FMT"));
 }
 
+/// As webcams send it and programs take it: black is 16, white 235 (BT.601, limited range).
 TEST(V4l2Output, YuyvHasNoColourAndEvenSides) {
     V4l2Testbed bed{loopback({V4L2_PIX_FMT_YUYV})};
     V4l2OutputSink sink{node()};
     sink.write(frame(3, 3));
     ASSERT_EQ(bed.written().size(), 1U);
-    EXPECT_THAT(numbers(bed.written()[0]), ElementsAre(0, 128, 1, 128, 10, 128, 11, 128));
+    EXPECT_THAT(numbers(bed.written()[0]), ElementsAre(16, 128, 17, 128, 25, 128, 25, 128));
+}
+
+TEST(V4l2Output, WhiteIsWhiteForWhoeverReadsIt) {
+    Frame white = frame(2, 2);
+    for (float& v : white.intensity.values()) v = 1;
+    for (const auto& [fourcc, luma] : {std::pair{V4L2_PIX_FMT_YUYV, 235},
+                                       {V4L2_PIX_FMT_YUV420, 235},
+                                       {V4L2_PIX_FMT_GREY, 255}}) {
+        V4l2Testbed bed{loopback({std::uint32_t(fourcc)})};
+        V4l2OutputSink sink{node()};
+        sink.write(white);
+        EXPECT_EQ(numbers(bed.written().at(0)).front(), luma);
+    }
 }
 
 TEST(V4l2Output, Yu12HasFlatChromaPlanes) {
     V4l2Testbed bed{loopback({V4L2_PIX_FMT_YUV420})};
     V4l2OutputSink sink{node()};
     sink.write(frame(2, 2));
-    EXPECT_THAT(numbers(bed.written().at(0)), ElementsAre(0, 1, 10, 11, 128, 128));
+    EXPECT_THAT(numbers(bed.written().at(0)), ElementsAre(16, 17, 25, 25, 128, 128));
 }
 
 TEST(V4l2Output, SigmaGoesBesideTheIntensity) {

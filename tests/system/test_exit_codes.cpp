@@ -59,7 +59,12 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
                "/dev/zero: expected at most ");
     expect(2, {"run", recording(), "--out", "frame.bmp"}, "frame.bmp");
     expect(2, {"run", recording(), "--out", "-", "--out", "gray8:-"}, "standard output");
-    expect(2, {"run", recording(), "--out", "a.mp4", "--uncertainty", "alpha"}, "alpha");
+    expect(2, {"run", recording(), "--out", "a.mp4", "--uncertainty", "alpha"},
+           "separate, side or overlay, found alpha");
+    expect(2, {"run", recording(), "--out", "a.gif", "--uncertainty", "alpha"},
+           "separate or side, found alpha");
+    expect(2, {"run", recording(), "--out", "gray8:a", "--events"},
+           "--events: expected the window, a video or a folder to show them in, found none");
     expect(2, {"run", recording(), "--out", "a.mp4", "--video-preset", "quick"}, "quick");
     expect(2, {"run", recording(), "--out", "null", "--from", "2s", "--to", "1s"}, "--to");
     expect(2, {"run", recording(), "--out", "window"}, "display");
@@ -250,6 +255,12 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     for (const char* command : {"info", "evaluate"})
         expect(2, {command, "davis:"}, "expected a recording, found the name of a camera");
     expect(2, {"convert", "sim:demo", "a.txt"}, "found the name of a simulation");
+    expect(2, {"run", recording(), "--reconnect", "--out", "null"},
+           "--reconnect: expected a camera as SOURCE, found ");
+    expect(2, {"run", "sim:demo", "--input-size", "64x48", "--out", "null"},
+           "--input-size 64x48: expected a recording as SOURCE, found sim:demo");
+    expect(2, {"run", "davis:", "--input-format", "evt3", "--out", "null"},
+           "--input-format evt3: expected a recording as SOURCE, found davis:");
     expect(2, {"run", recording(), "--out", "gray8:"}, "--out gray8: needs a path");
     expect(2, {"run", recording(), "video.mp4"},
            "unexpected argument 'video.mp4'; did you mean --out?");

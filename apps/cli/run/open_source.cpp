@@ -7,6 +7,7 @@
 #include "replay/formats.h"
 #include "src/core/error.h"
 #include "src/core/sensor_limits.h"
+#include "src/settings/values.h"
 
 #include <spdlog/spdlog.h>
 
@@ -46,6 +47,21 @@ void refuse_speed(const RunSettings& settings) {
                                                : "; a camera has one speed"));
 }
 
+/// A setting that changes nothing is a misunderstanding.
+void refuse_without_effect(const RunSettings& settings) {
+    const auto refuse = [&](const std::string& option, const char* expected) {
+        throw Error(ErrorKind::usage,
+                    option + ": expected a " + expected + " as SOURCE, found " + settings.source);
+    };
+    const bool is_camera = names_camera(settings.source);
+    if (!settings.camera.empty() && !is_camera) refuse("--camera " + settings.camera, "camera");
+    if (settings.reconnect && !is_camera) refuse("--reconnect", "camera");
+    if (!is_camera && !names_simulation(settings.source)) return;
+    if (settings.input.size) refuse("--input-size " + show_size(*settings.input.size), "recording");
+    if (!settings.input.open.format.empty())
+        refuse("--input-format " + settings.input.open.format, "recording");
+}
+
 OpenedSource open_file(const RunSettings& settings, double speed,
                        const std::function<bool()>& give_up) {
     refuse_unknown_source(settings.source);
@@ -82,10 +98,7 @@ OpenedSource open_source(const RunSettings& settings, double speed,
                          const std::function<bool()>& give_up) {
     OpenedSource opened;
     const auto warn = [](const std::string& text) { spdlog::warn("{}", printable(text)); };
-    if (!settings.camera.empty() && !names_camera(settings.source))
-        throw Error(ErrorKind::usage, "--camera " + settings.camera +
-                                          ": expected a camera as SOURCE, found " +
-                                          settings.source);
+    refuse_without_effect(settings);
     refuse_speed(settings);
     if (names_simulation(settings.source))
         opened.source = open_simulation(settings.source);

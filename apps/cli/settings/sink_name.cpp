@@ -46,18 +46,30 @@ std::optional<SinkName> with_prefix(const std::string& sink) {
     return std::nullopt;
 }
 
+bool takes_stamps(const SinkName& sink) {
+    return sink.kind == SinkKind::stream && !is_y4m(sink.format);
+}
+
+/// Null shows nothing, whatever is asked for.
+bool shows_events(const SinkName& sink) {
+    return sink.kind != SinkKind::stream && sink.kind != SinkKind::v4l2 &&
+           sink.kind != SinkKind::ros2;
+}
+
 /// A setting that changes nothing is a misunderstanding.
-void check_stamp(const RunSettings& settings) {
-    if (!settings.stamp) return;
-    const bool raw = std::ranges::any_of(settings.out, [](const std::string& text) {
-        const SinkName sink = parse_sink(text);
-        return sink.kind == SinkKind::stream && sink.format != StreamFormat::y4m &&
-               sink.format != StreamFormat::y4m_mono;
-    });
-    if (!raw)
+void check_effects(const RunSettings& settings) {
+    const auto any = [&](bool (*does)(const SinkName&)) {
+        return std::ranges::any_of(settings.out,
+                                   [&](const auto& text) { return does(parse_sink(text)); });
+    };
+    if (settings.stamp && !any(takes_stamps))
         throw Error(ErrorKind::usage,
                     "--stamp: expected a raw stream such as --out gray8:-, found none; Y4M has the "
                     "times in its frame headers (XT=) without it");
+    if (settings.events && !settings.out.empty() && !any(shows_events))
+        throw Error(ErrorKind::usage,
+                    "--events: expected the window, a video or a folder to show them in, found "
+                    "none; --events-out writes the events themselves");
 }
 
 }  // namespace
@@ -88,7 +100,7 @@ SinkName parse_sink(const std::string& sink) {
 }
 
 void name_sink_files(const RunSettings& settings, NamedFiles& files) {
-    check_stamp(settings);
+    check_effects(settings);
     for (const std::string& text : settings.out) {
         const SinkName sink = parse_sink(text);
         switch (sink.kind) {

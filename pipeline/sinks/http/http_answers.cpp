@@ -1,5 +1,6 @@
 #include "pipeline/sinks/http/http_answers.h"
 
+#include "pipeline/camera_counters.h"
 #include "pipeline/sinks/http/frame_streams.h"
 #include "pipeline/sinks/http/page_files.h"
 #include "src/core/error.h"
@@ -80,6 +81,15 @@ std::string escaped(std::string_view text) {
             out += c;
     }
     return out;
+}
+
+/// What went wrong between a camera and the machine: beside it only traffic is counted.
+std::string incident_names() {
+    std::string names;
+    for (const CameraCountWords& words : kCameraCountWords)
+        if (words.kind != CameraCountKind::traffic)
+            names += (names.empty() ? "\"" : ",\"") + std::string{words.name} + "\"";
+    return "[" + names + "]";
 }
 
 std::string page_of(const std::string& title) {
@@ -220,7 +230,8 @@ std::string HttpAnswers::statistics_json(double event_rate) const {
            ",\"controls\":" + controls_json(settings_.controls) +
            ",\"viewers\":" + std::to_string(viewers_.taken()) +
            ",\"most_viewers\":" + std::to_string(HttpSink::kMaxViewers) +
-           ",\"sigma_white\":" + std::to_string(settings_.sigma_white) + "}";
+           ",\"sigma_white\":" + std::to_string(settings_.sigma_white) +
+           ",\"camera_incidents\":" + incident_names() + "}";
 }
 
 void HttpAnswers::statistics(Response& response) {

@@ -24,11 +24,14 @@ std::unique_ptr<VideoFile> create(const std::filesystem::path& path,
 }  // namespace
 
 VideoSink::VideoSink(VideoSettings settings) : settings_{std::move(settings)} {
+    const bool colour = video_kind_of(settings_.path).colour;
     if (settings_.uncertainty == Uncertainty::alpha)
-        throw Error(ErrorKind::usage, settings_.path.string() +
-                                          ": H.264 has no transparency; expected --uncertainty "
-                                          "none, separate, side or overlay, found alpha");
-    if (settings_.uncertainty == Uncertainty::overlay && !video_kind_of(settings_.path).colour)
+        throw Error(ErrorKind::usage,
+                    settings_.path.string() +
+                        ": its frames have no transparency; expected --uncertainty none, "
+                        "separate" +
+                        (colour ? ", side or overlay" : " or side") + ", found alpha");
+    if (settings_.uncertainty == Uncertainty::overlay && !colour)
         throw Error(ErrorKind::usage, settings_.path.string() +
                                           ": its 256 colours are greys; expected --uncertainty "
                                           "none, separate or side, found overlay");

@@ -27,14 +27,8 @@ std::uint8_t byte_of(float value) {
     return std::uint8_t(std::clamp(value, 0.0f, 255.0f) + 0.5f);
 }
 
-std::array<std::uint8_t, 256> luma_table(const Scale& scale) {
-    std::array<std::uint8_t, 256> table{};
-    for (std::size_t i = 0; i < 256; ++i) table[i] = byte_of(float(i) * scale.luma + scale.offset);
-    return table;
-}
-
 void grey_rows(const cv::Mat& image, YuvRange range, const std::array<Plane, 3>& planes) {
-    const auto table = luma_table(scale_of(range));
+    const auto table = luma_table(range);
     for (int y = 0; y < even(image.rows); ++y) {
         const auto* from = image.ptr<std::uint8_t>(std::min(y, image.rows - 1));
         std::uint8_t* into = planes[0].data + y * planes[0].stride;
@@ -76,6 +70,13 @@ void colour_rows(const cv::Mat& image, YuvRange range, const std::array<Plane, 3
 }
 
 }  // namespace
+
+std::array<std::uint8_t, 256> luma_table(YuvRange range) {
+    const Scale scale = scale_of(range);
+    std::array<std::uint8_t, 256> table{};
+    for (std::size_t i = 0; i < 256; ++i) table[i] = byte_of(float(i) * scale.luma + scale.offset);
+    return table;
+}
 
 void to_yuv420(const cv::Mat& image, YuvRange range, const std::array<Plane, 3>& planes) {
     if (image.channels() == 1)

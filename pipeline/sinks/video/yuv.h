@@ -18,13 +18,16 @@ struct Plane {
 
 enum class YuvRange {
     full,    ///< black 0, white 255: grey values stay as they are
-    limited  ///< black 16, white 235: what players assume of video files
+    limited  ///< black 16, white 235: what players assume of video files, and of webcams
 };
 
 /// The next even number: 4:2:0 has no half pixels.
 constexpr int even(int size) {
     return size + (size & 1);
 }
+
+/// [grey]: in the Y plane.
+std::array<std::uint8_t, 256> luma_table(YuvRange range);
 
 /// `image` is CV_8UC1 or CV_8UC3 (BGR). The Y plane is even(cols) x even(rows), U and V half of
 /// that in both directions; an added column or row repeats the last.

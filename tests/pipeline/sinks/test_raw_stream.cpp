@@ -52,7 +52,9 @@ TEST(StreamSink, HeadsY4mWithTheRateAsItWasAskedFor) {
     EXPECT_EQ(rate_in(30000. / 1001, {30000, 1001}), "30000:1001");
     EXPECT_EQ(rate_in(1. / 3600, {1, 3600}), "1:3600");
     EXPECT_EQ(rate_in(1. / 3600, {}), "1:3600");
+    EXPECT_EQ(rate_in(1. / 30, {}), "1:30");
     EXPECT_EQ(rate_in(29.97, {}), "2997:100");
+    EXPECT_EQ(rate_in(1. / 3, {1'000'000'000, 3'000'000'000}), "333:1000");
     EXPECT_EQ(rate_in(100, {300'000'000'000, 3'000'000'000}), "100:1") << "more than 31 bits";
 }
 
@@ -142,6 +144,44 @@ TEST(StreamSink, FramesAreRepeatedByDefaultWhereNoStampTellsTheirTime) {
     EXPECT_EQ(test::read_text(temp / "stamped").size(), 2 * (FrameStamp::kBytes + 8));
 }
 
+TEST(StreamSink, DataWereLostBeforeAFrameAndNotBeforeItsRepeats) {
+    const TempFolder temp;
+    StreamSink raw{{.path = temp / "a",
+                    .format = StreamFormat::gray8,
+                    .stamp = true,
+                    .overload = Overload::repeat}};
+    Frame frame = test::ramp_frame(4, 2, 3, from_us(3000));
+    frame.gap_before = true;
+    raw.write(frame);
+    raw.write(test::ramp_frame(4, 2, 5, from_us(5000)));
+    raw.close();
+    const std::string bytes = test::read_text(temp / "a");
+    ASSERT_EQ(bytes.size(), 3 * (FrameStamp::kBytes + 8));
+    std::vector<int> flags;
+    for (std::size_t at = 0; at < bytes.size(); at += FrameStamp::kBytes + 8)
+        flags.push_back(bytes[at + 3]);
+    EXPECT_EQ(flags, (std::vector<int>{FrameStamp::kGap, FrameStamp::kRepeat, 0}));
+}
+
+TEST(StreamSink, AReaderOfStampsKnowsWhatIsMissingAndIsNotTold) {
+    constexpr int kPage = 4096;
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    ASSERT_EQ(::fcntl(ends[1], F_SETPIPE_SZ, kPage), kPage);
+    std::uint64_t missing = 0;
+    StreamSink raw{{.path = "/dev/fd/" + std::to_string(ends[1]),
+                    .format = StreamFormat::gray8,
+                    .stamp = true,
+                    .overload = Overload::repeat,
+                    .shorter_by = [&](std::uint64_t n) { missing = n; }}};
+    raw.write(test::ramp_frame(16, 127, 0, from_us(0)));  // with its stamp half a page
+    raw.write(test::ramp_frame(16, 127, 3, from_us(0)));
+    raw.close();
+    EXPECT_EQ(missing, 0U);
+    ::close(ends[0]);
+    ::close(ends[1]);
+}
+
 /// A pipe of one page: full with two frames of half a page each.
 TEST(StreamSink, AReaderThatIsBehindGetsNoRepeatsUntilItHasCaughtUp) {
     constexpr int kPage = 4096, kFrame = kPage / 2;
@@ -152,7 +192,7 @@ TEST(StreamSink, AReaderThatIsBehindGetsNoRepeatsUntilItHasCaughtUp) {
     StreamSink raw{{.path = "/dev/fd/" + std::to_string(ends[1]),
                     .format = StreamFormat::gray8,
                     .overload = Overload::repeat,
-                    .shorter_by = [&](std::uint64_t n) { missing = n; }}};
+                    .shorter_by = [&](std::uint64_t n) { missing += n; }}};
     const auto write = [&](std::uint64_t n) {
         Frame frame = test::ramp_frame(64, kFrame / 64, n, from_us(0));
         std::ranges::fill(frame.intensity.values(), float(n) / 255);
@@ -169,7 +209,8 @@ TEST(StreamSink, AReaderThatIsBehindGetsNoRepeatsUntilItHasCaughtUp) {
     write(4);
     EXPECT_EQ(two_frames_read(), (std::vector{3, 4})) << "one of them is made up for";
     raw.close();
-    EXPECT_EQ(missing, 1U) << "and the other one told";
+    raw.close();
+    EXPECT_EQ(missing, 1U) << "and the other one told, once";
     ::close(ends[0]);
     ::close(ends[1]);
 }
@@ -223,10 +264,16 @@ TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
     for (const bool others : {true, false}) {
         const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
         int told = 0;
-        StreamSink sink{{.path = pipe, .format = StreamFormat::gray8, .reader_left = [&] {
-                             ++told;
-                             return others;
-                         }}};
+        std::uint64_t missing = 0;
+        StreamSink sink{{.path = pipe,
+                         .format = StreamFormat::gray8,
+                         .overload = Overload::repeat,
+                         .reader_left =
+                             [&] {
+                                 ++told;
+                                 return others;
+                             },
+                         .shorter_by = [&](std::uint64_t n) { missing += n; }}};
         sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
         EXPECT_TRUE(sink.is_watched());
         close(reader);
@@ -235,6 +282,7 @@ TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
         EXPECT_EQ(sink.wants_more(), others);
         EXPECT_FALSE(sink.is_watched());
         sink.close();
+        EXPECT_EQ(missing, 0U) << "who went away was not too slow";
     }
 }
 

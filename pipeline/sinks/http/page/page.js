@@ -350,20 +350,20 @@ const plots = {
   latency: new Plot($("plot-latency"), ["--warn", "--accent"], milliseconds),
 };
 
-/// What went wrong between a camera and the machine: beside it only traffic is counted.
-function incidents(camera) {
+/// What went wrong between a camera and the machine, of what the server counts as that.
+function incidents(camera, names) {
   return Object.entries(camera || {})
-    .filter(([name, count]) => name !== "transfers" && name !== "bytes" && count > 0)
+    .filter(([name, count]) => names.includes(name) && count > 0)
     .map(([name, count]) => ["Camera: " + name.replaceAll("_", " "), count, true]);
 }
 
-function showCounters(run) {
+function showCounters(run, incidentNames) {
   const lines = [
     ["Events", run.events], ["Event windows", run.event_windows], ["Frames", run.frames],
     ["Lost packets", run.lost_packets, true], ["Skipped frames", run.skipped_frames, true],
     ["Merged windows", run.merged_windows, true], ["Gaps", run.gaps, true],
     ["Damaged", Object.values(run.damaged).reduce((a, b) => a + b, 0), true],
-    ...incidents(run.camera),
+    ...incidents(run.camera, incidentNames),
   ];
   $("counters").replaceChildren(...lines.map(([name, value, warns]) => {
     const row = document.createElement("tr");
@@ -385,7 +385,7 @@ function showStatistics(message) {
   $("viewers").textContent = message.viewers + " of " + message.most_viewers;
   $("white").textContent = Number(message.sigma_white.toFixed(3));
   if (!run) return;
-  showCounters(run);
+  showCounters(run, message.camera_incidents);
   // Over a second: frames come in groups, one for each event window.
   if (!last || run.elapsed_s < last.elapsed_s) last = { ...run, at: now };
   const passed = run.elapsed_s - last.elapsed_s;

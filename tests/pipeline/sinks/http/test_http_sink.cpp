@@ -140,6 +140,9 @@ TEST(HttpSink, TellsCountersAsServerSentEvents) {
     const auto json = nlohmann::json::parse(text.substr(6, text.find("\n\n") - 6));
     EXPECT_EQ(json["run"]["frames"], 7);
     EXPECT_EQ(json["controls"].back()["name"], "pause");
+    EXPECT_THAT(json["camera_incidents"].get<std::vector<std::string>>(),
+                testing::ElementsAre("dropped_events", "lost_transfers", "damaged_transfers",
+                                     "cut_transfers", "stalls", "reconnects"));
 }
 
 TEST(HttpSink, TellsCountersAsPrometheusReadsThem) {
