@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -32,11 +33,15 @@ void expect_made_bf16(const Bf16Kernels& kernels) {
         std::vector<std::uint32_t> out(3 * pairs + 1, 77);
         kernels.pixels_to_bf16(in.data(), 3, channels, out.data());
         EXPECT_EQ(out.back(), 77U);
-        for (std::size_t p = 0; p < 3; ++p)
+        for (std::size_t p = 0; p < 3; ++p) {
             for (std::size_t c = 0; c < n; ++c) {
                 const std::uint32_t pair = out[p * pairs + c / 2];
                 EXPECT_EQ(std::uint16_t(c % 2 == 0 ? pair : pair >> 16), to_bf16(in[p * n + c]));
             }
+            if (n % 2 != 0) {
+                EXPECT_EQ(out[(p + 1) * pairs - 1] >> 16, 0U) << "beside the last";
+            }
+        }
         std::vector<std::uint16_t> row(3 * n + 1, 77);
         kernels.row_to_bf16(in.data(), 3 * n, row.data());
         EXPECT_EQ(row.back(), 77);
@@ -67,8 +72,22 @@ struct Bf16Work {
                 word = to_bf16(numbers.next(Fill::ordinary)) |
                        std::uint32_t{to_bf16(numbers.next(Fill::ordinary))} << 16;
         bias.assign(packed / std::size_t(2 * length), 0.25F);
+        clear_past_the_last();
         for (std::size_t s = 0; s < 2; ++s)
             stretches[s] = {in.data() + s * kPairs, 3, kPairs, length};
+    }
+    /// As PackedWeights fills up vectors: zeros.
+    void clear_past_the_last() {
+        const int lanes = bf16_lanes(outputs);
+        std::fill(bias.begin() + outputs, bias.end(), 0.0F);
+        std::size_t at = 0;
+        for (int first = 0; first < outputs;) {
+            const int block = outputs - first > lanes ? 2 * lanes : lanes;
+            for (int unit = 0; unit < 2 * length; ++unit)
+                for (int o = first; o < first + block; ++o, ++at)
+                    if (o >= outputs) weight[at] = 0;
+            first += block;
+        }
     }
     /// The outputs, as float32 or as bf16, of each row one behind the other; how many were written
     /// outside of them is to be none.
@@ -93,6 +112,9 @@ struct Bf16Work {
         const auto pixels = std::size_t(kHeight * width);
         std::vector<float> wide(pixels * std::size_t(outputs));
         const auto* numbers = reinterpret_cast<const std::uint16_t*>(out.data());
+        for (std::size_t p = 0; to_bf16 && outputs % 2 != 0 && p < pixels; ++p)
+            EXPECT_EQ(numbers[(p + 1) * 2 * std::size_t(units) - 1], 0)
+                << "beside the last of an odd number";
         for (std::size_t p = 0; p < pixels; ++p)
             for (std::size_t o = 0; o < std::size_t(outputs); ++o)
                 wide[p * std::size_t(outputs) + o] =
