@@ -198,6 +198,30 @@ std::vector<Plot> temporal_super_resolution(const FigureSettings& what,
                     shared.lpips() ? shared.lpips()->name() : "");
 }
 
+namespace {
+
+/// Of each sequence the change of intensity since the stop, by number of silent event windows.
+using ChangeBySilence = std::map<int, double>;
+
+Plot plot_of_change(const std::vector<ChangeBySilence>& moved,
+                    const std::vector<int>& silent_windows) {
+    Series change{"model", {}, {}, {}};
+    for (const int silent : silent_windows) {
+        double sum = 0;
+        for (const ChangeBySilence& one : moved) sum += one.at(silent);
+        change.x.push_back(silent);
+        change.y.push_back(sum / double(moved.size()));
+    }
+    return {.name = "silence_change",
+            .title = "a scene that stops",
+            .x_label = "event windows without events",
+            .y_label = "root mean square change of intensity",
+            .series = {change},
+            .log_x = true};
+}
+
+}  // namespace
+
 std::vector<Plot> error_against_silence(const FigureSettings& what, const EvaluateSettings& how) {
     const Evaluation shared{"silence", how};
     const auto textures = test_textures(what.simulated);
@@ -205,7 +229,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
     FigureSettings moving = what;
     moving.simulated.event_windows = what.moving_windows;
     std::ranges::sort(moving.silent_windows);
-    std::vector<std::map<int, double>> moved(std::size_t(what.simulated.sequences));
+    std::vector<ChangeBySilence> moved(std::size_t(what.simulated.sequences));
 
     const auto groups = over_sequences(what, how, [&](int i, Groups& found) {
         Judge judge{shared.lpips()};
@@ -245,19 +269,7 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
     std::vector<Plot> plots =
         plots_of(groups, {"silence", "a scene that stops", "event windows without events", true},
                  shared.lpips() ? shared.lpips()->name() : "");
-    Series change{"model", {}, {}, {}};
-    for (const int silent : moving.silent_windows) {
-        double sum = 0;
-        for (const auto& one : moved) sum += one.at(silent);
-        change.x.push_back(silent);
-        change.y.push_back(sum / double(moved.size()));
-    }
-    plots.push_back({.name = "silence_change",
-                     .title = "a scene that stops",
-                     .x_label = "event windows without events",
-                     .y_label = "root mean square change of intensity",
-                     .series = {change},
-                     .log_x = true});
+    plots.push_back(plot_of_change(moved, moving.silent_windows));
     return plots;
 }
 
