@@ -168,6 +168,9 @@ TEST(Patches, AreWholeOnesFromTheTopLeft) {
         for (int x = 0; x < 7; ++x) map(y, x) = float(10 * y + x);
     EXPECT_EQ(patch_means(map, 2), (std::vector<double>{5.5, 7.5, 9.5, 25.5, 27.5, 29.5}));
     EXPECT_EQ(patch_medians(map, 3), (std::vector<double>{11, 14}));
+    map(1, 1) = 100;  // of 0, 1, 10 and 100 the middle two
+    EXPECT_EQ(patch_medians(map, 2), (std::vector<double>{5.5, 7.5, 9.5, 25.5, 27.5, 29.5}));
+    map(1, 1) = 11;
     EXPECT_TRUE(patch_means(map, 6).empty());
 }
 

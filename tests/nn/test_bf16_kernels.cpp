@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -71,8 +72,22 @@ struct Bf16Work {
                 word = to_bf16(numbers.next(Fill::ordinary)) |
                        std::uint32_t{to_bf16(numbers.next(Fill::ordinary))} << 16;
         bias.assign(packed / std::size_t(2 * length), 0.25F);
+        clear_past_the_last();
         for (std::size_t s = 0; s < 2; ++s)
             stretches[s] = {in.data() + s * kPairs, 3, kPairs, length};
+    }
+    /// As PackedWeights fills up vectors: zeros.
+    void clear_past_the_last() {
+        const int lanes = bf16_lanes(outputs);
+        std::fill(bias.begin() + outputs, bias.end(), 0.0F);
+        std::size_t at = 0;
+        for (int first = 0; first < outputs;) {
+            const int block = outputs - first > lanes ? 2 * lanes : lanes;
+            for (int unit = 0; unit < 2 * length; ++unit)
+                for (int o = first; o < first + block; ++o, ++at)
+                    if (o >= outputs) weight[at] = 0;
+            first += block;
+        }
     }
     /// The outputs, as float32 or as bf16, of each row one behind the other; how many were written
     /// outside of them is to be none.

@@ -148,11 +148,17 @@ TEST(EventSensor, KeepsTheRefractoryTimeBetweenAPixelsEvents) {
 TEST(EventSensor, ForgetsChangesDuringRefractoryTime) {
     SensorTraits traits = plain(.1);
     traits.refractory_s = .05;
-    // .1 takes 100 ms; then 50 ms pass unseen: an event every 150 ms.
-    const auto times = times_by_pixel(watch(traits, 3, [](double t) { return t; })).begin()->second;
-    ASSERT_EQ(times.size(), 20u);
-    for (std::size_t i = 1; i < times.size(); ++i)
-        EXPECT_NEAR(double(times[i] - times[i - 1]), 150000, 100);
+    // .1 takes 100 ms; then 50 ms pass unseen: an event every 150 ms, whether a step is shorter
+    // than that or longer.
+    for (const int step_us : {1000, 20'000, 500'000, 3'000'000}) {
+        const auto times = times_by_pixel(watch(
+                                              traits, 3, [](double t) { return t; }, step_us))
+                               .begin()
+                               ->second;
+        ASSERT_EQ(times.size(), 20u) << step_us;
+        for (std::size_t i = 1; i < times.size(); ++i)
+            EXPECT_NEAR(double(times[i] - times[i - 1]), 150000, 100) << step_us;
+    }
 }
 
 TEST(EventSensor, HasAsManyHotPixelsAsAskedForAndTheyAlwaysFire) {
@@ -205,6 +211,32 @@ TEST(SensorSettings, DrawsThresholdsEvenlyInTheLogarithmOverTheWholeRange) {
     EXPECT_NEAR(std::ranges::min(logs), std::log(.06), .02);
     EXPECT_NEAR(std::ranges::max(logs), std::log(1.0), .02);
     EXPECT_NEAR(moments(logs).mean, std::log(.06) / 2, .05);
+}
+
+TEST(SensorSettings, DrawsEachTraitFromItsRangeAndLeavesOutEffectsAsOftenAsItSays) {
+    Random random{5};
+    constexpr int kCameras = 6000;
+    double ratio = 0, mismatch = 0, shot_mismatch = 0, leak = 0, noisy = 0, instant = 0, exact = 0;
+    for (int i = 0; i < kCameras; ++i) {
+        const SensorTraits t = SensorTraits::draw({}, random);
+        ratio += std::log(t.threshold_off / t.threshold_on) / kCameras;
+        mismatch += t.mismatch / kCameras;
+        if (t.shot_hz > 0) {
+            ++noisy;
+            shot_mismatch += t.shot_mismatch;
+            leak += t.leak_hz;
+        }
+        instant += t.bandwidth_hz == 0;
+        exact += t.jitter_s == 0 && t.dropped == 0;
+        EXPECT_GT(t.arbiter_hz_per_pixel, 0) << "the bus's limit stays";
+    }
+    EXPECT_NEAR(ratio, (std::log(.6) + std::log(1.6)) / 2, .015);
+    EXPECT_NEAR(mismatch, (.01 + .12) / 2, .002);
+    EXPECT_NEAR(shot_mismatch / noisy, (.2 + 1.2) / 2, .02);
+    EXPECT_NEAR(leak / noisy, .2, .01);
+    EXPECT_NEAR(noisy / kCameras, .85, .02);
+    EXPECT_NEAR(instant / kCameras, .2, .02);
+    EXPECT_NEAR(exact / kCameras, .3, .02);
 }
 
 }  // namespace

@@ -45,6 +45,10 @@ TEST(Readout, DelaysByAnExponentialOfTheMeanAskedForAndStaysInOrder) {
     const auto events = read_out(readout, 500, 10);
     EXPECT_TRUE(std::ranges::is_sorted(events, {}, &Event::t));
     EXPECT_GT(events.size(), 49500u);
+    const auto step_of = [](const Event& e) { return number_of(e) / 100; };
+    for (std::size_t i = 1; i < events.size(); ++i)
+        EXPECT_TRUE(events[i].t != events[i - 1].t || step_of(events[i - 1]) <= step_of(events[i]))
+            << "of one microsecond those that were given first come first";
     double mean = 0, square = 0;
     for (const Event& e : events) {
         const double delay = double(to_us(e.t) - (number_of(e) + 1) * 10);

@@ -51,6 +51,7 @@ TEST(SceneLight, GlassLetsThroughWhatItDoesNotCover) {
     SceneSettings settings = standing();
     settings.objects_min = settings.objects_max = 1;
     const auto textures = procedural_textures(10, 128);
+    int seen = 0;
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
         const auto with = [&](double opacity) {
             settings.opacity = {opacity, opacity};
@@ -60,7 +61,9 @@ TEST(SceneLight, GlassLetsThroughWhatItDoesNotCover) {
         for (std::size_t i = 0; i < none.values().size(); ++i)
             ASSERT_NEAR(glass.values()[i], .75F * none.values()[i] + .25F * whole.values()[i],
                         1e-4F * whole.values()[i]);
+        seen += none != whole;
     }
+    EXPECT_GE(seen, 4);
 }
 
 TEST(SceneLight, EdgesAreAsSoftAtEverySizeOfAnImage) {

@@ -56,6 +56,18 @@ TEST(ShotNoise, GoesBackAndForth) {
     EXPECT_NEAR(opposite / pairs, .925, .02);  // camerashake_b: .94
 }
 
+TEST(ShotNoise, ReturnsOnceItsPixelCanFireAgain) {
+    SensorTraits traits = noisy(20, 1e9);
+    traits.shot_return_s = .004;
+    traits.refractory_s = .01;  // most returns come too early
+    const auto events = watch(traits, 5, still);
+    EXPECT_GT(double(events.size()), 50 * kPixels);
+    for (const auto& [pixel, list] : polarities_by_pixel(events)) {
+        const auto on = std::ranges::count(list, Polarity::on);
+        ASSERT_LE(std::abs(2 * on - std::ptrdiff_t(list.size())), 1) << pixel;
+    }
+}
+
 TEST(ShotNoise, ReturnsAfterTheTimeAskedFor) {
     SensorTraits traits = noisy(.5, 1e9);  // so rare that hardly two swings meet
     traits.shot_return_s = .02;

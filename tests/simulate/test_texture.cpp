@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace eventide {
@@ -69,6 +70,21 @@ TEST(Texture, GoesOnMirroredWithoutEnd) {
     }
     const auto back = look(texture, {-step, 0, 2 - .013, 0, 0, 2 - .4}, 40);
     for (std::size_t i = 0; i < 40; ++i) EXPECT_NEAR(back[i], inside[i], 1e-4);
+}
+
+TEST(Texture, ShowsStripesWherePixelsAreAsFineAsTheyAreAndGreyWhereTheyAreCoarser) {
+    GreyImage stripes(64, 64);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) stripes(y, x) = x % 2 == 0 ? 0 : 255;
+    const Texture texture{stripes};
+    const auto contrast = [&](double texels_a_pixel) {
+        const double step = texels_a_pixel / 64;
+        const Affine map{step, 0, 16.5 / 64, 0, step, .5};  // far from the mirrors
+        const auto row = look(texture, map, 8, texture.detail(map));
+        return *std::ranges::max_element(row) - *std::ranges::min_element(row);
+    };
+    EXPECT_NEAR(contrast(1), 1, 1e-3);
+    EXPECT_LT(contrast(3), .05) << "3 would show every third stripe";
 }
 
 TEST(Texture, KeepsItsMeanAtEveryLevelOfDetail) {

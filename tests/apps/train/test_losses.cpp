@@ -124,6 +124,37 @@ TEST(Losses, FlickerIsSeenByTheTemporalTerm) {
     EXPECT_NEAR(temporal(truth + shift), 0.2, 1e-5);
 }
 
+TEST(Losses, AChangeCountsAsMuchAsTheImageBeforeIt) {
+    const auto still = test_image(32, 32, 6);
+    const auto truth = torch::cat({still, still, still});
+    const auto s = torch::full_like(truth, -1);
+    auto mu = truth.clone();
+    mu[0] += 0.5;  // of a state that had only just begun
+    EXPECT_NEAR(loss({mu, s, truth, torch::tensor({0.F, 1.F, 1.F})}, {}, nullptr, 1).means[4], 0,
+                1e-6);
+    mu = truth.clone();
+    mu[2] += 0.5;
+    EXPECT_NEAR(loss({mu, s, truth, torch::tensor({0.F, 1.F, 0.F})}, {}, nullptr, 1).means[4], 0.5,
+                1e-6);
+}
+
+TEST(Losses, SsimIsTheMeanOverTheSizesThatAreLargeEnough) {
+    const auto halved = [](const torch::Tensor& x) { return torch::avg_pool2d(x, 2); };
+    const auto a = test_image(70, 64, 1), b = 0.7 * a + 0.3 * test_image(70, 64, 2);
+    const auto half_a = halved(a), half_b = halved(b);
+    EXPECT_NEAR(multi_scale_ssim(a, b).item<double>(),
+                (ssim(a, b).item<double>() + ssim(half_a, half_b).item<double>() +
+                 ssim(halved(half_a), halved(half_b)).item<double>()) /
+                    3,
+                1e-6);
+    EXPECT_NEAR(multi_scale_ssim(half_a, half_b).item<double>(),
+                (ssim(half_a, half_b).item<double>() +
+                 ssim(halved(half_a), halved(half_b)).item<double>()) /
+                    2,
+                1e-6)
+        << "32 px";
+}
+
 TEST(Losses, LpipsHasTheAuthorsValues) {
     const fs::path npz = kPerceptual / "lpips_squeeze_v0.1.npz";
     if (!fs::exists(npz)) GTEST_SKIP() << "needs " << npz;
