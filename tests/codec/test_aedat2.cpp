@@ -18,6 +18,24 @@ TEST(Aedat2, DavisEventsHaveTheirOriginAtTheTopLeft) {
     EXPECT_EQ(zero.data.events.at(0), (Event{from_us(1), 239, 179, Polarity::off}));
 }
 
+/// The upper left part of the sensor, for events and images alike.
+TEST(Aedat2, OfASensorStatedAsSmallerWhatLiesOutsideIsLeftOut) {
+    const MakeParser make = [] {
+        return std::make_unique<Aedat2Parser>(Aedat2Sensor::davis, kWidth, kHeight, false, 2, 1);
+    };
+    const Parsed parsed = parse_whole(
+        make, join({dvs(1, 0, true, 10), dvs(2, 0, true, 11), dvs(1, 1, true, 12),
+                    dvs(239, 179, true, 13), aps(false, 0, 0, 600, 20), aps(false, 1, 0, 600, 21),
+                    aps(false, 2, 0, 600, 22), aps(true, 0, 0, 500, 30), aps(true, 1, 0, 400, 31),
+                    aps(true, 2, 0, 300, 32)}));
+    EXPECT_EQ(parsed.data.events, (std::vector{Event{from_us(10), 1, 0, Polarity::on}}));
+    ASSERT_EQ(parsed.data.images.size(), 1U);
+    EXPECT_EQ(parsed.data.images[0].pixels.width(), 2);
+    EXPECT_EQ(parsed.data.images[0].pixels(0, 1), of_16_bits(200));
+    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 3U + 2U);
+    EXPECT_EQ(parsed.damage.total(), 3U + 2U);
+}
+
 TEST(Aedat2, Dvs128ZeroIsOnUnlessStatedOtherwise) {
     // y 3 from below, x 5 from the right.
     const Bytes bytes = record(3U << 8 | 5U << 1 | 0, 7);
