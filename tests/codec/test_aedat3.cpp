@@ -80,6 +80,21 @@ TEST(Aedat3, FramesOf30StandOnTheirLastRow) {
     EXPECT_EQ(image.filter, ColourFilter::none) << "it is said of rows from the top";
 }
 
+TEST(Aedat3, RowsOf30AreCountedFromTheSensorsLastAlsoWhereItIsStatedAsSmaller) {
+    const auto make = [] {
+        Aedat3Header header;
+        header.lower_left = true;
+        header.source = 1;
+        header.stream.height = kHeight;
+        return std::make_unique<Aedat3Parser>(header, kWidth, 100);
+    };
+    const Bytes bytes = packet_header(1, 8, 2) + words({polarity(5, 7, true), 100,  //
+                                                        polarity(5, 200, true), 101});
+    const Parsed parsed = parse_whole(make, bytes);
+    EXPECT_EQ(parsed.data.events, (std::vector{Event{from_us(101), 5, 59, Polarity::on}}));
+    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 1U);
+}
+
 TEST(Aedat3, FramesCarryTheirExposure) {
     // Two by one pixels, RGB, at (3, 4).
     Bytes bytes =
