@@ -88,10 +88,14 @@ TEST(Aedat3, RowsOf30AreCountedFromTheSensorsLastAlsoWhereItIsStatedAsSmaller) {
         header.stream.height = kHeight;
         return std::make_unique<Aedat3Parser>(header, kWidth, 100);
     };
-    const Bytes bytes = packet_header(1, 8, 2) + words({polarity(5, 7, true), 100,  //
-                                                        polarity(5, 200, true), 101});
-    const Parsed parsed = parse_whole(make, bytes);
-    EXPECT_EQ(parsed.data.events, (std::vector{Event{from_us(101), 5, 59, Polarity::on}}));
+    Bytes bytes = packet_header(1, 8, 6);
+    std::vector<Event> expected;
+    for (std::uint16_t row = 0; row < 5; ++row) {
+        bytes = bytes + words({polarity(5, 259 - row, true), 100U + row});
+        expected.push_back({from_us(100 + row), 5, row, Polarity::on});
+    }
+    const Parsed parsed = parse_whole(make, bytes + words({polarity(5, 159, true), 105}));
+    EXPECT_EQ(parsed.data.events, expected);
     EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 1U);
 }
 
