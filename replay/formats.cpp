@@ -66,9 +66,11 @@ OpenedStream open_aedat1(Bytes first_bytes, const OpenOptions& options) {
 
 OpenedStream open_aedat2(Bytes first_bytes, const OpenOptions& options) {
     const Aedat2Header header = read_aedat2_header(first_bytes, options.width, options.height);
-    const auto make_parser = [sensor = header.sensor,
+    const auto make_parser = [header,
                               one_is_on = options.dvs128_one_is_on](const StreamHeader& stream) {
-        return std::make_unique<Aedat2Parser>(sensor, stream.width, stream.height, one_is_on);
+        return std::make_unique<Aedat2Parser>(header.sensor, header.stream.width,
+                                              header.stream.height, one_is_on, stream.width,
+                                              stream.height);
     };
     return {header.stream, make_parser, by_skimming<Aedat2Parser>()};
 }

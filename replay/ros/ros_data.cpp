@@ -1,11 +1,10 @@
 // Fields of messages, in ROS 1's serialisation and in CDR.
 #include "replay/ros/ros_data.h"
 
+#include "replay/ros/ros_image.h"
 #include "src/core/sensor_limits.h"
 #include "src/io/bag_records.h"
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 namespace eventide {
@@ -79,40 +78,9 @@ private:
     bool good_;
 };
 
-struct ImageKind {
-    std::string_view encoding;
-    int channels, bytes;
-    bool rgb;  ///< in OpenCV's other order
-    ColourFilter filter = ColourFilter::none;
-};
-constexpr std::array kImageKinds{
-    ImageKind{"mono8", 1, 1, false},
-    ImageKind{"8UC1", 1, 1, false},
-    ImageKind{"mono16", 1, 2, false},
-    ImageKind{"16UC1", 1, 2, false},
-    ImageKind{"bgr8", 3, 1, false},
-    ImageKind{"8UC3", 3, 1, false},
-    ImageKind{"rgb8", 3, 1, true},
-    ImageKind{"bgra8", 4, 1, false},
-    ImageKind{"rgba8", 4, 1, true},
-    ImageKind{"bayer_rggb8", 1, 1, false, ColourFilter::rggb},
-    ImageKind{"bayer_grbg8", 1, 1, false, ColourFilter::grbg},
-    ImageKind{"bayer_gbrg8", 1, 1, false, ColourFilter::gbrg},
-    ImageKind{"bayer_bggr8", 1, 1, false, ColourFilter::bggr},
-    ImageKind{"bayer_rggb16", 1, 2, false, ColourFilter::rggb},
-    ImageKind{"bayer_grbg16", 1, 2, false, ColourFilter::grbg},
-    ImageKind{"bayer_gbrg16", 1, 2, false, ColourFilter::gbrg},
-    ImageKind{"bayer_bggr16", 1, 2, false, ColourFilter::bggr},
-};
-
 bool is_size(std::uint32_t width, std::uint32_t height) {
     constexpr auto kLargest = std::uint32_t(kLargestSensorSide);
     return width > 0 && height > 0 && width <= kLargest && height <= kLargest;
-}
-
-std::uint16_t pixel_of(const ImageKind& kind, const std::byte* at, bool big_endian) {
-    if (kind.bytes == 1) return std::uint16_t(std::to_integer<int>(*at) * 257);
-    return big_endian ? load_big<std::uint16_t>(at) : load_little<std::uint16_t>(at);
 }
 
 /// The events of a message follow; x, y, time, polarity.
@@ -265,33 +233,21 @@ bool RosData::is_gap_before(std::uint64_t sequence) {
 
 template <typename Reader>
 bool RosData::take_image(Reader& reader, Batch& into) {
-    ReferenceImage image;
-    image.t = image.exposure_begin = image.exposure_end = rounded(reader.header());
-    const auto height = reader.template number<std::uint32_t>(),
-               width = reader.template number<std::uint32_t>();
-    const std::string_view encoding = reader.text();
-    const bool big_endian = reader.template number<std::uint8_t>() != 0;
-    const std::size_t step = reader.template number<std::uint32_t>();
-    const auto bytes = reader.block();
-    const auto kind = std::ranges::find(kImageKinds, encoding, &ImageKind::encoding);
-    if (!reader.good() || kind == kImageKinds.end() || !is_size(width, height)) return false;
-    const std::size_t row_bytes = std::size_t{width} * std::size_t(kind->channels * kind->bytes);
-    if (step < row_bytes || bytes.size() < step * (height - 1) + row_bytes) return false;
+    RosImage fields;
+    fields.stamp_ns = reader.header();
+    fields.height = reader.template number<std::uint32_t>();
+    fields.width = reader.template number<std::uint32_t>();
+    fields.encoding = reader.text();
+    fields.big_endian = reader.template number<std::uint8_t>() != 0;
+    fields.step = reader.template number<std::uint32_t>();
+    fields.bytes = reader.block();
+    if (!reader.good() || !is_size(fields.width, fields.height)) return false;
     // Before the first event nobody knows whose image it is; who reads on does.
-    if (width_ > 0 && (int(width) != width_ || int(height) != height_)) return false;
-    image.channels = kind->channels;
-    image.filter = kind->filter;
-    image.pixels = Array2<std::uint16_t>(int(height), int(width) * kind->channels);
-    for (std::uint32_t y = 0; y < height; ++y) {
-        const auto row = image.pixels.row(int(y));
-        for (std::size_t i = 0; i < row.size(); ++i)
-            row[i] =
-                pixel_of(*kind, bytes.data() + y * step + i * std::size_t(kind->bytes), big_endian);
-        if (kind->rgb)
-            for (std::size_t i = 0; i < row.size(); i += std::size_t(kind->channels))
-                std::swap(row[i], row[i + 2]);
-    }
-    into.images.push_back(std::move(image));
+    if (width_ > 0 && (int(fields.width) != width_ || int(fields.height) != height_)) return false;
+    auto image = image_of(fields);
+    if (!image) return false;
+    image->t = image->exposure_begin = image->exposure_end = rounded(fields.stamp_ns);
+    into.images.push_back(*std::move(image));
     return true;
 }
 

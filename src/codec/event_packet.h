@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -81,7 +80,6 @@ private:
     bool move_time(std::int64_t t_us, Batch& into);
     void take_event(std::int64_t t_us, unsigned x, unsigned y, bool on, Batch& into);
 
-    static constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
     static constexpr unsigned kNowhere = 1U << 16;
 
     EventPacketEncoding encoding_;

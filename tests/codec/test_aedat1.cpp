@@ -26,6 +26,16 @@ TEST(Aedat1, SixByteRecordsOfADvs128) {
     expect_bears_damage(make, bytes, 128, 128);
 }
 
+TEST(Aedat1, AfterAJumpTimeMayBeEarlier) {
+    Aedat1Parser parser;
+    Batch batch;
+    parser.parse(aedat1_record(2, 5000), batch);
+    parser.resync();
+    parser.parse(aedat1_record(2, 100), batch);
+    EXPECT_EQ(batch.events.size(), 2U);
+    EXPECT_EQ(parser.damaged().total(), 0U);
+}
+
 TEST(Aedat1, IsRecognisedWithAndWithoutItsVersion) {
     const Bytes data = aedat1_record(0x0102, 5);
     for (const char* head : {"#!AER-DAT1.0\r\n", "# This is a raw AE data file\r\n"}) {

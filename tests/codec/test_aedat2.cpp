@@ -18,6 +18,24 @@ TEST(Aedat2, DavisEventsHaveTheirOriginAtTheTopLeft) {
     EXPECT_EQ(zero.data.events.at(0), (Event{from_us(1), 239, 179, Polarity::off}));
 }
 
+/// The upper left part of the sensor, for events and images alike.
+TEST(Aedat2, OfASensorStatedAsSmallerWhatLiesOutsideIsLeftOut) {
+    const MakeParser make = [] {
+        return std::make_unique<Aedat2Parser>(Aedat2Sensor::davis, kWidth, kHeight, false, 2, 1);
+    };
+    const Parsed parsed = parse_whole(
+        make, join({dvs(1, 0, true, 10), dvs(2, 0, true, 11), dvs(1, 1, true, 12),
+                    dvs(239, 179, true, 13), aps(false, 0, 0, 600, 20), aps(false, 1, 0, 600, 21),
+                    aps(false, 2, 0, 600, 22), aps(true, 0, 0, 500, 30), aps(true, 1, 0, 400, 31),
+                    aps(true, 2, 0, 300, 32)}));
+    EXPECT_EQ(parsed.data.events, (std::vector{Event{from_us(10), 1, 0, Polarity::on}}));
+    ASSERT_EQ(parsed.data.images.size(), 1U);
+    EXPECT_EQ(parsed.data.images[0].pixels.width(), 2);
+    EXPECT_EQ(parsed.data.images[0].pixels(0, 1), of_16_bits(200));
+    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 3U + 2U);
+    EXPECT_EQ(parsed.damage.total(), 3U + 2U);
+}
+
 TEST(Aedat2, Dvs128ZeroIsOnUnlessStatedOtherwise) {
     // y 3 from below, x 5 from the right.
     const Bytes bytes = record(3U << 8 | 5U << 1 | 0, 7);
@@ -87,6 +105,54 @@ TEST(Aedat2, AnySplitCutOrDamageIsBorne) {
 std::string jaer_header(const std::string& chip) {
     return "#!AER-DAT2.0\r\n# This is a raw AE data file - do not edit\r\n# AEChip: " + chip +
            "\r\n#End Of ASCII Header\r\n";
+}
+
+TEST(Aedat2, AnImuSampleIsOfOneTimeAndBeginsAnewWhereItsWordsDo) {
+    const auto words = [](std::initializer_list<unsigned> measures, std::int64_t t) {
+        std::vector<Bytes> all;
+        for (const unsigned measure : measures) all.push_back(imu(measure, 1, t));
+        return join(all);
+    };
+    const Parsed torn = parse_whole(davis(), join({words({0, 1, 2}, 20), words({3, 4, 5, 6}, 30)}));
+    EXPECT_TRUE(torn.data.imu.empty());
+    EXPECT_EQ(torn.damage[DamageReason::bad_record], 2U);
+    const Parsed anew =
+        parse_whole(davis(), join({words({0, 1}, 40), words({0, 1, 2, 3, 4, 5, 6}, 40)}));
+    EXPECT_EQ(anew.data.imu.size(), 1U);
+    EXPECT_EQ(anew.damage[DamageReason::bad_record], 1U);
+}
+
+TEST(Aedat2, AfterAJumpNothingHalfReadGoesOnAndTimeMayBeEarlier) {
+    const auto parser = davis(2, 1)();
+    Batch batch;
+    parser->parse(join({record(1U << 12, 5000), imu(0, 1, 5000), imu(1, 1, 5000), imu(2, 1, 5000),
+                        aps(false, 0, 0, 600, 5001, 1), aps(false, 1, 0, 600, 5002, 1)}),
+                  batch);
+    parser->resync();
+    EXPECT_EQ(parser->clock(), std::nullopt);
+    parser->parse(
+        join({record(1U << 12, 100), imu(3, 1, 100), imu(4, 1, 100), imu(5, 1, 100), imu(6, 1, 100),
+              aps(true, 0, 0, 500, 101, 1), aps(true, 1, 0, 500, 102, 1)}),
+        batch);
+    EXPECT_EQ(batch.events.size(), 2U);
+    EXPECT_TRUE(batch.imu.empty());
+    EXPECT_TRUE(batch.images.empty());
+    const auto chip = dvs128()();
+    chip->parse(record(2, 5000), batch);
+    chip->resync();
+    chip->parse(record(2, 100), batch);
+    EXPECT_EQ(batch.events.size(), 4U);
+}
+
+TEST(Aedat2, AnAddressOfMoreThanSixteenBitsIsNoneOfADvs128) {
+    EXPECT_EQ(parse_whole(dvs128(), record(0x10002, 5)).damage[DamageReason::unknown_word], 1U);
+}
+
+TEST(Aedat2, EventsOfOneTimeAreAllTaken) {
+    for (const MakeParser& make : {davis(), dvs128()})
+        EXPECT_EQ(
+            parse_whole(make, join({record(2, 7), record(4, 7), record(6, 7)})).data.events.size(),
+            3U);
 }
 
 TEST(Aedat2, TheChipIsReadFromTheHeader) {

@@ -75,5 +75,43 @@ TEST(Aedat2, IncompleteFramesAreLeftOutAndCounted) {
     EXPECT_EQ(parsed.damage[DamageReason::truncated], 1U);
 }
 
+TEST(Aedat2, FramesThatMissReadsOfOneKindAreIncomplete) {
+    const Bytes next = global_frame(0, 0, 3, 4, 200);
+    for (const std::size_t missing : {3U, 12U + 3U}) {  // a reset, a signal
+        Bytes holed = global_frame(0, 0, 3, 4, 100);
+        holed.erase(holed.begin() + std::ptrdiff_t(8 * missing),
+                    holed.begin() + std::ptrdiff_t(8 * (missing + 1)));
+        const Parsed parsed = parse_whole(davis(3, 4), join({holed, next}));
+        EXPECT_EQ(parsed.data.images.size(), 1U) << missing;
+        EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U) << missing;
+    }
+    // Two pixels with one between them that was not read.
+    const auto both = [](int x, std::int64_t t) {
+        return join({aps(false, x, 0, 600, t, 1), aps(true, x, 0, 500, t + 1, 1)});
+    };
+    const Parsed parsed =
+        parse_whole(davis(5, 1), join({both(0, 10), both(2, 20), both(0, 30), both(2, 40)}));
+    EXPECT_TRUE(parsed.data.images.empty());
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+    EXPECT_EQ(parsed.damage[DamageReason::truncated], 1U);
+}
+
+TEST(Aedat2, ARegionThatIsSeenOnceMayBeAFrameCutShort) {
+    const Parsed parsed = parse_whole(davis(5, 4), global_frame(1, 1, 2, 3, 100));
+    EXPECT_TRUE(parsed.data.images.empty());
+    EXPECT_EQ(parsed.damage[DamageReason::truncated], 1U);
+}
+
+TEST(Aedat2, AGlobalShutterBehindARollingOneIsOne) {
+    const Bytes rolling = join({aps(false, 0, 0, 600, 10, 1), aps(true, 0, 0, 500, 30, 1),
+                                aps(false, 1, 0, 600, 31, 1), aps(true, 1, 0, 400, 50, 1)}),
+                global = join({aps(false, 0, 0, 600, 110, 1), aps(false, 1, 0, 600, 120, 1),
+                               aps(true, 0, 0, 500, 130, 1), aps(true, 1, 0, 400, 150, 1)});
+    const Parsed parsed = parse_whole(davis(2, 1), join({rolling, global}));
+    ASSERT_EQ(parsed.data.images.size(), 2U);
+    EXPECT_EQ(parsed.data.images[1].exposure_begin, from_us(120));
+    EXPECT_EQ(parsed.data.images[1].exposure_end, from_us(130));
+}
+
 }  // namespace
 }  // namespace eventide::aedat2

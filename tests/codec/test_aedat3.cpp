@@ -80,6 +80,25 @@ TEST(Aedat3, FramesOf30StandOnTheirLastRow) {
     EXPECT_EQ(image.filter, ColourFilter::none) << "it is said of rows from the top";
 }
 
+TEST(Aedat3, RowsOf30AreCountedFromTheSensorsLastAlsoWhereItIsStatedAsSmaller) {
+    const auto make = [] {
+        Aedat3Header header;
+        header.lower_left = true;
+        header.source = 1;
+        header.stream.height = kHeight;
+        return std::make_unique<Aedat3Parser>(header, kWidth, 100);
+    };
+    Bytes bytes = packet_header(1, 8, 6);
+    std::vector<Event> expected;
+    for (std::uint16_t row = 0; row < 5; ++row) {
+        bytes = bytes + words({polarity(5, 259 - row, true), 100U + row});
+        expected.push_back({from_us(100 + row), 5, row, Polarity::on});
+    }
+    const Parsed parsed = parse_whole(make, bytes + words({polarity(5, 159, true), 105}));
+    EXPECT_EQ(parsed.data.events, expected);
+    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 1U);
+}
+
 TEST(Aedat3, FramesCarryTheirExposure) {
     // Two by one pixels, RGB, at (3, 4).
     Bytes bytes =

@@ -116,10 +116,13 @@ TEST(Aedat3, AFrameThatEndsBeforeItBeginsIsDamage) {
 }
 
 TEST(Aedat3, AFrameLargerThanItsRecordIsDamage) {
-    Bytes bytes = packet_header(2, 36 + 4, 1) + words({1U | 1U << 1, 0, 9, 0, 9, 50, 50, 0, 0, 7});
-    const Parsed parsed = parse_whole(make_parser(), bytes);
-    EXPECT_TRUE(parsed.data.images.empty());
-    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+    for (const auto& [width, height] : {std::pair{50U, 50U}, std::pair{3U, 1U}}) {
+        const Bytes bytes =
+            packet_header(2, 36 + 4, 1) + words({1U | 1U << 1, 0, 9, 0, 9, width, height, 0, 0, 7});
+        const Parsed parsed = parse_whole(make_parser(), bytes);
+        EXPECT_TRUE(parsed.data.images.empty());
+        EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+    }
 }
 
 TEST(Aedat3, AfterAJumpTheNextHeaderIsFound) {

@@ -48,14 +48,15 @@ TEST(Evt21, AWordThatReachesOverTheBorderGivesWhatIsInside) {
                                    {cd(5, 288, 4, true), 0x00018003},
                                    {cd(5, 288, 4, true), 0x00000004},
                                    {cd(6, 273, 240, true), 1},
+                                   {cd(6, 32, 240, true), 1},
                                    {cd(6, 273, 239, true), 0x80000000}},
                                   Order::lower_half_first);
     const Parsed parsed = parse_whole(make, bytes);
     EXPECT_EQ(parsed.data.events,
               (std::vector{event(197, 288, 4, true), event(197, 289, 4, true),
                            event(197, 303, 4, true), event(197, 290, 4, true)}));
-    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 3U);
-    EXPECT_EQ(parsed.damage.total(), 3U);
+    EXPECT_EQ(parsed.damage[DamageReason::out_of_range], 4U);
+    EXPECT_EQ(parsed.damage.total(), 4U);
 }
 
 TEST(Evt21, AWordWithoutEventsHasNoTime) {

@@ -26,6 +26,15 @@ TEST(Evt3Doubt, ATenthOfASecondIsNoLeapAndMoreWaits) {
     }
 }
 
+TEST(Evt3Doubt, AFallOfHalfTheRangeIsAWrapAndASmallerOneIsNot) {
+    const Parsed wrap = parse(at(3000, 1) + at(3000, 2) + at(952, 3) + at(952, 4));
+    expect_events(wrap, {event_at(3000, 1), event_at(3000, 2), event_at(4096 + 952, 3),
+                         event_at(4096 + 952, 4)});
+    const Parsed fall = parse(at(3000, 1) + at(3000, 2) + at(953, 3) + at(953, 4));
+    expect_events(fall, {event_at(3000, 1), event_at(3000, 2)});
+    EXPECT_EQ(fall.damage[DamageReason::time_backwards], 2U);
+}
+
 TEST(Evt3Doubt, OfALeapAtWhichWordsWereLostNothingComes) {
     Evt3Parser parser(kWidth, kHeight);
     Batch batch;

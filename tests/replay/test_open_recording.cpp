@@ -53,6 +53,21 @@ TEST(OpenRecording, SourcesOfAedat3ThatAreLeftOutAreNamed) {
     EXPECT_THAT(recording->remarks()[0], HasSubstr("source 7 (DAVIS240C) is left out"));
 }
 
+TEST(OpenRecording, OfADavisStatedAsSmallerTheUpperLeftPartIsRead) {
+    const TestFolder folder;
+    const auto on_at = [](unsigned x, unsigned y) {  // in the image; X is stored mirrored
+        return big_endian((179 - y) << 22 | (239 - x) << 12 | 1U << 11, 4) + big_endian(7, 4);
+    };
+    const auto path =
+        folder.write("a.aedat", "#!AER-DAT2.0\r\n# AEChip: DAVIS240C\r\n#End Of ASCII Header\r\n" +
+                                    on_at(5, 3) + on_at(100, 3) + on_at(5, 50));
+    OpenOptions options;
+    options.width = 100;
+    options.height = 50;
+    EXPECT_EQ(read_everything(*open_recording(path, options)).events,
+              (std::vector{Event{from_us(7), 5, 3, Polarity::on}}));
+}
+
 TEST(OpenRecording, RawWithoutAHeaderIsWhatItIsSaidToBe) {
     const TestFolder folder;
     const auto events = some_events(100);

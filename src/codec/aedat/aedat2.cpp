@@ -81,27 +81,33 @@ Aedat2Header read_aedat2_header(std::span<const std::byte> first_bytes, int stat
     return header;
 }
 
-Aedat2Parser::Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on)
+Aedat2Parser::Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on,
+                           int shown_width, int shown_height)
     : sensor_(sensor),
       width_(std::uint32_t(width)),
       height_(std::uint32_t(height)),
-      dvs128_(one_is_on, width, height),
-      frame_(sensor == Aedat2Sensor::dvs128 ? 0 : width,
-             sensor == Aedat2Sensor::dvs128 ? 0 : height, sensor == Aedat2Sensor::davis240) {}
+      shown_width_(shown_width > 0 ? std::uint32_t(shown_width) : width_),
+      shown_height_(shown_height > 0 ? std::uint32_t(shown_height) : height_),
+      dvs128_(one_is_on, int(shown_width_), int(shown_height_)),
+      frame_(sensor == Aedat2Sensor::dvs128 ? 0 : int(shown_width_),
+             sensor == Aedat2Sensor::dvs128 ? 0 : int(shown_height_),
+             sensor == Aedat2Sensor::davis240) {}
 
 void Aedat2Parser::add_event(std::uint32_t address, std::int64_t t_us, Batch& into) {
-    // The chip's origin is at the lower left, and X is stored mirrored.
-    const std::uint32_t y = (address >> 22) & 0x1FF, x = (address >> 12) & 0x3FF;
+    // The chip's origin is at the lower left, and X is stored mirrored. What lies beyond the chip
+    // becomes huge.
+    const std::uint32_t x = width_ - 1 - (address >> 12 & 0x3FF);
+    const std::uint32_t y = height_ - 1 - (address >> 22 & 0x1FF);
     if ((address >> 10 & 1) != 0) {
         into.triggers.push_back({from_us(t_us), Trigger::Kind::pulse, 0});
-    } else if (x >= width_ || y >= height_) {
+    } else if (!is_shown(x, y)) {
         damage_.count(DamageReason::out_of_range);
     } else if (last_event_us_ && t_us < *last_event_us_) {
         damage_.count(DamageReason::time_backwards);
     } else {
         last_event_us_ = t_us;
-        into.events.push_back({from_us(t_us), std::uint16_t(width_ - 1 - x),
-                               std::uint16_t(height_ - 1 - y), Polarity((address >> 11) & 1)});
+        into.events.push_back(
+            {from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity((address >> 11) & 1)});
     }
 }
 
@@ -116,14 +122,14 @@ void Aedat2Parser::take_davis(std::uint32_t address, std::int64_t t_us, Batch& i
         imu_.word((address >> 28) & 7, std::int16_t((address >> 12) & 0xFFFF), t, into, damage_);
         return;
     }
-    const std::uint32_t y = (address >> 22) & 0x1FF, x = (address >> 12) & 0x3FF;
+    const std::uint32_t x = address >> 12 & 0x3FF;
+    const std::uint32_t y = height_ - 1 - (address >> 22 & 0x1FF);
     if (kind == 2)
         damage_.count(DamageReason::unknown_word);
-    else if (x >= width_ || y >= height_)
+    else if (!is_shown(x, y))
         damage_.count(DamageReason::out_of_range);
     else
-        frame_.read(kind == 1, int(x), int(height_ - 1 - y), std::uint16_t(address & 0x3FF), t,
-                    into, damage_);
+        frame_.read(kind == 1, int(x), int(y), std::uint16_t(address & 0x3FF), t, into, damage_);
 }
 
 void Aedat2Parser::take(const AedatRecord& record, std::int64_t t_us, Batch& into) {

@@ -27,8 +27,10 @@ Aedat2Header read_aedat2_header(std::span<const std::byte> first_bytes, int stat
 
 class Aedat2Parser final : public Parser {
 public:
-    /// `one_is_on`: what bit 0 of a DVS128's address means (see OpenOptions).
-    Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on = false);
+    /// `width` x `height` px of the chip. `one_is_on`: what bit 0 of a DVS128's address means (see
+    /// OpenOptions). `shown`: of a sensor stated as smaller, its upper left part; 0 for all.
+    Aedat2Parser(Aedat2Sensor sensor, int width, int height, bool one_is_on = false,
+                 int shown_width = 0, int shown_height = 0);
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
     void finish(Batch& into) override;
@@ -40,9 +42,13 @@ private:
     void take(const AedatRecord& record, std::int64_t t_us, Batch& into);
     void take_davis(std::uint32_t address, std::int64_t t_us, Batch& into);
     void add_event(std::uint32_t address, std::int64_t t_us, Batch& into);
+    bool is_shown(std::uint32_t x, std::uint32_t y) const {
+        return x < shown_width_ && y < shown_height_;
+    }
 
     Aedat2Sensor sensor_;
-    std::uint32_t width_, height_;
+    std::uint32_t width_, height_;  ///< px, of the chip
+    std::uint32_t shown_width_, shown_height_;
     FixedRecords<8> records_;
     AedatTimeline timeline_;
     Dvs128Events dvs128_;

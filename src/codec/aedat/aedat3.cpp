@@ -25,6 +25,7 @@ struct PolarityWord {
 
 Aedat3Parser::Aedat3Parser(const Aedat3Header& header, int width, int height)
     : lower_left_(header.lower_left),
+      rows_(std::uint64_t(header.stream.height > 0 ? header.stream.height : height)),
       source_(header.source),
       others_(header.others),
       validator_(std::uint64_t(width), std::uint64_t(height)) {}
@@ -115,7 +116,7 @@ void Aedat3Parser::take_event(const std::byte* record, Batch& into) {
     }
     begin_anew_after_reset(base_us_ + stamp, into);
     std::uint64_t y = word.y();
-    if (lower_left_) y = validator_.height() - 1 - y;
+    if (lower_left_) y = rows_ - 1 - y;
     validator_.add(base_us_ + stamp, word.x(), y, word.is_on(), into, damage_);
     if (const auto newest = validator_.newest_us()) move_clock(*newest);
 }
@@ -190,7 +191,7 @@ void Aedat3Parser::take_special(const std::byte* record, Batch& into) {
 
 void Aedat3Parser::take_frame(std::span<const std::byte> record, Batch& into) {
     if ((load_little<std::uint32_t>(record.data()) & 1) == 0) return;
-    auto image = read_frame(record, base_us_, lower_left_, int(validator_.height()));
+    auto image = read_frame(record, base_us_, lower_left_, int(rows_));
     if (!image) {
         damage_.count(DamageReason::bad_record);
         return;

@@ -33,6 +33,7 @@ Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes);
 /// stream. Packets of types beyond IMU9 are passed over.
 class Aedat3Parser final : public Parser {
 public:
+    /// Size in px; of a sensor that the header says to be larger, its upper left part.
     Aedat3Parser(const Aedat3Header& header, int width, int height);
 
     void parse(std::span<const std::byte> bytes, Batch& into) override;
@@ -59,6 +60,7 @@ private:
     void move_clock(std::int64_t t_us);
 
     bool lower_left_;
+    std::uint64_t rows_;  ///< px, of the sensor: lower_left_ counts from its last
     std::optional<int> source_;
     std::vector<Aedat3Source> others_;
     EventValidator validator_;

@@ -1,6 +1,7 @@
 // Events, frames, IMU samples, triggers -> AEDAT 3.1 packets.
 #include "src/codec/aedat/aedat3.h"
 #include "src/codec/aedat/aedat3_records.h"
+#include "src/codec/append_text.h"
 #include "src/codec/batch_parts.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
@@ -14,11 +15,6 @@ namespace {
 
 constexpr int kSource = 1;
 constexpr std::uint32_t kTimeOffset = 4, kFrameTimeOffset = 8;  // a frame's is its end
-
-void append(std::vector<std::byte>& out, const std::string& text) {
-    const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-    out.insert(out.end(), begin, begin + text.size());
-}
 
 std::uint32_t overflow_of(SensorTime t) {
     if (to_us(t) < 0 || to_us(t) >> 31 > 1 << 22)
@@ -105,12 +101,12 @@ void append_imu(std::span<const ImuSample> samples, std::vector<std::byte>& out)
 void Aedat3Writer::begin(const StreamHeader& header, std::vector<std::byte>& out) {
     colours_ = header.colour_filter;
     const std::string name = header.sensor_name.empty() ? "unknown" : header.sensor_name;
-    append(out, "#!AER-DAT3.1\r\n#Format: RAW\r\n#Source " + std::to_string(kSource) + ": " + name +
-                    "\r\n");
+    append_text(out, "#!AER-DAT3.1\r\n#Format: RAW\r\n#Source " + std::to_string(kSource) + ": " +
+                         name + "\r\n");
     if (header.width > 0 && header.height > 0)
-        append(out, "#Geometry: " + std::to_string(header.width) + "x" +
-                        std::to_string(header.height) + "\r\n");
-    append(out, "#!END-HEADER\r\n");
+        append_text(out, "#Geometry: " + std::to_string(header.width) + "x" +
+                             std::to_string(header.height) + "\r\n");
+    append_text(out, "#!END-HEADER\r\n");
 }
 
 void Aedat3Writer::write(const Batch& batch, std::vector<std::byte>& out) {

@@ -1,7 +1,6 @@
 // LZ4 frames by lz4frame (blocks may depend on each other), ZSTD frames by libzstd.
 #include "src/codec/aedat4/aedat4_compression.h"
 
-#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 #include <lz4frame.h>
@@ -15,11 +14,6 @@ namespace eventide {
 namespace {
 
 constexpr std::size_t kMaxAtOnce = std::size_t(256) << 10;  // bytes; more only for who fills them
-constexpr std::uint32_t kLz4Magic = 0x184D2204, kZstdMagic = 0xFD2FB528;
-
-bool begins_with(std::span<const std::byte> bytes, std::uint32_t magic) {
-    return bytes.size() >= 4 && load_little<std::uint32_t>(bytes.data()) == magic;
-}
 
 void pack_lz4(std::span<const std::byte> bytes, int level, std::vector<std::byte>& out) {
     LZ4F_preferences_t preferences{};
@@ -51,14 +45,6 @@ void pack_zstd(std::span<const std::byte> bytes, int level, std::vector<std::byt
 
 Aedat4Compression usual_aedat4_compression() {
     return Aedat4Compression::lz4;
-}
-
-bool is_lz4_frame(std::span<const std::byte> bytes) {
-    return begins_with(bytes, kLz4Magic);
-}
-
-bool is_zstd_frame(std::span<const std::byte> bytes) {
-    return begins_with(bytes, kZstdMagic);
 }
 
 // Made with the first packet that needs one: most files have one kind, and many packets are bare.

@@ -1,6 +1,8 @@
 // The compression of AEDAT4 packets: each one LZ4 or ZSTD frame, or bare.
 #pragma once
 
+#include "src/core/byte_order.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -20,8 +22,15 @@ Aedat4Compression usual_aedat4_compression();
 /// unpacked into memory that grows with the data themselves, never with a number in the file.
 constexpr std::size_t kLargestAedat4Packet = std::size_t(256) << 20;  // bytes
 
-bool is_lz4_frame(std::span<const std::byte> bytes);
-bool is_zstd_frame(std::span<const std::byte> bytes);
+inline bool begins_with_magic(std::span<const std::byte> bytes, std::uint32_t magic) {
+    return bytes.size() >= 4 && load_little<std::uint32_t>(bytes.data()) == magic;
+}
+inline bool is_lz4_frame(std::span<const std::byte> bytes) {
+    return begins_with_magic(bytes, 0x184D2204);
+}
+inline bool is_zstd_frame(std::span<const std::byte> bytes) {
+    return begins_with_magic(bytes, 0xFD2FB528);
+}
 
 /// Unpacks one packet after the other; keeps its memory.
 class Aedat4Unpacker {

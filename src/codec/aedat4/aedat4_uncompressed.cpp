@@ -1,6 +1,5 @@
 // AEDAT4 packets of a build without LZ4 and ZSTD: bare ones alone.
 #include "src/codec/aedat4/aedat4_compression.h"
-#include "src/core/byte_order.h"
 #include "src/core/error.h"
 
 namespace eventide {
@@ -10,10 +9,6 @@ namespace {
 constexpr const char* kHow =
     "expected bare ones, as this eventide was built without compression; install liblz4-dev, "
     "libzstd-dev and libbz2-dev and build it again with -DEVENTIDE_COMPRESSION=ON";
-
-bool begins_with(std::span<const std::byte> bytes, std::uint32_t magic) {
-    return bytes.size() >= 4 && load_little<std::uint32_t>(bytes.data()) == magic;
-}
 
 }  // namespace
 
@@ -25,14 +20,6 @@ Aedat4Unpacker::~Aedat4Unpacker() = default;
 
 Aedat4Compression usual_aedat4_compression() {
     return Aedat4Compression::none;
-}
-
-bool is_lz4_frame(std::span<const std::byte> bytes) {
-    return begins_with(bytes, 0x184D2204);
-}
-
-bool is_zstd_frame(std::span<const std::byte> bytes) {
-    return begins_with(bytes, 0xFD2FB528);
 }
 
 std::optional<std::span<const std::byte>> Aedat4Unpacker::unpack(

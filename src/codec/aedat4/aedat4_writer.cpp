@@ -4,6 +4,7 @@
 #include "src/codec/aedat4/aedat4_flat_writer.h"
 #include "src/codec/aedat4/aedat4_header.h"
 #include "src/codec/aedat4/aedat4_records.h"
+#include "src/codec/append_text.h"
 #include "src/codec/batch_parts.h"
 #include "src/core/bayer.h"
 #include "src/core/error.h"
@@ -126,7 +127,7 @@ void in_pieces(std::span<const T> rest, std::size_t most, const Write& write) {
 }  // namespace
 
 void Aedat4Writer::begin(const StreamHeader& header, std::vector<std::byte>& out) {
-    for (const char c : kAedat4Magic) out.push_back(std::byte(c));
+    append_text(out, kAedat4Magic);
     FlatWriter flat("IOHE", {4, 8, 4});
     flat.set(flat.root(), 0, std::int32_t(compression_));
     flat.set(flat.root(), 1, std::int64_t(-1));

@@ -1,4 +1,5 @@
 // data -> RAW files of EVT3.
+#include "src/codec/append_text.h"
 #include "src/codec/prophesee/evt3.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
@@ -25,10 +26,6 @@ Error cannot_hold(const std::string& what) {
 
 void append_word(std::vector<std::byte>& out, unsigned type, unsigned content) {
     append_little(out, std::uint16_t(type << 12 | content));
-}
-
-void append_text(std::vector<std::byte>& out, const std::string& text) {
-    for (const char c : text) out.push_back(std::byte(c));
 }
 
 std::string on_one_line(std::string text) {

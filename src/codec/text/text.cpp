@@ -25,12 +25,6 @@ struct QuickNumber {
     bool negative = false;
 };
 
-constexpr std::array<std::uint64_t, 17> kPowersOfTen = [] {
-    std::array<std::uint64_t, 17> powers{1};
-    for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = powers[i - 1] * 10;
-    return powers;
-}();
-
 /// Up to sixteen digits; a seventeenth is left for the caller to stumble over. Returns their
 /// number.
 int read_long_digits(const char*& p, std::uint64_t& value) {

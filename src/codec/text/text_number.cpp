@@ -1,21 +1,14 @@
 // Decimal numbers in text, exactly.
 #include "src/codec/text/text_number.h"
 
-#include <array>
 #include <limits>
 
 namespace eventide {
 
 namespace {
 
-constexpr int kMaxDigits = 19;  // any nineteen fit 64 bits
+constexpr int kMaxDigits = int(kPowersOfTen.size()) - 1;  // any so many fit 64 bits
 constexpr int kMaxExponent = 1000;
-
-constexpr std::array<std::uint64_t, kMaxDigits + 1> kPowersOfTen = [] {
-    std::array<std::uint64_t, kMaxDigits + 1> powers{1};
-    for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = powers[i - 1] * 10;
-    return powers;
-}();
 
 bool is_digit(char c) {
     return c >= '0' && c <= '9';

@@ -1,13 +1,22 @@
 // Decimal numbers in text, exactly: no floating point between the digits and the microsecond.
 #pragma once
 
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string_view>
 
 namespace eventide {
+
+/// All that 64 bits hold.
+inline constexpr std::array<std::uint64_t, 20> kPowersOfTen = [] {
+    std::array<std::uint64_t, 20> powers{1};
+    for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = powers[i - 1] * 10;
+    return powers;
+}();
 
 /// digits * 10^exponent, with sign.
 struct Decimal {

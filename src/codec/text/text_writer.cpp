@@ -1,17 +1,13 @@
 // Events -> lines of text.
+#include "src/codec/append_text.h"
 #include "src/codec/text/text.h"
 
 #include <charconv>
-#include <string_view>
+#include <string>
 
 namespace eventide {
 
 namespace {
-
-void append(std::vector<std::byte>& out, std::string_view text) {
-    const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-    out.insert(out.end(), begin, begin + text.size());
-}
 
 constexpr int kMaxDigits = 20;  // of 64 bits
 constexpr int kMaxLine = 5 * kMaxDigits;
@@ -36,8 +32,8 @@ char* write_seconds(char* p, std::int64_t us) {
 void TextWriter::begin(const StreamHeader& header, std::vector<std::byte>& out) {
     if (header.width <= 0 || header.height <= 0) return;
     const std::string width = std::to_string(header.width), height = std::to_string(header.height);
-    append(out, size_ == TextSize::in_a_comment ? "# geometry: " + width + "," + height + "\n"
-                                                : width + " " + height + "\n");
+    append_text(out, size_ == TextSize::in_a_comment ? "# geometry: " + width + "," + height + "\n"
+                                                     : width + " " + height + "\n");
 }
 
 void TextWriter::write(const Batch& batch, std::vector<std::byte>& out) {
@@ -51,7 +47,7 @@ void TextWriter::write(const Batch& batch, std::vector<std::byte>& out) {
         *p++ = ' ';
         *p++ = event.polarity == Polarity::on ? '1' : '0';
         *p++ = '\n';
-        append(out, {line, std::size_t(p - line)});
+        append_text(out, {line, std::size_t(p - line)});
     }
 }
 
