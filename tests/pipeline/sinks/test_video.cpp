@@ -155,6 +155,17 @@ TEST(VideoSink, MatroskaKeepsMilliseconds) {
                     double((test::odd_time(n) - test::odd_time(0)).count()) / 1000, 0.51);
 }
 
+TEST(VideoSink, TheLastFrameStandsAsLongAsTheOthers) {
+    const TempFolder temp;
+    for (const std::string name : {"a.mp4", "a.mkv", "a.avi", "a.gif"}) {
+        VideoSink sink{{.path = temp / name, .fps = 20}};
+        for (int n = 0; n < 4; ++n) sink.write(test::ramp_frame(64, 48, n, from_us(50'000 * n)));
+        sink.close();
+        EXPECT_NEAR(std::stod(probe(temp / name, {"-show_entries", "format=duration"})), 0.2, 1e-6)
+            << name;
+    }
+}
+
 TEST(VideoSink, AFasterRateThanMatroskasClockLosesNoFrame) {
     const TempFolder temp;
     VideoSink sink{{.path = temp / "a.mkv", .fps = 3000}};
