@@ -44,6 +44,9 @@ TEST(Image, OverlayIsTheIntensityWhereCertainAndRedWhereNot) {
     draw(frame, Uncertainty::overlay, 0.3f, image);
     EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(102, 102, 102));
     EXPECT_EQ(image.at<cv::Vec3b>(0, 1), cv::Vec3b(0, 0, 255));
+    frame.sigma(0, 0) = 0.3f * 128 / 255;
+    draw(frame, Uncertainty::overlay, 0.3f, image);
+    EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(51, 51, 179)) << "50.8 of the grey are left";
 }
 
 TEST(Image, AlphaIsOpaqueWhereCertain) {
@@ -161,6 +164,12 @@ TEST(Yuv, RepeatsTheLastRowAndColumnOfColoursToo) {
     EXPECT_EQ(luma, (std::array<std::uint8_t, 16>{10, 10, 90, 90, 10, 10, 90, 90, 60, 60, 90, 90,
                                                   60, 60, 90, 90}));
     EXPECT_EQ(red, (std::array<std::uint8_t, 4>{128, 128, 128, 128}));
+}
+
+TEST(DrawEventsBeside, APartSmallerThanAPixelIsOne) {
+    const cv::Mat sensor(4, 6, CV_8UC1);
+    const cv::Mat part = part_of(sensor, {.left = .5, .top = 1, .width = .01, .height = .01});
+    EXPECT_EQ(part.size(), cv::Size(1, 1));
 }
 
 TEST(DrawEventsBeside, ShowsThePartThatTheFrameShows) {
