@@ -38,7 +38,7 @@ void call_back(const eventide_callbacks& c, const std::string& name, Options& op
     if (c.give_up != nullptr)
         options.while_waiting = [c, name] {
             if (c.give_up(c.context) != 0)
-                throw Error(ErrorKind::failed, name + ": given up before it was there");
+                throw Error(ErrorKind::failed, name + ": given up while it was waited for");
         };
     if (c.warn != nullptr)
         options.warn = [c](const std::string& text) { c.warn(c.context, text.c_str()); };

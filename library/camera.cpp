@@ -8,7 +8,9 @@
 #include <eventide/camera.h>
 
 #include <atomic>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace eventide {
@@ -22,6 +24,12 @@ std::unique_ptr<Camera> open(const std::string& name, const CameraSettings& sett
                                               name);
         return open_simulation(name);
     }
+    std::error_code none;
+    if (!names_camera(name) && std::filesystem::exists(name, none))
+        throw Error(ErrorKind::usage,
+                    "'" + name +
+                        "': expected the name of a camera, found a file, which EventReader opens "
+                        "(in C eventide_recording_open(), in Python open())");
     const auto give_up = [&] {
         if (settings.while_waiting) settings.while_waiting();
         return false;

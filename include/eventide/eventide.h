@@ -221,8 +221,7 @@ EVENTIDE_API eventide_status eventide_recording_open(const char* path, const cha
 EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
                                                   int reconnect, eventide_source** opened);
 
-/** What a source asks and tells, on the thread that opens or reads it. Each function may be NULL.
- */
+/** What a source asks and tells, on the thread that opens or reads it; functions may be NULL. */
 typedef struct eventide_callbacks {
     size_t struct_size; /**< sizeof(eventide_callbacks) */
     void* context;      /**< what the functions are called with */

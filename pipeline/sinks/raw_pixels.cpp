@@ -44,7 +44,7 @@ void append_alpha_row(std::span<const float> row, std::span<const float> sigma, 
     pairs.clear();
     for (std::size_t x = 0; x < row.size(); ++x) {
         pairs.push_back(row[x]);
-        pairs.push_back(sigma.empty() ? 1.0f : 1.0f - std::clamp(sigma[x] / white, 0.0f, 1.0f));
+        pairs.push_back(1.0f - std::clamp(sigma[x] / white, 0.0f, 1.0f));
     }
     append_row<T>(pairs, 1.0f, scratch, into);
 }

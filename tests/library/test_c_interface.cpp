@@ -314,7 +314,7 @@ TEST_F(CInterface, APipeThatSaysNothingCanBeGivenUp) {
     eventide_source* source = nullptr;
     EXPECT_EQ(eventide_recording_open_with(pipe.c_str(), nullptr, 0, 0, &callbacks, &source),
               EVENTIDE_FAILED);
-    EXPECT_TRUE(said("pipe: given up before it was there")) << eventide_error_message();
+    EXPECT_TRUE(said("pipe: given up while it was waited for")) << eventide_error_message();
     EXPECT_EQ(source, nullptr);
     ::close(writer);
 }

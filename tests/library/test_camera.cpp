@@ -51,6 +51,13 @@ TEST_F(Cameras, ThatCannotBeOpenedSayWhy) {
               std::string::npos);
 }
 
+TEST_F(Cameras, RecordingsAreNone) {
+    EXPECT_NE(error_of([] { EventCamera{recording()}; })
+                  .find("recording.aedat4': expected the name of a camera, found a file, which "
+                        "EventReader opens"),
+              std::string::npos);
+}
+
 TEST_F(Cameras, AreNoRecordings) {
     for (const std::string name : {"davis:", "v4l2:/dev/video0", "sim:demo"}) {
         const std::string words = error_of([&] { EventReader{name}; });

@@ -1,10 +1,13 @@
 // Stamps of frames: ROS time, always rising.
+#include "pipeline/ros2/message_parts.h"
 #include "pipeline/ros2/stamp_clock.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <string>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -71,6 +74,31 @@ TEST(StampClock, FollowsTheDriftOfACameraAndNotItsDelays) {
         }
         before = stamp;
     }
+}
+
+/// The first packet was held up for 50 ms.
+TEST(StampClock, AnOffsetThatWasTooLargeShrinksByAMillisecondASecond) {
+    StampClock clock{StampRule::arrival, true};
+    std::int64_t stamp = clock.stamp_us(frame_at(0, 0), kNow + 50'000);
+    EXPECT_EQ(stamp, kNow + 50'000);
+    for (int k = 1; k <= 50'000; ++k) {
+        const std::int64_t t = 10'000 * k;
+        const std::int64_t before = std::exchange(stamp, clock.stamp_us(frame_at(t, t), kNow + t));
+        ASSERT_GE(stamp - before, 9'989) << k;
+    }
+    EXPECT_NEAR(double(stamp - kNow), 500'000'000., 1);
+}
+
+TEST(Header, HoldsMicrosecondsBeforeAndAfter1970) {
+    const std::string frame_id = "camera";
+    const auto stamp = [&](std::int64_t us) {
+        const auto header = header_of(us, frame_id);
+        EXPECT_STREQ(header.frame_id, "camera");
+        return std::pair<int, unsigned>{header.stamp.sec, header.stamp.nanosec};
+    };
+    EXPECT_EQ(stamp(1'633'953'690'975'951), (std::pair{1'633'953'690, 975'951'000U}));
+    EXPECT_EQ(stamp(0), (std::pair{0, 0U}));
+    EXPECT_EQ(stamp(-1), (std::pair{-1, 999'999'000U}));
 }
 
 TEST(StampClock, OfARecordingTheOffsetStays) {

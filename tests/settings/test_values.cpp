@@ -44,6 +44,7 @@ TEST(Values, NumbersAreWrittenInDigitsWhereThatIsShort) {
 TEST(Values, SizesReadBack) {
     EXPECT_EQ(parse_size("640x480"), (Size{640, 480}));
     EXPECT_EQ(show_size(parse_size("1x2")), "1x2");
+    EXPECT_EQ(parse_size("16384x16384"), (Size{16384, 16384}));
 }
 
 TEST(Values, SayWhatWasExpectedAndFound) {

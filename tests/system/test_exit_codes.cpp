@@ -257,6 +257,8 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(2, {"convert", "sim:demo", "a.txt"}, "found the name of a simulation");
     expect(2, {"run", recording(), "--reconnect", "--out", "null"},
            "--reconnect: expected a camera as SOURCE, found ");
+    expect(2, {"run", "davis", "--reconnect", "--out", "null"}, "did you mean davis:?");
+    expect(2, {"run", "sim:demo", "--reconnect", "--out", "null"}, "found sim:demo\n");
     expect(2, {"run", "sim:demo", "--input-size", "64x48", "--out", "null"},
            "--input-size 64x48: expected a recording as SOURCE, found sim:demo");
     expect(2, {"run", "davis:", "--input-format", "evt3", "--out", "null"},

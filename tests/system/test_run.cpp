@@ -314,5 +314,15 @@ TEST_F(Run, TellsAServiceManagerOfItsBeginningItsLifeAndItsEnd) {
     EXPECT_GE(std::ranges::count(messages, "WATCHDOG=1"), 1);
 }
 
+TEST_F(Run, AVideoWhoseTimesAreRoundedSaysSo) {
+    for (const char* file : {"a.mkv", "B.MKV"}) {
+        const Result result = eventide({"run", recording(), "--duration", "50ms", "--out", file});
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_NE(result.error.find(std::string{file} + ": Matroska rounds times to 1 ms"),
+                  std::string::npos)
+            << result.error;
+    }
+}
+
 }  // namespace
 }  // namespace eventide::test

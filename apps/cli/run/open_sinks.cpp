@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace eventide::app {
@@ -37,7 +38,7 @@ std::unique_ptr<Sink> open_folder(const std::string& path, const RunSettings& se
 
 std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& settings,
                                  const SinkPlan& plan) {
-    if (path.ends_with(".mkv"))
+    if (video_kind_of(path).extension == std::string_view{".mkv"})
         spdlog::warn("{}: Matroska rounds times to 1 ms; MP4 keeps microseconds", path);
     return std::make_unique<VideoSink>(
         VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),

@@ -49,14 +49,19 @@ void refuse_speed(const RunSettings& settings) {
 
 /// A setting that changes nothing is a misunderstanding.
 void refuse_without_effect(const RunSettings& settings) {
-    const auto refuse = [&](const std::string& option, const char* expected) {
+    const std::string& source = settings.source;
+    const bool is_simulated = names_simulation(source);
+    const std::string meant = is_simulated ? "" : source_suggestion(source);
+    const auto refuse = [&](const std::string& option, const char* expected,
+                            const std::string& hint = {}) {
         throw Error(ErrorKind::usage,
-                    option + ": expected a " + expected + " as SOURCE, found " + settings.source);
+                    option + ": expected a " + expected + " as SOURCE, found " + source + hint);
     };
-    const bool is_camera = names_camera(settings.source);
-    if (!settings.camera.empty() && !is_camera) refuse("--camera " + settings.camera, "camera");
-    if (settings.reconnect && !is_camera) refuse("--reconnect", "camera");
-    if (!is_camera && !names_simulation(settings.source)) return;
+    const bool is_camera = names_camera(source);
+    if (!settings.camera.empty() && !is_camera)
+        refuse("--camera " + settings.camera, "camera", meant);
+    if (settings.reconnect && !is_camera) refuse("--reconnect", "camera", meant);
+    if (!is_camera && !is_simulated) return;
     if (settings.input.size) refuse("--input-size " + show_size(*settings.input.size), "recording");
     if (!settings.input.open.format.empty())
         refuse("--input-format " + settings.input.open.format, "recording");

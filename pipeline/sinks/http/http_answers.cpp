@@ -20,6 +20,7 @@ using Clock = NewestFrame::Clock;
 /// How long a request for a single frame waits for one.
 constexpr std::chrono::seconds kFrameTime{5};
 constexpr const char* kNothing = "there is no such thing here";
+constexpr const char* kNoSigma = "these frames have no sigma (--uncertainty none)";
 
 void say(httplib::Response& response, int status, const std::string& words) {
     response.status = status;
@@ -196,19 +197,27 @@ void HttpAnswers::page_frames(Response& response) {
         send_frames(newest_, std::move(held), response);
 }
 
+/// Throws Error (usage) for a word that is none, and for a sigma that would be 0 everywhere.
+Show HttpAnswers::asked_show(const Request& request, Show otherwise) const {
+    if (!request.has_param("show")) return otherwise;
+    const Show show = show_named(request.get_param_value("show"));
+    if (show != Show::intensity && settings_.uncertainty == Uncertainty::none)
+        throw Error(ErrorKind::usage, kNoSigma);
+    return show;
+}
+
 void HttpAnswers::motion_jpeg(const Request& request, Response& response) {
     MotionJpeg wanted;
     if (settings_.uncertainty == Uncertainty::side) wanted.show = Show::side;
     if (settings_.uncertainty == Uncertainty::overlay) wanted.show = Show::overlay;
-    if (request.has_param("show")) wanted.show = show_named(request.get_param_value("show"));
+    wanted.show = asked_show(request, wanted.show);
     if (request.has_param("fps")) wanted.fps = rate_named(request.get_param_value("fps"));
     if (auto held = place(viewers_, "frames", response))
         send_motion_jpeg(newest_, wanted, std::move(held), response);
 }
 
 void HttpAnswers::one_frame(const Request& request, Response& response) {
-    const Show show =
-        request.has_param("show") ? show_named(request.get_param_value("show")) : Show::intensity;
+    const Show show = asked_show(request, Show::intensity);
     const auto held = place(viewers_, "frames", response);
     if (!held) return;
     const auto shown = newest_.next(nullptr, Clock::now() + kFrameTime);
@@ -217,7 +226,7 @@ void HttpAnswers::one_frame(const Request& request, Response& response) {
     const ShownFrame::Bytes& bytes = png    ? shown->png(show)
                                      : tiff ? shown->tiff()
                                             : shown->jpeg(show);
-    if (bytes.empty()) return say(response, 404, "these frames have no sigma (--uncertainty none)");
+    if (bytes.empty()) return say(response, 404, kNoSigma);
     response.set_header("X-Time-Us", std::to_string(to_us(shown->frame().t)));
     response.set_header("X-Frame-Index", std::to_string(shown->frame().index));
     response.set_content(std::string{text_of(bytes)}, png    ? "image/png"

@@ -32,6 +32,7 @@ private:
     bool refuse(const Request& request, Response& response);
     void get(const Request& request, Response& response);
     void page_frames(Response& response);
+    Show asked_show(const Request& request, Show otherwise) const;
     void motion_jpeg(const Request& request, Response& response);
     void one_frame(const Request& request, Response& response);
     void statistics(Response& response);

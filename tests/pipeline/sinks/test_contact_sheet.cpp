@@ -5,8 +5,12 @@
 #include "tests/system/process.h"
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -104,6 +108,31 @@ TEST(ContactSheet, AsksForTheTruthOnceItsImagesHaveCome) {
     const std::size_t until_then = delays.size();
     sink.close();
     EXPECT_GT(delays.size(), until_then) << "at the end for those that are left";
+}
+
+/// Of twenty frames in four rows, of which every other one was kept in the end, the middles of four
+/// equal parts, each above its time from the first frame on.
+TEST(ContactSheet, ShowsTheMiddlesOfEqualPartsWithTheirTimes) {
+    const TempFolder temp;
+    const std::string file = temp / "a.png";
+    ContactSheetSink sink{{.path = file, .rows = 4}};
+    for (int n = 0; n < 20; ++n) {
+        Frame frame = test::ramp_frame(90, 30, n, from_us(7'000'000 + 10'000 * n));
+        for (float& v : frame.intensity.values()) v = float(10 * n) / 255;
+        sink.write(frame);
+    }
+    sink.close();
+    const cv::Mat sheet = cv::imread(file);
+    int top = 22;
+    for (const auto& [frame, time] :
+         {std::pair{2, "0.020 s"}, {6, "0.060 s"}, {12, "0.120 s"}, {16, "0.160 s"}}) {
+        EXPECT_EQ(int(sheet.at<cv::Vec3b>(top + 10, 20)[0]), 10 * frame);
+        cv::Mat caption(22, sheet.cols, CV_8UC3, cv::Scalar{255, 255, 255});
+        cv::putText(caption, time, {6, 16}, cv::FONT_HERSHEY_SIMPLEX, 0.5, {40, 40, 40}, 1,
+                    cv::LINE_AA);
+        EXPECT_EQ(cv::norm(sheet.rowRange(top + 30, top + 52), caption, cv::NORM_INF), 0) << time;
+        top += 30 + 22 + 10;
+    }
 }
 
 TEST(ContactSheet, KeepsOneSizeHoweverLongTheRun) {

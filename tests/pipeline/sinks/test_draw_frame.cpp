@@ -44,6 +44,9 @@ TEST(Image, OverlayIsTheIntensityWhereCertainAndRedWhereNot) {
     draw(frame, Uncertainty::overlay, 0.3f, image);
     EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(102, 102, 102));
     EXPECT_EQ(image.at<cv::Vec3b>(0, 1), cv::Vec3b(0, 0, 255));
+    frame.sigma(0, 0) = 0.3f * 128 / 255;
+    draw(frame, Uncertainty::overlay, 0.3f, image);
+    EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(51, 51, 179)) << "50.8 of the grey are left";
 }
 
 TEST(Image, AlphaIsOpaqueWhereCertain) {
@@ -102,6 +105,31 @@ TEST(RawPixels, AlphaInterleavesIntensityAndConfidence) {
               (std::vector<std::byte>{std::byte{255}, std::byte{255}, std::byte{0}, std::byte{0}}));
 }
 
+TEST(RawPixels, ConfidenceEndsAtZeroAndIsWholeWithoutSigma) {
+    Frame frame = test::ramp_frame(1, 1, 0, from_us(0));
+    frame.sigma(0, 0) = 9;
+    std::vector<std::byte> bytes;
+    append_pixels<float>(frame, {Uncertainty::alpha, 0.3f}, bytes);
+    std::array<float, 2> pair{};
+    std::memcpy(pair.data(), bytes.data(), sizeof pair);
+    EXPECT_EQ(pair[1], 0);
+    frame.sigma = {};
+    bytes.clear();
+    append_pixels<float>(frame, {Uncertainty::alpha, 0.3f}, bytes);
+    std::memcpy(pair.data(), bytes.data(), sizeof pair);
+    EXPECT_EQ(pair[1], 1);
+}
+
+TEST(RawPixels, SigmaThatIsShownAsWhiteIsWhiteBesideAndBehind) {
+    Frame frame = test::ramp_frame(1, 1, 0, from_us(0));
+    frame.sigma(0, 0) = 0.1f;
+    for (const Uncertainty how : {Uncertainty::side, Uncertainty::separate}) {
+        std::vector<std::byte> bytes;
+        append_pixels<std::uint8_t>(frame, {how, 0.1f}, bytes);
+        EXPECT_EQ(bytes.at(1), std::byte{255});
+    }
+}
+
 TEST(Yuv, KeepsGreyInFullRangeAndRepeatsTheLastRowAndColumn) {
     cv::Mat image(3, 3, CV_8UC1);
     for (int i = 0; i < 9; ++i) image.data[i] = std::uint8_t(20 * i);
@@ -123,6 +151,25 @@ TEST(Yuv, KnowsTheCornersOfBt709) {
     EXPECT_EQ(int(luma[0]), 63);  // 16 + 219 0.2126
     EXPECT_EQ(int(v), 240);       // 128 + 224 / 2
     EXPECT_EQ(int(u), 102);       // 128 - 224 0.2126 / 1.8556
+}
+
+TEST(Yuv, RepeatsTheLastRowAndColumnOfColoursToo) {
+    cv::Mat image(3, 3, CV_8UC3, cv::Scalar{10, 10, 10});
+    image.row(2).setTo(cv::Scalar{60, 60, 60});
+    image.col(2).setTo(cv::Scalar{90, 90, 90});
+    std::array<std::uint8_t, 16> luma{};
+    std::array<std::uint8_t, 4> blue{}, red{};
+    to_yuv420(image, YuvRange::full,
+              {Plane{luma.data(), 4}, Plane{blue.data(), 2}, Plane{red.data(), 2}});
+    EXPECT_EQ(luma, (std::array<std::uint8_t, 16>{10, 10, 90, 90, 10, 10, 90, 90, 60, 60, 90, 90,
+                                                  60, 60, 90, 90}));
+    EXPECT_EQ(red, (std::array<std::uint8_t, 4>{128, 128, 128, 128}));
+}
+
+TEST(DrawEventsBeside, APartSmallerThanAPixelIsOne) {
+    const cv::Mat sensor(4, 6, CV_8UC1);
+    const cv::Mat part = part_of(sensor, {.left = .5, .top = 1, .width = .01, .height = .01});
+    EXPECT_EQ(part.size(), cv::Size(1, 1));
 }
 
 TEST(DrawEventsBeside, ShowsThePartThatTheFrameShows) {

@@ -155,6 +155,17 @@ TEST(VideoSink, MatroskaKeepsMilliseconds) {
                     double((test::odd_time(n) - test::odd_time(0)).count()) / 1000, 0.51);
 }
 
+TEST(VideoSink, TheLastFrameStandsAsLongAsTheOthers) {
+    const TempFolder temp;
+    for (const std::string name : {"a.mp4", "a.mkv", "a.avi", "a.gif"}) {
+        VideoSink sink{{.path = temp / name, .fps = 20}};
+        for (int n = 0; n < 4; ++n) sink.write(test::ramp_frame(64, 48, n, from_us(50'000 * n)));
+        sink.close();
+        EXPECT_NEAR(std::stod(probe(temp / name, {"-show_entries", "format=duration"})), 0.2, 1e-6)
+            << name;
+    }
+}
+
 TEST(VideoSink, AFasterRateThanMatroskasClockLosesNoFrame) {
     const TempFolder temp;
     VideoSink sink{{.path = temp / "a.mkv", .fps = 3000}};
@@ -183,15 +194,22 @@ TEST(VideoSink, ShowsTheGreysItWasGiven) {
     const TempFolder temp;
     Frame frame = test::ramp_frame(64, 64, 0, from_us(0));
     for (float& v : frame.intensity.values()) v = 0.6f;
-    VideoSink sink{{.path = temp / "a.mp4", .crf = 0}};
+    for (float& v : frame.sigma.values()) v = 0.12f;
+    VideoSink sink{{.path = temp / "a.mp4",
+                    .uncertainty = Uncertainty::separate,
+                    .sigma_white = 0.2f,
+                    .crf = 0}};
     sink.write(frame);
     sink.close();
-    const test::Result result = test::run({"ffmpeg", "-v", "error", "-i", temp / "a.mp4", "-f",
-                                           "rawvideo", "-pix_fmt", "gray", temp / "a.gray"});
-    ASSERT_EQ(result.exit_code, 0) << result.error;
-    const std::string pixels = test::read_text(temp / "a.gray");
-    ASSERT_EQ(pixels.size(), 64U * 64U);
-    for (const char c : pixels) EXPECT_NEAR(int(std::uint8_t(c)), 153, 1);
+    for (const std::string video : {"a.mp4", "a.sigma.mp4"}) {
+        const std::string grey = temp / (video + ".gray");
+        const test::Result result = test::run({"ffmpeg", "-v", "error", "-i", temp / video, "-f",
+                                               "rawvideo", "-pix_fmt", "gray", grey});
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        const std::string pixels = test::read_text(grey);
+        ASSERT_EQ(pixels.size(), 64U * 64U);
+        for (const char c : pixels) EXPECT_NEAR(int(std::uint8_t(c)), 153, 1) << video;
+    }
 }
 
 TEST(VideoSink, TimeThatGoesBackGoesOnInTheVideo) {
@@ -203,12 +221,13 @@ TEST(VideoSink, TimeThatGoesBackGoesOnInTheVideo) {
     EXPECT_EQ(packet_times(temp / "a.mp4"), (std::vector<std::int64_t>{0, 10'000, 20'000, 32'345}));
 }
 
+/// A scene that stands still: nothing else makes the encoder begin a group of images.
 TEST(VideoSink, AKilledProgramLeavesAVideoThatPlays) {
     const TempFolder temp;
     const pid_t child = fork();
     if (child == 0) {
         VideoSink sink{{.path = temp / "a.mp4"}};
-        for (int n = 0; n < 200; ++n) sink.write(test::ramp_frame(64, 48, n, test::odd_time(n)));
+        for (int n = 0; n < 200; ++n) sink.write(test::ramp_frame(64, 48, 0, test::odd_time(n)));
         kill(getpid(), SIGKILL);
     }
     int status = 0;

@@ -73,6 +73,26 @@ TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     EXPECT_EQ(client.Get("/nothing")->status, 404);
 }
 
+TEST(HttpSink, RefusesToShowASigmaThatIsNotThere) {
+    HttpSettings settings;
+    settings.uncertainty = Uncertainty::none;
+    const auto sink = open_page(std::move(settings));
+    const Frames frames{*sink};
+    auto client = client_of(*sink);
+    for (const char* path :
+         {"/frame.png?show=sigma", "/frame.jpg?show=side", "/stream?show=overlay"}) {
+        std::string words;
+        const auto answer = client.Get(path, [&](const char* bytes, std::size_t size) {
+            words.append(bytes, size);
+            return words.size() < 200;  // of a stream there is no end
+        });
+        ASSERT_TRUE(answer) << path;
+        EXPECT_EQ(answer->status, 400) << path;
+        EXPECT_THAT(words, HasSubstr("no sigma (--uncertainty none)")) << path;
+    }
+    EXPECT_EQ(client.Get("/frame.png?show=intensity")->status, 200);
+}
+
 TEST(HttpSink, AStreamsTimesKeepTheirSign) {
     const auto sink = open_page();
     // The first frame of a recording from 0 shows the microsecond before it.
