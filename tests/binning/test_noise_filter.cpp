@@ -206,6 +206,19 @@ TEST(NoiseFilter, LeavesOutHotPixelsAndTheirSupport) {
               0);
 }
 
+/// One event a second between two pixels that fire every 5 ms.
+TEST(NoiseFilter, TwoPixelsSupportAnEventUntilTheyAreKnownToBeHot) {
+    Events events;
+    for (int ms = 0; ms < 9000; ms += 5)
+        for (const int x : {10, 12}) events.push_back(at(1000 * ms + x, x, 20));
+    for (int s = 1; s < 9; ++s) events.push_back(at(1'000'000 * s + 100, 11, 20));
+    std::ranges::stable_sort(events, {}, &Event::t);
+    std::vector<std::int64_t> kept;
+    for (const Event& event : filtered({32, 32, constant(1000)}, events))
+        if (event.x == 11) kept.push_back(to_us(event.t));
+    EXPECT_EQ(kept, (std::vector<std::int64_t>{1'000'100}));
+}
+
 TEST(NoiseFilter, KnowsNothingOfWhatWasBeforeAReset) {
     constexpr int kSide = 32;
     Events before = random_events(20'000, kSide, kSide, 1e6 / (4. * kSide * kSide));

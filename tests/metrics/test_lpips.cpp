@@ -10,6 +10,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <random>
 
@@ -76,9 +78,41 @@ TEST_F(LpipsSqueeze, PutsTheDistanceWhereTheImagesDiffer) {
     EXPECT_GT(map(40, 72), 5 * map(85, 8));
 }
 
+/// 65 px: 32 after the first convolution, of which pools take the window over the edge, too.
+TEST_F(LpipsSqueeze, PoolsRoundUpAsTorchvisionsDo) {
+    const auto features = lpips_->features(test_image(65, 65, 1));
+    ASSERT_EQ(features.layers.size(), 7U);
+    const int expected[] = {32, 16, 8, 4, 4, 4, 4};
+    for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(features.layers[i].height(), expected[i]) << i;
+}
+
 TEST_F(LpipsSqueeze, RefusesAnImageTooSmallForItsPools) {
     EXPECT_NO_THROW(lpips_->features(test_image(17, 17, 1)));
     EXPECT_THROW(lpips_->features(test_image(16, 64, 1)), Error);
+}
+
+/// A difference at one of 15 x 15 places of the first layer alone, brought to 64 x 64 px: centres
+/// of places lie 64 / 15 px apart, the outermost as far from the edges as from halfway to the next.
+void expect_bilinear_map(const Lpips& lpips, const Lpips::Features& like) {
+    Lpips::Features none = like;
+    for (Array3<float>& layer : none.layers) std::ranges::fill(layer.values(), 0.F);
+    const auto map_of = [&](int place) {
+        Lpips::Features one = none;
+        one.layers[0](place, place, 3) = 1;
+        return lpips.distance_map(one, none);
+    };
+    const Array2<float> first = map_of(0), last = map_of(14), middle = map_of(7);
+    const float whole = first(0, 0);
+    EXPECT_GT(whole, 0);
+    for (int i = 0; i < 64; ++i) {
+        const double at = (i + .5) * 15 / 64 - .5;
+        const auto share = [&](int place) {
+            return std::max(0., 1 - std::abs(std::clamp(at, 0., 14.) - place));
+        };
+        EXPECT_NEAR(first(i, 0), double(whole) * share(0), 1e-6) << i;
+        EXPECT_NEAR(last(63, i), double(whole) * share(14), 1e-6) << i;
+        EXPECT_NEAR(middle(31, i), double(whole) * share(7) * (1 - .5 * 15 / 64), 1e-6) << i;
+    }
 }
 
 /// A network of the Alex layout with random weights: the file format is what is tested.
@@ -119,6 +153,7 @@ TEST(LpipsAlex, IsReadFromTheSameLayout) {
     EXPECT_EQ(a.layers[2].height(), 3);
     EXPECT_EQ(lpips.distance(a, a), 0);
     EXPECT_GT(lpips.distance(a, b), 0);
+    expect_bilinear_map(lpips, a);
 }
 
 /// The definition, one output at a time.

@@ -125,6 +125,28 @@ TEST(Training, AnInputThatIsNotUsedHasNoWeightInTheModel) {
     EXPECT_THROW(trainer(options), Error);
 }
 
+/// Streams of one share or of two, of which all images count.
+TEST(Training, SharesOfAStepAreItsBatch) {
+    const auto run = [](const char* name, int threads, int streams) {
+        TrainOptions options = tiny_options(empty_folder(name));
+        options.threads = threads;
+        options.streams = streams;
+        options.data.warm_windows = 0;
+        options.log_every = 1;
+        options.steps = 2;
+        train(*trainer(options));
+        return fs::path{options.out};
+    };
+    const fs::path two = run("two_shares", 2, 1), one = run("one_share", 1, 2);
+    // From L1 (3) to the gradient's norm (10).
+    for (std::size_t column = 3; column <= 10; ++column) {
+        const auto a = logged(two, column), b = logged(one, column);
+        ASSERT_EQ(a.size(), 2U);
+        for (std::size_t i = 0; i < 2; ++i)
+            EXPECT_NEAR(a[i], b[i], 1e-3 * std::abs(b[i]) + 1e-4) << "column " << column;
+    }
+}
+
 TEST(Training, TheRateRisesStaysAndFallsAlongACosine) {
     TrainOptions options = tiny_options(empty_folder("rate"));
     options.steps = 20;
