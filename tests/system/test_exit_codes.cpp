@@ -247,6 +247,19 @@ TEST_F(ExitCodes, AConfigurationFileIsHeldToItsKeys) {
         EXPECT_NE(shown.output.find(part), std::string::npos) << part << "\n" << shown.output;
 }
 
+TEST_F(ExitCodes, TheLastFlagCountsAndAFlagTakesBackWhatTheEnvironmentSays) {
+    const Result shown =
+        eventide({"run", "--fps", "20", "--fps", "60", "--no-overwrite", "--print-config"},
+                 {.environment = {{"EVENTIDE_RUN_OVERWRITE", "true"}}});
+    EXPECT_EQ(shown.exit_code, 0) << shown.error;
+    for (const char* line : {"\nfps = \"60\"", "\noverwrite = false"})
+        EXPECT_NE(shown.output.find(line), std::string::npos) << line << "\n" << shown.output;
+    expect(2,
+           {"run", recording(), "--out", "null", "--states-out", "states/", "--states-at", "100ms",
+            "--states-at", "100ms"},
+           "--states-at 100ms: expected times that ascend");
+}
+
 TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(2, {"run", "metavision:", "--out", "null"}, "unknown source; expected a file");
     expect(2, {"run", "daviss:", "--out", "null"}, "did you mean davis:?");

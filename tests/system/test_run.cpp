@@ -243,6 +243,17 @@ TEST_F(Run, AFolderHasNoEventsBecauseAContactSheetShowsThem) {
     EXPECT_FALSE(std::filesystem::exists(temp_ / "a/events"));
 }
 
+TEST_F(Run, APageThatOthersReachWantsAToken) {
+    for (const auto& [address, wants] : {std::pair{"127.0.0.1", false}, {"0.0.0.0", true}}) {
+        const Result result = eventide({"run", recording(), "--duration", "20ms", "--speed", "max",
+                                        "--out", std::string{"http:"} + address + ":0"});
+        if (result.error.find("built without") != std::string::npos) GTEST_SKIP() << result.error;
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_NE(result.error.find("live page: http://"), std::string::npos) << result.error;
+        EXPECT_EQ(result.error.find("?token=") != std::string::npos, wants) << result.error;
+    }
+}
+
 TEST_F(Run, TheRecordOfARunHasNoToken) {
     const std::vector<std::string> run{"run",   recording(), "--to",  "20ms", "--speed",    "max",
                                        "--out", "http:0",    "--out", "a/",   "--overwrite"};
