@@ -5,6 +5,8 @@
 #include <eventide/event.h>
 #include <eventide/eventide.h>
 
+#include <cstddef>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <span>
@@ -35,6 +37,21 @@ T& given(T* argument, const char* what) {
     if (argument == nullptr)
         throw Error(ErrorKind::usage, std::string{"expected "} + what + ", found NULL");
     return *argument;
+}
+
+/// A caller compiled with older headers has a shorter struct: what it lacks stays as it is in
+/// `whole`; NULL lacks all. Throws Error (usage) for the size of none, with `what` it is and, where
+/// there is one, what sets the size.
+template <typename T>
+T filled_in(T whole, const T* argument, const char* what, const char* set_by = "") {
+    if (argument == nullptr) return whole;
+    const std::size_t size = argument->struct_size;
+    if (size > sizeof whole || size < sizeof argument->struct_size)
+        throw Error(ErrorKind::usage, std::string{what} + ": expected a struct_size of at most " +
+                                          std::to_string(sizeof whole) + set_by + ", found " +
+                                          std::to_string(size));
+    std::memcpy(&whole, argument, size);
+    return whole;
 }
 
 /// The same events in C++; `into` keeps its memory. Throws Error (usage) for NULL with a count.

@@ -17,18 +17,10 @@ FrameSize size_of(const eventide_frame_size& size) {
     return {size.width, size.height, {r.x, r.y, r.width, r.height}};
 }
 
-/// A caller compiled with older headers has a shorter struct: what it lacks has its default.
-eventide_options whole_options(const eventide_options* given_options) {
-    eventide_options options;
-    eventide_options_init(&options, sizeof options);
-    if (given_options == nullptr) return options;
-    if (given_options->struct_size > sizeof options || given_options->struct_size < sizeof(size_t))
-        throw Error(ErrorKind::usage, "options: expected a struct_size of at most " +
-                                          std::to_string(sizeof options) +
-                                          ", set by eventide_options_init(), found " +
-                                          std::to_string(given_options->struct_size));
-    std::memcpy(&options, given_options, given_options->struct_size);
-    return options;
+eventide_options whole_options(const eventide_options* options) {
+    eventide_options defaults;
+    eventide_options_init(&defaults, sizeof defaults);
+    return filled_in(defaults, options, "options", ", set by eventide_options_init()");
 }
 
 ReconstructorOptions options_of(const eventide_options* given_options) {

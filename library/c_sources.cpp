@@ -5,7 +5,6 @@
 #include <eventide/camera.h>
 #include <eventide/reader.h>
 
-#include <cstring>
 #include <memory>
 #include <string>
 
@@ -20,16 +19,8 @@ eventide_status open_source(eventide_source** opened, Arguments&&... arguments) 
     return EVENTIDE_OK;
 }
 
-eventide_callbacks whole_callbacks(const eventide_callbacks* given_callbacks) {
-    eventide_callbacks callbacks{};
-    if (given_callbacks == nullptr) return callbacks;
-    const std::size_t size = given_callbacks->struct_size;
-    if (size > sizeof callbacks || size < sizeof(size_t))
-        throw Error(ErrorKind::usage, "callbacks: expected a struct_size of at most " +
-                                          std::to_string(sizeof callbacks) + ", found " +
-                                          std::to_string(size));
-    std::memcpy(&callbacks, given_callbacks, size);
-    return callbacks;
+eventide_callbacks whole_callbacks(const eventide_callbacks* callbacks) {
+    return filled_in(eventide_callbacks{}, callbacks, "callbacks");
 }
 
 /// Into the options of a source of this name.

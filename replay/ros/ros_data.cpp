@@ -234,7 +234,7 @@ bool RosData::is_gap_before(std::uint64_t sequence) {
 template <typename Reader>
 bool RosData::take_image(Reader& reader, Batch& into) {
     RosImage fields;
-    fields.stamp_ns = reader.header();
+    const std::int64_t stamp_ns = reader.header();
     fields.height = reader.template number<std::uint32_t>();
     fields.width = reader.template number<std::uint32_t>();
     fields.encoding = reader.text();
@@ -246,7 +246,7 @@ bool RosData::take_image(Reader& reader, Batch& into) {
     if (width_ > 0 && (int(fields.width) != width_ || int(fields.height) != height_)) return false;
     auto image = image_of(fields);
     if (!image) return false;
-    image->t = image->exposure_begin = image->exposure_end = rounded(fields.stamp_ns);
+    image->t = image->exposure_begin = image->exposure_end = rounded(stamp_ns);
     into.images.push_back(*std::move(image));
     return true;
 }

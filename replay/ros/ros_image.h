@@ -13,7 +13,6 @@ namespace eventide {
 
 /// The fields of a message, borrowed from it.
 struct RosImage {
-    std::int64_t stamp_ns = 0;
     std::uint32_t width = 0, height = 0;  ///< px
     std::string_view encoding;            ///< "mono8", "bayer_rggb8", ...
     bool big_endian = false;

@@ -47,13 +47,11 @@ void RosReader::look_for_sizes(Damage& damage) {
 
 void RosReader::look_at(const Message& message, Damage& damage) {
     Batch unused;
-    Topic& topic = topics_[message.topic];
-    topic.has_messages = true;
+    auto& size = topics_[message.topic].size;
     if (message.kind != RosKind::images) {
-        if (data_.width() == 0 && is_read(message.topic))
-            data_.take(message.kind, message.bytes, unused, damage);
-    } else if (!topic.size) {
-        topic.size = data_.image_size(message.bytes);
+        if (data_.width() == 0) data_.take(message.kind, message.bytes, unused, damage);
+    } else if (!size) {
+        size = data_.image_size(message.bytes);
     }
 }
 
@@ -116,8 +114,9 @@ void RosReader::add_topic(std::uint32_t number, std::string_view name, std::stri
 void RosReader::add_message(std::uint32_t number, std::span<const std::byte> bytes) {
     const auto found = topics_.find(number);
     if (found == topics_.end()) return;
+    found->second.has_messages = true;
     const RosKind kind = found->second.kind;
-    if (is_read(number) || (opening_ && (kind == RosKind::images || has_events(kind))))
+    if (is_read(number) || (opening_ && kind == RosKind::images))
         messages_.push_back({kind, number, std::vector(bytes.begin(), bytes.end())});
 }
 

@@ -63,7 +63,7 @@ private:
         std::string name;
         RosKind kind = RosKind::other;
         std::optional<RosImageSize> size = {};  ///< of images, where one was seen
-        bool has_messages = false;              ///< of those looked at
+        bool has_messages = false;              ///< some came
         bool is_void = false;                   ///< of events: none that can be read
     };
     void look_for_sizes(Damage& damage);

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace eventide::davis_words {
@@ -85,6 +86,23 @@ inline Parsed parse_bytes(std::span<const std::byte> bytes, const DavisSensor& s
 }
 inline Parsed parse(const Words& words, const DavisSensor& sensor = davis240()) {
     return parse_bytes(bytes_of(words), sensor);
+}
+
+/// What comes of words that a loss cuts off behind the first `n`, and then a reset of the camera's
+/// clock.
+inline Batch parse_cut_off(const Words& words, std::size_t n) {
+    const std::vector<std::byte> bytes = bytes_of(words);
+    const auto [first, rest] =
+        std::pair{std::span{bytes}.first(2 * n), std::span{bytes}.subspan(2 * n)};
+    DavisParser parser{davis240()};
+    Batch data;
+    parser.parse(first, data);
+    parser.resync();
+    parser.parse(rest, data);
+    parser.parse(first, data);
+    parser.parse(bytes_of({special(kTimestampReset)}), data);
+    parser.parse(rest, data);
+    return data;
 }
 
 inline Event event(std::int64_t t, int x, int y, Polarity polarity) {

@@ -57,17 +57,7 @@ TEST(DavisImu, ReadOfWriteIsTheSameWithinAStepOfTheConverter) {
 }
 
 TEST(DavisImu, DoesNotGoOnBehindAResetOrALoss) {
-    const Words words = imu_words();
-    const Words first(words.begin(), words.begin() + 8), rest(words.begin() + 8, words.end());
-    DavisParser parser{davis240()};
-    Batch data;
-    parser.parse(bytes_of(first), data);
-    parser.resync();
-    parser.parse(bytes_of(rest), data);
-    parser.parse(bytes_of(first), data);
-    parser.parse(bytes_of({special(kTimestampReset)}), data);
-    parser.parse(bytes_of(rest), data);
-    EXPECT_TRUE(data.imu.empty());
+    EXPECT_TRUE(parse_cut_off(imu_words(), 8).imu.empty());
 }
 
 TEST(DavisImu, BytesBeyondTheLastAreNoneOfIt) {

@@ -15,6 +15,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace eventide {
@@ -163,13 +165,31 @@ TEST(StreamSink, DataWereLostBeforeAFrameAndNotBeforeItsRepeats) {
     EXPECT_EQ(flags, (std::vector<int>{FrameStamp::kGap, FrameStamp::kRepeat, 0}));
 }
 
+/// A pipe of one page.
+class SmallPipe {
+public:
+    static constexpr int kBytes = 4096;
+    SmallPipe() {
+        if (::pipe(ends_.data()) != 0 || ::fcntl(ends_[1], F_SETPIPE_SZ, kBytes) != kBytes)
+            throw std::runtime_error("no pipe of a page");
+    }
+    ~SmallPipe() {
+        ::close(ends_[0]);
+        ::close(ends_[1]);
+    }
+    SmallPipe(const SmallPipe&) = delete;
+    SmallPipe& operator=(const SmallPipe&) = delete;
+    int reader() const { return ends_[0]; }
+    std::string path() const { return "/dev/fd/" + std::to_string(ends_[1]); }
+
+private:
+    std::array<int, 2> ends_{};
+};
+
 TEST(StreamSink, AReaderOfStampsKnowsWhatIsMissingAndIsNotTold) {
-    constexpr int kPage = 4096;
-    std::array<int, 2> ends{};
-    ASSERT_EQ(::pipe(ends.data()), 0);
-    ASSERT_EQ(::fcntl(ends[1], F_SETPIPE_SZ, kPage), kPage);
+    const SmallPipe pipe;
     std::uint64_t missing = 0;
-    StreamSink raw{{.path = "/dev/fd/" + std::to_string(ends[1]),
+    StreamSink raw{{.path = pipe.path(),
                     .format = StreamFormat::gray8,
                     .stamp = true,
                     .overload = Overload::repeat,
@@ -178,18 +198,14 @@ TEST(StreamSink, AReaderOfStampsKnowsWhatIsMissingAndIsNotTold) {
     raw.write(test::ramp_frame(16, 127, 3, from_us(0)));
     raw.close();
     EXPECT_EQ(missing, 0U);
-    ::close(ends[0]);
-    ::close(ends[1]);
 }
 
-/// A pipe of one page: full with two frames of half a page each.
+/// The pipe is full with two frames of half a page each.
 TEST(StreamSink, AReaderThatIsBehindGetsNoRepeatsUntilItHasCaughtUp) {
-    constexpr int kPage = 4096, kFrame = kPage / 2;
-    std::array<int, 2> ends{};
-    ASSERT_EQ(::pipe(ends.data()), 0);
-    ASSERT_EQ(::fcntl(ends[1], F_SETPIPE_SZ, kPage), kPage);
+    constexpr int kFrame = SmallPipe::kBytes / 2;
+    const SmallPipe pipe;
     std::uint64_t missing = 0;
-    StreamSink raw{{.path = "/dev/fd/" + std::to_string(ends[1]),
+    StreamSink raw{{.path = pipe.path(),
                     .format = StreamFormat::gray8,
                     .overload = Overload::repeat,
                     .shorter_by = [&](std::uint64_t n) { missing += n; }}};
@@ -199,8 +215,8 @@ TEST(StreamSink, AReaderThatIsBehindGetsNoRepeatsUntilItHasCaughtUp) {
         raw.write(frame);
     };
     const auto two_frames_read = [&] {
-        std::vector<unsigned char> read(kPage);
-        EXPECT_EQ(::read(ends[0], read.data(), read.size()), kPage);
+        std::vector<unsigned char> read(SmallPipe::kBytes);
+        EXPECT_EQ(::read(pipe.reader(), read.data(), read.size()), SmallPipe::kBytes);
         return std::vector<int>{read.front(), read.back()};
     };
     write(0);
@@ -211,8 +227,6 @@ TEST(StreamSink, AReaderThatIsBehindGetsNoRepeatsUntilItHasCaughtUp) {
     raw.close();
     raw.close();
     EXPECT_EQ(missing, 1U) << "and the other one told, once";
-    ::close(ends[0]);
-    ::close(ends[1]);
 }
 
 TEST(StreamSink, MonoKeepsOddSizesAndExactGreys) {
