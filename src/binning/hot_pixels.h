@@ -30,6 +30,11 @@ public:
         return pixel.hot;
     }
 
+    /// Asks the processor for what is_hot() of a later event will read.
+    void prefetch(const Event& event) const noexcept {
+        __builtin_prefetch(&pixels_[std::size_t(event.y) * std::size_t(width_) + event.x], 1);
+    }
+
     /// How many pixels are hot now.
     std::size_t count() const;
 

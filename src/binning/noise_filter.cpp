@@ -11,7 +11,6 @@
 namespace eventide {
 namespace {
 
-constexpr SensorTime kNever = SensorTime::min();
 constexpr SensorDuration kInterval{250'000};
 constexpr double kPerInterval = 1 / double(kInterval.count());
 // Of tiles by number of events: the one that tells the noise. Less, and dead corners tell it.
@@ -38,9 +37,7 @@ constexpr SensorDuration kHotInterval{2'000'000};
 NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& settings)
     : settings_(settings),
       hot_pixels_(width, height, kHotHz, kHotInterval),
-      stride_(std::size_t(width) + 2),
-      newest_(stride_ * (std::size_t(height) + 2), kNever),
-      polarity_(newest_.size(), Polarity::off),
+      newest_(width, height),
       tile_rows_(std::max(1, height / kTile)),
       tile_columns_(std::max(1, width / kTile)),
       tile_pixels_(double(std::min(width, kTile)) * std::min(height, kTile)),
@@ -56,29 +53,32 @@ NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& setti
 }
 
 void NoiseFilter::process(std::vector<Event>& events) noexcept {
+    constexpr std::ptrdiff_t kAhead = 8;
     auto kept = events.begin();
-    for (const Event& event : events) {
+    for (auto next = events.begin(); next != events.end(); ++next) {
+        if (events.end() - next > kAhead) {
+            newest_.prefetch(next[kAhead]);
+            hot_pixels_.prefetch(next[kAhead]);
+        }
+        const Event event = *next;
         const bool begins = !last_ || event.t < *last_;
+        if (begins && (!interval_ || event.t < *interval_)) begin_stream(event.t);
         last_ = event.t;
+        newest_.advance(event.t);
         const bool hot = hot_pixels_.is_hot(event);
-        const std::size_t own = (std::size_t(event.y) + 1) * stride_ + event.x + 1;
-        const Support support = support_of(own, event);
+        const NewestEvents::Around support = newest_.around(event, within_, quiet_within_);
         const bool surely = support.alike >= kQuietSupport;
         const bool quiet = measure(event, hot, surely);
-        if (!hot) {
-            newest_[own] = event.t;
-            polarity_[own] = event.polarity;
-        }
+        if (!hot) newest_.set(event);
         *kept = event;
-        kept += begins || (!hot && (quiet ? surely : support.within >= kSupport)) ? 1 : 0;
+        kept += begins || (!hot && (quiet ? surely : support.fired >= kSupport)) ? 1 : 0;
     }
     events.erase(kept, events.end());
 }
 
 void NoiseFilter::reset() noexcept {
     hot_pixels_.reset();
-    std::ranges::fill(newest_, kNever);
-    std::ranges::fill(polarity_, Polarity::off);
+    newest_.forget(SensorTime{});
     std::ranges::fill(tiles_, Tile{});
     interval_.reset();
     last_.reset();
@@ -88,7 +88,6 @@ void NoiseFilter::reset() noexcept {
 
 // True where the event's tile is quiet.
 bool NoiseFilter::measure(const Event& event, bool hot, bool supported) noexcept {
-    if (!interval_ || event.t < *interval_) begin_stream(event.t);
     if (event.t - *interval_ >= kInterval) {
         end_interval();
         const auto silent = (event.t - *interval_) / kInterval;
@@ -110,6 +109,7 @@ bool NoiseFilter::measure(const Event& event, bool hot, bool supported) noexcept
 }
 
 void NoiseFilter::begin_stream(SensorTime t) noexcept {
+    newest_.forget(t);
     for (Tile& tile : tiles_) tile = {};
     interval_ = t;
     measured_ = false;
@@ -119,7 +119,7 @@ void NoiseFilter::begin_stream(SensorTime t) noexcept {
 bool NoiseFilter::is_quiet(const Tile& tile, double intervals) const noexcept {
     const double noise = intervals * tile.noise;
     const double more = double(tile.events) + tile.before - noise - 1;
-    return more <= 0 || more * more <= kQuietDeviations * kQuietDeviations * noise;
+    return more * std::abs(more) <= kQuietDeviations * kQuietDeviations * noise;
 }
 
 bool NoiseFilter::is_alone(const Tile& tile) noexcept {
@@ -166,34 +166,14 @@ void NoiseFilter::set_noise(double hz) noexcept {
     quiet_within_ = clamped(us * kQuietTime);
 }
 
-NoiseFilter::Support NoiseFilter::support_of(std::size_t own, const Event& event) const noexcept {
-    // As unsigned numbers, so that one comparison refuses both what is old and what is not yet.
-    const auto us = [](SensorTime time) { return std::uint64_t(to_us(time)); };
-    const std::uint64_t now = us(event.t), within = std::uint64_t(within_.count());
-    const std::uint64_t quiet_within = std::uint64_t(quiet_within_.count());
-    Support found;
-    const auto look_at = [&](std::size_t at) {
-        const std::uint64_t age = now - us(newest_[at]);
-        found.within += age <= within ? 1 : 0;
-        found.alike += int(age <= quiet_within) & int(polarity_[at] == event.polarity);
-    };
-    for (const std::size_t row : {own - stride_, own + stride_}) {
-        look_at(row - 1);
-        look_at(row);
-        look_at(row + 1);
-    }
-    look_at(own - 1);
-    look_at(own + 1);
-    return found;
-}
-
 NoiseFilter::State NoiseFilter::state() const {
-    return {newest_, polarity_, tiles_,    interval_,
-            last_,   noise_hz_, measured_, hot_pixels_.state()};
+    const SensorTime now = last_.value_or(SensorTime{});
+    return {newest_.times(now), newest_.polarities(now), tiles_, interval_, last_, noise_hz_,
+            measured_,          hot_pixels_.state()};
 }
 
 void NoiseFilter::restore(const State& state) {
-    if (state.newest.size() != newest_.size() || state.polarity.size() != polarity_.size() ||
+    if (state.newest.size() != newest_.size() || state.polarity.size() != newest_.size() ||
         state.tiles.size() != tiles_.size())
         throw Error(ErrorKind::input, "noise filter: expected the state of " +
                                           std::to_string(newest_.size()) + " pixels and " +
@@ -201,8 +181,7 @@ void NoiseFilter::restore(const State& state) {
                                           std::to_string(state.newest.size()) + " and " +
                                           std::to_string(state.tiles.size()));
     hot_pixels_.restore(state.hot_pixels);
-    newest_ = state.newest;
-    polarity_ = state.polarity;
+    newest_.restore(state.last.value_or(SensorTime{}), state.newest, state.polarity);
     tiles_ = state.tiles;
     interval_ = state.interval;
     last_ = state.last;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/binning/hot_pixels.h"
+#include "src/binning/newest_events.h"
 #include "src/core/event.h"
 
 #include <cstddef>
@@ -37,12 +38,13 @@ struct NoiseFilterSettings {
 ///
 /// Deterministic: what is left out depends on the events, not on how they are split. The first
 /// event of a stream stays, and the first after its clock was reset, so that they tell whoever
-/// comes next; events from after the present support nothing. One thread at a time.
+/// comes next; events from before a reset, or from after the present, support nothing. One thread
+/// at a time.
 class NoiseFilter {
 public:
     static constexpr int kSupport = 2, kQuietSupport = 4;
     static constexpr double kHotHz = 5;
-    static constexpr SensorDuration kMaxTime{10'000'000};
+    static constexpr SensorDuration kMaxTime = NewestEvents::kLongest;
 
     /// Sensor of width x height px, which events must lie on. Throws Error (usage) for times that
     /// are not from 1 us to kMaxTime.
@@ -71,7 +73,7 @@ public:
     /// this one would have.
     struct State {
         /// [y + 1][x + 1], with a rim of one pixel; of each pixel's newest event, SensorTime::min()
-        /// where there was none
+        /// and off where there was none within kMaxTime
         std::vector<SensorTime> newest;
         std::vector<Polarity> polarity;  ///< as `newest`
         std::vector<Tile> tiles;         ///< [row][column]
@@ -87,23 +89,16 @@ public:
 
 private:
     static constexpr int kTile = 8;
-    struct Support {
-        int within = 0;  // neighbours: in within_
-        int alike = 0;   // of the event's polarity, in quiet_within_
-    };
     bool measure(const Event& event, bool hot, bool supported) noexcept;
     void begin_stream(SensorTime t) noexcept;
     bool is_quiet(const Tile& tile, double intervals) const noexcept;
     static bool is_alone(const Tile& tile) noexcept;
     void end_interval() noexcept;
     void set_noise(double hz) noexcept;
-    Support support_of(std::size_t own, const Event& event) const noexcept;
 
     NoiseFilterSettings settings_;
     HotPixels hot_pixels_;
-    std::size_t stride_;              // a rim of one pixel around the sensor never fires
-    std::vector<SensorTime> newest_;  // [y + 1][x + 1]; of each pixel
-    std::vector<Polarity> polarity_;  // [y + 1][x + 1]; of the newest
+    NewestEvents newest_;
     int tile_rows_, tile_columns_;
     double tile_pixels_;
     std::vector<Tile> tiles_;             // [row][column]

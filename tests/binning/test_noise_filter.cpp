@@ -88,6 +88,13 @@ TEST(NoiseFilter, EventsFromBeforeAClockWasResetSupportNothing) {
     EXPECT_EQ(after, (Events{at(4900, 0, 5)}));
 }
 
+/// Times of another stream that look as if they had just been.
+TEST(NoiseFilter, NorDoThoseWhoseTimesComeBeforeThem) {
+    const Events events{at(1000, 2, 2), at(1001, 3, 2), at(400'000, 0, 5), at(1500, 6, 0),
+                        at(1501, 2, 3)};
+    EXPECT_EQ(filtered(small_filter(), events), (Events{at(1000, 2, 2), at(1500, 6, 0)}));
+}
+
 TEST(NoiseFilter, DoesNotCareHowTheEventsAreSplit) {
     const Events all = random_events(5000, 20, 10, 50);
     const Events expected = filtered({20, 10, constant(1000)}, all);

@@ -1,8 +1,8 @@
 // Looking textures up: interpolation, mirrors, sizes, and the lanes under it.
 #include "src/core/error.h"
+#include "src/core/simd4.h"
 #include "src/simulate/scene/shape.h"
 #include "src/simulate/scene/textures.h"
-#include "src/simulate/sensor/simd4.h"
 
 #include <gtest/gtest.h>
 

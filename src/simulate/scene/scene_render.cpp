@@ -1,6 +1,6 @@
 // A scene's image, row by row: background, then each object over it.
+#include "src/core/simd4.h"
 #include "src/simulate/scene/scene.h"
-#include "src/simulate/sensor/simd4.h"
 
 #include <algorithm>
 #include <cmath>

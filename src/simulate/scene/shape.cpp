@@ -1,7 +1,7 @@
 // Distances to an outline in pixels, and coverage from them.
 #include "src/simulate/scene/shape.h"
 
-#include "src/simulate/sensor/simd4.h"
+#include "src/core/simd4.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "src/simulate/scene/texture.h"
 
 #include "src/core/error.h"
-#include "src/simulate/sensor/simd4.h"
+#include "src/core/simd4.h"
 
 #include <algorithm>
 #include <bit>

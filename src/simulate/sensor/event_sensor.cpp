@@ -1,7 +1,7 @@
 // Low-pass, thresholds, refractory time, leak, shot noise and hot pixels.
 #include "src/simulate/sensor/event_sensor.h"
 
-#include "src/simulate/sensor/simd4.h"
+#include "src/core/simd4.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Metering on a coarse grid, and development of whole images.
 #include "src/simulate/sensor/exposure.h"
 
-#include "src/simulate/sensor/simd4.h"
+#include "src/core/simd4.h"
 
 #include <algorithm>
 #include <cmath>

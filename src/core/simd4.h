@@ -23,6 +23,11 @@ inline F4 load(const float* p) {
     std::memcpy(&v, p, sizeof v);
     return v;
 }
+inline U4 load(const std::uint32_t* p) {
+    U4 v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+}
 inline void store(float* p, F4 v) {
     std::memcpy(p, &v, sizeof v);
 }
