@@ -19,6 +19,10 @@ eventide_status open_source(eventide_source** opened, Arguments&&... arguments) 
     return EVENTIDE_OK;
 }
 
+std::string text_or_none(const char* text) {
+    return text == nullptr ? "" : text;
+}
+
 eventide_callbacks whole_callbacks(const eventide_callbacks* callbacks) {
     return filled_in(eventide_callbacks{}, callbacks, "callbacks");
 }
@@ -41,17 +45,21 @@ extern "C" {
 
 eventide_status eventide_recording_open(const char* path, const char* format, int width, int height,
                                         eventide_source** opened) {
-    return eventide_recording_open_with(path, format, width, height, nullptr, opened);
+    const eventide_recording_options options{sizeof options, format, width, height, nullptr};
+    return eventide_recording_open_with(path, &options, nullptr, opened);
 }
 
-eventide_status eventide_recording_open_with(const char* path, const char* format, int width,
-                                             int height, const eventide_callbacks* callbacks,
+eventide_status eventide_recording_open_with(const char* path,
+                                             const eventide_recording_options* options,
+                                             const eventide_callbacks* callbacks,
                                              eventide_source** opened) {
     return c_call([&] {
         const std::string name = &given(path, "a recording");
-        ReaderOptions options{format == nullptr ? "" : format, width, height};
-        call_back(whole_callbacks(callbacks), name, options);
-        return open_source<EventReader>(opened, name, options);
+        const auto whole = filled_in(eventide_recording_options{}, options, "recording options");
+        ReaderOptions chosen{text_or_none(whole.format), whole.width, whole.height};
+        chosen.stream = text_or_none(whole.stream);
+        call_back(whole_callbacks(callbacks), name, chosen);
+        return open_source<EventReader>(opened, name, chosen);
     });
 }
 

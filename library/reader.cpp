@@ -24,6 +24,7 @@ OpenOptions open_options(const ReaderOptions& options) {
                         std::to_string(options.width) + "x" + std::to_string(options.height));
     OpenOptions open;
     open.format = options.format;
+    open.stream = options.stream;
     open.width = options.width;
     open.height = options.height;
     open.while_waiting = options.while_waiting;

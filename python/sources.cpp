@@ -138,13 +138,14 @@ void add_reader(py::module_& module) {
         "A recording; iterate it for structured arrays (t, x, y, on). What had to "
         "be guessed is logged, too, as warnings of the logger \"eventide\".")
         .def(py::init([](const std::filesystem::path& path, std::string format, int width,
-                         int height) {
+                         int height, std::string stream) {
                  const py::gil_scoped_release released;
                  return std::make_unique<Source<EventReader>>(
-                     path.string(),
-                     ReaderOptions{std::move(format), width, height, hear_signals, log_warning});
+                     path.string(), ReaderOptions{std::move(format), width, height, hear_signals,
+                                                  log_warning, std::move(stream)});
              }),
-             py::arg("path"), py::arg("format") = "", py::arg("width") = 0, py::arg("height") = 0)
+             py::arg("path"), py::arg("format") = "", py::arg("width") = 0, py::arg("height") = 0,
+             py::arg("stream") = "")
         .def_property_readonly(
             "remarks", [](Source<EventReader>& s) { return s.it.remarks(); },
             "what had to be guessed: sentences")

@@ -78,20 +78,35 @@ OpenedStream open_aedat2(Bytes first_bytes, const OpenOptions& options) {
 /// Of AEDAT 3 and 4: images come after the events around them.
 constexpr SensorDuration kLatestPacket{500'000};
 
-OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions&) {
-    const Aedat3Header header = read_aedat3_header(first_bytes);
+OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions& options) {
+    const Aedat3Header header = read_aedat3_header(first_bytes, options.stream);
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat3Parser>(header, stream.width, stream.height);
     };
     std::vector<std::string> remarks;
     for (const Aedat3Source& other : header.others)
-        remarks.push_back("source " + std::to_string(other.number) + " (" + other.name +
-                          ") is left out: of several sources the first is read");
+        remarks.push_back("the events of source " + std::to_string(other.number) + " (" +
+                          other.name + ") are left out, those of source " +
+                          std::to_string(*header.source) + " are read; " +
+                          reads_stream(std::to_string(other.number)));
     return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}, remarks};
 }
 
-OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
-    const Aedat4Header header = read_aedat4_header(first_bytes);
+/// Which event streams are not read.
+std::vector<std::string> other_streams(const Aedat4Header& header) {
+    const auto read = header.chosen[std::size_t(Aedat4Kind::events)];
+    std::vector<std::string> remarks;
+    for (const Aedat4Stream& stream : header.streams)
+        if (stream.identifier == identifier_of(Aedat4Kind::events) && stream.id != read)
+            remarks.push_back("the events of stream " + std::to_string(stream.id) + " (" +
+                              stream.source + ") are left out, those of stream " +
+                              std::to_string(*read) + " are read; " +
+                              reads_stream(std::to_string(stream.id)));
+    return remarks;
+}
+
+OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions& options) {
+    const Aedat4Header header = read_aedat4_header(first_bytes, options.stream);
     const auto make_parser = [header](const StreamHeader& stream) {
         return std::make_unique<Aedat4Parser>(header, stream.width, stream.height);
     };
@@ -101,7 +116,8 @@ OpenedStream open_aedat4(Bytes first_bytes, const OpenOptions&) {
         };
         return find_in_aedat4_table(header, read_at, t);
     };
-    return {header.stream, make_parser, {1, nullptr, look_up, kLatestPacket}};
+    return {
+        header.stream, make_parser, {1, nullptr, look_up, kLatestPacket}, other_streams(header)};
 }
 
 template <const char* kName>
@@ -188,15 +204,20 @@ constexpr FormatHolds kAedat4Holds{
     .imu = true,
     .triggers = true,
     .trigger = [](const Trigger& t) { return aedat4_trigger_number(t) >= 0; },
-    .clock_resets = true};
+    .clock_resets = true,
+    .streams = true};
+constexpr FormatHolds with_streams(FormatHolds holds) {
+    holds.streams = true;
+    return holds;
+}
 constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds, true};
 
 // Formats that say what they are come first, text last.
 const std::array kFormats{
     Format{"aedat4", "AEDAT 4", ".aedat4", kAedat4Holds, has_magic<kAedat4FirstLine>, open_aedat4,
            make<Aedat4Writer>},
-    Format{"aedat3", "AEDAT 3.1", ".aedat", kEverything, has_magic<kAedat3Magic>, open_aedat3,
-           make<Aedat3Writer>},
+    Format{"aedat3", "AEDAT 3.1", ".aedat", with_streams(kEverything), has_magic<kAedat3Magic>,
+           open_aedat3, make<Aedat3Writer>},
     Format{"aedat2", "AEDAT 2.0", ".aedat2", kEverything, has_magic<kAedat2Magic>, open_aedat2,
            nullptr},
     Format{"evt3", "Prophesee RAW EVT3", ".raw", kEvt3Holds, is_evt<kEvt3>, open_evt3,
@@ -205,19 +226,19 @@ const std::array kFormats{
            nullptr},
     Format{"evt21", "Prophesee RAW EVT2.1", ".raw", kEventsAndTriggers, is_evt<kEvt21>, open_evt21,
            nullptr},
-    Format{"hdf5", "HDF5", ".h5", kEventsAndImages, has_magic<kHdf5Magic>, nullptr, nullptr,
-           open_hdf5, make_hdf5_writer},
+    Format{"hdf5", "HDF5", ".h5", with_streams(kEventsAndImages), has_magic<kHdf5Magic>, nullptr,
+           nullptr, open_hdf5, make_hdf5_writer},
     Format{"es", "Event Stream", ".es", kOnlyEvents, is_event_stream, open_event_stream, nullptr},
     Format{"npy", "NumPy array", ".npy", kOnlyEvents, has_magic<kNpyMagic>, nullptr, nullptr,
            open_npy},
     Format{"npz", "NumPy arrays", ".npz", kOnlyEvents, has_magic<kNpzMagic>, nullptr, nullptr,
            open_npz},
-    Format{"rosbag", "ROS 1 bag", ".bag", kEverything, has_magic<kBagMagic>, nullptr, nullptr,
-           open_bag},
-    Format{"mcap", "ROS 2 bag (MCAP)", ".mcap", kEverything, has_magic<kMcapMagic>, nullptr,
-           nullptr, open_mcap},
-    Format{"db3", "ROS 2 bag (SQLite)", ".db3", kEverything, has_magic<kSqliteMagic>, nullptr,
-           nullptr, open_db3},
+    Format{"rosbag", "ROS 1 bag", ".bag", with_streams(kEverything), has_magic<kBagMagic>, nullptr,
+           nullptr, open_bag},
+    Format{"mcap", "ROS 2 bag (MCAP)", ".mcap", with_streams(kEverything), has_magic<kMcapMagic>,
+           nullptr, nullptr, open_mcap},
+    Format{"db3", "ROS 2 bag (SQLite)", ".db3", with_streams(kEverything), has_magic<kSqliteMagic>,
+           nullptr, nullptr, open_db3},
     Format{"dat", "Prophesee DAT", ".dat", kEventsAndTriggers, is_dat, open_dat, nullptr},
     Format{"aedat1", "AEDAT 1.0", ".dat", kOnlyEvents, looks_like_aedat1, open_aedat1, nullptr},
     Format{"text", "lines of \"t x y p\"", ".txt", kOnlyEvents, looks_like_text, open_text,

@@ -26,6 +26,8 @@ struct FormatHolds {
     bool in_time_order = false;
     /// Events may step back where the sensor's clock began anew: its readers see a new stream.
     bool clock_resets = false;
+    /// Of several cameras, where it is read (OpenOptions::stream).
+    bool streams = false;
 };
 
 struct DataCounts {

@@ -13,9 +13,18 @@ namespace eventide {
 inline constexpr const char* kStateSize =
     "state it with --input-size WIDTHxHEIGHT (the options width and height of the library)";
 
+/// How another event stream than the first is read.
+inline std::string reads_stream(const std::string& stream) {
+    return "--input-stream " + stream + " (the option stream of the library) reads those";
+}
+
 struct OpenOptions {
     std::string format{};       ///< a name from all_formats(); empty: found from the content
     int width = 0, height = 0;  ///< px; 0: what the recording says. Both or neither
+    /// Of a recording with events of several cameras, whose are read, as remarks() of the recording
+    /// name them: the topic of a bag; "davis/right" of an HDF5 file; the number of a source of
+    /// AEDAT 3, or of a stream of AEDAT 4. Empty: the first.
+    std::string stream{};
     TextOptions text{};
     /// Documents disagree on bit 0 of DVS128 addresses: jAER, which wrote most files, reads 0 as
     /// on; the vendor's text says 1. Used by AEDAT 1.0 and 2.0.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -31,6 +32,17 @@ bool has_seen_rows(std::span<const std::byte> text) {
         rest.remove_prefix(end + 1);
     }
     return lines >= kLinesOfStreamToSee;
+}
+
+/// Most formats hold the events of one camera.
+void check_stream(const ByteFile& file, const Format& format, const OpenOptions& options) {
+    if (options.stream.empty() || format.holds.streams) return;
+    std::string names;
+    for (const Format& each : all_formats())
+        if (each.holds.streams) names += (names.empty() ? "" : ", ") + std::string(each.name);
+    throw Error(ErrorKind::usage, file.path() + ": expected a format with several event streams (" +
+                                      names + ") for the stream '" + options.stream + "', found " +
+                                      std::string(format.title));
 }
 
 /// The beginning of the file. Of a pipe only as much as it takes to know the format.
@@ -64,6 +76,7 @@ const Format& choose_format(const ByteFile& file, std::span<const std::byte> hea
     const Format* format = !options.format.empty() ? find_format(options.format)
                            : foreign.empty()       ? detect_format(head)
                                                    : nullptr;
+    if (format) check_stream(file, *format, options);
     if (format) return *format;
     std::string names;
     for (const Format& each : all_formats())
@@ -134,7 +147,8 @@ std::unique_ptr<FileRecording> open_as_stream(ByteFile file, std::vector<std::by
                                               ImageSize of_images = {}) {
     OpenedStream stream = open_stream(file, format, head, options);
     if (file.is_seekable() && stream.header.format == "aedat4")
-        stream.remarks = compare_aedat4_streams(file, read_aedat4_header(head));
+        std::ranges::move(compare_aedat4_streams(file, read_aedat4_header(head)),
+                          std::back_inserter(stream.remarks));
     complete_geometry(file, stream, options, of_images);
     const std::size_t header_bytes = std::min<std::size_t>(stream.header.data_offset, head.size());
     head.erase(head.begin(), head.begin() + std::ptrdiff_t(header_bytes));

@@ -235,9 +235,20 @@ typedef struct eventide_callbacks {
     void (*warn)(void* context, const char* text);
 } eventide_callbacks;
 
-/** eventide_recording_open() with callbacks, which are copied; NULL: none. */
-EVENTIDE_API eventide_status eventide_recording_open_with(const char* path, const char* format,
-                                                          int width, int height,
+/** What a recording's bytes do not say, or say wrongly; 0 and NULL: what they do. */
+typedef struct eventide_recording_options {
+    size_t struct_size; /**< sizeof(eventide_recording_options) */
+    const char* format; /**< "aedat4", "evt3", "text", ...; NULL: found from the content */
+    int width, height;  /**< px, of the sensor; both or neither */
+    /** Of a recording with events of several cameras, whose are read, as eventide_callbacks.warn is
+     * told their names: the topic of a bag, "davis/right" of an HDF5 file, the number of a source
+     * of AEDAT 3 or of a stream of AEDAT 4. NULL: the first. */
+    const char* stream;
+} eventide_recording_options;
+
+/** Options may be NULL. Callbacks are copied; NULL: none. */
+EVENTIDE_API eventide_status eventide_recording_open_with(const char* path,
+                                                          const eventide_recording_options* options,
                                                           const eventide_callbacks* callbacks,
                                                           eventide_source** opened);
 /** eventide_camera_open() with callbacks, which are copied; NULL: none. */

@@ -27,6 +27,10 @@ struct ReaderOptions {
     /// Told each of remarks(), behind the path, by the constructor, out of which comes what it
     /// throws. May be empty.
     std::function<void(const std::string&)> warn{};
+    /// Of a recording with events of several cameras, whose are read, as remarks() name them: the
+    /// topic of a bag; "davis/right" of an HDF5 file; the number of a source of AEDAT 3, or of a
+    /// stream of AEDAT 4. Empty: the first.
+    std::string stream{};
 };
 
 /// AEDAT 1 to 4, Prophesee RAW (EVT2, EVT2.1, EVT3) and DAT, HDF5 (of DSEC, MVSEC, M3ED, Prophesee,
@@ -36,7 +40,8 @@ struct ReaderOptions {
 class EVENTIDE_API EventReader final : public EventSource {
 public:
     /// "-" is standard input. Throws Error: input naming the path, what was expected and what was
-    /// found; usage for the name of a camera and for options that make no sense.
+    /// found; usage for the name of a camera, for options that make no sense and for
+    /// a stream that is not there.
     explicit EventReader(const std::string& path, const ReaderOptions& options = {});
     ~EventReader() override;
     EventReader(EventReader&&) noexcept;             ///< leaves the other empty

@@ -61,13 +61,15 @@ def _filtered(source, filters):
     return source
 
 
-def open(path, format="", width=0, height=0, filters=()):
+def open(path, format="", width=0, height=0, filters=(), stream=""):
     """Open a recording, in any format that eventide reads; iterate it for arrays of events.
 
-    format, width and height are for what its bytes do not say. filters, as ["flicker"], are those
-    of eventide run --filter, one behind the other. Raises InputError, or UsageError for a filter.
+    format, width and height are for what its bytes do not say; stream chooses, of a recording with
+    events of several cameras, whose are read, as the warnings name them. filters, as ["flicker"],
+    are those of eventide run --filter, one behind the other. Raises InputError, or UsageError for
+    a stream or a filter.
     """
-    return _filtered(Reader(path, format, width, height), filters)
+    return _filtered(Reader(path, format, width, height, stream), filters)
 
 
 def open_camera(name, settings="", filters=(), reconnect=False):

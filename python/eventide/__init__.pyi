@@ -91,7 +91,9 @@ class Reconstructor:
     def restore_state(self, file: _Path) -> None: ...
 
 class Reader:
-    def __init__(self, path: _Path, format: str = "", width: int = 0, height: int = 0) -> None: ...
+    def __init__(
+        self, path: _Path, format: str = "", width: int = 0, height: int = 0, stream: str = ""
+    ) -> None: ...
     @property
     def width(self) -> int: ...
     @property
@@ -177,6 +179,7 @@ def open(
     width: int = 0,
     height: int = 0,
     filters: Union[str, Sequence[str]] = (),
+    stream: str = "",
 ) -> Reader: ...
 def open_camera(
     name: str,

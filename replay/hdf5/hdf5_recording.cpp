@@ -42,12 +42,35 @@ struct Layout {
     std::vector<std::string> remarks{};
 };
 
-/// Of two cameras the left one is read. `events`: what tells that there is a right one.
-void name_right_camera(const Hdf5File& file, const std::string& cameras, const std::string& events,
-                       Layout& layout) {
-    if (file.has(cameras + "/right/" + events))
-        layout.remarks.push_back("the events of " + cameras + "/right are left out, those of " +
-                                 cameras + "/left are read");
+[[noreturn]] void refuse_stream(const Hdf5File& file, const std::string& wanted,
+                                const std::vector<std::string>& found) {
+    std::string names;
+    for (const std::string& name : found) names += (names.empty() ? "" : ", ") + name;
+    throw Error(ErrorKind::usage,
+                file.path() + ": expected the events of '" + wanted + "', found those of " + names);
+}
+
+/// A layout for the events of two cameras, "davis/left" and "davis/right".
+struct Pair {
+    std::string cameras;  ///< "davis"
+    std::string told_by;  ///< what there is of a camera with events
+};
+
+/// The one wanted, or the left one where both are there; a remark names the other one.
+std::string choose_camera(const Hdf5File& file, const Pair& pair, const std::string& wanted,
+                          std::vector<std::string>& remarks) {
+    std::vector<std::string> found;
+    for (const char* side : {"/left", "/right"})
+        if (const std::string camera = pair.cameras + side; file.has(camera + pair.told_by))
+            found.push_back(camera);
+    if (!wanted.empty() && std::ranges::find(found, wanted) == found.end())
+        refuse_stream(file, wanted, found);
+    const std::string chosen = wanted.empty() ? found.front() : wanted;
+    for (const std::string& camera : found)
+        if (camera != chosen)
+            remarks.push_back("the events of " + camera + " are left out, those of " + chosen +
+                              " are read; " + reads_stream(camera));
+    return chosen;
 }
 
 bool is_side(double side) {
@@ -82,32 +105,33 @@ std::int64_t offset_of(const Hdf5File& file) {
     data.refuse("microseconds", "no number");
 }
 
-Layout open_mvsec(const Hdf5File& file) {
+Layout open_mvsec(const Hdf5File& file, const std::string& stream) {
     Layout layout;
     layout.header.sensor_name = "DAVIS346";
-    layout.events = open_hdf5_matrix(file, "davis/left/events");
-    name_right_camera(file, "davis", "events", layout);
-    if (file.has("davis/left/image_raw")) {
-        layout.images = open_hdf5_stack(file, "davis/left/image_raw", "davis/left/image_raw_ts");
-        const Hdf5Size size = size_of_images(file.data("davis/left/image_raw"), 1);
+    const std::string camera =
+        choose_camera(file, {"davis", "/events"}, stream, layout.remarks) + "/";
+    layout.events = open_hdf5_matrix(file, camera + "events");
+    if (const std::string images = camera + "image_raw"; file.has(images)) {
+        layout.images = open_hdf5_stack(file, images, images + "_ts");
+        const Hdf5Size size = size_of_images(file.data(images), 1);
         set_size(layout.header, size.width, size.height);
     }
     set_size(layout.header, 346, 260);
     return layout;
 }
 
-Layout open_m3ed(const Hdf5File& file) {
+Layout open_m3ed(const Hdf5File& file, const std::string& stream) {
     Layout layout;
-    const std::string camera = "prophesee/left/";
+    const std::string camera =
+        choose_camera(file, {"prophesee", "/t"}, stream, layout.remarks) + "/";
     layout.events = open_hdf5_columns(
         file, {camera + "x", camera + "y", camera + "t", camera + "p", "", camera + "ms_map_idx"});
-    name_right_camera(file, "prophesee", "t", layout);
     if (const std::string name = camera + "calib/resolution"; file.has(name))
         read_size(file.data(name), layout.header);
     return layout;
 }
 
-Layout open_dsec(const Hdf5File& file) {
+Layout open_dsec(const Hdf5File& file, const std::string&) {
     Layout layout;
     const std::string index = file.has("ms_to_idx") ? "ms_to_idx" : "events/ms_to_idx";
     layout.events = open_hdf5_columns(
@@ -116,7 +140,7 @@ Layout open_dsec(const Hdf5File& file) {
     return layout;
 }
 
-Layout open_event_utils(const Hdf5File& file) {
+Layout open_event_utils(const Hdf5File& file, const std::string&) {
     Layout layout;
     layout.events =
         open_hdf5_columns(file, {"events/xs", "events/ys", "events/ts", "events/ps", "", "", 0});
@@ -124,13 +148,13 @@ Layout open_event_utils(const Hdf5File& file) {
     return layout;
 }
 
-Layout open_prophesee(const Hdf5File& file) {
+Layout open_prophesee(const Hdf5File& file, const std::string&) {
     Layout layout;
     layout.events = open_hdf5_columns(file, {"x", "y", "t", "p", "CD/events", "", 0});
     return layout;
 }
 
-Layout open_e2calib(const Hdf5File& file) {
+Layout open_e2calib(const Hdf5File& file, const std::string&) {
     Layout layout;
     layout.events = open_hdf5_columns(file, {"x", "y", "t", "p", "", "", 0});
     return layout;
@@ -138,19 +162,28 @@ Layout open_e2calib(const Hdf5File& file) {
 
 struct KnownLayout {
     const char* told_by;
-    Layout (*open)(const Hdf5File&);
+    Layout (*open)(const Hdf5File&, const std::string& stream);
+    bool has_pair = false;  ///< may hold the events of two cameras
 };
 
 /// In the order in which they are tried.
 constexpr KnownLayout kLayouts[]{
-    {"davis/left/events", open_mvsec}, {"prophesee/left/t", open_m3ed},
-    {"CD/events", open_prophesee},     {"events/xs", open_event_utils},
-    {"events/x", open_dsec},           {"x", open_e2calib},
+    {"davis/left/events", open_mvsec, true},
+    {"davis/right/events", open_mvsec, true},
+    {"prophesee/left/t", open_m3ed, true},
+    {"prophesee/right/t", open_m3ed, true},
+    {"CD/events", open_prophesee},
+    {"events/xs", open_event_utils},
+    {"events/x", open_dsec},
+    {"x", open_e2calib},
 };
 
-Layout open_layout(const Hdf5File& file) {
-    for (const KnownLayout& layout : kLayouts)
-        if (file.has(layout.told_by)) return layout.open(file);
+Layout open_layout(const Hdf5File& file, const std::string& stream) {
+    for (const KnownLayout& layout : kLayouts) {
+        if (!file.has(layout.told_by)) continue;
+        if (!stream.empty() && !layout.has_pair) refuse_stream(file, stream, {layout.told_by});
+        return layout.open(file, stream);
+    }
     std::string expected, found;
     for (const KnownLayout& layout : kLayouts)
         expected += (expected.empty() ? "" : ", ") + std::string(layout.told_by);
@@ -163,7 +196,7 @@ Layout open_layout(const Hdf5File& file) {
 
 std::unique_ptr<DataReader> open_hdf5(const std::string& path, const OpenOptions& options) {
     auto file = std::make_unique<Hdf5File>(path);
-    Layout layout = open_layout(*file);
+    Layout layout = open_layout(*file, options.stream);
     layout.header.format = "hdf5";
     if (layout.header.sensor_name.empty())
         layout.header.sensor_name = file->text_attribute("/", "sensor_name");

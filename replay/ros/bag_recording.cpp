@@ -13,7 +13,9 @@ namespace {
 class BagReader final : public RosReader {
 public:
     BagReader(const std::string& path, const OpenOptions& options)
-        : RosReader(path, RosWire::ros1), records_(path), begin_(records_.position()) {
+        : RosReader(path, RosWire::ros1, options.stream),
+          records_(path),
+          begin_(records_.position()) {
         open("rosbag", options);
     }
 

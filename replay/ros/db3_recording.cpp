@@ -69,7 +69,7 @@ std::string address_of(const std::string& path) {
 class Db3Reader final : public RosReader {
 public:
     Db3Reader(const std::string& path, const OpenOptions& options)
-        : RosReader(path, RosWire::cdr), file_(open_file(path)) {
+        : RosReader(path, RosWire::cdr, options.stream), file_(open_file(path)) {
         const Rows topics = prepare("select id, name, type, serialization_format from topics");
         while (sqlite().step(topics.get()) == SQLITE_ROW)
             if (text(topics, 3) == "cdr")

@@ -23,7 +23,7 @@ enum Kind : std::uint8_t { footer = 2, schema = 3, channel = 4, message = 5, chu
 class McapReader final : public RosReader {
 public:
     McapReader(const std::string& path, const OpenOptions& options)
-        : RosReader(path, RosWire::cdr), file_(path) {
+        : RosReader(path, RosWire::cdr, options.stream), file_(path) {
         open("mcap", options);
     }
 

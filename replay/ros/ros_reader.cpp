@@ -17,11 +17,17 @@ bool has_events(RosKind kind) {
     return kind == RosKind::events || kind == RosKind::packets;
 }
 
+/// "/davis/left" of "/davis/left/events".
+std::string_view namespace_of(std::string_view topic) {
+    return topic.substr(0, std::min(topic.rfind('/'), topic.size()));
+}
+
 }  // namespace
 
 void RosReader::open(std::string_view format, const OpenOptions& options) {
     Damage damage;
     look_for_sizes(damage);
+    if (!wanted_.empty() && data_.width() == 0) refuse_topic();
     while (data_.width() == 0 && choose_other_events()) {
         begin_anew();
         look_for_sizes(damage);
@@ -108,7 +114,8 @@ void RosReader::add_topic(std::uint32_t number, std::string_view name, std::stri
     topics_[number] = {std::string(name), kind};
     types_.insert(std::string(type));
     if (kind == RosKind::images && !images_ && !images_refused_) images_ = number;
-    if (has_events(kind) && !events_) events_ = number;
+    const bool is_wanted = wanted_.empty() || wanted_ == name;
+    if (has_events(kind) && is_wanted && !events_) events_ = number;
 }
 
 void RosReader::add_message(std::uint32_t number, std::span<const std::byte> bytes) {
@@ -140,18 +147,46 @@ void RosReader::refuse(const Damage& damage) const {
                     (types.empty() ? "none" : types) + (damage.total() > 0 ? ", and damage" : ""));
 }
 
-/// The first of the events' size; else the first that did not tell its own.
+void RosReader::refuse_topic() const {
+    std::set<std::string> names;
+    for (const auto& [number, topic] : topics_)
+        if (has_events(topic.kind) && topic.has_messages) names.insert(topic.name);
+    std::string found;
+    for (const std::string& name : names) found += (found.empty() ? "" : ", ") + name;
+    throw Error(ErrorKind::usage, path_ + ": expected events of the topic '" + wanted_ +
+                                      "' that can be read, found " +
+                                      (found.empty() ? "none" : "events of " + found));
+}
+
+/// Images in the namespace of events that are not read: of a stereo pair the other one's.
+bool RosReader::is_of_other_camera(const Topic& images) const {
+    const std::string_view name = namespace_of(images.name);
+    const auto has_events_there = [&](const auto& each) {
+        return has_events(each.second.kind) && namespace_of(each.second.name) == name;
+    };
+    return name != namespace_of(topics_.at(*events_).name) &&
+           std::ranges::any_of(topics_, has_events_there);
+}
+
+/// The first of the events' size, in their namespace if there is one; else the first that did not
+/// tell its own.
 void RosReader::choose_images() {
-    if (!images_ || has_size_of_events(topics_[*images_])) return;
+    if (!images_) return;
     const auto choose = [&](auto&& is_wanted) {
         const auto found = std::ranges::find_if(topics_, [&](const auto& each) {
-            return each.second.kind == RosKind::images && is_wanted(each.second);
+            return each.second.kind == RosKind::images && !is_of_other_camera(each.second) &&
+                   is_wanted(each.second);
         });
         if (found != topics_.end()) images_ = found->first;
         return found != topics_.end();
     };
-    if (choose([&](const Topic& topic) { return has_size_of_events(topic); })) return;
-    if (!topics_[*images_].size || choose([](const Topic& topic) { return !topic.size; })) return;
+    const std::string_view camera = namespace_of(topics_.at(*events_).name);
+    if (choose([&](const Topic& topic) {
+            return has_size_of_events(topic) && namespace_of(topic.name) == camera;
+        }) ||
+        choose([&](const Topic& topic) { return has_size_of_events(topic); }) ||
+        choose([](const Topic& topic) { return !topic.size; }))
+        return;
     images_.reset();
     images_refused_ = true;
 }
@@ -171,9 +206,12 @@ void RosReader::name_other_topics() {
                                size_text(topic.size->width, topic.size->height) +
                                " px, the events' sensor has " +
                                size_text(data_.width(), data_.height()));
+        else if (images && !images_)
+            remarks_.push_back(what + " are left out: they are of another camera");
         else
             remarks_.push_back(what + " are left out, those of " +
-                               topics_[images ? *images_ : *events_].name + " are read");
+                               topics_[images ? *images_ : *events_].name + " are read" +
+                               (images ? "" : "; " + reads_stream(topic.name)));
     }
 }
 

@@ -19,8 +19,9 @@
 namespace eventide {
 
 /// Reads the first topic with events (dvs_msgs/EventArray, prophesee_event_msgs/EventArray,
-/// event_camera_msgs/EventPacket) that can be read, and the first with images (sensor_msgs/Image)
-/// of the events' size; remarks name what is left out.
+/// event_camera_msgs/EventPacket) that can be read, or OpenOptions::stream, and the first with
+/// images (sensor_msgs/Image) of the events' size, of the same namespace if there is one; remarks
+/// name what is left out.
 class RosReader : public DataReader {
 public:
     const StreamHeader& header() const override { return header_; }
@@ -37,10 +38,12 @@ protected:
         std::vector<std::byte> bytes;
     };
 
-    RosReader(std::string path, RosWire wire) : path_(std::move(path)), data_(wire) {}
+    RosReader(std::string path, RosWire wire, std::string wanted)
+        : path_(std::move(path)), data_(wire), wanted_(std::move(wanted)) {}
 
     /// Reads until the sizes of events and images are known, and goes back. Of who derives, at the
-    /// end of its constructor. Throws Error (input) where there are no events.
+    /// end of its constructor. Throws Error: input where there are no events, usage where there are
+    /// none of the topic wanted.
     void open(std::string_view format, const OpenOptions& options);
 
     /// The next part of the bag, for add_topic() and add_message(). False at the end, also where
@@ -71,11 +74,14 @@ private:
     bool choose_other_events();
     bool has_all_sizes() const;
     bool has_size_of_events(const Topic& topic) const;
+    bool is_of_other_camera(const Topic& topic) const;
     void choose_images();
     bool is_read(std::uint32_t number) const;
     [[noreturn]] void refuse(const Damage& damage) const;
+    [[noreturn]] void refuse_topic() const;
     void name_other_topics();
 
+    const std::string wanted_;  // topic with events; empty: the first
     StreamHeader header_;
     std::vector<std::string> remarks_;
     std::map<std::uint32_t, Topic> topics_;  // by number, or connection

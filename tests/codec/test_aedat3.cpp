@@ -162,5 +162,17 @@ TEST(Aedat3, HeadersAreChecked) {
     EXPECT_EQ(two.others[0].name, "DVS128");
 }
 
+TEST(Aedat3, OfTwoSourcesTheOneThatIsWantedIsRead) {
+    const Bytes two = to_bytes("#!AER-DAT3.1\r\n#Source 1: DAVIS346\r\n#Source 2: DVS128\r\n");
+    const Aedat3Header header = read_aedat3_header(two, "2");
+    EXPECT_EQ(header.source, 2);
+    EXPECT_EQ(header.stream.sensor_name, "DVS128");
+    EXPECT_EQ(header.stream.width, 128);
+    ASSERT_EQ(header.others.size(), 1U);
+    EXPECT_EQ(header.others[0].number, 1);
+    EXPECT_THROW(read_aedat3_header(two, "3"), Error);
+    EXPECT_THROW(read_aedat3_header(to_bytes("#!AER-DAT3.1\r\n"), "1"), Error);
+}
+
 }  // namespace
 }  // namespace eventide::aedat3

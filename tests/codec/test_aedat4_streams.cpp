@@ -1,5 +1,6 @@
 // AEDAT4: which of a file's streams are read.
 #include "src/codec/aedat4/aedat4_flat_writer.h"
+#include "src/core/error.h"
 #include "tests/codec/aedat4_files.h"
 
 #include <gtest/gtest.h>
@@ -69,18 +70,22 @@ Batch events_and_an_image(unsigned seed, std::int64_t first_us) {
     return batch;
 }
 
+/// Of a DAVIS240, whose events are stream 3, and a DVXplorer, whose events are stream 7.
+Bytes two_cameras(const Batch& a, const Batch& b) {
+    return header_of(stream(0, "FRME", "DVXplorer_B_7", size(640, 480)) +
+                     stream(1, "IMUS", "DVXplorer_B_7") + stream(2, "TRIG", "DVXplorer_B_7") +
+                     stream(3, "EVTS", "DAVIS240C_A_5",
+                            size(240, 180) + "<node name=\"deeper\">" + size(9, 9) + "</node>") +
+                     stream(4, "FRME", "DAVIS240C_A_5",
+                            "<attr key=\"colorFilter\">2</attr>" + size(240, 180)) +
+                     stream(5, "IMUS", "DAVIS240C_A_5") + stream(6, "TRIG", "DAVIS240C_A_5") +
+                     stream(7, "EVTS", "DVXplorer_B_7", size(640, 480))) +
+           packets(b, {7, 0, 1, 2}) + packets(a, {3, 4, 5, 6});
+}
+
 TEST(Aedat4Streams, OfTwoCamerasTheOneOfTheFirstEventsIsRead) {
     const Batch a = events_and_an_image(1, 1'000'000), b = events_and_an_image(2, 1'000'500);
-    const Bytes file =
-        header_of(stream(0, "FRME", "DVXplorer_B_7", size(640, 480)) +
-                  stream(1, "IMUS", "DVXplorer_B_7") + stream(2, "TRIG", "DVXplorer_B_7") +
-                  stream(3, "EVTS", "DAVIS240C_A_5",
-                         size(240, 180) + "<node name=\"deeper\">" + size(9, 9) + "</node>") +
-                  stream(4, "FRME", "DAVIS240C_A_5",
-                         "<attr key=\"colorFilter\">2</attr>" + size(240, 180)) +
-                  stream(5, "IMUS", "DAVIS240C_A_5") + stream(6, "TRIG", "DAVIS240C_A_5") +
-                  stream(7, "EVTS", "DVXplorer_B_7", size(640, 480))) +
-        packets(b, {7, 0, 1, 2}) + packets(a, {3, 4, 5, 6});
+    const Bytes file = two_cameras(a, b);
     const Aedat4Header header = read_aedat4_header(file);
     EXPECT_EQ(header.stream.sensor_name, "DAVIS240C_A");
     EXPECT_EQ(header.stream.serial, "5");
@@ -93,6 +98,32 @@ TEST(Aedat4Streams, OfTwoCamerasTheOneOfTheFirstEventsIsRead) {
     EXPECT_TRUE(parsed.data.images == a.images);
     EXPECT_TRUE(parsed.data.imu == a.imu);
     EXPECT_TRUE(parsed.data.triggers == a.triggers);
+}
+
+TEST(Aedat4Streams, OfTwoCamerasTheOneThatIsWantedIsRead) {
+    const Batch a = events_and_an_image(1, 1'000'000), b = events_and_an_image(2, 1'000'500);
+    const Bytes file = two_cameras(a, b);
+    const Aedat4Header header = read_aedat4_header(file, "7");
+    EXPECT_EQ(header.stream.sensor_name, "DVXplorer_B");
+    EXPECT_EQ(header.stream.width, 640);
+    const Parsed parsed =
+        parse_whole([&] { return std::make_unique<Aedat4Parser>(header, 640, 480); },
+                    std::span(file).subspan(header.stream.data_offset));
+    EXPECT_TRUE(parsed.data.events == b.events);
+    EXPECT_TRUE(parsed.data.images == b.images);
+    EXPECT_TRUE(parsed.data.imu == b.imu);
+    EXPECT_TRUE(parsed.data.triggers == b.triggers);
+    for (const char* none : {"4", "8", "07", "DAVIS240C_A_5"}) {
+        try {
+            read_aedat4_header(file, none);
+            FAIL() << none;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_EQ(std::string(error.what()),
+                      "AEDAT4 header: expected an event stream " + std::string(none) +
+                          ", found 3 (DAVIS240C_A_5), 7 (DVXplorer_B_7)");
+        }
+    }
 }
 
 TEST(Aedat4Streams, WhereTheHeaderNamesNoneTheFirstOfEachKindIsRead) {

@@ -287,8 +287,9 @@ TEST_F(CInterface, WarnsOfWhatHadToBeGuessed) {
     eventide_callbacks callbacks{sizeof callbacks, &warnings, nullptr, keep};
     const auto open_log = [&](int width, int height) {
         eventide_source* source = nullptr;
-        const eventide_status status = eventide_recording_open_with(
-            (temp_ / "log.txt").c_str(), nullptr, width, height, &callbacks, &source);
+        const eventide_recording_options options{sizeof options, nullptr, width, height, nullptr};
+        const eventide_status status = eventide_recording_open_with((temp_ / "log.txt").c_str(),
+                                                                    &options, &callbacks, &source);
         eventide_source_close(source);
         return status;
     };
@@ -312,11 +313,29 @@ TEST_F(CInterface, APipeThatSaysNothingCanBeGivenUp) {
     const auto at_once = [](void*) { return 1; };
     const eventide_callbacks callbacks{sizeof callbacks, nullptr, at_once, nullptr};
     eventide_source* source = nullptr;
-    EXPECT_EQ(eventide_recording_open_with(pipe.c_str(), nullptr, 0, 0, &callbacks, &source),
+    EXPECT_EQ(eventide_recording_open_with(pipe.c_str(), nullptr, &callbacks, &source),
               EVENTIDE_FAILED);
     EXPECT_TRUE(said("pipe: given up while it was waited for")) << eventide_error_message();
     EXPECT_EQ(source, nullptr);
     ::close(writer);
+}
+
+TEST_F(CInterface, OfARecordingOfSeveralCamerasOneIsChosen) {
+    eventide_source* source = nullptr;
+    eventide_recording_options options{sizeof options, nullptr, 0, 0, "0"};
+    ASSERT_EQ(eventide_recording_open_with(recording().c_str(), &options, nullptr, &source),
+              EVENTIDE_OK)
+        << eventide_error_message();
+    eventide_source_close(source);
+    options.stream = "7";
+    EXPECT_EQ(eventide_recording_open_with(recording().c_str(), &options, nullptr, &source),
+              EVENTIDE_USAGE);
+    EXPECT_TRUE(said("expected an event stream 7, found 0 (")) << eventide_error_message();
+    options.struct_size = sizeof options + 1;
+    EXPECT_EQ(eventide_recording_open_with(recording().c_str(), &options, nullptr, &source),
+              EVENTIDE_USAGE);
+    EXPECT_TRUE(said("recording options: expected a struct_size of at most"))
+        << eventide_error_message();
 }
 
 TEST_F(CInterface, ACameraIsNoRecording) {

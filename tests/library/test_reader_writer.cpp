@@ -56,6 +56,23 @@ TEST_F(Recordings, TellTheirSensorTheirTimesAndTheirImages) {
     EXPECT_EQ(span->end, events.back().t);
 }
 
+TEST_F(Recordings, OfSeveralCamerasGiveTheEventsOfTheStreamThatIsWanted) {
+    ReaderOptions options;
+    options.stream = "0";
+    EventReader reader{recording(), options};
+    EXPECT_EQ(rest_of(reader).events, all_of(recording()).events);
+    options.stream = "7";
+    try {
+        EventReader{recording(), options};
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_NE(std::string{error.what()}.find("expected an event stream 7, found 0 ("),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST_F(Recordings, AreReadFromATimeOn) {
     const Batch all = all_of(recording());
     const SensorTime middle = all.events[all.events.size() / 2].t;

@@ -156,6 +156,14 @@ class Sources(RecordedTest):
         with self.assertRaises(AssertionError), self.assertLogs("eventide"):
             eventide.open(log, width=64, height=48)
 
+    def test_of_several_cameras_the_events_of_the_stream_that_is_wanted_are_read(self):
+        whole, chosen = eventide.open(self.recording), eventide.open(self.recording, stream="0")
+        np.testing.assert_array_equal(
+            np.concatenate(list(chosen)), np.concatenate(list(whole))
+        )
+        with self.assertRaisesRegex(eventide.UsageError, "expected an event stream 7, found 0"):
+            eventide.open(self.recording, stream="7")
+
     def test_a_camera_is_opened_as_one(self):
         for name in ("davis:", "sim:demo"):
             with self.assertRaisesRegex(eventide.UsageError, f"'{name}': expected a recording, .*open_camera"):

@@ -49,6 +49,13 @@ TEST(Aedat4Streams, OfASoundFileNothingIsSaid) {
     EXPECT_TRUE(remarks_of(file_of(false)).empty()) << "streams without packets are usual";
 }
 
+TEST(Aedat4Streams, EventsOfAnotherCameraAreNamedAndHowTheyAreRead) {
+    const auto remarks = remarks_of(changed(file_of(false), "outInfo", "FRME", "EVTS"));
+    ASSERT_EQ(remarks.size(), 1U);
+    EXPECT_THAT(remarks[0], HasSubstr("the events of stream 1 ("));
+    EXPECT_THAT(remarks[0], HasSubstr("those of stream 0 are read; --input-stream 1 ("));
+}
+
 TEST(Aedat4Streams, OnesThatTheHeaderDoesNotNameAreSaid) {
     // One flipped bit: the node of the event stream is called 4 instead of 0.
     const auto remarks = remarks_of(changed(file_of(true), "outInfo", "name=\"0\"", "name=\"@\""));

@@ -203,6 +203,76 @@ TEST(BagRecording, OfSeveralTopicsWithEventsTheFirstThatHasSomeIsRead) {
     }
 }
 
+/// Of a stereo pair, with the images of both.
+TEST(BagRecording, OfAPairTheEventsOfTheTopicThatIsWantedAreReadAndTheImagesBesideThem) {
+    const TestFolder folder;
+    const auto left = some_events(100), right = some_events(100, 5'000);
+    const std::string events = "dvs_msgs/EventArray", images = "sensor_msgs/Image";
+    const auto image_at = [&](std::uint32_t number, SensorTime t) {
+        return message(number, image(some_image(t, 128, 128)));
+    };
+    const std::string path = folder.write(
+        "a.bag", bag(chunk("none", connection(12, images, "/stereo/left/image_raw") +
+                                       connection(13, images, "/stereo/right/image_raw") +
+                                       connection(10, events, "/stereo/left/events") +
+                                       connection(11, events, "/stereo/right/events") +
+                                       message(10, event_array(128, 128, left)) +
+                                       message(11, event_array(128, 128, right)) +
+                                       image_at(12, left[5].t) + image_at(13, right[5].t))));
+    const auto read = [&](const std::string& stream) {
+        OpenOptions options;
+        options.stream = stream;
+        const auto recording = open_recording(path, options);
+        return std::pair{read_everything(*recording), recording->remarks()};
+    };
+    for (const char* first : {"", "/stereo/left/events"}) {
+        const auto [batch, remarks] = read(first);
+        EXPECT_TRUE(batch.events == left);
+        ASSERT_EQ(batch.images.size(), 1U);
+        EXPECT_EQ(batch.images[0].t, left[5].t);
+        EXPECT_THAT(remarks,
+                    testing::UnorderedElementsAre(
+                        "the images of /stereo/right/image_raw are left out, those of "
+                        "/stereo/left/image_raw are read",
+                        "the events of /stereo/right/events are left out, those of "
+                        "/stereo/left/events are read; --input-stream /stereo/right/events (the "
+                        "option stream of the library) reads those"));
+    }
+    const auto [batch, remarks] = read("/stereo/right/events");
+    EXPECT_TRUE(batch.events == right);
+    ASSERT_EQ(batch.images.size(), 1U);
+    EXPECT_EQ(batch.images[0].t, right[5].t);
+    for (const char* none : {"/stereo/left/image_raw", "/stereo/right", "events"}) {
+        try {
+            read(none);
+            FAIL() << none;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_THAT(error.what(),
+                        HasSubstr("expected events of the topic '" + std::string(none) +
+                                  "' that can be read, found events of /stereo/left/events, "
+                                  "/stereo/right/events"));
+        }
+    }
+}
+
+TEST(BagRecording, ImagesOfTheOtherCameraOfAPairAreNotTakenForTheFirstOnes) {
+    const TestFolder folder;
+    const auto events = some_events(100);
+    const std::string type = "dvs_msgs/EventArray";
+    const auto recording = open_recording(folder.write(
+        "a.bag", bag(chunk("none", connection(10, type, "/left/events") +
+                                       connection(11, type, "/right/events") +
+                                       connection(12, "sensor_msgs/Image", "/right/image_raw") +
+                                       message(10, event_array(128, 128, events)) +
+                                       message(11, event_array(128, 128, events)) +
+                                       message(12, image(some_image(events[0].t, 128, 128)))))));
+    EXPECT_TRUE(read_everything(*recording).images.empty());
+    EXPECT_THAT(recording->remarks(),
+                testing::Contains(
+                    "the images of /right/image_raw are left out: they are of another camera"));
+}
+
 TEST(BagRecording, WithoutEventsIsRefusedWithWhatItHas) {
     const TestFolder folder;
     const std::string path = folder.write(

@@ -1,6 +1,7 @@
 // HDF5 recordings: each layout gives back the events that were written into it.
 #include "replay/formats.h"
 #include "replay/summary.h"
+#include "src/core/error.h"
 #include "src/simulate/sim_recording.h"
 #include "tests/replay/hdf5_files.h"
 #include "tests/replay/hdf5_layouts.h"
@@ -141,15 +142,16 @@ TEST_P(Hdf5Layouts, AreTheSameByEveryRouteOfBytes) {
 }
 
 /// Of stereo recordings.
-TEST(Hdf5Layout, TheOtherCameraOfAPairIsLeftOutAndNamed) {
+TEST(Hdf5Layout, OfAPairTheLeftOneIsReadOrTheOneThatIsWanted) {
     const TestFolder folder;
-    const std::vector<double> rows{1, 2, 1.5e9, 1, 3, 4, 1.5e9 + 1e-3, -1};
-    const std::vector<std::uint16_t> places{1, 3};
     const std::vector<std::int64_t> times{10, 20};
     const std::vector<std::uint8_t> polarities{1, 0};
     {
         const test::Hdf5Made mvsec(folder.path("mvsec.h5")), m3ed(folder.path("m3ed.h5"));
         for (const std::string side : {"left", "right"}) {
+            const unsigned x = side == "left" ? 1 : 101;
+            const std::vector<double> rows{double(x), 2, 1.5e9, 1, 3, 4, 1.5e9 + 1e-3, -1};
+            const std::vector<std::uint16_t> places{std::uint16_t(x), 3};
             mvsec.array("davis/" + side + "/events", {2, 4}, H5T_NATIVE_DOUBLE, rows.data(),
                         H5T_IEEE_F64LE);
             const std::string camera = "prophesee/" + side + "/";
@@ -159,19 +161,37 @@ TEST(Hdf5Layout, TheOtherCameraOfAPairIsLeftOutAndNamed) {
             m3ed.column(camera + "p", polarities, H5T_STD_U8LE);
         }
     }
-    const auto mvsec = open_recording(folder.path("mvsec.h5"));
-    EXPECT_EQ(read_everything(*mvsec).events.size(), 2U);
-    EXPECT_THAT(mvsec->remarks(),
-                testing::ElementsAre("the events of davis/right are left out, those of davis/left "
-                                     "are read"));
-    OpenOptions options;
-    options.width = 1280;
-    options.height = 720;
-    const auto m3ed = open_recording(folder.path("m3ed.h5"), options);
-    EXPECT_EQ(read_everything(*m3ed).events.size(), 2U);
-    EXPECT_THAT(m3ed->remarks(),
-                testing::ElementsAre("the events of prophesee/right are left out, those of "
-                                     "prophesee/left are read"));
+    const auto first_x = [&](const char* file, const std::string& stream) {
+        const OpenOptions options{.width = 1280, .height = 720, .stream = stream};
+        return int(read_everything(*open_recording(folder.path(file), options)).events.at(0).x);
+    };
+    const auto remarks = [&](const char* file, const std::string& stream) {
+        const OpenOptions options{.width = 1280, .height = 720, .stream = stream};
+        return open_recording(folder.path(file), options)->remarks();
+    };
+    const std::string how = " (the option stream of the library) reads those";
+    for (const auto& [file, cameras] : {std::pair{"mvsec.h5", "davis"}, {"m3ed.h5", "prophesee"}}) {
+        const std::string left = std::string(cameras) + "/left",
+                          right = std::string(cameras) + "/right";
+        EXPECT_EQ(first_x(file, ""), 1) << file;
+        EXPECT_EQ(first_x(file, left), 1) << file;
+        EXPECT_EQ(first_x(file, right), 101) << file;
+        EXPECT_THAT(remarks(file, ""),
+                    testing::ElementsAre("the events of " + right + " are left out, those of " +
+                                         left + " are read; --input-stream " + right + how));
+        EXPECT_THAT(remarks(file, right),
+                    testing::ElementsAre("the events of " + left + " are left out, those of " +
+                                         right + " are read; --input-stream " + left + how));
+        try {
+            first_x(file, "right");
+            FAIL();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_THAT(error.what(),
+                        testing::HasSubstr("expected the events of 'right', found those of " +
+                                           left + ", " + right));
+        }
+    }
 }
 
 }  // namespace

@@ -50,7 +50,32 @@ TEST(OpenRecording, SourcesOfAedat3ThatAreLeftOutAreNamed) {
     const auto recording = open_recording(folder.write("b", bytes));
     EXPECT_EQ(read_everything(*recording).events.size(), 100U);
     ASSERT_EQ(recording->remarks().size(), 1U);
-    EXPECT_THAT(recording->remarks()[0], HasSubstr("source 7 (DAVIS240C) is left out"));
+    EXPECT_THAT(recording->remarks()[0],
+                HasSubstr("the events of source 7 (DAVIS240C) are left out, those of source "));
+    EXPECT_THAT(recording->remarks()[0], HasSubstr("--input-stream 7 "));
+    OpenOptions options;
+    options.stream = "7";
+    const auto other = open_recording(folder.path("b"), options);
+    EXPECT_EQ(other->info().name, "DAVIS240C");
+    EXPECT_TRUE(read_everything(*other).events.empty()) << "it has no packets";
+}
+
+TEST(OpenRecording, AStreamOfAFormatOfOneCameraIsRefused) {
+    const TestFolder folder;
+    OpenOptions options;
+    options.stream = "/events";
+    for (const char* format : {"text", "evt3"}) {
+        try {
+            open_recording(write_recording(folder.path(format), format, some_events(100)), options);
+            FAIL() << format;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
+            EXPECT_THAT(error.what(),
+                        HasSubstr(std::string(format) +
+                                  ": expected a format with several event streams (aedat4, aedat3, "
+                                  "hdf5, rosbag, mcap, db3) for the stream '/events', found "));
+        }
+    }
 }
 
 TEST(OpenRecording, OfADavisStatedAsSmallerTheUpperLeftPartIsRead) {

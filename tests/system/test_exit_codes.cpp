@@ -268,6 +268,10 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     for (const char* command : {"info", "evaluate"})
         expect(2, {command, "davis:"}, "expected a recording, found the name of a camera");
     expect(2, {"convert", "sim:demo", "a.txt"}, "found the name of a simulation");
+    expect(2, {"run", "sim:demo", "--input-stream", "1", "--out", "null"},
+           "--input-stream 1: expected a recording as SOURCE, found sim:demo");
+    expect(2, {"run", recording(), "--input-stream", "/events", "--out", "null"},
+           "expected an event stream /events, found 0 (");
     expect(2, {"run", recording(), "--reconnect", "--out", "null"},
            "--reconnect: expected a camera as SOURCE, found ");
     expect(2, {"run", "davis", "--reconnect", "--out", "null"}, "did you mean davis:?");

@@ -65,6 +65,8 @@ void refuse_without_effect(const RunSettings& settings) {
     if (settings.input.size) refuse("--input-size " + show_size(*settings.input.size), "recording");
     if (!settings.input.open.format.empty())
         refuse("--input-format " + settings.input.open.format, "recording");
+    if (!settings.input.open.stream.empty())
+        refuse("--input-stream " + settings.input.open.stream, "recording");
 }
 
 OpenedSource open_file(const RunSettings& settings, double speed,

@@ -37,6 +37,13 @@ void InputSettings::add_to(SettingTable& table) {
         },
         [](const std::optional<Size>& s) { return s ? show_size(*s) : "auto"; }));
     table.settings.push_back(parsed_setting<std::string>(
+        "input_stream", open.stream, "NAME",
+        "Whose events are read, of a recording with those of several cameras: a bag's topic, "
+        "davis/right of an HDF5 file, the number of an AEDAT 3 source or AEDAT 4 stream, as "
+        "eventide info names them; auto takes the first.",
+        [](const std::string& text) { return text == "auto" ? std::string{} : text; },
+        [](const std::string& text) { return text.empty() ? "auto" : text; }));
+    table.settings.push_back(parsed_setting<std::string>(
         "input_columns", open.text.columns, "ORDER",
         "Columns of a text recording, such as txyp or xypt; auto takes them from a header row, or "
         "from the numbers themselves.",

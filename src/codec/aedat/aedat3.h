@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace eventide {
@@ -21,12 +22,14 @@ struct Aedat3Source {
 struct Aedat3Header {
     StreamHeader stream;                 ///< width and height where the source's name tells them
     bool lower_left = false;             ///< AEDAT 3.0: the origin is at the lower left
-    std::optional<int> source;           ///< number of the first source named
-    std::vector<Aedat3Source> others{};  ///< the sources named behind it, which are not read
+    std::optional<int> source;           ///< number of the source that is read
+    std::vector<Aedat3Source> others{};  ///< the other sources that it names
 };
 
-/// Throws Error (input) when it is no RAW AEDAT 3 file.
-Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes);
+/// `source`: the number of the one to be read; empty: the first that is named. Throws Error: input
+/// when it is no RAW AEDAT 3 file, usage where no such source is named.
+Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes,
+                                std::string_view source = {});
 
 /// Reads the packets of one source: those of others that the header names are passed over, and of
 /// any other count as unknown_word. Events that a timestamp reset sets back in time begin a new

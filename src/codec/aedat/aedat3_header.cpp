@@ -61,9 +61,31 @@ std::vector<Aedat3Source> sources_in(const AedatHeaderLines& lines) {
     return sources;
 }
 
+/// The one wanted, or the first; the others go into header.others.
+void choose_source(Aedat3Header& header, const std::vector<Aedat3Source>& sources,
+                   std::string_view wanted) {
+    const auto is_wanted = [&](const Aedat3Source& source) {
+        return wanted.empty() || std::to_string(source.number) == wanted;
+    };
+    const auto chosen = std::ranges::find_if(sources, is_wanted);
+    if (chosen == sources.end() && !wanted.empty()) {
+        std::string found;
+        for (const Aedat3Source& source : sources)
+            found += (found.empty() ? "" : ", ") + std::to_string(source.number) + " (" +
+                     source.name + ")";
+        throw Error(ErrorKind::usage, "AEDAT 3: expected a source " + std::string(wanted) +
+                                          ", found " + (found.empty() ? "none" : found));
+    }
+    if (chosen == sources.end()) return;
+    header.source = chosen->number;
+    header.stream.sensor_name = chosen->name;
+    for (const Aedat3Source& source : sources)
+        if (source.number != chosen->number) header.others.push_back(source);
+}
+
 }  // namespace
 
-Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes) {
+Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes, std::string_view source) {
     const AedatHeaderLines lines = read_aedat_lines(first_bytes);
     if (lines.lines.empty() || !lines.lines[0].starts_with("!AER-DAT3."))
         throw Error(ErrorKind::input,
@@ -77,12 +99,7 @@ Aedat3Header read_aedat3_header(std::span<const std::byte> first_bytes) {
     header.stream.format = "aedat3";
     header.stream.data_offset = lines.end;
     header.stream.source_text = find_value(lines, "Start-Time");
-    for (const Aedat3Source& source : sources_in(lines)) {
-        if (header.source && source.number != *header.source) header.others.push_back(source);
-        if (header.source) continue;
-        header.source = source.number;
-        header.stream.sensor_name = source.name;
-    }
+    choose_source(header, sources_in(lines), source);
     set_size_by_name(header.stream);
     set_size(header.stream, find_value(lines, "Geometry"));
     return header;

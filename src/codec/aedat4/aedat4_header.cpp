@@ -69,22 +69,38 @@ private:
     std::vector<Aedat4Stream> streams_;
 };
 
-void choose_streams(Aedat4Header& header) {
-    const auto choose = [&](Aedat4Kind kind, const std::string* source) {
-        const auto found = std::find_if(header.streams.begin(), header.streams.end(),
-                                        [&](const Aedat4Stream& stream) {
-                                            return stream.identifier == identifier_of(kind) &&
-                                                   (!source || stream.source == *source);
-                                        });
+std::string names_of_events(const std::vector<Aedat4Stream>& streams) {
+    std::string names;
+    for (const Aedat4Stream& stream : streams)
+        if (stream.identifier == identifier_of(Aedat4Kind::events))
+            names += (names.empty() ? "" : ", ") + std::to_string(stream.id) + " (" +
+                     stream.source + ")";
+    return names.empty() ? "none" : names;
+}
+
+/// `wanted`: the event stream's number; empty: the first.
+void choose_streams(Aedat4Header& header, std::string_view wanted) {
+    const auto choose = [&](Aedat4Kind kind, auto&& is_wanted) {
+        const auto found = std::ranges::find_if(header.streams, [&](const Aedat4Stream& stream) {
+            return stream.identifier == identifier_of(kind) && is_wanted(stream);
+        });
         if (found == header.streams.end()) return static_cast<const Aedat4Stream*>(nullptr);
         header.chosen[std::size_t(kind)] = found->id;
         return static_cast<const Aedat4Stream*>(&*found);
     };
-    const Aedat4Stream* events = choose(Aedat4Kind::events, nullptr);
-    const std::string* source = events ? &events->source : nullptr;
-    const Aedat4Stream* images = choose(Aedat4Kind::image, source);
-    choose(Aedat4Kind::imu, source);
-    choose(Aedat4Kind::triggers, source);
+    const Aedat4Stream* events = choose(Aedat4Kind::events, [&](const Aedat4Stream& stream) {
+        return wanted.empty() || std::to_string(stream.id) == wanted;
+    });
+    if (!events && !wanted.empty())
+        throw Error(ErrorKind::usage, "AEDAT4 header: expected an event stream " +
+                                          std::string(wanted) + ", found " +
+                                          names_of_events(header.streams));
+    const auto of_camera = [&](const Aedat4Stream& stream) {
+        return !events || stream.source == events->source;
+    };
+    const Aedat4Stream* images = choose(Aedat4Kind::image, of_camera);
+    choose(Aedat4Kind::imu, of_camera);
+    choose(Aedat4Kind::triggers, of_camera);
     const Aedat4Stream* camera = events ? events : images;
     if (!camera) return;
     if (images != nullptr)
@@ -118,7 +134,7 @@ std::vector<Aedat4Stream> read_aedat4_streams(std::string_view xml) {
     return reader.take();
 }
 
-Aedat4Header read_aedat4_header(std::span<const std::byte> first_bytes) {
+Aedat4Header read_aedat4_header(std::span<const std::byte> first_bytes, std::string_view events) {
     const auto refuse = [](const std::string& what) {
         return Error(ErrorKind::input, "AEDAT4 header: " + what);
     };
@@ -144,7 +160,7 @@ Aedat4Header read_aedat4_header(std::span<const std::byte> first_bytes) {
                      std::to_string(std::int32_t(header.compression)));
     header.table_position = root->table.scalar<std::int64_t>(1, -1);
     header.streams = read_aedat4_streams(root->table.text(2).value_or(""));
-    choose_streams(header);
+    choose_streams(header, events);
     return header;
 }
 

@@ -55,13 +55,15 @@ struct Aedat4Header {
     Aedat4Compression compression = Aedat4Compression::none;
     std::int64_t table_position = -1;  ///< -1: never written
     std::vector<Aedat4Stream> streams;
-    /// Per kind the stream that is read: the first of the camera of the first event stream, for a
+    /// Per kind the stream that is read: the first of the camera of the event stream that is, for a
     /// file may hold several cameras, or the same camera's data before and after a filter.
     std::array<std::optional<std::int32_t>, 4> chosen;
 };
 
-/// `first_bytes` hold the whole header. Throws Error (input) when it is none.
-Aedat4Header read_aedat4_header(std::span<const std::byte> first_bytes);
+/// `first_bytes` hold the whole header. `events`: the number of the event stream to be read; empty:
+/// the first. Throws Error: input when it is none, usage where it names no such event stream.
+Aedat4Header read_aedat4_header(std::span<const std::byte> first_bytes,
+                                std::string_view events = {});
 
 /// The streams that the XML of an info node describes; what cannot be read is left out.
 std::vector<Aedat4Stream> read_aedat4_streams(std::string_view xml);
