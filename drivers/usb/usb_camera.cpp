@@ -246,7 +246,8 @@ void UsbCamera::stop_device() noexcept {
     if (!device_) return;
     try {
         if (stream_) {
-            if (drops_are_told_) count_drops();
+            look_at_drops_ = {};  // for the last time
+            look_at_drops();
             make_idle(*device_);
         }
         power_down(*device_);

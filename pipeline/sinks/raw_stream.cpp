@@ -162,7 +162,7 @@ void StreamSink::append_y4m(const Frame& frame) {
     auto* luma = reinterpret_cast<std::uint8_t*>(bytes_.data() + start);
     const auto half = std::ptrdiff_t(width / 2);
     std::uint8_t* chroma = luma + width * height;
-    to_yuv420(image_, YuvRange::full,
+    to_yuv420(image_, YuvCoding::jpeg,
               {Plane{luma, std::ptrdiff_t(width)}, Plane{chroma, half},
                Plane{chroma + width * height / 4, half}});
 }

@@ -83,7 +83,7 @@ bool V4l2OutputSink::try_format(V4l2PixelFormat format, int width, int height) {
         int(wanted.fmt.pix.height) != height)
         return false;
     format_ = format;
-    luma_ = luma_table(format == V4l2PixelFormat::grey ? YuvRange::full : YuvRange::limited);
+    luma_ = luma_table(format == V4l2PixelFormat::grey ? YuvCoding::jpeg : YuvCoding::video);
     width_ = width;
     height_ = height;
     bytes_.assign(bytes, kNoColour);

@@ -334,5 +334,21 @@ TEST(DavisFaults, ACameraThatRefusesToTellItsDropsGoesOnAndIsNotAskedAgain) {
     EXPECT_GT(camera_side.bed.requests(), requests) << "it is still made idle";
 }
 
+TEST(DavisFaults, ACameraThatRefusesToTellItsLastDropsIsMadeIdleAllTheSame) {
+    PluggedIn camera_side;
+    std::vector<std::string> warnings;
+    DavisOptions options = at_once();
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DavisCamera camera{options};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    camera_side.bed.stall_control(1);
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+    EXPECT_EQ(camera_side.model->read(davis::kRun), 0U);
+    EXPECT_EQ(camera_side.model->read(davis::kRunChip), 0U);
+    EXPECT_EQ(warnings.size(), 1U) << "some of its drops may be missing";
+}
+
 }  // namespace
 }  // namespace eventide::test

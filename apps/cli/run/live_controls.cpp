@@ -32,10 +32,11 @@ HttpControl fps_control(const LiveControlsPlan& plan, const std::string& why_not
     const Value value = made(plan.fps);
     HttpControl fps = control("fps", "Frame rate", "frames/s", value);
     fps.least = 1;
-    fps.most = 1000;
     fps.fixed = why_not;
-    // The slider's end, where the run began beyond it.
-    if (plan.fps > fps.most) fps.most = std::ceil(plan.fps);
+    // The slider's end, where the run began beyond it; in slow motion what slowed() takes.
+    constexpr double kUsual = 1000, kMostOfSensor = 1e6;
+    fps.most = std::min(std::max(kUsual, std::ceil(plan.fps)),
+                        std::floor(kMostOfSensor / plan.settings.slow));
     if (!why_not.empty()) return fps;
     fps.set = [value, &changes = plan.changes, slow = plan.settings.slow](double wanted) {
         changes.set_rate(slowed({std::llround(wanted), 1}, slow));

@@ -43,15 +43,16 @@ VideoSink::VideoSink(VideoSettings settings) : settings_{std::move(settings)} {
 VideoSink::~VideoSink() = default;
 
 std::int64_t VideoSink::microseconds_to_show(SensorTime t) {
-    if (last_us_ < 0) origin_ = t;
-    const auto shown_at = [&] {
-        return begin_us_ + std::llround(double((t - origin_).count()) * settings_.slow);
+    if (!last_) origin_ = t;
+    const auto shown_us = [&](SensorTime at) {
+        return begin_us_ + std::llround(double((at - origin_).count()) * settings_.slow);
     };
-    if (shown_at() <= last_us_) {  // the sensor's clock went back
+    if (last_ && t <= *last_) {  // the sensor's clock went back
+        begin_us_ = shown_us(*last_) + std::llround(1e6 / settings_.fps);
         origin_ = t;
-        begin_us_ = last_us_ + std::llround(1e6 / settings_.fps);
     }
-    return last_us_ = shown_at();
+    last_ = t;
+    return shown_us(t);
 }
 
 void VideoSink::write(const Frame& frame) {

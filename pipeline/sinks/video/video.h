@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace eventide {
@@ -36,7 +37,8 @@ bool encodes_h264();
 
 /// Time stamps are the frames' sensor times minus the first one's, times `slow`, in microseconds
 /// (time base 1/10^6; Matroska rounds them to 1 ms). Should sensor time go back, the frame follows
-/// the one before after 1/fps, and so do the next ones.
+/// the one before after 1/fps, and so do the next ones. A pause is shortened to 35 min in MP4,
+/// 60,000 frames in Motion JPEG and 10 min in GIF, which cannot hold a longer one.
 ///
 /// MP4 is written in fragments of 30 frames, so that a killed run leaves a file that plays
 /// up to the last fragment. H.264 with 4:2:0 chroma needs even sizes: an odd row or column is added
@@ -60,7 +62,7 @@ private:
     std::unique_ptr<VideoFile> intensity_, sigma_;
     SensorTime origin_{};  // shown at begin_us_
     std::int64_t begin_us_ = 0;
-    std::int64_t last_us_ = -1;  // of the frame before; -1 before the first
+    std::optional<SensorTime> last_;  // of the frame before
 };
 
 }  // namespace eventide

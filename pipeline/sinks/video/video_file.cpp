@@ -193,8 +193,8 @@ void VideoFile::open_encoder(const cv::Mat& image) {
     const bool grey = encoder_->pix_fmt == AV_PIX_FMT_GRAY8;
     encoder_->width = grey ? width_ : even(width_);
     encoder_->height = grey ? height_ : even(height_);
-    encoder_->color_range = kind_.full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
-    encoder_->colorspace = AVCOL_SPC_BT709;
+    encoder_->color_range = kind_.as_jpeg ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+    encoder_->colorspace = kind_.as_jpeg ? AVCOL_SPC_BT470BG : AVCOL_SPC_BT709;
     encoder_->color_primaries = AVCOL_PRI_BT709;
     encoder_->color_trc = AVCOL_TRC_BT709;
     encoder_->framerate = av_d2q(settings_.fps, 1'000'000);
@@ -248,10 +248,18 @@ void VideoFile::write(const cv::Mat& image, std::int64_t t_us) {
     // The encoder may still read the buffer of the frame before.
     check(av_frame_make_writable(frame_.get()), "making a buffer");
     fill_frame(image);
-    const std::int64_t tick = av_rescale_q(t_us, kMicroseconds, encoder_->time_base);
-    frame_->pts = next_tick_ = std::max(tick, next_tick_);
-    next_tick_ += kind_.least_ticks;
+    frame_->pts = tick_of(t_us);
     encode(frame_.get());
+}
+
+/// A pause that is too long for the file takes with it what is too much of it.
+std::int64_t VideoFile::tick_of(std::int64_t t_us) {
+    const std::int64_t tick = av_rescale_q(t_us, kMicroseconds, encoder_->time_base) - cut_ticks_;
+    if (!last_tick_) return *(last_tick_ = tick);
+    const std::int64_t after = std::max<std::int64_t>(tick - *last_tick_, kind_.least_ticks);
+    const std::int64_t held = std::min(after, kind_.most_ticks);
+    cut_ticks_ += after - held;
+    return *last_tick_ += held;
 }
 
 void VideoFile::fill_frame(const cv::Mat& image) {
@@ -259,7 +267,7 @@ void VideoFile::fill_frame(const cv::Mat& image) {
         return image.copyTo(cv::Mat(image.rows, image.cols, CV_8UC1, frame_->data[0],
                                     std::size_t(frame_->linesize[0])));
     to_yuv420(
-        image, kind_.full_range ? YuvRange::full : YuvRange::limited,
+        image, kind_.as_jpeg ? YuvCoding::jpeg : YuvCoding::video,
         {Plane{frame_->data[0], frame_->linesize[0]}, Plane{frame_->data[1], frame_->linesize[1]},
          Plane{frame_->data[2], frame_->linesize[2]}});
 }

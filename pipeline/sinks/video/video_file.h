@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -30,14 +31,15 @@ struct EncoderSettings {
 };
 
 /// Times are rounded to what the kind of file knows; a frame that would fall on the one before
-/// follows it. Throws Error (failed) naming the file when libav refuses; of kind usage for a preset
-/// x264 does not have, a rate that is too high, or an extension that is not a kind of video.
+/// follows it, and a pause that the kind of file cannot hold is shortened. Throws Error (failed)
+/// naming the file when libav refuses; of kind usage for a preset x264 does not have, a rate that
+/// is too high, or an extension that is not a kind of video.
 class VideoFile {
 public:
     VideoFile(std::filesystem::path path, EncoderSettings settings);
     ~VideoFile();
 
-    /// CV_8UC1 or CV_8UC3 (BGR), the same size and type each time; `t_us` must grow.
+    /// CV_8UC1 or CV_8UC3 (BGR), the same size and type each time; `t_us` must not fall.
     void write(const cv::Mat& image, std::int64_t t_us);
 
     /// Drains the encoder and ends the file; without a frame none is left behind. After a write
@@ -47,6 +49,7 @@ public:
 private:
     void open_encoder(const cv::Mat& image);
     void fill_frame(const cv::Mat& image);
+    std::int64_t tick_of(std::int64_t t_us);
     void encode(const AVFrame* frame);
     void check(int result, const char* doing);
 
@@ -75,7 +78,8 @@ private:
     std::unique_ptr<AVPacket, Free> packet_;
     AVStream* stream_ = nullptr;  // the container's
     int width_ = 0, height_ = 0, type_ = -1;
-    std::int64_t next_tick_ = 0;  // the earliest for the frame that comes
+    std::optional<std::int64_t> last_tick_;  // of the frame before
+    std::int64_t cut_ticks_ = 0;             // of pauses, so far
     bool header_written_ = false, trailer_due_ = false, finished_ = false;
     bool is_given_up_ = false;  // nothing more goes into the file
 };

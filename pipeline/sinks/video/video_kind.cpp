@@ -11,13 +11,15 @@ namespace eventide {
 
 namespace {
 
-constexpr VideoKind kKinds[]{{".mp4", "libx264", "yuv420p", false, 1'000'000, 1e6, true, 1},
-                             {".mkv", "libx264", "yuv420p", false, 1'000'000, 1e6, true, 1},
-                             // A Motion JPEG file has one rate and no times.
-                             {".avi", "mjpeg", "yuvj420p", true, 0, 1e6, true, 1},
-                             // 256 colours: all the greys there are. Players show what is to stand
-                             // shorter than 20 ms for 100 ms.
-                             {".gif", "gif", "gray", true, 100, 50, false, 2}};
+constexpr VideoKind kKinds[]{
+    {".mp4", "libx264", "yuv420p", false, 1'000'000, 1e6, true, 1, INT32_MAX - 1},
+    {".mkv", "libx264", "yuv420p", false, 1'000'000, 1e6, true, 1, INT64_MAX},
+    // A Motion JPEG file has one rate and no times: libav fills up what is left out, so many frames
+    // at most.
+    {".avi", "mjpeg", "yuvj420p", true, 0, 1e6, true, 1, 60'000},
+    // 256 colours: all the greys there are. Players show what is to stand shorter than 20 ms for
+    // 100 ms.
+    {".gif", "gif", "gray", true, 100, 50, false, 2, UINT16_MAX}};
 
 const VideoKind* find(const std::filesystem::path& path) {
     const auto found =

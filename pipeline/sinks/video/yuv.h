@@ -1,5 +1,4 @@
-// 8-bit images as Y, U and V planes with 4:2:0 chroma (BT.709): what H.264 players and Y4M
-// readers take.
+// 8-bit images as Y, U and V planes with 4:2:0 chroma: what players and Y4M readers take.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -16,9 +15,10 @@ struct Plane {
     std::ptrdiff_t stride = 0;
 };
 
-enum class YuvRange {
-    full,    ///< black 0, white 255: grey values stay as they are
-    limited  ///< black 16, white 235: what players assume of video files, and of webcams
+/// What readers undo without being told.
+enum class YuvCoding {
+    jpeg,  ///< of JPEG and of Y4M: BT.601, black 0, white 255; grey values stay as they are
+    video  ///< of video files, which say BT.709: black 16, white 235, as of webcams
 };
 
 /// The next even number: 4:2:0 has no half pixels.
@@ -27,10 +27,10 @@ constexpr int even(int size) {
 }
 
 /// [grey]: in the Y plane.
-std::array<std::uint8_t, 256> luma_table(YuvRange range);
+std::array<std::uint8_t, 256> luma_table(YuvCoding coding);
 
 /// `image` is CV_8UC1 or CV_8UC3 (BGR). The Y plane is even(cols) x even(rows), U and V half of
 /// that in both directions; an added column or row repeats the last.
-void to_yuv420(const cv::Mat& image, YuvRange range, const std::array<Plane, 3>& planes);
+void to_yuv420(const cv::Mat& image, YuvCoding coding, const std::array<Plane, 3>& planes);
 
 }  // namespace eventide

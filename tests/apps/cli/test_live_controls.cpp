@@ -79,6 +79,18 @@ TEST_F(LiveControls, CountFramesOfTheVideoInSlowMotion) {
     EXPECT_EQ(changes_.take().rate, (FrameRate{600, 1}));
 }
 
+/// Of several changes in one request none is made where one is refused, so each has to be known to
+/// be possible before.
+TEST_F(LiveControls, OfferNoRateThatSlowMotionCannotHave) {
+    for (const auto& [slow, most] :
+         {std::pair{1., 1000.}, {1000., 1000.}, {3000., 333.}, {1e5, 10.}}) {
+        settings_.slow = slow;
+        const HttpControl fps = control("fps");
+        EXPECT_EQ(fps.most, most) << slow;
+        EXPECT_NO_THROW(fps.set(fps.most)) << slow;
+    }
+}
+
 TEST_F(LiveControls, LeaveFramesAloneThatMustBeAlike) {
     for (const char* sink : {"video.mp4", "frames/", "y4m:x", "v4l2:/dev/video9"}) {
         settings_.out = {"http:0", sink};

@@ -135,7 +135,7 @@ TEST(Yuv, KeepsGreyInFullRangeAndRepeatsTheLastRowAndColumn) {
     for (int i = 0; i < 9; ++i) image.data[i] = std::uint8_t(20 * i);
     std::array<std::uint8_t, 16> luma{};
     std::array<std::uint8_t, 4> blue{}, red{};
-    to_yuv420(image, YuvRange::full,
+    to_yuv420(image, YuvCoding::jpeg,
               {Plane{luma.data(), 4}, Plane{blue.data(), 2}, Plane{red.data(), 2}});
     EXPECT_EQ(luma, (std::array<std::uint8_t, 16>{0, 20, 40, 40, 60, 80, 100, 100, 120, 140, 160,
                                                   160, 120, 140, 160, 160}));
@@ -147,10 +147,20 @@ TEST(Yuv, KnowsTheCornersOfBt709) {
     const cv::Mat red(2, 2, CV_8UC3, cv::Scalar{0, 0, 255});
     std::array<std::uint8_t, 4> luma{};
     std::uint8_t u = 0, v = 0;
-    to_yuv420(red, YuvRange::limited, {Plane{luma.data(), 2}, Plane{&u, 1}, Plane{&v, 1}});
+    to_yuv420(red, YuvCoding::video, {Plane{luma.data(), 2}, Plane{&u, 1}, Plane{&v, 1}});
     EXPECT_EQ(int(luma[0]), 63);  // 16 + 219 0.2126
     EXPECT_EQ(int(v), 240);       // 128 + 224 / 2
     EXPECT_EQ(int(u), 102);       // 128 - 224 0.2126 / 1.8556
+}
+
+TEST(Yuv, KnowsTheCornersOfBt601WhereItIsAsJpeg) {
+    const cv::Mat red(2, 2, CV_8UC3, cv::Scalar{0, 0, 255});
+    std::array<std::uint8_t, 4> luma{};
+    std::uint8_t u = 0, v = 0;
+    to_yuv420(red, YuvCoding::jpeg, {Plane{luma.data(), 2}, Plane{&u, 1}, Plane{&v, 1}});
+    EXPECT_EQ(int(luma[0]), 76);  // 255 0.299
+    EXPECT_EQ(int(v), 255);       // 128 + 255 / 2
+    EXPECT_EQ(int(u), 85);        // 128 - 255 0.299 / 1.772
 }
 
 TEST(Yuv, RepeatsTheLastRowAndColumnOfColoursToo) {
@@ -159,7 +169,7 @@ TEST(Yuv, RepeatsTheLastRowAndColumnOfColoursToo) {
     image.col(2).setTo(cv::Scalar{90, 90, 90});
     std::array<std::uint8_t, 16> luma{};
     std::array<std::uint8_t, 4> blue{}, red{};
-    to_yuv420(image, YuvRange::full,
+    to_yuv420(image, YuvCoding::jpeg,
               {Plane{luma.data(), 4}, Plane{blue.data(), 2}, Plane{red.data(), 2}});
     EXPECT_EQ(luma, (std::array<std::uint8_t, 16>{10, 10, 90, 90, 10, 10, 90, 90, 60, 60, 90, 90,
                                                   60, 60, 90, 90}));

@@ -1,4 +1,5 @@
 // Videos: every frame with its exact time, in files that survive a killed program.
+#include "pipeline/sinks/raw_stream.h"
 #include "pipeline/sinks/video/video.h"
 #include "pipeline/sinks/video/video_kind.h"
 #include "src/core/error.h"
@@ -11,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -212,6 +214,32 @@ TEST(VideoSink, ShowsTheGreysItWasGiven) {
     }
 }
 
+TEST(VideoSink, ShowsTheColoursItWasGiven) {
+    const TempFolder temp;
+    Frame frame = test::ramp_frame(64, 64, 0, from_us(0));
+    const std::array<int, 3> bgr{40, 120, 200};
+    for (std::size_t c = 0; c < 3; ++c) {
+        frame.colour[c] = Array2<float>{64, 64};
+        for (float& v : frame.colour[c].values()) v = float(bgr[c]) / 255;
+    }
+    for (const std::string name : {"a.mp4", "a.mkv", "a.avi"}) {
+        VideoSink sink{{.path = temp / name, .crf = 0}};
+        sink.write(frame);
+        sink.close();
+    }
+    StreamSink sink{{.path = temp / "a.y4m"}};
+    sink.write(frame);
+    sink.close();
+    for (const std::string name : {"a.mp4", "a.mkv", "a.avi", "a.y4m"}) {
+        const test::Result read =
+            test::run({"ffmpeg", "-v", "error", "-i", temp / name, "-frames:v", "1", "-f",
+                       "rawvideo", "-pix_fmt", "bgr24", "-"});
+        ASSERT_EQ(read.output.size(), 3U * 64 * 64) << read.error;
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(int(std::uint8_t(read.output[c])), bgr[c], 3) << name << ", channel " << c;
+    }
+}
+
 TEST(VideoSink, TimeThatGoesBackGoesOnInTheVideo) {
     const TempFolder temp;
     VideoSink sink{{.path = temp / "a.mp4", .fps = 100}};
@@ -219,6 +247,33 @@ TEST(VideoSink, TimeThatGoesBackGoesOnInTheVideo) {
         sink.write(test::ramp_frame(32, 32, 0, from_us(t)));
     sink.close();
     EXPECT_EQ(packet_times(temp / "a.mp4"), (std::vector<std::int64_t>{0, 10'000, 20'000, 32'345}));
+}
+
+TEST(VideoSink, FramesThatFallOnOneMicrosecondAreNoClockThatWentBack) {
+    const TempFolder temp;
+    VideoSink sink{{.path = temp / "a.mp4", .fps = 100, .slow = 0.001}};
+    for (int n = 0; n < 5; ++n) sink.write(test::ramp_frame(32, 32, 0, from_us(300 * n)));
+    sink.close();
+    EXPECT_EQ(packet_times(temp / "a.mp4"), (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
+}
+
+/// A pause of an hour in MP4; of a minute and two thirds in Motion JPEG, which counts 60,000
+/// frames.
+TEST(VideoSink, APauseThatAFileCannotHoldIsShortened) {
+    const TempFolder temp;
+    const auto times = [&](const std::string& name, double fps, std::int64_t pause_us) {
+        VideoSink sink{{.path = temp / name, .fps = fps}};
+        const std::int64_t step_us = std::llround(1e6 / fps);
+        for (const std::int64_t us : {std::int64_t{0}, step_us, pause_us, pause_us + step_us})
+            sink.write(test::ramp_frame(32, 32, 0, from_us(us)));
+        sink.close();
+        return packet_times(temp / name);
+    };
+    EXPECT_EQ(times("a.mp4", 1, 3'600'000'000),
+              (std::vector<std::int64_t>{0, 1'000'000, 2'148'483'646, 2'149'483'646}));
+    EXPECT_EQ(times("a.mkv", 1, 3'600'000'000),
+              (std::vector<std::int64_t>{0, 1000, 3'600'000, 3'601'000}));
+    EXPECT_EQ(times("a.avi", 1000, 100'000'000), (std::vector<std::int64_t>{0, 1, 60'001, 60'002}));
 }
 
 /// A scene that stands still: nothing else makes the encoder begin a group of images.
