@@ -43,6 +43,8 @@ TEST(ReferenceSequence, IsCalledAsItsFolder) {
     const fs::path folder = write_recording(fresh_folder("at.5"), .5, .001, .1);
     EXPECT_EQ(read_reference_sequence(folder).name, "eventide_at.5");
     EXPECT_EQ(read_reference_sequence(folder / "").name, "eventide_at.5");
+    EXPECT_EQ(sequence_name(folder / "."), "eventide_at.5");
+    EXPECT_EQ(sequence_name("recordings/speed.5.aedat4"), "speed.5");
 }
 
 TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
@@ -215,6 +217,9 @@ TEST(EvaluateFolders, FindNothingBetweenEqualFolders) {
     EXPECT_EQ(report.overall.raw.mse, 0);
     EXPECT_NEAR(report.overall.raw.ssim, 1, 1e-9);
     EXPECT_FALSE(report.overall.picp80);
+    EXPECT_EQ(
+        evaluate_folders(folder / "frames/one/", folder / "references/one/", {}).overall.sequence,
+        "one");
 
     write_image(folder / "frames" / "one" / "9.png", test_image(kHeight, kWidth, 9));
     EXPECT_THROW(evaluate_folders(folder / "frames", folder / "references", {}), Error);
