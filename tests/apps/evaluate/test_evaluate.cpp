@@ -127,6 +127,22 @@ TEST(EvaluateRecordings, WithOtherWindowsAlsoComparesAtTheImagesTimes) {
     }
 }
 
+TEST(EvaluateRecordings, TakeTheWindowsThatTheModelWasTrainedFor) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("windows_of_model"), .9, .001, .1)};
+    EvaluateSettings how = small_model();
+    Model model = load_model(how.model);
+    model.config.window = "30ms";
+    save_model(how.model, model);
+    const auto evaluated = [&](const char* window) {
+        what.window = window;
+        return evaluate_recordings(what, how);
+    };
+    const EvaluateReport expected = evaluated("30ms"), found = evaluated("model");
+    EXPECT_EQ(json(found), json(expected));
+    EXPECT_NE(found.overall.raw.mse, evaluated("50ms").overall.raw.mse);
+}
+
 TEST(EvaluateRecordings, ImagesThatAreGivenAreNotScoredAndCorrectTheOthers) {
     const fs::path folder = write_recording(fresh_folder("given"), .9, .05, .1);
     for (const auto& image : fs::directory_iterator{folder / "images"})  // a still scene
