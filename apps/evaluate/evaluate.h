@@ -41,8 +41,8 @@ struct EvaluateSettings {
 struct RecordingSettings {
     std::vector<std::filesystem::path> recordings;
     /// "reference": one event window between consecutive reference images, the first one empty
-    /// (EVREAL); else as parse_window() has it ("50ms", "0.35epp"), and images are rendered
-    /// inside the event windows.
+    /// (EVREAL); "model": as the model was trained; else as parse_window() has it ("50ms",
+    /// "0.35epp"). Images are then rendered inside the event windows.
     std::string window = "reference";
     /// So many images are not scored, because the state is still empty, but at least one is.
     /// kSkipHalf: the first half.

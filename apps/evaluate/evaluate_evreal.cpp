@@ -39,7 +39,7 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
     const std::vector<fs::path> sequences = evreal_sequences(dataset);
     evaluation.run_sequences(int(sequences.size()), [&](int i) {
         const fs::path& path = sequences[std::size_t(i)];
-        const Cut* cut = cut_of(path.stem().string());
+        const Cut* cut = cut_of(sequence_name(path));
         std::optional<double> from, to;
         if (cut) {
             from = std::max(0., cut->from_s - kWarmUpSeconds);

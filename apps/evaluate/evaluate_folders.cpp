@@ -1,5 +1,6 @@
 // Images on disk against images on disk: any method's output can be judged.
 #include "apps/evaluate/evaluate.h"
+#include "apps/evaluate/reference_sequence.h"
 #include "src/core/error.h"
 #include "src/io/image_codecs.h"
 
@@ -69,7 +70,7 @@ EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& referenc
         if (const auto images = images_in(frames / name); !images.empty())
             report.sequences.push_back(compare(name.string(), images, references / name, judge));
     if (const auto images = images_in(frames); !images.empty())
-        report.sequences.push_back(compare(frames.filename().string(), images, references, judge));
+        report.sequences.push_back(compare(sequence_name(frames), images, references, judge));
     if (report.sequences.empty())
         throw Error(ErrorKind::input, frames.string() + ": expected images, found none");
     report.overall = overall_scores(report.sequences);

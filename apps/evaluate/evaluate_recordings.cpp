@@ -128,6 +128,8 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
     EvaluateSettings settings = how;
     settings.fuse_images = what.given_images > 0;
     Evaluation evaluation{"recordings", settings};
+    const std::string window =
+        what.window == "model" ? evaluation.model().config.window : what.window;
     evaluation.run_sequences(int(what.recordings.size()), [&](int i) {
         const std::filesystem::path& path = what.recordings[std::size_t(i)];
         std::optional<double> read_from;
@@ -144,14 +146,13 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
             which.from = sequence.first + SensorDuration{std::int64_t(*what.from_s * 1e6)};
         require_scored(sequence, which);
         const std::string name = sequence.name;
-        SequenceResult result =
-            evaluate_sequence(evaluation, std::move(sequence), what.window, which);
+        SequenceResult result = evaluate_sequence(evaluation, std::move(sequence), window, which);
         if (which.skip < what.skip_images)
             result.notes.push_back(name + ": of " + counted(std::uint64_t(images), "image") +
                                    " the first " + std::to_string(which.skip) + " are not scored");
         return result;
     });
-    return evaluation.finish("windows " + what.window + ", first " +
+    return evaluation.finish("windows " + window + ", first " +
                              (what.skip_images == RecordingSettings::kSkipHalf
                                   ? std::string{"half of the images"}
                                   : std::to_string(what.skip_images) + " images") +

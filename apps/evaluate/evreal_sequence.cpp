@@ -140,7 +140,7 @@ ReferenceSequence read_evreal_sequence(const fs::path& path, std::optional<doubl
     const Span span{time_from_seconds(from_s.value_or(-1e12)).value_or(SensorTime::min()),
                     time_from_seconds(to_s.value_or(1e12)).value_or(SensorTime::max())};
     ReferenceSequence sequence;
-    sequence.name = path.filename().string();
+    sequence.name = sequence_name(path);
     read_images(path, span, sequence);
     mend_times(sequence.images);
     read_events(path, span, sequence);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 #include <utility>
 
 namespace eventide {
@@ -68,13 +69,6 @@ private:
     bool begun_ = false;
 };
 
-/// A file's name without its extension, all of a folder's: "speed.5".
-std::string name_of(const std::filesystem::path& path) {
-    auto plain = path.lexically_normal();
-    if (!plain.has_filename()) plain = plain.parent_path();
-    return (std::filesystem::is_directory(plain) ? plain.filename() : plain.stem()).string();
-}
-
 void read_recording(const std::filesystem::path& path, const OpenOptions& input, Keeper& keeper,
                     ReferenceSequence& into) {
     const auto recording = open_recording(path.string(), input);
@@ -101,11 +95,18 @@ void read_recording(const std::filesystem::path& path, const OpenOptions& input,
 
 }  // namespace
 
+std::string sequence_name(const std::filesystem::path& path) {
+    std::error_code none;
+    auto plain = std::filesystem::absolute(path, none).lexically_normal();
+    if (!plain.has_filename()) plain = plain.parent_path();
+    return (std::filesystem::is_directory(plain, none) ? plain.filename() : plain.stem()).string();
+}
+
 ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
                                           std::optional<double> from_s, std::optional<double> to_s,
                                           const OpenOptions& input) {
     ReferenceSequence sequence;
-    sequence.name = name_of(path);
+    sequence.name = sequence_name(path);
     Keeper keeper{sequence, from_s, to_s};
     read_recording(path, input, keeper, sequence);
     mend_times(sequence.images);

@@ -30,6 +30,10 @@ struct ReferenceSequence {
     std::vector<ReferenceImage> images;  ///< in order of time
 };
 
+/// A file's name without its extension, all of a folder's: "speed.5", also of "speed.5/" and of "."
+/// in it.
+std::string sequence_name(const std::filesystem::path& path);
+
 /// Reads a recording of any format. Where given, only data in [from, to]
 /// (s from `first`) are kept. Image times are mended. Throws Error(input) where there are no
 /// events, no images, or no sensor size.

@@ -69,11 +69,22 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"run", recording(), "--out", "null", "--from", "2s", "--to", "1s"}, "--to");
     expect(2, {"run", recording(), "--out", "window"}, "display");
     expect(2, {"bench", "--peers", "peers.csv"}, "expected --report");
+    expect(2, {"bench", "--report", "r/", "--json", "a"}, "--json a: expected no --report");
+    expect(2, {"bench", "--report", "r/", "--plots", "p/"}, "--plots p/: expected no --report");
+    for (const std::string only : {"--stages", "--activity"})
+        expect(2, {"bench", only, "--plots", "p/"}, "--plots p/: expected no " + only);
+    expect(2, {"bench", "--sizes", "64x48", "--sizes", "64"}, "--sizes: expected a size such as");
+    expect(2, {"bench", "--precisions", "f32", "--precisions", "f16"},
+           "--precisions: expected auto, f32 or bf16, found 'f16'");
+    expect(2, {"stress", "--plots", "p/"}, "--plots p/: expected --soak HOURS, found none");
     expect(2, {"convert", recording(), "a.xyz"}, "a.xyz");
     expect(2, {"simulate", "--scene", "nowhere", "--out", "a.aedat4"}, "nowhere");
     expect(2, {"evaluate", recording(), "--protocol", "folders"}, "two folders");
     expect(2, {"evaluate", recording(), "--frames", "2", "--calibrated", "a.safetensors"},
            "--calibrated a.safetensors: ");
+    expect(2, {"evaluate", recording(), "--calibrated", ""}, "--calibrated: expected FILE");
+    // Before the figure is simulated, which takes minutes.
+    expect(2, {"evaluate", "--figure", "spatial", "--figure", "events"}, "one or more recordings");
     expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "expected one of --json");
     expect(2, {"evaluate", recording(), "--from", "200ms", "--to", "100ms"}, "--to: expected");
     expect(2, {"evaluate", recording(), "--from", "10s"}, "expected an image to score between");
@@ -82,6 +93,15 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     for (const std::string output : {"--json", "--csv", "--frame-csv", "--calibrated"})
         expect(2, {"evaluate", "--figure", "silence", output, "a"},
                output + " a: expected an evaluation, found --figure silence");
+}
+
+TEST_F(ExitCodes, TwoIsAListThatWasLeftEmpty) {
+    write_text(temp_ / "empty.toml",
+               "[bench]\nsizes = []\nmodels = []\nprecisions = []\n[stress]\nmodels = []\n");
+    for (const char* command : {"bench", "stress"})
+        expect(2, {command, "--config", "empty.toml"}, ": expected one or more, found an empty");
+    expect(2, {"bench", "--config", "empty.toml", "--sizes", "64x48", "--precisions", "f32"},
+           "--models: expected one or more");
 }
 
 TEST_F(ExitCodes, TwoIsAPartOfARecordingThatIsNotThere) {

@@ -117,6 +117,16 @@ TEST_F(Quality, EventWindowsAreOnlyChosenWhereNoneWereAskedFor) {
     }
 }
 
+TEST_F(Quality, WindowsBetweenImagesKeepAFrameEach) {
+    for (const char* window : {"aps", "aps,200ms"}) {
+        const Result result = eventide({"run", recording(), "--realtime", "--window", window,
+                                        "--duration", "100ms", "--out", "null"},
+                                       with_cache());
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.error, HasSubstr("1x a frame per event window")) << window;
+    }
+}
+
 TEST_F(Quality, WorksWithoutAHome) {
     const Result result = eventide({"run", kCamera, "--budget", "100%", "--out", "a/"},
                                    {.environment = {{"XDG_CACHE_HOME", ""}, {"HOME", ""}}});

@@ -26,6 +26,22 @@ std::string case_name(const std::string& model, const std::string& precision,
     return model + " " + precision + " " + size;
 }
 
+/// Each is tried before anything is measured.
+template <typename Parse>
+void check_list(const char* option, const std::vector<std::string>& texts, const Parse& parse) {
+    require_some(option, texts);
+    try {
+        for (const std::string& text : texts) parse(text);
+    } catch (const Error& error) {
+        throw Error(error.kind(), std::string{option} + ": " + error.what());
+    }
+}
+
+void refuse_beside(const std::string& option, const std::string& value, const std::string& other) {
+    if (!value.empty())
+        throw Error(ErrorKind::usage, option + " " + value + ": expected no " + other);
+}
+
 /// Some of the rows would be taken for all.
 void refuse_partial(Program& program) {
     if (program.signals.stopping())
@@ -128,6 +144,23 @@ BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& dat
             .mse = free.error.frames > 0 ? free.error.raw.mse : std::nan("")};
 }
 
+/// What is asked for can be measured, and what is measured shown.
+void BenchCommand::check_settings() const {
+    check_list("--sizes", settings_.sizes, parse_size);
+    check_list("--precisions", settings_.precisions,
+               [](const std::string& text) { return parse_word(text, kPrecisionWords); });
+    require_some("--models", settings_.models);
+    if (!report_.empty()) {
+        refuse_beside("--json", json_, "--report, which has its own report.json");
+        refuse_beside("--plots", plots_, "--report, which has its own plots");
+    } else if (!peers_.empty()) {
+        throw Error(ErrorKind::usage,
+                    "--peers " + peers_ + ": expected --report FOLDER, found none");
+    }
+    if (stages_) refuse_beside("--plots", plots_, "--stages, as the plot is of the pipeline");
+    if (activity_) refuse_beside("--plots", plots_, "--activity, as the plot is of the pipeline");
+}
+
 void BenchCommand::name_bench_files(NamedFiles& files) const {
     files.may_replace(overwrite_);
     for (const std::string& model : settings_.models) files.reads("--models", find_model(model));
@@ -212,11 +245,9 @@ int BenchCommand::report(Program& program) const {
 }
 
 int BenchCommand::run(Program& program) {
+    check_settings();
     name_bench_files(program.files);
     if (!report_.empty()) return report(program);
-    if (!peers_.empty())
-        throw Error(ErrorKind::usage,
-                    "--peers " + peers_ + ": expected --report FOLDER, found none");
     std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
                 version().c_str(), compiler_text().c_str(), settings_.scene.c_str(),
                 settings_.lookahead);

@@ -41,6 +41,7 @@ private:
     /// The same: the pipeline.
     std::vector<BenchRow> measure_pipelines(Program& program) const;
     int report(Program& program) const;
+    void check_settings() const;
     void name_bench_files(NamedFiles& files) const;
 
     BenchSettings settings_;

@@ -138,12 +138,13 @@ int ConvertCommand::run(Program& program) {
     if (!filters.empty() && how.from && !is_read_once(from_file_))
         filters.count_from(times.time_of({}));
     if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
+    const OutputOptions output{.overwrite = overwrite_,
+                               .give_up = [&program] { return program.signals.stopping(); }};
     std::unique_ptr<ConvertTarget> target;
     if (to_udp)
-        target = open_event_target(to_file_, {.overwrite = overwrite_}, header);
+        target = open_event_target(to_file_, output, header);
     else
-        target = std::make_unique<RecordingOut>(to_file_, OutputOptions{.overwrite = overwrite_},
-                                                format, header);
+        target = std::make_unique<RecordingOut>(to_file_, output, format, header);
     Progress progress{program.quiet};
     const ConvertReport report = convert(*recording, *target, how, [&] {
         if (recording->size_bytes() > 0)

@@ -5,11 +5,8 @@
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
-#include "apps/cli/settings/words.h"
 #include "pipeline/parallel_tbb.h"
-#include "src/binning/slicer_settings.h"
 #include "src/core/error.h"
-#include "src/core/sensor_limits.h"
 #include "src/io/output_file.h"
 
 #include <spdlog/spdlog.h>
@@ -37,123 +34,7 @@ std::optional<double> seconds_of(const std::string& text, const char* open) {
     return std::chrono::duration<double>(parse_duration(text)).count();
 }
 
-Setting seconds_setting(std::string key, std::string& value, std::string help, std::string open) {
-    return parsed_setting<std::string>(
-        std::move(key), value, "TIME", std::move(help),
-        [open](const std::string& text) {
-            if (text != open) parse_duration(text);
-            return text;
-        },
-        [](const std::string& text) { return text; });
-}
-
 }  // namespace
-
-std::string EvaluateCommand::examples() const {
-    return "Tables go to standard output; LPIPS needs --lpips.\n"
-           "Examples:\n"
-           "  eventide evaluate recording.aedat4 ecd/slider_depth --json scores.json\n"
-           "  eventide evaluate ECD/ --protocol evreal --lpips lpips_squeeze_v0.1.npz\n"
-           "  eventide evaluate --protocol simulated --lookahead 2\n"
-           "  eventide evaluate frames/ references/ --protocol folders\n"
-           "  eventide evaluate --protocol simulated --figure reliability --figure spatial --plots "
-           "plots/\n"
-           "  eventide evaluate held_out.aedat4 --calibrated model.safetensors";
-}
-
-std::vector<Positional> EvaluateCommand::positionals() {
-    return {{"INPUT",
-             "Recordings with reference images; a folder of sequences (evreal); two folders of "
-             "images (folders); nothing (simulated)",
-             nullptr, &inputs_}};
-}
-
-// Long, because it is a list: one line per option.
-SettingTable EvaluateCommand::settings() {
-    SettingTable table{"evaluate", "eventide evaluate: measures of a model.", {}};
-    const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(choice_setting("protocol", protocol_,
-                       "recordings: between their reference images; evreal: ECD, MVSEC and HQF as "
-                       "EVREAL does; simulated: the project's test set; folders: images against "
-                       "images.",
-                       {{Protocol::recordings, "recordings"},
-                        {Protocol::evreal, "evreal"},
-                        {Protocol::simulated, "simulated"},
-                        {Protocol::folders, "folders"}}));
-    add(path_setting("model", model_, "NAME|FILE", "As in eventide run."));
-    add(text_setting(
-        "lpips", lpips_, "FILE",
-        "Weights of LPIPS as npz (lpips_squeeze_v0.1.npz); empty: LPIPS is left out."));
-    add(whole_setting("lookahead", lookahead_, "0|1|2",
-                      "Event windows after the frame's own that may be used.", 0, kMaxLookahead));
-    add(parsed_setting<std::string>(
-        "window", window_, "WINDOW",
-        "recordings: reference (an event window between reference images), or as in eventide run.",
-        [](const std::string& text) {
-            if (text != "reference") parse_window(text);
-            return text;
-        },
-        [](const std::string& text) { return text; }));
-    add(whole_setting("skip", skip_, "N",
-                      "The first N images are not scored: the state is still empty.", 0, 1000000));
-    add(whole_setting(
-        "frames", given_images_, "N",
-        "recordings: give one image of N to the model, which corrects its frames, and "
-        "score the others; 0: none.",
-        0, 1000000));
-    add(seconds_setting("from", from_,
-                        "recordings: score from here, after the first event; start: "
-                        "all.",
-                        "start"));
-    add(seconds_setting("to", to_, "recordings: score until here; end: all.", "end"));
-    add(choice_setting("sigma_rule", sigma_rule_, "As in eventide run.", sigma_words()));
-    add(text_setting("noise_filter", noise_filter_, "model|auto|off|TIME", "As in eventide run."));
-    add(text_setting("lamp_flicker", lamp_flicker_, "auto|off|TIME",
-                     "recordings: as in eventide run of a camera."));
-    add(choice_setting("precision", precision_, "As in eventide run.", kPrecisionWords));
-    add(choice_setting("engine", engine_, "As in eventide run.", kEngineWords));
-    add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
-    add(whole_setting("self_ensemble", self_ensemble_, "1|2|4", "As in eventide run.", 1, 4));
-
-    add(text_setting("images", images_, "FOLDER",
-                     "simulated: photographs to draw scenes from; empty: procedural textures."));
-    add(whole_setting("last_images", last_images_, "N",
-                      "simulated: only the last N of them by name; 0: all.", 0, 1000000));
-    add(whole_setting("sequences", sequences_, "N", "simulated: how many.", 1, 100000));
-    add(whole_setting("event_windows", event_windows_, "N", "simulated: in each sequence.", 1,
-                      1000000));
-    add(parsed_setting<Size>("size", size_, "WxH", "simulated: sensor size in pixels.", parse_size,
-                             show_size));
-    add(number_setting("scale", scale_, "S", "simulated: size of the frames, times the sensor's.",
-                       0.1, 16));
-    add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
-
-    add(path_setting("json", json_, "FILE",
-                     "All measures as JSON; -: on standard output, instead of "
-                     "the table."));
-    add(path_setting("csv", csv_, "FILE", "A line per sequence; - as for --json."));
-    add(path_setting("frame_csv", frame_csv_, "FILE", "A line per frame; - as for --json."));
-    std::string names;
-    for (const std::string& figure : figure_names()) names += (names.empty() ? "" : ", ") + figure;
-    add(list_setting(
-        "figure", figures_, "NAME",
-        "Figures as SVG and CSV: " + names +
-            "; spatial, temporal and silence from simulated sequences of their own, instead of a "
-            "table; the others beside the table, of what is evaluated."));
-    add(path_setting("plots", plots_, "FOLDER", "Where figures go."));
-    add(choice_setting("calibration", calibration_,
-                       "What --calibrated fits: coverage (PICP80 becomes .8), cautious (in the "
-                       "sequence that needs it most) or likelihood.",
-                       {{CalibrationRule::coverage, "coverage"},
-                        {CalibrationRule::likelihood, "likelihood"},
-                        {CalibrationRule::cautious, "cautious"}}));
-    add(text_setting(
-        "calibrated", calibrated_, "FILE",
-        "Fit one factor for sigma on what was evaluated, and write the model with it."));
-    add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
-    input_.add_to(table);
-    return table;
-}
 
 EvaluateSettings EvaluateCommand::how(Program& program) const {
     EvaluateSettings how;
@@ -324,9 +205,9 @@ int EvaluateCommand::run(Program& program) {
     const EvaluateSettings settings = how(program);
     name_evaluation_files(settings, program.files);
     require_outputs_that_fit();
+    if (evaluates()) require_inputs();
     make_simulated_figures(settings);
     if (!evaluates()) return exit_done;
-    require_inputs();
     const EvaluateReport report = evaluate(settings);
     write(report);
     for (const std::string& figure : figures_)

@@ -222,7 +222,9 @@ int SimulateCommand::run(Program& program) {
             : colour_textures_from_folder(textures_);
     StreamHeader header = header_of(what);
     header.colour_filter = bayer_;
-    RecordingOut out{out_, {.overwrite = overwrite_}, format_of(out_), header};
+    const OutputOptions output{.overwrite = overwrite_,
+                               .give_up = [&program] { return program.signals.stopping(); }};
+    RecordingOut out{out_, output, format_of(out_), header};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);
     std::unique_ptr<FolderSink> truth;

@@ -188,6 +188,9 @@ int StressCommand::run(Program& program) {
             std::printf("%-18s %s\n", one.name.c_str(), one.title.c_str());
         return exit_done;
     }
+    require_some("--models", models_);
+    if (soak_hours_ <= 0 && !plots_.empty())
+        throw Error(ErrorKind::usage, "--plots " + plots_ + ": expected --soak HOURS, found none");
     name_stress_files(program.files);
     return soak_hours_ > 0 ? run_soak(program) : run_cases(program);
 }

@@ -78,6 +78,10 @@ Span resumed_span(const RunSettings& settings, Span span, SensorTime t) {
                                           std::to_string(to_us(*span.frames_from)) + " us");
     span.begin = begin;
     span.frames_from = span.frames_from.value_or(begin);
+    if (settings.duration && !settings.from) {
+        const SensorTime end = begin + *settings.duration;
+        span.end = settings.to ? std::min(times_of(settings).time_of(*settings.to), end) : end;
+    }
     return span;
 }
 

@@ -25,8 +25,9 @@ struct Span {
 /// cannot be had: --from of a live source or, relative, of standard input.
 Span span_of(const RunSettings& settings, bool live);
 
-/// The span of a run that goes on from a state that was kept at `t`. Throws Error (usage) for
-/// frames from before it, and for a warm-up, which it has no use for.
+/// The span of a run that goes on from a state that was kept at `t`, from where a duration counts
+/// without --from. Throws Error (usage) for frames from before it, and for a warm-up, which it has
+/// no use for.
 Span resumed_span(const RunSettings& settings, Span span, SensorTime t);
 
 /// Of --states-at, with --states-out. Throws Error (usage) where they do not ascend, or one of the

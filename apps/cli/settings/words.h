@@ -3,11 +3,13 @@
 
 #include "src/core/arithmetic_words.h"
 #include "src/core/bayer.h"
+#include "src/core/error.h"
 #include "src/core/instructions.h"
 #include "src/model/engine.h"
 #include "src/settings/words.h"
 
 #include <iterator>
+#include <string>
 #include <vector>
 
 namespace eventide::app {
@@ -31,6 +33,14 @@ inline const std::vector<Word<ColourFilter>>& bayer_words() {
         return all;
     }();
     return words;
+}
+
+/// Throws Error (usage) naming the option whose list a configuration file or the environment left
+/// empty.
+inline void require_some(const char* option, const std::vector<std::string>& list) {
+    if (list.empty())
+        throw Error(ErrorKind::usage,
+                    std::string{option} + ": expected one or more, found an empty list");
 }
 
 }  // namespace eventide::app

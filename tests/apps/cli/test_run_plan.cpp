@@ -143,6 +143,28 @@ TEST(RunPlan, OfWhatIsReadOnceADurationCountsFromTheFirstEventThatComes) {
     EXPECT_THROW(span_of(settings, false), Error);
 }
 
+TEST(RunPlan, ADurationCountsFromWhereARunGoesOn) {
+    const test::TempFolder temp;
+    test::write_text(temp / "e.txt", "8 8\n5.0 1 1 1\n9.5 2 2 0\n");
+    RunSettings settings;
+    settings.source = temp / "e.txt";
+    settings.state_in = "state.safetensors";
+    settings.duration = SensorDuration{1'000'000};
+    const auto resumed = [&] {
+        return resumed_span(settings, span_of(settings, false), from_us(7'000'000));
+    };
+    EXPECT_EQ(to_us(*resumed().frames_from), 7'000'001);
+    EXPECT_EQ(to_us(*resumed().end), 8'000'001);
+    settings.to = parse_time_point("2.5s");
+    EXPECT_EQ(to_us(*resumed().end), 7'500'000) << "whichever is first";
+    settings.to = parse_time_point("4s");
+    EXPECT_EQ(to_us(*resumed().end), 8'000'001);
+    settings.from = parse_time_point("3s");
+    EXPECT_EQ(to_us(*resumed().end), 9'000'000) << "of the frames asked for";
+    settings.duration.reset();
+    EXPECT_EQ(to_us(*resumed().end), 9'000'000);
+}
+
 TEST(RunPlan, SpansCountFromTheFirstEvent) {
     const test::TempFolder temp;
     test::write_text(temp / "e.txt", "8 8\n5.0 1 1 1\n9.5 2 2 0\n");

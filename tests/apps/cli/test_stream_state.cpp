@@ -5,11 +5,15 @@
 #include "apps/cli/run/state/state_folder.h"
 #include "src/core/error.h"
 #include "tests/support/flickering_light.h"
+#include "tests/system/process.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <random>
+#include <string>
 
 namespace eventide::app {
 namespace {
@@ -153,7 +157,12 @@ TEST(StreamState, WhatIsNotKeptIsRefused) {
     };
     EXPECT_EQ(refused([](RunSettings&) {}), "");
     EXPECT_THAT(refused([](RunSettings&) {}, true), HasSubstr("expected a recording"));
-    EXPECT_THAT(refused([](RunSettings& s) { s.source = "-"; }), HasSubstr("expected a recording"));
+    const test::TempFolder temp;
+    const std::string pipe = temp / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::string& source : {std::string{"-"}, pipe})
+        EXPECT_THAT(refused([&](RunSettings& s) { s.source = source; }),
+                    HasSubstr("expected a recording that is a file, found " + source));
     EXPECT_THAT(refused([](RunSettings& s) { s.frames = CameraFrames::automatic; }),
                 HasSubstr("--frames ignore"));
     EXPECT_THAT(refused([](RunSettings& s) { s.colour = true; }), HasSubstr("--colour"));

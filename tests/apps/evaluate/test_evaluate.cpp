@@ -43,6 +43,8 @@ TEST(ReferenceSequence, IsCalledAsItsFolder) {
     const fs::path folder = write_recording(fresh_folder("at.5"), .5, .001, .1);
     EXPECT_EQ(read_reference_sequence(folder).name, "eventide_at.5");
     EXPECT_EQ(read_reference_sequence(folder / "").name, "eventide_at.5");
+    EXPECT_EQ(sequence_name(folder / "."), "eventide_at.5");
+    EXPECT_EQ(sequence_name("recordings/speed.5.aedat4"), "speed.5");
 }
 
 TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
@@ -123,6 +125,22 @@ TEST(EvaluateRecordings, WithOtherWindowsAlsoComparesAtTheImagesTimes) {
         EXPECT_EQ(report.overall.frames, 8);
         EXPECT_NEAR(report.sequences[0].frames[0].time_s, .1, 1e-6);
     }
+}
+
+TEST(EvaluateRecordings, TakeTheWindowsThatTheModelWasTrainedFor) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("windows_of_model"), .9, .001, .1)};
+    EvaluateSettings how = small_model();
+    Model model = load_model(how.model);
+    model.config.window = "30ms";
+    save_model(how.model, model);
+    const auto evaluated = [&](const char* window) {
+        what.window = window;
+        return evaluate_recordings(what, how);
+    };
+    const EvaluateReport expected = evaluated("30ms"), found = evaluated("model");
+    EXPECT_EQ(json(found), json(expected));
+    EXPECT_NE(found.overall.raw.mse, evaluated("50ms").overall.raw.mse);
 }
 
 TEST(EvaluateRecordings, ImagesThatAreGivenAreNotScoredAndCorrectTheOthers) {
@@ -215,6 +233,9 @@ TEST(EvaluateFolders, FindNothingBetweenEqualFolders) {
     EXPECT_EQ(report.overall.raw.mse, 0);
     EXPECT_NEAR(report.overall.raw.ssim, 1, 1e-9);
     EXPECT_FALSE(report.overall.picp80);
+    EXPECT_EQ(
+        evaluate_folders(folder / "frames/one/", folder / "references/one/", {}).overall.sequence,
+        "one");
 
     write_image(folder / "frames" / "one" / "9.png", test_image(kHeight, kWidth, 9));
     EXPECT_THROW(evaluate_folders(folder / "frames", folder / "references", {}), Error);

@@ -25,6 +25,17 @@ TEST(Evreal, CutsBySequenceNameAndStartsBeforeTheCut) {
     EXPECT_EQ(report.sequences[1].scores.frames, 4);  // in full, but for the last
 }
 
+TEST(Evreal, CutsASequenceHoweverItsFolderIsWritten) {
+    const fs::path folder =
+        write_recording(fresh_folder("ecd_one") / "slider_depth", 3.05, .01, .25);
+    for (const fs::path& written : {folder, folder / "", folder / "."}) {
+        const EvaluateReport report = evaluate_evreal(written, small_model());
+        ASSERT_EQ(report.sequences.size(), 1U);
+        EXPECT_EQ(report.sequences[0].scores.sequence, "slider_depth");
+        EXPECT_EQ(report.sequences[0].scores.frames, 7) << written;
+    }
+}
+
 TEST(Evreal, StartsEachSequenceAnew) {
     const fs::path dataset = fresh_folder("ecd_twice");
     write_recording(dataset / "a", .6, .002, .1);

@@ -24,9 +24,15 @@ namespace {
 
 constexpr std::size_t kChangesKept = 100;
 
+/// Where event windows end at the camera's images, each has its frame.
+bool cuts_at_images(const RunSettings& settings) {
+    return settings.window != "model" &&
+           parse_window(settings.window).rule == WindowRule::reference;
+}
+
 /// Of the video; 0: one for each event window.
 double video_rate(const RunSettings& settings) {
-    if (settings.fps.automatic) return settings.window == "aps" ? 0 : 30;
+    if (settings.fps.automatic) return cuts_at_images(settings) ? 0 : 30;
     const FrameRate& rate = settings.fps.rate;
     return rate.is_set() ? double(rate.frames) / double(rate.seconds) : 0;
 }
@@ -40,7 +46,7 @@ QualityLevel asked_level(const RunSettings& settings, const SensorInfo& sensor) 
 }
 
 bool rate_is_open(const RunSettings& settings) {
-    return settings.fps.automatic && settings.window != "aps";
+    return settings.fps.automatic && !cuts_at_images(settings);
 }
 
 /// --roi and --crop count pixels of the frame.

@@ -56,7 +56,7 @@ void check_stream_state(const RunSettings& settings, const std::string& option, 
     const auto refuse = [&option](const std::string& expected) {
         throw Error(ErrorKind::usage, option + ": expected " + expected);
     };
-    if (live || settings.source == "-")
+    if (live || is_read_once(settings.source))
         refuse("a recording that is a file, found " + settings.source);
     if (settings.frames != CameraFrames::ignore)
         refuse("--frames ignore; what the camera's images corrected is not kept");
