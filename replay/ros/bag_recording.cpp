@@ -13,9 +13,7 @@ namespace {
 class BagReader final : public RosReader {
 public:
     BagReader(const std::string& path, const OpenOptions& options)
-        : RosReader(path, RosWire::ros1, options.stream),
-          records_(path),
-          begin_(records_.position()) {
+        : RosReader(path, options.stream), records_(path), begin_(records_.position()) {
         open("rosbag", options);
     }
 
@@ -69,8 +67,8 @@ private:
         const auto name = record.fields.find("topic");
         if (type != fields.end())
             add_topic(records_.number(record, "conn"),
-                      name == record.fields.end() ? std::string_view{} : name->second,
-                      type->second);
+                      name == record.fields.end() ? std::string_view{} : name->second, type->second,
+                      RosWire::ros1);
     }
 
     /// Of chunks, and of messages that lie in none. Takes the topics that the index behind them
@@ -99,8 +97,9 @@ private:
         records_.go_to(place);
         while (read_part(unused)) {
             for (const Message& message : messages_)
-                if (const auto t = message.kind == RosKind::events ? data_.first_time(message.bytes)
-                                                                   : std::nullopt)
+                if (const auto t = message.form.kind == RosKind::events
+                                       ? first_time(message.form.wire, message.bytes)
+                                       : std::nullopt)
                     return t;
             messages_.clear();
         }

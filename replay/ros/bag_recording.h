@@ -13,7 +13,7 @@ namespace eventide {
 /// without events, naming the types of messages that it has.
 std::unique_ptr<DataReader> open_bag(const std::string& path, const OpenOptions& options);
 
-/// A ROS 2 bag in an MCAP file.
+/// A ROS 2 bag in an MCAP file, or a ROS 1 bag that was converted to one.
 std::unique_ptr<DataReader> open_mcap(const std::string& path, const OpenOptions& options);
 
 /// A ROS 2 bag in an SQLite file. Throws Error (failed) where eventide was built without SQLite.

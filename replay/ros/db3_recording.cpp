@@ -69,12 +69,12 @@ std::string address_of(const std::string& path) {
 class Db3Reader final : public RosReader {
 public:
     Db3Reader(const std::string& path, const OpenOptions& options)
-        : RosReader(path, RosWire::cdr, options.stream), file_(open_file(path)) {
+        : RosReader(path, options.stream), file_(open_file(path)) {
         const Rows topics = prepare("select id, name, type, serialization_format from topics");
         while (sqlite().step(topics.get()) == SQLITE_ROW)
             if (text(topics, 3) == "cdr")
                 add_topic(std::uint32_t(sqlite().column_int64(topics.get(), 0)), text(topics, 1),
-                          text(topics, 2));
+                          text(topics, 2), RosWire::cdr);
         const Rows count = prepare("select count(*) from messages");
         if (sqlite().step(count.get()) == SQLITE_ROW)
             count_ = sqlite().column_int64(count.get(), 0);

@@ -1,5 +1,5 @@
-// MCAP, as rosbag2 writes it: records of u8 kind and u64 length, some of them packed in chunks
-// (mcap.dev/spec).
+// MCAP, as rosbag2 and tools that convert ROS 1 bags write it: records of u8 kind and u64 length,
+// some of them packed in chunks (mcap.dev/spec).
 #include "replay/ros/bag_recording.h"
 #include "replay/ros/ros_reader.h"
 #include "replay/stream/byte_file.h"
@@ -23,7 +23,7 @@ enum Kind : std::uint8_t { footer = 2, schema = 3, channel = 4, message = 5, chu
 class McapReader final : public RosReader {
 public:
     McapReader(const std::string& path, const OpenOptions& options)
-        : RosReader(path, RosWire::cdr, options.stream), file_(path) {
+        : RosReader(path, options.stream), file_(path) {
         open("mcap", options);
     }
 
@@ -120,9 +120,12 @@ private:
             const std::string_view name = text_of(reader.block());
             const std::string_view wire = text_of(reader.block());
             if (!reader.good()) return damage.count(DamageReason::bad_record);
-            const bool readable = type != types_of_schemas_.end() && wire == "cdr";
+            const bool readable =
+                type != types_of_schemas_.end() && (wire == "cdr" || wire == "ros1");
             readable_channels_[number] = readable;
-            if (readable) add_topic(number, name, type->second);
+            if (readable)
+                add_topic(number, name, type->second,
+                          wire == "ros1" ? RosWire::ros1 : RosWire::cdr);
         } else if (kind == message) {
             reader.take(20);  // sequence number, times of writing and sending
             // Of a channel that only comes later nobody knows what it holds, also at a second
@@ -142,7 +145,8 @@ private:
     std::vector<std::byte> record_;
     Aedat4Unpacker unpacker_;
     std::map<std::uint16_t, std::string> types_of_schemas_;
-    std::map<std::uint16_t, bool> readable_channels_;  ///< of those told so far: what is in CDR
+    std::map<std::uint16_t, bool>
+        readable_channels_;  ///< of those told so far: in CDR or ROS 1's way
 };
 
 }  // namespace

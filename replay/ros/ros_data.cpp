@@ -130,9 +130,10 @@ RosKind ros_kind(std::string_view type) {
     return RosKind::other;
 }
 
-bool RosData::take(RosKind kind, std::span<const std::byte> message, Batch& into, Damage& damage) {
-    const bool good = wire_ == RosWire::ros1 ? take_with(Ros1Reader{message}, kind, into, damage)
-                                             : take_with(CdrReader{message}, kind, into, damage);
+bool RosData::take(RosForm form, std::span<const std::byte> message, Batch& into, Damage& damage) {
+    const bool good = form.wire == RosWire::ros1
+                          ? take_with(Ros1Reader{message}, form.kind, into, damage)
+                          : take_with(CdrReader{message}, form.kind, into, damage);
     if (!good) damage.count(DamageReason::bad_record);
     return good;
 }
@@ -152,14 +153,14 @@ bool RosData::take_with(Reader reader, RosKind kind, Batch& into, Damage& damage
     return true;
 }
 
-std::optional<SensorTime> RosData::first_time(std::span<const std::byte> message) const {
-    return wire_ == RosWire::ros1 ? first_time_with(Ros1Reader{message})
-                                  : first_time_with(CdrReader{message});
+std::optional<SensorTime> first_time(RosWire wire, std::span<const std::byte> message) {
+    return wire == RosWire::ros1 ? first_time_with(Ros1Reader{message})
+                                 : first_time_with(CdrReader{message});
 }
 
-std::optional<RosImageSize> RosData::image_size(std::span<const std::byte> message) const {
-    return wire_ == RosWire::ros1 ? image_size_with(Ros1Reader{message})
-                                  : image_size_with(CdrReader{message});
+std::optional<RosImageSize> image_size(RosWire wire, std::span<const std::byte> message) {
+    return wire == RosWire::ros1 ? image_size_with(Ros1Reader{message})
+                                 : image_size_with(CdrReader{message});
 }
 
 bool RosData::take_size(std::uint32_t width, std::uint32_t height) {

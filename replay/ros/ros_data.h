@@ -28,19 +28,30 @@ enum class RosKind {
 /// Of a type's name, with or without ROS 2's "/msg".
 RosKind ros_kind(std::string_view type);
 
+/// What a topic's messages are.
+struct RosForm {
+    RosKind kind = RosKind::other;
+    RosWire wire = RosWire::cdr;
+    friend bool operator==(const RosForm&, const RosForm&) = default;
+};
+
 struct RosImageSize {
     int width = 0, height = 0;  ///< px
 };
 
+/// Of the first event in a message of kind events. Empty where there is none.
+std::optional<SensorTime> first_time(RosWire wire, std::span<const std::byte> message);
+/// Of a message of kind images. Empty where it is cut short. One of another size than the events'
+/// is not the event camera's.
+std::optional<RosImageSize> image_size(RosWire wire, std::span<const std::byte> message);
+
 /// The messages of one topic with events and one with images, in order.
 class RosData {
 public:
-    explicit RosData(RosWire wire) : wire_(wire) {}
-
     /// Appends what the message holds. False, and nothing appended, where it is cut short or says
     /// what cannot be (then damage is counted). Times are ROS's: those of packets are shifted as
     /// EventPacketParser does.
-    bool take(RosKind kind, std::span<const std::byte> message, Batch& into, Damage& damage);
+    bool take(RosForm form, std::span<const std::byte> message, Batch& into, Damage& damage);
 
     /// px, as the messages with events say; 0 before the first.
     int width() const { return width_; }
@@ -48,12 +59,6 @@ public:
 
     /// What comes next is the beginning once more.
     void restart();
-
-    /// Of the first event in a message of kind events. Empty where there is none.
-    std::optional<SensorTime> first_time(std::span<const std::byte> message) const;
-    /// Of a message of kind images. Empty where it is cut short. One of another size than the
-    /// events' is not the event camera's.
-    std::optional<RosImageSize> image_size(std::span<const std::byte> message) const;
 
 private:
     template <typename Reader>
@@ -67,7 +72,6 @@ private:
     bool take_size(std::uint32_t width, std::uint32_t height);
     bool is_gap_before(std::uint64_t sequence);
 
-    RosWire wire_;
     int width_ = 0, height_ = 0;
     std::optional<EventPacketParser> packets_;
     std::string encoding_;

@@ -54,10 +54,10 @@ void RosReader::look_for_sizes(Damage& damage) {
 void RosReader::look_at(const Message& message, Damage& damage) {
     Batch unused;
     auto& size = topics_[message.topic].size;
-    if (message.kind != RosKind::images) {
-        if (data_.width() == 0) data_.take(message.kind, message.bytes, unused, damage);
+    if (message.form.kind != RosKind::images) {
+        if (data_.width() == 0) data_.take(message.form, message.bytes, unused, damage);
     } else if (!size) {
-        size = data_.image_size(message.bytes);
+        size = image_size(message.form.wire, message.bytes);
     }
 }
 
@@ -66,10 +66,10 @@ void RosReader::look_at(const Message& message, Damage& damage) {
 bool RosReader::choose_other_events() {
     if (!events_) return false;
     for (auto& [number, topic] : topics_)
-        topic.is_void |= is_read(number) && has_events(topic.kind);
+        topic.is_void |= is_read(number) && has_events(topic.form.kind);
     const auto next = std::ranges::find_if(topics_, [](const auto& each) {
         const Topic& topic = each.second;
-        return has_events(topic.kind) && topic.has_messages && !topic.is_void;
+        return has_events(topic.form.kind) && topic.has_messages && !topic.is_void;
     });
     if (next == topics_.end()) return false;
     events_ = next->first;
@@ -78,7 +78,7 @@ bool RosReader::choose_other_events() {
 
 bool RosReader::has_all_sizes() const {
     return std::ranges::all_of(topics_, [](const auto& each) {
-        return each.second.kind != RosKind::images || each.second.size;
+        return each.second.form.kind != RosKind::images || each.second.size;
     });
 }
 
@@ -93,7 +93,7 @@ bool RosReader::read(Batch& into, Damage& damage) {
     }
     const Message message = std::move(messages_.front());
     messages_.pop_front();
-    data_.take(message.kind, message.bytes, into, damage);
+    data_.take(message.form, message.bytes, into, damage);
     return true;
 }
 
@@ -105,13 +105,14 @@ void RosReader::begin_anew() {
 }
 
 bool RosReader::has_whole_times() const {
-    return events_ && topics_.at(*events_).kind == RosKind::events;
+    return events_ && topics_.at(*events_).form.kind == RosKind::events;
 }
 
-void RosReader::add_topic(std::uint32_t number, std::string_view name, std::string_view type) {
+void RosReader::add_topic(std::uint32_t number, std::string_view name, std::string_view type,
+                          RosWire wire) {
     if (topics_.contains(number)) return;
     const RosKind kind = ros_kind(type);
-    topics_[number] = {std::string(name), kind};
+    topics_[number] = {std::string(name), {kind, wire}};
     types_.insert(std::string(type));
     if (kind == RosKind::images && !images_ && !images_refused_) images_ = number;
     const bool is_wanted = wanted_.empty() || wanted_ == name;
@@ -122,9 +123,9 @@ void RosReader::add_message(std::uint32_t number, std::span<const std::byte> byt
     const auto found = topics_.find(number);
     if (found == topics_.end()) return;
     found->second.has_messages = true;
-    const RosKind kind = found->second.kind;
-    if (is_read(number) || (opening_ && kind == RosKind::images))
-        messages_.push_back({kind, number, std::vector(bytes.begin(), bytes.end())});
+    const RosForm form = found->second.form;
+    if (is_read(number) || (opening_ && form.kind == RosKind::images))
+        messages_.push_back({form, number, std::vector(bytes.begin(), bytes.end())});
 }
 
 /// A topic has a number for each of its publishers.
@@ -132,7 +133,7 @@ bool RosReader::is_read(std::uint32_t number) const {
     const auto found = topics_.find(number);
     const auto is_topic_of = [&](const std::optional<std::uint32_t>& chosen) {
         return chosen && found->second.name == topics_.at(*chosen).name &&
-               found->second.kind == topics_.at(*chosen).kind;
+               found->second.form == topics_.at(*chosen).form;
     };
     return found != topics_.end() && (is_topic_of(events_) || is_topic_of(images_));
 }
@@ -150,7 +151,7 @@ void RosReader::refuse(const Damage& damage) const {
 void RosReader::refuse_topic() const {
     std::set<std::string> names;
     for (const auto& [number, topic] : topics_)
-        if (has_events(topic.kind) && topic.has_messages) names.insert(topic.name);
+        if (has_events(topic.form.kind) && topic.has_messages) names.insert(topic.name);
     std::string found;
     for (const std::string& name : names) found += (found.empty() ? "" : ", ") + name;
     throw Error(ErrorKind::usage, path_ + ": expected events of the topic '" + wanted_ +
@@ -162,7 +163,7 @@ void RosReader::refuse_topic() const {
 bool RosReader::is_of_other_camera(const Topic& images) const {
     const std::string_view name = namespace_of(images.name);
     const auto has_events_there = [&](const auto& each) {
-        return has_events(each.second.kind) && namespace_of(each.second.name) == name;
+        return has_events(each.second.form.kind) && namespace_of(each.second.name) == name;
     };
     return name != namespace_of(topics_.at(*events_).name) &&
            std::ranges::any_of(topics_, has_events_there);
@@ -174,7 +175,7 @@ void RosReader::choose_images() {
     if (!images_) return;
     const auto choose = [&](auto&& is_wanted) {
         const auto found = std::ranges::find_if(topics_, [&](const auto& each) {
-            return each.second.kind == RosKind::images && !is_of_other_camera(each.second) &&
+            return each.second.form.kind == RosKind::images && !is_of_other_camera(each.second) &&
                    is_wanted(each.second);
         });
         if (found != topics_.end()) images_ = found->first;
@@ -194,8 +195,8 @@ void RosReader::choose_images() {
 void RosReader::name_other_topics() {
     std::set<std::string> named;
     for (const auto& [number, topic] : topics_) {
-        const bool images = topic.kind == RosKind::images;
-        if (is_read(number) || (!images && !has_events(topic.kind))) continue;
+        const bool images = topic.form.kind == RosKind::images;
+        if (is_read(number) || (!images && !has_events(topic.form.kind))) continue;
         const std::string what = (images ? "the images of " : "the events of ") + topic.name;
         if (!named.insert(what).second) continue;
         if (topic.is_void)

@@ -33,13 +33,13 @@ public:
 
 protected:
     struct Message {
-        RosKind kind;
+        RosForm form;
         std::uint32_t topic;
         std::vector<std::byte> bytes;
     };
 
-    RosReader(std::string path, RosWire wire, std::string wanted)
-        : path_(std::move(path)), data_(wire), wanted_(std::move(wanted)) {}
+    RosReader(std::string path, std::string wanted)
+        : path_(std::move(path)), wanted_(std::move(wanted)) {}
 
     /// Reads until the sizes of events and images are known, and goes back. Of who derives, at the
     /// end of its constructor. Throws Error: input where there are no events, usage where there are
@@ -51,7 +51,8 @@ protected:
     virtual bool read_part(Damage& damage) = 0;
     virtual void rewind() = 0;
 
-    void add_topic(std::uint32_t number, std::string_view name, std::string_view type);
+    void add_topic(std::uint32_t number, std::string_view name, std::string_view type,
+                   RosWire wire);
     void add_message(std::uint32_t number, std::span<const std::byte> bytes);
     void begin_anew();
     /// Whether what is read are packets, or nothing yet.
@@ -64,7 +65,7 @@ protected:
 private:
     struct Topic {
         std::string name;
-        RosKind kind = RosKind::other;
+        RosForm form = {};
         std::optional<RosImageSize> size = {};  ///< of images, where one was seen
         bool has_messages = false;              ///< some came
         bool is_void = false;                   ///< of events: none that can be read

@@ -78,6 +78,21 @@ TEST(McapRecording, AChannelThatIsToldAnewIsReadFromThereOnAtEveryReading) {
     EXPECT_TRUE(read_everything(*recording).events == expected);
 }
 
+/// As a converter makes it of a ROS 1 bag.
+TEST(McapRecording, MessagesOfRos1AreReadAsABagsAre) {
+    const TestFolder folder;
+    const auto events = some_events(300, 1'500'000'000'000'000);
+    BagBytes bytes = kMcapBegin + mcap_channel(7, "/dvs/events", "dvs_msgs/EventArray", "ros1");
+    for (std::size_t i = 0; i < events.size(); i += 100)
+        bytes += mcap_record(5, little(std::uint16_t{7}) + BagBytes(20, '\0') +
+                                    event_array(128, 128, std::span(events).subspan(i, 100)));
+    const auto recording = open_recording(folder.write("a.mcap", bytes));
+    EXPECT_EQ(recording->info().width, 128);
+    EXPECT_TRUE(read_everything(*recording).events == events);
+    recording->seek(SensorTime::min());
+    EXPECT_TRUE(read_everything(*recording).events == events);
+}
+
 TEST(McapRecording, GivesTheEventsThatWereWritten) {
     const TestFolder folder;
     const auto events = some_events(5'000, 1'500'000'000'000'000);
