@@ -1,6 +1,7 @@
 // Recordings being written, behind the public face.
 #include "library/far_time.h"
 #include "library/pushed_images.h"
+#include "replay/convert.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
 #include "src/core/error.h"
@@ -28,12 +29,8 @@ StreamHeader header_of(const Format& format, const SensorInfo& sensor, const std
         throw Error(ErrorKind::usage, path + ": sensor size: expected 1 to 65535 px, found " +
                                           std::to_string(sensor.width) + "x" +
                                           std::to_string(sensor.height));
-    StreamHeader header;
+    StreamHeader header = eventide::header_of(sensor);
     header.format = format.name;
-    header.width = sensor.width;
-    header.height = sensor.height;
-    header.sensor_name = sensor.name;
-    header.serial = sensor.serial;
     return header;
 }
 

@@ -22,9 +22,9 @@ struct WriterOptions {
 /// Thread: one at a time.
 class EVENTIDE_API EventWriter {
 public:
-    /// Of `sensor` width and height must be set (px), name and serial may be. "-" is standard
-    /// output. Throws Error: usage for an unknown format or a file that exists, failed where it
-    /// cannot be written.
+    /// Of `sensor` width and height must be set (px); name, serial and colour filter may be, and
+    /// are written where the format has a place for them. "-" is standard output. Throws Error:
+    /// usage for an unknown format or a file that exists, failed where it cannot be written.
     EventWriter(const std::string& path, const SensorInfo& sensor,
                 const WriterOptions& options = {});
     ~EventWriter();
