@@ -34,6 +34,16 @@ StreamHeader header_of(const Format& format, const SensorInfo& sensor, const std
     return header;
 }
 
+OutputOptions output_options(const WriterOptions& options) {
+    OutputOptions output{.overwrite = options.overwrite};
+    if (options.while_waiting)
+        output.give_up = [wait = options.while_waiting] {
+            wait();
+            return false;
+        };
+    return output;
+}
+
 }  // namespace
 
 class EventWriter::Impl {
@@ -43,8 +53,7 @@ public:
           format_(format_of(path, options)),
           width_(sensor.width),
           height_(sensor.height),
-          file_(path, {.overwrite = options.overwrite}, format_, header_of(format_, sensor, path)) {
-    }
+          file_(path, output_options(options), format_, header_of(format_, sensor, path)) {}
 
     void write(std::span<const Event> events) {
         held_.clear();

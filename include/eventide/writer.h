@@ -6,6 +6,7 @@
 #include <eventide/version.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,6 +17,9 @@ namespace eventide {
 struct WriterOptions {
     std::string format;      ///< "aedat4", "evt3", "text", ...; empty: by the file's extension
     bool overwrite = false;  ///< replace a file that exists
+    /// Called every 20 ms while a pipe has no reader or is full: what it throws comes out of the
+    /// constructor, of write() or of finish(), and the recording stays incomplete. May be empty.
+    std::function<void()> while_waiting{};
 };
 
 /// The file appears under its name, whole, with finish(); without it nothing is left behind.
