@@ -21,6 +21,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <system_error>
 
 namespace eventide {
 namespace {
@@ -103,6 +105,12 @@ const Kind* kind_of(std::string_view source) {
 
 bool names_camera(std::string_view source) {
     return kind_of(source) != nullptr;
+}
+
+bool names_device_alone(const std::string& source) {
+    std::error_code none;
+    return (names_camera(source) || names_simulation(source)) &&
+           !std::filesystem::exists(source, none);
 }
 
 std::string source_suggestion(std::string_view source) {

@@ -25,6 +25,9 @@ struct CameraOptions {
 /// Whether a source on the command line names a camera rather than a file: "davis:", "v4l2:", ...
 bool names_camera(std::string_view source);
 
+/// For what reads recordings alone: whether `source` names a camera or a simulation, and no file.
+bool names_device_alone(const std::string& source);
+
 /// "; did you mean davis:?" where a source that is none is nearly one, with a colon or without;
 /// else empty.
 std::string source_suggestion(std::string_view source);

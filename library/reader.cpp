@@ -1,6 +1,5 @@
 // Recordings behind the public face.
 #include "drivers/devices.h"
-#include "drivers/simulated/simulated_name.h"
 #include "library/later_part.h"
 #include "library/source_filters.h"
 #include "replay/formats.h"
@@ -10,9 +9,7 @@
 
 #include <eventide/reader.h>
 
-#include <filesystem>
 #include <string>
-#include <system_error>
 
 namespace eventide {
 namespace {
@@ -32,9 +29,7 @@ OpenOptions open_options(const ReaderOptions& options) {
 }
 
 void refuse_camera(const std::string& path) {
-    std::error_code none;
-    if (!names_camera(path) && !names_simulation(path)) return;
-    if (std::filesystem::exists(path, none)) return;
+    if (!names_device_alone(path)) return;
     throw Error(ErrorKind::usage,
                 "'" + path +
                     "': expected a recording, found the name of a camera, which EventCamera opens "

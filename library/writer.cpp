@@ -1,6 +1,7 @@
 // Recordings being written, behind the public face.
 #include "library/far_time.h"
 #include "library/pushed_images.h"
+#include "replay/convert.h"
 #include "replay/formats.h"
 #include "replay/recording_file.h"
 #include "src/core/error.h"
@@ -28,13 +29,19 @@ StreamHeader header_of(const Format& format, const SensorInfo& sensor, const std
         throw Error(ErrorKind::usage, path + ": sensor size: expected 1 to 65535 px, found " +
                                           std::to_string(sensor.width) + "x" +
                                           std::to_string(sensor.height));
-    StreamHeader header;
+    StreamHeader header = eventide::header_of(sensor);
     header.format = format.name;
-    header.width = sensor.width;
-    header.height = sensor.height;
-    header.sensor_name = sensor.name;
-    header.serial = sensor.serial;
     return header;
+}
+
+OutputOptions output_options(const WriterOptions& options) {
+    OutputOptions output{.overwrite = options.overwrite};
+    if (options.while_waiting)
+        output.give_up = [wait = options.while_waiting] {
+            wait();
+            return false;
+        };
+    return output;
 }
 
 }  // namespace
@@ -46,8 +53,7 @@ public:
           format_(format_of(path, options)),
           width_(sensor.width),
           height_(sensor.height),
-          file_(path, {.overwrite = options.overwrite}, format_, header_of(format_, sensor, path)) {
-    }
+          file_(path, output_options(options), format_, header_of(format_, sensor, path)) {}
 
     void write(std::span<const Event> events) {
         held_.clear();

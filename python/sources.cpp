@@ -206,9 +206,10 @@ void add_writer(py::module_& module) {
                               "the end of a with block.")
         .def(py::init([](const std::filesystem::path& path, int width, int height,
                          std::string format, bool overwrite) {
+                 const py::gil_scoped_release released;
                  return std::make_unique<GuardedWriter>(
                      path.string(), SensorInfo{"", "", "", width, height},
-                     WriterOptions{std::move(format), overwrite});
+                     WriterOptions{std::move(format), overwrite, hear_signals});
              }),
              py::arg("path"), py::arg("width"), py::arg("height"), py::arg("format") = "",
              py::arg("overwrite") = false)

@@ -6,6 +6,7 @@
 #include <eventide/version.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,15 +17,18 @@ namespace eventide {
 struct WriterOptions {
     std::string format;      ///< "aedat4", "evt3", "text", ...; empty: by the file's extension
     bool overwrite = false;  ///< replace a file that exists
+    /// Called every 20 ms while a pipe has no reader or is full: what it throws comes out of the
+    /// constructor, of write() or of finish(), and the recording stays incomplete. May be empty.
+    std::function<void()> while_waiting{};
 };
 
 /// The file appears under its name, whole, with finish(); without it nothing is left behind.
 /// Thread: one at a time.
 class EVENTIDE_API EventWriter {
 public:
-    /// Of `sensor` width and height must be set (px), name and serial may be. "-" is standard
-    /// output. Throws Error: usage for an unknown format or a file that exists, failed where it
-    /// cannot be written.
+    /// Of `sensor` width and height must be set (px); name, serial and colour filter may be, and
+    /// are written where the format has a place for them. "-" is standard output. Throws Error:
+    /// usage for an unknown format or a file that exists, failed where it cannot be written.
     EventWriter(const std::string& path, const SensorInfo& sensor,
                 const WriterOptions& options = {});
     ~EventWriter();

@@ -189,6 +189,23 @@ TEST_F(Recordings, ComeBackAsTheyWereWritten) {
     EXPECT_EQ(again.width(), 64);
 }
 
+TEST_F(Recordings, OfAColourCameraSaySoWhenTheyComeBack) {
+    Batch batch;
+    batch.images.resize(1);
+    batch.images[0].pixels = Array2<std::uint16_t>(48, 64);
+    EventWriter writer{temp_ / "colour.aedat4",
+                       {"DAVIS346", "00000007", "", 64, 48, ColourFilter::grbg}};
+    writer.write(batch);
+    writer.finish();
+    EventReader reader{temp_ / "colour.aedat4"};
+    EXPECT_EQ(reader.info().colour_filter, ColourFilter::grbg);
+    EXPECT_EQ(reader.info().name, "DAVIS346");
+    EXPECT_EQ(reader.info().serial, "00000007");
+    ASSERT_TRUE(reader.read(batch));
+    ASSERT_EQ(batch.images.size(), 1U);
+    EXPECT_EQ(batch.images[0].filter, ColourFilter::grbg);
+}
+
 TEST_F(Recordings, HoldNoImageWhoseExposureEndsBeforeItBegins) {
     Batch batch;
     batch.images.resize(1);

@@ -8,6 +8,7 @@ import functools
 import operator
 import os
 import signal
+import sys
 import tempfile
 import termios
 import threading
@@ -23,6 +24,12 @@ ENDLESS_CAMERA = "sim:demo?size=64x48&speed=max"
 def consume(iterator):
     """No line of Python runs between two items, in which the interpreter could see the signal."""
     collections.deque(iterator, maxlen=0)
+
+
+def bytes_in(pipe):
+    waiting = bytearray(4)
+    fcntl.ioctl(pipe, termios.FIONREAD, waiting)
+    return int.from_bytes(waiting, sys.byteorder)
 
 
 class Interrupts(RecordedTest):
@@ -116,16 +123,24 @@ class Interrupts(RecordedTest):
             os.write(keeps, b"64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 5 6 1\n")
             reader = eventide.open(path)
 
-            def is_read():
-                waiting = bytearray(4)
-                fcntl.ioctl(keeps, termios.FIONREAD, waiting)
-                return not any(waiting)
-
-            self.assertTrue(is_read())
+            self.assertEqual(bytes_in(keeps), 0)
             os.write(keeps, b"0.4 7 8 1\n")
-            self.interrupt(lambda: consume(reader), is_read)
+            self.interrupt(lambda: consume(reader), lambda: bytes_in(keeps) == 0)
             os.write(keeps, b"0.43 7 8 0\n0.45 7 8 1\n")
             self.assertGreater(next(reader)["t"][-1], 300_000)
+            os.close(keeps)
+
+    def test_waiting_for_the_reader_of_a_pipe_ends(self):
+        with self.pipe() as path:
+            begun = []
+            self.interrupt(lambda: begun.append(1) or eventide.Writer(path, 64, 48, "text"), lambda: begun)
+
+    def test_waiting_for_a_slow_reader_of_a_pipe_ends(self):
+        with self.pipe() as path:
+            keeps = os.open(path, os.O_RDWR)
+            writer = eventide.Writer(path, 64, 48, "text")
+            events = np.zeros(100_000, DTYPE)
+            self.interrupt(lambda: writer.write(events), lambda: bytes_in(keeps) > 0)
             os.close(keeps)
 
     def test_a_simulation_ends(self):

@@ -2,15 +2,12 @@
 #include "apps/cli/settings/input_settings.h"
 
 #include "drivers/devices.h"
-#include "drivers/simulated/simulated_name.h"
 #include "pipeline/filters/data_filter.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
 
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 namespace eventide::app {
@@ -86,9 +83,7 @@ Setting filter_setting(std::vector<std::string>& filters) {
 }
 
 void refuse_camera(const std::string& path) {
-    std::error_code none;
-    if (!names_camera(path) && !names_simulation(path)) return;
-    if (std::filesystem::exists(path, none)) return;
+    if (!names_device_alone(path)) return;
     throw Error(ErrorKind::usage,
                 "'" + path + "': expected a recording, found the name of a " +
                     (names_camera(path)
