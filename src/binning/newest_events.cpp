@@ -8,7 +8,7 @@
 namespace eventide {
 
 NewestEvents::NewestEvents(int width, int height)
-    : stride_(std::size_t(width) + 2), rows_(std::size_t(height) + 2), words_(size() + 2) {
+    : stride_(std::size_t(width) + 2), rows_(std::size_t(height) + 2), words_(size() + 1) {
     forget(SensorTime{});
 }
 

@@ -71,7 +71,7 @@ private:
     void sweep(SensorTime now) noexcept;
 
     std::size_t stride_, rows_;
-    std::vector<std::uint32_t> words_;  // [y + 1][x + 1]: us << 1 | on; two beyond the end are read
+    std::vector<std::uint32_t> words_;  // [y + 1][x + 1]: us << 1 | on; one beyond the end is read
     SensorTime swept_{};
 };
 
