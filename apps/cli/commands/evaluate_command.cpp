@@ -147,7 +147,7 @@ SettingTable EvaluateCommand::settings() {
                        {{CalibrationRule::coverage, "coverage"},
                         {CalibrationRule::likelihood, "likelihood"},
                         {CalibrationRule::cautious, "cautious"}}));
-    add(text_setting(
+    add(path_setting(
         "calibrated", calibrated_, "FILE",
         "Fit one factor for sigma on what was evaluated, and write the model with it."));
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
@@ -193,6 +193,11 @@ SimulatedSettings EvaluateCommand::simulated() const {
 }
 
 void EvaluateCommand::require_inputs() const {
+    if (!evaluates() && !inputs_.empty())
+        throw Error(ErrorKind::usage, "evaluate: expected no input, found " + inputs_.front() +
+                                          "; --figure " + figures_.front() +
+                                          " is made of simulated sequences of its own");
+    if (!evaluates()) return;
     const std::size_t n = inputs_.size();
     const char* expected = nullptr;
     if (protocol_ == Protocol::recordings && n < 1) expected = "one or more recordings";
@@ -324,9 +329,9 @@ int EvaluateCommand::run(Program& program) {
     const EvaluateSettings settings = how(program);
     name_evaluation_files(settings, program.files);
     require_outputs_that_fit();
+    require_inputs();
     make_simulated_figures(settings);
     if (!evaluates()) return exit_done;
-    require_inputs();
     const EvaluateReport report = evaluate(settings);
     write(report);
     for (const std::string& figure : figures_)
