@@ -1,6 +1,8 @@
 // Shares of what was read.
 #include "replay/left_out.h"
 
+#include "src/core/number_text.h"
+
 #include <cstdio>
 
 namespace eventide {
@@ -58,7 +60,7 @@ std::string left_out_text(const std::string& name, const std::string& format, st
     if (std::string most = most_left_out(name, format, events, damaged); !most.empty()) return most;
     const std::uint64_t late = damaged[DamageReason::time_backwards];
     if (late == 0) return {};
-    return name + ": " + std::to_string(late) + " events (" + share_text(late, events + late) +
+    return name + ": " + counted(late, "event") + " (" + share_text(late, events + late) +
            ") left out, their times lie before those of events already read" +
            what_to_do(DamageReason::time_backwards, format);
 }

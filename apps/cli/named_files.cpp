@@ -79,9 +79,11 @@ void NamedFiles::writes(const std::string& option, const fs::path& path, const s
     refuse_existing(path, overwrite_);
 }
 
-void NamedFiles::writes_when_done(const std::string& option, const fs::path& path) {
-    if (!path.empty() && path != "-") expect_room_for(option + " " + path.string(), path);
-    writes(option, path);
+void NamedFiles::writes_when_done(const std::string& option, const fs::path& path,
+                                  const std::string& said) {
+    if (!path.empty() && path != "-")
+        expect_room_for(option + " " + (said.empty() ? path.string() : said), path);
+    writes(option, path, said);
 }
 
 void NamedFiles::expect_room_for(const std::string& said, const fs::path& path) const {

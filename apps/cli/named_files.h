@@ -33,7 +33,8 @@ public:
     /// As writes(), of what a command writes when all its work is done: also refused where there
     /// is no folder for it, and none that another output makes, or one that cannot be written to
     /// (kind failed).
-    void writes_when_done(const std::string& option, const std::filesystem::path& path);
+    void writes_when_done(const std::string& option, const std::filesystem::path& path,
+                          const std::string& said = {});
     /// A folder, of which the files are named one by one.
     void writes_folder(const std::string& option, const std::filesystem::path& folder);
     /// A folder that is the output's own, with everything in it.

@@ -94,6 +94,13 @@ void check_distortion(const Reader& reader, const Calibration& calibration) {
                   "'" + calibration.distortion_model + "'");
 }
 
+/// ROS writes zeros for a camera that is not calibrated: frames would be black.
+void check_focal_lengths(const Reader& reader, double fx, double fy) {
+    if (!(fx > 0 && fy > 0))
+        reader.refuse("focal lengths above 0 px, as of a camera that is calibrated",
+                      std::to_string(fx) + " and " + std::to_string(fy));
+}
+
 Calibration read_ros(const Reader& file) {
     Calibration calibration;
     calibration.width = file.at("image_width").pixels();
@@ -102,13 +109,18 @@ Calibration read_ros(const Reader& file) {
     const Reader d = file.at("distortion_coefficients").at("data");
     calibration.d = d.numbers();
     check_distortion(d, calibration);
-    calibration.k = file.at("camera_matrix").at("data").numbers_of<9>();
+    const Reader k = file.at("camera_matrix").at("data");
+    calibration.k = k.numbers_of<9>();
+    check_focal_lengths(k, calibration.k[0], calibration.k[4]);
     calibration.r = kNoRotation;
     if (file.has("rectification_matrix"))
         calibration.r = file.at("rectification_matrix").at("data").numbers_of<9>();
     calibration.p = projection_of(calibration.k);
-    if (file.has("projection_matrix"))
-        calibration.p = file.at("projection_matrix").at("data").numbers_of<12>();
+    if (file.has("projection_matrix")) {
+        const Reader p = file.at("projection_matrix").at("data");
+        calibration.p = p.numbers_of<12>();
+        check_focal_lengths(p, calibration.p[0], calibration.p[5]);
+    }
     return calibration;
 }
 
@@ -124,7 +136,9 @@ Calibration read_kalibr(const Reader& camera) {
     if (!(size[0] >= 1 && size[0] <= kMaxPixels && size[1] >= 1 && size[1] <= kMaxPixels))
         camera.at("resolution")
             .refuse("1 to " + std::to_string(kMaxPixels) + " each way", "more or less");
-    const auto [fx, fy, cx, cy] = camera.at("intrinsics").numbers_of<4>();
+    const Reader intrinsics = camera.at("intrinsics");
+    const auto [fx, fy, cx, cy] = intrinsics.numbers_of<4>();
+    check_focal_lengths(intrinsics, fx, fy);
     calibration.k = {fx, 0, cx, 0, fy, cy, 0, 0, 1};
     calibration.r = kNoRotation;
     calibration.p = projection_of(calibration.k);

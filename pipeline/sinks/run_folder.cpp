@@ -150,7 +150,9 @@ void RunFolder::begin() {
 }
 
 void RunFolder::prepare(bool overwrite) {
-    if (fs::exists(folder_) && !fs::is_directory(folder_))
+    // Of "x/" the system says that there is no such thing where x is a file.
+    const fs::path itself = folder_.has_filename() ? folder_ : folder_.parent_path();
+    if (fs::exists(itself) && !fs::is_directory(itself))
         throw Error(ErrorKind::usage, folder_.string() + ": expected a folder, found a file");
     if (fs::exists(folder_) && !fs::is_empty(folder_)) {
         if (!overwrite)

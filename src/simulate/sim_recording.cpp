@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace eventide {
 
@@ -12,8 +13,10 @@ namespace {
 
 const SimRecordingSettings& checked(const SimRecordingSettings& s) {
     const auto refuse = [](const std::string& what, double found) {
+        char number[32];
+        std::snprintf(number, sizeof number, "%.15g", found);
         throw Error(ErrorKind::usage,
-                    "simulated recording: expected " + what + ", found " + std::to_string(found));
+                    "simulated recording: expected " + what + ", found " + number);
     };
     if (s.width < 2 || s.width > 8192) refuse("a width from 2 to 8192 px", s.width);
     if (s.height < 2 || s.height > 8192) refuse("a height from 2 to 8192 px", s.height);

@@ -86,6 +86,11 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     // Before the figure is simulated, which takes minutes.
     expect(2, {"evaluate", "--figure", "spatial", "--figure", "events"}, "one or more recordings");
     expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "expected one of --json");
+    expect(2, {"evaluate", recording(), "--figure", "spatial"},
+           "expected no input, found " + recording() + "; --figure spatial");
+    expect(2, {"evaluate", "--figure", "sigma", "--figure", "spatial"},
+           "expected one or more recordings");
+    expect(2, {"run", "sim:demo?size=1x1", "--out", "null"}, "2 to 8192 px, found 1\n");
     expect(2, {"evaluate", recording(), "--from", "200ms", "--to", "100ms"}, "--to: expected");
     expect(2, {"evaluate", recording(), "--from", "10s"}, "expected an image to score between");
     expect(2, {"run", recording(), "--out", "null", "--events-out", "evt2:a.raw"},
@@ -168,6 +173,8 @@ TEST_F(ExitCodes, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
         EXPECT_NE(result.error.find("326 events (33 %)"), std::string::npos) << result.error;
     }
     EXPECT_EQ(eventide({"info", "mixed.txt", "--reorder", "1s", "--strict"}).exit_code, 0);
+    write_text(temp_ / "one.txt", "16 16\n0.2 1 2 1\n0.1 1 2 1\n");
+    expect(0, {"convert", "one.txt", "one.aedat4"}, "one.txt: 1 event (50 %) left out");
 }
 
 TEST_F(ExitCodes, ARecordingOfWhichMostIsLeftOutIsSaidByEveryCommand) {
@@ -200,6 +207,8 @@ TEST_F(ExitCodes, TwoIsAFileWithoutAName) {
                std::string{option} + ": expected ");
     expect(2, {"simulate", "--out", ""}, "--out: expected FILE|FOLDER/, found ''");
     expect(2, {"--config", "", "info", recording()}, "--config: expected FILE, found ''");
+    expect(2, {"evaluate", recording(), "--calibrated", ""},
+           "--calibrated: expected FILE, found ''");
 }
 
 TEST_F(ExitCodes, TwoIsAlsoAFullFolderWithoutOverwrite) {
@@ -208,6 +217,7 @@ TEST_F(ExitCodes, TwoIsAlsoAFullFolderWithoutOverwrite) {
     expect(2, {"run", recording(), "--out", "a/"}, "--overwrite");
     write_text(temp_ / "a.mp4", "x");
     expect(2, {"run", recording(), "--out", "a.mp4"}, "--overwrite");
+    expect(2, {"run", recording(), "--out", "a.mp4/"}, "expected a folder, found a file");
     EXPECT_EQ(eventide({"run", recording(), "--out", "a/", "--overwrite"}).exit_code, 0);
     EXPECT_EQ(read_text(temp_ / "a/mine.txt"), "x");
 }

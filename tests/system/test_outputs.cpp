@@ -161,6 +161,12 @@ TEST_F(Outputs, WorkIsNotDoneForWhatCannotBeWrittenInTheEnd) {
     EXPECT_EQ(
         eventide({"run", "rec.aedat4", "--out", "new/", "--state-out", "new/state"}).exit_code, 0);
     EXPECT_TRUE(fs::exists(temp_ / "new/state"));
+    expect_refused({"run", "rec.aedat4", "--out", "contact-sheet:nodir/x.png"},
+                   "--out contact-sheet:nodir/x.png", "expected a folder that exists");
+    EXPECT_EQ(eventide({"run", "rec.aedat4", "--out", "contact-sheet:more/x.png", "--out", "more/"})
+                  .exit_code,
+              0);
+    EXPECT_TRUE(fs::exists(temp_ / "more/x.png"));
 }
 
 /// What another part of the same command is refused for leaves an earlier run as it was.

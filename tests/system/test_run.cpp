@@ -333,6 +333,14 @@ TEST_F(Run, AVideoWhoseTimesAreRoundedSaysSo) {
                   std::string::npos)
             << result.error;
     }
+    for (const auto& [fps, words] : {std::pair{"frame", true}, {"30", false}}) {
+        const Result result = eventide({"run", recording(), "--duration", "50ms", "--overwrite",
+                                        "--fps", fps, "--out", "c.avi"});
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_EQ(result.error.find("c.avi: frames come at no constant rate") != std::string::npos,
+                  words)
+            << result.error;
+    }
 }
 
 }  // namespace

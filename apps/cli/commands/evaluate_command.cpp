@@ -74,6 +74,11 @@ SimulatedSettings EvaluateCommand::simulated() const {
 }
 
 void EvaluateCommand::require_inputs() const {
+    if (!evaluates() && !inputs_.empty())
+        throw Error(ErrorKind::usage, "evaluate: expected no input, found " + inputs_.front() +
+                                          "; --figure " + figures_.front() +
+                                          " is made of simulated sequences of its own");
+    if (!evaluates()) return;
     const std::size_t n = inputs_.size();
     const char* expected = nullptr;
     if (protocol_ == Protocol::recordings && n < 1) expected = "one or more recordings";
@@ -205,7 +210,7 @@ int EvaluateCommand::run(Program& program) {
     const EvaluateSettings settings = how(program);
     name_evaluation_files(settings, program.files);
     require_outputs_that_fit();
-    if (evaluates()) require_inputs();
+    require_inputs();
     make_simulated_figures(settings);
     if (!evaluates()) return exit_done;
     const EvaluateReport report = evaluate(settings);

@@ -38,8 +38,14 @@ std::unique_ptr<Sink> open_folder(const std::string& path, const RunSettings& se
 
 std::unique_ptr<Sink> open_video(const std::string& path, const RunSettings& settings,
                                  const SinkPlan& plan) {
-    if (video_kind_of(path).extension == std::string_view{".mkv"})
+    const VideoKind& kind = video_kind_of(path);
+    if (kind.extension == std::string_view{".mkv"})
         spdlog::warn("{}: Matroska rounds times to 1 ms; MP4 keeps microseconds", path);
+    if (kind.ticks_per_second == 0 && !plan.constant_rate)
+        spdlog::warn(
+            "{}: frames come at no constant rate, and Motion JPEG shows them at {} a second; "
+            "--fps with a number, or MP4, keeps their times",
+            path, plan.fps);
     return std::make_unique<VideoSink>(
         VideoSettings{path, settings.overwrite, settings.uncertainty, float(settings.sigma_white),
                       settings.video_preset, settings.video_crf, plan.fps, settings.slow,

@@ -114,13 +114,12 @@ void name_sink_files(const RunSettings& settings, NamedFiles& files) {
                 break;
             case SinkKind::stream:
                 refuse_terminal("--out " + text, sink.path, settings.force);
-                [[fallthrough]];
-            case SinkKind::sheet:
                 files.writes("--out", sink.path, text);
                 break;
             case SinkKind::ros2:
                 files.reads("--out", parse_ros2_sink_name(sink.path).calibration);
                 break;
+            case SinkKind::sheet:
             case SinkKind::nothing:
             case SinkKind::window:
             case SinkKind::v4l2:
@@ -128,6 +127,10 @@ void name_sink_files(const RunSettings& settings, NamedFiles& files) {
                 break;
         }
     }
+    // Last: they may lie in a folder that another sink makes.
+    for (const std::string& text : settings.out)
+        if (const SinkName sink = parse_sink(text); sink.kind == SinkKind::sheet)
+            files.writes_when_done("--out", sink.path, text);
 }
 
 }  // namespace eventide::app

@@ -5,6 +5,7 @@
 #include "replay/summary.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/core/sensor_limits.h"
 
 #include <filesystem>
 #include <system_error>
@@ -14,7 +15,9 @@ namespace eventide::app {
 TimePoint parse_time_point(const std::string& text) {
     if (!text.starts_with('@')) return {false, parse_duration(text)};
     const auto us = number_in<std::int64_t>(std::string_view{text}.substr(1));
-    if (!us) throw_usage("@ and microseconds", text);
+    if (!us || *us < -kFarthestUs || *us > kFarthestUs)
+        throw_usage("@ and microseconds, at most " + std::to_string(kFarthestUs) + " from zero",
+                    text);
     return {true, SensorDuration{*us}};
 }
 

@@ -18,6 +18,15 @@ TEST(TimePoint, ReadsBack) {
     EXPECT_THROW(parse_time_point("later"), Error);
 }
 
+/// Sums of two, and what is begun before one, are still times.
+TEST(TimePoint, IsNoFurtherFromZeroThanTimesOfEventsAre) {
+    for (const char* text : {"@1152921504606846976", "@-1152921504606846976"})
+        EXPECT_EQ(show_time_point(parse_time_point(text)), text);
+    for (const char* text : {"@1152921504606846977", "@-1152921504606846977",
+                             "@9223372036854775807", "@-9223372036854775808"})
+        EXPECT_THROW(parse_time_point(text), Error) << text;
+}
+
 TEST(TimePoint, CountsFromTheFirstEvent) {
     const test::TempFolder temp;
     test::write_text(temp / "e.txt", "8 8\n2.000001 1 1 1\n2.5 2 2 0\n");

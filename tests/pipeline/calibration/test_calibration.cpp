@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 
 namespace eventide {
 namespace {
@@ -113,6 +114,17 @@ TEST_F(CalibrationFile, SaysWhereItIsWrong) {
     EXPECT_THAT(error_of(with(kKalibr, "pinhole", "omni")), HasSubstr("found 'omni'"));
     EXPECT_THAT(error_of(kKalibr, "cam2"), HasSubstr("expected a cam2, found none"));
     EXPECT_THAT(error_of("a: &a [*a, *a]\nimage_width: 3\n"), HasSubstr("expected"));
+}
+
+TEST_F(CalibrationFile, OfACameraThatIsNotCalibratedIsRefused) {
+    for (const auto& [text, old, now] : {std::tuple{kRos, "500.5, 0.0", "0.0, 0.0"},
+                                         {kRos, "0.0, 501.5", "0.0, 0.0"},
+                                         {kRos, "490.0, 0.0, 319", "0.0, 0.0, 319"},
+                                         {kRos, "490.0, 239", "-490.0, 239"},
+                                         {kKalibr, "200.0, 201.0", "0, 201.0"},
+                                         {kKalibr, "200.0, 201.0", "200.0, 0"}})
+        EXPECT_THAT(error_of(with(text, old, now)), HasSubstr("expected focal lengths above 0"))
+            << now;
 }
 
 /// Where a point of the scene falls, by the usual equations of the two models.
