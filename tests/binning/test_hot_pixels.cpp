@@ -50,6 +50,18 @@ TEST(HotPixels, StayHotUntilTheyFireLessThanHalfAsOften) {
     EXPECT_EQ(hot.count(), 0U) << "8 Hz";
 }
 
+TEST(HotPixels, AreCountedFromWhereTheClockBeganAnew) {
+    // 12 Hz: six events in half a second, each time the clock begins anew another five before.
+    for (const int first_ms : {0, 3, 100}) {
+        HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+        for (int clock = 0; clock < 4; ++clock)
+            for (int ms = first_ms * (3 - clock); ms < 420; ms += 83)
+                hot.is_hot(at(1000 * ms, 7, 9));
+        for (int ms = 420; ms < 1000; ms += 83) hot.is_hot(at(1000 * ms, 7, 9));
+        EXPECT_EQ(hot.count(), 0U) << first_ms;
+    }
+}
+
 TEST(HotPixels, AreForgottenByAReset) {
     HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
     const HotPixels::State fresh = hot.state();
