@@ -41,7 +41,6 @@ bool FlickerPairs::is_pair(const Event& a, const Event& b) const {
 void FlickerPairs::process(std::vector<Event>& events) {
     std::size_t i = 0;
     for (; i < events.size() && period_.us() == 0; ++i) period_.see(events[i]);
-    if (i > 0) now_ = events[i - 1].t;
     if (i == events.size()) return;  // nothing flickers, and nothing is held
     out_.assign(events.begin(), events.begin() + std::ptrdiff_t(i));
     for (; i < events.size(); ++i) {

@@ -24,6 +24,7 @@ std::size_t HotPixels::count() const {
 void HotPixels::reset() noexcept {
     std::ranges::fill(pixels_, Pixel{});
     interval_end_.reset();
+    last_ = SensorTime::min();
 }
 
 HotPixels::State HotPixels::state() const {
@@ -46,11 +47,15 @@ void HotPixels::restore(const State& state) {
         pixels_[i].hot = state.hot[i] != 0;
     }
     interval_end_ = state.interval_end;
+    last_ = SensorTime::min();
 }
 
 void HotPixels::renew(SensorTime t) noexcept {
-    // After a reset of the clock an old end would never come.
-    if (!interval_end_ || t + interval_ < *interval_end_) interval_end_ = t + interval_;
+    // Of a clock that was reset an old end may never come, and what was counted is of another time.
+    if (!interval_end_ || t < last_) {
+        for (Pixel& pixel : pixels_) pixel.events = 0;
+        interval_end_ = t + interval_;
+    }
     if (t < *interval_end_) return;
     end_interval();
     // Intervals without any event change nothing a second time: one step over them.

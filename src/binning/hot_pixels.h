@@ -57,7 +57,8 @@ private:
         bool hot : 1 = false;
     };
     void advance(SensorTime t) noexcept {
-        if (!interval_end_ || t >= *interval_end_ || t + interval_ < *interval_end_) renew(t);
+        if (!interval_end_ || t >= *interval_end_ || t < last_) renew(t);
+        last_ = t;
     }
     void renew(SensorTime t) noexcept;
     void end_interval() noexcept;
@@ -68,6 +69,7 @@ private:
     SensorDuration interval_;
     std::vector<Pixel> pixels_;  // [y][x]
     std::optional<SensorTime> interval_end_;
+    SensorTime last_ = SensorTime::min();  // event
 };
 
 }  // namespace eventide

@@ -40,7 +40,8 @@ NoiseFilter::NoiseFilter(int width, int height, const NoiseFilterSettings& setti
       newest_(width, height),
       tile_rows_(std::max(1, height / kTile)),
       tile_columns_(std::max(1, width / kTile)),
-      tile_pixels_(double(std::min(width, kTile)) * std::min(height, kTile)),
+      // Of all tiles but the last ones, which are the only ones of a sensor that has room for one.
+      tile_pixels_(double(tile_columns_ > 1 ? kTile : width) * (tile_rows_ > 1 ? kTile : height)),
       tiles_(std::size_t(tile_rows_) * std::size_t(tile_columns_)),
       sorted_(tiles_.size()),
       within_(settings.longest) {

@@ -33,11 +33,13 @@ void mirror(const VoxelGrid& grid, Mirror axes, VoxelGrid& into) noexcept {
     const auto& values = grid.values;
     mirror_pixels(values.values().data(), values.height(), values.width(),
                   std::size_t(values.channels()), axes, into.values.values().data());
-    if (grid.touched.empty())
+    if (grid.touched.empty()) {
         into.touched = {};
-    else
-        mirror_pixels(grid.touched.values().data(), values.height(), values.width(), 1, axes,
-                      into.touched.values().data());
+        return;
+    }
+    if (into.touched.empty()) into.touched = {values.height(), values.width()};
+    mirror_pixels(grid.touched.values().data(), values.height(), values.width(), 1, axes,
+                  into.touched.values().data());
 }
 
 void mirror(Array2<float>& map, Mirror axes) noexcept {

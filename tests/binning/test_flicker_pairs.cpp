@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace eventide::test {
 namespace {
@@ -64,6 +66,55 @@ TEST(FlickerPairs, ThatAreFartherApartAreLeftOutByThoseThatWaitLonger) {
     };
     EXPECT_EQ(stay(left_of(events)), 2);
     EXPECT_EQ(stay(left_of(events, SensorDuration{16'000})), 0);
+}
+
+/// How many events of one pixel, `us` after it fired first, stay in the light of a lamp of 100 Hz.
+std::size_t left_of_pixel(const std::vector<std::pair<std::int64_t, Polarity>>& fired,
+                          SensorDuration longest) {
+    Events events = lamp_events({.hz = 100, .spread_us = 500});
+    const auto is_its = [](const Event& e) { return e.x == 3 && e.y == 2; };
+    std::erase_if(events, is_its);
+    Events own;
+    for (const auto& [us, polarity] : fired) own.push_back({from_us(230'000 + us), 3, 2, polarity});
+    return std::size_t(std::ranges::count_if(left_of(merged(events, own), longest), is_its));
+}
+
+TEST(FlickerPairs, AreAQuarterOfAPeriodFromHalvesAtMost) {
+    constexpr Polarity kOn = Polarity::on, kOff = Polarity::off;
+    constexpr SensorDuration kLong{16'000};
+    for (const auto& [us, stay] :
+         {std::pair{1'500, 2U}, {3'500, 0U}, {6'500, 0U}, {8'500, 2U}, {13'500, 0U}})
+        EXPECT_EQ(left_of_pixel({{0, kOn}, {us, kOff}}, kLong), stay) << us;
+    EXPECT_EQ(left_of_pixel({{0, kOn}, {5'000, kOff}}, SensorDuration{5'000}), 0U) << "so long";
+    EXPECT_EQ(left_of_pixel({{0, kOn}, {5'000, kOff}}, SensorDuration{4'999}), 2U);
+    EXPECT_EQ(left_of_pixel({{0, kOn}, {5'000, kOn}}, kLong), 2U) << "no pair";
+    EXPECT_EQ(left_of_pixel({{0, kOn}, {300, kOn}, {5'000, kOff}, {5'300, kOff}}, kLong), 0U)
+        << "one within the other";
+}
+
+TEST(FlickerPairs, WaitForThreeQuartersOfAPeriodWhereNobodySaysHowLong) {
+    FlickerPairs pairs{kWidth, kHeight, {}};
+    Events events = lamp_events({.hz = 100, .spread_us = 500});
+    pairs.process(events);
+    EXPECT_NEAR(pairs.period_us(), 10'000, 200);
+    EXPECT_EQ(pairs.known_until(from_us(500'000)),
+              from_us(500'000 - std::int64_t(.75 * pairs.period_us())));
+}
+
+/// Bars go on moving.
+TEST(FlickerPairs, ComeOutWhenTheLampIsOut) {
+    Events events = merged(lamp_events({.seconds = .5}), bar_events(kWidth, kHeight, 2.5, 1500));
+    FlickerPairs pairs{kWidth, kHeight, SensorDuration{16'000}};
+    Events left;
+    for (const Event& event : events) {
+        Events one{event};
+        pairs.process(one);
+        left.insert(left.end(), one.begin(), one.end());
+    }
+    EXPECT_EQ(pairs.period_us(), 0);
+    EXPECT_EQ(pairs.held(), 0U);
+    EXPECT_TRUE(std::ranges::is_sorted(left, {}, &Event::t));
+    EXPECT_EQ(left.size() + pairs.left_out(), events.size());
 }
 
 TEST(FlickerPairs, AreNotLookedForWhereNothingFlickers) {

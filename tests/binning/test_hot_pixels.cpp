@@ -50,6 +50,48 @@ TEST(HotPixels, StayHotUntilTheyFireLessThanHalfAsOften) {
     EXPECT_EQ(hot.count(), 0U) << "8 Hz";
 }
 
+/// `n` events of a pixel in each half a second, and `beside` of two of its neighbours.
+bool is_hot_by(int n, int beside, int first_n = 0) {
+    HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+    for (int interval = 0; interval < 2; ++interval)
+        for (int i = 0; i < 50; ++i) {
+            const std::int64_t us = 500'000 * interval + 10'000 * i;
+            if (i < (interval == 0 && first_n > 0 ? first_n : n)) hot.is_hot(at(us, 7, 9));
+            if (i < beside) hot.is_hot(at(us, 8, 9));
+            if (i < beside) hot.is_hot(at(us, 6, 8));
+        }
+    return hot.is_hot(at(1'000'000, 7, 9));
+}
+
+TEST(HotPixels, FireSoOftenAtLeast) {
+    EXPECT_TRUE(is_hot_by(10, 0)) << "20 Hz";
+    EXPECT_FALSE(is_hot_by(9, 0));
+    EXPECT_TRUE(is_hot_by(40, 10)) << "four times as often as two neighbours";
+    EXPECT_FALSE(is_hot_by(40, 11));
+    EXPECT_TRUE(is_hot_by(5, 0, 50)) << "half as often, once it is hot";
+    EXPECT_FALSE(is_hot_by(4, 0, 50));
+}
+
+TEST(HotPixels, AreNoneAfterASilence) {
+    HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+    for (int ms = 0; ms < 1400; ms += 10) hot.is_hot(at(1000 * ms, 7, 9));
+    EXPECT_FALSE(hot.is_hot(at(5'000'000, 7, 9))) << "in the interval before it did not fire";
+    for (int ms = 5000; ms < 5600; ms += 10) hot.is_hot(at(1000 * ms, 7, 9));
+    EXPECT_EQ(hot.count(), 1U) << "and again";
+}
+
+TEST(HotPixels, AreCountedFromWhereTheClockBeganAnew) {
+    // 12 Hz: six events in half a second, each time the clock begins anew another five before.
+    for (const int first_ms : {0, 3, 100}) {
+        HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
+        for (int clock = 0; clock < 4; ++clock)
+            for (int ms = first_ms * (3 - clock); ms < 420; ms += 83)
+                hot.is_hot(at(1000 * ms, 7, 9));
+        for (int ms = 420; ms < 1000; ms += 83) hot.is_hot(at(1000 * ms, 7, 9));
+        EXPECT_EQ(hot.count(), 0U) << first_ms;
+    }
+}
+
 TEST(HotPixels, AreForgottenByAReset) {
     HotPixels hot{kWidth, kHeight, 20, SensorDuration{500'000}};
     const HotPixels::State fresh = hot.state();

@@ -140,6 +140,16 @@ TEST(NoiseFilter, LearnsTheNoiseAndChoosesTheTimeByIt) {
     EXPECT_EQ(filter.noise_hz(), 0);
 }
 
+TEST(NoiseFilter, LearnsTheNoiseOfASensorThatIsNarrowerThanTwoTiles) {
+    for (const auto& [width, height] : {std::pair{15, 15}, {5, 90}, {14, 96}, {96, 13}}) {
+        NoiseFilter filter{width, height, {}};
+        Events noise = random_events(40 * width * height, width, height, 1e6 / (width * height));
+        filter.process(noise);  // 1 Hz, 40 s
+        EXPECT_GT(filter.noise_hz(), .6) << width << 'x' << height;
+        EXPECT_LT(filter.noise_hz(), 1.4) << width << 'x' << height;
+    }
+}
+
 TEST(NoiseFilter, KeepsSlowMotionWhereThereIsNoNoise) {
     // An edge that moves at 50 ms per pixel, every pixel at its own time: most are alone for 10 ms.
     constexpr int kSide = 48;

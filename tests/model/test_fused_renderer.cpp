@@ -1,9 +1,5 @@
 // A renderer whose frames the camera's images correct: which images count, and what is rendered.
-#include "src/model/encode/encoder.h"
-#include "src/model/render/fused_renderer.h"
-#include "tests/model/fusion_images.h"
-#include "tests/model/streams.h"
-#include "tests/support/random_model.h"
+#include "tests/model/fused_chain.h"
 
 #include <gtest/gtest.h>
 
@@ -16,44 +12,20 @@ namespace {
 
 using namespace test;
 using Kind = GridStream::Kind;
-
-/// Encoder, renderer and what corrects it, of a small network and a stream of events.
-struct Chain {
-    explicit Chain(int lookahead) : fused{renderer, kWidth, kHeight, lookahead} {}
-
-    Window encode_next(Kind kind) {
-        const VoxelGrid& grid = stream.next(kind);
-        encoder.encode(grid, latent);
-        return latent.window = grid.window;
-    }
-    void push(float events_per_pixel) {
-        renderer.push(latent);
-        fused.push(latent.window, constant(events_per_pixel));
-    }
-
-    const ModelConfig config = test::small_config();
-    const Model model = test::random_model(config, 1);
-    Encoder encoder{model, kWidth, kHeight};
-    Renderer renderer{model, kWidth, kHeight};
-    FusedRenderer fused;
-    GridStream stream{config, kHeight, kWidth, 4};
-    LatentMap latent = encoder.make_output();
-};
+using Chain = FusedChain;
 
 /// The whole chain, for each lookahead: an image in silence is what frames show from then on.
 TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
     for (const int lookahead : {0, 1, 2}) {
         Chain chain{lookahead};
-        RenderRequest request{.lookahead = lookahead};
-        chain.fused.prepare(request);
-        Frame frame = chain.renderer.make_output(request);
+        SensorTime t{};
         for (int i = 0; i < 12; ++i) {
             const Window window = chain.encode_next(i < 5 ? Kind::patch : Kind::silence);
             if (i == 8) chain.fused.give(image_of(ramp(), window.end));
-            if (i == 9) request.t = window.end;
+            if (i == 9) t = window.end;
             chain.push(i < 5 ? 1.F : 0.F);
         }
-        chain.fused.render(request, frame);
+        const Frame frame = chain.shown(t);
         EXPECT_EQ(chain.fused.used(), 1U);
         EXPECT_EQ(chain.fused.dropped(), 0U);
         for (std::size_t i = 0; i < frame.intensity.values().size(); ++i)
@@ -62,11 +34,13 @@ TEST(FusedRenderer, ShowsTheImageOfAStillScene) {
 }
 
 /// What the flow was found with at a window's end is what a frame shows there.
-TEST(FusedRenderer, AFrameAtAWindowsEndIsNotRenderedTwice) {
+void expect_none_rendered_twice(const RenderRequest& request) {
     Chain chain{0};
     Renderer& renderer = chain.renderer;
     FusedRenderer& fused = chain.fused;
-    RenderRequest request, twice{.width = 2 * kWidth, .height = 2 * kHeight};
+    RenderRequest twice = request;
+    twice.width = 2 * kWidth;
+    twice.height = 2 * kHeight;
     fused.prepare(request);
     Frame frame = renderer.make_output(request), larger = renderer.make_output(twice);
     std::uint64_t at_ends = 0, at_times_within = 0, larger_at_ends = 0;
@@ -89,6 +63,30 @@ TEST(FusedRenderer, AFrameAtAWindowsEndIsNotRenderedTwice) {
     EXPECT_EQ(at_ends, 0U);
     EXPECT_EQ(at_times_within, 12 * kPixels);
     EXPECT_EQ(larger_at_ends, 12 * 4 * kPixels);
+}
+
+TEST(FusedRenderer, AFrameAtAWindowsEndIsNotRenderedTwice) {
+    expect_none_rendered_twice({});
+    expect_none_rendered_twice({.sigma_rule = SigmaRule::mixture});
+    expect_none_rendered_twice({.want_sigma = false});
+}
+
+/// Corners of frames lie on corners of the sensor.
+TEST(FusedRenderer, ALargerFrameIsCorrectedForItsOwnTime) {
+    Chain chain{0};
+    RenderRequest request, larger{.width = 2 * kWidth - 1, .height = 2 * kHeight - 1};
+    for (int i = 0; i < 6; ++i) {
+        const Window window = chain.encode_next(Kind::everywhere);
+        if (i == 2) chain.fused.give(image_of(ramp(), window.end));
+        chain.push(.05F);
+        for (const int us : {10'000, 50'000}) {
+            larger.t = request.t = window.begin + SensorDuration{us};
+            const Frame frame = chain.shown(request), twice = chain.shown(larger);
+            for (int y = 0; y < kHeight; ++y)
+                for (int x = 0; x < kWidth; ++x)
+                    ASSERT_NEAR(twice.intensity(2 * y, 2 * x), frame.intensity(y, x), 1e-5);
+        }
+    }
 }
 
 /// Of a still scene and images of one grey each, given before the fifth window of 50 ms.
@@ -151,6 +149,37 @@ TEST(FusedRenderer, ImagesOfTheClockBeforeAreDropped) {
     chain.push(1);
     EXPECT_EQ(chain.fused.used(), 1U);
     EXPECT_EQ(chain.fused.dropped(), 3U);
+}
+
+TEST(FusedRenderer, AfterAResetAnotherClockCounts) {
+    for (const int lookahead : {0, 2}) {
+        Chain chain{lookahead};
+        const auto see = [&](int windows) {
+            for (int i = 0; i < windows; ++i) {
+                const Window window = chain.encode_next(Kind::silence);
+                chain.fused.give(image_of(ramp(), window.end));
+                chain.push(0);
+            }
+        };
+        see(6);
+        EXPECT_EQ(chain.fused.used(), 6U - unsigned(lookahead));
+        const ReferenceImage of_an_hour_later = image_of(ramp(), at_ms(3'600'000));
+        chain.fused.give(of_an_hour_later);
+        chain.begin_anew();
+        EXPECT_EQ(chain.fused.dropped(), 1U + unsigned(lookahead)) << "of the clock before";
+        see(4);
+        EXPECT_EQ(chain.fused.used(), 10U - 2 * unsigned(lookahead));
+        EXPECT_EQ(chain.fused.dropped(), 1U + unsigned(lookahead));
+    }
+}
+
+TEST(FusedRenderer, AnImageWithoutPixelsTellsNothing) {
+    Chain chain{0};
+    ReferenceImage none;
+    none.t = chain.encode_next(Kind::patch).end;
+    chain.fused.give(none);
+    chain.push(1);
+    EXPECT_EQ(chain.fused.used() + chain.fused.dropped(), 0U);
 }
 
 TEST(FusedRenderer, AFloodOfImagesIsBounded) {

@@ -1,7 +1,6 @@
 // Images of the camera beside its events: what is added to the model's frames, where and for how
 // long.
-#include "src/model/render/image_fusion.h"
-#include "tests/model/fusion_images.h"
+#include "tests/model/image_fusion_test.h"
 
 #include <gtest/gtest.h>
 
@@ -12,33 +11,6 @@ namespace eventide {
 namespace {
 
 using namespace test;
-
-class ImageFusionTest : public testing::Test {
-protected:
-    /// The model shows a grey, .4 unless said otherwise, throughout.
-    void advance(double end_ms, float events = 0, float value = .4F) {
-        const Frame at_end = grey(value, at_ms(end_ms));
-        fusion_.advance({at_ms(now_ms_), at_ms(end_ms)}, constant(events), &at_end);
-        now_ms_ = end_ms;
-    }
-    /// The model's grey of .4, corrected.
-    Frame shown(double ms, const RenderRequest& request = {}) {
-        const int width = request.width > 0 ? request.width : kWidth;
-        const int height = request.height > 0 ? request.height : kHeight;
-        Frame frame =
-            grey(.4F, at_ms(ms), request.region.height > 0 ? request.region.height : height,
-                 request.region.width > 0 ? request.region.width : width);
-        fusion_.prepare(request);
-        fusion_.apply(request, constant(.4F), frame);
-        return frame;
-    }
-    bool correct(const Array2<float>& seen, double ms) {
-        return fusion_.correct(image_of(seen, at_ms(ms)), grey(.4F, at_ms(ms)));
-    }
-
-    ImageFusion fusion_{kWidth, kHeight};
-    double now_ms_ = 0;
-};
 
 TEST_F(ImageFusionTest, WithoutImagesNothingIsChanged) {
     advance(50, 2);
@@ -238,6 +210,18 @@ TEST_F(MovingScene, BetweenTheEndsOfWindowsToo) {
     const double at_end = error_at(80);
     EXPECT_LT(at_end, .2 * error_alone(80));
     for (const int ms : {30, 40, 50, 60, 70}) EXPECT_LT(error_at(ms), 1.5 * at_end) << ms;
+}
+
+TEST_F(MovingScene, AndInWindowsThatOthersFollowedMeanwhile) {
+    advance(20);
+    ASSERT_TRUE(fusion_.correct(image_of(scene(20), at_ms(20)), faint(20)));
+    advance(80);
+    advance(120);
+    for (const int ms : {35, 50, 65}) EXPECT_LT(error_at(ms), .35 * error_alone(ms)) << ms;
+    ASSERT_TRUE(fusion_.correct(image_of(scene(110), at_ms(110)), faint(110)));
+    for (const int ms : {85, 90, 95}) EXPECT_LT(error_at(ms), .35 * error_alone(ms)) << ms;
+    advance(160);
+    for (const int ms : {85, 90, 95}) EXPECT_LT(error_at(ms), .35 * error_alone(ms)) << ms;
 }
 
 TEST_F(MovingScene, NotWhereItIsUnknownWhatTheModelShows) {

@@ -109,6 +109,19 @@ TEST_F(SelfEnsemble, GivesTheMeanOfNetworksThatSeeTheSceneMirrored) {
 }
 
 /// What no single network does.
+/// Whoever fills grids keeps track of touched pixels now and then.
+TEST_F(SelfEnsemble, TakesGridsThatTellTouchedPixelsAndOthersInTurn) {
+    Network told{model_, of(4)}, searching{model_, of(4)};
+    for (int i = 0; i < 6; ++i) {
+        VoxelGrid grid = next();
+        VoxelGrid untold = grid;
+        untold.touched = {};
+        told.see(i % 2 == 0 ? untold : grid);
+        searching.see(untold);
+        EXPECT_EQ(told.shown(request()).intensity, searching.shown(request()).intensity) << i;
+    }
+}
+
 TEST_F(SelfEnsemble, OfAMirroredSceneIsTheMirroredFrame) {
     const auto difference = [this](int views, Mirror axes) {
         Network as_it_is{model_, of(views)}, mirrored{model_, of(views)};

@@ -36,7 +36,7 @@ void FusedRenderer::begin() {
 
 void FusedRenderer::reset() noexcept {
     if (fusion_) fusion_->reset();
-    active_ = silent_before_ = false;
+    active_ = is_silent_before_ = false;
     waiting_count_ = 0;
     newest_used_ = SensorTime::min();
     dropped_ += images_.size();
@@ -62,14 +62,12 @@ void FusedRenderer::give(ReferenceImage image) noexcept {
 ///     push()     n - 1    n              n + 1
 ///     settles             n - 1          n            advance(), then the images until its end
 void FusedRenderer::push(const Window& window, const Array2<float>& events) noexcept {
-    active_ = active_ || std::ranges::any_of(images_, [&](const ReferenceImage& image) {
-                  return image.t <= window.end;
-              });
+    active_ = active_ || due_images(window) > 0;
     if (!active_) return;
-    if (waiting_count_ == waiting_.size()) settle_oldest();
     Waiting& newest = waiting_[(oldest_ + waiting_count_++) % waiting_.size()];
     newest.window = window;
     std::ranges::copy(events.values(), newest.events.values().begin());
+    newest.is_silent = std::ranges::all_of(events.values(), [](float n) { return n == 0; });
     while (waiting_count_ > std::size_t(lookahead_)) settle_oldest();
 }
 
@@ -77,26 +75,37 @@ void FusedRenderer::settle_oldest() noexcept {
     const Waiting& settled = waiting_[oldest_];
     oldest_ = (oldest_ + 1) % waiting_.size();
     --waiting_count_;
-    const bool silent =
-        std::ranges::all_of(settled.events.values(), [](float n) { return n == 0; });
-    // From the second silent window on frames stay as they are, and nothing needs to be looked for.
-    const bool follow =
-        !(silent && silent_before_) && renderer_.ready(settled.window.end, lookahead_);
-    silent_before_ = silent;
+    // Where frames stay as they were, nothing needs to be looked for, but for a new image's sake.
+    const bool follow = (!shows_as_before(settled) || due_images(settled.window) > 0) &&
+                        renderer_.ready(settled.window.end, lookahead_);
+    is_silent_before_ = settled.is_silent;
     if (follow) show(settled.window.end);
     fusion_->advance(settled.window, settled.events, follow ? &shown_ : nullptr);
     use_until(settled.window);
 }
 
+/// Whether the frame at its end is that at the end of the window before: nothing happened in
+/// either, nor in those that its lookahead reads.
+bool FusedRenderer::shows_as_before(const Waiting& settled) const {
+    if (!renderer_.rests_in_silence() || waiting_count_ < std::size_t(lookahead_)) return false;
+    bool is_silent = is_silent_before_ && settled.is_silent;
+    for (std::size_t i = 0; i < waiting_count_; ++i)
+        is_silent = is_silent && waiting_[(oldest_ + i) % waiting_.size()].is_silent;
+    return is_silent;
+}
+
+std::ptrdiff_t FusedRenderer::due_images(const Window& window) const {
+    return std::ranges::count_if(
+        images_, [&](const ReferenceImage& image) { return image.t <= window.end; });
+}
+
 /// In the order in which they came. One whose time has not come when that of a later one has bears
 /// a time that is wrong.
 void FusedRenderer::use_until(const Window& window) noexcept {
-    const auto is_due = [&](const ReferenceImage& image) { return image.t <= window.end; };
-    const auto due = std::ranges::count_if(images_, is_due);
-    for (std::ptrdiff_t used = 0; used < due; images_.pop_front())
-        if (is_due(images_.front())) {
+    for (std::ptrdiff_t due = due_images(window); due > 0; images_.pop_front())
+        if (images_.front().t <= window.end) {
             use(images_.front(), window);
-            ++used;
+            --due;
         } else {
             ++dropped_;
         }
@@ -139,7 +148,6 @@ void FusedRenderer::render(const RenderRequest& request, Frame& frame) noexcept 
     while (waiting_count_ > 0 && waiting_[oldest_].window.begin < request.t) settle_oldest();
     renderer_.render(request, frame);
     if (!active_) return;
-    frame.t = request.t;
     const bool shows_it = is_sensors(request);
     if (!shows_it) show(request.t);
     fusion_->apply(request, shows_it ? frame.intensity : shown_.intensity, frame);

@@ -68,11 +68,14 @@ private:
     struct Waiting {
         Window window{};
         Array2<float> events;
+        bool is_silent = false;
     };
     void begin();
     RenderRequest request_at(SensorTime t) const;
     bool is_sensors(const RenderRequest& request) const;
     void settle_oldest() noexcept;
+    bool shows_as_before(const Waiting& settled) const;
+    std::ptrdiff_t due_images(const Window& window) const;
     void use_until(const Window& window) noexcept;
     void show(SensorTime t) noexcept;
     void use(const ReferenceImage& image, const Window& window) noexcept;
@@ -85,7 +88,7 @@ private:
     bool active_ = false;                // since the first image's window; before, nothing is spent
     std::optional<ImageFusion> fusion_;  // none: before the first image
     Frame shown_;                        // by the model alone, at the time asked last
-    bool silent_before_ = false;         // the window settled last
+    bool is_silent_before_ = false;      // the window settled last
     std::array<Waiting, 3> waiting_;     // windows that the lookahead holds back
     std::size_t oldest_ = 0, waiting_count_ = 0;
     std::deque<ReferenceImage> images_;

@@ -41,6 +41,8 @@ public:
     Renderer& operator=(Renderer&&) noexcept;
 
     std::string description() const;
+    /// Whether frames stay as they are while no events come; those of the thesis' network do not.
+    bool rests_in_silence() const { return config_.encoder == EncoderKind::gated; }
 
     /// The latent map of the next event window; it is copied. Every frame wanted of event windows
     /// that only LatentWindow::kLatentsKept kept must be rendered before.
