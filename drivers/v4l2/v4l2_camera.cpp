@@ -139,7 +139,7 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
         case V4l2Device::Status::lost:
             return lost();
         case V4l2Device::Status::timeout:
-            return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+            return ReadStatus::timeout;
         case V4l2Device::Status::data:
             break;
     }
@@ -179,7 +179,7 @@ ReadStatus V4l2Camera::lost() {
         warnings_.tell(error);
         std::this_thread::sleep_for(kReadTimeout);
     }
-    return stopped_ ? ReadStatus::end : ReadStatus::timeout;
+    return ReadStatus::timeout;
 }
 
 std::unique_ptr<Parser> V4l2Camera::make_parser() const {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <optional>
+#include <tuple>
+#include <utility>
 
 namespace eventide::test {
 namespace {
@@ -223,6 +225,24 @@ TEST(DavisUnplugged, WhyItIsNotBackIsToldOnce) {
     look();
     ASSERT_EQ(warnings.size(), 3U);
     EXPECT_THAT(warnings[2], HasSubstr("roi reaches to 300,200, this sensor has 240x180"));
+}
+
+TEST(DavisUnplugged, WithASerialNumberItIsTakenBackAtAnyPortHoweverItWasNamed) {
+    for (const bool by_place : {false, true}) {
+        UsbTestbed bed;
+        bed.plug_in(camera_before(2'000), {.port = 2, .address = 5});
+        DavisOptions options = small_transfers(true);
+        if (by_place) std::tie(options.bus, options.address) = std::pair{1, 5};
+        DavisCamera camera{options};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        bed.unplug();
+        while (camera.read(packet) != ReadStatus::timeout) continue;
+        bed.plug_in(camera_before(2'000), {.port = 3, .address = 6});
+        for (int look = 0; look < 5 && packet.bytes.empty(); ++look) camera.read(packet);
+        EXPECT_TRUE(packet.gap_before) << by_place;
+        EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U) << by_place;
+    }
 }
 
 TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {

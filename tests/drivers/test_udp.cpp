@@ -79,10 +79,12 @@ TEST(Udp, ADatagramThatEndsWithinARecordIsCountedAndItsWholeOnesRead) {
     std::vector<std::byte> bytes;
     append_udp_records(UdpRecords::t64, events, bytes);
     bytes.resize(bytes.size() - 5);
+    ASSERT_TRUE(socket.send(std::span(bytes).first(5)));
     ASSERT_TRUE(socket.send(bytes));
     EXPECT_TRUE(receive(source, 2).events ==
                 std::vector<Event>(events.begin(), events.begin() + 2));
-    EXPECT_EQ(source.counters()[CameraCount::cut_transfers], 1U);
+    EXPECT_EQ(source.counters()[CameraCount::cut_transfers], 2U);
+    EXPECT_EQ(source.counters()[CameraCount::transfers], 1U) << "the other one gave nothing";
 }
 
 TEST(Udp, WhatComesTogetherIsOnePacket) {
@@ -112,6 +114,9 @@ TEST(Udp, DatagramsThatTheSystemHadNoRoomForAreAGap) {
     ASSERT_EQ(source.read(packet), ReadStatus::data);
     EXPECT_TRUE(packet.gap_before);
     EXPECT_EQ(source.counters()[CameraCount::lost_transfers], 400 - read);
+    socket.send(std::span(large).first(13));
+    ASSERT_EQ(source.read(packet), ReadStatus::data);
+    EXPECT_FALSE(packet.gap_before) << "told once";
 }
 
 TEST(Udp, NamesThatMakeNoSenseAreRefused) {

@@ -188,7 +188,9 @@ TEST(V4l2Camera, RaspberryPisFramesEndAtTheMarker) {
 
 TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     V4l2NodeSettings settings = sensor();
-    settings.controls = {{"bias_fo", {-10, 10, 0}}, {"serial", {0, 100, 7, true}}};
+    settings.controls = {{"bias_fo", {-10, 10, 0}},
+                         {"bias_refr", {-10, 10, 3, false, true}},
+                         {"serial", {0, 100, 7, true}}};
     V4l2Testbed bed{settings};
     const auto with = [](const std::string& name, int value) {
         V4l2Settings wanted;
@@ -198,16 +200,26 @@ TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     EXPECT_EQ(with("bias_fo", 5), "nothing was thrown");
     EXPECT_EQ(bed.control("bias_fo").value, 5);
     EXPECT_THAT(with("bias_fo", 50), HasSubstr("expected -10 to 10, found 50"));
+    EXPECT_THAT(with("bias_fo", -50), HasSubstr("expected -10 to 10, found -50"));
+    EXPECT_THAT(with("bias_refr", 5), HasSubstr("set to 5, reads back as 3"));
+    EXPECT_EQ(with("bias_refr", 3), "nothing was thrown");
     EXPECT_THAT(with("bias_hpf", 1), HasSubstr("no control 'bias_hpf'"));
     EXPECT_THAT(with("serial", 1), HasSubstr("cannot be written"));
 }
 
 TEST(V4l2Camera, SaysWhyItCannotBeUsed) {
     EXPECT_THAT(failure_of([] { open(); }), HasSubstr("is the driver loaded"));
-    V4l2NodeSettings output;
-    output.output = true;
-    V4l2Testbed bed{output};
-    EXPECT_THAT(failure_of([] { open(); }), HasSubstr("does not capture"));
+    const auto with = [](auto change) {
+        V4l2NodeSettings settings = sensor();
+        change(settings);
+        V4l2Testbed bed{settings};
+        return failure_of([] { open(); });
+    };
+    EXPECT_THAT(with([](auto& s) { s.output = true; }), HasSubstr("does not capture"));
+    EXPECT_THAT(with([](auto& s) { s.streams = false; }),
+                HasSubstr("cannot stream into mapped memory"));
+    EXPECT_THAT(with([](auto& s) { s.most_buffers = 1; }),
+                HasSubstr("gives fewer than two buffers"));
 }
 
 // VIDIOC_STREAMON's words for formats that differ along the way, and for links that are not there.

@@ -34,6 +34,24 @@ TEST(V4l2Camera, LostBuffersMarkAGap) {
     EXPECT_EQ(camera.counters()[CameraCount::damaged_transfers], 1U);
 }
 
+TEST(V4l2Camera, ADriverThatCountsAnewIsAGapButNoLoss) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open({}, true);
+    RawPacket packet;
+    const auto next = [&](std::uint32_t skipped) {
+        bed.give({bytes_of({time_high(0)}), skipped});
+        while (camera.read(packet) != ReadStatus::data) continue;
+        return packet.gap_before;
+    };
+    EXPECT_FALSE(next(7)) << "it need not begin with 0";
+    EXPECT_TRUE(next(UINT32_MAX - 3)) << "3 less";
+    EXPECT_FALSE(next(0));
+    bed.fail_next("DQBUF", EIO);
+    EXPECT_TRUE(next(7)) << "opened again";
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+    EXPECT_EQ(camera.counters()[CameraCount::lost_transfers], 0U);
+}
+
 TEST(V4l2Camera, SilenceIsATimeoutAndStopEnds) {
     V4l2Testbed bed{sensor()};
     auto camera = open();

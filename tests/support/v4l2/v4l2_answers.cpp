@@ -92,10 +92,11 @@ int V4l2Testbed::Parts::answer_format(gulong request, UMockdevIoctlData* arg) {
         case VIDIOC_QUERYCAP:
             return with<v4l2_capability>(arg, [&](v4l2_capability& c, auto*) {
                 std::memcpy(c.card, kCard, sizeof kCard);
-                c.device_caps = settings.output ? V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_READWRITE
-                                : settings.multi_planar
-                                    ? V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING
-                                    : V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
+                c.device_caps = settings.output         ? V4L2_CAP_VIDEO_OUTPUT
+                                : settings.multi_planar ? V4L2_CAP_VIDEO_CAPTURE_MPLANE
+                                                        : V4L2_CAP_VIDEO_CAPTURE;
+                const bool streams = settings.streams && !settings.output;
+                c.device_caps |= streams ? V4L2_CAP_STREAMING : V4L2_CAP_READWRITE;
                 c.capabilities = c.device_caps | V4L2_CAP_DEVICE_CAPS;
                 return 0;
             });
@@ -132,7 +133,7 @@ int V4l2Testbed::Parts::answer_buffers(gulong request, UMockdevIoctlData* arg) {
         case VIDIOC_REQBUFS:
             return with<v4l2_requestbuffers>(arg, [&](v4l2_requestbuffers& r, auto*) {
                 queued.clear();  // buffers that a node closed without streaming had
-                buffers = r.count = std::min<std::uint32_t>(r.count, 4);
+                buffers = r.count = std::min(r.count, settings.most_buffers);
                 return ::ftruncate(backing, off_t(buffers * settings.buffer_bytes)) == 0 ? 0
                                                                                          : ENOMEM;
             });
@@ -178,7 +179,7 @@ int V4l2Testbed::Parts::answer_controls(gulong request, UMockdevIoctlData* arg) 
             return with<v4l2_control>(arg, [&](v4l2_control& c, auto*) {
                 auto* control = find_control(c.id);
                 if (control == nullptr) return EINVAL;
-                control->value = c.value;
+                if (!control->deaf) control->value = c.value;
                 return 0;
             });
         case VIDIOC_G_CTRL:

@@ -18,14 +18,16 @@ struct V4l2NodeSettings {
     bool multi_planar = false;
     std::uint32_t fourcc = 0;   ///< of a capture node
     int width = 0, height = 0;  ///< of a capture node's format
+    bool streams = true;        ///< a capture node; else it can only be read from
     std::size_t buffer_bytes = 64 * 1024;
+    std::uint32_t most_buffers = 4;
     std::uint32_t data_offset = 0;            ///< of a multi-planar buffer: bytes before the data
     int sensor_width = 0, sensor_height = 0;  ///< what /dev/v4l-subdev0 says; 0: it does not say
     std::vector<std::uint32_t> takes;         ///< formats an output node takes
     int refuse_format_with = 0;               ///< errno of every S_FMT; 0 none
     struct Control {
         std::int32_t minimum = 0, maximum = 0, value = 0;
-        bool read_only = false;
+        bool read_only = false, deaf = false;  ///< deaf: it keeps its value, and says so
     };
     std::map<std::string, Control> controls;
 };

@@ -2,7 +2,10 @@
 #include "tests/pipeline/sinks/http/served.h"
 #include "tests/support/holdings.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -34,6 +37,16 @@ TEST(HttpConnections, SixteenViewersAndNoMore) {
         next.send(request("GET /stream"));
         return status_of(next.receive(20)) == 200;
     })) << "a place that was left is free again";
+}
+
+TEST(HttpConnections, AViewerWhoLeavesWhileNoFrameComesGivesHisPlaceBack) {
+    const auto sink = open_page();
+    for (const char* path : {"GET /stream", "GET /frames"}) {
+        const RawClient viewer{*sink};
+        viewer.send(request(path));
+        ASSERT_EQ(status_of(viewer.receive(20)), 200) << path;
+    }
+    EXPECT_TRUE(becomes_true([&] { return sink->connections() == 0; }));
 }
 
 TEST(HttpConnections, AViewerWhoReadsNothingHoldsUpNobody) {
@@ -77,6 +90,12 @@ TEST(HttpConnections, APageOpenedAndClosedLeavesNothingBehind) {
     });
 }
 
+/// Pieces of this process's memory: an ended thread that nobody joined keeps its stack.
+std::size_t mappings() {
+    std::ifstream maps{"/proc/self/maps"};
+    return std::size_t(std::count(std::istreambuf_iterator<char>{maps}, {}, '\n'));
+}
+
 /// More by hand: EVENTIDE_CONNECTIONS=10000 test_http_sink --gtest_filter=*Dropped*.
 TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
     const char* const asked = std::getenv("EVENTIDE_CONNECTIONS");
@@ -86,6 +105,7 @@ TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
     ASSERT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
     ASSERT_TRUE(becomes_true([&] { return sink->connections() == 0; }));
     const Holdings before = holdings();
+    const std::size_t mapped = mappings();
     const std::string beginnings[]{"",
                                    "GET /stream HTTP/1.1\r\nHo",
                                    request("GET /stream"),
@@ -110,6 +130,7 @@ TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
     EXPECT_LE(after.files, before.files);
     EXPECT_LE(after.threads, before.threads);
     EXPECT_EQ(status_of(answer_to(*sink, request("GET /frame.png"))), 200);
+    EXPECT_LT(mappings(), mapped + std::size_t(connections) / 2);
 }
 
 TEST(HttpConnections, MoreThanThereIsRoomForAreTurnedAway) {
@@ -172,11 +193,15 @@ TEST(HttpConnections, EndlessRequestsEnd) {
     while (ranges.size() < 8000) ranges += ",0-0";
     std::string many;
     for (int i = 0; i < 4000; ++i) many += "X-" + std::to_string(i) + ": y\r\n";
+    std::string large;  // more than 24 KiB of lines that are no longer than they may be
+    for (int i = 0; i < 5; ++i)
+        large += "X-" + std::to_string(i) + ": " + std::string(7000, 'y') + "\r\n";
     const std::vector<std::string> wrong{
         "GET /" + megabyte,
         request("GET /" + std::string(8200, 'x')),
         "GET / HTTP/1.1\r\nX: " + megabyte,
         request("GET /", many),
+        request("GET /", large),
         request("POST /controls", json + "Content-Length: 1048576\r\n", megabyte),
         request("POST /controls", json + "Content-Length: 99999999999999999999\r\n", megabyte),
         request("POST /controls", json + "Content-Length: -1\r\n", "{}"),

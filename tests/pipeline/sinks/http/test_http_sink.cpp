@@ -146,6 +146,26 @@ TEST(HttpSink, StreamsWholeJpegsWithTheirTimes) {
     EXPECT_GT(parts, 3);
 }
 
+TEST(HttpSink, AStreamHasNoMoreFramesASecondThanWereAskedFor) {
+    const auto sink = open_page();
+    const RawClient slow{*sink}, fast{*sink};
+    slow.send(request("GET /stream?fps=0.1"));
+    fast.send(request("GET /stream?fps=1000"));
+    const auto parts = [](const std::string& stream) {
+        int parts = 0;
+        for (std::size_t at = 0; (at = stream.find("--frame\r\n", at)) != stream.npos; ++at)
+            ++parts;
+        return parts;
+    };
+    {
+        const Frames frames{*sink};
+        EXPECT_EQ(status_of(slow.receive(100)), 200);
+        EXPECT_GT(parts(fast.receive(200'000)), 20);
+    }
+    sink->close();
+    EXPECT_LE(parts(slow.receive_all()), 2) << "one, where all this takes less than 10 s";
+}
+
 TEST(HttpSink, TellsCountersAsServerSentEvents) {
     HttpSettings settings;
     settings.stats = [](double) { return R"({"frames":7})"; };

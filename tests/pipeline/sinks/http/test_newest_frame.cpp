@@ -63,6 +63,24 @@ TEST(NewestFrame, MessageForThePageHoldsItsParts) {
     EXPECT_EQ(64 + number(48, 4) + number(52, 4) + number(56, 4), bytes.size());
 }
 
+TEST(NewestFrame, OneThatIsHeldComesOnceToEachAndNoLongerThanItIsHeld) {
+    NewestFrame newest{0.3f};
+    auto waiting =
+        std::async(std::launch::async, [&] { return newest.next(nullptr, Clock::now() + kLong); });
+    newest.offer_while_held(frame(1), kLong);
+    const auto held = waiting.get();
+    ASSERT_TRUE(held);
+    const auto until_it_is_not_fresh = Clock::now() + 2 * NewestFrame::kFresh;
+    auto again =
+        std::async(std::launch::async, [&] { return newest.next(held, until_it_is_not_fresh); });
+    newest.offer_while_held(frame(1), std::chrono::milliseconds{20});
+    EXPECT_FALSE(again.get()) << "he has it";
+    EXPECT_EQ(newest.next(nullptr, Clock::now()), held) << "another has not";
+    EXPECT_EQ(newest.copied(), 1U);
+    newest.offer(frame(2));  // the pause is over, and nobody waits
+    EXPECT_FALSE(newest.next(nullptr, Clock::now()));
+}
+
 TEST(NewestFrame, CloseWakesWhoWaits) {
     NewestFrame newest{0.3f};
     auto waiting =
