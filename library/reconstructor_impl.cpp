@@ -145,7 +145,7 @@ void Reconstructor::Impl::forget_stream() {
     seen_.fill({});
     encoded_ = opened_ = 0;
     silence_ = {};
-    new_clock_ = ended_ = false;
+    has_images_ = new_clock_ = ended_ = false;
 }
 
 // ---- memory to frames ------------------------------------------------------------------------

@@ -62,7 +62,7 @@ private:
     Encoder encoder_;
     Renderer renderer_;
     std::optional<FusedRenderer> fused_;  // none: images do not correct frames
-    bool has_images_ = false;             // one has come
+    bool has_images_ = false;             // of this stream one has come
     VoxelGrid grid_;
     LatentMap latent_;
     RenderRequest request_;

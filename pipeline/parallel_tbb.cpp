@@ -15,13 +15,18 @@
 #include <vector>
 
 namespace eventide {
+
+int usable_threads() {
+    return tbb::info::default_concurrency();
+}
+
 namespace {
 
 #ifdef __SANITIZE_THREAD__
 /// The thread sanitizer does not see what oneTBB's library, not built with it, hands from thread to
 /// thread. Under it each call has threads of its own, and all that our code does is watched.
 ParallelFor watched_threads(int threads) {
-    if (threads == 0) threads = int(std::max(1U, std::thread::hardware_concurrency()));
+    if (threads == 0) threads = usable_threads();
     return [threads](int n, const std::function<void(int)>& body) {
         std::atomic<int> next{0};
         const auto work = [&] {
@@ -45,7 +50,7 @@ ParallelFor parallel_for_with(int threads) {
     return watched_threads(threads);
 #else
     // As many as this process may use: for more, oneTBB writes a warning and gives no more.
-    const int usable = tbb::info::default_concurrency();
+    const int usable = usable_threads();
     const int given = threads == 0 ? usable : std::min(threads, usable);
     if (given == 1) return sequential_for;
     // An arena of our own: the number holds here and is not set for the whole process.

@@ -36,15 +36,6 @@ void ModelRun::finish() {
     queries_.clear();
 }
 
-void ModelRun::reset() {
-    binner_.reset();
-    encoder_.reset();
-    renderer_.reset();
-    queries_.clear();
-    if (fused_) fused_->reset();
-    not_rendered_ = 0;
-}
-
 void ModelRun::render_what_is_ready() {
     for (; !queries_.empty(); queries_.pop_front()) {
         const Query& query = queries_.front();

@@ -20,7 +20,7 @@ struct Query {
     Array2<float> truth;        ///< [y][x] of the region
 };
 
-/// One sequence at a time; reset() between them.
+/// One sequence.
 class ModelRun {
 public:
     struct Options {
@@ -48,12 +48,8 @@ public:
     /// No more event windows: renders what is left inside them at the live edge.
     void finish();
 
-    /// A new sequence; forgets state and queries.
-    void reset();
-
     /// Queries that lay before the first event window or after the last.
     int not_rendered() const { return not_rendered_; }
-    std::string description() const { return encoder_.description(); }
 
 private:
     void render_what_is_ready();

@@ -25,7 +25,7 @@ const SimRecordingSettings& checked(const SimRecordingSettings& s) {
     for (const double rate : {s.images_per_second, s.truths_per_second})
         if (!(rate >= 0 && rate <= kMaxPerSecond)) refuse("0 to 100000 images per second", rate);
     if (!(s.truth_scale > 0 && s.truth_scale <= 64)) refuse("a scale up to 64", s.truth_scale);
-    if (s.chunk <= SensorDuration{0}) refuse("a chunk above 0 us", double(s.chunk.count()));
+    if (s.chunk <= SensorDuration{0}) refuse("a chunk above 0 us", s.chunk.count());
     return s;
 }
 

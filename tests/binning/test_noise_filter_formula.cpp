@@ -22,6 +22,7 @@ public:
 
     bool keeps(const Event& event) {
         const bool begins = !last_ || event.t < *last_;
+        if (begin_us_ && to_us(event.t) < *begin_us_) newest_.clear();  // another stream's
         last_ = event.t;
         const bool hot = hot_pixels_.is_hot(event);
         int near = 0, alike = 0;

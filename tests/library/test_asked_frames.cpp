@@ -137,6 +137,30 @@ TEST_F(AskedFrames, LeaveImagesWhereTheyCorrectThoseOfTheFrameClock) {
     }
 }
 
+TEST_F(AskedFrames, ReachAsFarAsEverWhereImagesCameBeforeAReset) {
+    const std::vector<Event> events = events_of(recording());
+    const auto newest_beside_next = [&](Reconstructor& reconstructor) {
+        const auto [begin, rest] =
+            std::pair{std::span{events}.first(5'000), std::span{events}.subspan(5'000)};
+        reconstructor.push(begin);
+        Frame frame;
+        while (reconstructor.next(frame)) continue;
+        reconstructor.push(rest);
+        return reconstructor.newest();
+    };
+    Reconstructor fresh = reconstructor(repeatable("7ms", 0));
+    const auto expected = newest_beside_next(fresh);
+    ASSERT_TRUE(expected);
+    Reconstructor used = reconstructor(repeatable("7ms", 0));
+    EventReader reader{recording()};
+    for (Batch batch; reader.read(batch);) used.push(batch);
+    Frame frame;
+    while (used.next(frame)) continue;
+    ASSERT_GT(used.counters().used_images, 5U);
+    used.reset();
+    EXPECT_EQ(newest_beside_next(used), expected);
+}
+
 TEST_F(AskedFrames, HaveAnySizeFromOneMemory) {
     Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
     reconstructor.push(events_of(recording()));

@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <sched.h>
+
 #include <filesystem>
 #include <sstream>
+#include <string>
 
 namespace eventide::test {
 namespace {
@@ -125,6 +128,21 @@ TEST_F(Quality, WindowsBetweenImagesKeepAFrameEach) {
         ASSERT_EQ(result.exit_code, 0) << result.error;
         EXPECT_THAT(result.error, HasSubstr("1x a frame per event window")) << window;
     }
+}
+
+TEST_F(Quality, CountsTheProcessorsThatTheProcessMayUse) {
+    cpu_set_t usable;
+    ASSERT_EQ(sched_getaffinity(0, sizeof usable, &usable), 0);
+    int first = 0;
+    while (!CPU_ISSET(first, &usable)) ++first;
+    const Result result =
+        test::run({"taskset", "-c", std::to_string(first), EVENTIDE_PROGRAM, "run", recording(),
+                   "--model", model(), "--realtime", "--duration", "100ms", "--out", temp_ / "a/"},
+                  with_cache());
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const Json quality = run_json("a").at("quality");
+    EXPECT_EQ(quality.at("threads"), 1);
+    EXPECT_LE(quality.at("affordable"), 1);
 }
 
 TEST_F(Quality, WorksWithoutAHome) {

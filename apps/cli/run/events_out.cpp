@@ -116,8 +116,9 @@ void EventsOut::write(std::span<const Event> events) {
 }
 
 void EventsOut::finish() {
-    std::vector<Event> none;
-    process(none);
+    std::vector<Event> rest;  // of a run that failed
+    if (held() > 0) filter_->flush(rest);
+    write(rest);
     target_->finish();
 }
 

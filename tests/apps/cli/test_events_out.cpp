@@ -45,5 +45,63 @@ TEST(EventsOut, ImagesDoNotWaitForEvents) {
     EXPECT_EQ(written.back().events.size(), 1U) << "together, as they came";
 }
 
+/// Holds every event back until it is flushed.
+class HoldsAll final : public EventFilter {
+public:
+    void process(std::vector<Event>& events) override {
+        held_.insert(held_.end(), events.begin(), events.end());
+        events.clear();
+    }
+    void flush(std::vector<Event>& events) override { events.swap(held_); }
+    SensorTime known_until(SensorTime now) const override {
+        return held_.empty() ? now : held_.front().t - SensorDuration{1};
+    }
+    std::size_t held() const override { return held_.size(); }
+
+private:
+    std::vector<Event> held_;
+};
+
+void see_event(EventsOut& out, std::int64_t us) {
+    std::vector<Event> events{{from_us(us), 1, 1, Polarity::on}};
+    out.process(events);
+}
+
+TEST(EventsOut, ImagesWaitForEventsThatAFilterHolds) {
+    for (const bool flushed : {true, false}) {
+        HoldsAll filter;
+        std::vector<Batch> written;
+        EventsOut out{&filter, std::make_unique<KeptBatches>(written), {}, {}};
+        see_event(out, 10);
+        out.see(image_at(9));
+        ASSERT_EQ(written.size(), 1U) << "before what is held";
+        out.see(image_at(11));
+        EXPECT_EQ(written.size(), 1U);
+        std::vector<Event> none;
+        if (flushed) out.flush(none);
+        out.finish();
+        ASSERT_EQ(written.size(), 2U) << "of a run that failed, too";
+        EXPECT_EQ(written[1].events.size(), 1U);
+        EXPECT_EQ(written[1].images.size(), 1U);
+    }
+}
+
+TEST(EventsOut, WhatLiesOutsideOfThePartIsNotWritten) {
+    std::vector<Batch> written;
+    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), from_us(10), from_us(20)};
+    for (const std::int64_t us : {9, 10, 20, 21}) {
+        out.see(image_at(us));
+        see_event(out, us);
+    }
+    out.finish();
+    std::vector<std::int64_t> events, images;
+    for (const Batch& batch : written) {
+        for (const Event& event : batch.events) events.push_back(to_us(event.t));
+        for (const ReferenceImage& image : batch.images) images.push_back(to_us(image.t));
+    }
+    EXPECT_EQ(events, (std::vector<std::int64_t>{10, 20}));
+    EXPECT_EQ(images, (std::vector<std::int64_t>{10, 20}));
+}
+
 }  // namespace
 }  // namespace eventide::app

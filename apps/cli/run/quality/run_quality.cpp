@@ -7,6 +7,7 @@
 #include "apps/cli/run/quality/profile_cache.h"
 #include "apps/cli/settings/model_path.h"
 #include "apps/cli/settings/words.h"
+#include "pipeline/parallel_tbb.h"
 #include "src/core/error.h"
 #include "src/model/model_file.h"
 #include "src/model/model_folders.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 #include <utility>
 
 namespace eventide::app {
@@ -63,9 +63,9 @@ std::optional<SlicerSettings> windows_by_content(const RunSettings& settings,
     return slicer;
 }
 
-double usable_threads(const RunSettings& settings) {
-    const double usable = std::max(1U, std::thread::hardware_concurrency());
-    return settings.threads == 0 ? usable : std::min(usable, double(settings.threads));
+double threads_of(const RunSettings& settings) {
+    const int usable = usable_threads();
+    return settings.threads == 0 ? usable : std::min(usable, settings.threads);
 }
 
 std::vector<PrecisionCost> costs_to_choose_from(const QualityProfile& profile,
@@ -178,7 +178,7 @@ QualityDemand RunQuality::demand_of(const RunSettings& settings, const Place& pl
     const FrameRate rate = rate_of(settings, slicer);
     demand.frames =
         rate.is_set() ? place.pace * double(rate.frames) / double(rate.seconds) : demand.windows;
-    demand.threads = usable_threads(settings);
+    demand.threads = threads_of(settings);
     demand.share = settings.budget.cores(demand.frames);
     if (demand.share && settings.threads == 0)
         demand.threads = std::clamp(std::ceil(*demand.share), 1.0, demand.threads);
