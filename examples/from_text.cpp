@@ -7,18 +7,21 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <string>
 
 int main(int argc, char** argv) try {
     if (argc != 3) throw eventide::Error(eventide::ErrorKind::usage, "from_text EVENTS.txt OUT");
     std::ifstream events(argv[1]);
-    std::ofstream out(argv[2], std::ios::binary);
     int width = 0, height = 0, x = 0, y = 0, p = 0;
-    events >> width >> height;
+    if (!(events >> width >> height))
+        throw eventide::Error(eventide::ErrorKind::input,
+                              std::string(argv[1]) + ": expected a line \"width height\"");
     eventide::Reconstructor reconstructor("default", width, height,
                                           {.window = "auto",
                                            .lookahead = 2,
                                            .lamp_flicker = "16ms",
                                            .precision = eventide::Precision::f32});
+    std::ofstream out(argv[2], std::ios::binary);
     double t = 0;
     while (events) {
         if (events >> t >> x >> y >> p) {

@@ -7,16 +7,17 @@ int main(int argc, char** argv) {
     eventide_reconstructor* network;
     eventide_options options;
     eventide_frame frame;
-    FILE* out = fopen(argc == 3 ? argv[2] : "", "wb");
-    if (out == NULL) return perror("reconstruct RECORDING OUT"), 1;
+    if (argc != 3) return fputs("reconstruct RECORDING OUT\n", stderr), 1;
     eventide_options_init(&options, sizeof options), options.precision = "f32";
     options.window = "auto", options.lookahead = 2, options.lamp_flicker = "16ms";
     eventide_status status = eventide_recording_open(argv[1], NULL, 0, 0, &source);
     if (!status) status = eventide_reconstructor_open_for(source, "default", &options, &network);
-    while (!status && !(status = eventide_read_frame(source, network, &frame))) {
-        fwrite(frame.intensity, sizeof(float) * (size_t)frame.width, (size_t)frame.height, out);
-        fwrite(frame.sigma, sizeof(float) * (size_t)frame.width, (size_t)frame.height, out);
-    }
-    if (status != EVENTIDE_NONE) return fprintf(stderr, "%s\n", eventide_error_message()), 1;
-    return fflush(out) || ferror(out) ? perror(argv[2]), 1 : 0;
+    /* Not before: what OUT holds stays where RECORDING is none. */
+    FILE* out = status ? NULL : fopen(argv[2], "wb");
+    while (out && !(status = eventide_read_frame(source, network, &frame)))
+        fwrite(frame.intensity, sizeof(float) * (size_t)frame.width, (size_t)frame.height, out),
+            fwrite(frame.sigma, sizeof(float) * (size_t)frame.width, (size_t)frame.height, out);
+    if (status && status != EVENTIDE_NONE)
+        return fprintf(stderr, "%s\n", eventide_error_message()), 1;
+    return out == NULL || fflush(out) || ferror(out) ? perror(argv[2]), 1 : 0;
 }

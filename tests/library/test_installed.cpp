@@ -152,6 +152,8 @@ TEST_F(Installed, PkgConfigGivesAProgramInCTheSameFrames) {
     const ProcessSettings with{.environment = {{"LD_LIBRARY_PATH", library_folder()}}};
     expect_frames_of_run({temp_ / "reconstruct"}, with);
     EXPECT_EQ(run({temp_ / "reconstruct", recording(), "/dev/full"}, with).exit_code, 1);
+    EXPECT_EQ(run({temp_ / "reconstruct", temp_ / "nothing", temp_ / "ours"}, with).exit_code, 1);
+    EXPECT_NE(read_text(temp_ / "ours"), "") << "what no recording takes the place of stays";
 }
 
 /// Lines that are neither empty nor comments.
