@@ -70,6 +70,7 @@ TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     EXPECT_EQ(cv::norm(decoded(png->body), expected, cv::NORM_INF), 0);
     EXPECT_EQ(client.Get("/frame.jpg?show=everything")->status, 400);
     EXPECT_EQ(client.Get("/stream?fps=0")->status, 400);
+    EXPECT_EQ(client.Get("/stream?fps=1001")->status, 400);
     EXPECT_EQ(client.Get("/nothing")->status, 404);
 }
 
@@ -146,17 +147,31 @@ TEST(HttpSink, StreamsWholeJpegsWithTheirTimes) {
     EXPECT_GT(parts, 3);
 }
 
+/// Of a stream of JPEGs.
+int parts(const std::string& stream) {
+    int parts = 0;
+    for (std::size_t at = 0; (at = stream.find("--frame\r\n", at)) != stream.npos; ++at) ++parts;
+    return parts;
+}
+
+TEST(HttpSink, AStreamGoesOnWithItsLastFrameWhileThereIsNoNewOne) {
+    const auto sink = open_page();
+    const RawClient viewer{*sink};
+    viewer.send(request("GET /stream"));
+    ASSERT_TRUE(becomes_true([&] {
+        sink->write(ramp_frame(16, 16, 0, odd_time(0)));
+        return sink->copied() > 0;
+    }));
+    std::string stream = viewer.receive(100);
+    EXPECT_EQ(status_of(stream), 200);
+    while (parts(stream) < 3) stream += viewer.receive(10);
+}
+
 TEST(HttpSink, AStreamHasNoMoreFramesASecondThanWereAskedFor) {
     const auto sink = open_page();
     const RawClient slow{*sink}, fast{*sink};
     slow.send(request("GET /stream?fps=0.1"));
     fast.send(request("GET /stream?fps=1000"));
-    const auto parts = [](const std::string& stream) {
-        int parts = 0;
-        for (std::size_t at = 0; (at = stream.find("--frame\r\n", at)) != stream.npos; ++at)
-            ++parts;
-        return parts;
-    };
     {
         const Frames frames{*sink};
         EXPECT_EQ(status_of(slow.receive(100)), 200);
