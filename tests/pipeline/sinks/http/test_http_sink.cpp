@@ -1,4 +1,5 @@
 // What the page gives to clients that behave.
+#include "pipeline/sinks/http/shown_frame.h"
 #include "src/core/error.h"
 #include "tests/pipeline/sinks/http/served.h"
 
@@ -200,6 +201,15 @@ TEST(HttpSink, TellsCountersAsServerSentEvents) {
                                      "cut_transfers", "stalls", "reconnects"));
 }
 
+TEST(HttpSink, CountsWhatItRefused) {
+    const auto sink = open_page();
+    EXPECT_THAT(client_of(*sink).Get("/metrics")->body,
+                HasSubstr("\neventide_http_refused_total 0\n"));
+    EXPECT_EQ(client_of(*sink).Post("/controls", "{}", "text/plain")->status, 415);
+    EXPECT_THAT(client_of(*sink).Get("/metrics")->body,
+                HasSubstr("\neventide_http_refused_total 1\n"));
+}
+
 TEST(HttpSink, TellsCountersAsPrometheusReadsThem) {
     HttpSettings settings;
     settings.snapshot = [] {
@@ -286,6 +296,22 @@ TEST(HttpSink, PauseEndsWhenNobodyIsLeftToEndIt) {
     EXPECT_THAT(client_of(*sink).Get("/controls")->body, HasSubstr("\"value\":0.0"));
 }
 
+TEST(HttpSink, PauseGoesOnForAsLongAsSomebodyWatches) {
+    std::atomic<bool> stopping{false};
+    HttpSettings settings;
+    settings.forgotten_after = std::chrono::milliseconds{1};
+    settings.give_up = [&] { return stopping.load(); };
+    const auto sink = open_page(std::move(settings));
+    const RawClient viewer{*sink};
+    viewer.send(request("GET /stream"));
+    ASSERT_EQ(status_of(viewer.receive(20)), 200);
+    ASSERT_EQ(client_of(*sink).Post("/controls", R"({"pause": 1})", "application/json")->status,
+              200);
+    const std::jthread writing{[&] { sink->write(ramp_frame(64, 48, 0, odd_time(0))); }};
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(client_of(*sink).Get("/frame.png")->status, 200) << i;
+    stopping = true;
+}
+
 TEST(HttpSink, PauseEndsWhenTheRunIsStopped) {
     std::atomic<bool> stopping{false};
     HttpSettings settings;
@@ -300,6 +326,20 @@ TEST(HttpSink, PauseEndsWhenTheRunIsStopped) {
     }};
     stopping = true;
     EXPECT_TRUE(becomes_true([&] { return returned.load(); }));
+}
+
+TEST(ShownFrame, EventsAreWhiteBlackOrGrey) {
+    Frame frame = ramp_frame(8, 8, 0, odd_time(0));
+    frame.event_preview = Array2<float>{1, 3};
+    frame.event_preview(0, 0) = 2;
+    frame.event_preview(0, 2) = -1;
+    const ShownFrame shown{frame, kSigmaWhite, {}};
+    const auto& png = shown.events();
+    const cv::Mat image = decoded({png.begin(), png.end()});
+    ASSERT_EQ(image.size(), cv::Size(3, 1));
+    EXPECT_EQ(image.at<std::uint8_t>(0, 0), 255);
+    EXPECT_EQ(image.at<std::uint8_t>(0, 1), 128);
+    EXPECT_EQ(image.at<std::uint8_t>(0, 2), 0);
 }
 
 TEST(HttpSink, SaysWhichPortItWasGiven) {
