@@ -178,6 +178,19 @@ TEST(DavisFaults, AHaltedEndpointIsClearedAndTheStreamGoesOnBehindAGap) {
     EXPECT_EQ(got.damaged.total(), 0U);
 }
 
+TEST(DavisFaults, HaltsThatLieApartNeverAddUp) {
+    PluggedIn camera_side{{}, {.events = 200'000}};
+    DavisOptions options = at_once();
+    options.settings.transfers = {4, 8 << 10};
+    DavisCamera camera{options};
+    RawPacket packet;
+    for (unsigned halts = 1; halts <= 12; ++halts) {
+        camera_side.bed.halt_data(1);
+        while (camera.counters()[CameraCount::stalls] < halts) camera.read(packet);
+        EXPECT_FALSE(packet.bytes.empty()) << "the stream goes on";
+    }
+}
+
 TEST(DavisFaults, AHaltDuringTheStartDoesNotKeepItFromStarting) {
     PluggedIn camera_side;
     camera_side.bed.halt_data(1);

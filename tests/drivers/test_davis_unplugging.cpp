@@ -225,6 +225,14 @@ TEST(DavisUnplugged, WhyItIsNotBackIsToldOnce) {
     look();
     ASSERT_EQ(warnings.size(), 3U);
     EXPECT_THAT(warnings[2], HasSubstr("roi reaches to 300,200, this sensor has 240x180"));
+    bed.unplug();
+    bed.plug_in(camera_before(2'000));
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    look();
+    ASSERT_EQ(warnings.size(), 4U);
+    EXPECT_EQ(warnings[3], warnings[0]) << "it is gone once more";
 }
 
 TEST(DavisUnplugged, WithASerialNumberItIsTakenBackAtAnyPortHoweverItWasNamed) {

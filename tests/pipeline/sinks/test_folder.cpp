@@ -108,6 +108,23 @@ TEST(FolderSink, OverwritingLeavesWhatNoRunOfOursWrote) {
     EXPECT_EQ(test::read_text(temp / "out/notes.txt"), "mine");
 }
 
+TEST(FolderSink, AFrameBeyondThoseOfTheEarlierRunIsNotItsAndStays) {
+    const TempFolder temp;
+    const FolderSettings settings{.path = temp / "out", .overwrite = true};
+    for (const bool killed : {false, true}) {
+        {
+            FolderSink sink{settings};
+            for (int n = 0; n < 3; ++n) sink.write(test::ramp_frame(8, 8, n, test::odd_time(n)));
+            if (!killed) sink.close();
+        }
+        const std::string mine = temp / "out/frames/frame_0000000009.png";
+        test::write_text(mine, "mine");
+        EXPECT_NE(refusal(settings).find("frame_0000000009.png"), std::string::npos) << killed;
+        EXPECT_EQ(test::read_text(mine), "mine");
+        std::filesystem::remove(mine);
+    }
+}
+
 TEST(FolderSink, ARunThatWasKilledCanBeReplaced) {
     const TempFolder temp;
     const FolderSettings settings{.path = temp / "out", .overwrite = true};

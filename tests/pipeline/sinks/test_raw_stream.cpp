@@ -291,9 +291,11 @@ TEST(StreamSink, AReaderThatGoesAwayIsToldOnceAndTheRunMayGoOnForOthers) {
         sink.write(test::ramp_frame(8, 8, 0, from_us(0)));
         EXPECT_TRUE(sink.is_watched());
         close(reader);
-        for (int i = 1; i < 4; ++i) sink.write(test::ramp_frame(8, 8, i, from_us(i)));
+        for (int i = 1; i < 4; ++i) {
+            sink.write(test::ramp_frame(8, 8, i, from_us(i)));
+            EXPECT_EQ(sink.wants_more(), others) << "asked after each frame";
+        }
         EXPECT_EQ(told, 1);
-        EXPECT_EQ(sink.wants_more(), others);
         EXPECT_FALSE(sink.is_watched());
         sink.close();
         EXPECT_EQ(missing, 0U) << "who went away was not too slow";

@@ -56,8 +56,9 @@ TEST(VideoSink, KeepsEachFramesTimeToTheMicrosecond) {
     EXPECT_EQ(
         probe(temp / "a.mp4",
               {"-count_frames", "-show_entries",
-               "stream=codec_name,width,height,pix_fmt,color_range,time_base,nb_read_frames"}),
-        "h264,64,48,yuv420p,tv,1/1000000,100\n");
+               "stream=codec_name,width,height,pix_fmt,color_range,color_space,color_transfer,"
+               "color_primaries,time_base,nb_read_frames"}),
+        "h264,64,48,yuv420p,tv,bt709,bt709,bt709,1/1000000,100\n");
     EXPECT_EQ(packet_times(temp / "a.mp4"), expected);
 }
 

@@ -27,6 +27,9 @@ TEST(WindowControls, AnswerTheirKeys) {
     EXPECT_EQ(controls.uncertainty, Uncertainty::none);
     controls.press('+');
     EXPECT_EQ(controls.speed, 2);
+    for (int times = 0; times < 10; ++times) controls.press('+');
+    EXPECT_EQ(controls.speed, 64) << "the most";
+    controls.speed = 2;
     controls.press('-');
     controls.press('-');
     EXPECT_EQ(controls.speed, 0.5);

@@ -1,4 +1,5 @@
 // What the page gives to clients that behave.
+#include "pipeline/sinks/http/shown_frame.h"
 #include "src/core/error.h"
 #include "tests/pipeline/sinks/http/served.h"
 
@@ -70,6 +71,7 @@ TEST(HttpSink, ShowsSigmaInTheWaysOfTheOtherSinks) {
     EXPECT_EQ(cv::norm(decoded(png->body), expected, cv::NORM_INF), 0);
     EXPECT_EQ(client.Get("/frame.jpg?show=everything")->status, 400);
     EXPECT_EQ(client.Get("/stream?fps=0")->status, 400);
+    EXPECT_EQ(client.Get("/stream?fps=1001")->status, 400);
     EXPECT_EQ(client.Get("/nothing")->status, 404);
 }
 
@@ -146,17 +148,31 @@ TEST(HttpSink, StreamsWholeJpegsWithTheirTimes) {
     EXPECT_GT(parts, 3);
 }
 
+/// Of a stream of JPEGs.
+int parts(const std::string& stream) {
+    int parts = 0;
+    for (std::size_t at = 0; (at = stream.find("--frame\r\n", at)) != stream.npos; ++at) ++parts;
+    return parts;
+}
+
+TEST(HttpSink, AStreamGoesOnWithItsLastFrameWhileThereIsNoNewOne) {
+    const auto sink = open_page();
+    const RawClient viewer{*sink};
+    viewer.send(request("GET /stream"));
+    ASSERT_TRUE(becomes_true([&] {
+        sink->write(ramp_frame(16, 16, 0, odd_time(0)));
+        return sink->copied() > 0;
+    }));
+    std::string stream = viewer.receive(100);
+    EXPECT_EQ(status_of(stream), 200);
+    while (parts(stream) < 3) stream += viewer.receive(10);
+}
+
 TEST(HttpSink, AStreamHasNoMoreFramesASecondThanWereAskedFor) {
     const auto sink = open_page();
     const RawClient slow{*sink}, fast{*sink};
     slow.send(request("GET /stream?fps=0.1"));
     fast.send(request("GET /stream?fps=1000"));
-    const auto parts = [](const std::string& stream) {
-        int parts = 0;
-        for (std::size_t at = 0; (at = stream.find("--frame\r\n", at)) != stream.npos; ++at)
-            ++parts;
-        return parts;
-    };
     {
         const Frames frames{*sink};
         EXPECT_EQ(status_of(slow.receive(100)), 200);
@@ -183,6 +199,15 @@ TEST(HttpSink, TellsCountersAsServerSentEvents) {
     EXPECT_THAT(json["camera_incidents"].get<std::vector<std::string>>(),
                 testing::ElementsAre("dropped_events", "lost_transfers", "damaged_transfers",
                                      "cut_transfers", "stalls", "reconnects"));
+}
+
+TEST(HttpSink, CountsWhatItRefused) {
+    const auto sink = open_page();
+    EXPECT_THAT(client_of(*sink).Get("/metrics")->body,
+                HasSubstr("\neventide_http_refused_total 0\n"));
+    EXPECT_EQ(client_of(*sink).Post("/controls", "{}", "text/plain")->status, 415);
+    EXPECT_THAT(client_of(*sink).Get("/metrics")->body,
+                HasSubstr("\neventide_http_refused_total 1\n"));
 }
 
 TEST(HttpSink, TellsCountersAsPrometheusReadsThem) {
@@ -271,6 +296,22 @@ TEST(HttpSink, PauseEndsWhenNobodyIsLeftToEndIt) {
     EXPECT_THAT(client_of(*sink).Get("/controls")->body, HasSubstr("\"value\":0.0"));
 }
 
+TEST(HttpSink, PauseGoesOnForAsLongAsSomebodyWatches) {
+    std::atomic<bool> stopping{false};
+    HttpSettings settings;
+    settings.forgotten_after = std::chrono::milliseconds{1};
+    settings.give_up = [&] { return stopping.load(); };
+    const auto sink = open_page(std::move(settings));
+    const RawClient viewer{*sink};
+    viewer.send(request("GET /stream"));
+    ASSERT_EQ(status_of(viewer.receive(20)), 200);
+    ASSERT_EQ(client_of(*sink).Post("/controls", R"({"pause": 1})", "application/json")->status,
+              200);
+    const std::jthread writing{[&] { sink->write(ramp_frame(64, 48, 0, odd_time(0))); }};
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(client_of(*sink).Get("/frame.png")->status, 200) << i;
+    stopping = true;
+}
+
 TEST(HttpSink, PauseEndsWhenTheRunIsStopped) {
     std::atomic<bool> stopping{false};
     HttpSettings settings;
@@ -285,6 +326,20 @@ TEST(HttpSink, PauseEndsWhenTheRunIsStopped) {
     }};
     stopping = true;
     EXPECT_TRUE(becomes_true([&] { return returned.load(); }));
+}
+
+TEST(ShownFrame, EventsAreWhiteBlackOrGrey) {
+    Frame frame = ramp_frame(8, 8, 0, odd_time(0));
+    frame.event_preview = Array2<float>{1, 3};
+    frame.event_preview(0, 0) = 2;
+    frame.event_preview(0, 2) = -1;
+    const ShownFrame shown{frame, kSigmaWhite, {}};
+    const auto& png = shown.events();
+    const cv::Mat image = decoded({png.begin(), png.end()});
+    ASSERT_EQ(image.size(), cv::Size(3, 1));
+    EXPECT_EQ(image.at<std::uint8_t>(0, 0), 255);
+    EXPECT_EQ(image.at<std::uint8_t>(0, 1), 128);
+    EXPECT_EQ(image.at<std::uint8_t>(0, 2), 0);
 }
 
 TEST(HttpSink, SaysWhichPortItWasGiven) {

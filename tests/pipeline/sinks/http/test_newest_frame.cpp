@@ -45,7 +45,9 @@ TEST(NewestFrame, EncodingsAreMadeOnceAndShared) {
 }
 
 TEST(NewestFrame, MessageForThePageHoldsItsParts) {
-    const ShownFrame shown{frame(3), 0.3f, std::chrono::milliseconds{2}};
+    Frame third = frame(3);
+    third.gap_before = true;
+    const ShownFrame shown{third, 0.3f, std::chrono::milliseconds{2}};
     const auto& bytes = shown.message();
     const auto number = [&](std::size_t at, int size) {
         std::uint64_t value = 0;
@@ -61,6 +63,7 @@ TEST(NewestFrame, MessageForThePageHoldsItsParts) {
     EXPECT_EQ(number(40, 8), 50'000U);
     EXPECT_EQ(number(48, 4), shown.jpeg(Show::intensity).size());
     EXPECT_EQ(64 + number(48, 4) + number(52, 4) + number(56, 4), bytes.size());
+    EXPECT_EQ(number(60, 4), 1U) << "behind a gap";
 }
 
 TEST(NewestFrame, OneThatIsHeldComesOnceToEachAndNoLongerThanItIsHeld) {
