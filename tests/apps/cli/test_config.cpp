@@ -77,6 +77,15 @@ TEST(Config, ListsInTheEnvironmentAreCutAtSemicolons) {
     EXPECT_EQ(example.out, (std::vector<std::string>{"a/", "b.mp4"}));
 }
 
+TEST(Config, AnEmptyVariableSaysNothing) {
+    Example example;
+    SettingTable table = example.table();
+    setenv("EVENTIDE_EXAMPLE_RATE", "", 1);
+    resolve_settings(table, {}, {});
+    unsetenv("EVENTIDE_EXAMPLE_RATE");
+    EXPECT_EQ(table.settings[1].origin, "default");
+}
+
 TEST(Config, AFlagMayTakeBackWhatTheFileSays) {
     const TempFolder temp;
     test::write_text(temp / "c.toml", "[example]\nfast = true\n");

@@ -1,9 +1,12 @@
 // What a run writes of the data it reconstructs from.
 #include "apps/cli/run/events_out.h"
 
+#include "src/core/error.h"
+
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace eventide::app {
@@ -27,6 +30,17 @@ Batch image_at(std::int64_t us) {
     batch.images.push_back({});
     batch.images.back().t = from_us(us);
     return batch;
+}
+
+TEST(EventsOut, TheFileIsBehindAFormatAloneAndMayHaveAColon) {
+    for (const auto& [to, file] : {std::pair{"aedat4:x", "x"},
+                                   {"text:-", "-"},
+                                   {"x.txt", "x.txt"},
+                                   {"./text:x.txt", "./text:x.txt"},
+                                   {"part.2:x.txt", "part.2:x.txt"},
+                                   {"udp://a:1", "udp://a:1"}})
+        EXPECT_EQ(file_of_event_target(to), file) << to;
+    EXPECT_THROW(file_of_event_target("evt2:x"), Error) << "is only read";
 }
 
 TEST(EventsOut, ImagesDoNotWaitForEvents) {

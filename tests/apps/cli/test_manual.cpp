@@ -29,6 +29,7 @@ TEST(Manual, HasEveryCommandFlagAndExitCode) {
         for (const Setting& setting : command->settings().settings)
             EXPECT_TRUE(has(page, typed(flag_of(setting)) + "\\fR")) << flag_of(setting);
     }
+    EXPECT_TRUE(has(page, "eventide evaluate INPUT..."));
     EXPECT_TRUE(has(page, typed("--log-level")));
     EXPECT_TRUE(has(page, "5 finished but data were lost"));
 }

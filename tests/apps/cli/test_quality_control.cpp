@@ -62,6 +62,14 @@ TEST(QualityControl, ASlowMomentChangesNothing) {
     EXPECT_EQ(machine.run(20, 1), 0);
 }
 
+TEST(QualityControl, APauseIsNoLoadWhateverWasBeforeIt) {
+    Machine machine;
+    machine.run(5, 1);
+    EXPECT_EQ(machine.run(1, 6), 0) << "not for long enough";
+    machine.wait(20);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
+}
+
 TEST(QualityControl, GoesDownWithinSecondsOfLoadAndUpAgainAfterwards) {
     Machine machine;
     machine.run(5, 1);

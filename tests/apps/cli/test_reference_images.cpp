@@ -38,6 +38,16 @@ TEST(ReferenceImages, AreThereForAsLongAsTheContactSheetWaitsHoweverManyThereAre
     EXPECT_TRUE(truth_at(references, 100).empty()) << "they do not grow without end";
 }
 
+TEST(ReferenceImages, TheNewestFewStayHoweverFarApart) {
+    constexpr int kApart_ms = 10'000, kFew = int(ReferenceImages::kKeptAnyway);
+    ReferenceImages references;
+    for (int i = 0; i < kFew; ++i) show_images(references, i * kApart_ms, i * kApart_ms + 1);
+    EXPECT_FALSE(truth_at(references, 0).empty());
+    show_images(references, kFew * kApart_ms, kFew * kApart_ms + 1);
+    EXPECT_TRUE(truth_at(references, 0).empty());
+    EXPECT_FALSE(truth_at(references, kApart_ms).empty());
+}
+
 TEST(ReferenceImages, OfAClockThatBeganAnewAreTheNewOnes) {
     ReferenceImages references;
     show_images(references, 10'000, 10'100);

@@ -126,8 +126,12 @@ TEST(RunReport, StrictMeansLossAndDamageAndNotSkippedFrames) {
     now.camera->set(CameraCount::lost_transfers, 1);
     EXPECT_TRUE(lost_data(now));
     now.camera.reset();
-    now.gaps = 1;
-    EXPECT_TRUE(lost_data(now));
+    EXPECT_FALSE(lost_data(now));
+    for (std::uint64_t* count : {&now.gaps, &now.lost_packets, &now.slicing.too_many}) {
+        *count = 1;
+        EXPECT_TRUE(lost_data(now));
+        *count = 0;
+    }
     EXPECT_TRUE(lost_data(busy()));
 }
 
@@ -144,6 +148,7 @@ TEST(RunReport, ShortCountsKeepTheirSize) {
     EXPECT_EQ(short_count(0), "0");
     EXPECT_EQ(short_count(999), "999");
     EXPECT_EQ(short_count(1234), "1.2 k");
+    EXPECT_EQ(short_count(99'970), "100 k");
     EXPECT_EQ(short_count(999'700), "1.0 M");
     EXPECT_EQ(short_count(123.4e6), "123 M");
 }

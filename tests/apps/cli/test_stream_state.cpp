@@ -136,6 +136,9 @@ TEST(StreamState, DamageIsNamed) {
     TensorFile outside = good;
     outside.tensors["stream.events"].values[2] = 16;
     EXPECT_THAT(refusal(outside), HasSubstr("found one at 16, 11"));
+    outside.tensors["stream.events"].values[2] = 15;
+    outside.tensors["stream.events"].values[3] = 12;
+    EXPECT_THAT(refusal(outside), HasSubstr("found one at 15, 12"));
     TensorFile far = good;
     far.metadata["stream.begin_us"] = "9223372036854775807";
     EXPECT_THAT(refusal(far), HasSubstr("expected a time that a clock can have"));

@@ -52,8 +52,10 @@ TEST(Calibration, CautiouslyHoldsInEverySequence) {
                        write_recording(folder / "b", .9, .002, .3)};
     what.skip_images = 0;
     const EvaluateSettings how = small_model();
-    const EvaluateReport report = evaluate_recordings(what, how);
+    EvaluateReport report = evaluate_recordings(what, how);
     const double cautious = calibrate(report, CalibrationRule::cautious).factor;
+    std::swap(report.sequences[0], report.sequences[1]);
+    EXPECT_EQ(calibrate(report, CalibrationRule::cautious).factor, cautious) << "in any order";
     double largest = 0;
     for (const fs::path& one : what.recordings) {
         RecordingSettings alone = what;

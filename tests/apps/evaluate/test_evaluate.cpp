@@ -1,4 +1,5 @@
 // Whole evaluations: on a small recording made here, on folders, and what is written about them.
+#include "apps/evaluate/csv_field.h"
 #include "apps/evaluate/evaluate.h"
 #include "apps/evaluate/reference_sequence.h"
 #include "pipeline/filters/event_filter.h"
@@ -45,6 +46,20 @@ TEST(ReferenceSequence, IsCalledAsItsFolder) {
     EXPECT_EQ(read_reference_sequence(folder / "").name, "eventide_at.5");
     EXPECT_EQ(sequence_name(folder / "."), "eventide_at.5");
     EXPECT_EQ(sequence_name("recordings/speed.5.aedat4"), "speed.5");
+}
+
+TEST(ReferenceSequence, CountsTimesFromItsFirstEventOrImage) {
+    const fs::path folder = write_recording(fresh_folder("late_events"), .5, .001, .1);
+    std::ofstream{folder / "events.txt"} << "0.15 1 2 1\n0.25 3 4 0\n0.35 3 4 1\n";
+    const ReferenceSequence whole = read_reference_sequence(folder);
+    EXPECT_EQ(whole.first, from_us(0));
+    EXPECT_EQ(whole.images.size(), 5U);
+    const ReferenceSequence part = read_reference_sequence(folder, .2, .3);
+    EXPECT_EQ(part.first, from_us(0));
+    ASSERT_EQ(part.images.size(), 2U);
+    EXPECT_EQ(part.images[0].t, from_us(200'000));
+    ASSERT_EQ(part.events.size(), 1U);
+    EXPECT_EQ(part.events[0].t, from_us(250'000));
 }
 
 TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
@@ -127,6 +142,19 @@ TEST(EvaluateRecordings, WithOtherWindowsAlsoComparesAtTheImagesTimes) {
     }
 }
 
+TEST(EvaluateRecordings, APartIsScoredByAModelThatSawWhatWasBefore) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("part"), 1.2, .001, .1)};
+    what.skip_images = 0;
+    const EvaluateReport whole = evaluate_recordings(what, small_model());
+    what.from_s = .6;
+    const EvaluateReport part = evaluate_recordings(what, small_model());
+    ASSERT_EQ(whole.overall.frames, 12);
+    ASSERT_EQ(part.overall.frames, 6);
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_EQ(part.sequences[0].frames[i].raw.mse, whole.sequences[0].frames[6 + i].raw.mse);
+}
+
 TEST(EvaluateRecordings, TakeTheWindowsThatTheModelWasTrainedFor) {
     RecordingSettings what;
     what.recordings = {write_recording(fresh_folder("windows_of_model"), .9, .001, .1)};
@@ -176,6 +204,8 @@ TEST(EvaluateRecordings, OfSeveralWeighFrames) {
     EXPECT_NEAR(report.overall.raw.mse,
                 (a.frames * a.raw.mse + b.frames * b.raw.mse) / (a.frames + b.frames), 1e-12);
     EXPECT_EQ(report.overall.sequence, "all");
+    EXPECT_EQ(report.observations.sigma_scale.pixels(),
+              report.sequences[0].sigma_scale.pixels() + report.sequences[1].sigma_scale.pixels());
 }
 
 TEST(EvaluateRecordings, LeaveOutNoiseWhereAsked) {
@@ -237,6 +267,14 @@ TEST(EvaluateFolders, FindNothingBetweenEqualFolders) {
         evaluate_folders(folder / "frames/one/", folder / "references/one/", {}).overall.sequence,
         "one");
 
+    cv::Mat deep;
+    cv::imread((folder / "references/one/0.png").string(), cv::IMREAD_GRAYSCALE)
+        .convertTo(deep, CV_16U, 257);
+    cv::imwrite((folder / "frames/one/0.png").string(), deep);
+    EXPECT_LT(
+        evaluate_folders(folder / "frames/one", folder / "references/one", {}).overall.raw.mse,
+        1e-12)
+        << "16 bits are as white as 8";
     write_image(folder / "frames" / "one" / "9.png", test_image(kHeight, kWidth, 9));
     EXPECT_THROW(evaluate_folders(folder / "frames", folder / "references", {}), Error);
 }
@@ -302,6 +340,8 @@ TEST(Report, NamesSequencesInOneColumnWhateverTheyAreCalled) {
     SequenceReport& sequence = report.sequences.emplace_back();
     sequence.scores.sequence = "desk, \"slow\"";
     sequence.frames.emplace_back();
+    EXPECT_EQ(csv_field("slow\rdesk"), "\"slow\rdesk\"");
+    EXPECT_EQ(csv_field("desk"), "desk");
     const std::string name = "\n\"desk, \"\"slow\"\"\",";
     EXPECT_NE(csv(report).find(name), std::string::npos) << csv(report);
     EXPECT_NE(frame_csv(report).find(name), std::string::npos) << frame_csv(report);

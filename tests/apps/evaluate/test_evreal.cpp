@@ -25,6 +25,19 @@ TEST(Evreal, CutsBySequenceNameAndStartsBeforeTheCut) {
     EXPECT_EQ(report.sequences[1].scores.frames, 4);  // in full, but for the last
 }
 
+TEST(Evreal, ACutIsScoredByAModelThatSawWhatWasBefore) {
+    const fs::path dataset = fresh_folder("ecd_before");
+    write_recording(dataset / "slider_depth", 3.05, .01, .25);
+    write_recording(dataset / "unknown", 3.05, .01, .25);
+    const EvaluateReport report = evaluate_evreal(dataset, small_model());
+    ASSERT_EQ(report.sequences.size(), 2U);
+    const auto &cut = report.sequences[0].frames, &whole = report.sequences[1].frames;
+    ASSERT_EQ(cut.size(), 7U);
+    ASSERT_EQ(whole.size(), 12U);
+    for (std::size_t i = 0; i < cut.size(); ++i)
+        EXPECT_EQ(cut[i].raw.mse, whole[4 + i].raw.mse) << cut[i].time_s;
+}
+
 TEST(Evreal, CutsASequenceHoweverItsFolderIsWritten) {
     const fs::path folder =
         write_recording(fresh_folder("ecd_one") / "slider_depth", 3.05, .01, .25);
