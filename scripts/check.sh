@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What .ci/run has no time for: clang-tidy over the libraries' source files, the tests under the sanitizers, a minute of fuzzing, the API pages, and a wheel for
-# Python, the library of events to frames alone, the program without what can be left out, and Debian packages in a system of their own. An hour or two on two cores; before a release, and after
-# changes to parsers, threads or memory.
-#   scripts/check.sh [api] [wheel] [core] [bare] [packages] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
+# Python, the library of events to frames alone, the program without what can be left out, Debian packages in a system of their own, and frames on ARM, in
+# emulation. An hour or two on two cores; before a release, and after changes to parsers, threads or memory.
+#   scripts/check.sh [api] [wheel] [core] [bare] [packages] [arm] [tidy] [asan] [tsan] [fuzz]      some of it; without arguments all
 set -euo pipefail
 cd "$(dirname "$0")/.."
 fuzz_seconds=2  # of each target: a minute of all together
@@ -115,16 +115,17 @@ packages() {
 scripts/install-packages.sh --tests
 for check in "${@:-all}"; do
   case $check in
-    all) scripts/check-format.sh; api; wheel; core; bare; packages; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
+    all) scripts/check-format.sh; api; wheel; core; bare; packages; scripts/check-arm.sh; tidy; scripts/test.sh asan; scripts/test.sh tsan; scripts/fuzz.sh $fuzz_seconds ;;
     api) api ;;
     wheel) wheel ;;
     core) core ;;
     bare) bare ;;
     packages) packages ;;
+    arm) scripts/check-arm.sh ;;
     tidy) tidy ;;
     fuzz) scripts/fuzz.sh $fuzz_seconds ;;
     asan | tsan) scripts/test.sh "$check" ;;
-    *) echo "check: expected api, wheel, core, bare, packages, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
+    *) echo "check: expected api, wheel, core, bare, packages, arm, tidy, asan, tsan or fuzz, found $check" >&2; exit 2 ;;
   esac
 done
 echo "check: passed"

@@ -59,7 +59,10 @@ function(eventide_public_library name)
   endif()
 
   # GNU's linker, also beside clang, for which CMake finds lld: that cannot dissolve groups.
-  find_program(EVENTIDE_GNU_LINKER NAMES ld.bfd ld DOC "GNU linker, for static libraries" REQUIRED)
+  # Where another machine's programs are made, that of its own.
+  get_filename_component(tools "${CMAKE_OBJCOPY}" NAME)
+  string(REPLACE "objcopy" "ld" linker "${tools}")
+  find_program(EVENTIDE_GNU_LINKER NAMES ${linker}.bfd ld.bfd ld DOC "GNU linker, for static libraries" REQUIRED)
   mark_as_advanced(EVENTIDE_GNU_LINKER)
 
   # One object, in which every name is local but those that the shared library shows. Groups are dissolved, as a

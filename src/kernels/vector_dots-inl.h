@@ -41,6 +41,7 @@ struct Sums {
     Sums<Tag, P - 1, kTwo> before;
     Vector a, b;
 
+    HWY_INLINE Sums() {}  // gcc compiles one of its own for another target than NEON
     HWY_INLINE void start(Vector bias_a, Vector bias_b) {
         before.start(bias_a, bias_b);
         a = bias_a;

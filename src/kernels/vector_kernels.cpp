@@ -157,6 +157,10 @@ std::int64_t left_out(Instructions most) {
     return 0;
 }
 
+/// Every 64-bit ARM has NEON. What Highway calls so has instructions for AES, too, which some lack
+/// (the Raspberry Pi 4) and nothing here uses.
+constexpr std::int64_t kAlwaysThere = HWY_ARCH_ARM_A64 ? HWY_NEON : 0;
+
 }  // namespace
 
 /// Not HWY_DYNAMIC_DISPATCH(): what that chooses is the whole process's. Highway asks the processor
@@ -166,7 +170,7 @@ const VectorKernels& vector_kernels(Instructions most) {
         std::array<const VectorKernels*, std::size(kAllInstructions)> tables{};
         for (const Instructions each : kAllInstructions) {
             hwy::ChosenTarget chosen;
-            chosen.Update(hwy::SupportedTargets() & ~left_out(each));
+            chosen.Update((hwy::SupportedTargets() | kAlwaysThere) & ~left_out(each));
             tables[std::size_t(each)] = HWY_DISPATCH_TABLE(table)[chosen.GetIndex()]();
         }
         return tables;
