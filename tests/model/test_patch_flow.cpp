@@ -120,6 +120,85 @@ TEST(PatchFlow, WithoutEventsNothingMovesAndWithFewOnlyWhatFitsMuchBetter) {
     EXPECT_LT(error(moved, .3F, -2, -1), .5);
 }
 
+/// How far on average from the motion of each half, px, edges included.
+double mean_error(const MotionField& motion, const FlowVector& left, const FlowVector& right) {
+    double sum = 0;
+    const int width = motion.dx.width();
+    for (int y = 0; y < motion.dx.height(); ++y)
+        for (int x = 0; x < width; ++x) {
+            const FlowVector& truth = x < width / 2 ? left : right;
+            sum += std::hypot(double(motion.dx(y, x) - truth.x), double(motion.dy(y, x) - truth.y));
+        }
+    return sum / double(motion.dx.values().size());
+}
+
+/// Two things that move each its own way, behind each other at their border, seen with noise.
+TEST(PatchFlow, FindsTwoMotionsBesideEachOther) {
+    constexpr int kWidth = 158, kHeight = 122;
+    PatchFlow flow{kWidth, kHeight};
+    const auto halves = [](double scale) {
+        Array2<float> map = texture(kWidth, kHeight, 3 * scale, -2 * scale);
+        const Array2<float> right = texture(kWidth, kHeight, -4 * scale, 1 * scale);
+        for (int y = 0; y < kHeight; ++y)
+            std::ranges::copy(right.row(y).last(kWidth / 2), map.row(y).last(kWidth / 2).begin());
+        return map;
+    };
+    for (const auto& [scale, most] : {std::pair{1.F, .48}, {2.F, .95}, {4.F, 2.2}}) {
+        MotionField motion{kWidth, kHeight};
+        flow.find(noisy(halves(scale), .02F, 1), noisy(halves(0), .02F, 2),
+                  events(kWidth, kHeight, 5), motion);
+        EXPECT_LT(mean_error(motion, {-3 * scale, 2 * scale}, {4 * scale, -scale}), most) << scale;
+    }
+}
+
+TEST(PatchFlow, FindsHowFarThingsWereOverWideDistances) {
+    constexpr int kWidth = 158, kHeight = 122;
+    PatchFlow flow{kWidth, kHeight};
+    for (const auto& [dx, most] : {std::pair{14.F, .28}, {24.F, .63}, {32.F, 2.4}}) {
+        MotionField motion{kWidth, kHeight};
+        flow.find(texture(kWidth, kHeight, dx), texture(kWidth, kHeight), events(kWidth, kHeight),
+                  motion);
+        EXPECT_LT(mean_error(motion, {-dx, 0}, {-dx, 0}), most) << dx;
+    }
+}
+
+TEST(PatchFlow, BeginsAtTheMotionItIsGiven) {
+    constexpr int kWidth = 158, kHeight = 122;
+    PatchFlow flow{kWidth, kHeight};
+    for (const auto& [dx, most] : {std::pair{40.F, 4.3}, {50.F, 4.8}}) {
+        MotionField motion{kWidth, kHeight};
+        std::ranges::fill(motion.dx.values(), -dx);
+        flow.find(texture(kWidth, kHeight, dx), texture(kWidth, kHeight), events(kWidth, kHeight),
+                  motion);
+        EXPECT_LT(mean_error(motion, {-dx, 0}, {-dx, 0}), most) << dx << ", edges included";
+    }
+}
+
+TEST(PatchFlow, WhatIsBrighterThanWhiteOrDarkerThanBlackLooksAlike) {
+    constexpr int kWidth = 120, kHeight = 90;
+    PatchFlow flow{kWidth, kHeight};
+    Array2<float> now = texture(kWidth, kHeight, 2, 1), then = texture(kWidth, kHeight);
+    const auto blow_up = [](Array2<float>& map, float by) {
+        for (float& v : map.values())
+            v = v > .6F ? 1 + by * (v - .6F) : v < .4F ? by * (v - .4F) : v;
+    };
+    blow_up(now, 9);
+    blow_up(then, 1);
+    MotionField motion{kWidth, kHeight};
+    flow.find(now, then, events(kWidth, kHeight), motion);
+    EXPECT_LT(mean_error(motion, {-2, -1}, {-2, -1}), .05);
+    EXPECT_LT(*std::ranges::max_element(flow.mismatch().values()), .15F);
+}
+
+TEST(PatchFlow, MismatchIsAMean) {
+    PatchFlow flow{120, 90};
+    MotionField motion{120, 90};
+    const Array2<float> plain = events(120, 90, .5F);
+    flow.find(noisy(plain, .1F, 3), plain, events(120, 90, 0), motion);
+    EXPECT_LT(*std::ranges::max_element(flow.mismatch().values()), .09F);
+    EXPECT_GT(*std::ranges::min_element(flow.mismatch().values()), .005F);
+}
+
 TEST(PatchFlow, FramesOfAnySizeAndAnyNumbersGiveFiniteMotion) {
     for (const auto& [width, height] :
          {std::pair{1, 1}, {3, 200}, {15, 15}, {16, 16}, {17, 33}, {64, 7}}) {

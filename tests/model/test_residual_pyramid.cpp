@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace eventide {
@@ -128,6 +129,53 @@ TEST(ResidualPyramid, VarianceOnlyGrowsWithEventsAndNeverBeyondTheModels) {
         before = now;
     }
     EXPECT_GT(before, .8F);
+}
+
+/// left = sum over 7 bands of 1/7 (1 - (u rho_k)^2), rho_k = exp(-2 n / 2^k)
+TEST(ResidualPyramid, VarianceIsThatOfTheFormula) {
+    constexpr int kHeight = 130, kWidth = 200;
+    const auto left = [](double trust, double n) {
+        double sum = 0;
+        for (int k = 0; k < 7; ++k)
+            sum += (1 - std::pow(trust * std::exp(-2 * n / (1 << k)), 2)) / 7;
+        return sum;
+    };
+    const auto found = [](ResidualPyramid& pyramid) {
+        return expect(pyramid, constant(kHeight, kWidth, 0)).variance(60, 100);
+    };
+    for (const float trust : {1.F, .5F}) {
+        ResidualPyramid pyramid = observed(kHeight, kWidth, trust);
+        EXPECT_NEAR(found(pyramid), left(trust, 0), 1e-5);
+        pyramid.forget(constant(kHeight, kWidth, .4F));
+        EXPECT_NEAR(found(pyramid), left(trust, .4), 1e-5);
+        pyramid.observe(constant(kHeight, kWidth, 0), constant(kHeight, kWidth, 0));
+        EXPECT_NEAR(found(pyramid), left(trust, .4), 1e-5) << "an image that tells nothing";
+        pyramid.forget(constant(kHeight, kWidth, .1F));
+        EXPECT_NEAR(found(pyramid), left(trust, .5), 1e-5);
+        pyramid.reset();
+        pyramid.observe(constant(kHeight, kWidth, 1), constant(kHeight, kWidth, 0));
+        pyramid.forget(constant(kHeight, kWidth, .1F));
+        EXPECT_NEAR(found(pyramid), left(1, .1), 1e-5) << "nothing of before";
+    }
+}
+
+/// c_k = min(1, 4 w_k), c_0 = w_0
+TEST(ResidualPyramid, WhatIsLessKnownCountsLessInTheFinestBandAlone) {
+    constexpr int kSize = 32;
+    ResidualPyramid pyramid = observed(kSize, kSize);
+    Array2<float> fine(kSize, kSize), coarse(kSize, kSize);
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            fine(y, x) = (x + y) % 2 == 0 ? 1.F : -1.F;
+            coarse(y, x) = .3F;
+        }
+    for (const float known : {1.F, .5F, .25F}) {
+        pyramid.know(constant(kSize, kSize, known));
+        EXPECT_NEAR(expect(pyramid, fine).correction(16, 16), known, 1e-5);
+        EXPECT_NEAR(expect(pyramid, coarse).correction(16, 16), .3F, 1e-5);
+    }
+    pyramid.know(constant(kSize, kSize, .1F));
+    EXPECT_LT(expect(pyramid, coarse).correction(16, 16), .299F);
 }
 
 TEST(ResidualPyramid, WhatCannotBeTrustedLeavesTheOldKnowledge) {

@@ -16,8 +16,6 @@ void KeptFrames::make_room(const FrameGeometry& geometry, std::size_t tiles) {
         frame.intensity.resize(pixels);
         frame.sigma.resize(pixels);
         frame.tiles.assign(tiles, {});
-        frame.kind = {};
-        frame.fraction = -1;
     }
 }
 
