@@ -80,6 +80,9 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"evaluate", "--figure", "sigma", "--figure", "spatial"},
            "expected one or more recordings");
     expect(2, {"run", "sim:demo?size=1x1", "--out", "null"}, "2 to 8192 px, found 1\n");
+    expect(2, {"bench", "--sizes", "32x24", "--sizes", "32"}, "--sizes: expected a size such as");
+    expect(2, {"bench", "--precisions", "f16"}, "--precisions: expected auto, f32 or bf16");
+    expect(2, {"bench", "--scene", "nowhere"}, "no simulated scene is called 'nowhere'");
     expect(2, {"evaluate", recording(), "--from", "200ms", "--to", "100ms"}, "--to: expected");
     expect(2, {"evaluate", recording(), "--from", "10s"}, "expected an image to score between");
     expect(2, {"run", recording(), "--out", "null", "--events-out", "evt2:a.raw"},

@@ -11,6 +11,7 @@
 #include "apps/cli/version.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
+#include "src/simulate/presets.h"
 
 #include <spdlog/spdlog.h>
 
@@ -24,6 +25,18 @@ namespace {
 std::string case_name(const std::string& model, const std::string& precision,
                       const std::string& size) {
     return model + " " + precision + " " + size;
+}
+
+/// Names the option of the one that is not understood.
+template <typename Parse>
+void check_each(const char* option, const std::vector<std::string>& texts, const Parse& parse) {
+    for (const std::string& text : texts) {
+        try {
+            parse(text);
+        } catch (const Error& error) {
+            throw Error(error.kind(), std::string{option} + ": " + error.what());
+        }
+    }
 }
 
 /// Some of the rows would be taken for all.
@@ -133,6 +146,8 @@ void BenchCommand::name_bench_files(NamedFiles& files) const {
     for (const std::string& model : settings_.models) files.reads("--models", find_model(model));
     files.reads("--lpips", settings_.lpips);
     files.reads("--peers", peers_);
+    if (!report_.empty()) NamedFiles::expect_folder("--report", report_);
+    if (!plots_.empty()) NamedFiles::expect_folder("--plots", plots_);
     if (!report_.empty())
         for (const std::filesystem::path& name : report_files())
             files.writes("--report", std::filesystem::path{report_} / name);
@@ -211,8 +226,17 @@ int BenchCommand::report(Program& program) const {
     return exit_done;
 }
 
+/// Before the first of them is measured, which takes long.
+void BenchCommand::check_cases() const {
+    simulation_preset(settings_.scene);
+    check_each("--sizes", settings_.sizes, parse_size);
+    check_each("--precisions", settings_.precisions,
+               [](const std::string& text) { return parse_word(text, kPrecisionWords); });
+}
+
 int BenchCommand::run(Program& program) {
     name_bench_files(program.files);
+    check_cases();
     if (!report_.empty()) return report(program);
     if (!peers_.empty())
         throw Error(ErrorKind::usage,

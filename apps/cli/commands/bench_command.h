@@ -42,6 +42,7 @@ private:
     std::vector<BenchRow> measure_pipelines(Program& program) const;
     int report(Program& program) const;
     void name_bench_files(NamedFiles& files) const;
+    void check_cases() const;
 
     BenchSettings settings_;
     std::string json_, plots_, report_, peers_;
