@@ -158,6 +158,8 @@ TEST_F(ExitCodes, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
     EXPECT_EQ(eventide({"info", "mixed.txt", "--reorder", "1s", "--strict"}).exit_code, 0);
     write_text(temp_ / "one.txt", "16 16\n0.2 1 2 1\n0.1 1 2 1\n");
     expect(0, {"convert", "one.txt", "one.aedat4"}, "one.txt: 1 event (50 %) left out");
+    write_text(temp_ / "cut.aedat4", read_text(recording()).substr(0, 3000));
+    expect(0, {"convert", "cut.aedat4", "cut.txt"}, "left out as damaged: truncated 1\n");
 }
 
 TEST_F(ExitCodes, ARecordingOfWhichMostIsLeftOutIsSaidByEveryCommand) {
