@@ -22,6 +22,7 @@ bool is_left_out(DamageReason reason) {
 }
 
 std::string what_to_do(DamageReason reason, const std::string& format) {
+    if (reason == DamageReason::truncated) return {};  // nothing brings back what is not there
     const bool is_text = format == "text";
     if (reason == DamageReason::time_backwards)
         return is_text ? "; a larger --reorder puts them in order, sorting the file does, too"

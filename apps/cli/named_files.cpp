@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <system_error>
 #include <utility>
 
 namespace eventide::app {
@@ -81,24 +82,26 @@ void NamedFiles::writes(const std::string& option, const fs::path& path, const s
 
 void NamedFiles::writes_when_done(const std::string& option, const fs::path& path,
                                   const std::string& said) {
+    writes(option, path, said);
     if (!path.empty() && path != "-")
         expect_room_for(option + " " + (said.empty() ? path.string() : said), path);
-    writes(option, path, said);
 }
 
 void NamedFiles::expect_room_for(const std::string& said, const fs::path& path) const {
-    refuse_home_sign(said, path);
     const fs::path file = resolved(path), folder = file.parent_path();
     std::error_code none;
     if (!fs::is_directory(folder, none)) {
-        const bool made_later = std::ranges::any_of(
-            outputs_, [&](const Named& other) { return other.path.parent_path() == folder; });
+        const bool made_later = std::ranges::any_of(outputs_, [&](const Named& other) {
+            return other.path != file && other.path.parent_path() == folder;
+        });
         if (made_later) return;
         throw Error(ErrorKind::usage,
                     said + ": expected a folder that exists, found no " + folder.string());
     }
     // Files are written beside their place; devices and pipes are where they are.
     const auto status = fs::status(file, none);
+    if (none == std::errc::filename_too_long)
+        throw Error(ErrorKind::failed, said + ": cannot be created: " + system_words(none.value()));
     const bool is_file = !fs::exists(status) || fs::is_regular_file(status);
     if (is_file && ::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0)
         throw Error(ErrorKind::failed, said + ": cannot be created: " + system_words(errno));
@@ -107,6 +110,19 @@ void NamedFiles::expect_room_for(const std::string& said, const fs::path& path) 
 void NamedFiles::writes_folder(const std::string& option, const fs::path& folder) {
     refuse_home_sign(option + " " + folder.string(), folder);
     add(named(option + " " + folder.string(), folder), outputs_);
+}
+
+void NamedFiles::expect_folder(const std::string& option, const fs::path& folder) {
+    const std::string said = option + " " + folder.string();
+    refuse_home_sign(said, folder);
+    std::error_code none;
+    fs::path there = resolved(folder);
+    while (!fs::exists(there, none) && there.has_relative_path()) there = there.parent_path();
+    if (!fs::is_directory(there, none))
+        throw Error(ErrorKind::usage,
+                    said + ": expected a folder, found a file, " + there.string());
+    if (::faccessat(AT_FDCWD, there.c_str(), W_OK, AT_EACCESS) != 0)
+        throw Error(ErrorKind::failed, said + ": cannot be written to: " + system_words(errno));
 }
 
 void NamedFiles::writes_all(const std::string& option, const fs::path& folder) {

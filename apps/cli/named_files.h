@@ -37,6 +37,10 @@ public:
                           const std::string& said = {});
     /// A folder, of which the files are named one by one.
     void writes_folder(const std::string& option, const std::filesystem::path& folder);
+    /// A folder for what a command makes when all its work is done, which may hold other things,
+    /// too: refused where something else has its name, or it cannot be made or written to (kind
+    /// failed).
+    static void expect_folder(const std::string& option, const std::filesystem::path& folder);
     /// A folder that is the output's own, with everything in it.
     void writes_all(const std::string& option, const std::filesystem::path& folder);
 

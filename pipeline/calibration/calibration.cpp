@@ -6,6 +6,7 @@
 #include "src/core/number_text.h"
 
 #include <cmath>
+#include <cstdio>
 
 namespace eventide {
 
@@ -96,9 +97,10 @@ void check_distortion(const Reader& reader, const Calibration& calibration) {
 
 /// ROS writes zeros for a camera that is not calibrated: frames would be black.
 void check_focal_lengths(const Reader& reader, double fx, double fy) {
-    if (!(fx > 0 && fy > 0))
-        reader.refuse("focal lengths above 0 px, as of a camera that is calibrated",
-                      std::to_string(fx) + " and " + std::to_string(fy));
+    if (fx > 0 && fy > 0) return;
+    char found[64];
+    std::snprintf(found, sizeof found, "%g and %g", fx, fy);
+    reader.refuse("focal lengths above 0 px, as of a camera that is calibrated", found);
 }
 
 Calibration read_ros(const Reader& file) {

@@ -62,6 +62,8 @@ OutputFile::OutputFile(const fs::path& path, const OutputOptions& options)
     }
     refuse_existing(path, options.overwrite);
     const bool exists = ::stat(path.c_str(), &facts) == 0;
+    // What is made beside it has a shorter name, and would only in the end find none for it.
+    if (!exists && errno == ENAMETOOLONG) fail("created", errno);
     path_ = exists && !S_ISREG(facts.st_mode) ? path : resolved(path);
     if (exists && S_ISFIFO(facts.st_mode)) {
         open_pipe();

@@ -91,6 +91,9 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"evaluate", "--figure", "sigma", "--figure", "spatial"},
            "expected one or more recordings");
     expect(2, {"run", "sim:demo?size=1x1", "--out", "null"}, "2 to 8192 px, found 1\n");
+    expect(2, {"bench", "--sizes", "32x24", "--sizes", "32"}, "--sizes: expected a size such as");
+    expect(2, {"bench", "--precisions", "f16"}, "--precisions: expected auto, f32 or bf16");
+    expect(2, {"bench", "--scene", "nowhere"}, "no simulated scene is called 'nowhere'");
     expect(2, {"evaluate", recording(), "--from", "200ms", "--to", "100ms"}, "--to: expected");
     expect(2, {"evaluate", recording(), "--from", "10s"}, "expected an image to score between");
     expect(2, {"run", recording(), "--out", "null", "--events-out", "evt2:a.raw"},
@@ -175,6 +178,8 @@ TEST_F(ExitCodes, EventsLeftOutForTheirTimesAreSaidByEveryCommand) {
     EXPECT_EQ(eventide({"info", "mixed.txt", "--reorder", "1s", "--strict"}).exit_code, 0);
     write_text(temp_ / "one.txt", "16 16\n0.2 1 2 1\n0.1 1 2 1\n");
     expect(0, {"convert", "one.txt", "one.aedat4"}, "one.txt: 1 event (50 %) left out");
+    write_text(temp_ / "cut.aedat4", read_text(recording()).substr(0, 3000));
+    expect(0, {"convert", "cut.aedat4", "cut.txt"}, "left out as damaged: truncated 1\n");
 }
 
 TEST_F(ExitCodes, ARecordingOfWhichMostIsLeftOutIsSaidByEveryCommand) {

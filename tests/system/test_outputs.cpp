@@ -167,6 +167,22 @@ TEST_F(Outputs, WorkIsNotDoneForWhatCannotBeWrittenInTheEnd) {
                   .exit_code,
               0);
     EXPECT_TRUE(fs::exists(temp_ / "more/x.png"));
+    const std::string long_name(252, 'x');
+    for (const auto& command :
+         {std::vector<std::string>{"convert", "rec.aedat4", long_name + ".txt"},
+          {"run", "rec.aedat4", "--out", "null", "--state-out", long_name + ".state"},
+          {"run", "rec.aedat4", "--out", "contact-sheet:" + long_name + ".png"}}) {
+        const Result result = eventide(command);
+        EXPECT_EQ(result.exit_code, 1);
+        EXPECT_NE(result.error.find(": cannot be created: File name too long"), std::string::npos)
+            << result.error;
+        EXPECT_EQ(result.error.find("info: "), std::string::npos) << "before any work";
+    }
+    for (const char* folder : {"--report", "--plots"})
+        expect_refused({"bench", "--sizes", "32x24", folder, "rec.aedat4"},
+                       std::string{folder} + " rec.aedat4", "expected a folder, found a file");
+    expect_refused({"evaluate", "rec.aedat4", "--figure", "sigma", "--plots", "rec.aedat4/x"},
+                   "--plots rec.aedat4/x", "expected a folder, found a file");
 }
 
 /// What another part of the same command is refused for leaves an earlier run as it was.

@@ -11,6 +11,7 @@
 #include "apps/cli/version.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
+#include "src/simulate/presets.h"
 
 #include <spdlog/spdlog.h>
 
@@ -146,6 +147,7 @@ BenchRow BenchCommand::measure(const std::shared_ptr<const RecordedPackets>& dat
 
 /// What is asked for can be measured, and what is measured shown.
 void BenchCommand::check_settings() const {
+    simulation_preset(settings_.scene);
     check_list("--sizes", settings_.sizes, parse_size);
     check_list("--precisions", settings_.precisions,
                [](const std::string& text) { return parse_word(text, kPrecisionWords); });
@@ -166,6 +168,8 @@ void BenchCommand::name_bench_files(NamedFiles& files) const {
     for (const std::string& model : settings_.models) files.reads("--models", find_model(model));
     files.reads("--lpips", settings_.lpips);
     files.reads("--peers", peers_);
+    if (!report_.empty()) NamedFiles::expect_folder("--report", report_);
+    if (!plots_.empty()) NamedFiles::expect_folder("--plots", plots_);
     if (!report_.empty())
         for (const std::filesystem::path& name : report_files())
             files.writes("--report", std::filesystem::path{report_} / name);

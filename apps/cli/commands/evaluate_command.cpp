@@ -176,7 +176,7 @@ void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSett
 
 /// What the figures' names begin with in --plots; the rest depends on what is measured.
 void EvaluateCommand::name_plots(NamedFiles& files) const {
-    if (!figures_.empty()) NamedFiles::refuse_home_sign("--plots " + plots_, plots_);
+    if (!figures_.empty()) NamedFiles::expect_folder("--plots", plots_);
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator{plots_, none})
         for (std::string figure : figures_) {

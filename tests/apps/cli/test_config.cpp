@@ -77,13 +77,26 @@ TEST(Config, ListsInTheEnvironmentAreCutAtSemicolons) {
     EXPECT_EQ(example.out, (std::vector<std::string>{"a/", "b.mp4"}));
 }
 
+/// As EVENTIDE_RUN_FPS= in the file of a service.
 TEST(Config, AnEmptyVariableSaysNothing) {
     Example example;
     SettingTable table = example.table();
-    setenv("EVENTIDE_EXAMPLE_RATE", "", 1);
+    setenv("EVENTIDE_EXAMPLE_NAME", "", 1);
+    setenv("EVENTIDE_EXAMPLE_OUT", "", 1);
     resolve_settings(table, {}, {});
-    unsetenv("EVENTIDE_EXAMPLE_RATE");
-    EXPECT_EQ(table.settings[1].origin, "default");
+    unsetenv("EVENTIDE_EXAMPLE_NAME");
+    unsetenv("EVENTIDE_EXAMPLE_OUT");
+    EXPECT_EQ(example.name, "x");
+    EXPECT_EQ(example.out, std::vector<std::string>{"a"});
+}
+
+TEST(Config, AListOfOneIsATextInTheFile) {
+    const TempFolder temp;
+    test::write_text(temp / "c.toml", "[example]\nout = \"b.mp4\"\n");
+    Example example;
+    SettingTable table = example.table();
+    resolve_settings(table, read_config_file(temp / "c.toml"), {});
+    EXPECT_EQ(example.out, std::vector<std::string>{"b.mp4"});
 }
 
 TEST(Config, AFlagMayTakeBackWhatTheFileSays) {

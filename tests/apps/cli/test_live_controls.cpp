@@ -21,7 +21,8 @@ protected:
     LiveControls() { settings_.out = {"http:0"}; }
 
     std::vector<HttpControl> made() {
-        LiveControlsPlan plan{settings_, changes_, {240, 180}};
+        LiveControlsPlan plan{settings_, changes_, sensor_};
+        plan.fps = fps_;
         plan.speed = speed_;
         if (speed_ > 0) plan.set_speed = [this](double factor) { speed_ = factor; };
         plan.live = live_;
@@ -35,7 +36,8 @@ protected:
 
     RunSettings settings_;
     LiveChanges changes_;
-    double speed_ = 1;
+    Size sensor_{240, 180};
+    double fps_ = 30, speed_ = 1;
     std::string window_ = "50ms";
     bool live_ = false;
 };
@@ -54,6 +56,28 @@ TEST_F(LiveControls, TellTheLineWhatIsWanted) {
     EXPECT_EQ(wanted.lookahead, 1);
     EXPECT_EQ(fps.get(), 120);
     EXPECT_FALSE(changes_.take().rate) << "once";
+}
+
+/// Else a slider would show another value than the run has.
+TEST_F(LiveControls, ReachToWhereTheRunBegan) {
+    EXPECT_EQ(control("fps").most, 1000);
+    fps_ = 2500.5;
+    EXPECT_EQ(control("fps").most, 2501);
+    for (const double speed : {.01, 20.0}) {
+        speed_ = speed;
+        EXPECT_LE(control("speed").least, speed);
+        EXPECT_GE(control("speed").most, speed);
+    }
+    settings_.size.scale = 6.1;
+    EXPECT_EQ(control("scale").most, 6.25);
+}
+
+TEST_F(LiveControls, LeaveAPixelOfASensorOfFew) {
+    sensor_ = {1, 1};
+    control("scale").set(.25);
+    const LiveChanges::Wanted wanted = changes_.take();
+    EXPECT_EQ(wanted.size->width, 1);
+    EXPECT_EQ(wanted.size->height, 1);
 }
 
 TEST_F(LiveControls, AreWhatTheQualitySaysItIs) {

@@ -97,6 +97,16 @@ TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneGoesWhereFilesCanBeMade) {
     EXPECT_EQ(seteuid(self), 0);
 }
 
+TEST_F(NamedFilesTest, AFolderForWhatIsMadeInTheEndIsNoFile) {
+    for (const char* name : {"d/in", "d/in/", "d/in/more"})
+        EXPECT_EQ(refusal([&] { NamedFiles::expect_folder("--plots", temp_ / name); }),
+                  "--plots " + temp_ / name + ": expected a folder, found a file, " +
+                      fs::canonical(temp_.path()).string() + "/d/in");
+    for (const char* name : {"d", "d/", "new", "new/more/"})
+        EXPECT_EQ(refusal([&] { NamedFiles::expect_folder("--plots", temp_ / name); }), "") << name;
+    EXPECT_EQ(refusal([&] { NamedFiles::expect_folder("--plots", "plots"); }), "");
+}
+
 TEST_F(NamedFilesTest, AnOutputBelowTheHomeSignIsRefused) {
     for (const fs::path path : {"~", "~/video.mp4"}) {
         EXPECT_NE(refusal([&] { files_.writes("--out", path); }).find("found ~"),
@@ -106,6 +116,8 @@ TEST_F(NamedFilesTest, AnOutputBelowTheHomeSignIsRefused) {
         EXPECT_NE(refusal([&] { files_.writes_folder("--out", path); }).find("found ~"),
                   std::string::npos);
         EXPECT_NE(refusal([&] { files_.writes_all("--out", path); }).find("found ~"),
+                  std::string::npos);
+        EXPECT_NE(refusal([&] { NamedFiles::expect_folder("--plots", path); }).find("found ~"),
                   std::string::npos);
     }
     EXPECT_EQ(refusal([&] { files_.writes("--out", temp_ / "~"); }), "");

@@ -129,6 +129,10 @@ TEST(RunPlan, APartWarmsUpForASecondUnlessItIsToldWhatWasBefore) {
     settings.state_in = "";
     settings.warmup = SensorDuration{0};
     EXPECT_EQ(to_us(*span_of(settings, false).begin), 7'000'000);
+    settings.warmup = {};
+    settings.source = "-";  // its first event is not known yet
+    settings.from = parse_time_point("@7000000");
+    EXPECT_EQ(to_us(*span_of(settings, false).begin), 6'000'000);
 }
 
 TEST(RunPlan, OfWhatIsReadOnceADurationCountsFromTheFirstEventThatComes) {

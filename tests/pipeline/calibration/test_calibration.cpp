@@ -125,6 +125,7 @@ TEST_F(CalibrationFile, OfACameraThatIsNotCalibratedIsRefused) {
                                          {kKalibr, "200.0, 201.0", "200.0, 0"}})
         EXPECT_THAT(error_of(with(text, old, now)), HasSubstr("expected focal lengths above 0"))
             << now;
+    EXPECT_THAT(error_of(with(kRos, "500.5, 0.0", "0.0, 0.0")), HasSubstr("found 0 and 501.5"));
 }
 
 /// Where a point of the scene falls, by the usual equations of the two models.
