@@ -12,7 +12,8 @@ namespace eventide {
 /// At the end of each interval of sensor time a pixel becomes hot when it fired at least `hz` and
 /// kTimesNeighbours times as often as the second busiest of the eight around it: what moves or
 /// trembles, and be it a line of one pixel, makes neighbours fire; a hot pixel, or two side by
-/// side, stand alone. It stays hot until it fires at less than half of `hz`.
+/// side, stand alone. It stays hot until it fires at less than half of `hz`. Where time goes back,
+/// the interval begins anew.
 ///
 /// Deterministic: what is hot depends on the events, not on how they are split. One thread.
 class HotPixels {

@@ -122,8 +122,9 @@ inline std::optional<ReferenceImage> image_of_site(const ReferenceImage& mosaic,
     image.t = mosaic.t;
     image.exposure_begin = mosaic.exposure_begin;
     image.exposure_end = mosaic.exposure_end;
-    image.x0 = (mosaic.x0 + left) / 2;
-    image.y0 = (mosaic.y0 + top) / 2;
+    // Even numbers, so that what begins beyond the sensor's corner is not rounded towards it.
+    image.x0 = (mosaic.x0 + left - site.x) / 2;
+    image.y0 = (mosaic.y0 + top - site.y) / 2;
     image.pixels = Array2<std::uint16_t>(rows, columns);
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x)

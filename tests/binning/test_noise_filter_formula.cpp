@@ -114,7 +114,7 @@ std::vector<Event> lively_events(std::uint32_t seed, double seconds, double nois
     std::mt19937 random{seed};
     std::vector<Event> events;
     const auto add = [&](double us, int x, int y, bool on) {
-        const bool pauses = (us > 3.1e6 && us < 3.4e6) || (us > 5e6 && us < 6.3e6);
+        const bool pauses = (us > 2.98e6 && us < 3.3e6) || (us > 5e6 && us < 6.3e6);
         if (!pauses && x >= 0 && x < kWidth && y >= 0 && y < kHeight)
             events.push_back({from_us(std::int64_t(us)), std::uint16_t(x), std::uint16_t(y),
                               on ? Polarity::on : Polarity::off});

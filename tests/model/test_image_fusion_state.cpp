@@ -137,8 +137,11 @@ TEST_F(ImageFusionTest, AfterAResetFramesAreThoseOfAFreshOne) {
         fusion.advance({at_ms(20), at_ms(40)}, constant(.2F), &at_end);
         EXPECT_TRUE(fusion.correct(part, grey(.4F, at_ms(30))));
         for (const double ms : {15., 25., 40.}) show(ms);
-        fusion.advance({at_ms(40), at_ms(60)}, constant(.2F), nullptr);
+        const Frame brighter = grey(.5F, at_ms(60));
+        fusion.advance({at_ms(40), at_ms(60)}, constant(.2F), &brighter);
         show(60);
+        fusion.advance({at_ms(60), at_ms(80)}, constant(.2F), nullptr);
+        show(80);
         return frames;
     };
     ImageFusion fresh{kWidth, kHeight};

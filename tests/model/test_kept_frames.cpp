@@ -110,15 +110,15 @@ protected:
     }
     void push(Renderer& renderer) { renderer.push(latent_); }
     void next_window() { latent_.window = {latent_.window.end, latent_.window.end + kWindow}; }
-    Frame render(Renderer& renderer, int thousandths) const {
-        RenderRequest request;
+    Frame render(Renderer& renderer, int thousandths, int width = 0) const {
+        RenderRequest request{.width = width};
         request.t = latent_.window.begin + kWindow * thousandths / 1000;
         Frame frame = renderer.make_output(request);
         renderer.render(request, frame);
         return frame;
     }
-    void expect_same(Renderer& copying, Renderer& judge, int thousandths) const {
-        const Frame a = render(copying, thousandths), b = render(judge, thousandths);
+    void expect_same(Renderer& copying, Renderer& judge, int thousandths, int width = 0) const {
+        const Frame a = render(copying, thousandths, width), b = render(judge, thousandths, width);
         EXPECT_TRUE(std::ranges::equal(a.intensity.values(), b.intensity.values()));
     }
     /// The most that outputs can differ where the first layer's inputs differ by `change` at most.
@@ -238,6 +238,34 @@ TEST_F(KeptFramesOfCodes, WhatChangesAcrossATilesEdgeIsSeen) {
             push(judge);
             expect_same(copying, judge, 1000);
         }
+}
+
+TEST_F(KeptFramesOfCodes, AFrameOfAWindowBeforeIsNotThatOfALaterOne) {
+    Renderer copying{model_, kWidth, kHeight, with_copies(0, 0)};
+    Renderer judge{model_, kWidth, kHeight, without_copies()};
+    for (int k = 1; k <= 5; ++k) {
+        next_window();
+        latent_.values.pixel(110, 170)[0] += .5F;
+        push(copying);
+        push(judge);
+        if (k < 3) continue;
+        for (const int thousandths : {600, -400, 600, -1400, -400})
+            expect_same(copying, judge, thousandths);
+    }
+}
+
+TEST_F(KeptFramesOfCodes, ResetForgetsThoseOfEachSize) {
+    Renderer copying{model_, kWidth, kHeight, with_copies(0, 0)};
+    for (int stream = 1; stream <= 3; ++stream) {
+        Renderer fresh{model_, kWidth, kHeight, without_copies()};
+        latent_.window = {};
+        next_window();
+        for (float& v : latent_.values.values()) v += .1F;
+        push(copying);
+        push(fresh);
+        for (const int width : {0, 200}) expect_same(copying, fresh, 600, width);
+        copying.reset();
+    }
 }
 
 TEST_F(KeptFramesOfCodes, ResetForgetsThem) {

@@ -129,8 +129,8 @@ TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
 }
 
 TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
-    for (const int x0 : {0, 3})
-        for (const int y0 : {0, 1}) {
+    for (const int x0 : {0, 3, -1, -2})
+        for (const int y0 : {0, 1, -3, -4}) {
             ReferenceImage mosaic;
             mosaic.x0 = x0;
             mosaic.y0 = y0;
@@ -141,7 +141,7 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
             for (int y = 0; y < 5; ++y)
                 for (int x = 0; x < 7; ++x)
                     for (int c = 0; c < 3; ++c) {
-                        const auto value = std::uint16_t(1000 * c + 50 * (y + y0) + x + x0);
+                        const auto value = std::uint16_t(500 + 1000 * c + 50 * (y + y0) + x + x0);
                         bgr.pixels(y, 3 * x + c) = value;
                         if (int(channel_at(GetParam(), x + x0, y + y0)) == c)
                             mosaic.pixels(y, x) = value;
@@ -152,7 +152,7 @@ TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {
                 ASSERT_TRUE(part);
                 for (int y = 0; y < part->pixels.height(); ++y)
                     for (int x = 0; x < part->pixels.width(); ++x)
-                        EXPECT_EQ(part->pixels(y, x), 1000 * int(channel) +
+                        EXPECT_EQ(part->pixels(y, x), 500 + 1000 * int(channel) +
                                                           50 * (2 * (y + part->y0) + site.y) +
                                                           2 * (x + part->x0) + site.x);
                 EXPECT_EQ(image_of_site(bgr, site, channel)->pixels, part->pixels);

@@ -97,8 +97,9 @@ void FastRenderer::lay_out(const FrameGeometry& geometry) {
 std::array<const FirstLayerCache::WindowSums*, 2> FastRenderer::bring_sums(
     const CodeChoice& codes, const AxisSamples& t) noexcept {
     const std::int64_t k = codes.k + t.index;
-    // What a fading live edge shows of the event window before was made without z_k.
-    const bool whole = t.index == 0 && codes.next[0], next_whole = t.index == 0 && codes.next[1];
+    // Where a live edge fades neither is known, and what it shows of the event window before was
+    // made without z_k.
+    const bool whole = codes.next[0], next_whole = codes.next[1];
     if (t.weight[1] == 0) return {&first_layer_.at(k, whole), nullptr};
     if (t.weight[0] == 0) return {nullptr, &first_layer_.at(k + 1, next_whole)};
     return first_layer_.pair(k, whole, next_whole);
