@@ -215,6 +215,10 @@ TEST(HttpSink, TellsCountersAsPrometheusReadsThem) {
     settings.snapshot = [] {
         Snapshot now;
         now.events = 12'345'678'901;
+        now.lost_packets = 3;
+        now.lost_bytes = 500;
+        now.frames = 2;
+        now.newest_frame = from_us(1'500'000);
         now.camera.emplace();
         now.camera->set(CameraCount::dropped_events, 7);
         return now;
@@ -223,6 +227,9 @@ TEST(HttpSink, TellsCountersAsPrometheusReadsThem) {
     const auto answer = client_of(*sink).Get("/metrics");
     EXPECT_THAT(answer->get_header_value("Content-Type"), HasSubstr("version=0.0.4"));
     EXPECT_THAT(answer->body, HasSubstr("\neventide_events_total 12345678901\n"));
+    EXPECT_THAT(answer->body, HasSubstr("\neventide_lost_packets_total 3\n"));
+    EXPECT_THAT(answer->body, HasSubstr("\neventide_lost_bytes_total 500\n"));
+    EXPECT_THAT(answer->body, HasSubstr("\neventide_newest_frame_seconds 1.5\n"));
     EXPECT_THAT(answer->body, HasSubstr("\neventide_camera_dropped_events_total 7\n"));
     EXPECT_THAT(answer->body, HasSubstr("\neventide_camera_reconnects_total 0\n"));
     const std::regex comment{"# (HELP|TYPE) eventide_[a-z_]+ .+"},
