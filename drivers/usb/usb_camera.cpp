@@ -72,8 +72,8 @@ void UsbCamera::open() {
     const UsbIdentity& identity = device_->identity();
     info.serial = identity.serial;
     // Of a camera without a serial number only the port is known.
-    if (!first && (info.name != info_.name || info.width != info_.width ||
-                   info.height != info_.height || info.format != info_.format))
+    if (!first &&
+        (info.name != info_.name || info.width != info_.width || info.height != info_.height))
         refuse("is a " + model_text(info_) + ", found a " + model_text(info) + " in its place");
     info_ = std::move(info);
     // The same camera must come back, not another; one without a serial number to the same port.

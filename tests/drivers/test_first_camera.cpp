@@ -10,6 +10,8 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace eventide::test {
@@ -85,6 +87,20 @@ TEST_P(FirstCamera, IsNoOtherThanTheOneThatWasNamed) {
     EXPECT_THAT(failure_of([&] { DavisCamera{named}; }),
                 AllOf(HasSubstr("'00000042'"), HasSubstr("in use by another program"),
                       Not(HasSubstr("00000043"))));
+}
+
+TEST_P(FirstCamera, IsTheOneAtThePlaceThatWasNamed) {
+    plug_in(davis("00000042"), davis("00000043"));
+    const auto at = [&](int bus, int address) {
+        DavisOptions options = any();
+        std::tie(options.bus, options.address) = std::pair{bus, address};
+        return options;
+    };
+    EXPECT_EQ(DavisCamera{at(1, 5 + GetParam())}.info().serial, "00000042");
+    EXPECT_EQ(DavisCamera{at(1, 6 - GetParam())}.info().serial, "00000043");
+    EXPECT_THAT(failure_of([&] { DavisCamera{at(2, 5)}; }),
+                HasSubstr("no DAVIS on bus 2 at address 5 found"));
+    EXPECT_THAT(failure_of([&] { DavisCamera{at(1, 9)}; }), HasSubstr("at address 9 found"));
 }
 
 TEST_P(FirstCamera, OfAnotherKindIsFoundInTheSameWay) {

@@ -153,7 +153,9 @@ TEST(V4l2Output, SaysWhyItCannotWrite) {
         V4l2Testbed bed{loopback({V4L2_PIX_FMT_GREY})};
         V4l2OutputSink sink{node()};
         sink.write(frame(4, 4));
-        EXPECT_THAT(failure_of([&] { sink.write(frame(8, 8)); }), HasSubstr("opened at 4x4"));
+        for (const auto& [width, height] : {std::pair{8, 8}, {6, 4}, {4, 6}, {3, 4}, {4, 3}})
+            EXPECT_THAT(failure_of([&] { sink.write(frame(width, height)); }),
+                        HasSubstr("opened at 4x4"));
         bed.fail_with(ENODEV);
         EXPECT_THAT(failure_of([&] { sink.write(frame(4, 4)); }),
                     HasSubstr("takes no more frames"));

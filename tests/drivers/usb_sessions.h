@@ -78,6 +78,7 @@ void expect_return_behind_a_gap(Camera& camera, testing_support::UsbTestbed& bed
     bed.plug_in(model);
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_TRUE(packet.gap_before);
+    EXPECT_TRUE(packet.reopened);
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
 }
 

@@ -103,10 +103,10 @@ private:
     std::optional<ColourNetworks> colour_;  // none: frames are grey
     LiveChanges changes_;
     std::atomic<bool> pipeline_made_{false};  // until then viewers of the page see no counters
-    std::vector<std::unique_ptr<Sink>> sinks_;
     std::optional<Pipeline> pipeline_;
-    std::size_t states_ = 0;  // kept until now
-    Counter waits_;           // Snapshot::waits; render thread
+    std::size_t states_ = 0;                    // kept until now
+    Counter waits_;                             // Snapshot::waits; render thread
+    std::vector<std::unique_ptr<Sink>> sinks_;  // last: a page's threads ask the others
 };
 
 }  // namespace eventide::app

@@ -88,6 +88,29 @@ TEST(Adjustment, AutoHdrForgetsBySensorTimeWhateverTheFrameRate) {
     EXPECT_GT(after_a_second(10).low, 0.4);
 }
 
+TEST(Adjustment, AutoHdrBeginsAnewWhereTheSensorsClockGoesBack) {
+    Array2<float> dark{10, 10}, bright{10, 10};
+    for (float& v : bright.values()) v = 1;
+    AutoRange range, fresh;
+    range.update(from_us(10'000'000), dark);
+    const AutoRange::Range after = range.update(from_us(0), bright),
+                           expected = fresh.update(from_us(0), bright);
+    EXPECT_EQ(after.low, expected.low);
+    EXPECT_EQ(after.high, expected.high);
+}
+
+TEST(Adjustment, TheEventsOfAFrameAreMirroredWithItAndNotCut) {
+    Frame frame = test::ramp_frame(6, 6, 0, from_us(0));
+    frame.event_preview = Array2<float>{2, 3};
+    frame.event_preview(0, 0) = 1;
+    Adjustment adjust{{.flip = Flip::both, .crop_px = 1}};
+    const Array2<float>& events = adjust.apply(frame).event_preview;
+    ASSERT_EQ(events.height(), 2);
+    ASSERT_EQ(events.width(), 3);
+    EXPECT_EQ(events(1, 2), 1);
+    EXPECT_EQ(events(0, 0), 0);
+}
+
 TEST(Adjustment, UnsharpLeavesFlatPartsAndLiftsEdges) {
     Frame frame = test::ramp_frame(40, 40, 0, from_us(0));
     for (int y = 0; y < 40; ++y)
@@ -101,11 +124,12 @@ TEST(Adjustment, UnsharpLeavesFlatPartsAndLiftsEdges) {
 
 struct Spy : Sink {
     int frames = 0, closed = 0, lookahead = 0;
-    bool wants = true;
+    bool wants = true, watched = true;
     void write(const Frame&) override { ++frames; }
     void lookahead_is(int windows) override { lookahead = windows; }
     void close() override { ++closed; }
     bool wants_more() const override { return wants; }
+    bool is_watched() const override { return watched; }
     HostTime::duration held() const override { return std::chrono::seconds{1}; }
 };
 
@@ -122,6 +146,10 @@ TEST(AdjustSink, HandsEachFrameToAllAndEndsWithTheFirstThatHasEnough) {
     EXPECT_EQ(a.lookahead + b.lookahead, 4);
     EXPECT_TRUE(sink.wants_more());
     EXPECT_EQ(sink.held(), std::chrono::seconds{2});
+    a.watched = false;
+    EXPECT_TRUE(sink.is_watched()) << "the other one is";
+    b.watched = false;
+    EXPECT_FALSE(sink.is_watched());
     b.wants = false;
     EXPECT_FALSE(sink.wants_more());
     sink.close();
