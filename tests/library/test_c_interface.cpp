@@ -1,7 +1,9 @@
 // The interface for C: the same frames, and every misuse is a status with words.
 #include "tests/library/c_interface.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,9 +72,13 @@ TEST_F(CInterface, FramesTellOfLostData) {
     ASSERT_EQ(eventide_finish(reconstructor_, nullptr), EVENTIDE_OK);
     eventide_frame frame;
     int frames = 0, marked = 0;
-    for (; eventide_next(reconstructor_, &frame) == EVENTIDE_OK; ++frames)
+    std::uint64_t events = 0;
+    for (; eventide_next(reconstructor_, &frame) == EVENTIDE_OK; ++frames) {
         marked += frame.gap_before;
+        events = std::max(events, frame.events);
+    }
     EXPECT_GT(frames, 5);
+    EXPECT_EQ(events, 1U) << "in an event window";
     EXPECT_GE(marked, 1);
     EXPECT_LT(marked, frames);
 }
@@ -171,6 +177,10 @@ TEST_F(CInterface, RefusesWhatMakesNoSenseInWords) {
     options.precision = "f64";
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
     EXPECT_TRUE(said("precision: expected auto, f32 or bf16, found 'f64'"));
+    options = repeatable_options();
+    options.self_ensemble = 3;
+    EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("self-ensemble: expected 1, 2 or 4"));
     options = repeatable_options();
     options.struct_size = 9999;
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
