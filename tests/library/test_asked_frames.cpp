@@ -161,6 +161,20 @@ TEST_F(AskedFrames, ReachAsFarAsEverWhereImagesCameBeforeAReset) {
     EXPECT_EQ(newest_beside_next(used), expected);
 }
 
+TEST_F(AskedFrames, ReachToTheEndAgainWhereNextWasUsedBeforeAReset) {
+    const std::vector<Event> events = events_of(recording());
+    Reconstructor fresh = reconstructor(repeatable("7ms", 0));
+    fresh.push(events);
+    Reconstructor used = reconstructor(repeatable("7ms", 0));
+    used.push(events);
+    Frame frame;
+    ASSERT_TRUE(used.next(frame));
+    EXPECT_LT(used.newest(), fresh.newest()) << "frames of next() stay";
+    used.reset();
+    used.push(events);
+    EXPECT_EQ(used.newest(), fresh.newest());
+}
+
 TEST_F(AskedFrames, HaveAnySizeFromOneMemory) {
     Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
     reconstructor.push(events_of(recording()));

@@ -1,8 +1,11 @@
 // The interface for C: the same frames, and every misuse is a status with words.
 #include "tests/library/c_interface.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace eventide::test {
@@ -58,6 +61,43 @@ TEST_F(CInterface, KeepsAStateInMemory) {
     EXPECT_EQ(eventide_restore(reconstructor_, state.data(), 5), EVENTIDE_INPUT);
     EXPECT_EQ(eventide_restore(reconstructor_, nullptr, 5), EVENTIDE_USAGE);
     EXPECT_EQ(eventide_state(reconstructor_, nullptr, &size), EVENTIDE_USAGE);
+}
+
+TEST_F(CInterface, FramesTellOfLostData) {
+    open();
+    const eventide_event before{1000, 3, 4, 1}, after{90'000, 5, 6, 0};
+    ASSERT_EQ(eventide_push(reconstructor_, &before, 1), EVENTIDE_OK);
+    ASSERT_EQ(eventide_mark_gap(reconstructor_), EVENTIDE_OK);
+    ASSERT_EQ(eventide_push(reconstructor_, &after, 1), EVENTIDE_OK);
+    ASSERT_EQ(eventide_finish(reconstructor_, nullptr), EVENTIDE_OK);
+    eventide_frame frame;
+    int frames = 0, marked = 0;
+    std::uint64_t events = 0;
+    for (; eventide_next(reconstructor_, &frame) == EVENTIDE_OK; ++frames) {
+        marked += frame.gap_before;
+        events = std::max(events, frame.events);
+    }
+    EXPECT_GT(frames, 5);
+    EXPECT_EQ(events, 1U) << "in an event window";
+    EXPECT_GE(marked, 1);
+    EXPECT_LT(marked, frames);
+}
+
+TEST_F(CInterface, ASilenceIsRenderedWhereThatIsAllowed) {
+    for (const int allow : {0, 1}) {
+        eventide_options options = repeatable_options();
+        options.allow_silence = allow;
+        ASSERT_EQ(open_with(options), EVENTIDE_OK);
+        const eventide_event events[]{{0, 3, 4, 1}, {1'000'000'000'000, 5, 6, 0}};
+        ASSERT_EQ(eventide_push(reconstructor_, events, 2), EVENTIDE_OK);
+        ASSERT_EQ(eventide_finish(reconstructor_, nullptr), EVENTIDE_OK);
+        eventide_frame frame;
+        eventide_status status = EVENTIDE_OK;
+        for (int n = 0; n < 100 && status == EVENTIDE_OK; ++n)
+            status = eventide_next(reconstructor_, &frame);
+        EXPECT_EQ(status, allow != 0 ? EVENTIDE_OK : EVENTIDE_INPUT);
+        eventide_reconstructor_close(std::exchange(reconstructor_, nullptr));
+    }
 }
 
 TEST_F(CInterface, ImagesCorrectFrames) {
@@ -138,9 +178,17 @@ TEST_F(CInterface, RefusesWhatMakesNoSenseInWords) {
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
     EXPECT_TRUE(said("precision: expected auto, f32 or bf16, found 'f64'"));
     options = repeatable_options();
+    options.self_ensemble = 3;
+    EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
+    EXPECT_TRUE(said("self-ensemble: expected 1, 2 or 4"));
+    options = repeatable_options();
     options.struct_size = 9999;
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);
     EXPECT_TRUE(said("struct_size"));
+    for (const std::size_t size : {std::size_t{0}, sizeof options.struct_size - 1}) {
+        options.struct_size = size;
+        EXPECT_EQ(open_with(options), EVENTIDE_USAGE) << size;
+    }
     options = repeatable_options();
     options.window = nullptr;
     EXPECT_EQ(open_with(options), EVENTIDE_USAGE);

@@ -77,6 +77,14 @@ TEST_F(HostileEvents, AreCountedWhenTheyArePushed) {
     EXPECT_EQ(reconstructor.counters().time_resets, 1U);
 }
 
+TEST_F(HostileEvents, NoneGiveNoFramesHoweverLongTheClockRan) {
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    reconstructor.finish(from_us(10'000'000));
+    Frame frame;
+    EXPECT_FALSE(reconstructor.next(frame));
+    EXPECT_EQ(reconstructor.counters().event_windows, 0U);
+}
+
 TEST_F(HostileEvents, AfterAResetAreANewStream) {
     const std::vector<Event> events = events_of(recording());
     Reconstructor reconstructor = this->reconstructor(repeatable("auto", 1));

@@ -1,7 +1,9 @@
 // Frames tell of data that were lost before them.
 #include "tests/library/library_test.h"
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace eventide::test {
 namespace {
@@ -21,6 +23,44 @@ TEST_F(LostData, IsMarkedInItsFrameHoweverLateThatIsAskedFor) {
         const bool has_lost =
             frame.window.begin < events[half].t && events[half].t <= frame.window.end;
         EXPECT_EQ(frame.gap_before, has_lost) << to_us(frame.t);
+        marked += frame.gap_before ? 1 : 0;
+    }
+    EXPECT_GT(marked, 0);
+}
+
+/// Loses data before its last batch.
+class LossySource final : public EventSource {
+public:
+    explicit LossySource(const std::vector<Event>& events) : events_(events) {
+        info_.width = 64;
+        info_.height = 48;
+    }
+    const SensorInfo& info() const noexcept override { return info_; }
+    bool read(Batch& batch) override {
+        batch.clear();
+        if (batches_ == 2) return false;
+        const auto half = std::ptrdiff_t(events_.size() / 2);
+        batch.events.assign(batches_ == 0 ? events_.begin() : events_.begin() + half,
+                            batches_ == 0 ? events_.begin() + half : events_.end());
+        ++batches_;
+        return true;
+    }
+    bool gap_before() const noexcept override { return batches_ == 2; }
+
+private:
+    SensorInfo info_;
+    std::vector<Event> events_;
+    int batches_ = 0;
+};
+
+TEST_F(LostData, OfASourceAreMarkedToo) {
+    const auto events = events_of(recording());
+    LossySource source{events};
+    Reconstructor reconstructor = this->reconstructor(repeatable("20ms", 0));
+    const SensorTime lost = events[events.size() / 2].t;
+    int marked = 0;
+    for (Frame frame; read_frame(source, reconstructor, frame);) {
+        EXPECT_EQ(frame.gap_before, frame.window.begin < lost && lost <= frame.window.end);
         marked += frame.gap_before ? 1 : 0;
     }
     EXPECT_GT(marked, 0);

@@ -90,6 +90,16 @@ TEST_F(Recordings, AreReadFromATimeOn) {
     EXPECT_TRUE(rest_of(reader).events.empty());
 }
 
+TEST_F(Recordings, CountDamageEachTimeItIsRead) {
+    write_text(temp_ / "log.txt", "64 48\n0.1 1 2 1\n0.2 3 4 0\n0.3 99 6 1\n0.4 7 8 1\n");
+    EventReader reader{temp_ / "log.txt"};
+    EXPECT_EQ(rest_of(reader).events.size(), 3U);
+    EXPECT_EQ(reader.damaged(), 1U);
+    reader.seek(from_us(0));
+    EXPECT_EQ(rest_of(reader).events.size(), 3U);
+    EXPECT_EQ(reader.damaged(), 2U);
+}
+
 TEST_F(Recordings, ThatCannotGoBackLoseNothingByASeek) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
@@ -259,6 +269,16 @@ TEST_F(Recordings, AreWrittenWithinTheSensorOnly) {
                   std::string::npos)
             << format;
     }
+}
+
+TEST_F(Recordings, AreWrittenOfSensorsThatCoordinatesReachOnly) {
+    for (const auto& [width, height] : {std::pair{0, 48}, {64, 0}, {65536, 48}, {64, 65536}})
+        EXPECT_NE(error_of([&, w = width, h = height] {
+                      EventWriter{temp_ / "a.txt", {"", "", "", w, h}};
+                  })
+                      .find("sensor size: expected 1 to 65535 px, found " + std::to_string(width) +
+                            "x" + std::to_string(height)),
+                  std::string::npos);
 }
 
 TEST_F(Recordings, AreWrittenAtTimesThatAreReadOnly) {
