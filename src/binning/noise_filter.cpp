@@ -63,7 +63,7 @@ void NoiseFilter::process(std::vector<Event>& events) noexcept {
         }
         const Event event = *next;
         const bool begins = !last_ || event.t < *last_;
-        if (begins && (!interval_ || event.t < *interval_)) begin_stream(event.t);
+        if (!interval_ || event.t < *interval_) begin_stream(event.t);
         last_ = event.t;
         newest_.advance(event.t);
         const bool hot = hot_pixels_.is_hot(event);

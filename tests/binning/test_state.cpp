@@ -118,6 +118,20 @@ TEST(NoiseFilterState, AnotherLeavesOutTheSame) {
     }
 }
 
+/// As a file may say it that was written by something else.
+TEST(NoiseFilterState, WithoutAnIntervalOneBeginsWithTheNextEvent) {
+    NoiseFilter filter{240, 180, {}};
+    std::vector<Event> events = lively(2'000, 4);
+    filter.process(events);
+    NoiseFilter::State state = filter.state();
+    const SensorTime next = *state.last + SensorDuration{10};
+    state.interval.reset();
+    filter.restore(state);
+    std::vector<Event> later{{next, 3, 3, Polarity::on}};
+    filter.process(later);
+    EXPECT_EQ(filter.state().interval, next);
+}
+
 TEST(NoiseFilterState, OfAnotherSensorIsRefused) {
     NoiseFilter filter{240, 180, {}};
     EXPECT_THROW(filter.restore(NoiseFilter{180, 200, {}}.state()), Error);
