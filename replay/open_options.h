@@ -13,9 +13,13 @@ namespace eventide {
 inline constexpr const char* kStateSize =
     "state it with --input-size WIDTHxHEIGHT (the options width and height of the library)";
 
-/// How another event stream than the first is read.
-inline std::string reads_stream(const std::string& stream) {
-    return "--input-stream " + stream + " (the option stream of the library) reads those";
+/// For people: the events of one are left out, as those of another are read, and which `stream` of
+/// OpenOptions reads them.
+inline std::string left_out_stream(const std::string& left_out, const std::string& read,
+                                   const std::string& stream) {
+    return "the events of " + left_out + " are left out, those of " + read +
+           " are read; --input-stream " + stream +
+           " (the option stream of the library) reads those";
 }
 
 struct OpenOptions {

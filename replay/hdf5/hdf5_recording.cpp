@@ -67,9 +67,7 @@ std::string choose_camera(const Hdf5File& file, const Pair& pair, const std::str
         refuse_stream(file, wanted, found);
     const std::string chosen = wanted.empty() ? found.front() : wanted;
     for (const std::string& camera : found)
-        if (camera != chosen)
-            remarks.push_back("the events of " + camera + " are left out, those of " + chosen +
-                              " are read; " + reads_stream(camera));
+        if (camera != chosen) remarks.push_back(left_out_stream(camera, chosen, camera));
     return chosen;
 }
 

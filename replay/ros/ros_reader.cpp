@@ -209,10 +209,11 @@ void RosReader::name_other_topics() {
                                size_text(data_.width(), data_.height()));
         else if (images && !images_)
             remarks_.push_back(what + " are left out: they are of another camera");
+        else if (images)
+            remarks_.push_back(what + " are left out, those of " + topics_[*images_].name +
+                               " are read");
         else
-            remarks_.push_back(what + " are left out, those of " +
-                               topics_[images ? *images_ : *events_].name + " are read" +
-                               (images ? "" : "; " + reads_stream(topic.name)));
+            remarks_.push_back(left_out_stream(topic.name, topics_[*events_].name, topic.name));
     }
 }
 

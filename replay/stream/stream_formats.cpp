@@ -48,10 +48,9 @@ std::vector<std::string> other_streams(const Aedat4Header& header) {
     std::vector<std::string> remarks;
     for (const Aedat4Stream& stream : header.streams)
         if (stream.identifier == identifier_of(Aedat4Kind::events) && stream.id != read)
-            remarks.push_back("the events of stream " + std::to_string(stream.id) + " (" +
-                              stream.source + ") are left out, those of stream " +
-                              std::to_string(*read) + " are read; " +
-                              reads_stream(std::to_string(stream.id)));
+            remarks.push_back(
+                left_out_stream("stream " + std::to_string(stream.id) + " (" + stream.source + ")",
+                                "stream " + std::to_string(*read), std::to_string(stream.id)));
     return remarks;
 }
 
@@ -82,10 +81,9 @@ OpenedStream open_aedat3(Bytes first_bytes, const OpenOptions& options) {
     };
     std::vector<std::string> remarks;
     for (const Aedat3Source& other : header.others)
-        remarks.push_back("the events of source " + std::to_string(other.number) + " (" +
-                          other.name + ") are left out, those of source " +
-                          std::to_string(*header.source) + " are read; " +
-                          reads_stream(std::to_string(other.number)));
+        remarks.push_back(left_out_stream(
+            "source " + std::to_string(other.number) + " (" + other.name + ")",
+            "source " + std::to_string(*header.source), std::to_string(other.number)));
     return {header.stream, make_parser, {1, nullptr, {}, kLatestPacket}, remarks};
 }
 

@@ -26,15 +26,13 @@ public:
     /// Counts an event, which lies on the sensor; true where its pixel was found hot before it.
     bool is_hot(const Event& event) noexcept {
         advance(event.t);
-        Pixel& pixel = pixels_[std::size_t(event.y) * std::size_t(width_) + event.x];
+        Pixel& pixel = pixels_[at(event)];
         ++pixel.events;
         return pixel.hot;
     }
 
     /// Asks the processor for what is_hot() of a later event will read.
-    void prefetch(const Event& event) const noexcept {
-        __builtin_prefetch(&pixels_[std::size_t(event.y) * std::size_t(width_) + event.x], 1);
-    }
+    void prefetch(const Event& event) const noexcept { __builtin_prefetch(&pixels_[at(event)], 1); }
 
     /// How many pixels are hot now.
     std::size_t count() const;
@@ -57,6 +55,9 @@ private:
         std::uint32_t events : 31 = 0;  // of this interval
         bool hot : 1 = false;
     };
+    std::size_t at(const Event& event) const {
+        return std::size_t(event.y) * std::size_t(width_) + event.x;
+    }
     void advance(SensorTime t) noexcept {
         if (!interval_end_ || t >= *interval_end_ || t < last_) renew(t);
         last_ = t;

@@ -12,6 +12,18 @@
 
 namespace eventide::app {
 
+namespace {
+
+/// Empty where the user says "auto".
+Setting text_or_auto(std::string key, std::string& value, std::string argument, std::string help) {
+    return parsed_setting<std::string>(
+        std::move(key), value, std::move(argument), std::move(help),
+        [](const std::string& text) { return text == "auto" ? std::string{} : text; },
+        [](const std::string& text) { return text.empty() ? "auto" : text; });
+}
+
+}  // namespace
+
 void InputSettings::add_to(SettingTable& table) {
     std::string names;
     for (const Format& format : all_formats())
@@ -33,19 +45,15 @@ void InputSettings::add_to(SettingTable& table) {
             return text == "auto" ? std::nullopt : std::optional{parse_size(text)};
         },
         [](const std::optional<Size>& s) { return s ? show_size(*s) : "auto"; }));
-    table.settings.push_back(parsed_setting<std::string>(
+    table.settings.push_back(text_or_auto(
         "input_stream", open.stream, "NAME",
         "Whose events are read, of a recording with those of several cameras: a bag's topic, "
         "davis/right of an HDF5 file, the number of an AEDAT 3 source or AEDAT 4 stream, as "
-        "eventide info names them; auto takes the first.",
-        [](const std::string& text) { return text == "auto" ? std::string{} : text; },
-        [](const std::string& text) { return text.empty() ? "auto" : text; }));
-    table.settings.push_back(parsed_setting<std::string>(
+        "eventide info names them; auto takes the first."));
+    table.settings.push_back(text_or_auto(
         "input_columns", open.text.columns, "ORDER",
         "Columns of a text recording, such as txyp or xypt; auto takes them from a header row, or "
-        "from the numbers themselves.",
-        [](const std::string& text) { return text == "auto" ? std::string{} : text; },
-        [](const std::string& text) { return text.empty() ? "auto" : text; }));
+        "from the numbers themselves."));
     table.settings.push_back(choice_setting(
         "input_time_unit", open.text.unit,
         "Unit of the times in a text recording; auto: seconds where there are fractions, else "
