@@ -54,8 +54,31 @@ double number(const TensorFile& file, const std::string& path, const char* key) 
     return *value;
 }
 
-std::string recurrent_name(std::size_t thread, const std::string& part) {
-    return "recurrent." + std::to_string(thread) + "." + part;
+void put_states(TensorFile& file, const std::string& prefix,
+                const std::vector<RecurrentState>& states) {
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        const std::string name = prefix + std::to_string(i) + ".";
+        file.tensors[name + "latent"] = to_tensor(states[i].latent);
+        for (std::size_t l = 0; l < states[i].state.size(); ++l)
+            file.tensors[name + "state." + std::to_string(l)] = to_tensor(states[i].state[l]);
+    }
+}
+
+std::vector<RecurrentState> take_states(const TensorFile& file, const std::string& path,
+                                        const std::string& prefix, std::size_t count,
+                                        torch::Device device) {
+    std::vector<RecurrentState> states(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string name = prefix + std::to_string(i) + ".";
+        const auto map = [&](const std::string& part) {
+            return to_torch(tensor_of(file, path, name + part), device)
+                .contiguous(torch::MemoryFormat::ChannelsLast);
+        };
+        states[i].latent = map("latent");
+        for (int l = 0; file.tensors.count(name + "state." + std::to_string(l)) != 0; ++l)
+            states[i].state.push_back(map("state." + std::to_string(l)));
+    }
+    return states;
 }
 
 }  // namespace
@@ -69,6 +92,7 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
                      {"elapsed_minutes", exact(checkpoint.elapsed_minutes)},
                      {"best_score", exact(checkpoint.best_score)},
                      {"threads", exact(double(checkpoint.recurrent_states.size()))},
+                     {"teacher_states", exact(double(checkpoint.teacher_states.size()))},
                      {"options", checkpoint.options}};
     // A run that stops and goes on is one that did not stop; one that is kept without its states is
     // not, and of means of gradients, which are mostly noise, 1/256 is enough.
@@ -77,13 +101,8 @@ void save_checkpoint(const std::filesystem::path& path, const Checkpoint& checkp
     put(file, "moment1.", optimiser.moment1, small_moments);
     put(file, "moment2.", optimiser.moment2, small_moments);
     put(file, "ema.", optimiser.ema, false);
-    for (std::size_t i = 0; i < checkpoint.recurrent_states.size(); ++i) {
-        const RecurrentState& recurrent = checkpoint.recurrent_states[i];
-        file.tensors[recurrent_name(i, "latent")] = to_tensor(recurrent.latent);
-        for (std::size_t l = 0; l < recurrent.state.size(); ++l)
-            file.tensors[recurrent_name(i, "state." + std::to_string(l))] =
-                to_tensor(recurrent.state[l]);
-    }
+    put_states(file, "recurrent.", checkpoint.recurrent_states);
+    put_states(file, "teacher.", checkpoint.teacher_states);
     write_safetensors(path, file);
 }
 
@@ -114,20 +133,11 @@ Checkpoint load_checkpoint(const std::filesystem::path& path, Optimiser& optimis
     take(file, name, "moment2.", optimiser.moment2);
     take(file, name, "ema.", optimiser.ema);
     const torch::Device device = optimiser.parameters.begin()->second.device();
-    const auto threads = std::size_t(number(file, name, "threads"));
-    for (std::size_t i = 0; i < threads; ++i) {
-        const auto map = [&](const std::string& part) {
-            return to_torch(tensor_of(file, name, recurrent_name(i, part)), device)
-                .contiguous(torch::MemoryFormat::ChannelsLast);
-        };
-        RecurrentState& recurrent = checkpoint.recurrent_states.emplace_back();
-        recurrent.latent = map("latent");
-        for (int l = 0;; ++l) {
-            const std::string part = "state." + std::to_string(l);
-            if (file.tensors.count(recurrent_name(i, part)) == 0) break;
-            recurrent.state.push_back(map(part));
-        }
-    }
+    const auto count = [&](const char* key) { return std::size_t(number(file, name, key)); };
+    checkpoint.recurrent_states = take_states(file, name, "recurrent.", count("threads"), device);
+    if (file.metadata.contains("teacher_states"))
+        checkpoint.teacher_states =
+            take_states(file, name, "teacher.", count("teacher_states"), device);
     return checkpoint;
 }
 

@@ -17,6 +17,7 @@ struct Checkpoint {
     double best_score = 1e9;                       ///< of the validations so far
     std::string options;                           ///< OptionTable::record()
     std::vector<RecurrentState> recurrent_states;  ///< of each group's and thread's streams
+    std::vector<RecurrentState> teacher_states;    ///< the same of a teacher, view by view
 };
 
 /// Writes whole or not at all. Throws Error(failed).

@@ -190,6 +190,12 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("lpips-frames", o.lpips_frames, "of the rendered ones, the last, that LPIPS looks at");
     add("nll", o.loss.nll, "weight in the loss");
     add("temporal", o.loss.temporal, "weight in the loss");
+    add("teacher", o.teacher,
+        "model whose frames mu is drawn to, beside the truth; none: the truth alone", Use::run);
+    add("teacher-share", o.teacher_share, "of the teacher's frames in that");
+    add("teacher-views", o.teacher_views,
+        "2: the mean of the teacher's frames of the scene and of the scene turned by half a turn; "
+        "1: as it is");
     add("train-only", o.train_only,
         "what the names of the weights that learn begin with, as in renderer.,encoder.out; none: "
         "all learn");

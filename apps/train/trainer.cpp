@@ -67,6 +67,11 @@ Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibra
     create_folder(options.out);
     if (!options.lpips.empty())
         perceptual_ = std::make_unique<Perceptual>(options.lpips, device_, type_);
+    if (!options.teacher.empty())
+        teacher_ =
+            std::make_unique<const Teacher>(options.teacher, options.teacher_views, device_, type_);
+    if (teacher_ != nullptr && teacher_->bins() != options_.data.bins)
+        options_.data.teacher_bins = teacher_->bins();
     if (!options.resume.empty()) progress_ = load_checkpoint(options.resume, optimiser_);
     leave_out_inputs();
     choose_what_learns(options.train_only, optimiser_.parameters);
@@ -100,6 +105,19 @@ void Trainer::begin_states() {
     if (recurrent_states.size() != count ||
         recurrent_states[0].latent.sizes() != empty.latent.sizes())
         recurrent_states.assign(count, empty);
+    begin_teacher_states(count);
+}
+
+void Trainer::begin_teacher_states(std::size_t places) {
+    std::vector<RecurrentState>& states = progress_.teacher_states;
+    if (teacher_ == nullptr) return states.clear();
+    const auto empty = teacher_->empty_states(options_.streams, options_.data.crop);
+    if (states.size() == places * empty.size() &&
+        states[0].latent.sizes() == empty[0].latent.sizes())
+        return;
+    states.clear();
+    for (std::size_t i = 0; i < places; ++i)
+        states.insert(states.end(), empty.begin(), empty.end());
 }
 
 std::filesystem::path Trainer::file(const char* name) const {
@@ -139,14 +157,26 @@ std::vector<TrainingBatch> Trainer::next_batches() {
     return batches;
 }
 
-Trainer::Share Trainer::run_share(const TrainingBatch& batch, const SegmentPlan& plan,
-                                  RecurrentState& recurrent) {
+/// The truth, and so much of the teacher's frames as its share is.
+torch::Tensor Trainer::taught(const torch::Tensor& truth, const TrainingBatch& batch,
+                              const SegmentPlan& plan, int place) {
+    const auto views = std::size_t(options_.teacher_views);
+    const auto states =
+        std::span{progress_.teacher_states}.subspan(std::size_t(place) * views, views);
+    return truth.lerp(teacher_->frames(plan, batch, options_.data.patch, states),
+                      options_.teacher_share);
+}
+
+/// `place` in recurrent_states: of the group whose turn it is and of the thread.
+Trainer::Share Trainer::run_share(const TrainingBatch& batch, const SegmentPlan& plan, int place) {
     at::set_num_threads(1);  // libgomp keeps the number per thread
+    RecurrentState& recurrent = progress_.recurrent_states[std::size_t(place)];
     recurrent = begin_segment(recurrent, batch.fresh);
     const Parameters narrow =
         type_ == torch::kFloat ? optimiser_.parameters : cast(optimiser_.parameters, type_);
-    const Images images =
+    Images images =
         run_segment(options_.model, narrow, plan, batch, options_.data.patch, recurrent);
+    if (teacher_ != nullptr) images.taught = taught(images.truth, batch, plan, place);
     Share share;
     share.terms = loss(images, options_.loss, perceptual_.get(), options_.lpips_frames);
     std::vector<torch::Tensor> leaves;
@@ -171,13 +201,11 @@ void Trainer::step() {
     const SegmentPlan plan = segment_plan(options_.data, progress_.segment);
     const std::vector<TrainingBatch> batches = next_batches();
     std::vector<Share> shares(std::size_t(options_.threads));
-    const std::span<RecurrentState> recurrent_states =
-        std::span{progress_.recurrent_states}.subspan(
-            std::size_t(progress_.segment % options_.groups) * shares.size(), shares.size());
+    const int first_place = int(progress_.segment % options_.groups) * options_.threads;
     {
         std::vector<std::jthread> threads;
         const auto work = [&](std::size_t i) {
-            shares[i] = run_share(batches[i], plan, recurrent_states[i]);
+            shares[i] = run_share(batches[i], plan, first_place + int(i));
         };
         for (std::size_t i = 1; i < shares.size(); ++i) threads.emplace_back(work, i);
         work(0);
@@ -197,7 +225,8 @@ void Trainer::step() {
     const double rate = learning_rate(), norm = optimiser_.step(gradients, rate);
     if (!std::isfinite(norm)) {  // a state that has run away must not spoil the next segments
         ++skipped_;
-        for (RecurrentState& recurrent : recurrent_states)
+        for (RecurrentState& recurrent :
+             std::span{progress_.recurrent_states}.subspan(std::size_t(first_place), shares.size()))
             recurrent =
                 begin_segment(recurrent, std::vector<bool>(std::size_t(options_.streams), true));
     }
@@ -252,6 +281,7 @@ void Trainer::run(const std::atomic<bool>& stop) {
 void Trainer::keep(const std::filesystem::path& path) const {
     Checkpoint without_states = progress_;
     without_states.recurrent_states.clear();
+    without_states.teacher_states.clear();
     save_checkpoint(path, without_states, optimiser_);
 }
 

@@ -3,6 +3,7 @@
 
 #include "apps/train/checkpoint.h"
 #include "apps/train/options.h"
+#include "apps/train/teacher.h"
 #include "apps/train/training_log.h"
 
 #include <atomic>
@@ -42,12 +43,15 @@ private:
     };
     void leave_out_inputs();
     void begin_states();
+    void begin_teacher_states(std::size_t places);
     bool finished() const;
     double learning_rate() const;
     void step();
     std::vector<TrainingBatch> load();
     std::vector<TrainingBatch> next_batches();
-    Share run_share(const TrainingBatch& batch, const SegmentPlan& plan, RecurrentState& recurrent);
+    torch::Tensor taught(const torch::Tensor& truth, const TrainingBatch& batch,
+                         const SegmentPlan& plan, int place);
+    Share run_share(const TrainingBatch& batch, const SegmentPlan& plan, int place);
     Mark mark() const { return {progress_.segment, progress_.elapsed_minutes}; }
     void validate();
     void checkpoint();
@@ -60,6 +64,7 @@ private:
     Optimiser optimiser_;
     torch::Tensor input_mask_;
     std::unique_ptr<Perceptual> perceptual_;
+    std::unique_ptr<const Teacher> teacher_;
     std::unique_ptr<Validation> validation_;
     std::unique_ptr<DataLoader> feed_;
     std::future<std::vector<TrainingBatch>> upcoming_;  // of the next step; read from feed_

@@ -41,21 +41,35 @@ torch::Tensor to_torch(std::span<const Array3<float>* const> grids, torch::Devic
     return all.to(device, /*non_blocking=*/true).permute({0, 3, 1, 2});
 }
 
-TrainingBatch to_batch(std::span<const StreamSegment> segments, torch::Device device) {
-    TrainingBatch batch;
-    const StreamSegment& like = segments[0];
-    for (const StreamSegment& segment : segments) batch.fresh.push_back(segment.fresh);
+namespace {
+
+/// One tensor per event window, of all streams.
+std::vector<torch::Tensor> to_torch(std::span<const StreamSegment> segments,
+                                    std::vector<Array3<float>> StreamSegment::*grids,
+                                    torch::Device device) {
     const auto window = [&](std::size_t k) {
-        std::vector<const Array3<float>*> grids;
-        for (const StreamSegment& segment : segments) grids.push_back(&segment.grids[k]);
-        return to_torch(grids, device);
+        std::vector<const Array3<float>*> beside;
+        for (const StreamSegment& segment : segments) beside.push_back(&(segment.*grids)[k]);
+        return to_torch(beside, device);
     };
     // A GPU's large batches are copied window beside window.
     const auto when = device.is_cuda() ? std::launch::async : std::launch::deferred;
     std::vector<std::future<torch::Tensor>> windows;
-    for (std::size_t k = 0; k < like.grids.size(); ++k)
+    for (std::size_t k = 0; k < (segments[0].*grids).size(); ++k)
         windows.push_back(std::async(when, window, k));
-    for (auto& copied : windows) batch.grids.push_back(copied.get());
+    std::vector<torch::Tensor> copied;
+    for (auto& one : windows) copied.push_back(one.get());
+    return copied;
+}
+
+}  // namespace
+
+TrainingBatch to_batch(std::span<const StreamSegment> segments, torch::Device device) {
+    TrainingBatch batch;
+    const StreamSegment& like = segments[0];
+    for (const StreamSegment& segment : segments) batch.fresh.push_back(segment.fresh);
+    batch.grids = to_torch(segments, &StreamSegment::grids, device);
+    batch.teacher_grids = to_torch(segments, &StreamSegment::teacher_grids, device);
     const auto tasks = std::int64_t(like.f.size()), streams = std::int64_t(segments.size());
     const int patch = like.truth[0].height();
     batch.truth = torch::empty({tasks * streams, patch, patch});

@@ -25,9 +25,10 @@ RecurrentState empty_recurrent_state(const ModelConfig& config, std::int64_t str
 RecurrentState begin_segment(const RecurrentState& recurrent, const std::vector<bool>& fresh);
 
 struct TrainingBatch {
-    std::vector<torch::Tensor> grids;  ///< per frame, [N][4B+1][H][W]
-    std::vector<torch::Tensor> f;      ///< per rendered frame, [N]
-    torch::Tensor truth, weight;       ///< [tasks * N][patch][patch], [tasks * N]
+    std::vector<torch::Tensor> grids;          ///< per frame, [N][4B+1][H][W]
+    std::vector<torch::Tensor> teacher_grids;  ///< the same, with a teacher's bins; or empty
+    std::vector<torch::Tensor> f;              ///< per rendered frame, [N]
+    torch::Tensor truth, weight;               ///< [tasks * N][patch][patch], [tasks * N]
     std::vector<bool> fresh;
 };
 TrainingBatch to_batch(std::span<const StreamSegment> segments, torch::Device device);

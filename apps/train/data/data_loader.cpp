@@ -106,6 +106,9 @@ struct SceneStream::Episode {
           stream(camera.scene, camera.sensor, std::move(textures), part, random.bits()),
           binner(settings.bins, settings.crop, settings.crop),
           grid(binner.make_output()),
+          teacher_binner(std::max(1, settings.teacher_bins), settings.crop, settings.crop),
+          teacher_grid(teacher_binner.make_output()),
+          taught(settings.teacher_bins > 0),
           width_s(random.log_uniform(settings.window_s)),
           jitter(random.chance(settings.jitter_probability) ? settings.window_jitter : 0) {
         // A share of 0 draws nothing, so that runs of before go on as they were.
@@ -124,6 +127,7 @@ struct SceneStream::Episode {
         stream.advance(window.end, events);
         if (noise_filter) noise_filter->process(events);
         binner.process({.window = window, .events = events}, grid);
+        if (taught) teacher_binner.process({.window = window, .events = events}, teacher_grid);
         ++event_windows;
     }
 
@@ -141,6 +145,9 @@ struct SceneStream::Episode {
     SimulatedStream stream;
     Binner binner;
     VoxelGrid grid;
+    Binner teacher_binner;
+    VoxelGrid teacher_grid;
+    bool taught;
     double width_s, jitter;
     std::optional<NoiseFilter> noise_filter;
     double enough = 0;  ///< events that end a window before its time; 0: none do
@@ -191,6 +198,7 @@ StreamSegment SceneStream::next() {
     for (int k = 0; k < settings_.event_windows; ++k) {
         episode.advance();
         out.grids.push_back(episode.grid.values);
+        if (episode.taught) out.teacher_grids.push_back(episode.teacher_grid.values);
         if (k < plan.first_rendered || k >= plan.first_rendered + settings_.rendered) continue;
         const bool edge = episode.random.chance(settings_.edge_probability);
         const auto width = episode.window.width().count();

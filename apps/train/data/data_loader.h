@@ -18,7 +18,8 @@ namespace eventide {
 
 struct DataSettings {
     int bins = 5;
-    int crop = 64;  ///< px, side of the part of a sensor that is simulated
+    int teacher_bins = 0;  ///< of grids of the same events for a teacher; 0: it reads those
+    int crop = 64;         ///< px, side of the part of a sensor that is simulated
     /// px, log-uniform per episode; width of that sensor, whose height is three quarters of it.
     /// Never smaller than the crop.
     Range sensor_width{128, 346};
@@ -56,8 +57,9 @@ SegmentPlan segment_plan(const DataSettings& settings, std::int64_t segment);
 
 /// One stream's part of a segment.
 struct StreamSegment {
-    bool fresh = false;                ///< a new scene: the state before it is empty
-    std::vector<Array3<float>> grids;  ///< per event window, [y][x][channel]
+    bool fresh = false;                        ///< a new scene: the state before it is empty
+    std::vector<Array3<float>> grids;          ///< per event window, [y][x][channel]
+    std::vector<Array3<float>> teacher_grids;  ///< the same; empty where teacher_bins is 0
     std::vector<float> f;              ///< per rendered frame, instant in the event window (0, 1]
     std::vector<float> weight;         ///< per rendered frame
     std::vector<Array2<float>> truth;  ///< per rendered frame, patch x patch

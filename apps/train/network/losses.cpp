@@ -35,7 +35,8 @@ torch::Tensor temporal_change(const Images& p) {
     const auto change = [&](const torch::Tensor& x) {
         return x.narrow(0, p.streams, n) - x.narrow(0, 0, n);
     };
-    return mean_of((change(p.mu) - change(p.truth)).abs().mean({1, 2}), p.weight.narrow(0, 0, n));
+    return mean_of((change(p.mu) - change(p.target())).abs().mean({1, 2}),
+                   p.weight.narrow(0, 0, n));
 }
 
 torch::Tensor perceptual_distance(const Images& p, const Perceptual& perceptual,
@@ -81,21 +82,22 @@ torch::Tensor multi_scale_ssim(const torch::Tensor& a, const torch::Tensor& b) {
 LossTerms loss(const Images& p, const LossWeights& weights, const Perceptual* perceptual,
                std::int64_t lpips_tasks) {
     const auto zero = torch::zeros({}, p.mu.options());
-    const auto error = p.truth - p.mu;
+    const auto& target = p.target();
+    const auto error = target - p.mu;
     const auto l1 = mean_of(error.abs().mean({1, 2}), p.weight);
-    const auto dssim = 1 - mean_of(multi_scale_ssim(p.mu, p.truth), p.weight);
+    const auto dssim = 1 - mean_of(multi_scale_ssim(p.mu, target), p.weight);
     const auto lpips = perceptual != nullptr && weights.lpips > 0
                            ? perceptual_distance(p, *perceptual, lpips_tasks)
                            : zero;
     const auto l2 = mean_of(error.square().mean({1, 2}), p.weight);
-    const auto squared = error.detach().square();
+    const auto squared = (p.truth - p.mu).detach().square();  // sigma answers for the truth alone
     const auto nll =
         mean_of((p.log_sigma + 0.5 * squared * (-2 * p.log_sigma).exp()).mean({1, 2}), p.weight);
     const auto temporal = temporal_change(p);
     const auto inside =
         (squared.sqrt() <= 1.2816 * p.log_sigma.detach().exp()).to(torch::kFloat).mean({1, 2});
     const auto contrast =
-        weights.contrast > 0 ? 1 - mean_of(whole_contrast(p.mu, p.truth), p.weight) : zero;
+        weights.contrast > 0 ? 1 - mean_of(whole_contrast(p.mu, target), p.weight) : zero;
     const auto total = weights.l1 * l1 + weights.l2 * l2 + weights.ssim * dssim +
                        weights.contrast * contrast + weights.lpips * lpips + weights.nll * nll +
                        weights.temporal * temporal;

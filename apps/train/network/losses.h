@@ -22,7 +22,8 @@ struct LossWeights {
 
 struct LossTerms {
     torch::Tensor total;  ///< with gradients
-    /// Means without gradients: L1, 1 - SSIM, LPIPS, NLL, temporal, MSE, PICP80.
+    /// Means without gradients: L1, 1 - SSIM, LPIPS, NLL, temporal, MSE, PICP80; all but NLL and
+    /// PICP80 of what mu is drawn to.
     std::array<double, 7> means{};
 };
 inline constexpr std::array<const char*, 7> kLossNames{"l1",       "dssim", "lpips", "nll",
@@ -33,6 +34,9 @@ inline constexpr std::array<const char*, 7> kLossNames{"l1",       "dssim", "lpi
 struct Images {
     torch::Tensor mu, log_sigma, truth, weight;
     std::int64_t streams = 1;
+    torch::Tensor taught = {};  ///< what mu is drawn to, as `truth`; undefined: the truth itself
+
+    const torch::Tensor& target() const { return taught.defined() ? taught : truth; }
 };
 
 /// `perceptual` may be null. LPIPS, the dearest term, looks at the last `lpips_tasks` tasks.

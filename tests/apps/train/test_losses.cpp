@@ -84,6 +84,24 @@ TEST(Losses, SigmaLearnsTheSizeOfErrorsAndNeverMovesTheImage) {
     EXPECT_TRUE(!mu.grad().defined() || mu.grad().abs().max().item<double>() == 0);
 }
 
+TEST(Losses, WhatIsTaughtDrawsTheImageAndTheTruthAnswersForSigma) {
+    const auto truth = test_image(32, 32, 6), taught = test_image(32, 32, 7);
+    const auto s = torch::full({1, 32, 32}, -1.0);
+    const auto terms = [&](const torch::Tensor& mu) {
+        Images images{mu, s, truth, torch::ones({1})};
+        images.taught = taught;
+        return loss(images, {.contrast = 1}, nullptr, 1).means;
+    };
+    const auto of_taught = terms(taught), of_truth = terms(truth);
+    for (const int k : {0, 1, 5}) {  // L1, 1 - SSIM, MSE
+        EXPECT_NEAR(of_taught[std::size_t(k)], 0, 1e-5) << kLossNames[std::size_t(k)];
+        EXPECT_GT(of_truth[std::size_t(k)], .1) << kLossNames[std::size_t(k)];
+    }
+    EXPECT_NEAR(of_truth[3], -1, 1e-6) << "no error: ln sigma alone";
+    EXPECT_GT(of_taught[3], -1 + .5);
+    EXPECT_EQ(of_truth[6], 1);
+}
+
 TEST(Losses, L1AsksForTheMedianAndL2ForTheMean) {
     // Three scenes that look alike to the sensor: two dark, one bright.
     const auto truth = torch::tensor({0.F, 0.F, 0.6F}).view({3, 1, 1}).expand({3, 32, 32});

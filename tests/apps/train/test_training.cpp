@@ -90,6 +90,8 @@ TEST(Training, WhatNoRunCanBeMadeOfIsRefusedBeforeItBegins) {
              {"--recurrent", "1"},
              {"--gate-radius", "65"},
              {"--latent-stride", "3"},
+             {"--teacher-views", "3"},
+             {"--teacher-share", "1.5"},
              {"--unfold", "2"}}) {
         TrainOptions options = good;
         OptionTable{options}.parse(words);
