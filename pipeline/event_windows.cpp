@@ -105,7 +105,7 @@ void EventWindows::stop(HostTime arrived) {
     part_.assign(piece_.events.begin(), first);
     piece_.events.erase(piece_.events.begin(), first);
     push(part_, arrived);
-    at_stop_(t);
+    if (!is_past_end()) at_stop_(t);
 }
 
 void EventWindows::push(std::vector<Event>& events, HostTime arrived) {

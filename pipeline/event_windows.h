@@ -44,7 +44,8 @@ public:
     /// As Slicer::change(), except that what is out of range changes nothing.
     void change_window(const SlicerSettings& wanted) noexcept;
     /// At each of the times (ascending), once all events up to it were cut and before any other is:
-    /// `at` takes the event windows that there are. Of recordings.
+    /// `at` takes the event windows that there are. At none after SlicerSettings::end. Of
+    /// recordings.
     void stop_at(std::vector<SensorTime> times, std::function<void(SensorTime)> at);
     /// Slicer::state().
     std::optional<Slicer::State> state() const { return slicer_.state(); }

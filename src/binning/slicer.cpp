@@ -109,13 +109,13 @@ void Slicer::push_one(const Event& event) {
         ++counters_.before_begin;
         return;
     }
-    same_time_ = event.t == newest_event_ ? same_time_ + 1 : 1;
-    newest_event_ = event.t;
     note_time(event.t);
     if (past_end_) {
         ++counters_.after_end;
         return;
     }
+    same_time_ = event.t == newest_event_ ? same_time_ + 1 : 1;
+    newest_event_ = event.t;
     if (same_time_ > settings_.max_events) {
         ++counters_.too_many;
         return;

@@ -73,6 +73,21 @@ TEST(SlicerState, ThereIsNoneOfWhatCannotGoOn) {
     EXPECT_FALSE(reset.state()) << "its clock began anew";
 }
 
+TEST(SlicerState, EventsAfterTheEndAreNoPartOfIt) {
+    SlicerSettings settings = by_duration(1000);
+    settings.end = from_us(1500);
+    Slicer first{settings, 240, 180}, second{by_duration(1000), 240, 180};
+    std::vector<Kept> windows;
+    first.push(std::vector{at(700), at(1500), at(1600), at(1600), at(9000)});
+    take(first, windows);
+    const auto state = first.state();
+    ASSERT_TRUE(state);
+    EXPECT_EQ(state->newest_event, from_us(1500));
+    EXPECT_EQ(state->same_time, 1U);
+    second.restore(*state);
+    EXPECT_EQ(second.state(), state);
+}
+
 TEST(SlicerState, WhatHoldsNoTruthIsRefused) {
     Slicer slicer{by_duration(1000), 240, 180};
     Slicer::State good{

@@ -1,6 +1,7 @@
 // Tiles of frames that are copied from frames before: never another bit where nothing may change,
 // within the stated bound elsewhere, and work that follows what changes.
 #include "src/model/encode/encoder.h"
+#include "src/model/render/kept_frames.h"
 #include "src/model/render/renderer.h"
 #include "src/nn/tiling.h"
 #include "tests/model/streams.h"
@@ -170,6 +171,25 @@ TEST_F(KeptFramesOfCodes, WorkFollowsWhatChanges) {
     EXPECT_LE(renderer.pixels_rendered() - before, 2 * kPixels / 80) << "nothing changes any more";
 }
 
+/// Many short event windows to a frame, each at a place of its own in its window.
+TEST_F(KeptFramesOfCodes, WhatRestsIsCopiedHoweverManyWindowsLieBetweenFrames) {
+    Renderer copying{model_, kWidth, kHeight, with_copies(0, 0)};
+    Renderer judge{model_, kWidth, kHeight, without_copies()};
+    constexpr std::uint64_t kPixels = std::uint64_t{kWidth} * kHeight;
+    std::uint64_t before = 0;
+    for (int k = 1; k <= 200; ++k) {
+        next_window();
+        // Within one of the 80 tiles.
+        for (int y = 104; y < 120; ++y) latent_.values.pixel(y, 170)[0] += .5F;
+        push(copying);
+        push(judge);
+        if (k % 4 != 0) continue;
+        if (k == 168) before = copying.pixels_rendered();
+        expect_same(copying, judge, 100 + 4 * k);
+    }
+    EXPECT_LE(copying.pixels_rendered() - before, 9 * kPixels / 80);
+}
+
 TEST_F(KeptFramesOfCodes, CodesThatDriftStayWithinTheBound) {
     constexpr double kBound = .01;
     Renderer copying{model_, kWidth, kHeight, with_copies(kBound, 0)};
@@ -252,6 +272,27 @@ TEST_F(KeptFramesOfCodes, AFrameOfAWindowBeforeIsNotThatOfALaterOne) {
         for (const int thousandths : {600, -400, 600, -1400, -400})
             expect_same(copying, judge, thousandths);
     }
+}
+
+/// Of frames as large as these two are kept.
+TEST(KeptFrames, TheOneUsedLongestAgoMakesRoom) {
+    const FrameKind kind{.geometry = {.part_width = 1200, .part_height = 800}};
+    KeptFrames kept;
+    kept.make_room(kind.geometry, 3);
+    const auto is_kept = [&](double fraction) {
+        KeptFrame& frame = kept.choose(kind, fraction, 0);
+        const bool was = frame.tiles[0].k != 0 && frame.tiles[0].fraction == fraction;
+        frame.tiles[0] = {1, fraction};
+        return was;
+    };
+    EXPECT_FALSE(is_kept(.1));
+    EXPECT_FALSE(is_kept(.2));
+    EXPECT_TRUE(is_kept(.1));
+    EXPECT_FALSE(is_kept(.3)) << "instead of the one at .2";
+    EXPECT_TRUE(is_kept(.1));
+    EXPECT_FALSE(is_kept(.2));
+    EXPECT_FALSE(is_kept(.3));
+    EXPECT_FALSE(is_kept(.1));
 }
 
 TEST_F(KeptFramesOfCodes, ResetForgetsThoseOfEachSize) {

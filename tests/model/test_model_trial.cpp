@@ -34,6 +34,20 @@ TEST(ModelTrial, WeightsThatAreTooLargeTogetherAreRefused) {
     }
 }
 
+/// Frames at the live edge do not read what comes after their window.
+TEST(ModelTrial, WeightsThatAreTooLargeForCodesOfLaterWindowsAreRefused) {
+    for (const int unfold : {1, 3}) {
+        ModelConfig config = test::small_config();
+        config.unfold = unfold;
+        Model model = test::random_model(config, 1);
+        Tensor& first = model.weights.at("renderer.mlp.0.weight");
+        const auto inputs = std::size_t(first.shape[1]), codes = (inputs - 3) / 3;
+        for (std::size_t i = 0; i < first.values.size(); ++i)
+            if (i % inputs >= 2 * codes && i % inputs < 3 * codes) first.values[i] *= 1e30F;
+        EXPECT_THROW(try_model(model, "huge"), Error) << unfold;
+    }
+}
+
 TEST(ModelTrial, OneNumberThatIsNoneIsSeenWhereverItIs) {
     for (const float bad :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),

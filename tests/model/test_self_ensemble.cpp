@@ -108,7 +108,6 @@ TEST_F(SelfEnsemble, GivesTheMeanOfNetworksThatSeeTheSceneMirrored) {
         }
 }
 
-/// What no single network does.
 /// Whoever fills grids keeps track of touched pixels now and then.
 TEST_F(SelfEnsemble, TakesGridsThatTellTouchedPixelsAndOthersInTurn) {
     Network told{model_, of(4)}, searching{model_, of(4)};
@@ -122,6 +121,7 @@ TEST_F(SelfEnsemble, TakesGridsThatTellTouchedPixelsAndOthersInTurn) {
     }
 }
 
+/// What no single network does.
 TEST_F(SelfEnsemble, OfAMirroredSceneIsTheMirroredFrame) {
     const auto difference = [this](int views, Mirror axes) {
         Network as_it_is{model_, of(views)}, mirrored{model_, of(views)};

@@ -226,6 +226,22 @@ TEST(EventWindows, KnowTheSameImagesHoweverTheStreamIsSplit) {
     }
 }
 
+/// Whether a packet happens to reach beyond the end must not matter.
+TEST(EventWindows, StopAtNoTimeAfterTheirEnd) {
+    const ToySource source{{}, false};
+    EventWindows::Settings settings = Beginning::settings(10);
+    settings.slicer.end = from_us(30);
+    Counters counters;
+    EventWindows frames{source, settings, nullptr, nullptr, counters};
+    std::vector<std::int64_t> stops;
+    frames.stop_at({from_us(20), from_us(30), from_us(40)},
+                   [&](SensorTime t) { stops.push_back(to_us(t)); });
+    RawPacket packet;
+    for (const std::int64_t us : {5, 25, 35, 45}) append_record(packet.bytes, ToyKind::event, us);
+    frames.take(packet);
+    EXPECT_EQ(stops, (std::vector<std::int64_t>{20, 30}));
+}
+
 TEST(EventWindows, SayWhatTheFilterFoundOfFlickeringLight) {
     struct Finds final : EventFilter {
         void process(std::vector<Event>&) override { found = {100.25, 100.25, found.left_out + 2}; }

@@ -216,6 +216,24 @@ TEST(LatencyKeeper, HalvesTheRateBeforeItMergesAndRestoresItWhenItIsCalm) {
     EXPECT_EQ(keeper.halvings(), 0U);
 }
 
+TEST(LatencyKeeper, TwentyWindowsInARowMustBeCalmBeforeTheRateGoesUp) {
+    LatencyKeeper keeper{200ms};
+    for (int i = 0; i < 8; ++i) keeper.window_took(60ms);
+    const auto strain = [&] { keeper.adapt(1); };
+    const auto calm = [&](int windows) {
+        for (int i = 0; i < windows; ++i) keeper.adapt(0);
+        return keeper.halvings();
+    };
+    for (int i = 0; i < 5; ++i) strain();
+    EXPECT_EQ(keeper.halvings(), 2U) << "and no further";
+    EXPECT_EQ(calm(19), 2U);
+    strain();
+    EXPECT_EQ(calm(19), 2U) << "they count anew";
+    EXPECT_EQ(calm(1), 1U);
+    EXPECT_EQ(calm(19), 1U) << "one halving at a time";
+    EXPECT_EQ(calm(1), 0U);
+}
+
 TEST(LatencyKeeper, OneLongPauseMakesItLeaveNothingOut) {
     LatencyKeeper keeper{200ms};
     keeper.packet_took(300ms);  // the first, all memory is cold

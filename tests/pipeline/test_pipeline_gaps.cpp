@@ -54,6 +54,43 @@ TEST(Pipeline, KeepsOrResetsItsStateOverAGapAsAsked) {
         }
 }
 
+/// Keeps the age of one pixel in each event window.
+class AgeKeeper final : public EncodeStage {
+public:
+    explicit AgeKeeper(int x) : x_(x) {}
+    LatentMap make_output() const override { return toy_.make_output(); }
+    void reset() noexcept override { toy_.reset(); }
+
+    std::vector<float> ages;
+
+private:
+    void step(const VoxelGrid& grid, LatentMap& latent) noexcept override {
+        ages.push_back(grid.values.pixel(0, x_).back());
+        toy_.encode(grid, latent);
+    }
+    int x_;
+    ToyEncoder toy_;
+};
+
+TEST(Pipeline, KnowsNoEventsOfBeforeAGapWhereItsStateBeginsAnew) {
+    for (const bool reset : {false, true}) {
+        PipelineSettings settings = quick_settings();
+        settings.reset_on_gap = reset;
+        ToySource toy(one_frame_per_packet(15));
+        GappySource source(toy);
+        source.gaps = {10};
+        AgeKeeper encoder{7};  // has an event in window 7; data are missing in window 9
+        ToyRenderer renderer;
+        ToySink sink;
+        Pipeline pipeline({source, encoder, renderer, {&sink}}, settings);
+        pipeline.run_sequential();
+        ASSERT_GT(encoder.ages.size(), 10U);
+        EXPECT_EQ(encoder.ages[7], 0);
+        EXPECT_EQ(encoder.ages[8], 1 / 8.F);
+        EXPECT_EQ(encoder.ages[9], reset ? 1 : 2 / 8.F);
+    }
+}
+
 TEST(Pipeline, BeginsANewStreamWhereTheCamerasClockWasReset) {
     auto first = toy_events(1000, 1, 500'000), second = toy_events(1000, 2, 1000);
     auto both = first;

@@ -33,8 +33,8 @@ int Run::report(const RunProgress& end) const {
         spdlog::warn("{}", why);
     if (states_ < states_at_.size() && !program_.signals.stopping())
         throw Error(ErrorKind::usage, "--states-at " + settings_.states_at[states_] +
-                                          ": expected a time before the last event, found one "
-                                          "after it; wrote " +
+                                          ": expected a time before the run's last event, found "
+                                          "one after it; wrote " +
                                           counted(states_, "state"));
     if (const std::string why = why_no_frames(end_counters);
         !why.empty() && !program_.signals.stopping() && !settings_.out.empty())

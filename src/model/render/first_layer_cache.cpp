@@ -59,6 +59,7 @@ FirstLayerCache::FirstLayerCache(const Model& model, int height, int width,
     for (WindowSums& sums : kept_) sums.values = {height, width, numbers_.units(outputs_)};
     // All count as changed until push() says otherwise.
     for (auto& flags : changed_) flags.assign(tiles_.size(), 1);
+    newest_change_.assign(tiles_.size(), 0);
     active_.reserve(tiles_.size());
     scratch_.assign(kWorkers, FloatBuffer(std::max({past_.scratch_size(kLatentSide, kLatentSide),
                                                     whole_.scratch_size(kLatentSide, kLatentSide),
@@ -160,6 +161,7 @@ void FirstLayerCache::note_changes(std::int64_t k, const LatentHistory& history)
         for (int y = near.y0; may_differ && same && y < near.y1; ++y)
             same = std::memcmp(mine.at(y, near.x0), before->at(y, near.x0), bytes) == 0;
         changed[std::size_t(n)] = std::uint8_t(!same);
+        if (!same) newest_change_[std::size_t(n)] = k;
     });
 }
 
@@ -183,8 +185,10 @@ bool FirstLayerCache::unchanged(const WindowSums& from, std::int64_t k, bool who
 }
 
 bool FirstLayerCache::still(std::size_t tile, std::int64_t from, std::int64_t to) const noexcept {
-    // z_0, before the first, reads as zeros, and changed_ says that z_1 differs from it.
-    if (from < 0 || from <= newest_ - kChangesKept) return false;
+    // z_0, before the first, reads as zeros, and z_1 counts as another.
+    if (from < 0) return false;
+    if (newest_change_[tile] <= from) return true;
+    if (from <= newest_ - kChangesKept) return false;
     for (std::int64_t j = from + 1; j <= to; ++j)
         if (changed_[std::size_t(j % kChangesKept)][tile] != 0) return false;
     return true;

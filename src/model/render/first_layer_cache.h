@@ -83,6 +83,7 @@ private:
     /// Per event window (k % size), per tile: whether z_k differs from z_{k-1} in the tile's reach.
     static constexpr std::int64_t kChangesKept = 16;
     std::array<std::vector<std::uint8_t>, kChangesKept> changed_;
+    std::vector<std::int64_t> newest_change_;  // per tile: the last such k, however long ago
     std::int64_t newest_ = 0;
     std::array<WindowSums, 2> kept_;
     std::vector<int> active_;           // tiles to be computed
