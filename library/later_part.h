@@ -11,27 +11,33 @@
 namespace eventide {
 
 /// Formats can jump to some place before a time only, many to the beginning alone. Once an event of
-/// that time or a later one has come, everything is passed on: what is earlier then is of a new
-/// clock.
+/// that time or a later one has come, all events are passed on: those that are earlier then are of
+/// a new clock. Images come behind the events of their time: early ones are left out until then.
 class LaterPart {
 public:
-    void begin(SensorTime t) { begin_ = t; }
+    void begin(SensorTime t) {
+        begin_ = t;
+        has_begun_ = false;
+    }
 
     /// Leaves out of `batch`, whose images came before its events, what is too early.
     void take(Batch& batch) {
         if (!begin_) return;
         const auto is_early = [t = *begin_](const auto& it) { return it.t < t; };
-        const auto first = std::ranges::find_if_not(batch.events, is_early);
-        if (first != batch.events.end()) begin_.reset();
-        batch.events.erase(batch.events.begin(), first);
-        batch.image_places.clear();
+        if (!has_begun_) {
+            const auto first = std::ranges::find_if_not(batch.events, is_early);
+            has_begun_ = first != batch.events.end();
+            batch.events.erase(batch.events.begin(), first);
+        }
         std::erase_if(batch.images, is_early);
+        if (std::ranges::any_of(batch.events, is_early)) return begin_.reset();
         std::erase_if(batch.imu, is_early);
         std::erase_if(batch.triggers, is_early);
     }
 
 private:
     std::optional<SensorTime> begin_;  // none: nothing is too early any more
+    bool has_begun_ = false;           // an event of that time or a later one has come
 };
 
 }  // namespace eventide

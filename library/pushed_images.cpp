@@ -1,7 +1,6 @@
 // Images of cameras and of callers, before they correct frames.
 #include "library/pushed_images.h"
 
-#include "src/core/bayer.h"
 #include "src/core/error.h"
 #include "src/core/sensor_limits.h"
 
@@ -54,9 +53,7 @@ ReferenceImage without_mosaic(const ReferenceImage& image) {
 
 void tell_filter(ColourFilter filter, std::vector<ReferenceImage>& images) {
     for (ReferenceImage& image : images)
-        if (image.channels == 1 && image.filter == ColourFilter::none &&
-            filter != ColourFilter::none)
-            image.filter = filter_at(filter, image.x0, image.y0);
+        if (image.channels == 1 && image.filter == ColourFilter::none) image.filter = filter;
 }
 
 }  // namespace eventide

@@ -16,7 +16,7 @@ void check_image(const ReferenceImage& image);
 ReferenceImage without_mosaic(const ReferenceImage& image);
 
 /// Says of images of one channel that they are mosaics of the sensor's `filter`, where they do not
-/// say.
+/// say. Also of those of a part: filters count from the sensor's corner.
 void tell_filter(ColourFilter filter, std::vector<ReferenceImage>& images);
 
 }  // namespace eventide

@@ -57,7 +57,7 @@ struct ReferenceImage {
     int x0 = 0;                                ///< px, left edge of the image in the sensor
     int y0 = 0;                                ///< px, its top edge
     int channels = 1;                          ///< 1 grey, 3 BGR, 4 BGRA; interleaved in `pixels`
-    ColourFilter filter = ColourFilter::none;  ///< of a mosaic that says so: channels is 1
+    ColourFilter filter = ColourFilter::none;  ///< the sensor's, of a mosaic: channels is 1
     Array2<std::uint16_t>
         pixels{};  ///< [y][x * channels], 0 to 65535; 8-bit data are scaled by 257
 

@@ -130,11 +130,14 @@ SlicerSettings parse_window(std::string_view text) {
     if (settings.rule == WindowRule::duration) refuse(text, "a constant width has no maximum");
     const auto second = text.find(',', comma + 1);
     settings.max_width = width(text.substr(comma + 1, second - comma - 1), text, "maximum");
-    if (second == text.npos) return settings;
-    if (settings.rule != WindowRule::content) refuse(text, "only auto has a minimum width");
-    settings.min_width = width(text.substr(second + 1), text, "minimum");
-    if (settings.min_width > settings.max_width)
-        refuse(text, "the minimum width exceeds the maximum");
+    if (second != text.npos) {
+        if (settings.rule != WindowRule::content) refuse(text, "only auto has a minimum width");
+        settings.min_width = width(text.substr(second + 1), text, "minimum");
+    }
+    if (settings.rule == WindowRule::content && settings.min_width > settings.max_width)
+        refuse(text, "the minimum width, " + duration_text(settings.min_width) +
+                         (second == text.npos ? " where none is given" : "") +
+                         ", exceeds the maximum");
     return settings;
 }
 

@@ -55,5 +55,22 @@ TEST(LaterPart, LeavesOutEarlyImagesSamplesAndTriggersToo) {
     EXPECT_EQ(batch.triggers.size(), 1U);
 }
 
+/// A camera reads an image out after the events of its time.
+TEST(LaterPart, LeavesOutAnEarlyImageBehindTheFirstEventUpToTheNewClock) {
+    const auto image_passes = [](LaterPart& later, std::int64_t t) {
+        Batch batch;
+        batch.images.push_back({.t = from_us(t)});
+        later.take(batch);
+        return !batch.images.empty();
+    };
+    LaterPart later;
+    later.begin(from_us(20));
+    EXPECT_EQ(times_after_a_jump(later, {30}), Times{30});
+    EXPECT_FALSE(image_passes(later, 19));
+    EXPECT_TRUE(image_passes(later, 20));
+    EXPECT_EQ(times_after_a_jump(later, {5}), Times{5});
+    EXPECT_TRUE(image_passes(later, 6));
+}
+
 }  // namespace
 }  // namespace eventide

@@ -48,14 +48,17 @@ TEST(Mosaic, WhatIsNoneStaysAsItIs) {
     EXPECT_EQ(without_mosaic(image), image) << "nothing to mix with";
 }
 
-TEST(Mosaic, APartOfTheSensorBeginsWithTheColourThatIsThere) {
-    std::vector<ReferenceImage> images(3);
+/// As a recording's own images say it, and as files are written and the program reads them.
+TEST(Mosaic, APartOfTheSensorHasTheFilterOfTheWhole) {
+    std::vector<ReferenceImage> images(4);
     images[1].x0 = 1;
     images[2].channels = 3;
+    images[3].filter = ColourFilter::bggr;
     tell_filter(ColourFilter::rggb, images);
     EXPECT_EQ(images[0].filter, ColourFilter::rggb);
-    EXPECT_EQ(images[1].filter, ColourFilter::grbg);
+    EXPECT_EQ(images[1].filter, ColourFilter::rggb);
     EXPECT_EQ(images[2].filter, ColourFilter::none) << "has colours of its own";
+    EXPECT_EQ(images[3].filter, ColourFilter::bggr) << "says so itself";
 }
 
 std::string refusal_of(const ReferenceImage& image) {
