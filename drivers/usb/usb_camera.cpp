@@ -61,20 +61,26 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
                 : "update it with iniVation's DV or Flashy"));
 }
 
+/// Of a camera without a serial number only the port is known.
+void UsbCamera::require_same(const SensorInfo& found, bool same_words) const {
+    if (info_.width == 0) return;
+    const std::string was = "is a " + model_text(info_) + ", found ";
+    if (found.name != info_.name || found.width != info_.width || found.height != info_.height)
+        refuse(was + "a " + model_text(found) + " in its place");
+    if (!same_words)
+        refuse(was + "one with another orientation, colour filter or IMU in its place");
+}
+
 void UsbCamera::open() {
-    const bool first = info_.width == 0;
     SensorInfo info;
     const auto set_up_device = [&](UsbDevice& device) {
-        if (first) info_.serial = device.identity().serial;  // for what set_up() may have to say
+        // For what set_up() may have to say.
+        if (info_.width == 0) info_.serial = device.identity().serial;
         info = set_up(device);
     };
     device_ = UsbDevice::open(selector_, set_up_device, options_.warn);
     const UsbIdentity& identity = device_->identity();
     info.serial = identity.serial;
-    // Of a camera without a serial number only the port is known.
-    if (!first &&
-        (info.name != info_.name || info.width != info_.width || info.height != info_.height))
-        refuse("is a " + model_text(info_) + ", found a " + model_text(info) + " in its place");
     info_ = std::move(info);
     // The same camera must come back, not another; one without a serial number to the same port.
     selector_.serial = identity.has_serial ? identity.serial : "";

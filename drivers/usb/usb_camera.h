@@ -87,6 +87,9 @@ protected:
     void require_firmware(const UsbIdentity& identity, int oldest) const;
     /// Throws where it is not logic 18 of this patch or later.
     void require_logic(UsbDevice& device, std::uint32_t oldest_patch);
+    /// Where it was opened before: throws where this is another camera, or one whose words mean
+    /// something else. Before anything is set.
+    void require_same(const SensorInfo& found, bool same_words) const;
     [[noreturn]] void refuse(const std::string& why) const;  ///< "the DAVIS '00000042' ..."
 
 private:

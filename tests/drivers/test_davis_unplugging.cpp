@@ -197,7 +197,6 @@ TEST(DavisUnplugged, WhyItIsNotBackIsToldOnce) {
     UsbTestbed bed;
     bed.plug_in(camera_before(2'000));
     DavisOptions options = small_transfers(true);
-    options.settings.roi = SensorRegion{0, 0, 300, 200};
     std::vector<std::string> warnings;
     options.warn = [&](const std::string& text) { warnings.push_back(text); };
     DavisCamera camera{options};
@@ -224,7 +223,8 @@ TEST(DavisUnplugged, WhyItIsNotBackIsToldOnce) {
     bed.plug_in(std::make_shared<DavisModel>(other));
     look();
     ASSERT_EQ(warnings.size(), 3U);
-    EXPECT_THAT(warnings[2], HasSubstr("roi reaches to 300,200, this sensor has 240x180"));
+    EXPECT_THAT(warnings[2],
+                HasSubstr("is a DAVIS346B of 346x260 px, found a DAVIS240C of 240x180"));
     bed.unplug();
     bed.plug_in(camera_before(2'000));
     while (camera.read(packet) != ReadStatus::data) continue;
@@ -289,6 +289,53 @@ TEST(DavisUnplugged, WithoutASerialNumberItIsTakenBackAtItsPort) {
     while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_TRUE(packet.gap_before);
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
+/// All of them DAVIS346B of 346x260 px.
+TEST(DavisUnplugged, OneWithoutASerialNumberThatSpeaksOtherwiseIsNotTakenForIt) {
+    using Change = std::pair<const char*, void (*)(DavisSensor&)>;
+    for (const auto& [what, change] :
+         {Change{"orientation",
+                 [](DavisSensor& s) {
+                     std::swap(s.dvs_columns, s.dvs_rows);
+                     s.dvs_swapped = false;
+                 }},
+          {"orientation of images", [](DavisSensor& s) { s.aps_flip_x = true; }},
+          {"colour filter", [](DavisSensor& s) { s.colour_filter = ColourFilter::rggb; }},
+          {"IMU", [](DavisSensor& s) { s.imu_flip_z = true; }}}) {
+        UsbTestbed bed;
+        DavisModelSettings settings;
+        settings.serial = "";
+        const auto plug_in = [&] {
+            const auto model = std::make_shared<DavisModel>(settings);
+            model->show(davis_scene(settings.sensor, {.events = 2'000}));
+            bed.plug_in(model);
+            return model;
+        };
+        plug_in();
+        std::vector<std::string> warnings;
+        DavisOptions options = small_transfers(true);
+        options.warn = [&](const std::string& text) { warnings.push_back(text); };
+        DavisCamera camera{options};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        bed.unplug();
+        while (camera.read(packet) != ReadStatus::timeout) continue;
+        const DavisSensor sensor = settings.sensor;
+        change(settings.sensor);
+        const auto other = plug_in();
+        for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout) << what;
+        ASSERT_EQ(warnings.size(), 1U) << what;
+        EXPECT_THAT(warnings[0],
+                    HasSubstr("is a DAVIS346B of 346x260 px, found one with another orientation, "
+                              "colour filter or IMU in its place"));
+        EXPECT_TRUE(other->writes().empty()) << "nothing of it was set";
+        bed.unplug();
+        settings.sensor = sensor;
+        plug_in();
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_TRUE(packet.reopened) << what;
+    }
 }
 
 }  // namespace
