@@ -93,8 +93,8 @@ std::size_t UsbCamera::packet_bytes() const {
 }
 
 void UsbCamera::start() {
-    dropped_until_now_ = dropped(*device_);
     drops_are_told_ = true;
+    dropped_until_now_ = drops_so_far().value_or(0);
     look_at_drops_ = std::chrono::steady_clock::now() + kDropsEvery;
     make_idle(*device_);
     std::this_thread::sleep_for(options_.waits.idle);
@@ -188,11 +188,19 @@ void UsbCamera::leave_out_half_word(std::vector<std::byte>& bytes) {
     gap_ = true;
 }
 
-void UsbCamera::count_drops() {
-    const std::uint64_t now = dropped(*device_);
-    // Less than before: the logic began to count anew.
-    count(CameraCount::dropped_events, now - (now < dropped_until_now_ ? 0 : dropped_until_now_));
-    dropped_until_now_ = now;
+/// Empty where the camera refuses to tell; it is not asked again then.
+std::optional<std::uint64_t> UsbCamera::drops_so_far() {
+    try {
+        return dropped(*device_);
+    } catch (const UsbDisconnected&) {
+        throw;
+    } catch (const Error& error) {
+        drops_are_told_ = false;
+        if (options_.warn)
+            options_.warn(std::string{"the "} + kind_.name + " '" + info_.serial +
+                          "' does not tell how many events it drops: " + error.what());
+        return std::nullopt;
+    }
 }
 
 /// Between transfers: the requests are short, but a camera that does not answer them would hold up
@@ -201,16 +209,12 @@ void UsbCamera::look_at_drops() {
     const auto now = std::chrono::steady_clock::now();
     if (!drops_are_told_ || now < look_at_drops_) return;
     look_at_drops_ = now + kDropsEvery;
-    try {
-        count_drops();
-    } catch (const UsbDisconnected&) {
-        throw;
-    } catch (const Error& error) {
-        drops_are_told_ = false;
-        if (options_.warn)
-            options_.warn(std::string{"the "} + kind_.name + " '" + info_.serial +
-                          "' no longer tells how many events it drops: " + error.what());
-    }
+    const auto dropped = drops_so_far();
+    if (!dropped) return;
+    // Less than before: the logic began to count anew.
+    count(CameraCount::dropped_events,
+          *dropped - (*dropped < dropped_until_now_ ? 0 : dropped_until_now_));
+    dropped_until_now_ = *dropped;
 }
 
 /// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.

@@ -96,7 +96,7 @@ private:
     void start();
     bool wait_for_begin();
     ReadStatus read_stream(RawPacket& into);
-    void count_drops();
+    std::optional<std::uint64_t> drops_so_far();
     void look_at_drops();
     void leave_out_half_word(std::vector<std::byte>& bytes);
     void close();
