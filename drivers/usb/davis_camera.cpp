@@ -76,14 +76,16 @@ SensorInfo DavisCamera::set_up(UsbDevice& device) {
                      device.identity().product == kDavisFx2 ? kFirmwareFx2 : kFirmwareFx3);
     require_logic(device, kPatch);
     read_features(device);
-    read_sensor(device);
-    write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
+    const DavisSensor sensor = read_sensor(device);
     SensorInfo info;
-    info.name = chip_name(std::uint32_t(sensor_.chip));
+    info.name = chip_name(std::uint32_t(sensor.chip));
     info.format = "davis";
-    info.width = sensor_.width();
-    info.height = sensor_.height();
-    info.colour_filter = sensor_.colour_filter;
+    info.width = sensor.width();
+    info.height = sensor.height();
+    info.colour_filter = sensor.colour_filter;
+    require_same(info, sensor == sensor_);
+    sensor_ = sensor;
+    write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
     return info;
 }
 
@@ -104,36 +106,38 @@ void DavisCamera::read_features(UsbDevice& device) {
     features_.deviation = number(kClockDeviation);
 }
 
-void DavisCamera::read_sensor(UsbDevice& device) {
+DavisSensor DavisCamera::read_sensor(UsbDevice& device) const {
     const auto number = [&](Register at) { return int(device.read_register(at)); };
     const std::uint32_t chip_id = device.read_register(kChipId);
     if (!is_supported(chip_id))
         refuse("has chip id " + std::to_string(chip_id) + " (" + chip_name(chip_id) +
                "), expected that of a DAVIS240A, B or C or of a DAVIS346A, B or C");
-    sensor_.chip = DavisChip(chip_id);
-    sensor_.dvs_columns = number(kDvsColumns);
-    sensor_.dvs_rows = number(kDvsRows);
-    sensor_.dvs_swapped = (number(kDvsOrientation) & 4) != 0;
-    sensor_.aps_columns = number(kApsColumns);
-    sensor_.aps_rows = number(kApsRows);
+    DavisSensor sensor;
+    sensor.chip = DavisChip(chip_id);
+    sensor.dvs_columns = number(kDvsColumns);
+    sensor.dvs_rows = number(kDvsRows);
+    sensor.dvs_swapped = (number(kDvsOrientation) & 4) != 0;
+    sensor.aps_columns = number(kApsColumns);
+    sensor.aps_rows = number(kApsRows);
     const int aps = number(kApsOrientation);
-    sensor_.aps_swapped = (aps & 4) != 0;
-    sensor_.colour_filter =
+    sensor.aps_swapped = (aps & 4) != 0;
+    sensor.colour_filter =
         colour_filter_of_number(device.read_register(kApsColorFilter)).value_or(ColourFilter::none);
-    sensor_.aps_flip_x = (aps & 2) != 0;
-    sensor_.aps_flip_y = (aps & 1) != 0;
-    sensor_.imu_type = number(kImuType);
+    sensor.aps_flip_x = (aps & 2) != 0;
+    sensor.aps_flip_y = (aps & 1) != 0;
+    sensor.imu_type = number(kImuType);
     const int imu = number(kImuOrientation);
-    sensor_.imu_flip_x = (imu & 4) != 0;
-    sensor_.imu_flip_y = (imu & 2) != 0;
-    sensor_.imu_flip_z = (imu & 1) != 0;
-    sensor_.adc_mhz = double(features_.adc_mhz) * features_.deviation / 1000;
+    sensor.imu_flip_x = (imu & 4) != 0;
+    sensor.imu_flip_y = (imu & 2) != 0;
+    sensor.imu_flip_z = (imu & 1) != 0;
+    sensor.adc_mhz = double(features_.adc_mhz) * features_.deviation / 1000;
     constexpr int kLargest = 1024;
     for (const int size :
-         {sensor_.dvs_columns, sensor_.dvs_rows, sensor_.aps_columns, sensor_.aps_rows})
+         {sensor.dvs_columns, sensor.dvs_rows, sensor.aps_columns, sensor.aps_rows})
         if (size < 1 || size > kLargest)
             refuse("says its sensor has a side of " + std::to_string(size) +
                    " px, expected 1 to 1024");
+    return sensor;
 }
 
 void DavisCamera::make_idle(UsbDevice& device) {

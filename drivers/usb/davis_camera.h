@@ -40,7 +40,7 @@ private:
     std::uint64_t dropped(UsbDevice& device) override;
     void between_transfers(UsbDevice& device) override;
     void read_features(UsbDevice& device);
-    void read_sensor(UsbDevice& device);
+    DavisSensor read_sensor(UsbDevice& device) const;
 
     DavisSettings settings_;
     DavisSensor sensor_;

@@ -50,18 +50,19 @@ SensorInfo DvxplorerCamera::set_up(UsbDevice& device) {
         std::this_thread::sleep_for(waits().idle);
         device.write_registers(chip_writes());
     }
-    read_sensor(device);
-    write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
-
+    const DvxplorerSensor sensor = read_sensor(device);
     SensorInfo info;
     info.name = features_.mini ? "DVXplorer Mini" : features_.lite ? "DVXplorer Lite" : "DVXplorer";
     info.format = features_.mini ? "dvxplorer-mini" : "dvxplorer";
-    info.width = sensor_.width;
-    info.height = sensor_.height;
+    info.width = sensor.width;
+    info.height = sensor.height;
+    require_same(info, sensor == sensor_);
+    sensor_ = sensor;
+    write_settings(device, configuration(settings_, sensor_, features_), settings_.verify);
     return info;
 }
 
-void DvxplorerCamera::read_sensor(UsbDevice& device) {
+DvxplorerSensor DvxplorerCamera::read_sensor(UsbDevice& device) {
     const auto number = [&](Register at) { return int(device.read_register(at)); };
     const int columns = number(kDvsColumns), rows = number(kDvsRows);
     const int axes = number(kDvsOrientation), imu = number(kImuOrientation);
@@ -70,24 +71,26 @@ void DvxplorerCamera::read_sensor(UsbDevice& device) {
         if (size < 1 || size > kLargest)
             refuse("says its sensor has a side of " + std::to_string(size) +
                    " px, expected 1 to 1024");
-    sensor_.swapped = (axes & 4) != 0;
-    sensor_.width = sensor_.swapped ? rows : columns;
-    sensor_.height = sensor_.swapped ? columns : rows;
-    sensor_.imu_flip_x = (imu & 4) != 0;
-    sensor_.imu_flip_y = (imu & 2) != 0;
-    sensor_.imu_flip_z = (imu & 1) != 0;
+    DvxplorerSensor sensor;
+    sensor.swapped = (axes & 4) != 0;
+    sensor.width = sensor.swapped ? rows : columns;
+    sensor.height = sensor.swapped ? columns : rows;
+    sensor.imu_flip_x = (imu & 4) != 0;
+    sensor.imu_flip_y = (imu & 2) != 0;
+    sensor.imu_flip_z = (imu & 1) != 0;
     features_.flip_x = (axes & 2) != 0;
     features_.flip_y = (axes & 1) != 0;
     features_.packet_format = device.read_register(dvxplorer::kPacketFormat);
     features_.mode_control = device.read_register(dvxplorer::kModeControl);
     features_.digital_enable = device.read_register(dvxplorer::kDigitalEnable);
     features_.statistics = false;
-    if (features_.mini) return;
+    if (features_.mini) return sensor;
     features_.statistics = number(kMuxHasStatistics) != 0;
     features_.generator = number(kExtHasGenerator) != 0;
     features_.logic_mhz = number(kLogicMhz);
     features_.usb_mhz = number(kUsbMhz);
     features_.deviation = number(kClockDeviation);
+    return sensor;
 }
 
 void DvxplorerCamera::make_idle(UsbDevice& device) {

@@ -37,7 +37,7 @@ private:
     std::uint64_t dropped(UsbDevice& device) override;
     std::uint8_t message_endpoint() const override;
     void frame_message(std::vector<std::byte>& message) const override;
-    void read_sensor(UsbDevice& device);
+    DvxplorerSensor read_sensor(UsbDevice& device);
 
     DvxplorerSettings settings_;
     DvxplorerSensor sensor_;

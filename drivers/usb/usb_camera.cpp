@@ -61,20 +61,26 @@ void UsbCamera::require_logic(UsbDevice& device, std::uint32_t oldest_patch) {
                 : "update it with iniVation's DV or Flashy"));
 }
 
+/// Of a camera without a serial number only the port is known.
+void UsbCamera::require_same(const SensorInfo& found, bool same_words) const {
+    if (info_.width == 0) return;
+    const std::string was = "is a " + model_text(info_) + ", found ";
+    if (found.name != info_.name || found.width != info_.width || found.height != info_.height)
+        refuse(was + "a " + model_text(found) + " in its place");
+    if (!same_words)
+        refuse(was + "one with another orientation, colour filter or IMU in its place");
+}
+
 void UsbCamera::open() {
-    const bool first = info_.width == 0;
     SensorInfo info;
     const auto set_up_device = [&](UsbDevice& device) {
-        if (first) info_.serial = device.identity().serial;  // for what set_up() may have to say
+        // For what set_up() may have to say.
+        if (info_.width == 0) info_.serial = device.identity().serial;
         info = set_up(device);
     };
     device_ = UsbDevice::open(selector_, set_up_device, options_.warn);
     const UsbIdentity& identity = device_->identity();
     info.serial = identity.serial;
-    // Of a camera without a serial number only the port is known.
-    if (!first &&
-        (info.name != info_.name || info.width != info_.width || info.height != info_.height))
-        refuse("is a " + model_text(info_) + ", found a " + model_text(info) + " in its place");
     info_ = std::move(info);
     // The same camera must come back, not another; one without a serial number to the same port.
     selector_.serial = identity.has_serial ? identity.serial : "";
@@ -87,8 +93,8 @@ std::size_t UsbCamera::packet_bytes() const {
 }
 
 void UsbCamera::start() {
-    dropped_until_now_ = dropped(*device_);
     drops_are_told_ = true;
+    dropped_until_now_ = drops_so_far().value_or(0);
     look_at_drops_ = std::chrono::steady_clock::now() + kDropsEvery;
     make_idle(*device_);
     std::this_thread::sleep_for(options_.waits.idle);
@@ -182,11 +188,19 @@ void UsbCamera::leave_out_half_word(std::vector<std::byte>& bytes) {
     gap_ = true;
 }
 
-void UsbCamera::count_drops() {
-    const std::uint64_t now = dropped(*device_);
-    // Less than before: the logic began to count anew.
-    count(CameraCount::dropped_events, now - (now < dropped_until_now_ ? 0 : dropped_until_now_));
-    dropped_until_now_ = now;
+/// Empty where the camera refuses to tell; it is not asked again then.
+std::optional<std::uint64_t> UsbCamera::drops_so_far() {
+    try {
+        return dropped(*device_);
+    } catch (const UsbDisconnected&) {
+        throw;
+    } catch (const Error& error) {
+        drops_are_told_ = false;
+        if (options_.warn)
+            options_.warn(std::string{"the "} + kind_.name + " '" + info_.serial +
+                          "' does not tell how many events it drops: " + error.what());
+        return std::nullopt;
+    }
 }
 
 /// Between transfers: the requests are short, but a camera that does not answer them would hold up
@@ -195,16 +209,12 @@ void UsbCamera::look_at_drops() {
     const auto now = std::chrono::steady_clock::now();
     if (!drops_are_told_ || now < look_at_drops_) return;
     look_at_drops_ = now + kDropsEvery;
-    try {
-        count_drops();
-    } catch (const UsbDisconnected&) {
-        throw;
-    } catch (const Error& error) {
-        drops_are_told_ = false;
-        if (options_.warn)
-            options_.warn(std::string{"the "} + kind_.name + " '" + info_.serial +
-                          "' no longer tells how many events it drops: " + error.what());
-    }
+    const auto dropped = drops_so_far();
+    if (!dropped) return;
+    // Less than before: the logic began to count anew.
+    count(CameraCount::dropped_events,
+          *dropped - (*dropped < dropped_until_now_ ? 0 : dropped_until_now_));
+    dropped_until_now_ = *dropped;
 }
 
 /// The camera is gone. Without reconnect that ends the run; with it, silence until it is back.

@@ -87,13 +87,16 @@ protected:
     void require_firmware(const UsbIdentity& identity, int oldest) const;
     /// Throws where it is not logic 18 of this patch or later.
     void require_logic(UsbDevice& device, std::uint32_t oldest_patch);
+    /// Where it was opened before: throws where this is another camera, or one whose words mean
+    /// something else. Before anything is set.
+    void require_same(const SensorInfo& found, bool same_words) const;
     [[noreturn]] void refuse(const std::string& why) const;  ///< "the DAVIS '00000042' ..."
 
 private:
     void start();
     bool wait_for_begin();
     ReadStatus read_stream(RawPacket& into);
-    void count_drops();
+    std::optional<std::uint64_t> drops_so_far();
     void look_at_drops();
     void leave_out_half_word(std::vector<std::byte>& bytes);
     void close();

@@ -5,14 +5,11 @@
 #include "src/core/error.h"
 #include "src/core/sensor_limits.h"
 
-#include <fcntl.h>
 #include <linux/videodev2.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -91,10 +88,7 @@ V4l2Camera::V4l2Camera(std::filesystem::path node, V4l2Settings settings, bool r
 void V4l2Camera::open() {
     if (!settings_.controls.empty()) {
         const auto& holder = settings_.subdevice.empty() ? node_ : settings_.subdevice;
-        const FileDescriptor fd{::open(holder.c_str(), O_RDWR | O_CLOEXEC)};
-        if (fd.get() < 0)
-            throw Error(ErrorKind::device, "the camera " + holder.string() + " cannot be opened: " +
-                                               std::system_category().message(errno));
+        const FileDescriptor fd = open_for_controls(holder);
         set_v4l2_controls(fd.get(), holder.string(), settings_.controls, settings_.control_places);
     }
     device_ = std::make_unique<V4l2Device>(node_, settings_.buffers);
@@ -143,6 +137,10 @@ ReadStatus V4l2Camera::read(RawPacket& into) {
         case V4l2Device::Status::data:
             break;
     }
+    if (reopened_) {
+        count(CameraCount::reconnects);
+        warnings_.is_back();
+    }
     note_sequence(filled.sequence);
     const auto bytes = before_end_of_data(filled.bytes, encoding_);
     into.bytes.assign(bytes.begin(), bytes.end());
@@ -168,12 +166,13 @@ void V4l2Camera::note_sequence(std::uint32_t sequence) {
 ReadStatus V4l2Camera::lost() {
     if (device_ && !reconnect_)
         throw Error(ErrorKind::device, "the camera " + node_.string() + " stopped" + kReconnect);
-    device_.reset();
     try {
+        if (device_ && reopened_)
+            throw Error(ErrorKind::device, "the camera " + node_.string() +
+                                               " is there, but stops before it gives data");
+        device_.reset();
         open();
-        count(CameraCount::reconnects);
         gap_ = reopened_ = true;
-        warnings_.is_back();
     } catch (const Error& error) {  // not there yet: the next look will tell
         device_.reset();
         warnings_.tell(error);

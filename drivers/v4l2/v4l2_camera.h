@@ -74,7 +74,8 @@ private:
     EvtEncoding encoding_ = EvtEncoding::evt3;
     std::unique_ptr<V4l2Device> device_;
     std::optional<std::uint32_t> last_sequence_;
-    bool gap_ = false, reopened_ = false;
+    bool gap_ = false;
+    bool reopened_ = false;  ///< and has given nothing since
     std::atomic<bool> stopped_{false};
 };
 

@@ -234,9 +234,16 @@ void set_v4l2_controls(int fd, const std::string& device,
     for (const KnownControl& control : known) set_control(fd, control);
 }
 
+FileDescriptor open_for_controls(const std::filesystem::path& node) {
+    FileDescriptor fd{::open(node.c_str(), O_RDWR | O_CLOEXEC)};
+    if (fd.get() < 0)
+        throw Error(ErrorKind::device, "the camera " + node.string() + " cannot be opened: " +
+                                           std::system_category().message(errno));
+    return fd;
+}
+
 std::optional<std::pair<int, int>> subdevice_size(const std::filesystem::path& subdevice) {
-    const FileDescriptor fd{::open(subdevice.c_str(), O_RDWR | O_CLOEXEC)};
-    if (fd.get() < 0) return std::nullopt;
+    const FileDescriptor fd = open_for_controls(subdevice);
     v4l2_subdev_selection selection{};
     selection.which = V4L2_SUBDEV_FORMAT_ACTIVE;
     selection.target = V4L2_SEL_TGT_CROP_BOUNDS;

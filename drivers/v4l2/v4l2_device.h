@@ -80,7 +80,11 @@ void set_v4l2_controls(int fd, const std::string& device,
                        const std::map<std::string, std::int64_t>& wanted,
                        const std::map<std::string, std::string>& places = {});
 
-/// Size of the sensor from its subdevice (CROP_BOUNDS); empty where it does not say.
+/// A node or subdevice for its controls. Throws Error (device).
+FileDescriptor open_for_controls(const std::filesystem::path& node);
+
+/// Size of the sensor from its subdevice (CROP_BOUNDS); empty where it does not say. Throws Error
+/// (device) for one that cannot be opened.
 std::optional<std::pair<int, int>> subdevice_size(const std::filesystem::path& subdevice);
 
 std::string fourcc_text(std::uint32_t fourcc);

@@ -77,4 +77,34 @@ Streamed stream(DavisCamera& camera, UsbTestbed& bed, const DavisModel& model) {
     return streamed;
 }
 
+std::shared_ptr<DavisModel> camera_before(int events) {
+    const auto model = std::make_shared<DavisModel>(testing_support::DavisModelSettings{});
+    model->show(davis_scene(model->settings().sensor, {.events = events}));
+    return model;
+}
+
+DavisOptions small_transfers(bool reconnect) {
+    DavisOptions options = at_once();
+    options.settings.transfers = {4, 8 << 10};
+    options.reconnect = reconnect;
+    return options;
+}
+
+Streamed streamed_by(PluggedIn& camera_side) {
+    DavisOptions options = at_once();
+    options.settings.transfers.bytes = 8 << 10;
+    DavisCamera camera{options};
+    return stream(camera, camera_side.bed, *camera_side.model);
+}
+
+bool is_part_of(const std::vector<Event>& some, const std::vector<Event>& all) {
+    auto at = all.begin();
+    for (const Event& event : some) {
+        at = std::find(at, all.end(), event);
+        if (at == all.end()) return false;
+        ++at;
+    }
+    return true;
+}
+
 }  // namespace eventide::test

@@ -25,6 +25,8 @@ struct SceneSettings {
     unsigned longest_pause_us = 2000;
     unsigned seed = 1;
 };
+/// Nothing wraps within this one, so that after a loss the next time word tells the whole time.
+inline constexpr SceneSettings kShortScene{.events = 20'000, .longest_pause_us = 3};
 Batch davis_scene(const DavisSensor& sensor, SceneSettings settings = {});
 
 /// A camera in software needs no time to settle.
@@ -56,5 +58,17 @@ struct PluggedIn {
     std::shared_ptr<testing_support::DavisModel> model;
     Batch seen;
 };
+
+/// A DAVIS346 that sees so many events.
+std::shared_ptr<testing_support::DavisModel> camera_before(int events);
+
+/// At once, with four transfers of 8 KiB.
+DavisOptions small_transfers(bool reconnect);
+
+/// Opens the camera with transfers of 8 KiB and reads its scene to the end.
+Streamed streamed_by(PluggedIn& camera_side);
+
+/// `some` is `all` with parts left out.
+bool is_part_of(const std::vector<Event>& some, const std::vector<Event>& all);
 
 }  // namespace eventide::test

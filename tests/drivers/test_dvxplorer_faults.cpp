@@ -81,6 +81,28 @@ TEST(DvxplorerFaults, UnpluggedItComesBackBehindAGap) {
     }
 }
 
+TEST(DvxplorerFaults, OneWithoutASerialNumberOfAnotherOrientationIsNotTakenForIt) {
+    DvxplorerModelSettings settings;
+    settings.serial = "";
+    PluggedIn side{settings};
+    std::vector<std::string> warnings;
+    DvxplorerOptions options = at_once();
+    options.reconnect = true;
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DvxplorerCamera camera{options};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    side.bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    settings.sensor.swapped = true;
+    side.bed.plug_in(std::make_shared<testing_support::DvxplorerModel>(settings));
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_THAT(warnings[0], HasSubstr("is a DVXplorer of 640x480 px, found one with another "
+                                       "orientation"));
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+}
+
 TEST(DvxplorerFaults, UnpluggedWithoutReconnectIsAnErrorThatNamesTheWayOut) {
     PluggedIn side;
     DvxplorerCamera camera{at_once()};

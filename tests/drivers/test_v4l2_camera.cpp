@@ -41,15 +41,16 @@ Batch read_all(V4l2Camera& camera, const V4l2Testbed& bed) {
     return data;
 }
 
-TEST(V4l2Camera, ASequenceThatStandsStillOrFallsIsNoLoss) {
+TEST(V4l2Camera, ASequenceThatStandsStillIsNoLossAndNoGap) {
     V4l2Testbed bed{sensor()};
     auto camera = open();
     constexpr std::uint32_t kStandsStill = UINT32_MAX;  // added to a number that then goes on by 1
-    for (unsigned x = 0; x < 8; ++x)
-        bed.give(
-            {bytes_of({time_high(1), time_low(x), row(7), column(x)}), x == 0 ? 0 : kStandsStill});
-    bed.give({bytes_of({time_low(9)}), UINT32_MAX - 3});  // the driver began anew
-    EXPECT_EQ(read_all(camera, bed).events.size(), 8U);
+    RawPacket packet;
+    for (unsigned k = 0; k < 8; ++k) {
+        bed.give({bytes_of({time_high(k)}), k == 0 ? 0 : kStandsStill});
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_FALSE(packet.gap_before) << k;
+    }
     EXPECT_EQ(camera.counters()[CameraCount::lost_transfers], 0U);
 }
 
@@ -70,6 +71,32 @@ TEST_P(V4l2Planes, EventsGoOnAcrossBuffers) {
     const Batch data = read_all(camera, bed);
     ASSERT_EQ(data.events.size(), 20U);
     EXPECT_EQ(data.events[3], (Event{from_us(4096 + 5), 3, 7, Polarity::on}));
+}
+
+TEST_P(V4l2Planes, ABufferThatIsSaidToHoldMoreThanItHasRoomForIsTakenToItsEnd) {
+    V4l2NodeSettings settings = sensor();
+    settings.multi_planar = GetParam();
+    settings.buffer_bytes = 4096;
+    V4l2Testbed bed{settings};
+    auto camera = open();
+    for (const std::uint32_t said : {4098U, 1U << 20, UINT32_MAX}) {
+        bed.give({std::vector<std::byte>(4096), 0, false, said});
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_EQ(packet.bytes.size(), 4096U) << said;
+    }
+}
+
+TEST_P(V4l2Planes, DataThatAreSaidToBeginBehindTheirEndAreNone) {
+    V4l2NodeSettings settings = sensor();
+    settings.multi_planar = GetParam();
+    settings.data_offset = 64;
+    V4l2Testbed bed{settings};
+    auto camera = open();
+    bed.give({bytes_of({time_high(1)}), 0, false, 0});
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.bytes.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(SingleAndMultiPlanar, V4l2Planes, testing::Bool());
@@ -205,6 +232,14 @@ TEST(V4l2Camera, ControlsAreSetByNameAndChecked) {
     EXPECT_EQ(with("bias_refr", 3), "nothing was thrown");
     EXPECT_THAT(with("bias_hpf", 1), HasSubstr("no control 'bias_hpf'"));
     EXPECT_THAT(with("serial", 1), HasSubstr("cannot be written"));
+}
+
+TEST(V4l2Camera, ASubdeviceThatIsNotThereIsNamed) {
+    V4l2Testbed bed{sensor()};
+    V4l2Settings wanted;
+    wanted.subdevice = "/dev/v4l-subdev7";
+    EXPECT_THAT(failure_of([&] { open(wanted); }),
+                HasSubstr("the camera /dev/v4l-subdev7 cannot be opened: No such file"));
 }
 
 TEST(V4l2Camera, SaysWhyItCannotBeUsed) {

@@ -11,6 +11,8 @@
 
 #include <linux/videodev2.h>
 
+#include <cerrno>
+
 namespace eventide {
 namespace {
 
@@ -113,10 +115,20 @@ TEST(V4l2Output, SigmaGoesBesideTheIntensity) {
 TEST(V4l2Output, NeverWaitsForADeviceThatTakesNothing) {
     V4l2Testbed bed{loopback({V4L2_PIX_FMT_GREY})};
     V4l2OutputSink sink{node()};
-    bed.refuse_writes(3);
+    bed.refuse_writes(3, EAGAIN);
     for (int i = 0; i < 5; ++i) sink.write(frame(4, 4));
     EXPECT_EQ(bed.written().size(), 2U);
     EXPECT_EQ(sink.skipped(), 3U);
+}
+
+TEST(V4l2Output, AFrameIsWrittenThoughSignalsInterruptIt) {
+    V4l2Testbed bed{loopback({V4L2_PIX_FMT_GREY})};
+    V4l2OutputSink sink{node()};
+    bed.refuse_writes(2, EINTR);
+    sink.write(frame(3, 2));
+    ASSERT_EQ(bed.written().size(), 1U);
+    EXPECT_THAT(numbers(bed.written()[0]), ElementsAre(0, 1, 2, 10, 11, 12));
+    EXPECT_EQ(sink.skipped(), 0U);
 }
 
 TEST(V4l2Output, OpenedAndClosedLeavesNothingBehind) {

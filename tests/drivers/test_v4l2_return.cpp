@@ -129,6 +129,30 @@ TEST(V4l2Camera, ASensorThatStopsIsAnErrorOrComesBack) {
     EXPECT_FALSE(packet.reopened);
 }
 
+TEST(V4l2Camera, ADriverThatGivesABufferThereIsNotIsLostLikeAnyOther) {
+    V4l2Testbed bed{sensor()};
+    auto camera = open();
+    bed.give({.bytes = bytes_of({time_high(0)}), .says_index = 4});
+    RawPacket packet;
+    EXPECT_THAT(failure_of([&] { camera.read(packet); }), HasSubstr("stopped; --reconnect"));
+}
+
+TEST(V4l2Camera, ASensorThatStopsBeforeItGivesDataHasNotComeBack) {
+    V4l2Testbed bed{sensor()};
+    std::vector<std::string> warnings;
+    auto camera = open({}, true, [&](const std::string& text) { warnings.push_back(text); });
+    bed.fail_with(EIO);
+    RawPacket packet;
+    for (int look = 0; look < 8; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("stops before it gives data")));
+    bed.fail_with(0);
+    bed.give({bytes_of({time_high(0)})});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.reopened);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
 TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
     V4l2Testbed bed{sensor()};
     for (const bool reconnect : {false, true}) {
@@ -170,6 +194,9 @@ TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
     EXPECT_EQ(camera.info().width, 320);
     come_back(kEvt3, 320, 320);
+    bed.give({bytes_of({time_high(0)})});
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
 }
 
@@ -185,7 +212,7 @@ TEST(V4l2Camera, WhyItIsNotBackIsToldOnce) {
         RawPacket packet;
         for (int i = 0; i < times; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
     };
-    bed.fail_with(EIO);
+    bed.fail_next("DQBUF", EIO);
     bed.fail_next("STREAMON", EIO, 3);
     look(3);
     EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("does not start streaming")));
@@ -193,8 +220,11 @@ TEST(V4l2Camera, WhyItIsNotBackIsToldOnce) {
     look(3);
     ASSERT_EQ(warnings.size(), 2U);
     EXPECT_THAT(warnings[1], HasSubstr("in use by another program"));
-    look(1);
+    bed.give({bytes_of({time_high(0)})});
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+    bed.fail_next("DQBUF", EIO);
     bed.fail_next("STREAMON", EIO);
     look(1);
     EXPECT_EQ(warnings.size(), 3U) << "gone once more";

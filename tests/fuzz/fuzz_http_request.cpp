@@ -34,6 +34,7 @@ void judge_head(std::string_view& text) {
           &head.content_encoding, &head.authorization, &head.token})
         *field = line_of(text);
     head.hosts = 1;
+    head.has_length = true;
     const GuardSettings open{"", {"camera.example"}}, closed{"secret", {"camera.example"}};
     const auto refusal = judge(head, open);
     if (!refusal) {

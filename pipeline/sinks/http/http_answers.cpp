@@ -59,6 +59,8 @@ RequestHead head_of(const httplib::Request& request) {
     head.path = request.path;
     head.hosts = request.get_header_value_count("Host");
     head.host = request.get_header_value("Host");
+    head.has_length = request.get_header_value_count("Content-Length") > 0 ||
+                      request.get_header_value_count("Transfer-Encoding") > 0;
     head.origin = request.get_header_value("Origin");
     head.fetch_site = request.get_header_value("Sec-Fetch-Site");
     head.content_type = request.get_header_value("Content-Type");

@@ -34,9 +34,11 @@ Addresses look_up(const HttpAddress& address) {
     const std::string port = std::to_string(address.port);
     if (const int error = getaddrinfo(address.host.c_str(), port.c_str(), &hints, &found);
         error != 0)
-        throw Error(ErrorKind::usage, name_of(address) + ": the host is not known: " +
-                                          (error == EAI_SYSTEM ? system_words(errno)
-                                                               : std::string{gai_strerror(error)}));
+        // Where no name server answers, as while a machine starts, the name may be right.
+        throw Error(
+            error == EAI_AGAIN || error == EAI_SYSTEM ? ErrorKind::failed : ErrorKind::usage,
+            name_of(address) + ": the host is not known: " +
+                (error == EAI_SYSTEM ? system_words(errno) : std::string{gai_strerror(error)}));
     return Addresses{found};
 }
 

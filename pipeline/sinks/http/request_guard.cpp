@@ -89,6 +89,8 @@ std::optional<Refusal> judge(const RequestHead& request, const GuardSettings& se
         return Refusal{403, "requests of pages of other sites are refused"};
     if (request.method == "POST" && !is_json(request.content_type))
         return Refusal{415, "expected Content-Type: application/json"};
+    if (request.method == "POST" && !request.has_length)
+        return Refusal{411, "expected Content-Length"};
     if (!request.content_encoding.empty() && lower_case(request.content_encoding) != "identity")
         return Refusal{415, "expected no Content-Encoding"};
     const bool open = request.path == "/page.js" || request.path == "/page.css";

@@ -18,7 +18,8 @@ struct GuardSettings {
 /// What of a request is judged; empty where it did not say.
 struct RequestHead {
     std::string method, path;
-    std::size_t hosts = 0;  ///< number of Host headers
+    std::size_t hosts = 0;    ///< number of Host headers
+    bool has_length = false;  ///< of its body, or that it comes in chunks
     std::string host, origin, fetch_site, content_type, content_encoding, authorization;
     std::string token;  ///< of the query
 };
@@ -36,7 +37,8 @@ struct Refusal {
 /// - an Origin is the host itself, and a browser that tells where a request comes from (Sec-Fetch-
 ///   Site) does not say another site, unless somebody followed a link to the page (403);
 /// - a POST is JSON (415), which other sites cannot send without asking first, and nobody answers;
-///   and it is not packed (415): a few hundred bytes could become a gigabyte;
+///   it says how long it is (411), as nobody waits for an end; and it is not packed (415): a few
+///   hundred bytes could become a gigabyte;
 /// - the token, where there is one, as "Authorization: Bearer" or in the query (401). The page's
 ///   script and style need none.
 std::optional<Refusal> judge(const RequestHead& request, const GuardSettings& settings);

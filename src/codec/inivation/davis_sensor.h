@@ -45,6 +45,8 @@ struct DavisSensor {
     int aps_height() const { return aps_swapped ? aps_columns : aps_rows; }
 
     bool is_davis240() const { return chip <= DavisChip::davis240c; }
+
+    friend bool operator==(const DavisSensor&, const DavisSensor&) = default;
 };
 
 }  // namespace eventide

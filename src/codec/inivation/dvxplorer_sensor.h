@@ -18,6 +18,8 @@ struct DvxplorerSensor {
 
     int columns() const { return swapped ? height : width; }
     int rows() const { return swapped ? width : height; }
+
+    friend bool operator==(const DvxplorerSensor&, const DvxplorerSensor&) = default;
 };
 
 /// Its IMU, for DavisImuAssembler.

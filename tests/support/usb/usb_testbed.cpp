@@ -113,6 +113,11 @@ void UsbTestbed::halt_data(int times) {
     parts_->faults.halts = times;
 }
 
+void UsbTestbed::overflow_data(int transfers) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->faults.overflows = transfers;
+}
+
 void UsbTestbed::fail_messages(int error) {
     const std::lock_guard lock{parts_->mutex};
     parts_->faults.message_error = error;

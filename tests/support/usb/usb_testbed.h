@@ -44,6 +44,9 @@ public:
     /// comes until the halt is cleared with no transfer in flight. So many times, each as soon as
     /// transfers wait.
     void halt_data(int times);
+    /// The device sends more than the next so many transfers have room for (babble): what does not
+    /// fit is lost.
+    void overflow_data(int transfers);
     /// Transfers for messages end with this errno (EPIPE: the endpoint halts); 0: they do not.
     void fail_messages(int error);
     /// At most so many bytes per transfer, to make short packets; 0 for as many as fit.

@@ -32,7 +32,7 @@ struct UsbUrb {
 /// What goes wrong; see UsbTestbed.
 struct UsbFaults {
     bool claimed = false;  // by another program
-    int control_stalls = 0, control_delay = 0, halts = 0, loses_byte_of_every = 0;
+    int control_stalls = 0, control_delay = 0, halts = 0, overflows = 0, loses_byte_of_every = 0;
     int unplug_after = -1, message_error = 0;
     std::size_t transfer_limit = 0, memory = SIZE_MAX;
 };
@@ -74,6 +74,7 @@ struct UsbTestbed::Parts {
     void answer_controls();
     int control(const UsbUrb& urb);
     void fill_transfers();
+    bool overflows();
     void tell_messages();
     std::size_t in_flight() const;
 };

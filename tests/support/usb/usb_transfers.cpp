@@ -3,6 +3,7 @@
 #include "tests/support/usb/usb_testbed_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <span>
 
@@ -67,12 +68,21 @@ void UsbTestbed::Parts::fill_transfers() {
             if (n == 0) return;
             if (faults.loses_byte_of_every > 0 && ++transfers % faults.loses_byte_of_every == 0)
                 --n;
-            urb.end(0, int(n));
+            urb.end(overflows() ? -EOVERFLOW : 0, int(n));
         }
         finished.push_back(std::move(urb));
         waiting.pop_front();
         tell_messages();
     }
+}
+
+/// Whether more comes than a transfer has room for; what that is, is lost.
+bool UsbTestbed::Parts::overflows() {
+    if (faults.overflows == 0) return false;
+    --faults.overflows;
+    std::array<std::byte, 512> lost{};
+    camera->send(lost);
+    return true;
 }
 
 void UsbTestbed::Parts::tell_messages() {

@@ -58,7 +58,7 @@ gboolean V4l2Testbed::Parts::handle_write(UMockdevIoctlClient* client) {
     const std::lock_guard lock{mutex};
     UMockdevIoctlData* data = umockdev_ioctl_client_get_arg(client);
     if (error != 0 || refusals > 0) {
-        umockdev_ioctl_client_complete(client, -1, error != 0 ? error : EAGAIN);
+        umockdev_ioctl_client_complete(client, -1, error != 0 ? error : refusal);
         if (refusals > 0) --refusals;
         return TRUE;
     }
@@ -224,15 +224,15 @@ int V4l2Testbed::Parts::dequeue(v4l2_buffer& buffer, UMockdevIoctlData* data) {
     const std::size_t n = std::min(content.bytes.size(), settings.buffer_bytes - offset);
     Owned<UMockdevIoctlData> holder;
     if (v4l2_plane* plane = settings.multi_planar ? plane_of(data, holder) : nullptr) {
-        plane->bytesused = std::uint32_t(offset + n);  // with what lies before the data
+        // With what lies before the data.
+        plane->bytesused = content.says_bytes.value_or(std::uint32_t(offset + n));
         plane->data_offset = std::uint32_t(offset);
     } else {
-        buffer.bytesused = std::uint32_t(n);
+        buffer.bytesused = content.says_bytes.value_or(std::uint32_t(n));
     }
-    return ::pwrite(backing, content.bytes.data(), n,
-                    off_t(buffer.index * settings.buffer_bytes + offset)) == ssize_t(n)
-               ? 0
-               : EIO;
+    const auto at = off_t(buffer.index * settings.buffer_bytes + offset);
+    buffer.index = content.says_index.value_or(buffer.index);
+    return ::pwrite(backing, content.bytes.data(), n, at) == ssize_t(n) ? 0 : EIO;
 }
 
 /// Enumeration by V4L2_CTRL_FLAG_NEXT_CTRL, ids in the order of the names.

@@ -80,9 +80,10 @@ void V4l2Testbed::fail_next(const std::string& request, int error, int times) {
     parts_->failures.insert(parts_->failures.end(), std::size_t(times), {request, error});
 }
 
-void V4l2Testbed::refuse_writes(int count) {
+void V4l2Testbed::refuse_writes(int count, int error) {
     const std::lock_guard lock{parts_->mutex};
     parts_->refusals = count;
+    parts_->refusal = error;
 }
 
 std::vector<std::vector<std::byte>> V4l2Testbed::written() const {

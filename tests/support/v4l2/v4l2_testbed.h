@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ public:
         std::vector<std::byte> bytes;
         std::uint32_t skipped_before = 0;  ///< buffers the driver lost: a jump of the sequence
         bool error_flag = false;
+        // Where the driver lies; empty: it says what is so.
+        std::optional<std::uint32_t> says_bytes = {}, says_index = {};
     };
     void give(Content content);
     bool all_taken() const;
@@ -56,8 +59,8 @@ public:
     /// Output: what was written, and the names of the ioctls in their order.
     std::vector<std::vector<std::byte>> written() const;
     std::vector<std::string> requests() const;
-    /// The next so many writes find the device busy (EAGAIN).
-    void refuse_writes(int count);
+    /// The next so many writes end with this errno: busy, or EINTR for a signal.
+    void refuse_writes(int count, int error);
 
     /// As a driver that was loaded again, or media-ctl, leaves it.
     void change_format(std::uint32_t fourcc, int width, int height);

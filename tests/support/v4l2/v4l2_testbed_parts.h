@@ -30,7 +30,7 @@ struct V4l2Testbed::Parts {
     std::deque<std::uint32_t> queued;
     std::deque<Content> contents;
     std::uint32_t sequence = 0, buffers = 0;
-    int error = 0, refusals = 0;
+    int error = 0, refusals = 0, refusal = 0;
     std::deque<std::pair<std::string, int>> failures;  // of requests by name, with this errno
     std::vector<std::vector<std::byte>> written;
     std::vector<std::string> requests;

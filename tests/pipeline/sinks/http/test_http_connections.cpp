@@ -148,6 +148,20 @@ TEST(HttpConnections, MoreThanThereIsRoomForAreTurnedAway) {
     EXPECT_TRUE(becomes_true([&] { return sink->connections() == 0; }));
 }
 
+/// Whose end would be where the client closes: "curl -X POST" without data waits for the answer.
+TEST(HttpConnections, APostWithoutALengthIsAnsweredAtOnce) {
+    const auto sink = open_page();
+    const std::string json = "Content-Type: application/json\r\n";
+    EXPECT_EQ(status_of(answer_to(*sink, request("POST /controls", json))), 411);
+    EXPECT_EQ(status_of(answer_to(*sink,
+                                  request("POST /controls", json + "Content-Length: 2\r\n", "{}"))),
+              200);
+    EXPECT_EQ(status_of(answer_to(*sink,
+                                  request("POST /controls", json + "Transfer-Encoding: chunked\r\n",
+                                          "2\r\n{}\r\n0\r\n\r\n"))),
+              200);
+}
+
 TEST(HttpConnections, RefusesWhatBrowsersAreMadeToSay) {
     const auto sink = open_page();
     EXPECT_EQ(status_of(answer_to(*sink, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n")), 421);

@@ -352,26 +352,6 @@ TEST(ShownFrame, EventsAreWhiteBlackOrGrey) {
     EXPECT_EQ(image.at<std::uint8_t>(0, 2), 0);
 }
 
-TEST(HttpSink, SaysWhichPortItWasGiven) {
-    const auto sink = open_page();
-    EXPECT_GT(sink->address().port, 0);
-}
-
-TEST(HttpSink, SaysThatAPortIsInUse) {
-    const auto sink = open_page();
-    HttpSettings settings;
-    settings.address = sink->address();
-    try {
-        open_http(std::move(settings));
-        FAIL() << "two listen at one port";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::failed);
-        EXPECT_THAT(error.what(), HasSubstr(std::to_string(sink->address().port)));
-        EXPECT_THAT(error.what(), HasSubstr("Address already in use"));
-        EXPECT_THAT(error.what(), HasSubstr("another program has it"));
-    }
-}
-
 TEST(HttpSink, RefusesWhatItCannotShow) {
     HttpSettings settings;
     settings.uncertainty = Uncertainty::alpha;

@@ -25,6 +25,7 @@ RequestHead post(const std::string& origin) {
     head.path = "/controls";
     head.origin = origin;
     head.content_type = "application/json";
+    head.has_length = true;
     return head;
 }
 
@@ -89,6 +90,14 @@ TEST(RequestGuard, PostsAreJson) {
     }
     head.content_type = "Application/JSON ; charset=utf-8";
     EXPECT_EQ(status(head), 200);
+}
+
+TEST(RequestGuard, PostsSayHowLongTheyAre) {
+    RequestHead head = post("");
+    head.has_length = false;
+    EXPECT_EQ(status(head), 411);
+    head.method = "GET";
+    EXPECT_EQ(status(head), 200) << "nothing follows its head";
 }
 
 /// 600 MB of zeros are 481 bytes of Brotli's.

@@ -1,0 +1,186 @@
+// Which camera is taken for the DAVIS that was pulled out, and what is told until it is back.
+#include "tests/drivers/davis_streams.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace eventide::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing_support::DavisModel;
+using testing_support::DavisModelSettings;
+using testing_support::UsbTestbed;
+
+TEST(DavisReturn, OnlyTheSameCameraIsTakenBack) {
+    UsbTestbed bed;
+    bed.plug_in(camera_before(2'000));
+    DavisOptions options = at_once();
+    options.reconnect = true;
+    DavisCamera camera{options};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    DavisModelSettings other;
+    other.serial = "00000007";
+    bed.plug_in(std::make_shared<DavisModel>(other));
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+    camera.stop();
+    EXPECT_EQ(camera.read(packet), ReadStatus::end);
+}
+
+TEST(DavisReturn, WhyItIsNotBackIsToldOnce) {
+    UsbTestbed bed;
+    bed.plug_in(camera_before(2'000));
+    DavisOptions options = small_transfers(true);
+    std::vector<std::string> warnings;
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DavisCamera camera{options};
+    RawPacket packet;
+    const auto look = [&] {
+        for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    };
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    look();
+    EXPECT_THAT(warnings, ElementsAre(HasSubstr("no DAVIS with serial '00000042' found")));
+    DavisModelSettings other;
+    other.logic = 16;
+    bed.plug_in(std::make_shared<DavisModel>(other));
+    look();
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_THAT(warnings[1], HasSubstr("has FPGA logic version 16"));
+    bed.unplug();
+    look();
+    EXPECT_EQ(warnings.size(), 2U) << "that was told";
+    other = {};
+    other.sensor = testing_support::davis240();
+    bed.plug_in(std::make_shared<DavisModel>(other));
+    look();
+    ASSERT_EQ(warnings.size(), 3U);
+    EXPECT_THAT(warnings[2],
+                HasSubstr("is a DAVIS346B of 346x260 px, found a DAVIS240C of 240x180"));
+    bed.unplug();
+    bed.plug_in(camera_before(2'000));
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    look();
+    ASSERT_EQ(warnings.size(), 4U);
+    EXPECT_EQ(warnings[3], warnings[0]) << "it is gone once more";
+}
+
+TEST(DavisReturn, WithASerialNumberItIsTakenBackAtAnyPortHoweverItWasNamed) {
+    for (const bool by_place : {false, true}) {
+        UsbTestbed bed;
+        bed.plug_in(camera_before(2'000), {.port = 2, .address = 5});
+        DavisOptions options = small_transfers(true);
+        if (by_place) std::tie(options.bus, options.address) = std::pair{1, 5};
+        DavisCamera camera{options};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        bed.unplug();
+        while (camera.read(packet) != ReadStatus::timeout) continue;
+        bed.plug_in(camera_before(2'000), {.port = 3, .address = 6});
+        for (int look = 0; look < 5 && packet.bytes.empty(); ++look) camera.read(packet);
+        EXPECT_TRUE(packet.gap_before) << by_place;
+        EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U) << by_place;
+    }
+}
+
+TEST(DavisReturn, WithoutASerialNumberItIsTakenBackAtItsPort) {
+    UsbTestbed bed;
+    DavisModelSettings settings;
+    settings.serial = "";
+    const auto plug_in = [&](testing_support::UsbPlace place) {
+        const auto model = std::make_shared<DavisModel>(settings);
+        model->show(davis_scene(settings.sensor, {.events = 2'000}));
+        bed.plug_in(model, place);
+    };
+    plug_in({.port = 2, .address = 5});
+    std::vector<std::string> warnings;
+    DavisOptions options = small_transfers(true);
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DavisCamera camera{options};
+    EXPECT_EQ(camera.info().serial, "TMP00261") << "bus 1, address 5";
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    plug_in({.port = 3, .address = 6});
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
+    bed.unplug();
+    const DavisSensor sensor = std::exchange(settings.sensor, testing_support::davis240());
+    plug_in({.port = 2, .address = 7});
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_THAT(warnings[1],
+                HasSubstr("is a DAVIS346B of 346x260 px, found a DAVIS240C of 240x180"))
+        << "another camera at its port";
+    bed.unplug();
+    settings.sensor = sensor;
+    plug_in({.port = 2, .address = 8});
+    while (camera.read(packet) != ReadStatus::data) continue;
+    EXPECT_TRUE(packet.gap_before);
+    EXPECT_EQ(camera.counters()[CameraCount::reconnects], 1U);
+}
+
+/// All of them DAVIS346B of 346x260 px.
+TEST(DavisReturn, OneWithoutASerialNumberThatSpeaksOtherwiseIsNotTakenForIt) {
+    using Change = std::pair<const char*, void (*)(DavisSensor&)>;
+    for (const auto& [what, change] :
+         {Change{"orientation",
+                 [](DavisSensor& s) {
+                     std::swap(s.dvs_columns, s.dvs_rows);
+                     s.dvs_swapped = false;
+                 }},
+          {"orientation of images", [](DavisSensor& s) { s.aps_flip_x = true; }},
+          {"colour filter", [](DavisSensor& s) { s.colour_filter = ColourFilter::rggb; }},
+          {"IMU", [](DavisSensor& s) { s.imu_flip_z = true; }}}) {
+        UsbTestbed bed;
+        DavisModelSettings settings;
+        settings.serial = "";
+        const auto plug_in = [&] {
+            const auto model = std::make_shared<DavisModel>(settings);
+            model->show(davis_scene(settings.sensor, {.events = 2'000}));
+            bed.plug_in(model);
+            return model;
+        };
+        plug_in();
+        std::vector<std::string> warnings;
+        DavisOptions options = small_transfers(true);
+        options.warn = [&](const std::string& text) { warnings.push_back(text); };
+        DavisCamera camera{options};
+        RawPacket packet;
+        while (camera.read(packet) != ReadStatus::data) continue;
+        bed.unplug();
+        while (camera.read(packet) != ReadStatus::timeout) continue;
+        const DavisSensor sensor = settings.sensor;
+        change(settings.sensor);
+        const auto other = plug_in();
+        for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout) << what;
+        ASSERT_EQ(warnings.size(), 1U) << what;
+        EXPECT_THAT(warnings[0],
+                    HasSubstr("is a DAVIS346B of 346x260 px, found one with another orientation, "
+                              "colour filter or IMU in its place"));
+        EXPECT_TRUE(other->writes().empty()) << "nothing of it was set";
+        bed.unplug();
+        settings.sensor = sensor;
+        plug_in();
+        while (camera.read(packet) != ReadStatus::data) continue;
+        EXPECT_TRUE(packet.reopened) << what;
+    }
+}
+
+}  // namespace
+}  // namespace eventide::test
