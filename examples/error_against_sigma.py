@@ -26,6 +26,8 @@ for events, truths in simulation:
         errors.append((intensity - truth).ravel())
         sigmas.append(sigma.ravel())
         waiting = [each for each in waiting if each[0] > t]
+if not errors:
+    sys.exit(f"{sys.argv[0]}: expected SECONDS long enough for a frame, found {seconds}")
 error, sigma = np.concatenate(errors), np.concatenate(sigmas)
 
 # %% Twelve bins of equally many pixels, by sigma

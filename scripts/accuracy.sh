@@ -7,11 +7,12 @@
 # script may be stopped at any time. EVENTIDE names the program; else build/release/apps/cli/eventide. SEQUENCES: how
 # many simulated ones (20).
 set -euo pipefail
-cd "$(dirname "$0")/.."
 all=(real calibration simulated sigma super-resolution silence)
 [ $# -ge 1 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-DATA=$1
+DATA=$(realpath "$1")
 model=${2:-default}
+[ ! -f "$model" ] || model=$(realpath "$model")
+cd "$(dirname "$0")/.."
 shift $(($# < 2 ? $# : 2))
 wanted=("$@")
 [ $# -gt 0 ] || wanted=("${all[@]}")

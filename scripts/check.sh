@@ -20,11 +20,12 @@ api() {
   doxygen docs/Doxyfile
 }
 
+# Those that make a folder are shells of their own, so that what they leave goes also where they fail or are interrupted.
+
 # As a user installs it, and his first frames.
-wheel() {
-  local place
+wheel() (
   place=$(mktemp -d)
-  trap 'rm -rf "$place"' RETURN
+  trap 'rm -rf "$place"' EXIT
   /usr/bin/python3 -m venv --system-site-packages "$place/python"
   "$place/python/bin/pip" install --quiet --no-index --config-settings build-dir="$PWD/build/wheel" .
   "$place/python/bin/python" - <<'END'
@@ -37,19 +38,18 @@ events["t"] = numpy.arange(2000) * 100
 frames.push(events)
 print("wheel:", eventide.__version__, frames)
 END
-}
+)
 
 # Every option off: a library that needs Highway and TBB, for which there is no io.
-core() {
-  local place needed
+core() (
   place=$(mktemp -d)
-  trap 'rm -rf "$place"' RETURN
+  trap 'rm -rf "$place"' EXIT
   cmake -S . -B build/core -G Ninja -DCMAKE_BUILD_TYPE=Release -DEVENTIDE_TESTS=OFF -DEVENTIDE_IO=OFF -DEVENTIDE_ONEDNN=OFF -DBUILD_SHARED_LIBS=ON
   cmake --build build/core
   cmake --install build/core --prefix "$place/eventide"
   needed=$(readelf -d "$place"/eventide/lib*/libeventide-core.so | sed -n 's/.*Shared library: .\(lib[a-z]*\)\..*/\1/p' | sort | tr '\n' ' ')
   [[ $needed == "libc libgcc libhwy libm libstdc libtbb " || $needed == "libc libhwy libm libtbb " ]] ||
-    { echo "core: expected libhwy and libtbb of packages, found $needed" >&2; return 1; }
+    { echo "core: expected libhwy and libtbb of packages, found $needed" >&2; exit 1; }
   [[ ! -e $place/eventide/bin ]]
   cmake -S examples -B "$place/examples" -DCMAKE_PREFIX_PATH="$place/eventide"
   cmake --build "$place/examples"
@@ -59,16 +59,15 @@ core() {
   printf 'cmake_minimum_required(VERSION 3.25)\nproject(asks LANGUAGES CXX)\nfind_package(eventide 1 REQUIRED COMPONENTS io)\n' >"$place/CMakeLists.txt"
   if cmake -S "$place" -B "$place/asks" -DCMAKE_PREFIX_PATH="$place/eventide" 2>"$place/words"; then
     echo "core: expected component io to be refused, found it accepted" >&2
-    return 1
+    exit 1
   fi
   grep -q "component 'io'" "$place/words"
-}
+)
 
 # The program without what an option can leave out: frames as ever, and a refusal in words, no file left, where one needs what is missing.
-bare() {
-  local place program
+bare() (
   place=$(mktemp -d)
-  trap 'rm -rf "$place"' RETURN
+  trap 'rm -rf "$place"' EXIT
   cmake -S . -B build/bare -G Ninja -DCMAKE_BUILD_TYPE=Release -DEVENTIDE_TESTS=OFF -DEVENTIDE_TRAIN=OFF -DEVENTIDE_PYTHON=OFF -DEVENTIDE_VIDEO=OFF \
     -DEVENTIDE_COMPRESSION=OFF -DEVENTIDE_HDF5=OFF -DEVENTIDE_SQLITE=OFF -DEVENTIDE_HTTP=OFF -DEVENTIDE_ROS2=OFF -DEVENTIDE_USB=OFF -DEVENTIDE_ONEDNN=OFF
   cmake --build build/bare
@@ -78,19 +77,18 @@ bare() {
   [[ $(head -c 9 "$place/video.y4m") == YUV4MPEG2 ]]
   if "$program" run "$place/recording.aedat4" --out "$place/video.mp4" 2>"$place/words"; then
     echo "bare: expected mp4 to be refused, found it accepted" >&2
-    return 1
+    exit 1
   fi
   grep -q EVENTIDE_VIDEO "$place/words"
   [[ ! -e $place/video.mp4 ]]
-}
+)
 
 # A clean Debian 12, made by debootstrap: packages are installed and run, and programs in C and Python built on them give the frames of
 # `eventide run`. As root, with Debian's archive at hand.
-packages() {
-  local place system
+packages() (
   place=$(mktemp -d)
   system=$place/system
-  trap 'umount "$system/proc" 2>/dev/null || true; rm -rf --one-file-system "$place"' RETURN
+  trap 'umount "$system/proc" 2>/dev/null || true; rm -rf --one-file-system "$place"' EXIT
   cmake --preset release >/dev/null
   cmake --build --preset release
   cpack --config build/release/CPackConfig.cmake -B "$place/packages"
@@ -110,7 +108,7 @@ packages() {
     python3 reconstruct.py recording.aedat4 in_python
     cmp in_c theirs
     cmp in_python theirs'
-}
+)
 
 scripts/install-packages.sh --tests
 for check in "${@:-all}"; do

@@ -7,10 +7,11 @@
 # build/release/apps/cli/eventide. SEEDS: how many scenes for each condition (4). Recordings are kept in out/conditions, and used
 # again where the same program would simulate the same.
 set -euo pipefail
-cd "$(dirname "$0")/.."
 [ $# -ge 1 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-DATA=$1
+DATA=$(realpath "$1")
 model=${2:-default}
+[ ! -f "$model" ] || model=$(realpath "$model")
+cd "$(dirname "$0")/.."
 program=${EVENTIDE:-build/release/apps/cli/eventide}
 seeds=${SEEDS:-4}
 kept=out/conditions

@@ -3,8 +3,9 @@
 #   scripts/demo.sh [folder]         the result goes to out/demo unless told otherwise
 # Makes frames as PNG, sigma as TIFF, an MP4, and one contact sheet: events, intensity, sigma and truth side by side.
 set -euo pipefail
+out=${1:+$(realpath -m "$1")}
 cd "$(dirname "$0")/.."
-out=${1:-out/demo}
+out=${out:-out/demo}
 
 scripts/install-packages.sh
 echo "building (preset release) ..."

@@ -6,6 +6,8 @@
 # run's budget is MINUTES of processor time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK,
 # EVENTIDE name the programs, OUT the folder of the runs (out/experiments).
 set -euo pipefail
+[ $# -ge 1 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+[ "$1" = --tables ] || DATA=$(realpath "$1")
 cd "$(dirname "$0")/.."
 build=build/release/apps
 train=${TRAIN:-$build/train/eventide-train}
@@ -157,9 +159,7 @@ write_tables() {
 }
 
 mkdir -p "$out"
-if [ "${1:-}" != --tables ]; then
-  [ $# -ge 1 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
-  DATA=$1
+if [ "$1" != --tables ]; then
   lpips=$DATA/perceptual/lpips_squeeze_v0.1.npz
   shift
   [ $# -gt 0 ] || set -- "${order[@]}"

@@ -3,10 +3,9 @@
 #   scripts/moving_picture.sh RECORDING OUT.webp [FROM]     davis346_robotarm.aedat4 docs/robotarm.webp 40ms
 # EVENTIDE names the program (build/release/apps/cli/eventide).
 set -euo pipefail
-cd "$(dirname "$0")/.."
 [ $# -ge 2 ] || { sed -n '2,4s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"${EVENTIDE:-build/release/apps/cli/eventide}" run "$1" --from "${3:-0s}" --window 5ms --fps 10 --slow 30 --size .8x \
+"${EVENTIDE:-$(dirname "$0")/../build/release/apps/cli/eventide}" run "$1" --from "${3:-0s}" --window 5ms --fps 10 --slow 30 --size .8x \
   --events --uncertainty side --out "$folder/video.mp4" --video-crf 10
 ffmpeg -nostdin -v error -n -i "$folder/video.mp4" -c:v libwebp_anim -quality 55 -loop 0 "$2"

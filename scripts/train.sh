@@ -6,8 +6,9 @@
 # far, for a model to ship: OUT/model.safetensors). Ctrl-C ends it after the step at hand with everything written.
 # TRAIN, PACK name the programs, OUT the folder of the run (out/train; with MODEL out/MODEL), PACKS that of the photographs, packed (out/train).
 set -euo pipefail
-cd "$(dirname "$0")/.."
 [ $# -ge 2 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+data=$(realpath "$1")
+cd "$(dirname "$0")/.."
 build=build/release/apps/train
 train=${TRAIN:-$build/eventide-train}
 pack=${PACK:-$build/eventide-pack-images}
@@ -15,9 +16,9 @@ out=${OUT:-out/${MODEL:-train}}
 packs=${PACKS:-out/train}
 checkpoint=config/models/checkpoints/${MODEL:-default}.safetensors
 mkdir -p "$out" "$packs"
-[ -e "$packs/train.pack" ] || "$pack" "$packs/train.pack" 400 "$1/images/photos" 0 0 "$1/images/objects" 0 0 "$1/images/elementary" 0 0 "$1/images/bsds500" 0 400
-[ -e "$packs/held_out.pack" ] || "$pack" "$packs/held_out.pack" 400 "$1/images/bsds500" 400 100
-ln -sf "$(realpath "$1/perceptual/lpips_squeeze_v0.1.npz")" "$out/lpips_squeeze_v0.1.npz"
+[ -e "$packs/train.pack" ] || "$pack" "$packs/train.pack" 400 "$data/images/photos" 0 0 "$data/images/objects" 0 0 "$data/images/elementary" 0 0 "$data/images/bsds500" 0 400
+[ -e "$packs/held_out.pack" ] || "$pack" "$packs/held_out.pack" 400 "$data/images/bsds500" 400 100
+ln -sf "$(realpath "$data/perceptual/lpips_squeeze_v0.1.npz")" "$out/lpips_squeeze_v0.1.npz"
 
 # What the run has had, so that MINUTES are added to it.
 had=$(head -c 100000 "$checkpoint" | grep -ao '"elapsed_minutes":"[^"]*"' | cut -d'"' -f4)

@@ -1,8 +1,11 @@
 // The EVREAL protocol (Ercan et al. 2023; docs/accuracy.md, "Protocols").
 #include "apps/evaluate/evaluate_recordings.h"
 #include "apps/evaluate/evreal_sequence.h"
+#include "src/core/number_text.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <string>
 #include <string_view>
 
 namespace eventide {
@@ -32,6 +35,13 @@ const Cut* cut_of(std::string_view sequence) {
     return found == std::end(kCuts) ? nullptr : found;
 }
 
+std::string none_in_cut(const Cut& cut, std::size_t images) {
+    char seconds[64];
+    std::snprintf(seconds, sizeof seconds, "%g to %g s", cut.from_s, cut.to_s);
+    return std::string{cut.sequence} + ": none of its " + counted(images, "image") +
+           " lies in the cut, " + seconds;
+}
+
 }  // namespace
 
 EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& how) {
@@ -50,7 +60,11 @@ EvaluateReport evaluate_evreal(const fs::path& dataset, const EvaluateSettings& 
         // EVREAL's loader never takes a recording's last image.
         if (!cut && sequence.images.size() > 1) which.to = sequence.images.rbegin()[1].t;
         if (cut) which.from = sequence.first + SensorDuration{std::int64_t(cut->from_s * 1e6)};
-        return evaluate_sequence(evaluation, std::move(sequence), "reference", which);
+        const std::size_t images = sequence.images.size();
+        SequenceResult result =
+            evaluate_sequence(evaluation, std::move(sequence), "reference", which);
+        if (cut && result.report.frames.empty()) result.notes.push_back(none_in_cut(*cut, images));
+        return result;
     });
     if (evaluation.lpips() && evaluation.lpips()->name() != "LPIPS-Alex")
         evaluation.note("EVREAL's tables are in LPIPS-Alex: these LPIPS numbers are " +

@@ -5,7 +5,6 @@
 #include "src/io/image_codecs.h"
 
 #include <algorithm>
-#include <set>
 
 namespace eventide {
 namespace {
@@ -25,12 +24,9 @@ Array2<float> read_intensity(const fs::path& path) {
 }
 
 std::vector<fs::path> images_in(const fs::path& folder) {
-    static const std::set<std::string> kKinds{".png", ".jpg", ".jpeg", ".pgm",
-                                              ".bmp", ".tif", ".tiff"};
     std::vector<fs::path> found;
     for (const fs::directory_entry& entry : fs::directory_iterator{folder})
-        if (entry.is_regular_file() && kKinds.count(entry.path().extension().string()) > 0)
-            found.push_back(entry.path());
+        if (entry.is_regular_file() && names_image(entry.path())) found.push_back(entry.path());
     std::ranges::sort(found);
     return found;
 }
@@ -44,7 +40,8 @@ SequenceReport compare(const std::string& name, const std::vector<fs::path>& fra
                                           std::to_string(truths.size()));
     SequenceReport out;
     for (std::size_t i = 0; i < frames.size(); ++i)
-        out.frames.push_back(judge.judge(read_intensity(frames[i]), {}, read_intensity(truths[i])));
+        out.frames.push_back(judged(frames[i].string() + " against " + truths[i].string(), judge,
+                                    read_intensity(frames[i]), {}, read_intensity(truths[i])));
     out.scores = mean_scores(name, out.frames);
     return out;
 }

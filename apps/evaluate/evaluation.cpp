@@ -61,7 +61,7 @@ SequenceEvaluation::SequenceEvaluation(const Evaluation& evaluation, const About
            [this](const Query& query, const Frame& frame) { judge(query, frame); }) {}
 
 void SequenceEvaluation::judge(const Query& query, const Frame& frame) {
-    FrameScores scores = judge_.judge(frame.intensity, frame.sigma, query.truth);
+    FrameScores scores = judged(about_.name, judge_, frame.intensity, frame.sigma, query.truth);
     scores.time_s = double((query.t - about_.t0).count()) * 1e-6;
     scores.events_per_pixel = double(frame.events) / (double(about_.width) * about_.height);
     result_.report.frames.push_back(scores);

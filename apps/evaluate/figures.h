@@ -40,12 +40,15 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
 /// "spatial", "temporal", "silence".
 const std::vector<std::string>& figure_names();
 
+/// Throws Error(usage) for another name, with those there are.
+void require_figure(std::string_view name);
+
 /// Whether a figure only needs what any evaluation observes, and such a figure.
 bool is_report_figure(std::string_view name);
 std::vector<Plot> report_figure(std::string_view name, const EvaluateReport& report);
 
-/// Makes a figure by name on simulated sequences. Throws Error(usage) for an unknown name.
-std::vector<Plot> make_figure(std::string_view name, const FigureSettings& what,
-                              const EvaluateSettings& how);
+/// One of the others.
+std::vector<Plot> simulated_figure(std::string_view name, const FigureSettings& what,
+                                   const EvaluateSettings& how);
 
 }  // namespace eventide

@@ -70,6 +70,11 @@ bool has_labels(const Plot& plot) {
            std::ranges::any_of(plot.series, [](const Series& s) { return !s.labels.empty(); });
 }
 
+/// No higher than rounding makes it: ticks would not add up to its height.
+bool is_flat(double low, double high) {
+    return high - low <= 1e-9 * std::max(std::abs(low), std::abs(high));
+}
+
 Axes axes_of(const Plot& plot) {
     double x0 = std::numeric_limits<double>::max(), x1 = std::numeric_limits<double>::lowest();
     double y0 = x0, y1 = x1;
@@ -89,8 +94,8 @@ Axes axes_of(const Plot& plot) {
     }
     if (x0 > x1) x0 = plot.log_x ? 1 : 0, x1 = plot.log_x ? 10 : 1, y0 = 0, y1 = 1;
     if (y0 > 0 && y0 < .6 * y1) y0 = 0;  // show zero where it is near
-    if (y1 <= y0) y0 = std::min(0., y0), y1 = y1 > 0 ? 1.25 * y1 : y0 + 1;
-    if (x1 <= x0) x1 = x0 + 1;
+    if (is_flat(y0, y1)) y0 = std::min(0., y0), y1 = y1 > 0 ? 1.25 * y1 : y0 + 1;
+    if (is_flat(x0, x1)) x1 = x0 + 1;
     if (has_labels(plot)) {  // room beside the outermost points
         const double room = plot.log_x ? std::pow(x1 / x0, .12) : .12 * (x1 - x0);
         x0 = plot.log_x ? x0 / std::sqrt(room) : x0 - room / 4;

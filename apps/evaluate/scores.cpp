@@ -1,6 +1,7 @@
 // Judging an image: raw, fitted, and its sigma.
 #include "apps/evaluate/scores.h"
 
+#include "src/core/error.h"
 #include "src/metrics/image_measures.h"
 
 #include <algorithm>
@@ -142,6 +143,15 @@ std::optional<double> Judge::observe_patches(const Array2<float>& lpips_map,
         ++at.frames;
     }
     return chosen;
+}
+
+FrameScores judged(const std::string& name, Judge& judge, const Array2<float>& intensity,
+                   const Array2<float>& sigma, const Array2<float>& truth) {
+    try {
+        return judge.judge(intensity, sigma, truth);
+    } catch (const Error& error) {
+        throw Error(error.kind(), name + ": " + error.what());
+    }
 }
 
 SequenceScores mean_scores(const std::string& sequence, const std::vector<FrameScores>& frames) {

@@ -84,6 +84,10 @@ private:
     Observations observations_;
 };
 
+/// The same; an Error names what was judged.
+FrameScores judged(const std::string& name, Judge& judge, const Array2<float>& intensity,
+                   const Array2<float>& sigma, const Array2<float>& truth);
+
 /// Means over frames; a score that only some frames have is the mean over those.
 SequenceScores mean_scores(const std::string& sequence, const std::vector<FrameScores>& frames);
 

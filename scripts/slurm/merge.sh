@@ -62,7 +62,9 @@ cut -f 2 "$out/plan.tsv" | uniq | while read -r whole; do
     joined=$(take_part "$part" "$to")
     read -r count last_index <<< "$joined"
   done < "$out/plan.tsv"
-  printf '{\n  "program": "scripts/slurm/merge.sh",\n  "frames": %d,\n  "parts": "%s",\n  "finished": true\n}\n' "$count" "parts/$whole.*" > "$work/run.json"
+  quoted=${whole//\\/\\\\} # as JSON has it
+  quoted=${quoted//\"/\\\"}
+  printf '{\n  "program": "scripts/slurm/merge.sh",\n  "frames": %d,\n  "parts": "%s",\n  "finished": true\n}\n' "$count" "parts/$quoted.*" > "$work/run.json"
   [ ! -e "$out/$whole" ] || refuse "merge.sh: $out/$whole: something else is there; expected nothing"
   mv -T "$work" "$out/$whole"
   echo "$out/$whole: $(counted "$count" frame)" >&2

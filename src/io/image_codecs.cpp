@@ -3,6 +3,11 @@
 
 #include "src/io/late_library.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
 namespace eventide {
 
 namespace {
@@ -48,6 +53,15 @@ bool encode_image(const std::string& extension, const cv::Mat& image,
 
 bool can_write_image(const std::string& path) {
     return codecs().have_writer(path);
+}
+
+bool names_image(const std::filesystem::path& path) {
+    constexpr std::array<std::string_view, 8> kEndings{".png", ".jpg",  ".jpeg", ".bmp",
+                                                       ".tif", ".tiff", ".webp", ".pgm"};
+    std::string ending = path.extension().string();
+    std::ranges::transform(ending, ending.begin(),
+                           [](unsigned char c) { return char(std::tolower(c)); });
+    return std::ranges::count(kEndings, ending) > 0;
 }
 
 }  // namespace eventide

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,9 @@ bool encode_image(const std::string& extension, const cv::Mat& image,
 
 /// cv::haveImageWriter(): by the extension.
 bool can_write_image(const std::string& path);
+
+/// Whether a folder's file is one of its images: by the extension, in small letters or capitals.
+/// Loads nothing.
+bool names_image(const std::filesystem::path& path);
 
 }  // namespace eventide

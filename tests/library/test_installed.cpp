@@ -182,10 +182,19 @@ TEST_F(Installed, PythonGivesTheSameFrames) {
 
 TEST_F(Installed, ErrorIsPlottedAgainstSigma) {
 #ifdef EVENTIDE_PYTHON
-    const Result result =
-        run({EVENTIDE_PYTHON, example("error_against_sigma.py"), temp_ / "plot.svg", "0.6"},
+    const auto plotted = [&](const std::string& seconds) {
+        return run(
+            {EVENTIDE_PYTHON, example("error_against_sigma.py"), temp_ / "plot.svg", seconds},
             {.environment = {{"PYTHONPATH", prefix() + "/" EVENTIDE_PYTHON_DIR},
                              {"EVENTIDE_MODELS", ""}}});
+    };
+    const Result none = plotted("0.001");
+    EXPECT_EQ(none.exit_code, 1);
+    EXPECT_NE(none.error.find(": expected SECONDS long enough for a frame, found 0.001\n"),
+              std::string::npos)
+        << none.error;
+    EXPECT_FALSE(std::filesystem::exists(temp_ / "plot.svg"));
+    const Result result = plotted("0.6");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_NE(result.output.find("frames: "), std::string::npos) << result.output;
     EXPECT_EQ(result.output.find("nan"), std::string::npos) << result.output;

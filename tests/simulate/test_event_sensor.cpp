@@ -124,6 +124,17 @@ TEST(EventSensor, LeaksOnEventsAtTheRateAskedFor) {
         EXPECT_NEAR(double(times[i] - times[i - 1]), 1e6 / 3, 100);
 }
 
+TEST(EventSensor, LeaksAsFastInBrightLightAndInShortSteps) {
+    SensorTraits traits = plain(.01);
+    traits.leak_hz = 2;  // .000002 in each step, beside a 9 of which rounding leaves .000001
+    const auto events = watch(
+        traits, 2.05, [](double) { return 9; }, 100);
+    ASSERT_EQ(double(events.size()), 4 * kPixels);
+    const auto times = times_by_pixel(events).begin()->second;
+    for (std::size_t i = 1; i < times.size(); ++i)
+        EXPECT_NEAR(double(times[i] - times[i - 1]), 500'000, 1000);
+}
+
 TEST(EventSensor, LeaksDifferentlyFromPixelToPixel) {
     SensorTraits traits = plain(.2);
     traits.leak_hz = 10;
@@ -170,6 +181,19 @@ TEST(EventSensor, HasAsManyHotPixelsAsAskedForAndTheyAlwaysFire) {
     for (const auto& [pixel, list] : times) {
         EXPECT_GT(list.size(), 400u);
         EXPECT_LT(list.size(), 4400u);  // two may have met in one pixel
+    }
+}
+
+TEST(EventSensor, KeepsTheRefractoryTimeOfHotPixelsToo) {
+    SensorTraits traits = plain(.3);
+    traits.hot_share = .05;
+    traits.hot_hz = {400, 800};
+    traits.refractory_s = .003;
+    const auto times = times_by_pixel(watch(traits, 1, still, 10'000));
+    EXPECT_GT(double(times.size()), .04 * kPixels);
+    for (const auto& [pixel, list] : times) {
+        EXPECT_NEAR(double(list.size()), 220, 60);  // r / (1 + .003 r)
+        for (std::size_t i = 1; i < list.size(); ++i) ASSERT_GE(list[i] - list[i - 1], 2999);
     }
 }
 

@@ -255,8 +255,9 @@ TEST_F(Commands, BenchPrintsTheMachineAndARowForEachSize) {
 }
 
 TEST_F(Commands, BenchReportsSpeedAgainstErrorInOnePage) {
-    const std::vector<std::string> command{"bench", "--report",  "report", "--sizes",
-                                           "32x24", "--seconds", "0.2"};
+    const std::vector<std::string> command{
+        "bench",     "--report", "report",       "--sizes", "32x24",          "--seconds", "0.2",
+        "--threads", "1",        "--precisions", "f32",     "--instructions", "avx2"};
     const Result result = eventide(command);
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const Json json = Json::parse(read_text(temp_ / "report/report.json"));
@@ -266,8 +267,10 @@ TEST_F(Commands, BenchReportsSpeedAgainstErrorInOnePage) {
         EXPECT_GT(row["mse"].get<double>(), 0);
         EXPECT_GT(row["encode_ms"].get<double>(), 0);
         has_front |= row["front"].get<bool>();
+        EXPECT_EQ(row["engine"].get<std::string>().find("bf16"), std::string::npos);
     }
     EXPECT_TRUE(has_front);
+    EXPECT_EQ(json["settings"], "scene demo, lookahead 2, threads 1, instructions avx2");
     EXPECT_LT(json["speed"][0]["codes_rms_of_range"].get<double>(), 1e-5);
     EXPECT_EQ(json["loads"].size(), 7U);
     EXPECT_GT(json["memory"][0]["resident_mib"].get<double>(), 1);

@@ -71,8 +71,12 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"bench", "--peers", "peers.csv"}, "expected --report");
     expect(2, {"bench", "--report", "r/", "--json", "a"}, "--json a: expected no --report");
     expect(2, {"bench", "--report", "r/", "--plots", "p/"}, "--plots p/: expected no --report");
-    for (const std::string only : {"--stages", "--activity"})
+    expect(2, {"bench", "--report", "r/", "--scale", "2"}, "expected --scale 1, found 2");
+    expect(2, {"bench", "--lpips", "l.npz"}, "--lpips l.npz: expected --report FOLDER, found none");
+    for (const std::string only : {"--stages", "--activity"}) {
         expect(2, {"bench", only, "--plots", "p/"}, "--plots p/: expected no " + only);
+        expect(2, {"bench", only, "--report", "r/"}, only + ": expected no --report");
+    }
     expect(2, {"bench", "--sizes", "64x48", "--sizes", "64"}, "--sizes: expected a size such as");
     expect(2, {"bench", "--precisions", "f32", "--precisions", "f16"},
            "--precisions: expected auto, f32 or bf16, found 'f16'");
@@ -88,6 +92,11 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "expected one of --json");
     expect(2, {"evaluate", recording(), "--figure", "spatial"},
            "expected no input, found " + recording() + "; --figure spatial");
+    expect(2, {"evaluate", recording(), "--figure", "sgima"},
+           "no figure is called 'sgima'; there are: events, ");
+    expect(2, {"evaluate", recording(), "--plots", "p/"}, "--plots p/: expected --figure NAME");
+    expect(2, {"evaluate", "a", "b", "--protocol", "folders", "--figure", "events"},
+           "--figure events: expected an evaluation of a model");
     expect(2, {"evaluate", "--figure", "sigma", "--figure", "spatial"},
            "expected one or more recordings");
     expect(2, {"run", "sim:demo?size=1x1", "--out", "null"}, "2 to 8192 px, found 1\n");

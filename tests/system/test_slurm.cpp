@@ -2,6 +2,7 @@
 #include "tests/system/program_test.h"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <string>
@@ -140,11 +141,14 @@ TEST_F(Slurm, ATaskThatWasStoppedIsNotDone) {
 
 TEST_F(Slurm, OneTaskForEachRecording) {
     simulate("a.aedat4");
-    fs::copy_file(temp_ / "a.aedat4", temp_ / "b.aedat4");
-    ASSERT_EQ(script("submit.sh", plan({"out", "a.aedat4", "b.aedat4"})).exit_code, 0);
+    const std::string other = "b \"slow\"";
+    fs::copy_file(temp_ / "a.aedat4", temp_ / (other + ".aedat4"));
+    ASSERT_EQ(script("submit.sh", plan({"out", "a.aedat4", other + ".aedat4"})).exit_code, 0);
     for (const char* task : {"0", "1"}) ASSERT_EQ(script("task.sh", {"out", task}).exit_code, 0);
     ASSERT_EQ(script("merge.sh", {"out"}).exit_code, 0);
-    EXPECT_TRUE(all_of("out/a") == all_of("out/b"));
+    EXPECT_TRUE(all_of("out/a") == all_of("out/" + other));
+    EXPECT_EQ(nlohmann::json::parse(read_text(temp_ / ("out/" + other + "/run.json")))["parts"],
+              "parts/" + other + ".*");
     EXPECT_TRUE(all_of("out/a") == all_of("out/parts/a.000000"));
 }
 

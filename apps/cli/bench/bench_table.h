@@ -21,7 +21,8 @@ struct BenchRow {
     double render_ms = 0;        ///< per frame, median
     double times_real_time = 0;  ///< sensor time over host time, everything included
     double latency_p50_ms = 0, latency_p99_ms = 0;  ///< at the pace of the camera
-    double mse = 0;                                 ///< against the truth at the frames' times
+    /// Against the truth at the frames' times; NaN where frames are of another size than it.
+    double mse = 0;
 };
 
 void print_bench_table(const std::vector<BenchRow>& rows);

@@ -67,6 +67,10 @@ struct Report {
     std::vector<PeerRow> peers;
 };
 
+/// The ways to run a network that are compared: each kind of arithmetic that was asked for and that
+/// this processor has a reason to choose, by the instructions that may be used.
+std::vector<EngineOptions> engines_of(const BenchSettings& settings, const bench::Peaks& peaks);
+
 /// A few minutes. Ends early, with what there is, when a signal comes.
 Report measure_report(const BenchSettings& settings, const std::vector<PeerRow>& peers,
                       Program& program);

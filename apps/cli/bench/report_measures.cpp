@@ -4,10 +4,10 @@
 #include "apps/cli/bench/report.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
+#include "apps/cli/settings/words.h"
 #include "apps/cli/stress/double_network.h"
 #include "apps/cli/version.h"
 #include "src/binning/binner.h"
-#include "src/core/instructions.h"
 #include "src/model/latent_codes.h"
 
 #include <spawn.h>
@@ -26,15 +26,6 @@ namespace {
 constexpr int kWindows = 6;                     ///< of a scene, for the stages alone
 constexpr int kCompared = 3;                    ///< of them, against double precision
 constexpr double kMaxComparedPixels = 100'000;  ///< double precision takes seconds a window beyond
-
-/// Built-in kernels where instructions are left out: oneDNN's do not ask us.
-std::vector<EngineOptions> engines(const bench::Peaks& peaks) {
-    std::vector<EngineOptions> all{
-        {.precision = Precision::f32, .kernels = Kernels::own, .instructions = Instructions::avx2}};
-    if (peaks.f32_avx512 > 0) all.push_back({.precision = Precision::f32});
-    if (peaks.bf16 > 0) all.push_back({.precision = Precision::bf16});
-    return all;
-}
 
 /// Latent maps of the first windows, by this engine and in double precision.
 double codes_against_double(const Model& model, const std::vector<bench::SceneWindow>& windows,
@@ -67,7 +58,7 @@ public:
             const auto data =
                 simulated_packets(settings_.scene, parse_size(size), settings_.seconds);
             for (const std::string& model : settings_.models)
-                for (const EngineOptions& engine : engines(report.peaks)) {
+                for (const EngineOptions& engine : engines_of(settings_, report.peaks)) {
                     if (stopping(model + ", " + size)) return;
                     report.speed.push_back(speed_row(model, engine, windows, data, report));
                 }
@@ -95,11 +86,9 @@ public:
         const auto windows = bench::scene_windows(recording_of(settings_.scene, size), kWindows);
         if (stopping("activity")) return;
         const auto file = find_model(settings_.models[0]);
-        bench::StageSettings how = stage_settings(size);
-        how.engine.still_codes = 0.02;
-        how.engine.still_time = 1;
-        report.activity = bench::measure_activity(file.stem().string(), load_model(file), windows,
-                                                  how, {0, .01, .05, .25, 1});
+        report.activity =
+            bench::measure_activity(file.stem().string(), load_model(file), windows,
+                                    settings_.stage(size, precision()), {0, .01, .05, .25, 1});
     }
 
     void loads(Report& report) {
@@ -132,20 +121,11 @@ private:
         return program_.signals.stopping();
     }
 
-    bench::StageSettings stage_settings(const Size& size) const {
-        bench::StageSettings how;
-        how.width = size.width;
-        how.height = size.height;
-        how.lookahead = settings_.lookahead;
-        how.repetitions = settings_.repetitions;
-        return how;
-    }
+    /// Where one has to do for all.
+    Precision precision() const { return parse_word(settings_.precisions[0], kPrecisionWords); }
 
     PipelineBenchSettings pipeline_settings(const std::string& model) const {
-        PipelineBenchSettings how;
-        how.model = model;
-        how.lookahead = settings_.lookahead;
-        return how;
+        return settings_.pipeline(model, precision());
     }
 
     SpeedRow speed_row(const std::string& name, const EngineOptions& engine,
@@ -154,11 +134,12 @@ private:
         const Size sensor{data->info.width, data->info.height};
         const std::filesystem::path file = find_model(name);
         const Model model = load_model(file);
-        bench::StageSettings how = stage_settings(sensor);
+        bench::StageSettings how = settings_.stage(sensor, engine.precision);
         how.engine = engine;
         const auto stages =
             bench::measure_stages(file.stem().string(), model, windows, how, report.peaks);
         PipelineBenchSettings of_error = pipeline_settings(name);
+        of_error.engine = engine.engine;
         of_error.precision = engine.precision;
         of_error.kernels = engine.kernels;
         of_error.instructions = engine.instructions;
@@ -203,14 +184,28 @@ private:
     }
 
     /// Of this program, run by itself on the simulated camera.
-    static double resident_mib(const std::string& model, const std::string& size) {
-        const std::string source = "sim:demo?speed=max&seconds=1&size=" + size;
-        std::array<const char*, 11> arguments{
-            "eventide",    "run", source.c_str(), "--model", model.c_str(), "--out", "null",
-            "--lookahead", "0",   "--quiet",      nullptr};
+    double resident_mib(const std::string& model, const std::string& size) const {
+        std::vector<std::string> words{"eventide",
+                                       "run",
+                                       "sim:demo?speed=max&seconds=1&size=" + size,
+                                       "--out",
+                                       "null",
+                                       "--lookahead",
+                                       "0",
+                                       "--quiet",
+                                       "--model",
+                                       model,
+                                       "--precision",
+                                       settings_.precisions[0],
+                                       "--engine",
+                                       show_word(settings_.engine, kEngineWords),
+                                       "--threads",
+                                       std::to_string(settings_.threads)};
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
         pid_t child = 0;
-        if (posix_spawn(&child, "/proc/self/exe", nullptr, nullptr,
-                        const_cast<char**>(arguments.data()), environ) != 0)
+        if (posix_spawn(&child, "/proc/self/exe", nullptr, nullptr, arguments.data(), environ) != 0)
             return 0;
         int status = 0;
         rusage usage{};
@@ -224,6 +219,28 @@ private:
 };
 
 }  // namespace
+
+/// Built-in kernels where instructions are left out: oneDNN's do not ask us.
+std::vector<EngineOptions> engines_of(const BenchSettings& settings, const bench::Peaks& peaks) {
+    if (settings.engine == Engine::plain) return {{.engine = Engine::plain}};
+    const auto asks = [&](Precision wanted) {
+        return std::ranges::any_of(settings.precisions, [&](const std::string& text) {
+            return parse_word(text, kPrecisionWords) == wanted;
+        });
+    };
+    const bool any = asks(Precision::automatic);
+    std::vector<EngineOptions> all;
+    if (any || asks(Precision::f32)) {
+        all.push_back({.precision = Precision::f32,
+                       .kernels = Kernels::own,
+                       .instructions = std::max(settings.instructions, Instructions::avx2)});
+        if (peaks.f32_avx512 > 0)
+            all.push_back({.precision = Precision::f32, .instructions = settings.instructions});
+    }
+    if ((any && peaks.bf16 > 0) || asks(Precision::bf16))
+        all.push_back({.precision = Precision::bf16, .instructions = settings.instructions});
+    return all;
+}
 
 void mark_front(std::vector<SpeedRow>& rows) {
     constexpr double kAlike = .005;  // errors this near to each other do not decide
@@ -243,12 +260,14 @@ Report measure_report(const BenchSettings& settings, const std::vector<PeerRow>&
     Report report;
     report.machine = processor_text();
     report.program = "eventide " + version() + ", " + compiler_text();
-    report.settings =
-        "scene " + settings.scene + ", lookahead " + std::to_string(settings.lookahead);
+    report.settings = "scene " + settings.scene + ", lookahead " +
+                      std::to_string(settings.lookahead) + ", threads " +
+                      (settings.threads == 0 ? "all" : std::to_string(settings.threads)) +
+                      ", instructions " + show_word(settings.instructions, kInstructionWords);
     report.peers = peers;
     Measurement measurement{settings, program};
     measurement.memory(report);  // first: the system counts what this process held before, too
-    report.peaks = bench::measure_peaks(Instructions::best);
+    report.peaks = bench::measure_peaks(settings.instructions);
     if (const auto lpips = load_lpips(settings.lpips)) report.lpips_name = lpips->name();
     measurement.speed(report);
     measurement.rates(report);

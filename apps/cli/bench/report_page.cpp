@@ -133,12 +133,12 @@ std::string page_of(const Report& report) {
                        "Their published shapes with random weights in libtorch, beside ours in one "
                        "run of bench_peers: an event window and a frame of it, by the clock.",
                        peer_table(report))) +
-        section("Frame rate",
-                "The whole pipeline as fast as possible, all threads: 1 is real time.",
+        section("Frame rate", "The whole pipeline as fast as possible: 1 is real time.",
                 svg(plots[1]) + rate_table(report)) +
         section("Activity",
                 "A square in the middle of the scene moves, the rest is still. Bounded: frames at "
-                "changing places of the window, copied where codes changed by at most .02.",
+                "changing places of the window, copied where codes changed by no more than "
+                "--still-codes.",
                 svg(plots[2]) + activity_table(report)) +
         section("Latency",
                 "Events at random places, 100 frames/s, at the camera's pace: from the last packet "

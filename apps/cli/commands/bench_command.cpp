@@ -43,6 +43,12 @@ void refuse_beside(const std::string& option, const std::string& value, const st
         throw Error(ErrorKind::usage, option + " " + value + ": expected no " + other);
 }
 
+void expect_report(const std::string& option, const std::string& value) {
+    if (!value.empty())
+        throw Error(ErrorKind::usage,
+                    option + " " + value + ": expected --report FOLDER, found none");
+}
+
 /// Some of the rows would be taken for all.
 void refuse_partial(Program& program) {
     if (program.signals.stopping())
@@ -97,14 +103,15 @@ void BenchCommand::add_measured(SettingTable& table) {
     add(flag_setting("activity", activity_,
                      "Cost and error when 0, 1, 5, 25 and 100 % of the scene moves, without the "
                      "pipeline."));
-    add(number_setting("still_codes", settings_.still_codes, "D",
-                       "With --activity, frames at changing places in the window: a part whose "
-                       "codes changed by no more than this is copied.",
-                       0, 100));
     add(number_setting(
-        "still_time", settings_.still_time, "WINDOWS",
-        "With --activity: how far the place in the window may be from the one it is copied from.",
-        0, 1));
+        "still_codes", settings_.still_codes, "D",
+        "With --activity or --report, frames at changing places in the window: a part whose "
+        "codes changed by no more than this is copied.",
+        0, 100));
+    add(number_setting("still_time", settings_.still_time, "WINDOWS",
+                       "With --activity or --report: how far the place in the window may be from "
+                       "the one it is copied from.",
+                       0, 1));
     add(whole_setting("repetitions", settings_.repetitions, "N", "Of each stage.",
                       bench::kLeastRepetitions, 1'000'000));
 }
@@ -117,7 +124,7 @@ void BenchCommand::add_outputs(SettingTable& table) {
                      "Instead of all this: a page, index.html, of speed against error for models, "
                      "arithmetic and lengths of event windows, frame rate, activity, latency by "
                      "rate of events, and memory, with its plots and JSON; minutes, of --sizes, "
-                     "--models and --seconds."));
+                     "--models, --precisions and --seconds."));
     add(text_setting("lpips", settings_.lpips, "FILE",
                      "With --report: LPIPS weights, as in evaluate."));
     add(path_setting("peers", peers_, "FILE",
@@ -155,9 +162,18 @@ void BenchCommand::check_settings() const {
     if (!report_.empty()) {
         refuse_beside("--json", json_, "--report, which has its own report.json");
         refuse_beside("--plots", plots_, "--report, which has its own plots");
-    } else if (!peers_.empty()) {
-        throw Error(ErrorKind::usage,
-                    "--peers " + peers_ + ": expected --report FOLDER, found none");
+        if (stages_ || activity_)
+            throw Error(ErrorKind::usage, std::string{stages_ ? "--stages" : "--activity"} +
+                                              ": expected no --report, which has both");
+        if (settings_.scale != 1)
+            throw Error(ErrorKind::usage,
+                        "--report " + report_ +
+                            ": its frames are compared with images of the sensor's size; expected "
+                            "--scale 1, found " +
+                            show_number(settings_.scale));
+    } else {
+        expect_report("--peers", peers_);
+        expect_report("--lpips", settings_.lpips);
     }
     if (stages_) refuse_beside("--plots", plots_, "--stages, as the plot is of the pipeline");
     if (activity_) refuse_beside("--plots", plots_, "--activity, as the plot is of the pipeline");

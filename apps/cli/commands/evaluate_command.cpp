@@ -92,6 +92,16 @@ void EvaluateCommand::require_inputs() const {
     if (protocol_ == Protocol::recordings) std::ranges::for_each(inputs_, refuse_camera);
 }
 
+void EvaluateCommand::require_figures_that_fit() const {
+    std::ranges::for_each(figures_, require_figure);
+    if (figures_.empty() && plots_ != kPlots)
+        throw Error(ErrorKind::usage, "--plots " + plots_ + ": expected --figure NAME, found none");
+    if (!figures_.empty() && protocol_ == Protocol::folders)
+        throw Error(ErrorKind::usage, "--figure " + figures_.front() +
+                                          ": expected an evaluation of a model, found --protocol "
+                                          "folders");
+}
+
 void EvaluateCommand::require_outputs_that_fit() const {
     if (!calibrated_.empty() && given_images_ > 0)
         throw Error(ErrorKind::usage,
@@ -154,7 +164,7 @@ void EvaluateCommand::make_simulated_figures(const EvaluateSettings& how) const 
     FigureSettings what;
     what.simulated = simulated();
     for (const std::string& figure : figures_)
-        if (!is_report_figure(figure)) write_plots(make_figure(figure, what, how));
+        if (!is_report_figure(figure)) write_plots(simulated_figure(figure, what, how));
 }
 
 void EvaluateCommand::write(const EvaluateReport& report) const {
@@ -209,6 +219,10 @@ void EvaluateCommand::name_evaluation_files(const EvaluateSettings& how, NamedFi
 int EvaluateCommand::run(Program& program) {
     const EvaluateSettings settings = how(program);
     name_evaluation_files(settings, program.files);
+    std::ranges::sort(figures_);
+    figures_.erase(std::ranges::unique(figures_).begin(),
+                   figures_.end());  // named twice, made once
+    require_figures_that_fit();
     require_outputs_that_fit();
     require_inputs();
     make_simulated_figures(settings);

@@ -27,6 +27,7 @@ private:
     SimulatedSettings simulated() const;
     EvaluateReport evaluate(const EvaluateSettings& how) const;
     void require_inputs() const;
+    void require_figures_that_fit() const;
     void require_outputs_that_fit() const;
     bool evaluates() const;
     void name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const;
@@ -53,7 +54,8 @@ private:
     double scale_ = 1;
     std::string json_, csv_, frame_csv_;
     std::vector<std::string> figures_;
-    std::string plots_ = "plots";
+    static constexpr const char* kPlots = "plots";  // where nothing else is said
+    std::string plots_ = kPlots;
     CalibrationRule calibration_ = CalibrationRule::coverage;
     std::string calibrated_;
     bool overwrite_ = false;

@@ -1,6 +1,7 @@
 // A model's networks in double precision.
 #include "apps/cli/stress/double_network.h"
 
+#include "apps/cli/stress/worst.h"
 #include "src/model/encode/plain_encoder.h"
 
 #include <algorithm>
@@ -47,19 +48,19 @@ void Distance::add(std::span<const float> fast, std::span<const double> exact) {
     double largest = 1, most = 0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
         const double difference = std::abs(double(fast[i]) - exact[i]);
-        if (!(difference <= most)) most = difference;
+        most = worst_of(most, difference);
         largest = std::max(largest, std::abs(exact[i]));
         squares += difference * difference;
         power += exact[i] * exact[i];
         lowest = std::min(lowest, exact[i]);
         highest = std::max(highest, exact[i]);
     }
-    if (!(most / largest <= worst)) worst = most / largest;
+    worst = worst_of(worst, most / largest);
     compared += exact.size();
 }
 
 void Distance::add(const Distance& other) {
-    if (!(other.worst <= worst)) worst = other.worst;
+    worst = worst_of(worst, other.worst);
     squares += other.squares;
     power += other.power;
     lowest = std::min(lowest, other.lowest);

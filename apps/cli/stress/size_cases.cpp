@@ -2,6 +2,7 @@
 #include "apps/cli/run/report/memory_use.h"
 #include "apps/cli/stress/process_size.h"
 #include "apps/cli/stress/stress_case.h"
+#include "apps/cli/stress/worst.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,10 +38,9 @@ std::vector<Event> twice(int x1, int x2, int y) {
 double difference(const Array2<float>& map, int x1, int x2, int y) {
     double worst = 0;
     for (int j = 0; j < kPatch; ++j)
-        for (int i = 0; i < kPatch; ++i) {
-            const double d = std::abs(double(map(y + j, x1 + i)) - double(map(y + j, x2 + i)));
-            if (!(d <= worst)) worst = d;
-        }
+        for (int i = 0; i < kPatch; ++i)
+            worst =
+                worst_of(worst, std::abs(double(map(y + j, x1 + i)) - double(map(y + j, x2 + i))));
     return worst;
 }
 
@@ -72,7 +72,7 @@ Result large_sensor(const Bench& bench, int width, int height) {
     result = judged(outcome, counted(outcome.counters.event_windows, "windows; ") +
                                  "the same events in two places give the same frame");
     if (outcome.last.intensity.empty()) return result;
-    result.error = std::max(difference(outcome.last.intensity, x1, x2, y),
+    result.error = worst_of(difference(outcome.last.intensity, x1, x2, y),
                             difference(outcome.last.sigma, x1, x2, y));
     result.bound = kFloatBound;
     result.expect(*result.error <= *result.bound, "the same");
@@ -129,8 +129,7 @@ Result on_edges(const Bench& bench) {
             const PipelineOutcome outcome = run_pipeline(bench.model, all_of(events), how);
             const Result result = judged(outcome, "");
             frames += outcome.counters.frames;
-            if (!worst || !result.passed || *result.error > *worst->error) worst = result;
-            if (!result.passed) break;
+            worst = worst ? worse(*worst, result) : result;
         }
     worst->happened = counted(frames, "frames, lookahead 0, 1 and 2") + worst->happened;
     return *worst;

@@ -2,6 +2,7 @@
 #include "apps/cli/stress/soak.h"
 
 #include "apps/cli/stress/process_size.h"
+#include "apps/cli/stress/worst.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/pace/latency.h"
 
@@ -59,7 +60,7 @@ StateSize size_of(const TensorFile& state, const ModelConfig& config) {
         const auto found = state.tensors.find("h." + std::to_string(l));
         if (found == state.tensors.end() || config.recurrent[l] == 0) continue;
         for (const float h : found->second.values) {
-            if (!(std::abs(h) <= size.largest)) size.largest = std::abs(double(h));
+            size.largest = worst_of(size.largest, std::abs(double(h)));
             squares += double(h) * h;
             ++count;
         }
@@ -182,8 +183,7 @@ Result soak_verdict(const std::vector<SoakSample>& samples) {
     double off = 0, largest = 0;
     for (auto at = steady; at != samples.end(); ++at)
         off = std::max(off, std::abs(at->resident_mib / steady->resident_mib - 1));
-    for (const SoakSample& sample : samples)
-        if (!(sample.largest_state <= largest)) largest = sample.largest_state;
+    for (const SoakSample& sample : samples) largest = worst_of(largest, sample.largest_state);
     const auto quarter = std::ptrdiff_t(samples.size() / 4);
     const double early = median_p99({samples.begin(), samples.begin() + quarter});
     const double late = median_p99({samples.end() - quarter, samples.end()});

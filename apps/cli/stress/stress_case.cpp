@@ -1,7 +1,7 @@
 // What all cases share.
 #include "apps/cli/stress/stress_case.h"
 
-#include <algorithm>
+#include "apps/cli/stress/worst.h"
 
 namespace eventide::stress {
 
@@ -11,7 +11,7 @@ Result judged(const PipelineOutcome& outcome, const std::string& happened, doubl
     const Distance& codes = outcome.codes;
     const Distance& frames = outcome.frames;
     if (codes.compared + frames.compared > 0) {
-        result.error = codes.worst <= frames.worst ? frames.worst : codes.worst;
+        result.error = worst_of(codes.worst, frames.worst);
         result.bound = bound;
         result.expect(*result.error <= bound, "near double precision");
         result.expect(frames.compared > 0, "frames were compared");
@@ -20,6 +20,11 @@ Result judged(const PipelineOutcome& outcome, const std::string& happened, doubl
     result.expect(outcome.error.empty(), "no error: " + outcome.error);
     result.expect(outcome.counters.frames > 0, "frames");
     return result;
+}
+
+const Result& worse(const Result& a, const Result& b) {
+    if (a.passed != b.passed) return a.passed ? b : a;
+    return a.passed && b.error > a.error ? b : a;
 }
 
 std::vector<Case> all_cases() {

@@ -78,6 +78,9 @@ struct Result {
     }
 };
 
+/// Of two runs of one case: the first that failed, else that of the larger error.
+const Result& worse(const Result& a, const Result& b);
+
 struct Case {
     std::string name;   ///< "hot-pixels"
     std::string title;  ///< for people

@@ -93,8 +93,7 @@ Result clock_back(const Bench& bench) {
         const bool may_pass = bench.model.config.noise_filter && back == SensorDuration{1};
         const std::uint64_t resets = outcome.counters.slicing.time_resets;
         result.expect(resets == 1 || (resets == 0 && may_pass), "one new stream");
-        if (!worst || !result.passed || *result.error > *worst->error) worst = result;
-        if (!result.passed) break;
+        worst = worst ? worse(*worst, result) : result;
     }
     return *worst;
 }

@@ -1,6 +1,7 @@
 // The model's stages, with double precision walking along.
 #include "apps/cli/stress/watched_stages.h"
 
+#include "apps/cli/stress/worst.h"
 #include "src/model/latent_codes.h"
 #include "src/model/latent_window.h"
 
@@ -58,7 +59,7 @@ void Judge::note_state(const TensorFile& state) {
         const auto found = state.tensors.find("h." + std::to_string(l));
         if (found == state.tensors.end() || config_.recurrent[l] == 0) continue;
         for (const float h : found->second.values)
-            if (!(std::abs(h) <= largest_state_)) largest_state_ = std::abs(double(h));
+            largest_state_ = worst_of(largest_state_, std::abs(double(h)));
     }
 }
 

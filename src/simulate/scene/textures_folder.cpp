@@ -6,28 +6,17 @@
 #include "src/simulate/scene/texture_pack.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <string>
-#include <string_view>
 
 namespace eventide {
 
 namespace fs = std::filesystem;
 
 std::vector<fs::path> image_files(const fs::path& folder) {
-    constexpr std::array<std::string_view, 8> kEndings{".png", ".jpg",  ".jpeg", ".bmp",
-                                                       ".tif", ".tiff", ".webp", ".pgm"};
     if (!fs::is_directory(folder))
         throw Error(ErrorKind::input, folder.string() + ": expected a folder of images");
     std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator{folder}) {
-        std::string ending = entry.path().extension().string();
-        std::ranges::transform(ending, ending.begin(),
-                               [](unsigned char c) { return char(std::tolower(c)); });
-        if (entry.is_regular_file() && std::ranges::count(kEndings, ending) > 0)
-            files.push_back(entry.path());
-    }
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator{folder})
+        if (entry.is_regular_file() && names_image(entry.path())) files.push_back(entry.path());
     if (files.empty())
         throw Error(ErrorKind::input, folder.string() + ": expected images, found none");
     std::ranges::sort(files);

@@ -34,6 +34,10 @@ struct Photoreceptor {
     bool instant() const { return tau_bright == 0 && tau_per_light == 0; }
 };
 
+/// How long leaks are added up before the references take them over: what leaks in a step may be
+/// less than a rounding of a float.
+constexpr double kLeakTaken_s = 1;
+
 }  // namespace
 
 struct EventSensor::Step {
@@ -94,6 +98,8 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
     const Photoreceptor receptor{traits_};
     const auto dt = float(step.seconds), light_gain = float(gain), dark = float(traits_.dark_lux);
     std::swap(now_, before_);
+    leaking_s_ += step.seconds;
+    const auto leaking = float(leaking_s_);
 
     const auto block = [&](std::size_t i, F4 light) {
         light = light * light_gain + dark;
@@ -104,9 +110,7 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
             now += (before - now) * decay(dt / tau);
         }
         store(&now_[i], now);
-        const F4 reference = load(&reference_[i]) - load(&leak_[i]) * dt;
-        store(&reference_[i], reference);
-        const F4 change = now - reference;
+        const F4 change = now - (load(&reference_[i]) - load(&leak_[i]) * leaking);
         const I4 fires = (change >= load(&on_[i])) | (change <= -load(&off_[i]));
         if (!any(fires)) return;
         for (std::size_t lane = 0; lane < 4; ++lane)
@@ -120,8 +124,14 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
         for (std::size_t lane = 0; i + lane < pixels_; ++lane) rest[lane] = light[i + lane];
         block(i, rest);
     }
+    if (leaking_s_ >= kLeakTaken_s) take_leaks();
     add_shot_noise(step, light, gain, events);
     add_hot_pixels(step, events);
+}
+
+void EventSensor::take_leaks() {
+    for (std::size_t i = 0; i < pixels_; ++i) reference_[i] -= leak_[i] * float(leaking_s_);
+    leaking_s_ = 0;
 }
 
 /// All crossings of one pixel in one step. A leak lowers the reference steadily, which is the same
@@ -130,7 +140,8 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
     const double v0 = double(before_[pixel]) - double(leak_[pixel]) * step.seconds;
     const double v1 = double(now_[pixel]), slope = v1 - v0;
     const double on = double(on_[pixel]), off = double(off_[pixel]);
-    double reference = double(reference_[pixel]), share = 0;
+    const double leaked = double(leak_[pixel]) * leaking_s_;
+    double reference = double(reference_[pixel]) - leaked, share = 0;
     if (ready_s_[pixel] > step.begin_s) {
         if (ready_s_[pixel] >= step.end_s) return;
         share = (ready_s_[pixel] - step.begin_s) / step.seconds;
@@ -155,29 +166,34 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
         share = (ready_s_[pixel] - step.begin_s) / step.seconds;
         reference = v0 + slope * share;
     }
-    reference_[pixel] = float(reference);
+    reference_[pixel] = float(reference + leaked);
 }
 
-/// The light's own events go on from the reference they had: noise swings about the light and takes
-/// nothing of it. A noise event only keeps its pixel busy, like any other.
+/// An event that the light has no part in, where its pixel can fire. The light's own events go on
+/// from the reference they had: noise swings about the light and takes nothing of it. It only keeps
+/// its pixel busy, like any other event.
+bool EventSensor::fire(const Step& step, std::size_t pixel, double t_s, Polarity polarity,
+                       std::vector<Event>& events) {
+    if (t_s < ready_s_[pixel]) return false;
+    events.push_back(event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity));
+    ready_s_[pixel] = t_s + traits_.refractory_s;
+    return true;
+}
+
 void EventSensor::add_shot_noise(const Step& step, std::span<const float> lux, double gain,
                                  std::vector<Event>& events) {
-    const auto fire = [&](std::size_t pixel, double t_s, Polarity polarity) {
-        if (t_s < ready_s_[pixel]) return false;
-        events.push_back(event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity));
-        ready_s_[pixel] = t_s + traits_.refractory_s;
-        return true;
-    };
     noise_.until(
-        step.end_s, [&](std::size_t pixel) { return double(lux[pixel]) * gain; }, fire);
+        step.end_s, [&](std::size_t pixel) { return double(lux[pixel]) * gain; },
+        [&](std::size_t pixel, double t_s, Polarity polarity) {
+            return fire(step, pixel, t_s, polarity, events);
+        });
 }
 
 void EventSensor::add_hot_pixels(const Step& step, std::vector<Event>& events) {
     for (HotPixel& hot : hot_)
         for (; hot.next_s <= step.end_s; hot.next_s += random_.exponential() / hot.rate_hz) {
-            const double share = (hot.next_s - step.begin_s) / step.seconds;
             const bool on = random_.chance(hot.on_share);
-            events.push_back(event(step, hot.pixel, share, on ? Polarity::on : Polarity::off));
+            fire(step, hot.pixel, hot.next_s, on ? Polarity::on : Polarity::off, events);
         }
 }
 

@@ -39,7 +39,10 @@ private:
         double on_share = 1;
     };
 
+    void take_leaks();
     void cross(const Step& step, std::size_t pixel, std::vector<Event>& events);
+    bool fire(const Step& step, std::size_t pixel, double t_s, Polarity polarity,
+              std::vector<Event>& events);
     void add_shot_noise(const Step& step, std::span<const float> lux, double gain,
                         std::vector<Event>& events);
     void add_hot_pixels(const Step& step, std::vector<Event>& events);
@@ -51,9 +54,11 @@ private:
     Random random_;
     // One number per pixel, padded to whole lanes.
     std::vector<float> now_, before_;  // ln light as the pixel sees it, at the step's ends
-    std::vector<float> reference_;     // value at the last event; kHeld in refractory time
+    std::vector<float> reference_;     // value at the last event, less what leaked before
+                                       // leaking_s_; kHeld in refractory time
     std::vector<float> on_, off_;      // thresholds
     std::vector<float> leak_;          // per second, in ln
+    double leaking_s_ = 0;             // time whose leaks are not yet in reference_
     std::vector<double> ready_s_;      // end of the refractory time, seconds since 0
     ShotNoise noise_;
     std::vector<HotPixel> hot_;

@@ -1,10 +1,13 @@
 // The report of speed against error, of rows that nobody had to measure.
+#include "apps/cli/bench/bench_table.h"
 #include "apps/cli/bench/report.h"
+#include "apps/cli/settings/words.h"
 #include "src/core/error.h"
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -32,6 +35,47 @@ TEST(BenchReport, OnTheFrontIsWhatNothingOfItsSizeBeatsInBoth) {
     std::vector<bool> front;
     for (const SpeedRow& each : rows) front.push_back(each.is_on_front);
     EXPECT_EQ(front, (std::vector<bool>{true, true, false, true, true}));
+}
+
+/// Their engine's word, precision and instructions, as "fast f32 avx2".
+std::vector<std::string> named(const std::vector<EngineOptions>& engines) {
+    std::vector<std::string> names;
+    for (const EngineOptions& each : engines)
+        names.push_back(show_word(each.engine, kEngineWords) + " " +
+                        show_word(each.precision, kPrecisionWords) + " " +
+                        show_word(each.instructions, kInstructionWords));
+    return names;
+}
+
+TEST(BenchReport, ComparesTheArithmeticThatWasAskedForAndThatTheProcessorHas) {
+    using Names = std::vector<std::string>;
+    bench::Peaks peaks{.f32_avx2 = 100, .f32_avx512 = 120, .bf16 = 240};
+    BenchSettings settings;
+    EXPECT_EQ(named(engines_of(settings, peaks)),
+              (Names{"fast f32 avx2", "fast f32 best", "fast bf16 best"}));
+    settings.precisions = {"f32"};
+    EXPECT_EQ(named(engines_of(settings, peaks)), (Names{"fast f32 avx2", "fast f32 best"}));
+    settings.precisions = {"bf16"};
+    EXPECT_EQ(named(engines_of(settings, peaks)), (Names{"fast bf16 best"}));
+    settings.precisions = {"bf16", "f32"};
+    settings.instructions = Instructions::avx512;
+    EXPECT_EQ(named(engines_of(settings, peaks)),
+              (Names{"fast f32 avx2", "fast f32 avx512", "fast bf16 avx512"}));
+    peaks = {.f32_sse4 = 50};
+    settings.precisions = {"auto"};
+    settings.instructions = Instructions::sse4;
+    EXPECT_EQ(named(engines_of(settings, peaks)), (Names{"fast f32 sse4"}));
+    settings.engine = Engine::plain;
+    EXPECT_EQ(named(engines_of(settings, peaks)), (Names{"plain auto best"}));
+}
+
+TEST(BenchTable, HasADashWhereFramesHaveNoTruthOfTheirSize) {
+    testing::internal::CaptureStdout();
+    print_bench_table({{.model = "default", .engine = {}, .sensor = {}, .mse = std::nan("")},
+                       {.model = "small", .engine = {}, .sensor = {}, .mse = .0123}});
+    const std::string table = testing::internal::GetCapturedStdout();
+    EXPECT_NE(table.find(" -\n"), std::string::npos) << table;
+    EXPECT_NE(table.find(" 0.0123\n"), std::string::npos) << table;
 }
 
 TEST(BenchReport, WritesTheFilesItSaysAndNamesCannotBreakThePage) {

@@ -49,6 +49,15 @@ TEST(Evreal, CutsASequenceHoweverItsFolderIsWritten) {
     }
 }
 
+TEST(Evreal, SaysWhichSequenceHasNoImageInItsCut) {
+    const fs::path dataset = fresh_folder("ecd_short");
+    write_recording(dataset / "boxes_6dof", 1.05, .01, .25);  // its cut begins at 5 s
+    const EvaluateReport report = evaluate_evreal(dataset, small_model());
+    EXPECT_EQ(report.overall.frames, 0);
+    ASSERT_EQ(report.notes.size(), 1U);
+    EXPECT_EQ(report.notes[0], "boxes_6dof: none of its 5 images lies in the cut, 5 to 20 s");
+}
+
 TEST(Evreal, StartsEachSequenceAnew) {
     const fs::path dataset = fresh_folder("ecd_twice");
     write_recording(dataset / "a", .6, .002, .1);

@@ -1,6 +1,8 @@
 // What a frame's scores mean, on images small enough to be judged by hand.
-#include "apps/evaluate/reference_sequence.h"
 #include "apps/evaluate/scores.h"
+#include "src/core/error.h"
+#include "src/metrics/image_measures.h"
+#include "tests/metrics/images.h"
 
 #include <gtest/gtest.h>
 
@@ -80,6 +82,17 @@ TEST(Judge, SumsUpWhatFiguresShow) {
     EXPECT_NEAR(twice.sigma_scale.by_likelihood(), std::sqrt(3.5), 1e-5);
 }
 
+TEST(Judge, ErrorsNameWhatWasJudged) {
+    Judge judge{nullptr};
+    try {
+        judged("desk", judge, all_of(0), {}, Array2<float>(4, 5));
+        FAIL() << "images of two sizes";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string{error.what()},
+                  "desk: two images to compare: expected the same size, found 12x12 and 5x4");
+    }
+}
+
 TEST(MeanScores, WeighFramesEquallyAndLeaveOutWhatSomeHaveNot) {
     std::vector<FrameScores> frames(3);
     frames[0].raw = {.mse = .1, .ssim = .9, .lpips = .2};
@@ -98,24 +111,26 @@ TEST(MeanScores, WeighFramesEquallyAndLeaveOutWhatSomeHaveNot) {
     EXPECT_TRUE(std::isnan(mean_scores("none", {}).raw.mse));
 }
 
-std::vector<std::int64_t> mended(const std::vector<std::int64_t>& times) {
-    std::vector<ReferenceImage> images(times.size());
-    for (std::size_t i = 0; i < times.size(); ++i) images[i].t = from_us(times[i]);
-    mend_times(images);
-    std::vector<std::int64_t> after;
-    for (const ReferenceImage& image : images) after.push_back(to_us(image.t));
-    return after;
-}
-
-TEST(ImageTimes, OneThatLiesAfterTheNextIsTheMiddleOfItsNeighbours) {
-    using Times = std::vector<std::int64_t>;
-    EXPECT_EQ(mended({0, 100, 50, 150}), (Times{0, 25, 50, 150}));
-    EXPECT_EQ(mended({0, 10, 20, 30}), (Times{0, 10, 20, 30}));
-    EXPECT_EQ(mended({0, 10, 10, 30}), (Times{0, 10, 10, 30}));
-    // Of the first and the last there is no middle.
-    EXPECT_EQ(mended({40, 10, 20}), (Times{10, 20, 40}));
-    EXPECT_EQ(mended({7}), (Times{7}));
-    EXPECT_EQ(mended({}), Times{});
+TEST(Judge, CorrelatesPatchesOf16PixelsWithTheirMedianSigma) {
+    const std::filesystem::path weights = shared_data() / "perceptual" / "lpips_squeeze_v0.1.npz";
+    if (!exists(weights)) GTEST_SKIP() << "no LPIPS weights: " << weights << " is absent";
+    const Lpips lpips{weights};
+    const Array2<float> frame = test_image(72, 90, 1), truth = test_image(72, 90, 2),
+                        sigma = test_image(72, 90, 3);
+    Judge judge{&lpips};
+    const FrameScores scores = judge.judge(frame, sigma, truth);
+    const auto map = lpips.distance_map(lpips.features(frame), lpips.features(truth));
+    const auto errors = patch_means(map, 16), doubts = patch_medians(sigma, 16);
+    ASSERT_EQ(errors.size(), 20U);  // 4 x 5
+    EXPECT_NEAR(*scores.lpips_corr, *correlation(spread(errors, doubts)), 1e-9);
+    EXPECT_NEAR(*scores.raw.lpips, lpips.distance(lpips.features(frame), lpips.features(truth)),
+                1e-9);
+    std::uint64_t patches = 0;
+    for (const Observations::PatchBin& bin : judge.observations().patch_bins)
+        patches += bin.patches;
+    EXPECT_EQ(patches, 20U);
+    EXPECT_EQ(judge.observations().patch_sizes.front().size, 8);
+    EXPECT_EQ(judge.observations().patch_sizes.back().size, 96);
 }
 
 }  // namespace

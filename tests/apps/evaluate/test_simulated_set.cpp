@@ -1,9 +1,9 @@
-// Of the simulated test set which frames count and which photographs it shows, as
-// docs/accuracy.md says.
-#include "apps/evaluate/scores.h"
+// The simulated test set: which frames count and which photographs it shows, as docs/accuracy.md
+// says, and evaluations on it.
 #include "apps/evaluate/simulated_sequence.h"
-#include "src/metrics/image_measures.h"
+#include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
+#include "tests/apps/evaluate/small_model.h"
 
 #include <gtest/gtest.h>
 
@@ -41,26 +41,39 @@ TEST(SimulatedSet, ShowsTheLastImagesOfAFolderByName) {
     EXPECT_EQ(heights().size(), 5U);
 }
 
-TEST(Judge, CorrelatesPatchesOf16PixelsWithTheirMedianSigma) {
-    const fs::path weights = shared_data() / "perceptual" / "lpips_squeeze_v0.1.npz";
-    if (!fs::exists(weights)) GTEST_SKIP() << "no LPIPS weights: " << weights << " is absent";
-    const Lpips lpips{weights};
-    const Array2<float> frame = test_image(72, 90, 1), truth = test_image(72, 90, 2),
-                        sigma = test_image(72, 90, 3);
-    Judge judge{&lpips};
-    const FrameScores scores = judge.judge(frame, sigma, truth);
-    const auto map = lpips.distance_map(lpips.features(frame), lpips.features(truth));
-    const auto errors = patch_means(map, 16), doubts = patch_medians(sigma, 16);
-    ASSERT_EQ(errors.size(), 20U);  // 4 x 5
-    EXPECT_NEAR(*scores.lpips_corr, *correlation(spread(errors, doubts)), 1e-9);
-    EXPECT_NEAR(*scores.raw.lpips, lpips.distance(lpips.features(frame), lpips.features(truth)),
-                1e-9);
-    std::uint64_t patches = 0;
-    for (const Observations::PatchBin& bin : judge.observations().patch_bins)
-        patches += bin.patches;
-    EXPECT_EQ(patches, 20U);
-    EXPECT_EQ(judge.observations().patch_sizes.front().size, 8);
-    EXPECT_EQ(judge.observations().patch_sizes.back().size, 96);
+TEST(EvaluateSimulated, GivesTheSameNumbersEveryTimeAndInAnyOrder) {
+    EvaluateSettings how = small_model();
+    const EvaluateReport one = evaluate_simulated(small_simulation(), how);
+    how.parallel_for = [](int n, const std::function<void(int)>& body) {
+        for (int i = n - 1; i >= 0; --i) body(i);
+    };
+    const EvaluateReport two = evaluate_simulated(small_simulation(), how);
+    EXPECT_EQ(one.overall.frames, 12);
+    EXPECT_EQ(json(one), json(two));
+    EXPECT_EQ(frame_csv(one), frame_csv(two));
+    EXPECT_NE(one.sequences[0].scores.raw.mse, one.sequences[1].scores.raw.mse);
+}
+
+TEST(EvaluateSimulated, ComparesAtAnyLookaheadScaleAndTime) {
+    EvaluateSettings how = small_model();
+    how.lookahead = 2;
+    SimulatedSettings what = small_simulation();
+    what.scale = 1.5;
+    what.phases = {.25, 1};
+    const EvaluateReport report = evaluate_simulated(what, how);
+    EXPECT_EQ(report.overall.frames, 24);
+    EXPECT_NEAR(report.sequences[0].frames[0].time_s, 3.25 * .05, 1e-5);
+    EXPECT_EQ(report.sequences[0].not_rendered, 0);
+    what.phases = {0};
+    EXPECT_THROW(evaluate_simulated(what, how), Error);
+    how.lamp_flicker = "sometimes";
+    EXPECT_THROW(evaluate_simulated(small_simulation(), how), Error);
+}
+
+TEST(EvaluateSimulated, TooFewEventWindowsToScoreOneAreRefused) {
+    SimulatedSettings what = small_simulation();
+    what.event_windows = what.skip_frames + what.score_every - 1;
+    EXPECT_THROW(evaluate_simulated(what, {}), Error);
 }
 
 }  // namespace

@@ -1,0 +1,68 @@
+// Images of one folder against those of another.
+#include "apps/evaluate/evaluate.h"
+#include "src/core/error.h"
+#include "tests/apps/evaluate/recordings.h"
+
+#include <gtest/gtest.h>
+
+namespace eventide::test {
+namespace {
+
+TEST(EvaluateFolders, FindNothingBetweenEqualFolders) {
+    const fs::path folder = fresh_folder("folders");
+    for (const char* side : {"frames", "references"})
+        for (const char* sequence : {"one", "two"}) {
+            fs::create_directories(folder / side / sequence);
+            for (int i = 0; i < 3; ++i)
+                write_image(folder / side / sequence / (std::to_string(i) + ".png"),
+                            test_image(kHeight, kWidth, i));
+        }
+    const EvaluateReport report = evaluate_folders(folder / "frames", folder / "references", {});
+    EXPECT_EQ(report.overall.frames, 6);
+    EXPECT_EQ(report.overall.raw.mse, 0);
+    EXPECT_NEAR(report.overall.raw.ssim, 1, 1e-9);
+    EXPECT_FALSE(report.overall.picp80);
+    EXPECT_EQ(
+        evaluate_folders(folder / "frames/one/", folder / "references/one/", {}).overall.sequence,
+        "one");
+
+    cv::Mat deep;
+    cv::imread((folder / "references/one/0.png").string(), cv::IMREAD_GRAYSCALE)
+        .convertTo(deep, CV_16U, 257);
+    cv::imwrite((folder / "frames/one/0.png").string(), deep);
+    EXPECT_LT(
+        evaluate_folders(folder / "frames/one", folder / "references/one", {}).overall.raw.mse,
+        1e-12)
+        << "16 bits are as white as 8";
+    write_image(folder / "frames" / "one" / "9.png", test_image(kHeight, kWidth, 9));
+    EXPECT_THROW(evaluate_folders(folder / "frames", folder / "references", {}), Error);
+}
+
+TEST(EvaluateFolders, TakeImagesWhoseExtensionIsInCapitals) {
+    const fs::path folder = fresh_folder("capitals");
+    for (const char* side : {"frames", "references"}) {
+        fs::create_directories(folder / side);
+        for (const char* name : {"0.PNG", "1.png"})
+            write_image(folder / side / name, test_image(kHeight, kWidth, 1));
+    }
+    EXPECT_EQ(evaluate_folders(folder / "frames", folder / "references", {}).overall.frames, 2);
+}
+
+TEST(EvaluateFolders, NameTheImagesThatCannotBeCompared) {
+    const fs::path folder = fresh_folder("sizes");
+    for (const char* side : {"frames", "references"}) fs::create_directories(folder / side);
+    write_image(folder / "frames/a.png", test_image(kHeight, kWidth, 1));
+    write_image(folder / "references/b.png", test_image(kHeight, kWidth + 2, 1));
+    try {
+        evaluate_folders(folder / "frames", folder / "references", {});
+        FAIL() << "images of two sizes";
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string{error.what()}.find((folder / "frames/a.png").string() + " against " +
+                                                 (folder / "references/b.png").string() + ": "),
+                  0U)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace eventide::test

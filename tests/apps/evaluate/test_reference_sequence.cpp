@@ -1,0 +1,110 @@
+// Recordings with reference images, as they are read and cut into event windows.
+#include "apps/evaluate/reference_sequence.h"
+#include "pipeline/filters/event_filter.h"
+#include "tests/apps/evaluate/recordings.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <vector>
+
+namespace eventide::test {
+namespace {
+
+TEST(ReferenceWindows, HoldEachEventBetweenTheImagesExactlyOnce) {
+    const fs::path folder = write_recording(fresh_folder("slices"), .5, .001, .1);
+    const ReferenceSequence sequence = read_reference_sequence(folder);
+    EXPECT_EQ(sequence.width, kWidth);
+    EXPECT_EQ(sequence.images.size(), 5U);
+    std::vector<EventWindow> event_windows;
+    for_each_reference_window(
+        sequence, [&](const EventWindow& event_window) { event_windows.push_back(event_window); });
+    ASSERT_EQ(event_windows.size(), 5U);
+    EXPECT_TRUE(event_windows[0].events.empty());
+    std::size_t events = 0;
+    for (std::size_t i = 0; i < event_windows.size(); ++i) {
+        EXPECT_EQ(event_windows[i].window.end, sequence.images[i].t);
+        if (i > 0) {
+            EXPECT_EQ(event_windows[i].window.begin, event_windows[i - 1].window.end);
+        }
+        for (const Event& event : event_windows[i].events) {
+            EXPECT_GT(event.t, event_windows[i].window.begin);
+            EXPECT_LE(event.t, event_windows[i].window.end);
+        }
+        events += event_windows[i].events.size();
+    }
+    EXPECT_EQ(events, 400U);  // (0, .4] s, one each millisecond
+}
+
+TEST(ReferenceSequence, IsCalledAsItsFolder) {
+    const fs::path folder = write_recording(fresh_folder("at.5"), .5, .001, .1);
+    EXPECT_EQ(read_reference_sequence(folder).name, "eventide_at.5");
+    EXPECT_EQ(read_reference_sequence(folder / "").name, "eventide_at.5");
+    EXPECT_EQ(sequence_name(folder / "."), "eventide_at.5");
+    EXPECT_EQ(sequence_name("recordings/speed.5.aedat4"), "speed.5");
+}
+
+TEST(ReferenceSequence, CountsTimesFromItsFirstEventOrImage) {
+    const fs::path folder = write_recording(fresh_folder("late_events"), .5, .001, .1);
+    std::ofstream{folder / "events.txt"} << "0.15 1 2 1\n0.25 3 4 0\n0.35 3 4 1\n";
+    const ReferenceSequence whole = read_reference_sequence(folder);
+    EXPECT_EQ(whole.first, from_us(0));
+    EXPECT_EQ(whole.images.size(), 5U);
+    const ReferenceSequence part = read_reference_sequence(folder, .2, .3);
+    EXPECT_EQ(part.first, from_us(0));
+    ASSERT_EQ(part.images.size(), 2U);
+    EXPECT_EQ(part.images[0].t, from_us(200'000));
+    ASSERT_EQ(part.events.size(), 1U);
+    EXPECT_EQ(part.events[0].t, from_us(250'000));
+}
+
+std::vector<std::int64_t> mended(const std::vector<std::int64_t>& times) {
+    std::vector<ReferenceImage> images(times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) images[i].t = from_us(times[i]);
+    mend_times(images);
+    std::vector<std::int64_t> after;
+    for (const ReferenceImage& image : images) after.push_back(to_us(image.t));
+    return after;
+}
+
+TEST(ImageTimes, OneThatLiesAfterTheNextIsTheMiddleOfItsNeighbours) {
+    using Times = std::vector<std::int64_t>;
+    EXPECT_EQ(mended({0, 100, 50, 150}), (Times{0, 25, 50, 150}));
+    EXPECT_EQ(mended({0, 10, 20, 30}), (Times{0, 10, 20, 30}));
+    EXPECT_EQ(mended({0, 10, 10, 30}), (Times{0, 10, 10, 30}));
+    // Of the first and the last there is no middle.
+    EXPECT_EQ(mended({40, 10, 20}), (Times{10, 20, 40}));
+    EXPECT_EQ(mended({7}), (Times{7}));
+    EXPECT_EQ(mended({}), Times{});
+}
+
+TEST(CutWindows, EndWhereTheyWouldWithoutTheNoiseFilter) {
+    ReferenceSequence sequence{"noise", 64, 48, {}, {}, {}, {}, {}};
+    const auto add = [&](std::int64_t t_us, int x, int y) {
+        sequence.events.push_back(
+            {from_us(t_us), std::uint16_t(x), std::uint16_t(y), Polarity::on});
+    };
+    const auto move_at = [&](std::int64_t t_us) {  // neighbours, which support each other
+        for (int i = 0; i < 6; ++i) add(t_us + i, 10 + i % 3, 10 + i / 3);
+    };
+    move_at(0);
+    for (int i = 1; i < 500; ++i) add(7000 * i, i * 29 % 64, i * 31 % 48);  // 3.5 s of noise
+    move_at(3'500'000);
+    sequence.images.emplace_back().t = from_us(3'500'006);
+    const auto filter = event_filter({.hot_pixels = "off", .noise_filter = "1ms"}, {}, 64, 48);
+    std::vector<Window> of_all, of_filtered;
+    std::size_t events = 0;
+    for_each_cut_window(sequence, "10ms", nullptr,
+                        [&](const EventWindow& cut) { of_all.push_back(cut.window); });
+    for_each_cut_window(sequence, "10ms", filter.get(), [&](const EventWindow& cut) {
+        of_filtered.push_back(cut.window);
+        events += cut.events.size();
+    });
+    EXPECT_LT(events, 20U);
+    ASSERT_EQ(of_filtered.size(), of_all.size());
+    for (std::size_t i = 0; i < of_all.size(); ++i) EXPECT_EQ(of_filtered[i].end, of_all[i].end);
+}
+
+}  // namespace
+}  // namespace eventide::test
