@@ -76,9 +76,13 @@ public:
         : sequential_(sequential), source_(run_source(source, width, height, sequential)) {
         for (const py::handle sink : py::isinstance<py::sequence>(sinks)
                                          ? py::list(sinks)
-                                         : py::list(py::make_tuple(sinks)))
+                                         : py::list(py::make_tuple(sinks))) {
+            if (PyCallable_Check(sink.ptr()) == 0)
+                throw py::type_error("sinks: expected a callable, or a list of them, found " +
+                                     py::repr(sink).cast<std::string>());
             sinks_.push_back(std::make_unique<CalledSink>(py::reinterpret_borrow<py::object>(sink),
                                                           sequential ? nullptr : &interruptible_));
+        }
         std::vector<FrameSink*> all;
         for (const auto& sink : sinks_) all.push_back(sink.get());
         if (!(latency >= 0 && latency <= 1e6))

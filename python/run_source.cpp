@@ -23,9 +23,20 @@ namespace py = pybind11;
 
 namespace {
 
+/// None where there is none. Asked for once, as a property may give what is new only once; what it
+/// raises comes out.
+py::object attribute_of(const py::object& source, const char* name) {
+    if (PyObject* found = PyObject_GetAttrString(source.ptr(), name))
+        return py::reinterpret_steal<py::object>(found);
+    if (PyErr_ExceptionMatches(PyExc_AttributeError) == 0) throw py::error_already_set();
+    PyErr_Clear();
+    return py::none();
+}
+
 int size_of(const py::object& source, const char* name, int given) {
     if (given != 0) return given;
-    if (py::hasattr(source, name)) return cast_to<int>(name, source.attr(name));
+    if (const py::object size = attribute_of(source, name); !size.is_none())
+        return cast_to<int>(name, size);
     throw Error(ErrorKind::usage, std::string{"Pipeline: expected a source with a "} + name +
                                       ", or the argument " + name + ", found neither");
 }
@@ -84,7 +95,7 @@ public:
     IteratedSource(py::object source, int width, int height)
         : source_(std::move(source)),
           events_(py::iter(source_)),
-          live_(py::hasattr(source_, "gap_before")),
+          live_(!attribute_of(source_, "gap_before").is_none()),
           info_{.name = "python",
                 .serial = "",
                 .format = "",
@@ -115,12 +126,12 @@ public:
         const auto events =
             py::reinterpret_steal<py::object>(PyIter_Next(events_.ptr()));  // null at the end
         if (PyErr_Occurred() != nullptr) throw py::error_already_set();
-        if (py::hasattr(source_, "clock"))
-            if (const py::object clock = source_.attr("clock"); !clock.is_none())
-                clock_ = from_us(cast_to<std::int64_t>("clock", clock));
+        if (const py::object clock = attribute_of(source_, "clock"); !clock.is_none())
+            clock_ = from_us(cast_to<std::int64_t>("clock", clock));
         if (!events) return false;
         append_events(cast_to<py::array>("events", events), batch.events);
-        if (py::hasattr(source_, "images")) append_images(source_.attr("images"), batch.images);
+        if (const py::object images = attribute_of(source_, "images"); !images.is_none())
+            append_images(images, batch.images);
         gap_before_ = live_ && cast_to<bool>("gap_before", source_.attr("gap_before"));
         return true;
     }
@@ -130,7 +141,8 @@ public:
     void stop() noexcept override {
         const py::gil_scoped_acquire locked;
         try {
-            if (source_ && py::hasattr(source_, "stop")) source_.attr("stop")();
+            if (!source_) return;
+            if (const py::object stop = attribute_of(source_, "stop"); !stop.is_none()) stop();
         } catch (py::error_already_set& error) {
             error.discard_as_unraisable("stop()");
         }

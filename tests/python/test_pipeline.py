@@ -10,6 +10,19 @@ import numpy as np
 from recorded import DTYPE, REPEATABLE, RecordedTest
 
 
+class Wrapped:
+    """A reader as a source of one's own."""
+
+    def __init__(self, reader):
+        self.reader, self.width, self.height = reader, reader.width, reader.height
+        self.images = []
+
+    def __iter__(self):
+        for events in self.reader:
+            self.images = self.reader.images
+            yield events
+
+
 class Pipelines(RecordedTest):
     def frames_of(self, source, **more):
         frames = []
@@ -55,16 +68,6 @@ class Pipelines(RecordedTest):
         self.assertFalse(np.array_equal(otherwise, expected), "the times show")
 
     def test_an_iterable_with_images_has_them_correct_frames(self):
-        class Wrapped:
-            def __init__(self, reader):
-                self.reader, self.width, self.height = reader, reader.width, reader.height
-                self.images = []
-
-            def __iter__(self):
-                for events in self.reader:
-                    self.images = self.reader.images
-                    yield events
-
         reader, reconstructor = eventide.open(self.recording), self.reconstructor()
         for events in reader:
             for t, image in reader.images:
@@ -75,10 +78,34 @@ class Pipelines(RecordedTest):
         self.assertGreater(reconstructor.counters["used_images"], 5)
         frames = self.frames_of(Wrapped(eventide.open(self.recording)))
         np.testing.assert_array_equal(frames, expected)
-        wrong = Wrapped(eventide.open(self.recording))
-        wrong.__class__.images = property(lambda self: [(1, "no pixels")], lambda self, given: None)
+
+        class Wrong(Wrapped):
+            images = property(lambda self: [(1, "no pixels")], lambda self, new: None)
+
         with self.assertRaisesRegex(TypeError, "images"):
-            self.frames_of(wrong)
+            self.frames_of(Wrong(eventide.open(self.recording)))
+
+    def test_images_that_are_told_once_are_not_lost(self):
+        class Queued(Wrapped):
+            images = property(lambda self: self.queue.pop(), lambda self, new: setattr(self, "queue", [new]))
+
+        expected = self.frames_of(Wrapped(eventide.open(self.recording)))
+        frames = self.frames_of(Queued(eventide.open(self.recording)))
+        np.testing.assert_array_equal(frames, expected)
+
+    def test_what_an_attribute_of_a_source_raises_comes_out(self):
+        def fail(self, *given):
+            raise OSError("camera gone")
+
+        for name in ("images", "clock", "gap_before", "width"):
+            failing = type("Failing", (Wrapped,), {name: property(fail, lambda self, new: None)})
+            with self.assertRaisesRegex(OSError, "camera gone"):
+                self.frames_of(failing(eventide.open(self.recording)))
+
+    def test_sinks_that_cannot_be_called_are_refused_before_anything_is_read(self):
+        for sinks, named in ((None, "None"), ([print, 5], "5"), ("frames.mp4", "'f'")):
+            with self.assertRaisesRegex(TypeError, f"sinks: expected a callable.*{named}"):
+                eventide.Pipeline(eventide.open(self.recording), sinks, "small")
 
     def test_a_simulation_as_fast_as_it_can_be_waits_for_its_frames(self):
         name = "sim:demo?size=64x48&seconds=0.3&speed=max"

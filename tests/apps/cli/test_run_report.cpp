@@ -111,7 +111,11 @@ TEST(RunReport, ARunWithoutFramesSaysWhy) {
     none.events = none.filtered_events = 10;
     none.slicing = {};
     EXPECT_NE(why_no_frames(none).find("filters took every event"), std::string::npos);
-    none.filtered_events = 9;
+    none.slicing.after_end = 4;
+    none.filtered_events = 6;
+    EXPECT_NE(why_no_frames(none).find("filters took every event between --from and --to"),
+              std::string::npos);
+    none.filtered_events = 5;
     EXPECT_NE(why_no_frames(none).find("--fps"), std::string::npos);
 }
 

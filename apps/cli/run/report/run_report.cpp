@@ -105,11 +105,13 @@ std::string why_no_frames(const Snapshot& end) {
     if (end.events == 0)
         return "no frame: no event was read; eventide info shows how many the recording holds, "
                "and their times";
-    if (end.filtered_events == end.events)
-        return "no frame: filters took every event (--noise-filter, --hot-pixels, --filter)";
+    const std::uint64_t outside = cut.before_begin + cut.after_end;
+    if (end.filtered_events > 0 && end.filtered_events + outside == end.events)
+        return std::string{"no frame: filters took every event"} +
+               (outside > 0 ? " between --from and --to" : "") +
+               " (--noise-filter, --hot-pixels, --filter)";
     if (cut.before_begin == end.events) return "no frame: all events lie before --from";
-    if (cut.before_begin + cut.after_end == end.events)
-        return "no frame: no event lies between --from and --to";
+    if (outside == end.events) return "no frame: no event lies between --from and --to";
     return "no frame: what was asked for is shorter than the time between two frames (--fps)";
 }
 
