@@ -210,6 +210,9 @@ TEST(Encoder, AStateOfAnotherModelOrSizeIsRefused) {
     TensorFile cut = encoder.state();
     cut.tensors.erase("h.1");
     EXPECT_NE(refusal(encoder, cut).find("'h.1'"), std::string::npos);
+    TensorFile turned = encoder.state();
+    turned.tensors.at("h.0").shape = {40, 30, config.widths[0]};
+    EXPECT_NE(refusal(encoder, turned).find("'h.0': expected shape [30, 40, "), std::string::npos);
     EXPECT_EQ(refusal(encoder, encoder.state()), "accepted");
 }
 
