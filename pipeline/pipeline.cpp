@@ -32,7 +32,7 @@ FrameOutput::Settings output_settings(const PipelineParts& parts,
     s.halvings = settings.halvings;
     // One buffer is being filled; were all the others waiting, the encoder would wait, too, and in
     // the end the camera would lose events.
-    s.waits_at_most = settings.buffers.latents > 1 ? settings.buffers.latents - 1 : 1;
+    s.waits_at_most = settings.buffers.latents - 1;
     return s;
 }
 

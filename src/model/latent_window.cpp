@@ -7,7 +7,6 @@ namespace eventide {
 
 std::int64_t LatentWindow::push(const LatentMap& latent) noexcept {
     ++newest_;
-    finished_ = false;
     copy_stamp(latent, stamps_[slot(newest_)]);
     return newest_;
 }
@@ -33,8 +32,7 @@ FramePosition LatentWindow::locate(SensorTime t) const noexcept {
 }
 
 Readiness LatentWindow::readiness(SensorTime t, int lookahead) const noexcept {
-    // Before the first event window all times count as its own.
-    const std::int64_t k = newest_ == 0 ? 1 : locate(t).k;
+    const std::int64_t k = locate(t).k;
     if (k == 0) return Readiness::gone;
     if (k > newest_) return finished_ ? Readiness::gone : Readiness::later;
     // Event window k reads z_{k-2} where its live edge fades: that must still be kept too.

@@ -45,7 +45,7 @@ public:
     }
 
     /// The event window a time lies in, (begin, end]; k = 0 before the first kept one, newest() + 1
-    /// after the newest.
+    /// after the newest, or where there is none yet.
     FramePosition locate(SensorTime t) const noexcept;
     Readiness readiness(SensorTime t, int lookahead) const noexcept;
 

@@ -72,6 +72,30 @@ TEST(Encoder, FastAgreesWithPlainAtEveryShape) {
         }
 }
 
+/// So many tiles that states are brought into the map group by group, and what holds the next ones
+/// is used again: three groups of 32 rows of tiles on either level.
+TEST(Encoder, FastAgreesWithPlainWhereTilesAreMany) {
+    for (const bool reset_gate : {true, false}) {
+        ModelConfig config = test::small_config();
+        config.widths = {4, 4};
+        config.recurrent = {1, 1};
+        config.reset_gate = reset_gate;
+        config.res_blocks = 0;
+        constexpr int kHeight = 4000, kWidth = 3;
+        const Model model = test::random_model(config, 7);
+        Encoder plain{model, kWidth, kHeight, with(Engine::plain)},
+            fast{model, kWidth, kHeight, with(Engine::fast)};
+        GridStream stream{config, kHeight, kWidth, 3};
+        LatentMap a = fast.make_output(), b = plain.make_output();
+        for (int i = 0; i < 4; ++i) {
+            const VoxelGrid& grid = stream.next(Kind::everywhere);
+            fast.encode(grid, a);
+            plain.encode(grid, b);
+            ASSERT_LE(test::worst(a.values.values(), b.values.values()), kFloatTolerance) << i;
+        }
+    }
+}
+
 /// Two encoders fed with the same frames give the same codes, bit for bit.
 void expect_same(Encoder a, Encoder b, const ModelConfig& config, int steps) {
     GridStream stream{config, a.height(), a.width(), 9};
@@ -123,6 +147,35 @@ TEST(Encoder, ResetIsTheStateAfterConstruction) {
     }
 }
 
+/// Codes follow from the states even where nothing happens: what was seen before is gone at once.
+TEST(Encoder, SilenceAfterAResetOrAStateShowsWhatIsRememberedThen) {
+    for (const Case& c : cases()) {
+        const Model model = test::random_model(c.config, 2);
+        Encoder used{model, 70, 50, with(Engine::fast)}, other{model, 70, 50, with(Engine::fast)},
+            fresh{model, 70, 50, with(Engine::fast)};
+        GridStream stream{c.config, 50, 70, 1};
+        LatentMap z = used.make_output(), shown = used.make_output();
+        const auto see = [&](Encoder& encoder) {
+            for (int i = 0; i < 3; ++i) encoder.encode(stream.next(Kind::patch), z);
+        };
+        const auto expect_silence_as_of = [&](Encoder& expected) {
+            const VoxelGrid& grid = stream.next(Kind::silence);
+            used.encode(grid, shown);
+            expected.encode(grid, z);
+            EXPECT_EQ(shown.values, z.values) << c.name;
+        };
+        see(used);
+        used.encode(stream.next(Kind::patch), shown);
+        used.reset();
+        expect_silence_as_of(fresh);
+        see(used);
+        see(other);
+        used.encode(stream.next(Kind::patch), shown);
+        used.restore(other.state(), "state");
+        expect_silence_as_of(other);
+    }
+}
+
 TEST(Encoder, GoingOnFromASavedStateIsGoingOn) {
     for (const Case& c : cases())
         for (const Engine engine : {Engine::fast, Engine::plain}) {
@@ -157,6 +210,9 @@ TEST(Encoder, AStateOfAnotherModelOrSizeIsRefused) {
     TensorFile cut = encoder.state();
     cut.tensors.erase("h.1");
     EXPECT_NE(refusal(encoder, cut).find("'h.1'"), std::string::npos);
+    TensorFile turned = encoder.state();
+    turned.tensors.at("h.0").shape = {40, 30, config.widths[0]};
+    EXPECT_NE(refusal(encoder, turned).find("'h.0': expected shape [30, 40, "), std::string::npos);
     EXPECT_EQ(refusal(encoder, encoder.state()), "accepted");
 }
 

@@ -156,6 +156,19 @@ TEST_F(SelfEnsemble, ARegionIsAPartOfTheWhole) {
         }
 }
 
+TEST_F(SelfEnsemble, ResetForgetsInEveryView) {
+    Network used{model_, of(4)}, fresh{model_, of(4)};
+    for (int i = 0; i < 3; ++i) used.see(next());
+    used.encoder.reset();
+    used.renderer.reset();
+    for (int i = 0; i < 2; ++i) {
+        const VoxelGrid& grid = next();
+        used.see(grid);
+        fresh.see(grid);
+    }
+    EXPECT_EQ(used.shown(request()).intensity, fresh.shown(request()).intensity);
+}
+
 TEST_F(SelfEnsemble, GoesOnFromAState) {
     Network first{model_, of(2)}, second{model_, of(2)}, one{model_, of(1)};
     for (int i = 0; i < 3; ++i) first.see(next());

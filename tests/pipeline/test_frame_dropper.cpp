@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace eventide {
@@ -13,12 +14,12 @@ using namespace std::chrono_literals;
 
 /// Which of `due` frames are kept, with event windows every 50 ms and frames of `cost`.
 std::vector<bool> kept_of(FrameDropper& dropper, std::uint64_t due, HostTime::duration cost,
-                          int rounds, std::size_t waiting = 0) {
+                          int rounds, std::size_t waiting = 0, std::optional<double> in_time = {}) {
     static HostTime now{};  // goes on over all calls
     std::vector<bool> kept;
     for (int round = 0; round < rounds; ++round) {
         now += 50ms;
-        dropper.open({.frames = due}, now);
+        dropper.open({.frames = due, .in_time = in_time}, now);
         kept.assign(due, false);
         for (std::uint64_t i = 0; i < due; ++i) {
             kept[i] = dropper.keeps_next(waiting);
@@ -49,6 +50,19 @@ TEST(FrameDropper, KeepsTheNewestHoweverSlowRenderingIs) {
         EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 1);
         EXPECT_TRUE(kept.back());
     }
+}
+
+TEST(FrameDropper, ASlowFrameCountsATenth) {
+    FrameDropper dropper(2);
+    kept_of(dropper, 10, 1ms, 50);
+    dropper.took(200ms);  // 20.9 ms in the mean, 2.15 times in 45 ms
+    const auto kept = kept_of(dropper, 10, 1ms, 1);
+    EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 2);
+}
+
+TEST(FrameDropper, KeepsFramesWhereNoEventWindowMayWait) {
+    FrameDropper dropper(0);
+    for (const bool kept : kept_of(dropper, 10, 1ms, 20)) EXPECT_TRUE(kept);
 }
 
 TEST(FrameDropper, RecoversWhenRenderingIsQuickAgain) {
@@ -90,6 +104,13 @@ TEST(FrameDropper, OfAWindowThatIsTooLateTheNewestFrameIsKeptWhereNothingNewerIs
     EXPECT_EQ(kept(2, 1), (std::vector<std::uint64_t>{2, 5}));
     EXPECT_EQ(kept(0, 0), (std::vector<std::uint64_t>{5}));
     EXPECT_TRUE(kept(0, 1).empty()) << "the next window's frames will be newer";
+}
+
+TEST(FrameDropper, KeepsNoMoreThanThereIsTimeForWhateverWouldBeInTime) {
+    FrameDropper dropper(2);
+    kept_of(dropper, 10, 15ms, 50);  // 3 in 45 ms
+    const auto kept = kept_of(dropper, 10, 15ms, 1, 0, 5);
+    EXPECT_EQ(std::count(kept.begin(), kept.end(), true), 3);
 }
 
 }  // namespace

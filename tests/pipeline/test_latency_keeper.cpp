@@ -248,9 +248,12 @@ TEST(LatencyKeeper, OneLongPauseMakesItLeaveNothingOut) {
 TEST(LatencyKeeper, LearnsFromTheQuickestOfTheFirst) {
     LatencyKeeper keeper{200ms};
     keeper.packet_took(1ms);
-    keeper.packet_took(30ms);  // memory of its own is cold
+    for (int i = 0; i < 7; ++i) keeper.packet_took(30ms);  // memory of its own is cold
     EXPECT_TRUE(keeper.takes_packet(50));
     EXPECT_FALSE(keeper.takes_packet(51));
+    keeper.packet_took(30ms);  // the ninth counts a fifth, of 4 ms at most: 1.6 ms
+    EXPECT_TRUE(keeper.takes_packet(31));
+    EXPECT_FALSE(keeper.takes_packet(32));
 }
 
 TEST(LatencyKeeper, AnIdleEncoderTakesAWindowHoweverLongItWillBusyIt) {
@@ -258,6 +261,17 @@ TEST(LatencyKeeper, AnIdleEncoderTakesAWindowHoweverLongItWillBusyIt) {
     for (int i = 0; i < 8; ++i) keeper.window_took(400ms);
     EXPECT_TRUE(keeper.hands_on(0)) << "waiting would make it no sooner";
     EXPECT_FALSE(keeper.hands_on(1));
+    keeper.adapt(0);
+    EXPECT_EQ(keeper.halvings(), 0U) << "nor would fewer frames";
+}
+
+TEST(LatencyKeeper, AWindowHasThreeQuartersOfTheBoundForThoseBeforeItItselfAndItsFrame) {
+    for (const auto frame : {45ms, 55ms}) {
+        LatencyKeeper keeper{200ms};
+        keeper.window_took(50ms);
+        keeper.frame_took(frame);
+        EXPECT_EQ(keeper.hands_on(1), frame == 45ms);
+    }
 }
 
 TEST(LatencyKeeper, NoFrameOfAWindowOlderThanTheBoundIsInTime) {
@@ -299,6 +313,41 @@ TEST(EncoderGate, NeverHasMoreWindowsWithTheEncoderThanThereAreBuffers) {
     lent = 2;
     gate.look_again();
     EXPECT_EQ(lent, 3U);
+}
+
+TEST(EncoderGate, WindowsThatWaitGoOnBeforeAndWithTheNext) {
+    LatencyKeeper keeper{200ms};
+    std::size_t lent = 1;
+    std::vector<Window> given;
+    EncoderGate gate{
+        keeper,
+        {.most = 1},
+        [&] { return lent; },
+        [&](const EventWindow& event_window) { given.push_back(event_window.window); }};
+    gate.take(event_window_of(0, 10, {}));
+    EXPECT_TRUE(given.empty());
+    lent = 0;
+    gate.take(event_window_of(10, 20, {}));
+    EXPECT_EQ(given, (std::vector<Window>{{from_us(0), from_us(20)}}));
+}
+
+TEST(EncoderGate, NothingIsMergedOverAGapWhereStateBeginsAnew) {
+    for (const bool anew : {false, true}) {
+        LatencyKeeper keeper{200ms};
+        std::vector<Window> given;
+        EncoderGate gate{
+            keeper,
+            {.most = 1, .new_state_after_gaps = anew},
+            [] { return std::size_t{1}; },
+            [&](const EventWindow& event_window) { given.push_back(event_window.window); }};
+        EventWindow after_gap = event_window_of(10, 20, {});
+        after_gap.gap_before = true;
+        gate.take(event_window_of(0, 10, {}));
+        gate.take(after_gap);
+        EXPECT_EQ(given.size(), anew ? 1U : 0U) << "goes on, whatever the encoder has to do";
+        gate.flush();
+        EXPECT_EQ(given.back(), (Window{from_us(anew ? 10 : 0), from_us(20)}));
+    }
 }
 
 TEST(WindowMerger, IsAllItsWindowsAndNothingElse) {

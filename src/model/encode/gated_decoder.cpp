@@ -52,9 +52,8 @@ GatedDecoder::GatedDecoder(const Model& model, const std::vector<GatedLevel>& le
             conv(name + ".0", true, deepest.tiles(), deepest.size(), {}, Summation::by_pixel),
             conv(name + ".1", false, deepest.tiles(), deepest.size(), {}, Summation::by_pixel), map,
             map, sum});
-        // A row of h in float32, for add().
+        // A row of h in float32, for add(); the second layer is as large as the first.
         need(std::size_t(deepest.side() * widths_.back()), block.first, deepest.side());
-        need(0, block.second, deepest.side());
     }
     if (!has_out_) return;
     out_ = conv("encoder.out", false, latent_tiles(latent_size_.height, latent_size_.width),
