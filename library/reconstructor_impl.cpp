@@ -114,8 +114,7 @@ void Reconstructor::Impl::encode() {
 /// By the images that the stream had told when the window at hand was cut.
 void Reconstructor::Impl::correct() {
     if (!fused_) return;
-    const auto next = [this] { return intake_.next_image(); };
-    has_images_ = fused_->give_all(grid_.reset_before, next) || has_images_;
+    has_images_ = fused_->give_all([this] { return intake_.next_image(); }) || has_images_;
     if (!has_images_) return;
     count_events(grid_, latent_.events_per_pixel);
     fused_->push(grid_.window, latent_.events_per_pixel);

@@ -76,7 +76,7 @@ private:
     /// By the images that came before the map's window was cut.
     void correct(const LatentMap& latent) noexcept {
         if (!fused_) return;
-        fused_->give_all(latent.reset_before, [&] { return images_->take(latent.images); });
+        fused_->give_all([&] { return images_->take(latent.images); });
         fused_->push(latent.window, latent.events_per_pixel);
         note_images();
     }

@@ -133,22 +133,18 @@ TEST(FusedRenderer, OfTwoImagesOfOneTimeTheLaterCounts) {
     EXPECT_EQ(given.dropped, 0U);
 }
 
-TEST(FusedRenderer, ImagesOfTheClockBeforeAreDropped) {
+TEST(FusedRenderer, TakesAllThatCameBeforeAWindowAndTellsWhetherAnyDid) {
     Chain chain{0};
     const Window window = chain.encode_next(Kind::patch);
     int left = 0;
     const auto next = [&] {
         return left-- > 0 ? std::optional{image_of(ramp(), window.end)} : std::nullopt;
     };
-    EXPECT_FALSE(chain.fused.give_all(true, next));
-    left = 3;
-    EXPECT_TRUE(chain.fused.give_all(true, next));
-    EXPECT_EQ(chain.fused.dropped(), 3U);
-    left = 1;
-    EXPECT_TRUE(chain.fused.give_all(false, next));
+    EXPECT_FALSE(chain.fused.give_all(next));
+    left = 2;
+    EXPECT_TRUE(chain.fused.give_all(next));
     chain.push(1);
-    EXPECT_EQ(chain.fused.used(), 1U);
-    EXPECT_EQ(chain.fused.dropped(), 3U);
+    EXPECT_EQ(chain.fused.used(), 2U);
 }
 
 TEST(FusedRenderer, AfterAResetAnotherClockCounts) {

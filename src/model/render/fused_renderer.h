@@ -25,18 +25,12 @@ public:
     /// the oldest are dropped; so are those that there is no memory for. One without pixels tells
     /// nothing.
     void give(ReferenceImage image) noexcept;
-    /// give() of those that came before a window: what `next` returns until it is empty. Where the
-    /// window begins anew (WindowStamp::reset_before) they are of the clock before, and dropped.
-    /// Returns whether there was one.
+    /// give() of those that came before a window: what `next` returns until it is empty. Returns
+    /// whether there was one.
     template <typename Next>
-    bool give_all(bool reset_before, Next next) noexcept {
+    bool give_all(Next next) noexcept {
         bool any = false;
-        for (; std::optional<ReferenceImage> image = next(); any = true) {
-            if (reset_before)
-                ++dropped_;
-            else
-                give(std::move(*image));
-        }
+        for (; std::optional<ReferenceImage> image = next(); any = true) give(std::move(*image));
         return any;
     }
 
