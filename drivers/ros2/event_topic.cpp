@@ -94,15 +94,19 @@ std::vector<std::string> EventTopic::event_topics() const {
 bool EventTopic::find_publisher(std::chrono::milliseconds at_most) {
     const auto until = Clock::now() + at_most;
     while (true) {
+        std::string other_type;
         for (const Endpoint& endpoint : endpoints()) {
             if (endpoint.topic != dds_name_) continue;
-            if (endpoint.type != kEventPacketType.descriptor.m_typename)
-                throw Error(ErrorKind::device, "ros2:" + name_ + ": expected a topic of type " +
-                                                   std::string{kEventPacketType.name} + ", found " +
-                                                   ros_type_name(endpoint.type));
-            open(endpoint.reliability);
-            return true;
+            if (endpoint.type == kEventPacketType.descriptor.m_typename) {
+                open(endpoint.reliability);
+                return true;
+            }
+            other_type = ros_type_name(endpoint.type);
         }
+        if (!other_type.empty())
+            throw Error(ErrorKind::device, "ros2:" + name_ + ": expected a topic of type " +
+                                               std::string{kEventPacketType.name} + ", found " +
+                                               other_type);
         if (Clock::now() >= until) return false;
         // What is discovered is no event of the waitset's own: it is looked for ten times a second.
         constexpr std::chrono::milliseconds kLook{100};

@@ -36,8 +36,8 @@ public:
     ~EventTopic();
 
     /// Whether a publisher of the topic is there, waiting at most so long: the reader is then made
-    /// as reliable as that publisher is. False after wake(). Throws Error (device) for a topic of
-    /// another type.
+    /// as reliable as that publisher is. False after wake(). Throws Error (device) where all there
+    /// is on the topic is of another type.
     bool find_publisher(std::chrono::milliseconds at_most);
     /// Topics with event packets, for messages of ours.
     std::vector<std::string> event_topics() const;

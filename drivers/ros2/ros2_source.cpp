@@ -29,6 +29,7 @@ std::string list_text(const std::vector<std::string>& names) {
 Ros2Source::Ros2Source(Ros2SourceName name, const CameraOptions& options)
     : name_{std::move(name)},
       reconnect_{options.reconnect},
+      warnings_{options.warn},
       topic_{Participant::join(), name_.topic} {
     if (!options.settings.empty())
         throw Error(ErrorKind::usage, label() +
@@ -109,6 +110,7 @@ ReadStatus Ros2Source::read(RawPacket& into) {
     if (into.bytes.empty()) return stopped_ ? ReadStatus::end : ReadStatus::timeout;
     if (!std::exchange(is_there_, true)) {
         count(CameraCount::reconnects);
+        warnings_.is_back();
         into.gap_before = true;
     }
     into.arrived = Clock::now();
@@ -120,9 +122,7 @@ void Ros2Source::take_messages(RawPacket& into) {
     while (held_.empty() && into.bytes.size() < kEnoughBytes) {
         const auto message = topic_.take();
         if (!message) return;
-        const bool ours = is_of_this_publisher(*message);
-        if (!ours) continue;
-        check_same(*message);
+        if (!is_as_before(*message) || !is_of_this_publisher(*message)) continue;
         const bool gap = is_gap_before(*message);
         if (gap && !into.bytes.empty()) {
             append(*message, held_);
@@ -166,23 +166,35 @@ bool Ros2Source::is_gap_before(const EventMessage& message) {
     return std::exchange(gap_before_held_, false) || jump;
 }
 
-void Ros2Source::check_same(const EventMessage& message) const {
+bool Ros2Source::is_as_before(const EventMessage& message) {
     if (message.width == info_.width && message.height == info_.height &&
         message.encoding == encoding_name_ && !message.big_endian)
-        return;
-    throw Error(ErrorKind::device,
-                label() + ": expected " + std::to_string(info_.width) + "x" +
-                    std::to_string(info_.height) + " " + encoding_name_ + " as before, found " +
-                    std::to_string(message.width) + "x" + std::to_string(message.height) + " " +
-                    std::string{message.encoding} + (message.big_endian ? ", big-endian" : ""));
+        return true;
+    const Error error{ErrorKind::device,
+                      label() + ": expected " + std::to_string(info_.width) + "x" +
+                          std::to_string(info_.height) + " " + encoding_name_ +
+                          " as before, found " + std::to_string(message.width) + "x" +
+                          std::to_string(message.height) + " " + std::string{message.encoding} +
+                          (message.big_endian ? ", big-endian" : "")};
+    if (!reconnect_) throw error;
+    warnings_.tell(error);
+    return false;
+}
+
+/// The reader is as reliable as the publisher that went away was, and hears none that is less.
+bool Ros2Source::finds_less_reliable_one() {
+    try {
+        return topic_.find_publisher(std::chrono::milliseconds{0}) && topic_.publishers() > 0;
+    } catch (const Error& error) {  // of another type
+        if (reconnect_) warnings_.tell(error);
+        return false;
+    }
 }
 
 ReadStatus Ros2Source::lost() {
-    if (!reconnect_)
-        throw Error(ErrorKind::device, label() + ": its publisher went away" + kReconnect);
     is_there_ = false;
-    static_cast<void>(
-        topic_.find_publisher(std::chrono::milliseconds{0}));  // it may be less reliable now
+    if (!finds_less_reliable_one() && !reconnect_)
+        throw Error(ErrorKind::device, label() + ": its publisher went away" + kReconnect);
     return stopped_ ? ReadStatus::end : ReadStatus::timeout;
 }
 

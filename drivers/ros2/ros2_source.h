@@ -5,6 +5,7 @@
 #include "drivers/devices.h"
 #include "drivers/ros2/event_topic.h"
 #include "drivers/ros2/ros2_source_name.h"
+#include "drivers/wait_warnings.h"
 #include "src/codec/event_packet.h"
 
 #include <atomic>
@@ -15,7 +16,8 @@ namespace eventide {
 
 /// The bytes are what EventPacketParser reads. A jump of the messages' numbers is a gap. One
 /// publisher is read at a time: of several the one that was heard of last, and when it has ended
-/// one that goes on.
+/// one that goes on. With reconnect what is of another size or encoding is left out until it is as
+/// it was.
 class Ros2Source final : public Camera {
 public:
     /// Waits for the first message, which tells size and encoding: name.wait, or with
@@ -36,12 +38,14 @@ private:
     void append(const EventMessage& message, std::vector<std::byte>& bytes);
     bool is_of_this_publisher(const EventMessage& message);
     bool is_gap_before(const EventMessage& message);
-    void check_same(const EventMessage& message) const;
+    bool is_as_before(const EventMessage& message);
+    bool finds_less_reliable_one();
     ReadStatus lost();
     std::string label() const { return "ros2:" + name_.topic; }
 
     Ros2SourceName name_;
     bool reconnect_;
+    WaitWarnings warnings_;
     EventTopic topic_;
     SensorInfo info_;
     std::string encoding_name_;

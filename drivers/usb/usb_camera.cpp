@@ -72,16 +72,18 @@ void UsbCamera::require_same(const SensorInfo& found, bool same_words) const {
 }
 
 void UsbCamera::open() {
+    const bool first = info_.width == 0;
     SensorInfo info;
     const auto set_up_device = [&](UsbDevice& device) {
-        // For what set_up() may have to say.
-        if (info_.width == 0) info_.serial = device.identity().serial;
+        if (first) info_.serial = device.identity().serial;  // for what set_up() may have to say
         info = set_up(device);
     };
     device_ = UsbDevice::open(selector_, set_up_device, options_.warn);
     const UsbIdentity& identity = device_->identity();
-    info.serial = identity.serial;
-    info_ = std::move(info);
+    if (first) {  // others may read it from then on
+        info.serial = identity.serial;
+        info_ = std::move(info);
+    }
     // The same camera must come back, not another; one without a serial number to the same port.
     selector_.serial = identity.has_serial ? identity.serial : "";
     selector_.port = identity.has_serial ? "" : identity.port;

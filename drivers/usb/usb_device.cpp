@@ -25,6 +25,11 @@ std::array<unsigned char, 4> big_endian(std::uint32_t value) {
             static_cast<unsigned char>(value >> 8), static_cast<unsigned char>(value)};
 }
 
+/// "0.83"
+std::string number_of(davis::Register at) {
+    return std::to_string(at.module) + "." + std::to_string(at.address);
+}
+
 }  // namespace
 
 void FreeUsbContext::operator()(libusb_context* context) const {
@@ -86,8 +91,7 @@ std::uint32_t UsbDevice::read_register(davis::Register at) {
     const int got =
         libusb_control_transfer(handle_.get(), kIn, kRegisterRequest, at.module, at.address,
                                 bytes.data(), std::uint16_t(bytes.size()), kControlTimeoutMs);
-    const std::string name =
-        "register " + std::to_string(at.module) + "." + std::to_string(at.address);
+    const std::string name = "register " + number_of(at);
     check_usb(got, "reading " + name);
     if (got != int(bytes.size()))
         throw Error(ErrorKind::device,
@@ -101,8 +105,7 @@ void UsbDevice::write_register(davis::Write write) {
     const int sent = libusb_control_transfer(handle_.get(), kOut, kRegisterRequest, write.at.module,
                                              write.at.address, bytes.data(),
                                              std::uint16_t(bytes.size()), kControlTimeoutMs);
-    check_usb(sent, "writing register " + std::to_string(write.at.module) + "." +
-                        std::to_string(write.at.address));
+    check_usb(sent, "writing register " + number_of(write.at));
 }
 
 void UsbDevice::write_registers(std::span<const davis::Write> writes) {
@@ -124,12 +127,15 @@ void UsbDevice::write_together(std::span<const davis::Write> writes) {
 }
 
 std::uint64_t UsbDevice::read_counter(davis::Register at) {
+    constexpr int kTries = 5;
     const davis::Register lower{at.module, std::uint16_t(at.address + 1)};
-    for (;;) {
+    for (int i = 0; i < kTries; ++i) {
         const std::uint64_t before = read_register(at), low = read_register(lower),
                             after = read_register(at);
         if (before == after) return (before << 32) | low;
     }
+    throw Error(ErrorKind::device,
+                "USB: reading counter " + number_of(at) + ": its upper half is another each time");
 }
 
 void UsbDevice::vendor_out(std::uint8_t request, std::uint16_t value, std::uint16_t index,

@@ -75,7 +75,7 @@ public:
     /// Several registers in one request (0xC2).
     void write_together(std::span<const davis::Write> writes);
     /// A 64-bit counter at two addresses: upper half first; read again until the upper half stood
-    /// still.
+    /// still. Throws Error (device) where it never does.
     std::uint64_t read_counter(davis::Register at);
 
     /// Any vendor request out.

@@ -14,7 +14,7 @@ namespace {
 
 using KeyValue = diagnostic_msgs_msg_dds__KeyValue_;
 
-enum Level : std::uint8_t { kOk = 0, kWarn = 1 };  // DiagnosticStatus.msg
+constexpr std::uint8_t kOk = 0;  // DiagnosticStatus.msg
 
 std::string seconds(double us) {
     char text[64];
@@ -35,27 +35,26 @@ DiagnosticsTopic::DiagnosticsTopic(std::shared_ptr<Participant> participant,
       name_{"eventide: " + (name.empty() ? "/" : name) + " stamps"},
       hardware_{name.empty() ? "/" : name} {}
 
-bool DiagnosticsTopic::tell(const Told& told) {
+void DiagnosticsTopic::tell(const Told& told) {
     if (writer.readers() == 0) {
         told_us_.reset();  // who comes is told at once
-        return true;
+        return;
     }
-    if (!told.set_anew && told_us_ && told.stamp_us - *told_us_ < kPeriodUs) return true;
+    if (!told.set_anew && told_us_ && told.stamp_us - *told_us_ < kPeriodUs) return;
     told_us_ = told.stamp_us;
-    return write(told);
+    write(told);
 }
 
-bool DiagnosticsTopic::write(const Told& told) {
+void DiagnosticsTopic::write(const Told& told) {
     const std::vector<std::pair<std::string, std::string>> pairs{
         {"offset_s", seconds(told.offset_us)},
         {"stamp_s", seconds(double(told.stamp_us))},
-        {"sensor_time_s", seconds(double(told.sensor_us))},
-        {"messages_not_sent", std::to_string(told.unsent)}};
+        {"sensor_time_s", seconds(double(told.sensor_us))}};
     std::vector<KeyValue> values;
     for (const auto& [key, value] : pairs) values.push_back({borrowed(key), borrowed(value)});
     const std::string words = offset_words(told.offset_us);
     std::vector<diagnostic_msgs_msg_dds__DiagnosticStatus_> status(1);
-    status[0].level = told.unsent == 0 ? kOk : kWarn;
+    status[0].level = kOk;
     status[0].name = borrowed(name_);
     status[0].message = borrowed(words);
     status[0].hardware_id = borrowed(hardware_);
@@ -64,7 +63,7 @@ bool DiagnosticsTopic::write(const Told& told) {
     const std::string no_frame;
     message.header = header_of(told.stamp_us, no_frame);
     borrow(message.status, status);
-    return writer.write(&message);
+    writer.write(&message);
 }
 
 }  // namespace eventide

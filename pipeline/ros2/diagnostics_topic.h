@@ -30,15 +30,14 @@ public:
         std::int64_t sensor_us = 0;  ///< its time by the sensor
         double offset_us = 0;        ///< added to the sensor's time
         bool set_anew = false;       ///< is not what was told before
-        std::uint64_t unsent = 0;    ///< messages that subscribers did not take in time
     };
-    /// For each frame. False when it could not be sent.
-    bool tell(const Told& told);
+    /// For each frame.
+    void tell(const Told& told);
 
     Ros2Writer writer;
 
 private:
-    bool write(const Told& told);
+    void write(const Told& told);
 
     std::string name_, hardware_;
     std::optional<std::int64_t> told_us_;  // the stamp of the last message

@@ -106,6 +106,7 @@ Ros2Environment ros2_environment(const Variable& variable) {
     Ros2Environment environment;
     environment.domain = domain_of(text_of(variable, "ROS_DOMAIN_ID"));
     environment.config = kOwnConfig;
+    environment.configured = !text_of(variable, "CYCLONEDDS_URI").empty();
     for (const std::string& more :
          {range_config(text_of(variable, "ROS_LOCALHOST_ONLY"),
                        text_of(variable, "ROS_AUTOMATIC_DISCOVERY_RANGE")),

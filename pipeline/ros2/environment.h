@@ -11,6 +11,7 @@ struct Ros2Environment {
     /// For dds_create_domain(): our own settings, then what ROS's variables ask for, then
     /// CYCLONEDDS_URI. What comes later wins.
     std::string config;
+    bool configured = false;  ///< there is a CYCLONEDDS_URI
 };
 
 /// `variable` gives a variable's value, or null: environment_value() in programs. Reads

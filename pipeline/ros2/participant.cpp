@@ -91,9 +91,10 @@ Participant::Participant(Ros2Environment environment) : environment_{std::move(e
     const std::string number = std::to_string(environment_.domain);
     const dds_entity_t domain =
         dds().dds_create_domain(environment_.domain, environment_.config.c_str());
-    domain_ =
-        DdsEntity{domain, with_words("set up domain " + number + ", with what CYCLONEDDS_URI says",
-                                     domain < 0 ? heard.text() : "")};
+    const char* needed = environment_.configured ? ", with what CYCLONEDDS_URI says"
+                                                 : ", which takes a network interface that is up";
+    domain_ = DdsEntity{
+        domain, with_words("set up domain " + number + needed, domain < 0 ? heard.text() : "")};
     const dds_entity_t participant =
         dds().dds_create_participant(environment_.domain, nullptr, nullptr);
     participant_ = DdsEntity{
@@ -113,7 +114,8 @@ Ros2Writer::Ros2Writer(std::shared_ptr<Participant> participant, const MessageTy
                                     dds_topic_name(ros_name).c_str(), nullptr, nullptr),
              "create the topic " + ros_name} {
     const DdsQos qos = make_dds_qos();
-    dds().dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, dds_duration(kTimeout));
+    // DDS's default; Cyclone waits for no reader where the history keeps only the last few.
+    dds().dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
     dds().dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kDepth);
     dds().dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
     dds().dds_qset_writer_data_lifecycle(qos.get(), false);
@@ -144,11 +146,8 @@ bool Ros2Writer::wait_for_readers(int n, const std::function<bool()>& give_up) {
     return true;
 }
 
-bool Ros2Writer::write(const void* message) {
-    const dds_return_t code = dds().dds_write(writer_.get(), message);
-    if (code == DDS_RETCODE_TIMEOUT) return false;
-    check_dds(code, "write to " + name_);
-    return true;
+void Ros2Writer::write(const void* message) {
+    check_dds(dds().dds_write(writer_.get(), message), "write to " + name_);
 }
 
 void Ros2Writer::wait_for_readers_to_take_all(std::chrono::milliseconds at_most) {

@@ -62,12 +62,11 @@ private:
 std::string dds_topic_name(std::string_view ros_name);
 
 /// Writes one topic as ROS 2's publishers of images do: reliable, the last 5, nothing for those
-/// who come late.
+/// who come late. It waits for nobody: a reader that is behind misses what is older than the
+/// last 5.
 class Ros2Writer {
 public:
     static constexpr int kDepth = 5;
-    /// How long write() may wait for readers that are behind.
-    static constexpr std::chrono::milliseconds kTimeout{20};
 
     /// Throws Error (failed).
     Ros2Writer(std::shared_ptr<Participant> participant, const MessageType& type,
@@ -78,9 +77,8 @@ public:
     /// Waits until there are `n` readers. `give_up` (may be empty) is asked ten times a second;
     /// false when it says so.
     bool wait_for_readers(int n, const std::function<bool()>& give_up);
-    /// `message` is of the type's C struct and stays the caller's. False when readers are so far
-    /// behind that it could not be sent within kTimeout. Throws Error (failed).
-    bool write(const void* message);
+    /// `message` is of the type's C struct and stays the caller's. Throws Error (failed).
+    void write(const void* message);
     /// Waits until all readers have all there is, at most so long.
     void wait_for_readers_to_take_all(std::chrono::milliseconds at_most);
 

@@ -58,7 +58,7 @@ public:
           encoding_{encoding},
           encoding_name_{name_of(encoding)} {}
 
-    bool write(const Array2<float>& image, const std_msgs_msg_dds__Header_& header) {
+    void write(const Array2<float>& image, const std_msgs_msg_dds__Header_& header) {
         encode(image, encoding_, bytes_);
         sensor_msgs_msg_dds__Image_ message{};
         message.header = header;
@@ -68,7 +68,7 @@ public:
         message.is_bigendian = std::endian::native == std::endian::big;
         message.step = std::uint32_t(std::size_t(image.width()) * pixel_bytes(encoding_));
         borrow(message.data, bytes_);
-        return writer.write(&message);
+        writer.write(&message);
     }
 
     Ros2Writer writer;
@@ -93,7 +93,7 @@ public:
                   " compressed " + name;
     }
 
-    bool write(const Array2<float>& image, const std_msgs_msg_dds__Header_& header) {
+    void write(const Array2<float>& image, const std_msgs_msg_dds__Header_& header) {
         encode(image, encoding_, pixels_);
         const cv::Mat pixels(image.height(), image.width(),
                              encoding_ == ImageEncoding::mono8 ? CV_8UC1 : CV_16UC1,
@@ -104,7 +104,7 @@ public:
         message.header = header;
         message.format = borrowed(format_);
         borrow(message.data, bytes_);
-        return writer.write(&message);
+        writer.write(&message);
     }
 
     Ros2Writer writer;
@@ -123,7 +123,7 @@ public:
           calibration_{std::move(calibration)},
           geometry_{geometry} {}
 
-    bool write(int width, int height, const std_msgs_msg_dds__Header_& header) {
+    void write(int width, int height, const std_msgs_msg_dds__Header_& header) {
         const Calibration now = fitted(calibration_, geometry_, width, height);
         sensor_msgs_msg_dds__CameraInfo_ message{};
         message.header = header;
@@ -134,7 +134,7 @@ public:
         std::ranges::copy(now.k, message.k);
         std::ranges::copy(now.r, message.r);
         std::ranges::copy(now.p, message.p);
-        return writer.write(&message);
+        writer.write(&message);
     }
 
     Ros2Writer writer;
@@ -184,13 +184,13 @@ public:
         const std::int64_t stamp = clock_.stamp_us(frame, system_us(frame.arrived));
         tell_offset(frame, stamp);
         const auto header = header_of(stamp, settings_.name.frame_id);
-        if (image_.writer.readers() > 0) count(image_.write(frame.intensity, header));
+        if (image_.writer.readers() > 0) image_.write(frame.intensity, header);
         if (sigma_ && sigma_->writer.readers() > 0 && !frame.sigma.empty())
-            count(sigma_->write(frame.sigma, header));
+            sigma_->write(frame.sigma, header);
         if (info_.writer.readers() > 0)
-            count(info_.write(frame.intensity.width(), frame.intensity.height(), header));
+            info_.write(frame.intensity.width(), frame.intensity.height(), header);
         if (compressed_ && compressed_->writer.readers() > 0)
-            count(compressed_->write(frame.intensity, header));
+            compressed_->write(frame.intensity, header);
         // Subscribers that were waited for may still be on their way to finding us: the first frame
         // is kept for them until they have it.
         if (first && settings_.name.subscribers > 0)
@@ -214,10 +214,6 @@ public:
                 std::chrono::duration_cast<std::chrono::milliseconds>(
                     std::max(until - std::chrono::steady_clock::now(),
                              std::chrono::steady_clock::duration{0})));
-        if (unsent_ > 0)
-            warn(std::to_string(unsent_) +
-                 " messages were not sent: reliable subscribers did "
-                 "not take the ones before in time");
     }
 
 private:
@@ -252,11 +248,9 @@ private:
 
     void tell_offset(const Frame& frame, std::int64_t stamp_us) {
         if (clock_.is_set_anew()) say(offset_words(clock_.offset_us()));
-        count(diagnostics_.tell(
-            {stamp_us, to_us(frame.t), clock_.offset_us(), clock_.is_set_anew(), unsent_}));
+        diagnostics_.tell({stamp_us, to_us(frame.t), clock_.offset_us(), clock_.is_set_anew()});
     }
 
-    void count(bool sent) { unsent_ += sent ? 0 : 1; }
     void say(const std::string& text) const {
         if (settings_.say) settings_.say(label() + text);
     }
@@ -275,7 +269,6 @@ private:
     std::optional<CompressedTopic> compressed_;
     StampClock clock_;
     bool begun_ = false;
-    std::uint64_t unsent_ = 0;
 };
 
 }  // namespace

@@ -4,7 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace eventide::test {
@@ -104,6 +108,40 @@ TEST(DavisDrops, ACameraThatRefusesToTellItsDropsGoesOnAndIsNotAskedAgain) {
     camera.stop();
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
     EXPECT_GT(camera_side.bed.requests(), requests) << "it is still made idle";
+}
+
+/// The upper half of what it dropped is another each time it is asked.
+class Restless final : public testing_support::UsbModel {
+public:
+    explicit Restless(std::shared_ptr<testing_support::DavisModel> camera)
+        : camera_(std::move(camera)) {}
+    testing_support::UsbModelIdentity identity() const override { return camera_->identity(); }
+    int control(const testing_support::UsbSetup& setup, std::span<std::uint8_t> data) override {
+        const int n = camera_->control(setup, data);
+        const bool upper_half = setup.type == 0xC0 && setup.value == davis::mux &&
+                                setup.index == kDroppedLow.address - 1;
+        if (upper_half) data[3] = ++asked_;
+        return n;
+    }
+    std::size_t send(std::span<std::byte> out) override { return camera_->send(out); }
+    void clear_endpoint() override { camera_->clear_endpoint(); }
+
+private:
+    std::shared_ptr<testing_support::DavisModel> camera_;
+    std::uint8_t asked_ = 0;
+};
+
+TEST(DavisDrops, ACounterThatNeverStandsStillIsNotReadForEver) {
+    const auto model = camera_before(2'000);
+    testing_support::UsbTestbed bed;
+    bed.plug_in(std::make_shared<Restless>(model));
+    std::vector<std::string> warnings;
+    DavisOptions options = at_once();
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    DavisCamera camera{options};
+    EXPECT_EQ(stream(camera, bed, *model).data.events.size(), 2'000U);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_THAT(warnings.front(), HasSubstr("counter 0.83: its upper half is another each time"));
 }
 
 TEST(DavisDrops, ACameraThatNeverTellsThemIsOfUseAllTheSame) {

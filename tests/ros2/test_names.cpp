@@ -2,6 +2,7 @@
 #include "drivers/ros2/ros2_source_name.h"
 #include "pipeline/ros2/environment.h"
 #include "pipeline/ros2/message_types.h"
+#include "pipeline/ros2/participant.h"
 #include "pipeline/ros2/ros2_name.h"
 #include "pipeline/ros2/socket_buffer.h"
 #include "src/core/error.h"
@@ -20,11 +21,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string error_of(const std::function<void()>& call) {
+std::string error_of(const std::function<void()>& call, ErrorKind kind = ErrorKind::usage) {
     try {
         call();
     } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        EXPECT_EQ(error.kind(), kind);
         return error.what();
     }
     ADD_FAILURE() << "nothing was thrown";
@@ -123,6 +124,17 @@ TEST(Ros2Environment, WhatTheUserSaysOfCycloneWins) {
             {{"CYCLONEDDS_URI", own}, {"ROS_LOCALHOST_ONLY", "1"}, {"ROS_STATIC_PEERS", "a"}})
             .config;
     EXPECT_TRUE(config.ends_with("," + own)) << config;
+}
+
+/// A machine whose interfaces are down fails here, too, and has no such variable.
+TEST(Ros2Environment, ADomainThatCannotBeSetUpSaysWhereToLook) {
+    EXPECT_FALSE(environment_of({{"ROS_DOMAIN_ID", "1"}}).configured);
+    EXPECT_TRUE(environment_of({{"CYCLONEDDS_URI", "<Nonsense/>"}}).configured);
+    const auto words = [](bool configured) {
+        return error_of([=] { Participant{{231, "<Nonsense/>", configured}}; }, ErrorKind::failed);
+    };
+    EXPECT_THAT(words(true), HasSubstr("set up domain 231, with what CYCLONEDDS_URI says ("));
+    EXPECT_THAT(words(false), HasSubstr("which takes a network interface that is up ("));
 }
 
 TEST(Ros2Environment, WhatMakesNoSenseIsNamed) {

@@ -141,6 +141,21 @@ TEST_F(Ros2SourceTest, AJumpOfTheNumbersIsAGap) {
                 ElementsAre(event(0), event(1), event(2), event(5), event(6), event(9)));
 }
 
+TEST_F(Ros2SourceTest, APublisherThatDoesNotCountItsMessagesHasNoGaps) {
+    EventPublisher publisher{name_};
+    const auto source = open(publisher, message(0));
+    const auto parser = source->make_parser();
+    for (const std::uint64_t k : {1, 2, 3}) {
+        EventPublisher::Message uncounted = message(k);
+        uncounted.seq = 0;
+        publisher.publish(uncounted);
+    }
+    const Heard heard = read(*source, *parser, 4);
+    EXPECT_EQ(heard.gaps, 0);
+    EXPECT_THAT(heard.events, ElementsAre(event(0), event(1), event(2), event(3)));
+    EXPECT_EQ(source->counters()[CameraCount::lost_transfers], 0U);
+}
+
 TEST_F(Ros2SourceTest, EndsWithItsPublisherOrWaitsForTheNext) {
     for (const bool reconnect : {false, true}) {
         auto publisher = std::make_unique<EventPublisher>(name_);
@@ -214,6 +229,20 @@ TEST_F(Ros2SourceTest, WhenTheNewOfTwoPublishersEndsTheOtherIsReadAgain) {
     EXPECT_EQ(source->counters()[CameraCount::reconnects], 0U);
 }
 
+TEST_F(Ros2SourceTest, WhenAReliablePublisherEndsALessReliableOneIsRead) {
+    auto reliable = std::make_unique<EventPublisher>(name_);
+    EventPublisher other{name_, false};
+    const auto source = open(*reliable, message(0));
+    const auto parser = source->make_parser();
+    EXPECT_THAT(read(*source, *parser, 1).events, ElementsAre(event(0)));
+    reliable.reset();
+    std::uint64_t k = 0;
+    RawPacket packet;
+    do other.publish(message(++k));
+    while (source->read(packet) != ReadStatus::data);
+    EXPECT_TRUE(packet.gap_before);
+}
+
 TEST_F(Ros2SourceTest, StopsWhileItWaits) {
     EventPublisher publisher{name_};
     const auto source = open(publisher, message(0));
@@ -260,6 +289,61 @@ TEST_F(Ros2SourceTest, AChangeOfSizeEndsIt) {
     publisher.publish(other);
     EXPECT_THAT(error_of([&] { read(*source, *parser, 3); }),
                 HasSubstr("expected 64x48 mono as before, found 128x48 mono"));
+}
+
+TEST_F(Ros2SourceTest, WithReconnectItWaitsUntilTheSizeIsAsItWas) {
+    std::vector<std::string> warnings;
+    CameraOptions options;
+    options.reconnect = true;
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    auto publisher = std::make_unique<EventPublisher>(name_);
+    const auto source = open(*publisher, message(0), options);
+    const auto parser = source->make_parser();
+    EXPECT_THAT(read(*source, *parser, 1).events, ElementsAre(event(0)));
+    publisher.reset();
+    RawPacket packet;
+    publisher = std::make_unique<EventPublisher>(name_);
+    publisher->wait_for_readers(1);
+    for (const std::uint64_t k : {1, 2, 3}) {
+        EventPublisher::Message other = message(k);
+        other.width = 128;
+        publisher->publish(other);
+    }
+    publisher->publish(message(4));
+    const Heard heard = read(*source, *parser, 1);
+    EXPECT_EQ(heard.gaps, 1);
+    EXPECT_THAT(heard.events, ElementsAre(event(4)));
+    EXPECT_THAT(warnings,
+                ElementsAre(HasSubstr("expected 64x48 mono as before, found 128x48 mono")));
+}
+
+TEST_F(Ros2SourceTest, ATopicOfAnotherTypeIsRefusedOrWaitedPast) {
+    {
+        const EventPublisher images{name_, true, kImageType};
+        EXPECT_THAT(error_of([&] { open_ros2_source(name_ + "?wait=60s", {}); }),
+                    HasSubstr("expected a topic of type event_camera_msgs/msg/EventPacket, found "
+                              "sensor_msgs/msg/Image"));
+        EventPublisher publisher{name_};
+        EXPECT_EQ(open(publisher, message(0))->info().width, 64) << "one of the right type beside";
+    }
+    std::vector<std::string> warnings;
+    CameraOptions options;
+    options.reconnect = true;
+    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    auto publisher = std::make_unique<EventPublisher>(name_);
+    const auto source = open(*publisher, message(0), options);
+    const auto parser = source->make_parser();
+    EXPECT_EQ(read(*source, *parser, 1).events.size(), 1U);
+    publisher.reset();
+    const EventPublisher images{name_, true, kImageType};
+    RawPacket packet;
+    while (warnings.empty()) EXPECT_EQ(source->read(packet), ReadStatus::timeout);
+    EXPECT_THAT(warnings.front(), HasSubstr("found sensor_msgs/msg/Image"));
+    publisher = std::make_unique<EventPublisher>(name_);
+    publisher->wait_for_readers(1);
+    publisher->publish(message(1));
+    EXPECT_THAT(read(*source, *parser, 1).events, ElementsAre(event(1)));
+    EXPECT_EQ(source->counters()[CameraCount::reconnects], 1U);
 }
 
 #ifdef EVENTIDE_FASTDDS_PEER

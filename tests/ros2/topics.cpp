@@ -129,10 +129,10 @@ TopicReader::Writer TopicReader::writer() {
     return writer;
 }
 
-EventPublisher::EventPublisher(const std::string& ros_name, bool reliable)
+EventPublisher::EventPublisher(const std::string& ros_name, bool reliable, const MessageType& type)
     : domain_{Participant::join()},
       participant_{dds_create_participant(domain_of(*domain_), nullptr, nullptr), "join"},
-      topic_{dds_create_topic(participant_.get(), &kEventPacketType.descriptor,
+      topic_{dds_create_topic(participant_.get(), &type.descriptor,
                               dds_topic_name(ros_name).c_str(), nullptr, nullptr),
              "create a topic"} {
     const DdsQos qos = make_dds_qos();

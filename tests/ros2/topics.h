@@ -58,7 +58,9 @@ private:
 /// A driver's topic of event packets.
 class EventPublisher {
 public:
-    explicit EventPublisher(const std::string& ros_name, bool reliable = true);
+    /// Of another type it can only be there.
+    explicit EventPublisher(const std::string& ros_name, bool reliable = true,
+                            const MessageType& type = kEventPacketType);
 
     struct Message {
         std::int64_t stamp_ns = 0;
@@ -88,7 +90,9 @@ constexpr std::size_t kLineBytes = 16 + 1 + 16 + 1;
 
 /// What it prints first: it has found the topic's writer. A best-effort reader gets nothing before.
 inline std::string ready_line() {
-    return std::string(kLineBytes - 1, '-') + "\n";
+    std::string line(kLineBytes, '-');
+    line.back() = '\n';
+    return line;
 }
 
 }  // namespace eventide::test
