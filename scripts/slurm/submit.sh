@@ -28,7 +28,7 @@ while [ $# -gt 0 ] && [ "$1" != -- ]; do recordings+=("$1"); shift; done
 [ "${1:-}" != -- ] || shift
 for option in "$@"; do
   case $option in
-    --out* | -o* | --from* | --to* | --duration* | --warmup* | --state-* | --overwrite* | --config*)
+    --out* | -o* | --from* | --to* | --duration* | --warmup* | --state* | --overwrite* | --config*)
       refuse "submit.sh: $option: the tasks set that themselves" ;;
   esac
 done
@@ -66,6 +66,11 @@ for recording in "${recordings[@]}"; do
     printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$path" "$name" "$begin" $((from + segment * 1000000)) "$before" "$state" >> "$new"
   done
 done
+if [ "$(wc -l < "$new")" -gt 1 ]; then
+  for option in "$@"; do
+    case $option in --record* | --stats* | --events-out*) refuse "submit.sh: $option: every task would write to the same" ;; esac
+  done
+fi
 printf '%s\0' "$@" > "$new.options"
 [ $# -gt 0 ] || : > "$new.options"
 

@@ -142,7 +142,7 @@ void SigmaScale::add(const Array2<float>& mu, const Array2<float>& sigma,
     for_each_error(mu, sigma, reference, [this](double z, double s) {
         squares_ += z * z;
         log_sigmas_ += std::log(s);
-        const double bin = (std::log(std::max(std::abs(z), 1e-12)) + 8) * (kBins / 16.);
+        const double bin = (std::log(std::abs(z)) + 8) * (kBins / 16.);
         ++bins_[std::size_t(std::clamp(bin, 0., kBins - 1.))];
         ++pixels_;
     });
@@ -175,7 +175,7 @@ double SigmaScale::coverage_80_after(double factor) const {
     double inside = 0;
     for (int i = 0; i < kBins; ++i)
         inside += double(bins_[std::size_t(i)]) * std::clamp(edge - i, 0., 1.);
-    return pixels_ == 0 ? 0 : inside / double(pixels_);
+    return inside / double(pixels_);
 }
 
 double SigmaScale::log_likelihood_after(double factor) const {

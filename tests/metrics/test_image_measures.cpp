@@ -62,7 +62,8 @@ TEST(StructuralSimilarity, IsScikitImages) {
 }
 
 TEST(StructuralSimilarity, RefusesImagesItsWindowDoesNotFit) {
-    EXPECT_THROW(structural_similarity(test_image(10, 50, 1), test_image(10, 50, 1)), Error);
+    for (const auto& small : {test_image(10, 50, 1), test_image(50, 10, 1)})
+        EXPECT_THROW(structural_similarity(small, small), Error);
 }
 
 TEST(ImageMeasures, RefuseImagesOfTwoSizes) {
@@ -77,6 +78,13 @@ TEST(AffineFit, UndoesGainAndOffset) {
     EXPECT_NEAR(fit.gain, 1.7, 1e-5);
     EXPECT_NEAR(fit.offset, .1, 1e-5);
     EXPECT_NEAR(mean_squared_error(applied(fit, changed), truth), 0, 1e-11);
+}
+
+TEST(AffineFit, BringsOutWhatIsFaint) {
+    const auto truth = test_image(30, 40, 3);
+    const auto faint = mapped(truth, [](float v) { return .4F + .002F * v; });
+    EXPECT_NEAR(affine_fit(faint, truth).gain, 500, .5);
+    EXPECT_NEAR(*correlation(spread(faint, truth)), 1, 1e-4);
 }
 
 TEST(AffineFit, IsNeverWorseThanTheRawImage) {

@@ -89,6 +89,13 @@ TEST_F(LpipsSqueeze, PoolsRoundUpAsTorchvisionsDo) {
 TEST_F(LpipsSqueeze, RefusesAnImageTooSmallForItsPools) {
     EXPECT_NO_THROW(lpips_->features(test_image(17, 17, 1)));
     EXPECT_THROW(lpips_->features(test_image(16, 64, 1)), Error);
+    EXPECT_THROW(lpips_->features(test_image(64, 16, 1)), Error);
+}
+
+TEST_F(LpipsSqueeze, RefusesImagesOfTwoSizes) {
+    const auto features = lpips_->features(test_image(40, 40, 1));
+    for (const auto& other : {test_image(40, 44, 1), test_image(44, 40, 1)})
+        EXPECT_THROW(lpips_->distance(features, lpips_->features(other)), Error);
 }
 
 /// A difference at one of 15 x 15 places of the first layer alone, brought to 64 x 64 px: centres

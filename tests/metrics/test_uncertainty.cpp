@@ -1,6 +1,7 @@
 // Sigma judged where it is known to be right, and where it is known to be wrong.
 #include "src/metrics/uncertainty.h"
 
+#include "src/core/error.h"
 #include "tests/metrics/images.h"
 
 #include <gtest/gtest.h>
@@ -98,12 +99,46 @@ TEST(Reliability, OfTheTruthLiesOnTheDiagonal) {
     }
 }
 
+TEST(Reliability, CountsATruthDarkerThanExpectedAsBelow) {
+    Array2<float> mu(1, 1), sigma(1, 1), dark(1, 1), bright(1, 1);
+    mu(0, 0) = .5F;
+    sigma(0, 0) = .1F;
+    bright(0, 0) = 1;
+    Reliability diagram;
+    diagram.add(mu, sigma, dark);
+    EXPECT_EQ(diagram.below(0), 1);
+    diagram.add(mu, sigma, bright);
+    EXPECT_EQ(diagram.below(Reliability::kLevels - 1), .5);
+}
+
+TEST(Coverage, RefusesMapsOfTwoSizesAndOfNone) {
+    const Array2<float> map(4, 5), other(5, 4), none;
+    EXPECT_NO_THROW(coverage_80(map, map, map));
+    EXPECT_THROW(coverage_80(map, other, map), Error);
+    EXPECT_THROW(coverage_80(map, map, other), Error);
+    EXPECT_THROW(coverage_80(map, map, Array2<float>(4, 4)), Error);
+    EXPECT_THROW(coverage_80(none, none, none), Error);
+}
+
 TEST(Reliability, SagsWhereSigmaIsTooSmall) {
     const Drawn drawn{2};
     Reliability diagram;
     diagram.add(drawn.mu, drawn.sigma, drawn.truth);
     for (int i = 0; i < Reliability::kLevels; ++i)
         EXPECT_LT(diagram.inside(i), Reliability::level(i));
+}
+
+TEST(Reliability, OfTwoPartsIsThatOfTheWhole) {
+    const Drawn first{.6F}, second{1.9F};
+    Reliability whole, part, sum;
+    for (Reliability* each : {&whole, &sum}) each->add(first.mu, first.sigma, first.truth);
+    for (Reliability* each : {&whole, &part}) each->add(second.mu, second.sigma, second.truth);
+    sum += part;
+    EXPECT_EQ(sum.pixels(), whole.pixels());
+    for (int i = 0; i < Reliability::kLevels; ++i) {
+        EXPECT_EQ(sum.inside(i), whole.inside(i));
+        EXPECT_EQ(sum.below(i), whole.below(i));
+    }
 }
 
 TEST(SigmaScale, FindsTheFactorThatIsMissing) {
@@ -172,6 +207,7 @@ TEST(Patches, AreWholeOnesFromTheTopLeft) {
     EXPECT_EQ(patch_medians(map, 2), (std::vector<double>{5.5, 7.5, 9.5, 25.5, 27.5, 29.5}));
     map(1, 1) = 11;
     EXPECT_TRUE(patch_means(map, 6).empty());
+    EXPECT_EQ(patch_means(Array2<float>(4, 6), 2).size(), 6U) << "up to the last row and column";
 }
 
 }  // namespace

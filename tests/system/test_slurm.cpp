@@ -169,6 +169,14 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
                 HasSubstr("--segment: expected whole seconds, found '1s'"));
     EXPECT_THAT(script("submit.sh", {"--plan", "out", "a.aedat4", "--", "--out", "x/"}).error,
                 HasSubstr("--out: the tasks set that themselves"));
+    EXPECT_THAT(
+        script("submit.sh", {"--plan", "out", "a.aedat4", "--", "--states-out", "x/"}).error,
+        HasSubstr("--states-out: the tasks set that themselves"));
+    EXPECT_THAT(script("submit.sh",
+                       {"--plan", "--segment", "1", "out", "a.aedat4", "--", "--stats=all.jsonl"})
+                    .error,
+                HasSubstr("--stats=all.jsonl: every task would write to the same"));
+    EXPECT_FALSE(fs::exists(temp_ / "out"));
     ASSERT_EQ(script("submit.sh", plan({"out", "a.aedat4"})).exit_code, 0);
     EXPECT_EQ(script("submit.sh", plan({"out", "a.aedat4"})).exit_code, 0) << "the same again";
     EXPECT_THAT(script("submit.sh", plan({"--segment", "1", "out", "a.aedat4"})).error,
