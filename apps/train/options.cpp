@@ -194,8 +194,8 @@ OptionTable::OptionTable(TrainOptions& o) {
         "model whose frames mu is drawn to, beside the truth; none: the truth alone", Use::run);
     add("teacher-share", o.teacher_share, "of the teacher's frames in that");
     add("teacher-views", o.teacher_views,
-        "2: the mean of the teacher's frames of the scene and of the scene turned by half a turn; "
-        "1: as it is");
+        "2 or 4: the mean of the teacher's frames of the scene as it is and mirrored, as of "
+        "--self-ensemble; 1: as it is");
     add("train-only", o.train_only,
         "what the names of the weights that learn begin with, as in renderer.,encoder.out; none: "
         "all learn");

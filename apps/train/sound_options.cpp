@@ -43,7 +43,9 @@ void need_sizes(const TrainOptions& options) {
                                           std::to_string(options.data.span_scale_max));
     need("--event-windows", options.data.event_windows, 1);
     need("--rendered", options.data.rendered, 1, options.data.event_windows);
-    need("--teacher-views", options.teacher_views, 1, 2);
+    if (options.teacher_views != 1 && options.teacher_views != 2 && options.teacher_views != 4)
+        throw Error(ErrorKind::usage, "--teacher-views: expected 1, 2 or 4, found " +
+                                          std::to_string(options.teacher_views));
     if (!(options.teacher_share >= 0 && options.teacher_share <= 1))
         throw Error(ErrorKind::usage, "--teacher-share: expected 0 to 1, found " +
                                           std::to_string(options.teacher_share));

@@ -1,28 +1,34 @@
 #include "apps/train/teacher.h"
 
 #include "src/core/error.h"
+#include "src/model/mirrors.h"
 
 #include <string>
 
 namespace eventide {
 namespace {
 
-torch::Tensor turned(const torch::Tensor& image) {
-    return image.flip({-2, -1});
-}
+/// What one of the mirrored networks sees.
+struct View {
+    Mirror axes;
 
-TrainingBatch turned(const TrainingBatch& batch) {
-    TrainingBatch other = batch;
-    for (torch::Tensor& grid : other.grids) grid = turned(grid);
-    return other;
-}
-
-/// The same patch of the turned sensor.
-SegmentPlan turned(SegmentPlan plan, int crop) {
-    plan.y0 = crop - 1 - plan.y0 - plan.span;
-    plan.x0 = crop - 1 - plan.x0 - plan.span;
-    return plan;
-}
+    torch::Tensor of(const torch::Tensor& image) const {
+        std::vector<std::int64_t> dimensions;
+        if (axes.x) dimensions.push_back(-1);
+        if (axes.y) dimensions.push_back(-2);
+        return dimensions.empty() ? image : image.flip(dimensions);
+    }
+    TrainingBatch of(TrainingBatch batch) const {
+        for (torch::Tensor& grid : batch.grids) grid = of(grid);
+        return batch;
+    }
+    /// The same patch of the mirrored sensor.
+    SegmentPlan of(SegmentPlan plan, int crop) const {
+        if (axes.x) plan.x0 = crop - 1 - plan.x0 - plan.span;
+        if (axes.y) plan.y0 = crop - 1 - plan.y0 - plan.span;
+        return plan;
+    }
+};
 
 }  // namespace
 
@@ -50,14 +56,16 @@ torch::Tensor Teacher::frames(const SegmentPlan& plan, const TrainingBatch& batc
     TrainingBatch seen = batch;
     if (!batch.teacher_grids.empty()) seen.grids = batch.teacher_grids;
     const int crop = int(seen.grids[0].size(-1));
-    for (RecurrentState& state : states) state = begin_segment(state, batch.fresh);
-    torch::Tensor mu = run_segment(config_, parameters_, plan, seen, patch, states[0]).mu;
-    if (views_ == 2)
-        mu = (mu + turned(run_segment(config_, parameters_, turned(plan, crop), turned(seen), patch,
-                                      states[1])
-                              .mu)) /
-             2;
-    return mu.clamp(0, 1);
+    torch::Tensor sum;
+    for (std::size_t n = 0; n < states.size(); ++n) {
+        const View view{kMirrors.at(n)};
+        states[n] = begin_segment(states[n], batch.fresh);
+        const Images shown =
+            run_segment(config_, parameters_, view.of(plan, crop), view.of(seen), patch, states[n]);
+        const torch::Tensor mu = view.of(shown.mu);
+        sum = sum.defined() ? sum + mu : mu;
+    }
+    return (sum / double(states.size())).clamp(0, 1);
 }
 
 }  // namespace eventide

@@ -13,8 +13,8 @@ namespace eventide {
 
 class Teacher {
 public:
-    /// `views` 2: its frame is the mean of those of the scene as it is and turned by half a turn,
-    /// as of --self-ensemble 2 (docs/model.md); 1: as it is. Throws Error(input, usage).
+    /// `views` 2 or 4: its frame is the mean of those of the scene as it is and mirrored, as of
+    /// --self-ensemble (docs/model.md); 1: as it is. Throws Error(input, usage).
     Teacher(const std::filesystem::path& file, int views, torch::Device device,
             torch::ScalarType type);
 
@@ -24,7 +24,7 @@ public:
     /// What it remembers of `streams` scenes before their first event window: a state per view.
     std::vector<RecurrentState> empty_states(int streams, int crop) const;
 
-    /// Its mu of the frames that `plan` names, as Images has them; `states` go on.
+    /// Its mu of the frames that `plan` names, as Images has them; `states`, of each view, go on.
     torch::Tensor frames(const SegmentPlan& plan, const TrainingBatch& batch, int patch,
                          std::span<RecurrentState> states) const;
 

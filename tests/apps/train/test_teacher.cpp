@@ -59,29 +59,35 @@ TEST(Teacher, OfOneViewShowsWhatItsNetworkShows) {
     EXPECT_FALSE(frames.requires_grad());
 }
 
-TEST(Teacher, OfTwoViewsShowsATurnedSceneTurned) {
+/// What a teacher makes of a scene, and of the same scene mirrored along `axes`, mirrored back.
+double difference_when_mirrored(int views, const std::vector<std::int64_t>& axes) {
     const DataSettings data = tiny_data();
     const SegmentPlan plan{
         .first_rendered = 1, .y0 = 3, .x0 = 9, .span = 15, .lookahead = {0, 1, 2}};
-    SegmentPlan turned_plan = plan;
-    turned_plan.y0 = data.crop - 1 - 3 - 15;
-    turned_plan.x0 = data.crop - 1 - 9 - 15;
-    const TrainingBatch batch = batch_of(data);
-    TrainingBatch turned = batch;
-    for (torch::Tensor& grid : turned.grids) grid = grid.flip({2, 3});
-
-    for (const int views : {1, 2}) {
-        const Teacher teacher{teacher_file("teaches_turned"), views, torch::kCPU, torch::kFloat};
-        auto states = teacher.empty_states(kStreams, data.crop);
-        auto turned_states = states;
-        const auto frames = teacher.frames(plan, batch, data.patch, states),
-                   others = teacher.frames(turned_plan, turned, data.patch, turned_states);
-        const double difference = greatest_difference(frames, others.flip({1, 2}));
-        if (views == 2)
-            EXPECT_LT(difference, 1e-5);
-        else
-            EXPECT_GT(difference, 1e-3) << "one network sees them differently";
+    SegmentPlan mirrored_plan = plan;
+    TrainingBatch mirrored = batch_of(data);
+    for (const std::int64_t axis : axes) {
+        double& begin = axis == -2 ? mirrored_plan.y0 : mirrored_plan.x0;
+        begin = data.crop - 1 - begin - plan.span;
     }
+    for (torch::Tensor& grid : mirrored.grids) grid = grid.flip(axes);
+
+    const Teacher teacher{teacher_file("teaches_mirrored"), views, torch::kCPU, torch::kFloat};
+    auto states = teacher.empty_states(kStreams, data.crop);
+    auto mirrored_states = states;
+    const auto frames = teacher.frames(plan, batch_of(data), data.patch, states),
+               others = teacher.frames(mirrored_plan, mirrored, data.patch, mirrored_states);
+    return greatest_difference(frames, others.flip(axes));
+}
+
+TEST(Teacher, OfTwoViewsShowsATurnedSceneTurnedAndOfFourAMirroredOneMirrored) {
+    constexpr double kSame = 1e-5, kOther = 1e-3;
+    EXPECT_GT(difference_when_mirrored(1, {-2, -1}), kOther) << "one network sees them differently";
+    EXPECT_LT(difference_when_mirrored(2, {-2, -1}), kSame);
+    EXPECT_GT(difference_when_mirrored(2, {-1}), kOther);
+    EXPECT_LT(difference_when_mirrored(4, {-2, -1}), kSame);
+    EXPECT_LT(difference_when_mirrored(4, {-1}), kSame);
+    EXPECT_LT(difference_when_mirrored(4, {-2}), kSame);
 }
 
 TEST(Teacher, ReadsTheSameEventsWithBinsOfItsOwn) {
