@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <climits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -83,6 +85,31 @@ TEST(Renderer, FutureCodesAreNotReadEvenWhereTheyAreThere) {
     EXPECT_EQ(a.sigma, b.sigma);
 }
 
+TEST(Renderer, CodesOfAsManyLaterWindowsAreReadAsTheLookaheadSays) {
+    const ModelConfig config = config_of(1);
+    const Model model = test::random_model(config, 3);
+    const auto shown = [&](int lookahead, int replaced) {
+        Renderer renderer{model, 13, 9};
+        for (int k = 1; k <= 4; ++k) {
+            LatentMap latent = random_latent(config, 9, 13, k);
+            if (k == replaced) latent.values = random_latent(config, 9, 13, 10).values;
+            renderer.push(latent);
+        }
+        const Window window = random_latent(config, 1, 1, 1).window;
+        const RenderRequest request{.t = window.begin + window.width() / 2, .lookahead = lookahead};
+        Frame frame = renderer.make_output(request);
+        renderer.render(request, frame);
+        EXPECT_EQ(frame.window, window);
+        EXPECT_EQ(frame.t, request.t);
+        EXPECT_EQ(frame.events, 1U);
+        return frame.intensity;
+    };
+    for (int lookahead = 0; lookahead <= 2; ++lookahead)
+        for (int k = 1; k <= 4; ++k)
+            EXPECT_EQ(shown(lookahead, k) != shown(lookahead, 0), k <= 1 + lookahead)
+                << "lookahead " << lookahead << ", event window " << k;
+}
+
 TEST(Renderer, SaysWhatItCanRender) {
     const ModelConfig config = config_of(1);
     Renderer renderer{test::random_model(config, 3), 13, 9};
@@ -123,6 +150,24 @@ TEST(Renderer, AFrameArrivedWithTheNewestWindowItMayRead) {
     EXPECT_EQ(arrived(4, 2), at(4)) << "the live edge";
 }
 
+TEST(Renderer, ARequestsRuleForSigmaIsTakenInPlaceOfTheModels) {
+    const auto sigma = [](SigmaRule of_model, std::optional<SigmaRule> asked) {
+        ModelConfig config = config_of(1);
+        config.sigma_rule = of_model;
+        Renderer renderer{test::random_model(config, 3), 13, 9};
+        renderer.push(random_latent(config, 9, 13, 1));
+        const RenderRequest request{
+            .t = random_latent(config, 1, 1, 1).window.end, .width = 40, .sigma_rule = asked};
+        Frame frame = renderer.make_output(request);
+        renderer.render(request, frame);
+        return frame.sigma;
+    };
+    const auto mixture = SigmaRule::mixture, log_blend = SigmaRule::log_blend;
+    EXPECT_EQ(sigma(log_blend, mixture), sigma(mixture, {}));
+    EXPECT_EQ(sigma(mixture, log_blend), sigma(log_blend, {}));
+    EXPECT_NE(sigma(mixture, {}), sigma(log_blend, {}));
+}
+
 TEST(Renderer, SigmaOfAMixtureIsANumberWhereItsMembersAreAlike) {
     // Members that say the same, and are sure of it: what rounding leaves of the variance is as
     // often below 0 as above.
@@ -161,8 +206,17 @@ TEST(Renderer, ImpossibleRequestsAreRefused) {
     request.width = -4;
     EXPECT_THROW(renderer.make_output(request), Error);
     request = {};
-    request.region = {5, 5, 9, 2};
+    request.lookahead = -1;
     EXPECT_THROW(renderer.make_output(request), Error);
+    for (const Region& region :
+         {Region{5, 5, 9, 2}, Region{5, 5, 2, 5}, Region{-1, 0, 4, 4}, Region{0, -1, 4, 4},
+          Region{0, 0, -4, 4}, Region{0, 0, 4, -4}, Region{13, 0, 0, 0}, Region{0, 9, 0, 0},
+          Region{INT_MIN, 0, 0, 0}, Region{0, INT_MIN, 0, 0}, Region{0, 0, INT_MAX, 4}}) {
+        request = {};
+        request.region = region;
+        EXPECT_THROW(renderer.make_output(request), Error)
+            << region.width << "x" << region.height << " from " << region.x << "," << region.y;
+    }
 }
 
 }  // namespace

@@ -9,10 +9,22 @@
 #include "src/model/mirrors.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 
 namespace eventide {
+
+namespace {
+
+/// px from `at` to the end of a side; of numbers that nobody checked yet.
+int rest_of(int side, int at) {
+    const std::int64_t rest = std::int64_t{side} - at;
+    return int(std::clamp<std::int64_t>(rest, INT_MIN, INT_MAX));
+}
+
+}  // namespace
 
 FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int sensor_height) {
     FrameGeometry geometry;
@@ -23,9 +35,9 @@ FrameGeometry geometry_of(const RenderRequest& request, int sensor_width, int se
     geometry.x = request.region.x;
     geometry.y = request.region.y;
     geometry.part_width =
-        request.region.width != 0 ? request.region.width : geometry.width - geometry.x;
+        request.region.width != 0 ? request.region.width : rest_of(geometry.width, geometry.x);
     geometry.part_height =
-        request.region.height != 0 ? request.region.height : geometry.height - geometry.y;
+        request.region.height != 0 ? request.region.height : rest_of(geometry.height, geometry.y);
     return geometry;
 }
 

@@ -79,6 +79,54 @@ TEST(QualityControl, GoesDownWithinSecondsOfLoadAndUpAgainAfterwards) {
     EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
 }
 
+TEST(QualityControl, GoesUpAfterFiveSecondsInARowThatWereEasy) {
+    Machine machine;
+    machine.run(5, 1);
+    machine.run(4, 4.6);
+    ASSERT_EQ(machine.level(), (QualityLevel{1, 1}));
+    EXPECT_EQ(machine.run(4, 1), 0);
+    EXPECT_EQ(machine.run(.5, 1, 1, true), 0) << "windows were merged";
+    EXPECT_EQ(machine.run(4.5, 1), 0) << "they count anew";
+    EXPECT_EQ(machine.run(1, 1), 1);
+    EXPECT_EQ(machine.level(), (QualityLevel{1, 0}));
+}
+
+TEST(QualityControl, AStepUpThatWasTakenBackIsTriedAgainAfterTwiceTheTime) {
+    Machine machine;
+    const auto seconds_until_up = [&] {
+        double seconds = 0;
+        for (; seconds < 200 && machine.level() != QualityLevel{1, 0}; seconds += .5)
+            machine.run(.5, 2.5);
+        return seconds;
+    };
+    const auto load_until_down = [&] {
+        for (int n = 0; n < 40 && machine.level() == QualityLevel{1, 0}; ++n) machine.run(.5, 5);
+    };
+    machine.run(5, 1);
+    std::vector<double> waits;
+    for (int i = 0; i < 7; ++i) {
+        load_until_down();
+        waits.push_back(seconds_until_up());
+    }
+    const std::vector<double> expected{5, 10, 20, 40, 60, 60, 60};
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(waits[i], expected[i], 1.5) << i;
+    machine.run(70, 1);  // a minute without a change after that of the last wait: a quarter of 80
+    load_until_down();
+    EXPECT_NEAR(seconds_until_up(), 20, 1.5);
+    machine.run(600, 1);
+    load_until_down();
+    EXPECT_NEAR(seconds_until_up(), 5, 1.5);
+}
+
+TEST(QualityControl, GoesUpWhereFortyPerCentAreLeftAndNotBefore) {
+    Machine machine;
+    machine.run(5, 1);
+    machine.run(4, 4.6);
+    ASSERT_EQ(machine.level(), (QualityLevel{1, 1}));
+    EXPECT_EQ(machine.run(60, 3.4), 0) << "0.68 of the frames' thread at the full rate";
+    EXPECT_EQ(machine.run(10, 2.8), 1) << "0.56";
+}
+
 TEST(QualityControl, GoesToTheLeastWhereNothingHoldsAndStays) {
     Machine machine;
     machine.run(20, 30);

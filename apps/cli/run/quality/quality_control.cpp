@@ -10,8 +10,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr Seconds kLook{0.5};                        // shorter spans jump
-constexpr Seconds kRaiseWait{5}, kMaxRaiseWait{80};  // before a step up
+constexpr Seconds kLook{0.5};     // shorter spans jump
+constexpr Seconds kRaiseWait{5};  // before a step up
 constexpr Seconds kTakenBack{15}, kForgotten{60};
 constexpr unsigned kStrainedLooks = 3;
 constexpr double kFewMerged = 0.05;  // of the windows: single ones wait for a frame
@@ -125,7 +125,7 @@ bool QualityControl::lower(Seconds now) {
         while (to + 1 < levels_.size() && !holds(to, kComfortable)) ++to;
     }
     if (to >= levels_.size()) return false;
-    if (now - raised_ < kTakenBack) raise_wait_ = std::min(2 * raise_wait_, kMaxRaiseWait);
+    if (now - raised_ < kTakenBack) raise_wait_ *= 2;
     return move(to, now);
 }
 

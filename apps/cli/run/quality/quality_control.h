@@ -34,8 +34,8 @@ struct QualityMeasure {
 /// less), after a second and a half in which the present one did not hold, encoding did not leave a
 /// quarter though windows might be longer, or event windows had to be merged; up, to the best level
 /// that leaves 40 %, after 5 s in which there was one. A step up that was taken back within 15 s
-/// doubles this time, up to 80 s; a minute without a change halves it: where the load lies between
-/// two levels, it stays at the lower one.
+/// doubles this time; a minute without a change halves it: where the load lies between two levels,
+/// it stays at the lower one, and tries the other once a minute.
 class QualityControl {
 public:
     /// `at`: the level it begins with.
