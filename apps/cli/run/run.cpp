@@ -150,10 +150,11 @@ void Run::open_outputs() {
             start_.goes_on();
             return program_.signals.stopping();
         }};
+    sinks_ = open_sinks(settings_, sink_plan());
+    // Behind them: other files may lie in a folder that a sink makes.
     recorded_ = recorder_of(settings_, *opened_.source, growing);
     events_out_ = events_out_of(settings_, sensor_, colour_filter_, span_, filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
-    sinks_ = open_sinks(settings_, sink_plan());
     if (!settings_.states_out.empty()) {
         if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
         create_folder(settings_.states_out);
