@@ -1,6 +1,7 @@
 // Figures that only need what every evaluation observes.
 #include "apps/evaluate/figures.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 #include <algorithm>
 #include <array>
@@ -152,10 +153,8 @@ std::vector<Plot> report_figure(std::string_view name, const EvaluateReport& rep
     if (name == "sigma") return error_against_sigma(report);
     if (name == "patch-size") return {correlation_against_patch_size(report)};
     if (name == "reliability") return {reliability_diagram(report)};
-    std::string known;
-    for (const std::string& one : figure_names()) known += (known.empty() ? "" : ", ") + one;
-    throw Error(ErrorKind::usage,
-                "no figure is called '" + std::string(name) + "'; there are: " + known);
+    throw Error(ErrorKind::usage, "no figure is called '" + std::string(name) +
+                                      "'; there are: " + list_of(figure_names()));
 }
 
 }  // namespace eventide
