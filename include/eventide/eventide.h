@@ -227,7 +227,7 @@ typedef struct eventide_callbacks {
     void* context;      /**< what the functions are called with */
     /** Whether to give up waiting: not 0 does, and the call that waits is EVENTIDE_FAILED. Asked
      * every 20 ms or so while the first message of a topic is waited for, which with `reconnect`
-     * may be for ever, and while a pipe has no bytes, or nobody takes those that are written. */
+     * may be for ever, while standard input or a pipe has no bytes, and while a pipe takes none. */
     int (*give_up)(void* context);
     /** Told, in sentences for people, what makes no call fail: what had to be guessed of a
      * recording, why a camera was passed over for the next one, why one is waited for and not back
