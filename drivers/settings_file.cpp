@@ -1,6 +1,7 @@
 #include "drivers/settings_file.h"
 
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/settings/suggestion.h"
 
 #include <algorithm>
@@ -29,15 +30,12 @@ void read_camera_settings(const std::filesystem::path& file, const std::vector<S
 Setting one_of_setting(std::string key, int& into, std::vector<int> allowed) {
     return file_setting(
         std::move(key), [&into, all = std::move(allowed)](const SettingValue& value) {
-            std::string text;
-            for (const int a : all) {
-                text += (text.empty() ? "" : ", ") + std::to_string(a);
+            for (const int a : all)
                 if (value.kind == ValueKind::number && value.text == std::to_string(a)) {
                     into = a;
                     return;
                 }
-            }
-            value.refuse("one of " + text);
+            value.refuse("one of " + list_of(all, [](int a) { return std::to_string(a); }));
         });
 }
 

@@ -5,8 +5,10 @@
 #include <eventide/camera.h>
 #include <eventide/reader.h>
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 using namespace eventide;
 
@@ -27,14 +29,19 @@ eventide_callbacks whole_callbacks(const eventide_callbacks* callbacks) {
     return filled_in(eventide_callbacks{}, callbacks, "callbacks");
 }
 
+/// `name` of what is waited for.
+std::function<void()> ask_while_waiting(const eventide_callbacks& c, const std::string& name) {
+    if (c.give_up == nullptr) return {};
+    return [c, name] {
+        if (c.give_up(c.context) != 0)
+            throw Error(ErrorKind::failed, name + ": given up while it was waited for");
+    };
+}
+
 /// Into the options of a source of this name.
 template <typename Options>
 void call_back(const eventide_callbacks& c, const std::string& name, Options& options) {
-    if (c.give_up != nullptr)
-        options.while_waiting = [c, name] {
-            if (c.give_up(c.context) != 0)
-                throw Error(ErrorKind::failed, name + ": given up while it was waited for");
-        };
+    options.while_waiting = ask_while_waiting(c, name);
     if (c.warn != nullptr)
         options.warn = [c](const std::string& text) { c.warn(c.context, text.c_str()); };
 }
@@ -73,7 +80,7 @@ eventide_status eventide_camera_open_with(const char* name, const char* settings
                                           eventide_source** opened) {
     return c_call([&] {
         const std::string camera = &given(name, "a camera");
-        CameraSettings chosen{settings == nullptr ? "" : settings, reconnect != 0};
+        CameraSettings chosen{text_or_none(settings), reconnect != 0};
         call_back(whole_callbacks(callbacks), camera, chosen);
         return open_source<EventCamera>(opened, camera, chosen);
     });
@@ -174,11 +181,20 @@ eventide_status eventide_seek(eventide_source* source, int64_t t) {
 
 eventide_status eventide_writer_open(const char* path, const char* format, int width, int height,
                                      int overwrite, eventide_writer** opened) {
+    return eventide_writer_open_with(path, format, width, height, overwrite, nullptr, opened);
+}
+
+eventide_status eventide_writer_open_with(const char* path, const char* format, int width,
+                                          int height, int overwrite,
+                                          const eventide_callbacks* callbacks,
+                                          eventide_writer** opened) {
     return c_call([&] {
         given(opened, "a place for the writer") = nullptr;
+        const std::string file = &given(path, "a file's name");
         const SensorInfo sensor{"", "", "", width, height};
-        const WriterOptions options{format == nullptr ? "" : format, overwrite != 0};
-        *opened = new eventide_writer{{&given(path, "a file's name"), sensor, options}};
+        const WriterOptions options{text_or_none(format), overwrite != 0,
+                                    ask_while_waiting(whole_callbacks(callbacks), file)};
+        *opened = new eventide_writer{{file, sensor, options}};
         return EVENTIDE_OK;
     });
 }

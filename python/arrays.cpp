@@ -2,6 +2,7 @@
 #include "python/arrays.h"
 
 #include "python/signals.h"
+#include "src/core/list_text.h"
 #include "src/core/sensor_limits.h"
 
 #include <eventide/error.h>
@@ -23,12 +24,6 @@ namespace {
 using Numbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 constexpr std::uint64_t kLargest = std::numeric_limits<std::int64_t>::max();
-
-std::string joined(std::initializer_list<const char*> names) {
-    std::string text;
-    for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string{name};
-    return text;
-}
 
 /// As 64-bit numbers. What is larger becomes the largest, which is no time and on no sensor.
 Numbers numbers_of(const py::array& values) {
@@ -58,7 +53,7 @@ Numbers field(const py::array& array, std::initializer_list<const char*> names) 
                                               std::to_string(values.ndim() - 1) + " dimensions");
         return numbers_of(values);
     }
-    throw Error(ErrorKind::usage, "events: expected a field called " + joined(names) + ", found " +
+    throw Error(ErrorKind::usage, "events: expected a field called " + list_of(names) + ", found " +
                                       std::string(py::str(array.dtype().attr("names"))));
 }
 

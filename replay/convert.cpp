@@ -105,6 +105,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     report.damaged = parser->damaged();
     report.bytes_written = target.bytes_written();
     report.lost = target.lost();
+    report.reader_gone = target.reader_gone();
     return report;
 }
 

@@ -24,7 +24,8 @@ struct ConvertReport {
     WrittenData data{FormatHolds{}};  ///< what the target could not hold as it was
     Damage damaged;                   ///< found in what was read
     std::uint64_t bytes_written = 0;
-    std::uint64_t lost = 0;  ///< ConvertTarget::lost()
+    std::uint64_t lost = 0;    ///< ConvertTarget::lost()
+    bool reader_gone = false;  ///< ConvertTarget::reader_gone()
 };
 
 /// Where converted data go.

@@ -13,6 +13,7 @@ DataRecording::DataRecording(std::unique_ptr<DataReader> reader, std::uint64_t b
     const StreamHeader& header = reader_->header();
     info_ = {header.sensor_name, header.serial, header.format,
              header.width,       header.height, header.colour_filter};
+    note_position();
 }
 
 ReadStatus DataRecording::read(RawPacket& into) {
@@ -24,6 +25,7 @@ ReadStatus DataRecording::read(RawPacket& into) {
         more = reader_->read(batch_, damage);
         append_plain_records(batch_, damage, into.bytes);
     }
+    note_position();
     into.arrived = std::chrono::steady_clock::now();
     if (stopped_) into.bytes.clear();
     if (into.bytes.empty()) return ReadStatus::end;
@@ -35,8 +37,13 @@ std::unique_ptr<Parser> DataRecording::make_parser() const {
     return std::make_unique<PlainRecordsParser>(info_.width, info_.height);
 }
 
-std::uint64_t DataRecording::position_bytes() const {
-    return std::uint64_t(std::clamp(reader_->progress(), 0.0, 1.0) * double(bytes_));
+void DataRecording::seek(SensorTime t) {
+    reader_->seek(t);
+    note_position();
+}
+
+void DataRecording::note_position() {
+    position_ = std::uint64_t(std::clamp(reader_->progress(), 0.0, 1.0) * double(bytes_));
 }
 
 }  // namespace eventide

@@ -22,15 +22,19 @@ public:
     void stop() noexcept override { stopped_ = true; }
     std::unique_ptr<Parser> make_parser() const override;
     std::vector<std::string> remarks() const override { return reader_->remarks(); }
-    void seek(SensorTime t) override { reader_->seek(t); }
+    void seek(SensorTime t) override;
     std::uint64_t size_bytes() const override { return bytes_; }
-    std::uint64_t position_bytes() const override;
+    /// Thread: any.
+    std::uint64_t position_bytes() const override { return position_; }
 
 private:
+    void note_position();
+
     std::unique_ptr<DataReader> reader_;
     SensorInfo info_;
     std::uint64_t bytes_, packets_ = 0;
     Batch batch_;
+    std::atomic<std::uint64_t> position_{0};
     std::atomic<bool> stopped_{false};
 };
 

@@ -17,6 +17,7 @@
 #include "src/codec/prophesee/evt_header.h"
 #include "src/codec/text/text.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
@@ -118,7 +119,7 @@ const std::array kFormats{
 std::string list_of_writable(std::string_view Format::*member) {
     std::string list;
     for (const Format& format : kFormats)
-        if (format.is_written()) list += (list.empty() ? "" : ", ") + std::string{format.*member};
+        if (format.is_written()) add_to_list(list, format.*member);
     return list;
 }
 
@@ -142,7 +143,7 @@ DataCounts& DataCounts::operator+=(const DataCounts& more) {
 std::string text_of(const DataCounts& counts) {
     std::string text;
     const auto add = [&text](std::uint64_t n, const char* what) {
-        if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, what);
+        if (n > 0) add_to_list(text, counted(n, what));
     };
     add(counts.events, "event");
     add(counts.images, "image");
@@ -200,8 +201,7 @@ std::unique_ptr<StreamWriter> open_writer(std::string_view name) {
     if (!format || !format->make_writer) {
         std::string writable;
         for (const Format& each : kFormats)
-            if (each.make_writer)
-                writable += (writable.empty() ? "" : ", ") + std::string(each.name);
+            if (each.make_writer) add_to_list(writable, each.name);
         throw Error(ErrorKind::usage, "format to write: expected one of " + writable +
                                           ", found \"" + std::string(name) + "\"");
     }

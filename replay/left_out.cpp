@@ -1,6 +1,7 @@
 // Shares of what was read.
 #include "replay/left_out.h"
 
+#include "src/core/damage_text.h"
 #include "src/core/number_text.h"
 
 #include <cstdio>
@@ -38,20 +39,18 @@ std::string what_to_do(DamageReason reason, const std::string& format) {
 /// Where more records were left out than events were taken.
 std::string most_left_out(const std::string& name, const std::string& format, std::uint64_t events,
                           const Damage& damaged) {
-    std::uint64_t lost = 0;
-    std::string reasons;
+    Damage left_out;
     auto most = DamageReason::truncated;
     for (std::size_t i = 0; i < kDamageReasons; ++i) {
         const auto reason = DamageReason(i);
-        if (damaged[reason] == 0 || !is_left_out(reason)) continue;
-        lost += damaged[reason];
-        reasons += (reasons.empty() ? "" : ", ") + std::string{name_of(reason)} + " " +
-                   std::to_string(damaged[reason]);
+        if (!is_left_out(reason)) continue;
+        left_out.count(reason, damaged[reason]);
         if (damaged[reason] > damaged[most]) most = reason;
     }
+    const std::uint64_t lost = left_out.total();
     if (lost <= events) return {};
     return name + ": " + share_text(lost, events + lost) +
-           " of it was left out as damaged: " + reasons + what_to_do(most, format);
+           " of it was left out as damaged: " + damage_text(left_out) + what_to_do(most, format);
 }
 
 }  // namespace

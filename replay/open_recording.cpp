@@ -8,6 +8,7 @@
 #include "replay/unsupported_formats.h"
 #include "src/codec/text/text_row.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ void check_stream(const ByteFile& file, const Format& format, const OpenOptions&
     if (options.stream.empty() || format.holds.streams) return;
     std::string names;
     for (const Format& each : all_formats())
-        if (each.holds.streams) names += (names.empty() ? "" : ", ") + std::string(each.name);
+        if (each.holds.streams) add_to_list(names, each.name);
     throw Error(ErrorKind::usage, file.path() + ": expected a format with several event streams (" +
                                       names + ") for the stream '" + options.stream + "', found " +
                                       std::string(format.title));
@@ -78,9 +79,7 @@ const Format& choose_format(const ByteFile& file, std::span<const std::byte> hea
                                                    : nullptr;
     if (format) check_stream(file, *format, options);
     if (format) return *format;
-    std::string names;
-    for (const Format& each : all_formats())
-        names += (names.empty() ? "" : ", ") + std::string(each.name);
+    const std::string names = list_of(all_formats(), &Format::name);
     if (!options.format.empty())
         throw Error(ErrorKind::usage,
                     "format: expected one of " + names + ", found \"" + options.format + "\"");

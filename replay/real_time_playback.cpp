@@ -21,22 +21,33 @@ RealTimePlayback::RealTimePlayback(std::unique_ptr<Recording> recording, double 
     if (!(speed > 0) || !std::isfinite(speed))
         throw Error(ErrorKind::usage,
                     "speed: expected a number above 0, found " + std::to_string(speed));
+    note_position();
 }
 
 /// Parses on by one piece, of the next chunk where this one is used up; false at the end.
 bool RealTimePlayback::next_piece() {
     if (parsed_ == chunk_.bytes.size()) {
         parsed_ = given_ = 0;
+        chunk_begin_ = recording_->position_bytes();
         if (recording_->read(chunk_) != ReadStatus::data) {
             chunk_.bytes.clear();
+            note_position();
             return false;
         }
+        chunk_end_ = recording_->position_bytes();
     }
     const std::size_t n = std::min(kPieceBytes, chunk_.bytes.size() - parsed_);
     clock_->parse(std::span(chunk_.bytes).subspan(parsed_, n), unused_);
     unused_.clear();
     parsed_ += n;
     return true;
+}
+
+/// Packets of formats that are no streams have more bytes than the file, or fewer.
+void RealTimePlayback::note_position() {
+    const std::uint64_t size = chunk_.bytes.size();
+    position_ = size == 0 ? recording_->position_bytes()
+                          : chunk_begin_ + (chunk_end_ - chunk_begin_) * given_ / size;
 }
 
 HostTime RealTimePlayback::due(SensorTime t) const {
@@ -94,6 +105,7 @@ ReadStatus RealTimePlayback::read(RawPacket& into) {
     into.arrived = std::chrono::steady_clock::now();
     into.gap_before = std::exchange(chunk_.gap_before, false);
     into.sequence = chunk_.sequence;
+    note_position();
     return ReadStatus::data;
 }
 
@@ -115,10 +127,7 @@ void RealTimePlayback::seek(SensorTime t) {
     last_.reset();
     const std::lock_guard lock(mutex_);
     anchor_.reset();
-}
-
-std::uint64_t RealTimePlayback::position_bytes() const {
-    return recording_->position_bytes() - (chunk_.bytes.size() - given_);
+    note_position();
 }
 
 void RealTimePlayback::set_speed(double speed) {

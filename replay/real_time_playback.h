@@ -3,7 +3,9 @@
 
 #include "replay/recording.h"
 
+#include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -34,7 +36,8 @@ public:
     /// What lies before `t` comes without waiting.
     void seek(SensorTime t) override;
     std::uint64_t size_bytes() const override { return recording_->size_bytes(); }
-    std::uint64_t position_bytes() const override;
+    /// Any thread.
+    std::uint64_t position_bytes() const override { return position_; }
 
     /// Any thread, heard also by a read() that waits. Zero pauses.
     void set_speed(double speed);
@@ -47,6 +50,7 @@ private:
     };
 
     bool next_piece();
+    void note_position();
     bool wait_until_due(SensorTime t);
     HostTime due(SensorTime t) const;
     bool needs_anchor(SensorTime t, HostTime now) const;
@@ -56,11 +60,15 @@ private:
     // Source thread.
     std::unique_ptr<Parser> clock_;
     RawPacket chunk_;
-    std::size_t given_ = 0;   ///< bytes of the chunk passed on
-    std::size_t parsed_ = 0;  ///< bytes of the chunk whose time is known
+    std::uint64_t chunk_begin_ = 0, chunk_end_ = 0;  ///< in the recording's bytes
+    std::size_t given_ = 0;                          ///< bytes of the chunk passed on
+    std::size_t parsed_ = 0;                         ///< bytes of the chunk whose time is known
     Batch unused_;
     std::optional<SensorTime> start_at_;  ///< after a seek: earlier data are not waited for
     std::optional<SensorTime> last_;      ///< time of the piece before
+
+    // Any thread.
+    std::atomic<std::uint64_t> position_{0};
 
     // Any thread, under the mutex.
     mutable std::mutex mutex_;

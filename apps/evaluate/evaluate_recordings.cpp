@@ -2,6 +2,7 @@
 #include "apps/evaluate/evaluate_recordings.h"
 
 #include "pipeline/filters/event_filter.h"
+#include "src/core/damage_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 
@@ -32,16 +33,6 @@ Query query_of(const ReferenceSequence& sequence, std::size_t i) {
                                           std::to_string(sequence.width) + "x" +
                                           std::to_string(sequence.height));
     return query;
-}
-
-/// "truncated 1, time_backwards 12"
-std::string text_of(const Damage& damaged) {
-    std::string text;
-    for (std::size_t i = 0; i < kDamageReasons; ++i)
-        if (const auto n = damaged[DamageReason(i)]; n > 0)
-            text += (text.empty() ? "" : ", ") + std::string{name_of(DamageReason(i))} + " " +
-                    std::to_string(n);
-    return text;
 }
 
 /// Which images count, by number, in order of time.
@@ -114,7 +105,7 @@ SequenceResult evaluate_sequence(const Evaluation& evaluation, ReferenceSequence
         result.notes.push_back(sequence.name + ": " + remark);
     if (sequence.damaged.total() > 0)
         result.notes.push_back(sequence.name + ": left out of the recording, as it is damaged: " +
-                               text_of(sequence.damaged));
+                               damage_text(sequence.damaged));
     return result;
 }
 

@@ -2,6 +2,7 @@
 #include "drivers/ros2/ros2_source.h"
 
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
@@ -19,9 +20,7 @@ constexpr auto kReadTimeout = 20ms;
 constexpr std::size_t kEnoughBytes = 256 << 10;  // of messages at once
 
 std::string list_text(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text.empty() ? "none" : text;
+    return names.empty() ? "none" : list_of(names);
 }
 
 }  // namespace

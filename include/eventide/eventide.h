@@ -221,13 +221,13 @@ EVENTIDE_API eventide_status eventide_recording_open(const char* path, const cha
 EVENTIDE_API eventide_status eventide_camera_open(const char* name, const char* settings,
                                                   int reconnect, eventide_source** opened);
 
-/** What a source asks and tells, on the thread that opens or reads it; functions may be NULL. */
+/** What a source or writer asks and tells, on the thread that calls it; functions may be NULL. */
 typedef struct eventide_callbacks {
     size_t struct_size; /**< sizeof(eventide_callbacks) */
     void* context;      /**< what the functions are called with */
     /** Whether to give up waiting: not 0 does, and the call that waits is EVENTIDE_FAILED. Asked
      * every 20 ms or so while the first message of a topic is waited for, which with `reconnect`
-     * may be for ever, and while standard input or a pipe has no bytes. */
+     * may be for ever, while standard input or a pipe has no bytes, and while a pipe takes none. */
     int (*give_up)(void* context);
     /** Told, in sentences for people, what makes no call fail: what had to be guessed of a
      * recording, why a camera was passed over for the next one, why one is waited for and not back
@@ -307,6 +307,12 @@ typedef struct eventide_writer eventide_writer;
 EVENTIDE_API eventide_status eventide_writer_open(const char* path, const char* format, int width,
                                                   int height, int overwrite,
                                                   eventide_writer** opened);
+/** eventide_writer_open() with callbacks, which are copied; NULL: none. While a pipe has no reader
+ * or is full, `give_up` ends this call, eventide_write() and eventide_writer_finish(). */
+EVENTIDE_API eventide_status eventide_writer_open_with(const char* path, const char* format,
+                                                       int width, int height, int overwrite,
+                                                       const eventide_callbacks* callbacks,
+                                                       eventide_writer** opened);
 /** Must follow what was written before in time. EVENTIDE_USAGE for an event earlier than the one
  * before it and for what the format cannot hold, EVENTIDE_FAILED where the disk is full. */
 EVENTIDE_API eventide_status eventide_write(eventide_writer* writer, const eventide_event* events,

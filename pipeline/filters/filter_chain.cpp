@@ -1,6 +1,8 @@
 // Filters one behind the other.
 #include "pipeline/filters/filter_chain.h"
 
+#include "src/core/list_text.h"
+
 #include <iterator>
 #include <utility>
 
@@ -113,8 +115,7 @@ std::uint64_t FilterChain::left_out() const {
 std::string FilterChain::report() const {
     std::string text;
     for (const Link& link : links_)
-        text +=
-            (text.empty() ? "" : ", ") + link.text + " " + std::to_string(link.left_out.value());
+        add_to_list(text, link.text + " " + std::to_string(link.left_out.value()));
     return text;
 }
 

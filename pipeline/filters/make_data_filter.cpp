@@ -6,6 +6,7 @@
 #include "pipeline/filters/selecting_filters.h"
 #include "src/core/duration_text.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
 
@@ -178,13 +179,10 @@ constexpr KnownFilter kFilters[]{
 }  // namespace
 
 std::string data_filter_names() {
-    std::string names;
-    for (const KnownFilter& filter : kFilters) {
-        names += (names.empty() ? "" : ", ") + std::string(filter.name);
-        if (!filter.arguments.empty() && filter.arguments[0] != '[') names += ":";
-        names += filter.arguments;
-    }
-    return names;
+    return list_of(kFilters, [](const KnownFilter& filter) {
+        const bool has_colon = !filter.arguments.empty() && filter.arguments[0] != '[';
+        return std::string(filter.name) + (has_colon ? ":" : "") + std::string(filter.arguments);
+    });
 }
 
 std::unique_ptr<DataFilter> make_data_filter(const std::string& text, const SensorPixels& size) {

@@ -4,8 +4,10 @@
 #include "replay/hdf5/hdf5_tables.h"
 #include "replay/table_reader.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/number_text.h"
 #include "src/core/sensor_limits.h"
+#include "src/core/whole_sensor.h"
 
 #include <algorithm>
 #include <iterator>
@@ -44,10 +46,8 @@ struct Layout {
 
 [[noreturn]] void refuse_stream(const Hdf5File& file, const std::string& wanted,
                                 const std::vector<std::string>& found) {
-    std::string names;
-    for (const std::string& name : found) names += (names.empty() ? "" : ", ") + name;
-    throw Error(ErrorKind::usage,
-                file.path() + ": expected the events of '" + wanted + "', found those of " + names);
+    throw Error(ErrorKind::usage, file.path() + ": expected the events of '" + wanted +
+                                      "', found those of " + list_of(found));
 }
 
 /// A layout for the events of two cameras, "davis/left" and "davis/right".
@@ -182,12 +182,27 @@ Layout open_layout(const Hdf5File& file, const std::string& stream) {
         if (!stream.empty() && !layout.has_pair) refuse_stream(file, stream, {layout.told_by});
         return layout.open(file, stream);
     }
-    std::string expected, found;
-    for (const KnownLayout& layout : kLayouts)
-        expected += (expected.empty() ? "" : ", ") + std::string(layout.told_by);
-    for (const std::string& name : file.names_in("/")) found += (found.empty() ? "" : ", ") + name;
+    const auto found = file.names_in("/");
     throw Error(ErrorKind::input, file.path() + ": expected events in a layout that is known (" +
-                                      expected + "), found " + (found.empty() ? "none" : found));
+                                      list_of(kLayouts, &KnownLayout::told_by) + "), found " +
+                                      (found.empty() ? "none" : list_of(found)));
+}
+
+/// The size of the images is the sensor's where nothing else states it. Where something does,
+/// images of another size are another camera's: nothing says where their pixels lie.
+void compare_images(const OpenOptions& options, Layout& layout) {
+    const auto image = layout.images ? layout.images->read(0) : std::nullopt;
+    if (!image) return;
+    const int width = image->pixels.width() / image->channels, height = image->pixels.height();
+    set_size(layout.header, width, height);
+    const bool is_stated = options.width > 0;
+    const int sensor_width = is_stated ? options.width : layout.header.width,
+              sensor_height = is_stated ? options.height : layout.header.height;
+    if (covers_sensor(*image, sensor_width, sensor_height)) return;
+    layout.images.reset();
+    layout.remarks.push_back("the images are left out: they are " + size_text(width, height) +
+                             " px, the events' sensor has " +
+                             size_text(sensor_width, sensor_height));
 }
 
 }  // namespace
@@ -200,10 +215,7 @@ std::unique_ptr<DataReader> open_hdf5(const std::string& path, const OpenOptions
         layout.header.sensor_name = file->text_attribute("/", "sensor_name");
     layout.header.serial = file->text_attribute("/", "serial_number");
     read_size(*file, layout.header);
-    if (const auto image = layout.images ? layout.images->read(0) : std::nullopt) {
-        const int width = image->pixels.width() / image->channels;
-        set_size(layout.header, width, image->pixels.height());
-    }
+    compare_images(options, layout);
     auto table =
         std::make_unique<TableReader>(path, std::move(layout.header), std::move(layout.events),
                                       std::move(layout.images), options);

@@ -3,6 +3,7 @@
 
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 #include <algorithm>
 #include <bit>
@@ -143,10 +144,7 @@ bool NumpyField::is_number() const {
 }
 
 std::string NumpyArray::shape_text() const {
-    std::string text = "(";
-    for (const std::uint64_t side : shape)
-        text += (text.size() > 1 ? ", " : "") + std::to_string(side);
-    return text + ")";
+    return "(" + list_of(shape, [](std::uint64_t side) { return std::to_string(side); }) + ")";
 }
 
 const NumpyField* NumpyArray::field(const std::string& name) const {

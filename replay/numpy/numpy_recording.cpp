@@ -6,6 +6,7 @@
 #include "replay/table_reader.h"
 #include "src/codec/text/text_layout.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/lower_case.h"
 
 #include <algorithm>
@@ -294,9 +295,8 @@ std::unique_ptr<DataReader> open_npz(const std::string& path, const OpenOptions&
         throw Error(ErrorKind::input, path + ": expected an archive of NumPy arrays, found " +
                                           text + "; unzip -p FILE " + text +
                                           " | eventide run - reads it");
-    std::string names;
-    for (const NamedArray& each : arrays)
-        names += (names.empty() ? "" : ", ") + each.name + " " + each.array.shape_text();
+    const std::string names = list_of(
+        arrays, [](const NamedArray& each) { return each.name + " " + each.array.shape_text(); });
     throw Error(ErrorKind::input,
                 path +
                     ": expected arrays t, x, y and p, or one of records with these, or of four "

@@ -89,10 +89,11 @@ private:
         if (us_ >= 1) {
             constexpr std::int64_t kFarthest = 1'000'000'000'000;  // s
             const auto factor = std::int64_t(us_);
-            return std::abs(t / (1'000'000 / factor)) <= kFarthest ? us_from_integer(t * factor)
-                                                                   : kNoTimeUs;
+            const std::int64_t seconds = t / (1'000'000 / factor);
+            return seconds >= -kFarthest && seconds <= kFarthest ? us_from_integer(t * factor)
+                                                                 : kNoTimeUs;
         }
-        return us_from_integer(t >= 0 ? (t / 1000) + (t % 1000 >= 500) : (t - 500) / 1000);
+        return us_from_integer(t / 1000 + (t % 1000 >= 500) - (t % 1000 <= -500));
     }
 
     std::vector<NumpyRows> rows_;

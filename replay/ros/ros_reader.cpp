@@ -2,6 +2,7 @@
 #include "replay/ros/ros_reader.h"
 
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
@@ -139,24 +140,21 @@ bool RosReader::is_read(std::uint32_t number) const {
 }
 
 void RosReader::refuse(const Damage& damage) const {
-    std::string types;
-    for (const std::string& type : types_) types += (types.empty() ? "" : ", ") + type;
     throw Error(ErrorKind::input,
                 path_ +
                     ": expected messages with events (dvs_msgs/EventArray, "
                     "prophesee_event_msgs/EventArray, event_camera_msgs/EventPacket), found " +
-                    (types.empty() ? "none" : types) + (damage.total() > 0 ? ", and damage" : ""));
+                    (types_.empty() ? "none" : list_of(types_)) +
+                    (damage.total() > 0 ? ", and damage" : ""));
 }
 
 void RosReader::refuse_topic() const {
     std::set<std::string> names;
     for (const auto& [number, topic] : topics_)
         if (has_events(topic.form.kind) && topic.has_messages) names.insert(topic.name);
-    std::string found;
-    for (const std::string& name : names) found += (found.empty() ? "" : ", ") + name;
     throw Error(ErrorKind::usage, path_ + ": expected events of the topic '" + wanted_ +
                                       "' that can be read, found " +
-                                      (found.empty() ? "none" : "events of " + found));
+                                      (names.empty() ? "none" : "events of " + list_of(names)));
 }
 
 /// Images in the namespace of events that are not read: of a stereo pair the other one's.

@@ -2,6 +2,7 @@
 #include "replay/stream/scan_geometry.h"
 
 #include "replay/open_options.h"
+#include "src/core/damage_text.h"
 #include "src/core/error.h"
 
 #include <algorithm>
@@ -31,14 +32,8 @@ std::string text_of(const SensorSize& size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
-/// " (bad_record 3)"
-std::string list_of(const Damage& damage) {
-    std::string reasons;
-    for (std::size_t i = 0; i < kDamageReasons; ++i)
-        if (const auto n = damage[DamageReason(i)]; n > 0)
-            reasons += (reasons.empty() ? "" : ", ") + std::string(name_of(DamageReason(i))) + " " +
-                       std::to_string(n);
-    return reasons.empty() ? "" : " (left out as damaged: " + reasons + ")";
+std::string remark_on(const Damage& damage) {
+    return damage.total() == 0 ? "" : " (left out as damaged: " + damage_text(damage) + ")";
 }
 
 }  // namespace
@@ -75,7 +70,7 @@ void SensorSizeSearch::conclude(const std::string& path, const Damage& left_out,
     if (total_ == 0)
         throw Error(ErrorKind::input,
                     path + ": expected events, to find the size of the sensor, found none" +
-                        list_of(left_out) + "; " + kStateSize);
+                        remark_on(left_out) + "; " + kStateSize);
     const std::size_t found = smallest();
     if (found == kSensors)
         throw Error(ErrorKind::input,

@@ -2,6 +2,7 @@
 #include "src/metrics/convolution.h"
 
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,9 +11,7 @@ namespace eventide {
 namespace {
 
 std::string shape_text(const std::vector<std::int64_t>& shape) {
-    std::string text = "[";
-    for (const std::int64_t n : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
-    return text + "]";
+    return "[" + list_of(shape, [](std::int64_t n) { return std::to_string(n); }) + "]";
 }
 
 FeatureMap zero_padded(const FeatureMap& in, int padding) {

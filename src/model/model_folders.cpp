@@ -3,6 +3,7 @@
 
 #include "src/core/environment.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 #include <dlfcn.h>
 
@@ -60,9 +61,7 @@ std::string names_in(const std::vector<fs::path>& places) {
                 names.push_back(entry.path().stem().string());
     }
     std::ranges::sort(names);
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text.empty() ? "none" : text;
+    return names.empty() ? "none" : list_of(names);
 }
 
 }  // namespace
@@ -75,7 +74,7 @@ fs::path find_model(const std::string& name) {
     for (const fs::path& place : places) {
         fs::path file = place / (name + ".safetensors");
         if (name.find('/') == name.npos && fs::is_regular_file(file, none)) return file;
-        looked += (looked.empty() ? "" : ", ") + place.string();
+        add_to_list(looked, place.string());
     }
     throw Error(ErrorKind::input,
                 "model '" + name + "': expected a file, or a name from the models folders (" +

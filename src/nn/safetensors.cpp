@@ -8,6 +8,7 @@
 #include "src/nn/safetensors.h"
 
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/io/input_file.h"
 #include "src/io/output_file.h"
 #include "src/kernels/bf16_kernels.h"
@@ -184,9 +185,7 @@ std::size_t element_count(std::span<const std::int64_t> shape) {
 }
 
 std::string shape_text(std::span<const std::int64_t> shape) {
-    std::string text = "[";
-    for (const std::int64_t n : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
-    return text + "]";
+    return "[" + list_of(shape, [](std::int64_t n) { return std::to_string(n); }) + "]";
 }
 
 TensorFile parse_safetensors(std::span<const std::byte> bytes, const std::string& name) {

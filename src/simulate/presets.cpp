@@ -2,6 +2,7 @@
 #include "src/simulate/presets.h"
 
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 namespace eventide {
 
@@ -157,13 +158,11 @@ const std::vector<SimulationPreset>& simulation_presets() {
 }
 
 const SimulationPreset& simulation_preset(std::string_view name) {
-    std::string known;
-    for (const SimulationPreset& preset : simulation_presets()) {
+    for (const SimulationPreset& preset : simulation_presets())
         if (preset.name == name) return preset;
-        known += (known.empty() ? "" : ", ") + preset.name;
-    }
     throw Error(ErrorKind::usage,
-                "no simulated scene is called '" + std::string(name) + "'; there are: " + known);
+                "no simulated scene is called '" + std::string(name) +
+                    "'; there are: " + list_of(simulation_presets(), &SimulationPreset::name));
 }
 
 }  // namespace eventide

@@ -1,17 +1,13 @@
-// EVT3 streams written word by word, and what a parser makes of them.
+// EVT3 streams written word by word.
 #pragma once
 
-#include "src/codec/prophesee/evt3.h"
-#include "src/core/byte_order.h"
-#include "tests/codec/parser_checks.h"
+#include "src/core/event.h"
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace eventide::evt3 {
 
-constexpr int kWidth = 1280, kHeight = 720;
 constexpr auto kOn = Polarity::on, kOff = Polarity::off;
 constexpr std::int64_t kHigh = 4096;  // us, a step of time_high
 
@@ -45,24 +41,8 @@ inline std::uint16_t ext_trigger(unsigned id, bool rising) {
     return word(0xA, id << 8 | unsigned(rising));
 }
 
-inline Bytes to_stream(const Words& words) {
-    Bytes out;
-    for (const std::uint16_t w : words) append_little(out, w);
-    return out;
-}
-
-inline const MakeParser kMake = [] { return std::make_unique<Evt3Parser>(kWidth, kHeight); };
-
-inline Parsed parse(const Words& words) {
-    return parse_whole(kMake, to_stream(words));
-}
-
 inline Event event(std::int64_t t, int x, int y, Polarity polarity = kOff) {
     return {from_us(t), std::uint16_t(x), std::uint16_t(y), polarity};
-}
-
-inline void expect_events(const Parsed& parsed, const std::vector<Event>& expected) {
-    EXPECT_TRUE(parsed.data.events == expected) << parsed.data.events.size() << " events";
 }
 
 }  // namespace eventide::evt3

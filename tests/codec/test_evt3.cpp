@@ -1,5 +1,5 @@
 // EVT3: what each word says.
-#include "tests/codec/evt3_words.h"
+#include "tests/codec/evt3_checks.h"
 
 namespace eventide::evt3 {
 namespace {

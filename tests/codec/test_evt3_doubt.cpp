@@ -1,5 +1,5 @@
 // EVT3: high times that leap, fall or contradict each other, and what was said at them.
-#include "tests/codec/evt3_words.h"
+#include "tests/codec/evt3_checks.h"
 
 namespace eventide::evt3 {
 namespace {

@@ -1,5 +1,5 @@
 // EVT3's time: 24 bits that wrap, damaged ones, and those of a camera that was away.
-#include "tests/codec/evt3_words.h"
+#include "tests/codec/evt3_checks.h"
 
 #include <string>
 

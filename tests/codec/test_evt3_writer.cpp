@@ -2,7 +2,7 @@
 #include "src/codec/prophesee/evt_header.h"
 #include "src/core/error.h"
 #include "tests/codec/data_files.h"
-#include "tests/codec/evt3_words.h"
+#include "tests/codec/evt3_checks.h"
 
 namespace eventide::evt3 {
 namespace {

@@ -111,6 +111,25 @@ TEST_F(CSources, APipeThatSaysNothingCanBeGivenUp) {
     ::close(writer);
 }
 
+TEST_F(CSources, APipeThatNobodyReadsCanBeGivenUp) {
+    const std::string pipe = temp_ / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    int asked = 0;
+    const auto third_time = [](void* context) {
+        return ++*static_cast<int*>(context) == 3 ? 1 : 0;
+    };
+    eventide_callbacks callbacks{sizeof callbacks, &asked, third_time, nullptr};
+    eventide_writer* writer = nullptr;
+    EXPECT_EQ(eventide_writer_open_with(pipe.c_str(), "aedat4", 64, 48, 0, &callbacks, &writer),
+              EVENTIDE_FAILED);
+    EXPECT_TRUE(said("pipe: given up while it was waited for")) << eventide_error_message();
+    EXPECT_EQ(writer, nullptr);
+    EXPECT_EQ(asked, 3);
+    callbacks.struct_size = sizeof callbacks + 1;
+    EXPECT_EQ(eventide_writer_open_with(pipe.c_str(), "aedat4", 64, 48, 0, &callbacks, &writer),
+              EVENTIDE_USAGE);
+}
+
 TEST_F(CSources, OfARecordingOfSeveralCamerasOneIsChosen) {
     eventide_source* source = nullptr;
     eventide_recording_options options{sizeof options, nullptr, 0, 0, "0"};

@@ -1,6 +1,7 @@
 // Event packets in ROS 1 bags: their times, and messages that the recorder lost.
 #include "replay/formats.h"
 #include "replay/summary.h"
+#include "tests/codec/evt3_words.h"
 #include "tests/io/bag_writer.h"
 #include "tests/replay/recording_files.h"
 
@@ -51,28 +52,20 @@ TEST(BagPackets, HaveTheTimesOfRos) {
     EXPECT_TRUE(late == expected);
 }
 
-BagBytes evt3(const std::vector<std::uint16_t>& words) {
+BagBytes payload_of(const evt3::Words& words) {
     BagBytes payload;
     for (const std::uint16_t word : words) payload += little(word);
     return payload;
 }
-constexpr std::uint16_t time_high(unsigned n) {
-    return std::uint16_t(0x8000 | n);
-}
-constexpr std::uint16_t addr_y(unsigned y) {
-    return std::uint16_t(y);
-}
-constexpr std::uint16_t addr_x(unsigned x) {
-    return std::uint16_t(0x2000 | x);
-}
 
 /// The row and the time of what follows a lost message may have stood in it.
 TEST(BagPackets, BehindALostMessageEvt3WaitsForItsNextTimeAndRow) {
-    constexpr std::int64_t kHigh = 4096, kStart = 1'500'000'000;  // us
+    using namespace evt3;
+    constexpr std::int64_t kStart = 1'500'000'000;  // us
     const TestFolder folder;
-    const auto at = [](std::uint64_t sequence, const std::vector<std::uint16_t>& words) {
+    const auto at = [](std::uint64_t sequence, const Words& words) {
         const SensorTime stamp = from_us(kStart + std::int64_t(sequence) * kHigh);
-        return packet_message("evt3", sequence, stamp, evt3(words));
+        return packet_message("evt3", sequence, stamp, payload_of(words));
     };
     const BagBytes messages = at(0, {time_high(0), addr_y(7), addr_x(1)}) +
                               at(1, {time_high(1), addr_x(2)}) +
@@ -80,12 +73,9 @@ TEST(BagPackets, BehindALostMessageEvt3WaitsForItsNextTimeAndRow) {
                               at(3, {addr_x(3), time_high(3), addr_x(4), addr_y(9), addr_x(5)}) +
                               at(4, {time_high(4), addr_x(6)});
     const auto recording = open_recording(folder.write("a.bag", bag_of(messages)));
-    const auto event = [](int high, int x, int y) {
-        return Event{from_us(kStart + high * kHigh), std::uint16_t(x), std::uint16_t(y),
-                     Polarity::off};
-    };
-    const std::vector<Event> expected{event(0, 1, 7), event(1, 2, 7), event(3, 5, 9),
-                                      event(4, 6, 9)};
+    const std::vector<Event> expected{event(kStart, 1, 7), event(kStart + kHigh, 2, 7),
+                                      event(kStart + 3 * kHigh, 5, 9),
+                                      event(kStart + 4 * kHigh, 6, 9)};
     for (int reading = 0; reading < 2; ++reading) {
         EXPECT_EQ(read_everything(*recording).events, expected);
         recording->seek(SensorTime::min());

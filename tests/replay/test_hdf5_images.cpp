@@ -81,6 +81,32 @@ TEST(Hdf5Images, OfAPartOfTheSensorAreWrittenAtTheirPlace) {
     EXPECT_TRUE(images[0].pixels == expected);
 }
 
+TEST(Hdf5Images, OfAnotherSizeThanTheSensorsAreLeftOutAndNamed) {
+    const TestFolder folder;
+    StreamHeader header;
+    header.width = 32;
+    header.height = 24;
+    Batch batch;
+    batch.events = some_events(100, 3'000'000, 20, 32, 24);
+    ReferenceImage image;
+    image.t = image.exposure_begin = image.exposure_end = batch.events[50].t;
+    image.pixels = Array2<std::uint16_t>(24, 32);
+    batch.images = {image};
+    RecordingFile file(folder.path("a.h5"), OutputOptions{}, *find_format("hdf5"), header);
+    file.write(batch);
+    file.finish();
+    OpenOptions stated;
+    stated.width = 64;
+    stated.height = 48;
+    const auto recording = open_recording(folder.path("a.h5"), stated);
+    EXPECT_THAT(recording->remarks(),
+                testing::ElementsAre("the images are left out: they are 32x24 px, the events' "
+                                     "sensor has 64x48"));
+    const Batch read = read_everything(*recording);
+    EXPECT_TRUE(read.events == batch.events);
+    EXPECT_TRUE(read.images.empty());
+}
+
 TEST(Hdf5Images, SurviveTheWayThroughDsecsLayout) {
     const TestFolder folder;
     StreamHeader header;

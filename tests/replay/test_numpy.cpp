@@ -169,6 +169,24 @@ TEST(Numpy, ARowWithoutATimeHidesNothingFromASeek) {
     EXPECT_GE(found.size(), 30'000U - 5'000U - 2U);
 }
 
+TEST(Numpy, TheSmallestIntegerIsNoTime) {
+    const TestFolder folder;
+    for (const auto unit :
+         {TextTimeUnit::seconds, TextTimeUnit::milliseconds, TextTimeUnit::microseconds}) {
+        std::vector<Event> events = some_events(500, 2'500'000, 20, 240, 180);
+        for (std::size_t i = 1; i < events.size(); ++i) events[i].t = from_us(std::int64_t(i));
+        events[0].t = SensorTime::min();
+        OpenOptions options;
+        options.text.unit = unit;
+        options.width = 240;
+        options.height = 180;
+        const Summary sum =
+            summarize(*open_recording(folder.write("a.npy", records(events)), options));
+        EXPECT_EQ(sum.events, 499U) << int(unit);
+        EXPECT_EQ(sum.damaged[DamageReason::bad_record], 1U) << int(unit);
+    }
+}
+
 TEST(Numpy, MetavisionsRecordsAreOfMicrosecondsHoweverFewTheyAre) {
     const TestFolder folder;
     std::vector<Event> events = some_events(500, 2'500'000, 20, 240, 180);

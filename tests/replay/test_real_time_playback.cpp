@@ -4,6 +4,7 @@
 #include "replay/formats.h"
 #include "src/core/error.h"
 #include "tests/replay/recording_files.h"
+#include "tests/replay/some_bags.h"
 
 #include <limits>
 #include <thread>
@@ -31,6 +32,23 @@ TEST(RealTimePlayback, GivesTheSameBytes) {
         EXPECT_TRUE(all_bytes(paced) == all_bytes(*open_recording(path)));
         EXPECT_EQ(paced.position_bytes(), paced.size_bytes());
     }
+}
+
+/// Of a format that is no stream, whose packets have more bytes than the file.
+TEST(RealTimePlayback, TellsHowFarItIsInTheBytesOfTheFile) {
+    const TestFolder folder;
+    const std::string path = folder.write("a.bag", test::bag_of(some_events(20'000), "bz2"));
+    RealTimePlayback paced(open_recording(path), kFasterThanAnyClock);
+    std::uint64_t before = paced.position_bytes(), bytes = 0;
+    for (RawPacket packet; paced.read(packet) == ReadStatus::data;
+         before = paced.position_bytes()) {
+        bytes += packet.bytes.size();
+        ASSERT_GE(paced.position_bytes(), before);
+    }
+    EXPECT_EQ(paced.position_bytes(), paced.size_bytes());
+    EXPECT_GT(bytes, paced.size_bytes());
+    paced.seek(SensorTime::min());
+    EXPECT_LT(paced.position_bytes(), paced.size_bytes() / 10);
 }
 
 TEST(RealTimePlayback, WhatIsNotDueIsNotGiven) {

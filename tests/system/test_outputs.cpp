@@ -274,13 +274,16 @@ TEST_F(Outputs, ASimulatedFolderIsReplacedByAnotherOnly) {
 
 TEST_F(Outputs, OtherOutputsMayLieInAFolderOfFrames) {
     const std::vector<std::string> run{
-        "run",           "rec.aedat4",  "--out",   "a/",    "--stats",
-        "a/stats.jsonl", "--state-out", "a/state", "--out", "contact-sheet:a/sheet.png"};
+        "run",          "rec.aedat4",   "--out",    "a/video.mp4",
+        "--out",        "a/",           "--stats",  "a/stats.jsonl",
+        "--state-out",  "a/state",      "--record", "a/all.aedat4",
+        "--events-out", "a/events.txt", "--out",    "contact-sheet:a/sheet.png"};
     ASSERT_EQ(eventide(run).exit_code, 0);
     auto again = run;
     again.push_back("--overwrite");
     ASSERT_EQ(eventide(again).exit_code, 0);
-    for (const char* name : {"stats.jsonl", "state", "sheet.png", "run.json"})
+    for (const char* name :
+         {"stats.jsonl", "state", "sheet.png", "run.json", "video.mp4", "all.aedat4", "events.txt"})
         EXPECT_TRUE(fs::exists(temp_ / ("a/" + std::string{name}))) << name;
 }
 

@@ -168,6 +168,18 @@ TEST_F(Signals, AReaderThatGoesAwayIsAProperEnd) {
     EXPECT_EQ(result.error.find("error"), std::string::npos) << result.error;
 }
 
+TEST_F(Signals, AConversionWhoseReaderGoesAwayDoesNotSayThatAllWasWritten) {
+    Process process =
+        start({"convert", recording(), "-", "--to-format", "text"}, {.output_to_pipe = true});
+    process.read_output(100);
+    process.close_output();
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_NE(result.error.find("-: its reader did not take all of it"), std::string::npos)
+        << result.error;
+    EXPECT_EQ(result.error.find("wrote"), std::string::npos) << result.error;
+}
+
 TEST_F(Signals, AKilledRunLeavesAVideoThatPlaysAndFilesThatAreWhole) {
     Process process = start({"run", kEndless, "--fps", "200", "--overload", "skip", "--out",
                              "video.mp4", "--out", "frames/", "--out", "gray8:-"},

@@ -46,8 +46,11 @@ const Format* target_format(const std::string& file, const std::string& name) {
 
 void say(const std::string& source, const std::string& source_format, const std::string& file,
          const ConvertReport& report) {
-    spdlog::info("{}: wrote {} ({})", file, text_of(report.written),
-                 counted(report.bytes_written, "byte"));
+    if (report.reader_gone)
+        spdlog::info("{}: its reader did not take all of it", file);
+    else
+        spdlog::info("{}: wrote {} ({})", file, text_of(report.written),
+                     counted(report.bytes_written, "byte"));
     for (const std::string& remark : report.data.remarks(file)) spdlog::warn("{}", remark);
     if (report.lost > 0) spdlog::warn("{}: lost {}", file, lost_datagrams(report.lost));
     if (const std::string why =

@@ -2,6 +2,7 @@
 #include "apps/cli/commands/evaluate_command.h"
 #include "apps/cli/settings/words.h"
 #include "src/binning/slicer_settings.h"
+#include "src/core/list_text.h"
 #include "src/core/sensor_limits.h"
 #include "src/settings/setting.h"
 
@@ -107,11 +108,9 @@ SettingTable EvaluateCommand::settings() {
                      "the table."));
     add(path_setting("csv", csv_, "FILE", "A line per sequence; - as for --json."));
     add(path_setting("frame_csv", frame_csv_, "FILE", "A line per frame; - as for --json."));
-    std::string names;
-    for (const std::string& figure : figure_names()) names += (names.empty() ? "" : ", ") + figure;
     add(list_setting(
         "figure", figures_, "NAME",
-        "Figures as SVG and CSV: " + names +
+        "Figures as SVG and CSV: " + list_of(figure_names()) +
             "; spatial, temporal and silence from simulated sequences of their own, instead of a "
             "table; the others beside the table, of what is evaluated."));
     add(path_setting("plots", plots_, "FOLDER", "Where figures go."));

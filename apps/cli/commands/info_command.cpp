@@ -6,6 +6,7 @@
 #include "replay/formats.h"
 #include "replay/left_out.h"
 #include "replay/summary.h"
+#include "src/core/damage_text.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/model/model_file.h"
@@ -57,9 +58,7 @@ void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t
     line("triggers", whole(summary.triggers));
     line("flicker", flicker_text(summary));
     std::string damage = whole(summary.damaged.total());
-    for (std::size_t i = 0; i < kDamageReasons; ++i)
-        if (const auto n = summary.damaged[DamageReason(i)]; n > 0)
-            damage += ", " + std::string{name_of(DamageReason(i))} + " " + whole(n);
+    if (summary.damaged.total() > 0) add_to_list(damage, damage_text(summary.damaged));
     line("damaged", damage);
 }
 

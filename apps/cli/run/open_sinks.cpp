@@ -270,8 +270,11 @@ std::vector<std::unique_ptr<Sink>> open_sinks(const RunSettings& settings, const
     std::vector<std::unique_ptr<Sink>> plain, changed;
     AdjustSettings adjust = settings.adjust;
     adjust.unsharp = float(settings.unsharp);
-    for (const std::string& sink : settings.out)
-        (is_contact_sheet(sink) ? plain : changed).push_back(open_sink(sink, settings, plan));
+    for (const bool folders : {true, false})  // first those: others may lie in one
+        for (const std::string& sink : settings.out)
+            if (folders == (parse_sink(sink).kind == SinkKind::folder))
+                (is_contact_sheet(sink) ? plain : changed)
+                    .push_back(open_sink(sink, settings, plan));
     if (changed.empty()) return plain;
     if (!adjust.changes_nothing())
         changed = one(std::make_unique<AdjustSink>(adjust, std::move(changed)));

@@ -9,6 +9,7 @@
 #include "apps/cli/run/state/state_folder.h"
 #include "drivers/devices.h"
 #include "pipeline/first_error.h"
+#include "replay/formats.h"
 #include "src/core/error.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
@@ -142,6 +143,8 @@ void Run::go_to_begin() {
     }
     if (recording->size_bytes() > 0)
         bytes_to_read_ = recording->size_bytes() - recording->position_bytes();
+    const Format* const format = find_format(recording->info().format);
+    is_stream_ = format == nullptr || format->open_path == nullptr;
 }
 
 void Run::open_outputs() {
@@ -150,15 +153,16 @@ void Run::open_outputs() {
             start_.goes_on();
             return program_.signals.stopping();
         }};
+    sinks_ = open_sinks(settings_, sink_plan());
+    // Behind them: other files may lie in a folder that a sink makes.
     recorded_ = recorder_of(settings_, *opened_.source, growing);
     events_out_ = events_out_of(settings_, sensor_, colour_filter_, span_, filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
-    sinks_ = open_sinks(settings_, sink_plan());
     if (!settings_.states_out.empty()) {
         if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal
         create_folder(settings_.states_out);
     }
-    stats_ = stats_of(settings_, growing);  // last: it may lie in a folder that a sink makes
+    stats_ = stats_of(settings_, growing);
 }
 
 void Run::make_pipeline() {
@@ -206,6 +210,9 @@ Snapshot Run::counters() const {
     now.events += filters_.left_out();
     now.filtered_events += filters_.left_out();
     now.waits = waits_.value();
+    if (!is_stream_)
+        now.parsed_bytes =
+            opened_.recording->position_bytes() + bytes_to_read_ - opened_.recording->size_bytes();
     now.used_images = render_.used_images();
     now.dropped_images = render_.dropped_images();
     return now;

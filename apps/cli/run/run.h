@@ -91,6 +91,7 @@ private:
     const bool sheet_, page_;
     const std::chrono::steady_clock::time_point begun_;
     std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known
+    bool is_stream_ = true;            // what is read are the recording's own bytes
     ReferenceImages references_;
     ImagesOnTheWay images_;
     std::unique_ptr<RecordedSource> recorded_;  // null: nothing is recorded

@@ -4,6 +4,7 @@
 #include "apps/cli/printable.h"
 #include "src/core/environment.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/settings/suggestion.h"
 
 #include <algorithm>
@@ -52,9 +53,7 @@ std::string toml_value(const Setting& setting) {
     const std::vector<std::string> texts = setting.show();
     if (setting.kind == ValueKind::number || setting.kind == ValueKind::flag) return texts.back();
     if (setting.kind == ValueKind::text) return quoted(texts.back());
-    std::string list;
-    for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + quoted(text);
-    return "[" + list + "]";
+    return "[" + list_of(texts, quoted) + "]";
 }
 
 /// At most 96 characters a line, each after "# ".

@@ -5,6 +5,7 @@
 #include "pipeline/filters/data_filter.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 #include <spdlog/spdlog.h>
 
@@ -25,12 +26,10 @@ Setting text_or_auto(std::string key, std::string& value, std::string argument, 
 }  // namespace
 
 void InputSettings::add_to(SettingTable& table) {
-    std::string names;
-    for (const Format& format : all_formats())
-        names += (names.empty() ? "" : ", ") + std::string{format.name};
     table.settings.push_back(parsed_setting<std::string>(
         "input_format", open.format, "FORMAT",
-        "Format of the recording: auto (by its content), " + names + ".",
+        "Format of the recording: auto (by its content), " + list_of(all_formats(), &Format::name) +
+            ".",
         [](const std::string& text) {
             if (text == "auto") return std::string{};
             if (find_format(text) == nullptr) throw_usage("auto or the name of a format", text);

@@ -1,5 +1,6 @@
 // Every way of computing the same thing, against double precision and each other.
 #include "apps/cli/stress/stress_case.h"
+#include "src/core/list_text.h"
 #include "src/nn/backend.h"
 #include "src/nn/onednn_conv.h"
 
@@ -32,8 +33,7 @@ EngineOptions with(const Bench& bench, Precision precision, Kernels kernels) {
 
 void add(const PipelineOutcome& outcome, const std::string& name, Result& result) {
     const Result one = judged(outcome, "");
-    result.happened += (result.happened.empty() ? "" : ", ") + name + " " +
-                       short_number(*one.error) + one.happened;
+    add_to_list(result.happened, name + " " + short_number(*one.error) + one.happened);
     result.passed &= one.passed;
     result.error = std::max(result.error.value_or(0), *one.error);
     result.bound = kFloatBound;

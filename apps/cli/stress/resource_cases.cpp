@@ -8,6 +8,7 @@
 #include "pipeline/sinks/video/video.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -82,7 +83,7 @@ Result recordings(const Bench& bench) {
         app::RecordingOut file{files.back(), {.overwrite = true}, &format, header};
         file.write(batch);
         file.finish();
-        names += (names.empty() ? "" : ", ") + std::string{format.name};
+        add_to_list(names, format.name);
     }
     Result result = repeated(bench, [&] {
         for (const std::string& file : files) {

@@ -2,6 +2,7 @@
 #include "apps/cli/stress/stress_case.h"
 #include "apps/cli/stress/wire_words.h"
 #include "src/codec/text/text.h"
+#include "src/core/list_text.h"
 
 #include <cstdio>
 
@@ -60,8 +61,7 @@ Result wraps(const Bench& bench) {
                           through.counters.events == events.size();
         all_same &= same;
         damaged += through.counters.damaged.total();
-        happened += (happened.empty() ? "" : ", ") + wire.name + " (" + wire.wraps + ")" +
-                    (same ? "" : " DIFFERS");
+        add_to_list(happened, wire.name + " (" + wire.wraps + ")" + (same ? "" : " DIFFERS"));
     }
     Result result;
     result.happened =

@@ -2,6 +2,7 @@
 #include "src/codec/aedat/aedat3.h"
 #include "src/codec/aedat/aedat_header.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
@@ -69,10 +70,9 @@ void choose_source(Aedat3Header& header, const std::vector<Aedat3Source>& source
     };
     const auto chosen = std::ranges::find_if(sources, is_wanted);
     if (chosen == sources.end() && !wanted.empty()) {
-        std::string found;
-        for (const Aedat3Source& source : sources)
-            found += (found.empty() ? "" : ", ") + std::to_string(source.number) + " (" +
-                     source.name + ")";
+        const std::string found = list_of(sources, [](const Aedat3Source& source) {
+            return std::to_string(source.number) + " (" + source.name + ")";
+        });
         throw Error(ErrorKind::usage, "AEDAT 3: expected a source " + std::string(wanted) +
                                           ", found " + (found.empty() ? "none" : found));
     }

@@ -5,6 +5,7 @@
 #include "src/core/bayer.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
@@ -73,8 +74,7 @@ std::string names_of_events(const std::vector<Aedat4Stream>& streams) {
     std::string names;
     for (const Aedat4Stream& stream : streams)
         if (stream.identifier == identifier_of(Aedat4Kind::events))
-            names += (names.empty() ? "" : ", ") + std::to_string(stream.id) + " (" +
-                     stream.source + ")";
+            add_to_list(names, std::to_string(stream.id) + " (" + stream.source + ")");
     return names.empty() ? "none" : names;
 }
 

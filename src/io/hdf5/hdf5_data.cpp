@@ -2,6 +2,7 @@
 #include "src/io/hdf5/hdf5_data.h"
 
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 #include "src/io/hdf5/hdf5_filters.h"
 #include "src/io/hdf5/hdf5_library.h"
 
@@ -86,9 +87,7 @@ void Hdf5Data::refuse(const std::string& expected, const std::string& what) cons
 }
 
 std::string Hdf5Data::shape_text() const {
-    std::string text = "[";
-    for (const std::uint64_t n : shape_) text += (text.size() > 1 ? ", " : "") + std::to_string(n);
-    return text + "]";
+    return "[" + list_of(shape_, [](std::uint64_t n) { return std::to_string(n); }) + "]";
 }
 
 std::uint64_t Hdf5Data::row_length() const {
