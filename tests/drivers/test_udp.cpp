@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -117,6 +118,23 @@ TEST(Udp, DatagramsThatTheSystemHadNoRoomForAreAGap) {
     socket.send(std::span(large).first(13));
     ASSERT_EQ(source.read(packet), ReadStatus::data);
     EXPECT_FALSE(packet.gap_before) << "told once";
+}
+
+TEST(Udp, AddressesOfIPv6StandInBrackets) {
+    const UdpName name = UdpName::parse("//[::1]:4000?size=4x4");
+    EXPECT_EQ(name.host, "::1");
+    EXPECT_EQ(name.text(), "udp://[::1]:4000");
+    std::optional<UdpSource> source;
+    try {
+        source.emplace(UdpName::parse("//[::1]:0?size=640x480"));
+    } catch (const Error& error) {
+        GTEST_SKIP() << error.what();
+    }
+    UdpTarget target("udp://[::1]:" + std::to_string(source->port()), {});
+    Batch sent;
+    sent.events = random_events(1, 200);
+    target.write(sent);
+    EXPECT_TRUE(receive(*source, sent.events.size()).events == sent.events);
 }
 
 TEST(Udp, NamesThatMakeNoSenseAreRefused) {

@@ -19,8 +19,7 @@
 namespace eventide::test {
 namespace {
 
-constexpr int kWidth = 640,
-              kHeight = 480;  // five fragments, and five images are more than Cyclone waits for
+constexpr int kWidth = 640, kHeight = 480;  // five fragments
 
 class Listeners : public testing::Test {
 protected:

@@ -1,4 +1,5 @@
 // Frames on topics, read by another participant.
+#include "pipeline/ros2/diagnostics_topic.h"
 #include "pipeline/ros2/ros2_sink.h"
 #include "pipeline/sinks/draw_frame.h"
 #include "src/core/error.h"
@@ -298,6 +299,28 @@ TEST_F(Ros2SinkTest, DiagnosticsTellTheOffsetOnceAndThenEachSecond) {
         EXPECT_STREQ(status.values._buffer[2].value, told == 0 ? "0.001000" : "1.001000");
     }
     EXPECT_EQ(said_.size(), 1U);
+}
+
+TEST_F(Ros2SinkTest, WhoComesToTheDiagnosticsWithinASecondIsToldAtOnce) {
+    using Diagnostics = diagnostic_msgs_msg_dds__DiagnosticArray_;
+    DiagnosticsTopic topic{Participant::join(), name_};
+    const auto wait_for_readers = [&](int n) {
+        while (topic.writer.readers() != n) std::this_thread::yield();
+    };
+    std::int64_t stamp = to_us(odd_time(0));
+    std::optional<TopicReader> reader{std::in_place, kDiagnosticArrayType, "/diagnostics"};
+    wait_for_readers(1);
+    topic.tell({.stamp_us = stamp});
+    ASSERT_NE(reader->next<Diagnostics>(), nullptr);
+    reader.reset();
+    wait_for_readers(0);
+    topic.tell({.stamp_us = stamp += 1'000});
+    reader.emplace(kDiagnosticArrayType, "/diagnostics");
+    wait_for_readers(1);
+    topic.tell({.stamp_us = stamp += 1'000});
+    const auto* late = reader->next<Diagnostics>(std::chrono::seconds{5});
+    ASSERT_NE(late, nullptr);
+    EXPECT_EQ(stamp_us(late->header), stamp);
 }
 
 TEST_F(Ros2SinkTest, WhoReadsDiagnosticsMakesNoFrames) {

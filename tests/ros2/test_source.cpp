@@ -196,6 +196,7 @@ TEST_F(Ros2SourceTest, OfTwoPublishersTheNewOneIsRead) {
     fresh.publish(message(11));
     fresh.publish(message(12));
     EXPECT_THAT(read(*source, *parser, 2).events, ElementsAre(event(11), event(12)));
+    EXPECT_EQ(source->counters()[CameraCount::lost_transfers], 0U) << "the new one counts anew";
 }
 
 TEST_F(Ros2SourceTest, WhenTheNewOfTwoPublishersEndsTheOtherIsReadAgain) {
