@@ -82,6 +82,28 @@ TEST(Judge, SumsUpWhatFiguresShow) {
     EXPECT_NEAR(twice.sigma_scale.by_likelihood(), std::sqrt(3.5), 1e-5);
 }
 
+TEST(Observations, OfTwoSequencesAreTheirSums) {
+    Observations one, other, none;
+    one.patch_sizes = {{8, .5, .25, 1}, {12, .25, .0625, 1}};
+    other.patch_sizes = {{8, 1, .5, 2}, {12, 0, 0, 0}};
+    one.patch_bins[3] = {.5, 2};
+    other.patch_bins[3] = {.25, 4};
+    one += other;
+    one += none;
+    none += one;  // into those that have seen nothing yet
+    for (const Observations* sum : {&one, &none}) {
+        ASSERT_EQ(sum->patch_sizes.size(), 2U);
+        const Observations::PatchSize& first = sum->patch_sizes[0];
+        EXPECT_EQ(first.size, 8);
+        EXPECT_EQ(first.sum, 1.5);
+        EXPECT_EQ(first.squares, .75);
+        EXPECT_EQ(first.frames, 3);
+        EXPECT_EQ(sum->patch_sizes[1].frames, 1);
+        EXPECT_EQ(sum->patch_bins[3].lpips, .75);
+        EXPECT_EQ(sum->patch_bins[3].patches, 6U);
+    }
+}
+
 TEST(Judge, ErrorsNameWhatWasJudged) {
     Judge judge{nullptr};
     try {
