@@ -82,6 +82,16 @@ TEST(Judge, SumsUpWhatFiguresShow) {
     EXPECT_NEAR(twice.sigma_scale.by_likelihood(), std::sqrt(3.5), 1e-5);
 }
 
+TEST(Judge, SortsPixelsBySigmaIntoBinsOfEqualRatio) {
+    Judge judge{nullptr};
+    judge.judge(all_of(.5F), stripes({.004F, .06F, .08F, 2}), all_of(.5F));
+    // ln(sigma / .005) / ln 200 of 24: below 0, 11.3, 12.6, above 24.
+    for (int bin = 0; bin < Observations::kSigmaBins; ++bin)
+        EXPECT_EQ(judge.observations().sigma_bins[std::size_t(bin)].pixels,
+                  bin == 0 || bin == 11 || bin == 12 || bin == 23 ? 36U : 0U)
+            << bin;
+}
+
 TEST(Observations, OfTwoSequencesAreTheirSums) {
     Observations one, other, none;
     one.patch_sizes = {{8, .5, .25, 1}, {12, .25, .0625, 1}};
