@@ -7,6 +7,7 @@
 # script may be stopped at any time. EVENTIDE names the program; else build/release/apps/cli/eventide. SEQUENCES: how
 # many simulated ones (20).
 set -euo pipefail
+export LC_ALL=C # decimal points
 all=(real calibration simulated sigma super-resolution silence)
 [ $# -ge 1 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 DATA=$(realpath "$1")

@@ -7,6 +7,7 @@
 # build/release/apps/cli/eventide. SEEDS: how many scenes for each condition (4). Recordings are kept in out/conditions, and used
 # again where the same program would simulate the same.
 set -euo pipefail
+export LC_ALL=C # decimal points
 [ $# -ge 1 ] || { sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 DATA=$(realpath "$1")
 model=${2:-default}

@@ -6,6 +6,7 @@
 # run's budget is MINUTES of processor time (5), simulation included. DATA as in scripts/accuracy.sh. TRAIN, PACK,
 # EVENTIDE name the programs, OUT the folder of the runs (out/experiments).
 set -euo pipefail
+export LC_ALL=C # decimal points
 [ $# -ge 1 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 [ "$1" = --tables ] || DATA=$(realpath "$1")
 cd "$(dirname "$0")/.."

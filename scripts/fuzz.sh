@@ -5,6 +5,7 @@
 #   scripts/fuzz.sh SECONDS [TARGET...]      scripts/fuzz.sh 60 aedat4 config
 # RUNS=10000000: a target is finished when it has run so often in all, and left out where it already has.
 set -euo pipefail
+export LC_ALL=C # decimal points
 cd "$(dirname "$0")/.."
 seconds=${1:?"fuzz: expected SECONDS [TARGET...]"}
 [[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: expected a whole number of seconds, found $seconds" >&2; exit 2; }

@@ -3,6 +3,7 @@
 # random events per pixel and second are added, the same each time.
 #   EVENTIDE=eventide scripts/tracker_noise.sh TRACKER ['SCENE SEED'...]
 set -euo pipefail
+export LC_ALL=C # decimal points
 eventide=${EVENTIDE:-eventide}
 tracker=${1:?"tracker_noise.sh: expected the program made of examples/tracker.cpp"}
 shift

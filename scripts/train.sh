@@ -6,6 +6,7 @@
 # far, for a model to ship: OUT/model.safetensors). Ctrl-C ends it after the step at hand with everything written.
 # TRAIN, PACK name the programs, OUT the folder of the run (out/train; with MODEL out/MODEL), PACKS that of the photographs, packed (out/train).
 set -euo pipefail
+export LC_ALL=C # decimal points
 [ $# -ge 2 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 data=$(realpath "$1")
 cd "$(dirname "$0")/.."

@@ -245,11 +245,12 @@ std::string svg(const Plot& plot) {
 }
 
 std::string csv(const Plot& plot) {
+    const auto cell = [](double v) { return std::isfinite(v) ? number(v) : ""; };
     std::string out = "series,x,y,spread\n";
     for (const Series& s : plot.series)
         for (std::size_t i = 0; i < s.x.size(); ++i)
-            out += csv_field(s.label) + "," + number(s.x[i]) + "," + number(s.y[i]) + "," +
-                   (i < s.spread.size() ? number(s.spread[i]) : "") + "\n";
+            out += csv_field(s.label) + "," + cell(s.x[i]) + "," + cell(s.y[i]) + "," +
+                   (i < s.spread.size() ? cell(s.spread[i]) : "") + "\n";
     return out;
 }
 

@@ -33,7 +33,7 @@ struct Plot {
 /// Points that are not finite are left out.
 std::string svg(const Plot& plot);
 
-/// Columns series, x, y, spread.
+/// Columns series, x, y, spread; empty for what is not finite.
 std::string csv(const Plot& plot);
 
 /// Writes folder/name.svg and folder/name.csv and returns the first. Throws Error: failed, or usage

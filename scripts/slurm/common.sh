@@ -1,6 +1,7 @@
 # What the scripts of this folder share; they source it.
 # shellcheck shell=bash
 EVENTIDE=${EVENTIDE:-eventide}
+export LC_ALL=C # decimal points
 
 refuse() {
   echo "$1" >&2

@@ -14,7 +14,8 @@ nodes=("$@")
 # COMMAND...: its processor time, s.
 processor_s() {
   local TIMEFORMAT='%U %S'
-  { time "$@" > "$out/scaling.log" 2>&1; } 2>&1 | awk '{ printf "%.3f", $1 + $2 }'
+  { time "$@" > "$out/scaling.log" 2>&1; } 2>&1 | awk '{ printf "%.3f", $1 + $2 }' ||
+    refuse "$(cat "$out/scaling.log")"$'\n'"scaling.sh: $* failed"
 }
 tasks=$(wc -l < "$out/plan.tsv")
 : > "$out/scaling.tsv"

@@ -135,6 +135,24 @@ TEST(EventSensor, LeaksAsFastInBrightLightAndInShortSteps) {
         EXPECT_NEAR(double(times[i] - times[i - 1]), 500'000, 1000);
 }
 
+TEST(EventSensor, LeaksAsFastAfterDays) {
+    SensorTraits traits = plain(.2);
+    traits.leak_hz = .2;
+    EventSensor sensor{traits, 4, 1, Random{7}};
+    Array2<float> lux(1, 4);
+    std::ranges::fill(lux.values(), 100.F);
+    sensor.settle(lux, 1);
+    constexpr int kSeconds = 10 * 86400;
+    std::vector<Event> events;
+    for (int s = 0; s < kSeconds; ++s) {
+        if (s == kSeconds - 100) events.clear();
+        sensor.step(from_us(s * 1'000'000LL), from_us((s + 1) * 1'000'000LL), lux, 1, events);
+    }
+    ASSERT_EQ(events.size(), 4 * 20U);
+    for (std::size_t i = 4; i < events.size(); ++i)
+        EXPECT_NEAR(double(to_us(events[i].t) - to_us(events[i - 4].t)), 5e6, 1000);
+}
+
 TEST(EventSensor, LeaksDifferentlyFromPixelToPixel) {
     SensorTraits traits = plain(.2);
     traits.leak_hz = 10;

@@ -10,6 +10,7 @@
 namespace eventide::test {
 namespace {
 
+using testing::AnyOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -31,6 +32,20 @@ TEST_F(Scripts, SayHowTheyAreCalled) {
         EXPECT_EQ(result.exit_code, 2) << name;
         EXPECT_THAT(result.error, HasSubstr("scripts/" + name + " ")) << name;
     }
+}
+
+/// Elsewhere bash writes and awk reads "1,5".
+TEST_F(Scripts, CalculateWithDecimalPointsInEveryCountry) {
+    int calculating = 0;
+    for (const auto& file : fs::recursive_directory_iterator{EVENTIDE_SOURCE_DIR "/scripts"}) {
+        if (file.path().extension() != ".sh") continue;
+        const std::string text = read_text(file.path());
+        if (text.find("awk ") == std::string::npos) continue;
+        ++calculating;
+        EXPECT_THAT(text, AnyOf(HasSubstr("export LC_ALL=C "), HasSubstr("/common.sh\"")))
+            << file.path();
+    }
+    EXPECT_GE(calculating, 7);
 }
 
 TEST_F(Scripts, TakePathsFromTheFolderOneIsIn) {

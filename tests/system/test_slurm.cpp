@@ -191,6 +191,11 @@ TEST_F(Slurm, WhatCannotBeIsNamed) {
         EXPECT_EQ(nothing.error, std::string{name} + ": expected OUT, the folder of a plan\n");
     }
     EXPECT_THAT(script("merge.sh", {"."}).error, HasSubstr("expected plan.tsv"));
+    fs::remove(temp_ / "a.aedat4");
+    const Result failed = script("scaling.sh", {"out"});
+    EXPECT_EQ(failed.exit_code, 2);
+    EXPECT_THAT(failed.error, HasSubstr("a.aedat4: "));
+    EXPECT_THAT(failed.error, HasSubstr("task.sh out 0 failed\n"));
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ TEST(Plot, DrawsEachPointOnceAndLeavesOutWhatIsNotFinite) {
     EXPECT_NE(drawn.find("a &lt; b"), std::string::npos);
     EXPECT_EQ(drawn.find("nan"), std::string::npos);
     EXPECT_EQ(count(csv(plot), "\n"), 5);
+    EXPECT_NE(csv(plot).find("\none,2,,0.1\n"), std::string::npos) << csv(plot);
 }
 
 TEST(Plot, SurvivesNoPointsOnePointAndLogarithmsOfZero) {

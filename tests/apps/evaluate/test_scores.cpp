@@ -82,6 +82,38 @@ TEST(Judge, SumsUpWhatFiguresShow) {
     EXPECT_NEAR(twice.sigma_scale.by_likelihood(), std::sqrt(3.5), 1e-5);
 }
 
+TEST(Judge, SortsPixelsBySigmaIntoBinsOfEqualRatio) {
+    Judge judge{nullptr};
+    judge.judge(all_of(.5F), stripes({.004F, .06F, .08F, 2}), all_of(.5F));
+    // ln(sigma / .005) / ln 200 of 24: below 0, 11.3, 12.6, above 24.
+    for (int bin = 0; bin < Observations::kSigmaBins; ++bin)
+        EXPECT_EQ(judge.observations().sigma_bins[std::size_t(bin)].pixels,
+                  bin == 0 || bin == 11 || bin == 12 || bin == 23 ? 36U : 0U)
+            << bin;
+}
+
+TEST(Observations, OfTwoSequencesAreTheirSums) {
+    Observations one, other, none;
+    one.patch_sizes = {{8, .5, .25, 1}, {12, .25, .0625, 1}};
+    other.patch_sizes = {{8, 1, .5, 2}, {12, 0, 0, 0}};
+    one.patch_bins[3] = {.5, 2};
+    other.patch_bins[3] = {.25, 4};
+    one += other;
+    one += none;
+    none += one;  // into those that have seen nothing yet
+    for (const Observations* sum : {&one, &none}) {
+        ASSERT_EQ(sum->patch_sizes.size(), 2U);
+        const Observations::PatchSize& first = sum->patch_sizes[0];
+        EXPECT_EQ(first.size, 8);
+        EXPECT_EQ(first.sum, 1.5);
+        EXPECT_EQ(first.squares, .75);
+        EXPECT_EQ(first.frames, 3);
+        EXPECT_EQ(sum->patch_sizes[1].frames, 1);
+        EXPECT_EQ(sum->patch_bins[3].lpips, .75);
+        EXPECT_EQ(sum->patch_bins[3].patches, 6U);
+    }
+}
+
 TEST(Judge, ErrorsNameWhatWasJudged) {
     Judge judge{nullptr};
     try {
