@@ -318,6 +318,8 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(2, {"run", recording(), "--out", "gray8:"}, "--out gray8: needs a path");
     expect(2, {"run", recording(), "video.mp4"},
            "unexpected argument 'video.mp4'; did you mean --out?");
+    expect(2, {"run", "--out", "null", "--", recording(), "--fps", "9"},
+           "unexpected argument '--fps' '9'");
     expect(2, {"run", recording(), "--roi", "9999,0,5x5", "--out", "null"},
            "region (roi) exceeds the 64x48 frame");
     write_text(temp_ / "empty.raw", "");
