@@ -39,12 +39,14 @@ std::vector<Plot> error_against_silence(const FigureSettings& what, const Evalua
 /// Names of figures, for the command line: "events", "sigma", "patch-size", "reliability",
 /// "spatial", "temporal", "silence".
 const std::vector<std::string>& figure_names();
+/// Throws Error (usage) where no figure is called so.
+void require_figure(std::string_view name);
 
 /// Whether a figure only needs what any evaluation observes, and such a figure.
 bool is_report_figure(std::string_view name);
 std::vector<Plot> report_figure(std::string_view name, const EvaluateReport& report);
 
-/// Makes a figure by name on simulated sequences. Throws Error(usage) for an unknown name.
+/// Makes a figure by name on simulated sequences. Throws as require_figure().
 std::vector<Plot> make_figure(std::string_view name, const FigureSettings& what,
                               const EvaluateSettings& how);
 

@@ -86,6 +86,9 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     // Before the figure is simulated, which takes minutes.
     expect(2, {"evaluate", "--figure", "spatial", "--figure", "events"}, "one or more recordings");
     expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "expected one of --json");
+    for (const char* other : {"spatial", "events"})
+        expect(2, {"evaluate", recording(), "--figure", other, "--figure", "nothing"},
+               "no figure is called 'nothing'");
     expect(2, {"evaluate", recording(), "--figure", "spatial"},
            "expected no input, found " + recording() + "; --figure spatial");
     expect(2, {"evaluate", "--figure", "sigma", "--figure", "spatial"},

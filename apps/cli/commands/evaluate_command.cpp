@@ -74,6 +74,7 @@ SimulatedSettings EvaluateCommand::simulated() const {
 }
 
 void EvaluateCommand::require_inputs() const {
+    std::ranges::for_each(figures_, require_figure);
     if (!evaluates() && !inputs_.empty())
         throw Error(ErrorKind::usage, "evaluate: expected no input, found " + inputs_.front() +
                                           "; --figure " + figures_.front() +

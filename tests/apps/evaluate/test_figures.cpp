@@ -134,6 +134,7 @@ TEST(Figures, AreEachMadeByTheirName) {
             }
         }
     EXPECT_THROW(make_figure("nonsense", small_figures(), how), Error);
+    EXPECT_THROW(require_figure("nonsense"), Error);
 }
 
 const Series& series_of(const std::vector<Plot>& plots, const std::string& plot,
