@@ -169,16 +169,23 @@ std::vector<std::string> with_help_as_flag(std::vector<std::string> arguments) {
         flags.insert(flags.end(), own.begin(), own.end());
     }
     for (const std::string& argument : arguments) {
+        if (argument == "--") break;  // behind it nothing is an option
         const std::string flag = argument.substr(0, argument.find('='));
         if (flag.starts_with("--") && std::find(flags.begin(), flags.end(), flag) == flags.end())
             throw Error(ErrorKind::usage,
                         "there is no option " + flag + suggestion(flag, flags) + help);
     }
+    // CLI11 has them in an order of its own.
+    std::vector<std::string> remaining = app.remaining(true);
     std::string left;
-    bool output = false;
-    for (const std::string& each : app.remaining(true)) {
-        left.insert(0, "'" + each + (left.empty() ? "'" : "' "));
-        output = output || (command == "run" && !each.starts_with("-"));
+    bool output = command == "run";
+    for (const std::string& argument : arguments) {
+        const auto found = std::ranges::find(remaining, argument);
+        if (found == remaining.end()) continue;
+        remaining.erase(found);
+        if (argument == "--") continue;
+        left += (left.empty() ? "'" : " '") + argument + "'";
+        output = output && !argument.starts_with("-");
     }
     throw Error(ErrorKind::usage,
                 "unexpected argument " + left + (output ? "; did you mean --out?" : "") + help);

@@ -81,7 +81,9 @@ void start_log(const LogSettings& settings) {
 }
 
 bool on_terminal() {
-    return isatty(STDERR_FILENO) == 1;
+    const char* terminal = environment_value("TERM");
+    return isatty(STDERR_FILENO) == 1 &&
+           (terminal == nullptr || std::string_view{terminal} != "dumb");
 }
 
 namespace {
@@ -108,9 +110,7 @@ void refuse_terminal(const std::string& option, const std::string& path, bool fo
 
 bool colour_allowed() {
     const char* refused = environment_value("NO_COLOR");
-    const char* terminal = environment_value("TERM");
-    return on_terminal() && (refused == nullptr || *refused == '\0') &&
-           (terminal == nullptr || std::string_view{terminal} != "dumb");
+    return on_terminal() && (refused == nullptr || *refused == '\0');
 }
 
 std::size_t ProgressLine::columns() const {

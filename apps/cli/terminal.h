@@ -17,7 +17,7 @@ struct LogSettings {
 /// Sets spdlog's default logger; once, before anything is logged.
 void start_log(const LogSettings& settings);
 
-/// Standard error is a terminal.
+/// Standard error is a terminal that obeys escape sequences: not TERM=dumb, as of editors' shells.
 bool on_terminal();
 
 /// Throws Error (usage) where `path` ("-": standard output) is a terminal, which frames and packed
@@ -27,7 +27,7 @@ void refuse_terminal(const std::string& option, const std::string& path, bool fo
 /// Whether colour may be used: on a terminal, unless NO_COLOR is set to something (no-color.org).
 bool colour_allowed();
 
-/// One line at the bottom of a terminal, redrawn in place. Silent where standard error is no
+/// One line at the bottom of a terminal, redrawn in place. Silent where standard error is no such
 /// terminal or when told to be quiet. Thread: one at a time.
 class ProgressLine {
 public:

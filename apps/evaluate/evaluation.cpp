@@ -44,6 +44,9 @@ EvaluateReport Evaluation::finish(const std::string& settings_text) {
     const SigmaRule rule = settings_.sigma_rule.value_or(model_.config.sigma_rule);
     report_.settings =
         "lookahead " + std::to_string(settings_.lookahead) + ", " + settings_text +
+        (settings_.engine.self_ensemble > 1
+             ? ", self-ensemble of " + std::to_string(settings_.engine.self_ensemble)
+             : "") +
         ", lamp flicker " + settings_.lamp_flicker +
         (noise_filter_ ? ", noise filter " + noise_filter_text(*noise_filter_) : "") +
         (rule == SigmaRule::mixture ? ", mixture sigma" : ", blended ln sigma");

@@ -1,6 +1,7 @@
 // Figures that only need what every evaluation observes.
 #include "apps/evaluate/figures.h"
 #include "src/core/error.h"
+#include "src/core/list_text.h"
 
 #include <algorithm>
 #include <array>
@@ -136,10 +137,8 @@ const std::vector<std::string>& figure_names() {
 
 void require_figure(std::string_view name) {
     if (std::ranges::count(figure_names(), name) > 0) return;
-    std::string known;
-    for (const std::string& one : figure_names()) known += (known.empty() ? "" : ", ") + one;
-    throw Error(ErrorKind::usage,
-                "no figure is called '" + std::string(name) + "'; there are: " + known);
+    throw Error(ErrorKind::usage, "no figure is called '" + std::string(name) +
+                                      "'; there are: " + list_of(figure_names()));
 }
 
 std::vector<Plot> simulated_figure(std::string_view name, const FigureSettings& what,

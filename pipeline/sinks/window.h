@@ -40,7 +40,8 @@ struct WindowControls {
 /// Where asked for, frames with an event preview show it left of the image.
 ///
 /// Render thread = the program's main thread, as window systems want it. A pause holds the thread:
-/// a recording waits, a live source goes on and its frames are skipped.
+/// a recording waits; the windows of a live source are merged, and their frames come late or are
+/// skipped.
 class WindowSink : public Sink {
 public:
     /// Throws as require_display().

@@ -90,6 +90,9 @@ TEST_F(ExitCodes, TwoIsWrongUsage) {
     // Before the figure is simulated, which takes minutes.
     expect(2, {"evaluate", "--figure", "spatial", "--figure", "events"}, "one or more recordings");
     expect(2, {"evaluate", recording(), "--json", "-", "--csv", "-"}, "expected one of --json");
+    for (const char* other : {"spatial", "events"})
+        expect(2, {"evaluate", recording(), "--figure", other, "--figure", "nothing"},
+               "no figure is called 'nothing'");
     expect(2, {"evaluate", recording(), "--figure", "spatial"},
            "expected no input, found " + recording() + "; --figure spatial");
     expect(2, {"evaluate", recording(), "--figure", "sgima"},
@@ -327,6 +330,8 @@ TEST_F(ExitCodes, SayWhatWasMeantInTheFieldsWords) {
     expect(2, {"run", recording(), "--out", "gray8:"}, "--out gray8: needs a path");
     expect(2, {"run", recording(), "video.mp4"},
            "unexpected argument 'video.mp4'; did you mean --out?");
+    expect(2, {"run", "--out", "null", "--", recording(), "--fps", "9"},
+           "unexpected argument '--fps' '9'");
     expect(2, {"run", recording(), "--roi", "9999,0,5x5", "--out", "null"},
            "region (roi) exceeds the 64x48 frame");
     write_text(temp_ / "empty.raw", "");

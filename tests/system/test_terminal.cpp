@@ -53,6 +53,10 @@ TEST_F(Terminal, TheMovingLineFitsTheTerminalAndIsNotForThoseWhoWantQuiet) {
         EXPECT_TRUE(found) << text;
     }
     EXPECT_EQ(eventide(run).error.find('\r'), std::string::npos);
+    EXPECT_EQ(eventide(run, {.environment = {{"TERM", "dumb"}}, .error_to_terminal = true})
+                  .error.find('\033'),
+              std::string::npos)
+        << "it would be shown, not obeyed";
     std::vector<std::string> quiet = run;
     quiet.push_back("--quiet");
     EXPECT_EQ(eventide(quiet, {.error_to_terminal = true}).error, "");

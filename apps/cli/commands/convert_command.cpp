@@ -134,9 +134,9 @@ int ConvertCommand::run(Program& program) {
     FilterChain filters{filter_, {header.width, header.height}};
     header.width = filters.size().width;
     header.height = filters.size().height;
-    // AEDAT 3 says it with each image, AEDAT 4 at its beginning.
-    if (format != nullptr && format->name == "aedat4" && recording->info().format == "aedat3")
-        header.colour_filter = filter_of_images(from_file_, options);
+    // AEDAT 3 and bags say it with each image, AEDAT 4 at its beginning.
+    if (format != nullptr && format->name == "aedat4" && header.colour_filter == ColourFilter::none)
+        header.colour_filter = filter_of_images(from_file_, recording->info().format, options);
     header.colour_filter = filters.pattern(header.colour_filter);
     if (!filters.empty() && how.from && !is_read_once(from_file_))
         filters.count_from(times.time_of({}));

@@ -8,7 +8,10 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <string>
+#include <string_view>
 
 namespace eventide::app {
 
@@ -45,9 +48,13 @@ void check_colour(const RunSettings& settings, const SensorInfo& sensor, ColourF
 
 }  // namespace
 
-ColourFilter filter_of_images(const std::string& source, const OpenOptions& options) {
+ColourFilter filter_of_images(const std::string& source, std::string_view format,
+                              const OpenOptions& options) {
     constexpr std::uint64_t kMaxBytes = 256 << 20;
-    if (is_read_once(source)) return ColourFilter::none;
+    constexpr std::string_view kEachImageTells[]{"aedat3", "rosbag", "mcap", "db3"};
+    if (std::ranges::find(kEachImageTells, format) == std::end(kEachImageTells) ||
+        is_read_once(source))
+        return ColourFilter::none;
     const auto recording = open_recording(source, options);
     const auto parser = recording->make_parser();
     RawPacket packet;
@@ -67,10 +74,10 @@ ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& sou
                               const SensorInfo& sensor, const FilterChain& filters, bool live) {
     ColourFilter before = settings.bayer.value_or(source.colour_filter);
     // Else each image is taken at its word (demosaiced()), and nothing is read twice.
-    const bool needed = settings.colour || !settings.filter.empty();
-    if (needed && !settings.bayer && source.format == "aedat3" && !live &&
+    const bool needed = settings.colour || !settings.filter.empty() || !settings.events_out.empty();
+    if (needed && !settings.bayer && before == ColourFilter::none && !live &&
         !names_simulation(settings.source))
-        before = filter_of_images(settings.source, settings.input.options());
+        before = filter_of_images(settings.source, source.format, settings.input.options());
     const ColourFilter filter = filters.pattern(before);
     if (filter == ColourFilter::none && before != ColourFilter::none)
         for (const std::string& text : settings.filter)

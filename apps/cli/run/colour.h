@@ -12,18 +12,21 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace eventide::app {
 
-/// Of AEDAT 3's first image that tells it, as long as that comes with the first of the recording;
-/// none, too, of what can be read but once.
-ColourFilter filter_of_images(const std::string& source, const OpenOptions& options);
+/// Of the first image that tells it, as long as that comes with the first of the recording, in a
+/// format in which each does (AEDAT 3, bags); none, too, of what can be read but once.
+ColourFilter filter_of_images(const std::string& source, std::string_view format,
+                              const OpenOptions& options);
 
-/// --bayer, else what the camera or recording says (of AEDAT 3, where each image says it, the first
-/// that does), as it is behind the filters of events. Throws Error (usage) where those leave no
-/// such pattern, where --colour finds no colours, or contradicts something else that was asked for.
-/// `source` is before the filters, `sensor` behind them.
+/// --bayer, else what the camera, recording or its images say, as it is behind the filters of
+/// events. Throws Error (usage) where those leave no such pattern, where --colour finds no colours,
+/// or contradicts something else that was asked for. `source` is before the filters, `sensor`
+/// behind them.
 ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& source,
                               const SensorInfo& sensor, const FilterChain& filters, bool live);
 

@@ -81,9 +81,10 @@ SinkName parse_sink(const std::string& sink) {
     if (const auto name = with_prefix(sink)) {
         if (name->path.empty() && name->kind != SinkKind::http)
             throw Error(ErrorKind::usage, "--out " + sink + " needs a path, such as --out " + sink +
-                                              (name->kind == SinkKind::v4l2   ? "/dev/video9"
-                                               : name->kind == SinkKind::ros2 ? "/camera"
-                                                                              : "x"));
+                                              (name->kind == SinkKind::v4l2    ? "/dev/video9"
+                                               : name->kind == SinkKind::ros2  ? "/camera"
+                                               : name->kind == SinkKind::sheet ? "x.png"
+                                                                               : "x"));
         return *name;
     }
     if (names_video(sink)) return {SinkKind::video, sink};

@@ -36,8 +36,8 @@ struct HttpSettings {
 /// Each viewer has a thread, and the newest frame when he is ready for it: a slow one sees fewer
 /// frames and holds up nobody. While nobody looks, nothing is copied or encoded.
 ///
-/// A pause holds the render thread: a recording waits, a live source goes on and its frames are
-/// skipped.
+/// A pause holds the render thread: a recording waits; the windows of a live source are merged, and
+/// their frames come late or are skipped.
 class HttpSink : public Sink {
 public:
     /// At once; more are told 503. Of images, and as many again of statistics.

@@ -1,5 +1,7 @@
-// Images of sensors with a colour filter, demosaiced where they can be.
+// Images of sensors with a colour filter: which it is, and demosaiced where they can be.
 #include "apps/cli/run/colour.h"
+#include "tests/io/bag_writer.h"
+#include "tests/replay/recording_files.h"
 
 #include <gtest/gtest.h>
 
@@ -26,6 +28,32 @@ TEST(Demosaiced, WhatHasNothingToInterpolateStaysAsItIs) {
     for (const ReferenceImage& thin : {mosaic(1, 6), mosaic(4, 1), mosaic(0, 0)})
         EXPECT_EQ(demosaiced(thin, ColourFilter::rggb), thin);
     EXPECT_EQ(demosaiced(mosaic(4, 6), ColourFilter::none), mosaic(4, 6)) << "no filter is known";
+}
+
+TEST(ColourFilterOf, ABagIsWhatItsImagesTell) {
+    using namespace test;
+    constexpr std::uint32_t kEvents = 3, kImages = 5;
+    const TestFolder folder;
+    RunSettings settings;
+    settings.source = folder.write(
+        "a.bag",
+        bag(chunk("none", connection(kEvents, "dvs_msgs/EventArray") +
+                              connection(kImages, "sensor_msgs/Image") +
+                              message(kEvents, event_array(6, 4, some_events(9, 0, 1, 6, 4))) +
+                              message(kImages, image(mosaic(4, 6), "bayer_grbg8")))));
+    const SensorInfo sensor{.name = "", .serial = "", .format = "rosbag", .width = 6, .height = 4};
+    const auto filter = [&] {
+        return colour_filter_of(settings, sensor, sensor, FilterChain{settings.filter, {6, 4}},
+                                false);
+    };
+    EXPECT_EQ(filter(), ColourFilter::none) << "nobody asks";
+    settings.events_out = "a.aedat4";  // says it in its header
+    EXPECT_EQ(filter(), ColourFilter::grbg);
+    settings.events_out.clear();
+    settings.colour = true;
+    EXPECT_EQ(filter(), ColourFilter::grbg);
+    settings.bayer = ColourFilter::bggr;
+    EXPECT_EQ(filter(), ColourFilter::bggr) << "as was asked for";
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ TEST(SinkName, SaysWhatIsMissing) {
          {std::pair{"gray8:", "--out gray8: needs a path, such as --out gray8:x"},
           {"v4l2:", "such as --out v4l2:/dev/video9"},
           {"ros2:", "such as --out ros2:/camera"},
+          {"contact-sheet:", "such as --out contact-sheet:x.png"},
           {"x.bmp", "--out x.bmp: expected a folder (ending in /), x.mp4"}})
         try {
             parse_sink(text);

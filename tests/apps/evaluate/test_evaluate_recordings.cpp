@@ -26,6 +26,19 @@ TEST(EvaluateRecordings, ScoresEveryImageThatIsNotSkipped) {
     }
 }
 
+TEST(EvaluateRecordings, SayWhereFramesAreTheMeanOfMirroredNetworks) {
+    RecordingSettings what;
+    what.recordings = {write_recording(fresh_folder("mirrored"), .9, .001, .1)};
+    const auto says = [&](int networks) {
+        EvaluateSettings how = small_model();
+        how.engine.self_ensemble = networks;
+        return evaluate_recordings(what, how).settings.find(", self-ensemble of 2") !=
+               std::string::npos;
+    };
+    EXPECT_FALSE(says(1));
+    EXPECT_TRUE(says(2));
+}
+
 TEST(EvaluateRecordings, WarnWhereMoreIsLeftOutThanTaken) {
     const fs::path folder = write_recording(fresh_folder("left_out"), .9, .01, .1);
     RecordingSettings what;
