@@ -51,6 +51,7 @@ std::vector<RenderRequest> requests(int lookahead) {
     part.sigma_rule = SigmaRule::mixture;
     std::vector<RenderRequest> all{native, larger, native, part, native};
     all[2].want_sigma = false;
+    all[4].sigma_rule = SigmaRule::mixture;
     for (RenderRequest& request : all) request.lookahead = lookahead;
     return all;
 }
@@ -93,6 +94,7 @@ TEST(KeptFrames, AreTheSameBitForBit) {
             expect_same_frames(config, lookahead, all);
             for (const std::size_t one : {0, 3}) expect_same_frames(config, lookahead, {all[one]});
             expect_same_frames(config, lookahead, {all[0], all[1]});
+            expect_same_frames(config, lookahead, {all[2], all[0], all[4]});
         }
     };
     expect_same(test::small_config(), {0, 1, 2});

@@ -133,8 +133,7 @@ FrameKind FastRenderer::kind_of(const CodeChoice& codes, const Job& job,
     return {.geometry = job.geometry,
             .rule = job.rule,
             .has_sigma = has_sigma,
-            .read = codes_read(job.t.index, codes.next[0], codes.next[1]),
-            .time_index = job.t.index};
+            .read = codes_read(job.t.index, codes.next[0], codes.next[1])};
 }
 
 /// Whether every code that the pixels of a tile read is the same in all of z_from .. z_to.

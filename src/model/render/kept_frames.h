@@ -16,8 +16,7 @@ struct FrameKind {
     FrameGeometry geometry;
     SigmaRule rule{};
     bool has_sigma = false;
-    CodesRead read;
-    int time_index = 0;  ///< AxisSamples::index of its time
+    CodesRead read;  ///< the oldest of them also says which samples in time
     friend bool operator==(const FrameKind&, const FrameKind&) = default;
 };
 
