@@ -55,9 +55,11 @@ TEST(RealTimePlayback, WhatIsNotDueIsNotGiven) {
     const TestFolder folder;
     const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
     RealTimePlayback paced(open_recording(path), kForEver);
+    const std::uint64_t begin = paced.position_bytes();
     RawPacket packet;
     ASSERT_EQ(paced.read(packet), ReadStatus::data);
     EXPECT_LT(packet.bytes.size(), 1000U);  // of a chunk of 128 KiB
+    EXPECT_EQ(paced.position_bytes(), begin + packet.bytes.size());
 }
 
 TEST(RealTimePlayback, StopEndsAWait) {
