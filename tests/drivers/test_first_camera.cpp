@@ -89,6 +89,13 @@ TEST_P(FirstCamera, IsNoOtherThanTheOneThatWasNamed) {
                       Not(HasSubstr("00000043"))));
 }
 
+TEST_P(FirstCamera, IsNamedByTheFirstEightCharactersOfItsSerialNumber) {
+    plug_in(davis("0123456789AB"), davis("00000043"));
+    DavisOptions named = any();
+    named.serial = "01234567";
+    EXPECT_EQ(DavisCamera{named}.info().serial, "01234567");
+}
+
 TEST_P(FirstCamera, IsTheOneAtThePlaceThatWasNamed) {
     plug_in(davis("00000042"), davis("00000043"));
     const auto at = [&](int bus, int address) {
