@@ -215,6 +215,25 @@ TEST(EventSensor, KeepsTheRefractoryTimeOfHotPixelsToo) {
     }
 }
 
+TEST(EventSensor, HotPixelsFireBetweenTheEventsOfTheLight) {
+    SensorTraits traits = plain(.01);
+    traits.refractory_s = .0005;
+    const auto per_second = [&] {  // an event of the light each 5.5 ms
+        const auto events = watch(
+            traits, 4, [](double t) { return 5 + 2 * t; }, 10'000);
+        for (const auto& [pixel, list] : times_by_pixel(events))
+            for (std::size_t i = 1; i < list.size(); ++i) EXPECT_GE(list[i] - list[i - 1], 499);
+        return double(events.size()) / kPixels / 4;
+    };
+    const double light = per_second();
+    EXPECT_NEAR(light, 1 / .0055, 1);
+    traits.hot_share = 1;
+    traits.hot_hz = {100, 100};
+    // .5 ms before and after the light's, and after others of their own, they do not; of a pixel
+    // that was drawn twice the second comes from 200 Hz.
+    EXPECT_NEAR(per_second() - light, 100 * (1 - 1 / 5.5) * (1 - .05), 6);
+}
+
 TEST(EventSensor, BoundsTheEventsOfOneStep) {
     const auto events = watch(
         plain(.001), .01, [](double t) { return t > 0 ? 10.0 : 0; }, 10000);

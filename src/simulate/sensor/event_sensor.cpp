@@ -44,6 +44,7 @@ struct EventSensor::Step {
     SensorTime begin;
     double begin_s, end_s, seconds;
     std::int64_t us;
+    std::size_t first;  // how many events there were before
 };
 
 EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Random random)
@@ -94,9 +95,11 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
                     .begin_s = double(to_us(begin)) * 1e-6,
                     .end_s = double(to_us(end)) * 1e-6,
                     .seconds = double((end - begin).count()) * 1e-6,
-                    .us = (end - begin).count()};
+                    .us = (end - begin).count(),
+                    .first = events.size()};
     const Photoreceptor receptor{traits_};
     const auto dt = float(step.seconds), light_gain = float(gain), dark = float(traits_.dark_lux);
+    for (HotPixel& hot : hot_) hot.ready_s = ready_s_[hot.pixel];
     std::swap(now_, before_);
     leaking_s_ += step.seconds;
     const auto leaking = float(leaking_s_);
@@ -169,32 +172,43 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
     reference_[pixel] = float(reference + leaked);
 }
 
-/// An event that the light has no part in, where its pixel can fire. The light's own events go on
-/// from the reference they had: noise swings about the light and takes nothing of it. It only keeps
-/// its pixel busy, like any other event.
-bool EventSensor::fire(const Step& step, std::size_t pixel, double t_s, Polarity polarity,
-                       std::vector<Event>& events) {
-    if (t_s < ready_s_[pixel]) return false;
-    events.push_back(event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity));
-    ready_s_[pixel] = t_s + traits_.refractory_s;
-    return true;
-}
-
+/// The light's own events go on from the reference they had: noise swings about the light and takes
+/// nothing of it. A noise event only keeps its pixel busy, like any other.
 void EventSensor::add_shot_noise(const Step& step, std::span<const float> lux, double gain,
                                  std::vector<Event>& events) {
+    const auto fire = [&](std::size_t pixel, double t_s, Polarity polarity) {
+        if (t_s < ready_s_[pixel]) return false;
+        events.push_back(event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity));
+        ready_s_[pixel] = t_s + traits_.refractory_s;
+        return true;
+    };
     noise_.until(
-        step.end_s, [&](std::size_t pixel) { return double(lux[pixel]) * gain; },
-        [&](std::size_t pixel, double t_s, Polarity polarity) {
-            return fire(step, pixel, t_s, polarity, events);
-        });
+        step.end_s, [&](std::size_t pixel) { return double(lux[pixel]) * gain; }, fire);
 }
 
+/// Also before events of the light in the same step, of which there are many where a pixel is busy.
 void EventSensor::add_hot_pixels(const Step& step, std::vector<Event>& events) {
-    for (HotPixel& hot : hot_)
+    for (HotPixel& hot : hot_) {
+        double& ready_s = ready_s_[hot.pixel];
         for (; hot.next_s <= step.end_s; hot.next_s += random_.exponential() / hot.rate_hz) {
-            const bool on = random_.chance(hot.on_share);
-            fire(step, hot.pixel, hot.next_s, on ? Polarity::on : Polarity::off, events);
+            const double share = (hot.next_s - step.begin_s) / step.seconds;
+            const Polarity polarity = random_.chance(hot.on_share) ? Polarity::on : Polarity::off;
+            const Event fired = event(step, hot.pixel, share, polarity);
+            if (hot.next_s < ready_s && (hot.next_s < hot.ready_s || !is_free(step, fired, events)))
+                continue;
+            events.push_back(fired);
+            ready_s = std::max(ready_s, hot.next_s + traits_.refractory_s);
         }
+    }
+}
+
+/// Whether no event of its pixel in this step is nearer than the refractory time.
+bool EventSensor::is_free(const Step& step, const Event& fired,
+                          const std::vector<Event>& events) const {
+    return std::ranges::none_of(std::span{events}.subspan(step.first), [&](const Event& other) {
+        const double apart_us = std::abs(double((other.t - fired.t).count()));
+        return other.x == fired.x && other.y == fired.y && apart_us < 1e6 * traits_.refractory_s;
+    });
 }
 
 /// `share` of the step; times are rounded up, so that they lie in (begin, end].

@@ -36,16 +36,16 @@ private:
     struct HotPixel {
         std::uint32_t pixel = 0;
         double rate_hz = 0, next_s = 0;
+        double ready_s = 0;  // as it was when the step began
         double on_share = 1;
     };
 
     void take_leaks();
     void cross(const Step& step, std::size_t pixel, std::vector<Event>& events);
-    bool fire(const Step& step, std::size_t pixel, double t_s, Polarity polarity,
-              std::vector<Event>& events);
     void add_shot_noise(const Step& step, std::span<const float> lux, double gain,
                         std::vector<Event>& events);
     void add_hot_pixels(const Step& step, std::vector<Event>& events);
+    bool is_free(const Step& step, const Event& fired, const std::vector<Event>& events) const;
     Event event(const Step& step, std::size_t pixel, double share, Polarity polarity) const;
 
     SensorTraits traits_;
