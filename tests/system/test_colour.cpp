@@ -142,6 +142,20 @@ TEST_F(Colour, FollowsTheFilterBehindWhatMovesPixels) {
     }
 }
 
+TEST_F(Colour, IsMissedWhereAFormatCannotSayIt) {
+    simulate("gbrg", "gbrg.aedat4");
+    const auto converted = [&](const char* to) {
+        return eventide({"convert", "gbrg.aedat4", to, "--strict"});
+    };
+    for (const char* to : {"a.h5", "folder/"}) {
+        const Result made = converted(to);
+        EXPECT_EQ(made.exit_code, 5) << to;
+        EXPECT_THAT(made.error, HasSubstr("colour filter, gbrg: --bayer states it"));
+    }
+    for (const char* to : {"a.aedat", "b.aedat4"})
+        EXPECT_EQ(converted(to).exit_code, 0) << to << ": it says it";
+}
+
 TEST_F(Colour, GoesOnFromAStateWithTheColours) {
     simulate("rggb", "rggb.aedat4");
     const auto frames_of = [&](std::vector<std::string> more) {

@@ -70,7 +70,7 @@ void RunSettings::add_network(SettingTable& table) {
          {CameraFrames::use, "use"},
          {CameraFrames::ignore, "ignore"}}));
     add(open_setting<ColourFilter>(
-        "bayer", bayer, "none|rggb|grbg|gbrg|bggr",
+        "bayer", bayer, "auto|none|rggb|grbg|gbrg|bggr",
         "The sensor's colour filter, from its top left corner; auto: what the camera or recording "
         "says. Its images are demosaiced.",
         "auto", [](const std::string& text) { return parse_word(text, bayer_words()); },

@@ -130,7 +130,7 @@ void RunSettings::add_times(SettingTable& table) {
         "Render only this part of the frame, in pixels of the frame; all: everything.", "all",
         parse_region, show_region));
     add(open_setting<int>(
-        "lookahead", lookahead, "0|1|2",
+        "lookahead", lookahead, "auto|0|1|2",
         "Event windows a frame waits for: more give higher quality and more latency. auto: 0 for "
         "live sources, 2 "
         "for recordings.",

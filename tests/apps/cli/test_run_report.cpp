@@ -82,6 +82,9 @@ TEST(RunReport, LatencyIsOfRunsInStepWithTheWorld) {
     RunProgress live;
     live.in_step = true;
     EXPECT_NE(summary_text(busy(), live).find("latency 12.0/0.0 ms"), std::string::npos);
+    Snapshot none = busy();
+    none.frames = 0;
+    EXPECT_EQ(summary_text(none, live).find("latency"), std::string::npos);
 }
 
 TEST(RunReport, TheFinalEventRateIsTheMean) {

@@ -50,6 +50,17 @@ TEST(Settings, EveryTimeIsWrittenWithItsUnit) {
         EXPECT_TRUE(times.contains(known)) << known;
 }
 
+/// They are what a shell completes, too.
+TEST(Settings, NameAutoAmongTheirWordsWhereItIsTaken) {
+    for (const auto& command : all_commands())
+        for (Setting& setting : command->settings().settings) {
+            const std::string& words = setting.value_name;
+            if (words.find('|') == words.npos || words.find("FILE") != words.npos) continue;
+            EXPECT_EQ(complaint(setting, "auto").empty(), words.find("auto") != words.npos)
+                << command->name() << " " << flag_of(setting) << " " << words;
+        }
+}
+
 TEST(Settings, HelpTellsEveryValueOfAList) {
     std::vector<std::string> sizes{"240x180", "640x480"}, none;
     EXPECT_EQ(help_with_default(list_setting("sizes", sizes, "WxH", "Sizes.")),

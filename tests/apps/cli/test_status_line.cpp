@@ -94,6 +94,9 @@ TEST(StatusLine, LatencyIsOfRunsInStepWithTheWorldAndSpeedOfTheOthers) {
     const std::string line = status_line(busy(), progress, 160);
     expect_parts(line, {"latency 12.0/34.0 ms"});
     EXPECT_EQ(line.find("real time"), std::string::npos);
+    Snapshot none = busy();
+    none.frames = 0;
+    EXPECT_EQ(status_line(none, progress, 160).find("latency"), std::string::npos);
 }
 
 TEST(StatusLine, TheShareIsOfWhatWasAskedForAndNotOfWhatWasReadAhead) {

@@ -80,7 +80,7 @@ std::string summary_text(const Snapshot& end, const RunProgress& progress) {
     std::string text = counted(end.frames, "frame") + " from " + short_count(double(events)) +
                        text_of(" %s in %.2f s", events == 1 ? "event" : "events", seconds);
     if (seconds > 0) text += text_of(" (%.1f frames/s)", double(end.frames) / seconds);
-    if (progress.in_step) text += "; " + latency_text(end) + " (p50/p99)";
+    if (progress.in_step && end.frames > 0) text += "; " + latency_text(end) + " (p50/p99)";
     text += "\n" + losses_text(end);
     if (end.filtered_events > 0) text += "  filtered " + short_count(double(end.filtered_events));
     if (end.merged_windows > 0) text += "  merged " + std::to_string(end.merged_windows);

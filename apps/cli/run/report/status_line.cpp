@@ -72,7 +72,7 @@ LinePart speed_part(const Snapshot& now, const RunProgress& progress) {
 }
 
 LinePart latency_part(const Snapshot& now, const RunProgress& progress) {
-    if (!progress.in_step) return {};
+    if (!progress.in_step || now.frames == 0) return {};
     const double p50 = milliseconds(now.latency.p50), p99 = milliseconds(now.latency.p99);
     return {text_of("latency %.1f/%.1f ms", p50, p99), text_of("%.0f/%.0f ms", p50, p99), ""};
 }
