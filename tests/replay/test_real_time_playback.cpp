@@ -62,6 +62,15 @@ TEST(RealTimePlayback, WhatIsNotDueIsNotGiven) {
     EXPECT_EQ(paced.position_bytes(), begin + packet.bytes.size());
 }
 
+TEST(RealTimePlayback, APauseOfAnHourIsNotWaitedFor) {
+    const TestFolder folder;
+    auto events = some_events(200, 1'000'000, 1);
+    for (std::size_t i = 100; i < events.size(); ++i) events[i].t += SensorDuration{3'600'000'000};
+    const std::string path = write_recording(folder.path("a"), "text", events);
+    RealTimePlayback paced(open_recording(path), 1);
+    EXPECT_EQ(all_bytes(paced).size(), all_bytes(*open_recording(path)).size());
+}
+
 TEST(RealTimePlayback, StopEndsAWait) {
     const TestFolder folder;
     const std::string path = write_recording(folder.path("a"), "text", some_events(30'000));
