@@ -68,6 +68,32 @@ TEST(DavisExposure, IsAskedForAgainWhereTheCameraRefusesItButNotForEver) {
     }
 }
 
+TEST(DavisExposure, RefusalsThatLieApartNeverAddUp) {
+    PluggedIn camera_side;
+    const DavisSensor sensor = camera_side.model->settings().sensor;
+    DavisCamera camera{at_once()};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    const auto parser = camera.make_parser();
+    testing_support::DavisWriter writer{sensor};
+    for (int round = 0; round < 2; ++round) {
+        Batch images;
+        images.images = dark(sensor).images;
+        for (ReferenceImage& image : images.images)
+            for (SensorTime* t : {&image.t, &image.exposure_begin, &image.exposure_end})
+                *t += SensorDuration{round * 1'000'000};
+        std::vector<std::byte> bytes;
+        writer.write(images, bytes);
+        Batch parsed;
+        parser->parse(bytes, parsed);  // which asks for another exposure
+        camera_side.bed.stall_control(2);
+        for (int i = 0; i < 3; ++i) camera.read(packet);
+        std::uint32_t cycles = 0;
+        camera_side.bed.look([&] { cycles = camera_side.model->read(davis::kApsExposure); });
+        EXPECT_EQ(cycles, 30U * (round == 0 ? 8000 : 16'000));
+    }
+}
+
 TEST(DavisExposure, OnlyOneOfTwoParsersAdjustsIt) {
     PluggedIn camera_side;
     const DavisCamera camera{at_once()};
