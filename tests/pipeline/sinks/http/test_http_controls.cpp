@@ -76,9 +76,9 @@ TEST(HttpSink, PauseGoesOnForAsLongAsSomebodyWatches) {
     ASSERT_EQ(client_of(*sink).Post("/controls", R"({"pause": 1})", "application/json")->status,
               200);
     const std::jthread writing{[&] { sink->write(ramp_frame(64, 48, 0, odd_time(0))); }};
-    ASSERT_TRUE(becomes_true([&] {
-        return client_of(*sink).Get("/frame.png")->status == 200 && sink->copied() > 1;
-    })) << "the frame comes again to those who come";
+    EXPECT_TRUE(becomes_true([&] { return client_of(*sink).Get("/frame.png")->status == 200; }));
+    for (int i = 0; i < 20; ++i)
+        EXPECT_EQ(client_of(*sink).Get("/frame.png")->status, 200) << "again to those who come";
     EXPECT_THAT(client_of(*sink).Get("/controls")->body, HasSubstr("\"value\":1.0"));
     stopping = true;
 }
