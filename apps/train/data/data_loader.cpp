@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace eventide {
@@ -106,9 +107,6 @@ struct SceneStream::Episode {
           stream(camera.scene, camera.sensor, std::move(textures), part, random.bits()),
           binner(settings.bins, settings.crop, settings.crop),
           grid(binner.make_output()),
-          teacher_binner(std::max(1, settings.teacher_bins), settings.crop, settings.crop),
-          teacher_grid(teacher_binner.make_output()),
-          taught(settings.teacher_bins > 0),
           width_s(random.log_uniform(settings.window_s)),
           jitter(random.chance(settings.jitter_probability) ? settings.window_jitter : 0) {
         // A share of 0 draws nothing, so that runs of before go on as they were.
@@ -116,6 +114,9 @@ struct SceneStream::Episode {
             enough = random.log_uniform(settings.content_epp) * settings.crop * settings.crop;
         if (settings.noise_filter)
             noise_filter.emplace(settings.crop, settings.crop, NoiseFilterSettings{});
+        if (settings.teacher_bins == 0) return;
+        teacher_binner.emplace(settings.teacher_bins, settings.crop, settings.crop);
+        teacher_grid = teacher_binner->make_output();
     }
 
     void advance() {
@@ -127,7 +128,8 @@ struct SceneStream::Episode {
         stream.advance(window.end, events);
         if (noise_filter) noise_filter->process(events);
         binner.process({.window = window, .events = events}, grid);
-        if (taught) teacher_binner.process({.window = window, .events = events}, teacher_grid);
+        if (teacher_binner)
+            teacher_binner->process({.window = window, .events = events}, teacher_grid);
         ++event_windows;
     }
 
@@ -145,9 +147,8 @@ struct SceneStream::Episode {
     SimulatedStream stream;
     Binner binner;
     VoxelGrid grid;
-    Binner teacher_binner;
+    std::optional<Binner> teacher_binner;  ///< where a teacher's bins are others
     VoxelGrid teacher_grid;
-    bool taught;
     double width_s, jitter;
     std::optional<NoiseFilter> noise_filter;
     double enough = 0;  ///< events that end a window before its time; 0: none do
@@ -198,7 +199,7 @@ StreamSegment SceneStream::next() {
     for (int k = 0; k < settings_.event_windows; ++k) {
         episode.advance();
         out.grids.push_back(episode.grid.values);
-        if (episode.taught) out.teacher_grids.push_back(episode.teacher_grid.values);
+        if (episode.teacher_binner) out.teacher_grids.push_back(episode.teacher_grid.values);
         if (k < plan.first_rendered || k >= plan.first_rendered + settings_.rendered) continue;
         const bool edge = episode.random.chance(settings_.edge_probability);
         const auto width = episode.window.width().count();
