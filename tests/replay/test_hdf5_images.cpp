@@ -54,23 +54,29 @@ TEST(Hdf5Images, OfMvsecComeWithTheEvents) {
     EXPECT_EQ(read_everything(*recording).images.size(), 1U);
 }
 
-TEST(Hdf5Images, OfAPartOfTheSensorAreWrittenAtTheirPlace) {
-    const TestFolder folder;
+/// A file of a sensor of 32x24 px: a hundred events, which are given back, and `image` among them.
+std::vector<Event> write_with_image(const std::string& path, ReferenceImage image) {
     StreamHeader header;
     header.width = 32;
     header.height = 24;
     Batch batch;
     batch.events = some_events(100, 3'000'000, 20, 32, 24);
+    image.t = image.exposure_begin = image.exposure_end = batch.events[50].t;
+    batch.images = {image};
+    RecordingFile file(path, OutputOptions{}, *find_format("hdf5"), header);
+    file.write(batch);
+    file.finish();
+    return batch.events;
+}
+
+TEST(Hdf5Images, OfAPartOfTheSensorAreWrittenAtTheirPlace) {
+    const TestFolder folder;
     ReferenceImage part;
-    part.t = part.exposure_begin = part.exposure_end = batch.events[50].t;
     part.x0 = 30;
     part.y0 = 5;
     part.pixels = Array2<std::uint16_t>(2, 4);
     for (std::size_t i = 0; i < 8; ++i) part.pixels.values()[i] = std::uint16_t(257 * (i + 1));
-    batch.images = {part};
-    RecordingFile file(folder.path("a.h5"), OutputOptions{}, *find_format("hdf5"), header);
-    file.write(batch);
-    file.finish();
+    write_with_image(folder.path("a.h5"), part);
     const auto images = read_everything(*open_recording(folder.path("a.h5"))).images;
     ASSERT_EQ(images.size(), 1U);
     Array2<std::uint16_t> expected(24, 32);
@@ -83,18 +89,9 @@ TEST(Hdf5Images, OfAPartOfTheSensorAreWrittenAtTheirPlace) {
 
 TEST(Hdf5Images, OfAnotherSizeThanTheSensorsAreLeftOutAndNamed) {
     const TestFolder folder;
-    StreamHeader header;
-    header.width = 32;
-    header.height = 24;
-    Batch batch;
-    batch.events = some_events(100, 3'000'000, 20, 32, 24);
     ReferenceImage image;
-    image.t = image.exposure_begin = image.exposure_end = batch.events[50].t;
     image.pixels = Array2<std::uint16_t>(24, 32);
-    batch.images = {image};
-    RecordingFile file(folder.path("a.h5"), OutputOptions{}, *find_format("hdf5"), header);
-    file.write(batch);
-    file.finish();
+    const std::vector<Event> events = write_with_image(folder.path("a.h5"), image);
     OpenOptions stated;
     stated.width = 64;
     stated.height = 48;
@@ -103,7 +100,7 @@ TEST(Hdf5Images, OfAnotherSizeThanTheSensorsAreLeftOutAndNamed) {
                 testing::ElementsAre("the images are left out: they are 32x24 px, the events' "
                                      "sensor has 64x48"));
     const Batch read = read_everything(*recording);
-    EXPECT_TRUE(read.events == batch.events);
+    EXPECT_TRUE(read.events == events);
     EXPECT_TRUE(read.images.empty());
 }
 

@@ -57,6 +57,13 @@ protected:
         return opened.get();
     }
 
+    /// What it has to say goes to `warnings`.
+    static CameraOptions reconnecting(std::vector<std::string>& warnings) {
+        CameraOptions options;
+        options.reconnect = true;
+        options.warn = [&warnings](const std::string& text) { warnings.push_back(text); };
+        return options;
+    }
     struct Heard {
         std::vector<Event> events;
         int gaps = 0;
@@ -294,15 +301,12 @@ TEST_F(Ros2SourceTest, AChangeOfSizeEndsIt) {
 
 TEST_F(Ros2SourceTest, WithReconnectItWaitsUntilTheSizeIsAsItWas) {
     std::vector<std::string> warnings;
-    CameraOptions options;
-    options.reconnect = true;
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    const CameraOptions options = reconnecting(warnings);
     auto publisher = std::make_unique<EventPublisher>(name_);
     const auto source = open(*publisher, message(0), options);
     const auto parser = source->make_parser();
     EXPECT_THAT(read(*source, *parser, 1).events, ElementsAre(event(0)));
     publisher.reset();
-    RawPacket packet;
     publisher = std::make_unique<EventPublisher>(name_);
     publisher->wait_for_readers(1);
     for (const std::uint64_t k : {1, 2, 3}) {
@@ -328,9 +332,7 @@ TEST_F(Ros2SourceTest, ATopicOfAnotherTypeIsRefusedOrWaitedPast) {
         EXPECT_EQ(open(publisher, message(0))->info().width, 64) << "one of the right type beside";
     }
     std::vector<std::string> warnings;
-    CameraOptions options;
-    options.reconnect = true;
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    const CameraOptions options = reconnecting(warnings);
     auto publisher = std::make_unique<EventPublisher>(name_);
     const auto source = open(*publisher, message(0), options);
     const auto parser = source->make_parser();
