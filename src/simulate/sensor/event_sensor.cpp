@@ -32,6 +32,18 @@ struct Photoreceptor {
         tau_per_light = tau(t.bandwidth_hz_per_lux);
     }
     bool instant() const { return tau_bright == 0 && tau_per_light == 0; }
+
+    /// Where `value` has gone after `dt` in which ln light went straight from one value to another,
+    /// `light` at the end.
+    lanes::F4 follow(lanes::F4 value, lanes::F4 from, lanes::F4 to, lanes::F4 light,
+                     float dt) const {
+        const lanes::F4 r = dt / (tau_bright + tau_per_light / light);
+        // Within .012 kept is e^-r; q kept is (1 - e^-r) / r, without the difference of two
+        // numbers that are nearly 1.
+        const lanes::F4 q = 1.f + r * (.5f + r * (1.f / 6 + r * (1.f / 24)));
+        const lanes::F4 kept = 1.f / (1.f + r * q);
+        return to + kept * (value - from - q * (to - from));
+    }
 };
 
 /// How long leaks are added up before the references take them over: what leaks in a step may be
@@ -55,7 +67,8 @@ EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Rand
       random_(random),
       noise_(traits, pixels_, random_.fork()) {
     const std::size_t n = whole_lanes(pixels_);
-    for (std::vector<float>* values : {&now_, &before_, &reference_, &leak_}) values->assign(n, 0);
+    for (std::vector<float>* values : {&ln_light_, &now_, &before_, &reference_, &leak_})
+        values->assign(n, 0);
     on_.assign(n, kHeld);  // what pads the last lanes never fires
     off_.assign(n, kHeld);
     ready_s_.assign(n, -1);
@@ -82,6 +95,7 @@ EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Rand
 void EventSensor::settle(const Array2<float>& lux, double gain) {
     for (std::size_t i = 0; i < pixels_; ++i) {
         now_[i] = std::log(lux.values()[i] * float(gain) + float(traits_.dark_lux));
+        ln_light_[i] = now_[i];
         const double phase = traits_.random_phase ? random_.uniform() : 0;
         reference_[i] = now_[i] + float(phase) * off_[i];
         if (random_.chance(.5)) reference_[i] = now_[i] - float(phase) * on_[i];
@@ -110,8 +124,9 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
         const F4 before = load(&before_[i]);
         F4 now = log(light);
         if (!receptor.instant()) {
-            const F4 tau = receptor.tau_bright + receptor.tau_per_light / light;
-            now += (before - now) * decay(dt / tau);
+            const F4 lit_before = load(&ln_light_[i]);
+            store(&ln_light_[i], now);
+            now = receptor.follow(before, lit_before, now, light, dt);
         }
         store(&now_[i], now);
         const F4 change = now - (load(&reference_[i]) - load(&leak_[i]) * leaking);

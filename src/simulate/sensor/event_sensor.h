@@ -13,8 +13,8 @@
 namespace eventide {
 
 /// Each pixel follows ln of its light through a low-pass and fires when it is a threshold away from
-/// where it fired last. Between two steps the followed value is taken to be a straight line, which
-/// is where the events' times come from.
+/// where it fired last. Between two steps ln light is taken to be a straight line, and so is the
+/// followed value, which is where the events' times come from.
 class EventSensor {
 public:
     EventSensor(const SensorTraits& traits, int width, int height, Random random);
@@ -59,6 +59,7 @@ private:
     std::size_t pixels_;
     Random random_;
     // One number per pixel, padded to whole lanes.
+    std::vector<float> ln_light_;      // at the latest step's end
     std::vector<float> now_, before_;  // ln light as the pixel sees it, at the step's ends
     std::vector<float> reference_;     // value at the last event, less what leaked before
                                        // leaking_s_; kHeld in refractory time
