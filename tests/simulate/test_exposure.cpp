@@ -54,6 +54,30 @@ TEST(Exposure, GivesTheMeanAndTheDeviationAskedFor) {
     EXPECT_NEAR(near.bright, .15 + .25 * 1.5, 1e-3);
 }
 
+TEST(Exposure, TheMeanIsThatOfWhatIsCutOffAtWhiteAndAtBlack) {
+    // A sixteenth is a lamp: by the plain mean all else would be black.
+    Array2<float> light(32, 32);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x) light(y, x) = x < 30 ? 10 : 4e3F;
+    SceneSettings settings = exposed(.4, .1);
+    settings.target_black = {0, 0};
+    Exposure lit{settings, Random{1}};
+    lit.meter(0, light, 1);
+    const Levels levels = developed(lit, 0, 1, light);
+    EXPECT_NEAR(levels.dark, (.4 - 1. / 16) * 16 / 15, 2e-3);
+    lit.develop(0, 1, light);
+    EXPECT_EQ(light(9, 31), 1);
+    // Half of it is below a black of -.25, and is 0.
+    settings.target_black = {-.25, -.25};
+    settings.target_mean = {.2, .2};
+    Exposure dim{settings, Random{1}};
+    const Array2<float> dark_half = halves(1, 200);
+    dim.meter(0, dark_half, 1);
+    const Levels cut = developed(dim, 0, 1, dark_half);
+    EXPECT_EQ(cut.dark, 0);
+    EXPECT_NEAR(cut.bright, .4, 2e-3);
+}
+
 TEST(Exposure, NoSensorThatSaturatesEarlyIsBright) {
     SceneSettings settings = exposed(.54, .1);
     settings.target_white_below_one = 1;
