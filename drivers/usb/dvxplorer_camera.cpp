@@ -45,11 +45,24 @@ SensorInfo DvxplorerCamera::set_up(UsbDevice& device) {
     require_logic(device, kPatch);
     features_.mini = device.identity().board_type == kCx3Board;
     features_.lite = device.read_register(kChipId) == kLiteChip;
-    if (!features_.mini) {  // a Mini does this itself
-        device.write_register({kRunChip, 1});
-        std::this_thread::sleep_for(waits().idle);
-        device.write_registers(chip_writes());
+    try {
+        power_up(device);
+        return configure(device);
+    } catch (const Error&) {
+        power_down_after_failure(device);
+        throw;
     }
+}
+
+/// A Mini does this itself.
+void DvxplorerCamera::power_up(UsbDevice& device) {
+    if (features_.mini) return;
+    device.write_register({kRunChip, 1});
+    std::this_thread::sleep_for(waits().idle);
+    device.write_registers(chip_writes());
+}
+
+SensorInfo DvxplorerCamera::configure(UsbDevice& device) {
     const DvxplorerSensor sensor = read_sensor(device);
     SensorInfo info;
     info.name = features_.mini ? "DVXplorer Mini" : features_.lite ? "DVXplorer Lite" : "DVXplorer";
@@ -132,6 +145,15 @@ std::optional<std::size_t> DvxplorerCamera::find_begin(std::span<const std::byte
 
 void DvxplorerCamera::power_down(UsbDevice& device) {
     if (!features_.mini) device.write_register({kRunChip, 0});
+}
+
+/// A camera that was not opened is not stopped either.
+void DvxplorerCamera::power_down_after_failure(UsbDevice& device) noexcept {
+    try {
+        power_down(device);
+    } catch (const Error&) {
+        // Unplugged: that is why it failed.
+    }
 }
 
 std::uint64_t DvxplorerCamera::dropped(UsbDevice& device) {

@@ -37,6 +37,9 @@ private:
     std::uint64_t dropped(UsbDevice& device) override;
     std::uint8_t message_endpoint() const override;
     void frame_message(std::vector<std::byte>& message) const override;
+    void power_up(UsbDevice& device);
+    SensorInfo configure(UsbDevice& device);
+    void power_down_after_failure(UsbDevice& device) noexcept;
     DvxplorerSensor read_sensor(UsbDevice& device);
 
     DvxplorerSettings settings_;

@@ -236,7 +236,8 @@ ReadStatus UsbCamera::wait_for_return() {
         gap_ = reopened_ = true;
         warnings_.is_back();
     } catch (const Error& error) {  // not there yet, or not yet ready: the next look will tell
-        close();
+        drops_are_told_ = false;    // of a stream that did not begin
+        stop_device();
         warnings_.tell(error);
         std::this_thread::sleep_for(kReadTimeout);
     }

@@ -1,5 +1,6 @@
 // Events that a DAVIS itself drops, as its own counter says.
 #include "tests/drivers/davis_streams.h"
+#include "tests/support/keep_in.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -96,7 +97,7 @@ TEST(DavisDrops, ACameraThatRefusesToTellItsDropsGoesOnAndIsNotAskedAgain) {
     std::vector<std::string> warnings;
     DavisOptions options = at_once();
     options.settings.auto_exposure = false;
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    options.warn = keep_in(warnings);
     DavisCamera camera{options};
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;
@@ -137,7 +138,7 @@ TEST(DavisDrops, ACounterThatNeverStandsStillIsNotReadForEver) {
     bed.plug_in(std::make_shared<Restless>(model));
     std::vector<std::string> warnings;
     DavisOptions options = at_once();
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    options.warn = keep_in(warnings);
     DavisCamera camera{options};
     EXPECT_EQ(stream(camera, bed, *model).data.events.size(), 2'000U);
     ASSERT_EQ(warnings.size(), 1U);
@@ -148,7 +149,7 @@ TEST(DavisDrops, ACameraThatNeverTellsThemIsOfUseAllTheSame) {
     PluggedIn camera_side;
     std::vector<std::string> warnings;
     DavisOptions options = at_once();
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    options.warn = keep_in(warnings);
     DavisCamera camera{options};
     camera_side.bed.stall_control(1);
     EXPECT_EQ(stream(camera, camera_side.bed, *camera_side.model).data.events,
@@ -161,7 +162,7 @@ TEST(DavisDrops, ACameraThatRefusesToTellItsLastDropsIsMadeIdleAllTheSame) {
     PluggedIn camera_side;
     std::vector<std::string> warnings;
     DavisOptions options = at_once();
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    options.warn = keep_in(warnings);
     DavisCamera camera{options};
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;

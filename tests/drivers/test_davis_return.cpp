@@ -1,5 +1,6 @@
 // Which camera is taken for the DAVIS that was pulled out, and what is told until it is back.
 #include "tests/drivers/davis_streams.h"
+#include "tests/support/keep_in.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ TEST(DavisReturn, WhyItIsNotBackIsToldOnce) {
     bed.plug_in(camera_before(2'000));
     DavisOptions options = small_transfers(true);
     std::vector<std::string> warnings;
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    options.warn = keep_in(warnings);
     DavisCamera camera{options};
     RawPacket packet;
     const auto look = [&] {
@@ -109,7 +110,7 @@ TEST(DavisReturn, WithoutASerialNumberItIsTakenBackAtItsPort) {
     plug_in({.port = 2, .address = 5});
     std::vector<std::string> warnings;
     DavisOptions options = small_transfers(true);
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    options.warn = keep_in(warnings);
     DavisCamera camera{options};
     EXPECT_EQ(camera.info().serial, "TMP00261") << "bus 1, address 5";
     RawPacket packet;
@@ -159,7 +160,7 @@ TEST(DavisReturn, OneWithoutASerialNumberThatSpeaksOtherwiseIsNotTakenForIt) {
         plug_in();
         std::vector<std::string> warnings;
         DavisOptions options = small_transfers(true);
-        options.warn = [&](const std::string& text) { warnings.push_back(text); };
+        options.warn = keep_in(warnings);
         DavisCamera camera{options};
         RawPacket packet;
         while (camera.read(packet) != ReadStatus::data) continue;

@@ -79,6 +79,16 @@ TEST(DavisTransfers, HaltsThatLieApartNeverAddUp) {
     }
 }
 
+TEST(DavisTransfers, WhatNobodyFetchedBeforeIsNotTakenForTheBegin) {
+    PluggedIn camera_side{{}, kShortScene};
+    std::vector<std::byte> unread;
+    testing_support::DavisWriter::timestamp_reset(unread);
+    testing_support::DavisWriter{DavisSensor{}}.write(davis_scene({}, {.events = 50, .seed = 2}),
+                                                      unread);
+    camera_side.bed.leave_unread(unread);
+    EXPECT_EQ(streamed_by(camera_side).data.events, camera_side.seen.events);
+}
+
 TEST(DavisTransfers, AHaltDuringTheStartDoesNotKeepItFromStarting) {
     PluggedIn camera_side;
     camera_side.bed.halt_data(1);

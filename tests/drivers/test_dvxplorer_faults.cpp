@@ -1,14 +1,19 @@
 // What a DVXplorer or its cable does wrong, and what the user is told.
 #include "tests/drivers/dvxplorer_boards.h"
+#include "tests/support/keep_in.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace eventide::test::dvxplorer {
 namespace {
 
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing_support::DvxplorerModelSettings;
 
@@ -56,6 +61,20 @@ TEST(DvxplorerFaults, ASettingThatTheCameraDoesNotTakeIsNamed) {
     EXPECT_EQ(DvxplorerCamera{trusting}.info().name, "DVXplorer");
 }
 
+TEST(DvxplorerFaults, ACameraThatCannotBeOpenedIsLeftWithoutPower) {
+    DvxplorerModelSettings deaf, without_columns;
+    deaf.deaf = davis::Register{davis::chip, 0x001E};
+    without_columns.sensor.width = 0;
+    for (const auto& settings : {deaf, without_columns}) {
+        const PluggedIn side{settings, 1};
+        EXPECT_THROW(DvxplorerCamera{at_once()}, Error);
+        const auto& writes = side.model->writes();
+        ASSERT_FALSE(writes.empty());
+        EXPECT_EQ(writes.front(), (davis::Write{davis::kRunChip, 1}));
+        EXPECT_EQ(writes.back(), (davis::Write{davis::kRunChip, 0}));
+    }
+}
+
 TEST(DvxplorerFaults, CountsWhatTheCameraItselfDropped) {
     PluggedIn side;
     constexpr davis::Register kLow{davis::mux, 84};
@@ -67,6 +86,40 @@ TEST(DvxplorerFaults, CountsWhatTheCameraItselfDropped) {
     camera.stop();
     EXPECT_EQ(camera.read(packet), ReadStatus::end);
     EXPECT_EQ(camera.counters()[CameraCount::dropped_events], 7U);
+}
+
+/// Opens, starts, streams to the scene's end, stops; the words of the error, or nothing.
+std::string session(PluggedIn& side) {
+    try {
+        DvxplorerCamera camera{at_once()};
+        stream_scene(camera, side.bed, *side.model);
+        camera.stop();
+        RawPacket packet;
+        camera.read(packet);
+        return "";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::device);
+        return error.what();
+    }
+}
+
+TEST(DvxplorerFaults, UnpluggedAtAnyMomentItEndsWithTheRightWords) {
+    constexpr int kStride = 7;
+    PluggedIn whole{{}, 20};
+    ASSERT_EQ(session(whole), "");
+    const int all = whole.bed.requests();
+    int ended_well = 0;
+    for (int request = 0; request <= all; request += kStride) {
+        PluggedIn side{{}, 20};
+        side.bed.unplug_after(request);
+        const std::string words = session(side);
+        if (words.empty())
+            ++ended_well;  // while stopping: nobody needs to know
+        else
+            EXPECT_THAT(words, AnyOf(HasSubstr("unplugged"), HasSubstr("no DVXplorer found")))
+                << "at request " << request << " of " << all;
+    }
+    EXPECT_GT(ended_well, 0) << "the sweep never reached the stop";
 }
 
 TEST(DvxplorerFaults, UnpluggedItComesBackBehindAGap) {
@@ -81,6 +134,26 @@ TEST(DvxplorerFaults, UnpluggedItComesBackBehindAGap) {
     }
 }
 
+TEST(DvxplorerFaults, ACameraThatComesBackAndStaysSilentIsLeftWithoutPower) {
+    DvxplorerModelSettings settings;
+    PluggedIn side{settings};
+    DvxplorerOptions options = at_once();
+    options.reconnect = true;
+    std::vector<std::string> warnings;
+    options.warn = keep_in(warnings);
+    DvxplorerCamera camera{options};
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    side.bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+    settings.deaf = davis::kUsbRun;
+    const auto silent = std::make_shared<testing_support::DvxplorerModel>(settings);
+    side.bed.plug_in(silent);
+    while (warnings.empty()) camera.read(packet);
+    EXPECT_THAT(warnings.back(), HasSubstr("no data came within a second"));
+    side.bed.look([&] { EXPECT_EQ(silent->writes().back(), (davis::Write{davis::kRunChip, 0})); });
+}
+
 TEST(DvxplorerFaults, OneWithoutASerialNumberOfAnotherOrientationIsNotTakenForIt) {
     DvxplorerModelSettings settings;
     settings.serial = "";
@@ -88,7 +161,7 @@ TEST(DvxplorerFaults, OneWithoutASerialNumberOfAnotherOrientationIsNotTakenForIt
     std::vector<std::string> warnings;
     DvxplorerOptions options = at_once();
     options.reconnect = true;
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
+    options.warn = keep_in(warnings);
     DvxplorerCamera camera{options};
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;

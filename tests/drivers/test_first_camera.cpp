@@ -2,6 +2,7 @@
 #include "drivers/usb/dvs128_camera.h"
 #include "tests/drivers/davis_streams.h"
 #include "tests/drivers/usb_sessions.h"
+#include "tests/support/keep_in.h"
 #include "tests/support/usb/dvs128_model.h"
 
 #include <gmock/gmock.h>
@@ -44,7 +45,7 @@ protected:
     }
     DavisOptions any() {
         DavisOptions options = at_once();
-        options.warn = [this](const std::string& text) { warnings_.push_back(text); };
+        options.warn = keep_in(warnings_);
         return options;
     }
 

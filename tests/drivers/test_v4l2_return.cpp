@@ -1,6 +1,7 @@
 // An event sensor in software behind V4L2 that loses buffers, is silent, stops and comes back.
 #include "tests/drivers/v4l2_sensor.h"
 #include "tests/support/holdings.h"
+#include "tests/support/keep_in.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -140,7 +141,7 @@ TEST(V4l2Camera, ADriverThatGivesABufferThereIsNotIsLostLikeAnyOther) {
 TEST(V4l2Camera, ASensorThatStopsBeforeItGivesDataHasNotComeBack) {
     V4l2Testbed bed{sensor()};
     std::vector<std::string> warnings;
-    auto camera = open({}, true, [&](const std::string& text) { warnings.push_back(text); });
+    auto camera = open({}, true, test::keep_in(warnings));
     bed.fail_with(EIO);
     RawPacket packet;
     for (int look = 0; look < 8; ++look) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
@@ -177,7 +178,7 @@ TEST(V4l2Camera, ASensorThatTakesNoBufferBackIsLostLikeAnyOther) {
 TEST(V4l2Camera, WhatComesBackIsWaitedForUntilItIsAsItWas) {
     V4l2Testbed bed{sensor()};
     std::vector<std::string> warnings;
-    auto camera = open({}, true, [&](const std::string& text) { warnings.push_back(text); });
+    auto camera = open({}, true, test::keep_in(warnings));
     constexpr std::uint32_t kEvt21 = v4l2_fourcc('P', 'S', 'E', '2');
     const auto come_back = [&](std::uint32_t fourcc, int width, int height) {
         bed.change_format(fourcc, width, height);
@@ -207,7 +208,7 @@ TEST(V4l2Camera, WhyItIsNotBackIsToldOnce) {
     V4l2Settings wanted;
     wanted.controls["bias_fo"] = 5;
     std::vector<std::string> warnings;
-    auto camera = open(wanted, true, [&](const std::string& text) { warnings.push_back(text); });
+    auto camera = open(wanted, true, test::keep_in(warnings));
     const auto look = [&](int times) {
         RawPacket packet;
         for (int i = 0; i < times; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);

@@ -1,6 +1,7 @@
 // A camera in software that another program has, through the library: who asked for any other hears
 // of it, in C++, C and Python.
 #include "tests/drivers/usb_sessions.h"
+#include "tests/support/keep_in.h"
 #include "tests/support/preload.h"
 #include "tests/support/usb/davis_model.h"
 
@@ -46,7 +47,7 @@ protected:
 TEST_F(CameraWarnings, ReachCpp) {
     std::vector<std::string> warnings;
     CameraSettings settings;
-    settings.warn = [&](const std::string& text) { warnings.push_back(text); };
+    settings.warn = keep_in(warnings);
     EXPECT_NE((EventCamera{"davis:", settings}.info().serial), taken_);
     EXPECT_THAT(warnings, testing::ElementsAre(tells_of_it()));
 }

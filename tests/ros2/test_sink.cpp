@@ -1,23 +1,16 @@
 // Frames on topics, read by another participant.
-#include "pipeline/ros2/diagnostics_topic.h"
-#include "pipeline/ros2/ros2_sink.h"
 #include "pipeline/sinks/draw_frame.h"
 #include "src/core/error.h"
-#include "tests/pipeline/sinks/frames.h"
 #include "tests/ros2/image_cdr.h"
-#include "tests/ros2/topics.h"
+#include "tests/ros2/sink_test.h"
 #include "tests/support/holdings.h"
-#include "tests/system/process.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
 #include <cstring>
-#include <memory>
-#include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -26,37 +19,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using Image = sensor_msgs_msg_dds__Image_;
-using Info = sensor_msgs_msg_dds__CameraInfo_;
-using Compressed = sensor_msgs_msg_dds__CompressedImage_;
-
-/// A sink on a name of its own. Its frames have the sensor's time since 1970 as their stamp.
-class Ros2SinkTest : public testing::Test {
-protected:
-    std::unique_ptr<Sink> open(const std::string& keys = {}, bool with_sigma = true) {
-        Ros2SinkSettings settings;
-        settings.name = parse_ros2_sink_name(name_ + keys);
-        settings.with_sigma = with_sigma;
-        settings.say = [this](const std::string& text) { said_.push_back(text); };
-        settings.warn = settings.say;
-        return open_ros2_sink(std::move(settings));
-    }
-    static Frame frame(int n) { return ramp_frame(8, 4, n, odd_time(n)); }
-    static std::int64_t stamp_us(const std_msgs_msg_dds__Header_& header) {
-        return std::int64_t{header.stamp.sec} * 1'000'000 + header.stamp.nanosec / 1000;
-    }
-    template <typename T>
-    static std::vector<T> pixels(const Image& image) {
-        std::vector<T> values(image.data._length / sizeof(T));
-        std::memcpy(values.data(), image.data._buffer, image.data._length);
-        return values;
-    }
-
-    const std::string name_ =
-        own_name("/" + std::string{testing::UnitTest::GetInstance()->current_test_info()->name()});
-    std::vector<std::string> said_;
-    TempFolder temp_;
-};
 
 /// The last of the process to leave the domain takes all of Cyclone DDS with it.
 TEST_F(Ros2SinkTest, OpenedAndClosedLeavesNothingBehind) {
@@ -207,150 +169,6 @@ TEST_F(Ros2SinkTest, WithoutSigmaThereIsNoTopicOfIt) {
     TopicReader image{kImageType, bare + "/image_raw"}, none{kImageType, bare + "/uncertainty"};
     ASSERT_TRUE(image.wait_for_writers(1));
     EXPECT_TRUE(none.wait_for_writers(0));
-}
-
-TEST_F(Ros2SinkTest, LazyIsWatchedWhileSomebodySubscribes) {
-    const auto eager = open();
-    EXPECT_TRUE(eager->is_watched());
-    const auto lazy = open("_lazy?lazy=yes");
-    EXPECT_FALSE(lazy->is_watched());
-    lazy->write(frame(0));  // of no harm
-    {
-        TopicReader info{kCameraInfoType, name_ + "_lazy/camera_info"};
-        ASSERT_TRUE(info.wait_for_writers(1));
-        while (!lazy->is_watched()) std::this_thread::yield();
-        lazy->write(frame(1));
-        EXPECT_NE(info.next<Info>(), nullptr);
-    }
-    while (lazy->is_watched()) std::this_thread::yield();
-}
-
-TEST_F(Ros2SinkTest, LazyIsWatchedWhileSomebodySubscribesToAnyOfItsImages) {
-    const auto lazy = open("?lazy=yes&compressed=png");
-    for (const auto& [type, topic] : {std::pair{&kImageType, "/image_raw"},
-                                      {&kImageType, "/uncertainty"},
-                                      {&kCompressedImageType, "/image_raw/compressed"}}) {
-        EXPECT_FALSE(lazy->is_watched()) << topic;
-        {
-            TopicReader reader{*type, name_ + topic};
-            ASSERT_TRUE(reader.wait_for_writers(1)) << topic;
-            while (!lazy->is_watched()) std::this_thread::yield();
-        }
-        while (lazy->is_watched()) std::this_thread::yield();
-    }
-}
-
-TEST_F(Ros2SinkTest, LazyThatWaitsForSubscribersIsGivenItsFirstFrameToWaitWith) {
-    EXPECT_TRUE(open("?lazy=yes&subscribers=1")->is_watched());
-}
-
-TEST_F(Ros2SinkTest, TheOffsetOfASensorThatCountsFromItsStartIsSaid) {
-    TopicReader image{kImageType, name_ + "/image_raw"};
-    const auto sink = open();
-    ASSERT_TRUE(image.wait_for_writers(1));
-    Frame sent = frame(0);
-    sent.t = from_us(1'000);
-    sent.window = {from_us(0), from_us(2'000)};
-    sent.arrived = std::chrono::steady_clock::now();
-    const auto before = std::chrono::system_clock::now();
-    sink->write(sent);
-    const Image* shown = image.next<Image>();
-    ASSERT_NE(shown, nullptr);
-    const std::int64_t now_us =
-        std::chrono::duration_cast<std::chrono::microseconds>(before.time_since_epoch()).count();
-    EXPECT_NEAR(double(stamp_us(shown->header) - now_us), -1'000, 10'000'000);
-    ASSERT_EQ(said_.size(), 1U);
-    EXPECT_THAT(said_[0], HasSubstr("stamps are the sensor's time + 1"));
-}
-
-TEST_F(Ros2SinkTest, DiagnosticsTellTheOffsetOnceAndThenEachSecond) {
-    TopicReader diagnostics{kDiagnosticArrayType, "/diagnostics"},
-        image{kImageType, name_ + "/image_raw"};
-    const auto sink = open("?lazy=yes");
-    ASSERT_TRUE(diagnostics.wait_for_writers(1) && image.wait_for_writers(1));
-    EXPECT_EQ(diagnostics.writer().user_data,
-              "typehash=" + std::string{kDiagnosticArrayType.hash} + ";");
-    Frame sent = frame(0);
-    const auto send_at = [&](std::int64_t us) {
-        sent.t = from_us(us);
-        sent.window = {from_us(us - 1000), from_us(us + 1000)};
-        sent.arrived = std::chrono::steady_clock::now();
-        sink->write(sent);
-        const Image* shown = image.next<Image>();
-        return shown == nullptr ? 0 : stamp_us(shown->header);
-    };
-    std::vector<std::int64_t> stamps;
-    for (const std::int64_t us : {1'000, 500'000, 900'000, 1'001'000, 1'500'000})
-        stamps.push_back(send_at(us));
-    for (const std::size_t told : {0U, 3U}) {
-        const auto* message = diagnostics.next<diagnostic_msgs_msg_dds__DiagnosticArray_>();
-        ASSERT_NE(message, nullptr);
-        EXPECT_EQ(stamp_us(message->header), stamps[told]);
-        ASSERT_EQ(message->status._length, 1U);
-        const auto& status = message->status._buffer[0];
-        EXPECT_EQ(status.level, 0);
-        EXPECT_EQ(status.name, "eventide: " + name_ + " stamps");
-        EXPECT_THAT(status.message, HasSubstr(said_[0].substr(said_[0].find("stamps are"))));
-        ASSERT_EQ(status.values._length, 3U);
-        EXPECT_STREQ(status.values._buffer[0].key, "offset_s");
-        EXPECT_NEAR(std::stod(status.values._buffer[0].value), double(stamps[0] - 1'000) / 1e6,
-                    2e-6);
-        EXPECT_STREQ(status.values._buffer[2].key, "sensor_time_s");
-        EXPECT_STREQ(status.values._buffer[2].value, told == 0 ? "0.001000" : "1.001000");
-    }
-    EXPECT_EQ(said_.size(), 1U);
-}
-
-TEST_F(Ros2SinkTest, WhoComesToTheDiagnosticsWithinASecondIsToldAtOnce) {
-    using Diagnostics = diagnostic_msgs_msg_dds__DiagnosticArray_;
-    DiagnosticsTopic topic{Participant::join(), name_};
-    const auto wait_for_readers = [&](int n) {
-        while (topic.writer.readers() != n) std::this_thread::yield();
-    };
-    std::int64_t stamp = to_us(odd_time(0));
-    std::optional<TopicReader> reader{std::in_place, kDiagnosticArrayType, "/diagnostics"};
-    wait_for_readers(1);
-    topic.tell({.stamp_us = stamp});
-    ASSERT_NE(reader->next<Diagnostics>(), nullptr);
-    reader.reset();
-    wait_for_readers(0);
-    topic.tell({.stamp_us = stamp += 1'000});
-    reader.emplace(kDiagnosticArrayType, "/diagnostics");
-    wait_for_readers(1);
-    topic.tell({.stamp_us = stamp += 1'000});
-    const auto* late = reader->next<Diagnostics>(std::chrono::seconds{5});
-    ASSERT_NE(late, nullptr);
-    EXPECT_EQ(stamp_us(late->header), stamp);
-}
-
-TEST_F(Ros2SinkTest, WhoReadsDiagnosticsMakesNoFrames) {
-    TopicReader diagnostics{kDiagnosticArrayType, "/diagnostics"};
-    const auto sink = open("?lazy=yes");
-    ASSERT_TRUE(diagnostics.wait_for_writers(1));
-    EXPECT_FALSE(sink->is_watched());
-}
-
-TEST_F(Ros2SinkTest, WaitsForItsSubscribers) {
-    std::optional<TopicReader> image;
-    Ros2SinkSettings settings;
-    settings.name = parse_ros2_sink_name(name_ + "?subscribers=1");
-    settings.give_up = [&] {  // asked while it waits
-        if (!image) image.emplace(kImageType, name_ + "/image_raw");
-        return false;
-    };
-    const auto sink = open_ros2_sink(std::move(settings));
-    sink->write(frame(0));
-    ASSERT_TRUE(image) << "it did not wait";
-    const Image* shown = image->next<Image>();
-    ASSERT_NE(shown, nullptr);
-    EXPECT_EQ(stamp_us(shown->header), to_us(frame(0).t)) << "the very first";
-}
-
-TEST_F(Ros2SinkTest, GivesUpWaitingForSubscribersWhenItIsTold) {
-    Ros2SinkSettings settings;
-    settings.name = parse_ros2_sink_name(name_ + "?subscribers=1");
-    settings.give_up = [] { return true; };
-    open_ros2_sink(std::move(settings))->write(frame(0));
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ namespace eventide::app {
 namespace fs = std::filesystem;
 
 RunFolderFiles EcdWriter::files() {
-    return {{{"images", "frame_", 8, ".png"}}, {"events.txt", "images.txt"}, "images.txt"};
+    return {{{"images", "frame_", 8, ".png"}},
+            {"events.txt", "images.txt", "exposure.txt"},
+            "images.txt"};
 }
 
 EcdWriter::EcdWriter(const fs::path& folder, bool overwrite, int width, int height)
@@ -24,7 +26,9 @@ EcdWriter::EcdWriter(const fs::path& folder, bool overwrite, int width, int heig
 void EcdWriter::begin() {
     if (events_) return;
     folder_.begin();
-    list_.emplace(folder_.path() / "images.txt", OutputOptions{.appears = Appears::growing});
+    const OutputOptions growing{.appears = Appears::growing};
+    list_.emplace(folder_.path() / "images.txt", growing);
+    exposures_.emplace(folder_.path() / "exposure.txt", growing);
     StreamHeader header;
     header.format = "text";
     header.width = width_;
@@ -50,9 +54,12 @@ void EcdWriter::write(const ReferenceImage& image) {
         throw Error(ErrorKind::failed, file.string() + ": cannot be encoded");
     // Before the image: what is in the folder is in the list, also after a crash.
     const std::string line = seconds_text(image.t) + " images/" + file.filename().string() + "\n";
+    const std::string exposure =
+        seconds_text(image.exposure_begin) + " " + seconds_text(image.exposure_end) + "\n";
+    exposures_->write(exposure);
     list_->write(line);
     write_file(file, std::as_bytes(std::span{png}), false);
-    image_bytes_ += line.size() + png.size();
+    image_bytes_ += line.size() + exposure.size() + png.size();
 }
 
 /// In 8 bits, as the dataset's images are, on black where the image is of a part of the sensor: the
@@ -72,6 +79,7 @@ void EcdWriter::finish() {
     begin();
     events_->finish();
     list_->close();
+    exposures_->close();
     folder_.finish();
 }
 

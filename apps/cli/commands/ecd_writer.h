@@ -1,5 +1,5 @@
 // A recording as a folder in the manner of the Event Camera Dataset: events.txt, images.txt,
-// images/.
+// images/, and exposure.txt with begin and end of each image's exposure.
 #pragma once
 
 #include "pipeline/sinks/run_folder.h"
@@ -41,7 +41,7 @@ private:
     std::uint64_t image_bytes_ = 0;
     RunFolder folder_;
     std::unique_ptr<RecordingFile> events_;  // both from the first event or image on
-    std::optional<OutputFile> list_;
+    std::optional<OutputFile> list_, exposures_;
 };
 
 }  // namespace eventide::app

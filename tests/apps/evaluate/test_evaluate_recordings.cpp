@@ -3,6 +3,7 @@
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
 #include "tests/apps/evaluate/small_model.h"
+#include "tests/support/keep_in.h"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ TEST(EvaluateRecordings, WarnWhereMoreIsLeftOutThanTaken) {
     what.recordings = {folder};
     EvaluateSettings how = small_model();
     std::vector<std::string> warnings;
-    how.warn = [&](const std::string& text) { warnings.push_back(text); };
+    how.warn = keep_in(warnings);
     evaluate_recordings(what, how);
     EXPECT_TRUE(warnings.empty()) << warnings.front();
     {

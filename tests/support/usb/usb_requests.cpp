@@ -62,6 +62,7 @@ int UsbTestbed::Parts::clear_halt(UMockdevIoctlData* arg) {
         return 0;
     }
     halted = false;
+    unread.clear();
     camera->clear_endpoint();
     return 0;
 }

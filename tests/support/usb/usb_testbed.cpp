@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace eventide::testing_support {
 
@@ -111,6 +112,11 @@ void UsbTestbed::delay_control(int looks) {
 void UsbTestbed::halt_data(int times) {
     const std::lock_guard lock{parts_->mutex};
     parts_->faults.halts = times;
+}
+
+void UsbTestbed::leave_unread(std::vector<std::byte> bytes) {
+    const std::lock_guard lock{parts_->mutex};
+    parts_->unread = std::move(bytes);
 }
 
 void UsbTestbed::overflow_data(int transfers) {

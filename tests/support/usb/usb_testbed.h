@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace eventide::testing_support {
 
@@ -44,6 +45,9 @@ public:
     /// comes until the halt is cleared with no transfer in flight. So many times, each as soon as
     /// transfers wait.
     void halt_data(int times);
+    /// Data that no program before this one fetched: they come first, unless the endpoint is
+    /// cleared.
+    void leave_unread(std::vector<std::byte> bytes);
     /// The device sends more than the next so many transfers have room for (babble): what does not
     /// fit is lost.
     void overflow_data(int transfers);

@@ -14,7 +14,9 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace eventide::testing_support {
 
@@ -50,6 +52,7 @@ struct UsbTestbed::Parts {
     int requests = 0, looks = 0, transfers = 0;
     std::deque<UsbUrb> controls;                      // not yet answered
     std::deque<UsbUrb> waiting, listening, finished;  // for data, for messages
+    std::vector<std::byte> unread;                    // of the device's, from before
     UsbFaults faults;
 
     /// Below which umockdev keeps its files.
@@ -74,6 +77,7 @@ struct UsbTestbed::Parts {
     void answer_controls();
     int control(const UsbUrb& urb);
     void fill_transfers();
+    std::size_t send(std::span<std::byte> out);
     bool overflows();
     void tell_messages();
     std::size_t in_flight() const;

@@ -64,7 +64,7 @@ void UsbTestbed::Parts::fill_transfers() {
         } else {
             std::size_t room = urb.room();
             if (faults.transfer_limit != 0) room = std::min(room, faults.transfer_limit);
-            std::size_t n = camera->send({reinterpret_cast<std::byte*>(urb.buffer->data), room});
+            std::size_t n = send({reinterpret_cast<std::byte*>(urb.buffer->data), room});
             if (n == 0) return;
             if (faults.loses_byte_of_every > 0 && ++transfers % faults.loses_byte_of_every == 0)
                 --n;
@@ -74,6 +74,14 @@ void UsbTestbed::Parts::fill_transfers() {
         waiting.pop_front();
         tell_messages();
     }
+}
+
+std::size_t UsbTestbed::Parts::send(std::span<std::byte> out) {
+    if (unread.empty()) return camera->send(out);
+    const std::size_t n = std::min(out.size(), unread.size());
+    std::copy_n(unread.begin(), n, out.begin());
+    unread.erase(unread.begin(), unread.begin() + std::ptrdiff_t(n));
+    return n;
 }
 
 /// Whether more comes than a transfer has room for; what that is, is lost.
