@@ -188,6 +188,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("contrast", o.loss.contrast, "weight in the loss");
     add("lpips-weight", o.loss.lpips, "weight in the loss");
     add("lpips-frames", o.lpips_frames, "of the rendered ones, the last, that LPIPS looks at");
+    add("lpips-on-pixels", o.lpips_on_pixels,
+        "1: LPIPS looks at all patches; 0: at those between the pixels, so that frames of the "
+        "sensor's size stay as they are drawn to the teacher's");
     add("nll", o.loss.nll, "weight in the loss");
     add("temporal", o.loss.temporal, "weight in the loss");
     add("teacher", o.teacher,

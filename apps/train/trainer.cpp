@@ -178,7 +178,9 @@ Trainer::Share Trainer::run_share(const TrainingBatch& batch, const SegmentPlan&
         run_segment(options_.model, narrow, plan, batch, options_.data.patch, recurrent);
     if (teacher_ != nullptr) images.taught = taught(images.truth, batch, plan, place);
     Share share;
-    share.terms = loss(images, options_.loss, perceptual_.get(), options_.lpips_frames);
+    const bool looks = options_.lpips_on_pixels || !plan.on_pixels;
+    share.terms =
+        loss(images, options_.loss, looks ? perceptual_.get() : nullptr, options_.lpips_frames);
     std::vector<torch::Tensor> leaves;
     std::vector<std::string> names;
     for (const auto& [name, values] : optimiser_.parameters) {
