@@ -62,6 +62,7 @@ public:
     /// late it was, the same.
     std::uint64_t images() const { return images_; }
     bool is_past_end() const { return slicer_.is_past_end(); }
+    std::optional<SensorTime> end() const { return slicer_.end(); }  ///< Slicer::end()
 
 private:
     void pass_on(HostTime arrived);

@@ -104,6 +104,8 @@ public:
     bool is_whole() const { return !stop_.is_set() && !error_.is_there(); }
 
     Snapshot snapshot() const { return counters_.snapshot(); }  ///< Thread: any, at any time
+    /// Slicer::end(). Thread: that of filter and observer.
+    std::optional<SensorTime> end() const { return event_windows_.end(); }
 
 private:
     // The four threads.

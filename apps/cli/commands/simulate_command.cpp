@@ -231,6 +231,10 @@ int SimulateCommand::run(Program& program) {
     if (!truth_.empty())
         truth = std::make_unique<FolderSink>(FolderSettings{
             .path = truth_, .overwrite = overwrite_, .uncertainty = Uncertainty::none});
+    if (out.holds().images && !out.holds().colour_filter && bayer_ != ColourFilter::none &&
+        what.images_per_second > 0)
+        spdlog::warn("{}: its format cannot say the images' colour filter, {}: --bayer states it",
+                     out_, name_of(bayer_));
     Progress progress{program.quiet};
     std::uint64_t events = 0, images = 0, truths = 0;
     simulate(what, textures, [&](const Batch& batch, std::vector<Frame>& seen) {
