@@ -1,8 +1,8 @@
 // What every subcommand is: a name, its settings, and what it does.
 #pragma once
 
-#include "apps/cli/named_files.h"
 #include "apps/cli/signals.h"
+#include "src/io/named_files.h"
 #include "src/settings/setting.h"
 
 #include <string>

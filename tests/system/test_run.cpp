@@ -227,6 +227,18 @@ TEST_F(Run, GoesThroughANamedPipe) {
     EXPECT_EQ(bytes.size() % (64 * 48), 0U);
 }
 
+TEST_F(Run, GoesThroughSeveralNamedPipesInWhateverOrderTheyAreOpened) {
+    for (const std::string opens : {"exec 3<frames 4<events", "exec 4<events 3<frames"}) {
+        const Result result = in_shell(
+            "rm -f frames events; mkfifo frames events; "
+            "eventide run recording --fps 10 --out gray8:frames --events-out text:events & " +
+            opens + "; cat <&4 > events.txt & wc -c <&3; wait");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_NE(result.output, "0\n") << opens;
+        EXPECT_GT(std::filesystem::file_size(temp_ / "events.txt"), 1000U) << opens;
+    }
+}
+
 TEST_F(Run, KeepsItsStateInAFileOfThisModelOnly) {
     ASSERT_EQ(eventide({"run", recording(), "--out", "null", "--state-out", "state"}).exit_code, 0);
     const std::vector<std::string> common{"run", recording(), "--to", "60ms", "--out"};

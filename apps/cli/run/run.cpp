@@ -11,6 +11,7 @@
 #include "pipeline/first_error.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/io/held_pipes.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
 
@@ -154,6 +155,7 @@ void Run::open_outputs() {
             start_.goes_on();
             return program_.signals.stopping();
         }};
+    const HeldPipes readers{program_.files.pipes(), growing.give_up};
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
     recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
