@@ -4,6 +4,7 @@
 #include "apps/bench/stage_table.h"
 #include "apps/cli/bench/bench_table.h"
 #include "apps/cli/bench/report.h"
+#include "apps/cli/idle_flag.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
@@ -266,6 +267,9 @@ int BenchCommand::report(Program& program) const {
 
 int BenchCommand::run(Program& program) {
     check_settings();
+    if (!activity_ && report_.empty())
+        for (const char* key : {"still_codes", "still_time"})
+            refuse_idle_flag(program.flags, key, "--activity or --report FOLDER");
     name_bench_files(program.files);
     if (!report_.empty()) return report(program);
     std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),

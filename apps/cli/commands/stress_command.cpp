@@ -1,6 +1,7 @@
 // eventide stress: hard cases through the whole pipeline.
 #include "apps/cli/commands/stress_command.h"
 
+#include "apps/cli/idle_flag.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
@@ -192,6 +193,11 @@ int StressCommand::run(Program& program) {
     require_some("--models", models_);
     if (soak_hours_ <= 0 && !plots_.empty())
         throw Error(ErrorKind::usage, "--plots " + plots_ + ": expected --soak HOURS, found none");
+    if (soak_hours_ > 0)
+        for (const char* key : {"cases", "quick", "minutes"})
+            refuse_idle_flag(program.flags, key, "no --soak, which runs no cases",
+                             short_number(soak_hours_) + " h");
+    if (quick_) refuse_idle_flag(program.flags, "minutes", "no --quick", "both");
     name_stress_files(program.files);
     return soak_hours_ > 0 ? run_soak(program) : run_cases(program);
 }
