@@ -46,7 +46,8 @@ void train(const TrainOptions& options, const std::string& record) {
     std::ofstream{std::filesystem::path{options.out} / "options.txt"} << record;
     trainer.run(stop_asked);
     if (!options.keep.empty()) trainer.keep(options.keep);
-    if (!options.export_file.empty()) save_model(options.export_file, trainer.finished_model());
+    if (!options.export_file.empty())
+        save_model(options.export_file, trainer.finished_model(), options.overwrite);
 }
 
 }  // namespace

@@ -103,6 +103,8 @@ OptionTable::OptionTable(TrainOptions& o) {
         "checkpoint to write at the end without the states of streams, which fill again: for a "
         "repository",
         Use::once);
+    add("overwrite", o.overwrite,
+        "1: --export and --keep may replace files; --keep also that of --resume", Use::once);
     add("card", o.card, "what the model card says first", Use::run);
     add("device", o.device, "cpu or cuda", Use::run);
     add_choice("precision", o.precision, "of activations; auto: bf16 where it is quick",

@@ -24,7 +24,8 @@ struct TrainOptions {
     std::string out = "out/train";
     std::string textures, validation_textures, lpips;
     std::string resume, initial, export_file, keep, card;
-    std::string teacher;  ///< model whose frames mu learns from, beside the truth; empty: none
+    bool overwrite = false;  ///< of export_file and keep
+    std::string teacher;     ///< model whose frames mu learns from, beside the truth; empty: none
     double teacher_share = .8;  ///< of them in what mu is drawn to; the rest is the truth
     int teacher_views = 2;
     std::vector<std::string> train_only;  ///< beginnings of names of weights that learn; empty: all

@@ -2,10 +2,12 @@
 
 #include "apps/train/blas.h"
 #include "src/core/error.h"
+#include "src/io/named_files.h"
 #include "src/model/model_metadata.h"
 
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -65,6 +67,30 @@ void need_own_folder(const TrainOptions& options) {
                                           other.string() + " goes on with it");
 }
 
+/// What the run reads is never what it writes, but for the checkpoint that it goes on from: that is
+/// its own, and --keep may write it anew.
+void need_own_files(const TrainOptions& options) {
+    NamedFiles files;
+    const std::filesystem::path out{options.out}, checkpoint = out / kCheckpoint;
+    for (const auto& [option, path] : {std::pair{"--textures", &options.textures},
+                                       {"--validation-textures", &options.validation_textures},
+                                       {"--lpips", &options.lpips},
+                                       {"--teacher", &options.teacher},
+                                       {"--initial", &options.initial}})
+        files.reads(option, *path);
+    const auto goes_on_in = [&](const std::filesystem::path& path) {
+        return !path.empty() &&
+               FileIdentity::of(path).is_same_file(FileIdentity::of(options.resume));
+    };
+    if (!options.resume.empty() && !goes_on_in(checkpoint) && !goes_on_in(options.keep))
+        files.reads("--resume", options.resume);
+    files.may_replace(true);
+    for (const std::filesystem::path& own : {checkpoint, out / kBest}) files.writes("--out", own);
+    files.may_replace(options.overwrite);
+    files.writes_when_done("--export", options.export_file);
+    files.writes_when_done("--keep", options.keep);
+}
+
 }  // namespace
 
 const TrainOptions& sound(const TrainOptions& options) {
@@ -75,6 +101,7 @@ const TrainOptions& sound(const TrainOptions& options) {
     need_network(options.model);
     require_blas_for_threads(options.threads);
     need_own_folder(options);
+    need_own_files(options);
     return options;
 }
 

@@ -248,7 +248,7 @@ void Trainer::validate() {
     validation_->write_sheet(file("sheet.pgm"), options_.model, weights, 0);
     if (scores.score < progress_.best_score) {
         progress_.best_score = scores.score;
-        save_model(file("best.safetensors"), {options_.model, to_tensors(optimiser_.ema)});
+        save_model(file(kBest), {options_.model, to_tensors(optimiser_.ema)});
     }
 }
 
@@ -289,8 +289,7 @@ void Trainer::keep(const std::filesystem::path& path) const {
 
 Model Trainer::finished_model() const {
     Model model{options_.model, to_tensors(optimiser_.ema)};
-    if (std::filesystem::exists(file("best.safetensors")))
-        model.weights = load_model(file("best.safetensors")).weights;
+    if (std::filesystem::exists(file(kBest))) model.weights = load_model(file(kBest)).weights;
     std::ostringstream card;
     card << options_.card << (options_.card.empty() ? "" : " ")
          << "Trained by eventide-train: " << progress_.segment << " steps, "
