@@ -54,6 +54,25 @@ TEST(Exposure, GivesTheMeanAndTheDeviationAskedFor) {
     EXPECT_NEAR(near.bright, .15 + .25 * 1.5, 1e-3);
 }
 
+TEST(Exposure, IsMeteredAllOverTheImage) {
+    for (int side = 0; side < 4; ++side) {
+        Array2<float> light(32, 32);
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 32; ++x) {
+                const int from_side[] = {y, 31 - y, x, 31 - x};
+                light(y, x) = from_side[side] < 2 ? .4F : .1F;
+            }
+        SceneSettings settings = exposed(.4, .1);
+        settings.target_black = {0, 0};
+        Exposure exposure{settings, Random{1}};
+        exposure.meter(0, light, 1);
+        exposure.develop(0, 1, light);
+        double mean = 0;
+        for (const float v : light.values()) mean += double(v) / (32 * 32);
+        EXPECT_NEAR(mean, .4, 1e-3) << "brighter at side " << side;
+    }
+}
+
 TEST(Exposure, TheMeanIsThatOfWhatIsCutOffAtWhiteAndAtBlack) {
     // A sixteenth is a lamp: by the plain mean all else would be black.
     Array2<float> light(32, 32);
