@@ -92,6 +92,16 @@ TEST(Training, WhatNoRunCanBeMadeOfIsRefusedBeforeItBegins) {
              {"--latent-stride", "3"},
              {"--teacher-views", "3"},
              {"--teacher-share", "1.5"},
+             {"--steps", "-1"},
+             {"--minutes", "-1"},
+             {"--rate", "-0.001"},
+             {"--final-rate", "1.5"},
+             {"--constant-share", "1.5"},
+             {"--warm-up", "-2"},
+             {"--clip", "0"},
+             {"--ema", "1.5"},
+             {"--log-every", "0"},
+             {"--lpips-frames", "0"},
              {"--unfold", "2"}}) {
         TrainOptions options = good;
         OptionTable{options}.parse(words);
