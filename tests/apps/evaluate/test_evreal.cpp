@@ -215,6 +215,15 @@ TEST(Evreal, NamesEventTimesThatDoNotAscend) {
     }
 }
 
+TEST(Evreal, TakesEventsOfOneTimeInTheirOrder) {
+    const auto sequence =
+        read_evreal_sequence(write_arrays("together", {.1, .2, .2}, {.1, .2, .3}), {}, .2);
+    ASSERT_EQ(sequence.events.size(), 3U) << "the end of the time asked for included";
+    EXPECT_EQ(sequence.events[1], (Event{from_us(200'000), 1, 1, Polarity::on}));
+    EXPECT_EQ(sequence.events[2], (Event{from_us(200'000), 2, 1, Polarity::off}));
+    EXPECT_EQ(sequence.images.size(), 2U);
+}
+
 TEST(Evreal, RefusesSensorsLargerThanAny) {
     const fs::path folder = fresh_folder("large");
     write_npy<double>(folder / "events_ts.npy", "<f8", "0,", {});
