@@ -97,6 +97,17 @@ TEST(Exposure, TheMeanIsThatOfWhatIsCutOffAtWhiteAndAtBlack) {
     EXPECT_NEAR(cut.bright, .4, 2e-3);
 }
 
+TEST(Exposure, BlackIsAtMostHalfOfTheMean) {
+    SceneSettings settings = exposed(.2, .02);
+    settings.target_black = {.3, .4};
+    const Array2<float> light = halves(50, 150);
+    Exposure exposure{settings, Random{1}};
+    exposure.meter(0, light, 1);
+    const Levels levels = developed(exposure, 0, 1, light);
+    EXPECT_NEAR(levels.dark, .1 + .1 * .5, 1e-3);
+    EXPECT_NEAR(levels.bright, .1 + .1 * 1.5, 1e-3);
+}
+
 TEST(Exposure, NoSensorThatSaturatesEarlyIsBright) {
     SceneSettings settings = exposed(.54, .1);
     settings.target_white_below_one = 1;
@@ -137,6 +148,24 @@ TEST(Exposure, FollowsTheLightWithItsLagAndAnImageHasThatOfItsTime) {
                 1e-3);
     EXPECT_NEAR(developed(exposure, .4, 1, halves(50, 150)).bright, before, 1e-6)
         << "of a time before it was metered again";
+    exposure.meter(1, halves(50, 150), 2);
+    exposure.forget(.7);
+    EXPECT_NEAR(developed(exposure, 1, 1, halves(50, 150)).bright / before,
+                std::pow(.5, 1 - std::exp(-1)), 1e-3);
+    EXPECT_NEAR(developed(exposure, .8, 1, halves(50, 150)).bright / before, std::pow(.5, share),
+                1e-3)
+        << "metered before what was forgotten";
+}
+
+TEST(Exposure, DevelopsImagesOfAnyNumberOfPixels) {
+    Exposure exposure{exposed(.3, .15), Random{1}};
+    exposure.meter(0, halves(50, 150), 1);
+    for (const int width : {1, 2, 3, 4, 5, 7, 8}) {
+        Array2<float> image(1, width);
+        std::ranges::fill(image.values(), 150.F);
+        exposure.develop(0, 1, image);
+        for (const float v : image.values()) EXPECT_NEAR(v, .45, 1e-3) << width;
+    }
 }
 
 TEST(Exposure, ThatIsFixedStaysAsItBegan) {
