@@ -220,6 +220,9 @@ OptionTable::OptionTable(TrainOptions& o) {
 }
 
 void OptionTable::set(const std::string& name, const std::string& value) {
+    // A checkpoint records a line for each.
+    if (value.find('\n') != value.npos)
+        throw Error(ErrorKind::usage, "--" + name + ": expected one line, found more");
     for (const Option& option : options_)
         if (option.setting.key == name) return set_from("--" + name, option.setting, value);
     throw Error(ErrorKind::usage, "expected one of the options of --help, found '--" + name + "'");

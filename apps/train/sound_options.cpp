@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 #include "src/io/named_files.h"
 #include "src/model/model_metadata.h"
+#include "src/settings/values.h"
 
 #include <filesystem>
 #include <limits>
@@ -23,6 +24,16 @@ void need(const char* option, int found, int low, int high = std::numeric_limits
                                       ", found " + std::to_string(found));
 }
 
+void need(const char* option, bool holds, const char* expected, double found) {
+    if (!holds)
+        throw Error(ErrorKind::usage, std::string{option} + ": expected " + expected + ", found " +
+                                          show_number(found));
+}
+
+void need_share(const char* option, double found) {
+    need(option, found >= 0 && found <= 1, "0 to 1", found);
+}
+
 /// A model file of such a network could not be written.
 void need_network(const ModelConfig& model) {
     try {
@@ -40,21 +51,33 @@ void need_sizes(const TrainOptions& options) {
     need("--groups", options.groups, 1);
     need("--crop", options.data.crop, 2);
     need("--patch", options.data.patch, least);
-    if (!(options.data.span_scale_max >= 1))
-        throw Error(ErrorKind::usage, "--points-per-pixel: expected at least 1, found " +
-                                          std::to_string(options.data.span_scale_max));
+    const double points = options.data.span_scale_max;
+    need("--points-per-pixel", points >= 1, "1 or more", points);
     need("--event-windows", options.data.event_windows, 1);
     need("--rendered", options.data.rendered, 1, options.data.event_windows);
     if (options.teacher_views != 1 && options.teacher_views != 2 && options.teacher_views != 4)
         throw Error(ErrorKind::usage, "--teacher-views: expected 1, 2 or 4, found " +
                                           std::to_string(options.teacher_views));
-    if (!(options.teacher_share >= 0 && options.teacher_share <= 1))
-        throw Error(ErrorKind::usage, "--teacher-share: expected 0 to 1, found " +
-                                          std::to_string(options.teacher_share));
+    need_share("--teacher-share", options.teacher_share);
+    need("--lpips-frames", options.lpips_frames, 1);
+    need("--log-every", options.log_every, 1);
     if (options.validation_scenes <= 0) return;
     need("--validation-crop", options.validation_crop, least);
     // The first of a scene count nothing.
     need("--validation-windows", options.validation_windows, options.data.warm_windows + 1);
+}
+
+/// Budget, rate and means over steps.
+void need_schedule(const TrainOptions& options) {
+    const double rate = options.learning_rate, clip = options.optimiser.clip;
+    need("--steps", options.steps, 0);
+    need("--minutes", options.minutes >= 0, "0 or more", options.minutes);
+    need("--rate", rate >= 0, "0 or more", rate);
+    need_share("--final-rate", options.final_rate);
+    need_share("--constant-share", options.constant_share);
+    need("--warm-up", options.warm_up, 0);
+    need("--clip", clip > 0, "more than 0", clip);
+    need_share("--ema", options.optimiser.ema_decay);
 }
 
 /// Hours of training, and the best of them would pass for this run's.
@@ -98,6 +121,7 @@ const TrainOptions& sound(const TrainOptions& options) {
         throw Error(ErrorKind::usage,
                     "--clock: expected wall or cpu, found '" + options.clock + "'");
     need_sizes(options);
+    need_schedule(options);
     need_network(options.model);
     require_blas_for_threads(options.threads);
     need_own_folder(options);

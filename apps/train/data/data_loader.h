@@ -4,7 +4,7 @@
 #include "src/core/array.h"
 #include "src/simulate/scene/scene_settings.h"
 #include "src/simulate/scene/textures.h"
-#include "src/simulate/sensor/event_sensor.h"
+#include "src/simulate/sensor/sensor_settings.h"
 
 #include <condition_variable>
 #include <cstdint>

@@ -52,8 +52,10 @@ TEST(Options, NumbersAreRecordedToTheirLastDigit) {
 TEST(Options, AWrongWordIsRefusedByName) {
     TrainOptions options;
     OptionTable table{options};
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"--streams", "many"}, {"--nonsense", "1"}, {"--rate"}}) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"--streams", "many"},
+                                                  {"--nonsense", "1"},
+                                                  {"--rate"},
+                                                  {"--card", "two\nlines"}}) {
         try {
             table.parse(words);
             ADD_FAILURE() << words[0] << " was taken";
