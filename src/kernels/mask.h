@@ -107,14 +107,23 @@ inline void halve(const Mask& in, Mask& out) {
 /// out = 1 where `mask` has a 1, or any of the samples of `below`, of half the size, that up2
 /// makes the pixel of (docs/model.md).
 inline void join_doubled(const Mask& mask, const Mask& below, Mask& out) {
+    const int width = mask.width(), last = below.width() - 1;
     for (int y = 0; y < mask.height(); ++y) {
         std::ranges::copy(mask.row(y), out.row(y).begin());
         if (all_in_row(mask, y)) continue;
-        for (const int from : {y / 2, std::min((y + 1) / 2, below.height() - 1)}) {
-            if (!any_in_row(below, from)) continue;
-            for (int x = 0; x < mask.width(); ++x)
-                out(y, x) |= std::uint8_t(below(from, x / 2) |
-                                          below(from, std::min((x + 1) / 2, below.width() - 1)));
+        const int above = y / 2, under = std::min((y + 1) / 2, below.height() - 1);
+        if (!any_in_row(below, above) && !any_in_row(below, under)) continue;
+        std::uint8_t* const row = out.row(y).data();
+        const auto either = [upper = below.row(above).data(), lower = below.row(under).data()](
+                                int x) { return std::uint8_t(upper[x] | lower[x]); };
+        // Sample by sample, for the two pixels that it is left of: the one on it, and the one
+        // before the next.
+        std::uint8_t left = either(0);
+        for (int x = 0; x < width; x += 2) {
+            const std::uint8_t right = either(std::min(x / 2 + 1, last));
+            row[x] |= left;
+            if (x + 1 < width) row[x + 1] |= std::uint8_t(left | right);
+            left = right;
         }
     }
 }
