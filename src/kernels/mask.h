@@ -52,35 +52,34 @@ void reach(int radius, Step step) {
     }
 }
 
-/// out = 1 where `in` has a 1 within the (2 radius + 1)^2 square around the pixel. `scratch` has
-/// the size of `in`; `out` may be `in`. First rows, then columns: one copy reaches to the right
-/// (down), one to the left (up), doubling with each step.
+/// 1 where the mask has a 1 within the (2 radius + 1)^2 square around the pixel. `scratch` has its
+/// size. First rows, then columns: one copy reaches to the right (down), one to the left (up),
+/// doubling with each step.
 ///
-///     in           0 0 0 0 1 0 0 0 0
+///     mask         0 0 0 0 1 0 0 0 0
 ///     right        0 0 0 0 1 1 1 0 0      radius 2
 ///     left         0 0 1 1 1 0 0 0 0
 ///     both         0 0 1 1 1 1 1 0 0
-inline void dilate(const Mask& in, int radius, Mask& scratch, Mask& out) {
-    const int height = in.height(), width = in.width();
+inline void dilate(Mask& mask, int radius, Mask& scratch) {
+    const int height = mask.height(), width = mask.width();
     for (int y = 0; y < height; ++y) {
-        std::uint8_t *right = scratch.row(y).data(), *left = out.row(y).data();
-        std::ranges::copy(in.row(y), right);
-        if (left != in.row(y).data()) std::ranges::copy(in.row(y), left);
-        if (!any_in_row(scratch, y)) continue;
+        std::uint8_t *right = scratch.row(y).data(), *left = mask.row(y).data();
+        std::ranges::copy(mask.row(y), right);
+        if (!any_in_row(mask, y)) continue;
         reach(std::min(radius, width - 1), [&](int shift) {
             join_bytes(right, right + shift, width - shift, true);
             join_bytes(left + shift, left, width - shift, false);
         });
         join_bytes(left, right, width, false);
     }
-    std::ranges::copy(scratch.values(), out.values().begin());
+    std::ranges::copy(scratch.values(), mask.values().begin());
     reach(std::min(radius, height - 1), [&](int shift) {
         for (int y = height - 1; y >= shift; --y)
             join_bytes(scratch.row(y - shift).data(), scratch.row(y).data(), width, false);
         for (int y = 0; y + shift < height; ++y)
-            join_bytes(out.row(y + shift).data(), out.row(y).data(), width, false);
+            join_bytes(mask.row(y + shift).data(), mask.row(y).data(), width, false);
     });
-    join_bytes(scratch.values().data(), out.values().data(), int(out.values().size()), false);
+    join_bytes(scratch.values().data(), mask.values().data(), int(mask.values().size()), false);
 }
 
 /// out[y][x] = max of in[2 y - 1 .. 2 y + 1][2 x - 1 .. 2 x + 1], as far as they are there. That is
