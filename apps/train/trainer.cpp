@@ -13,8 +13,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kBest = "best.safetensors";
-
 }  // namespace
 
 Trainer::Trainer(const TrainOptions& options, std::shared_ptr<const TextureLibrary> textures,
