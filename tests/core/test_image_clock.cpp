@@ -55,6 +55,14 @@ TEST(ImageClock, StaysTheSameThroughAPauseOfDays) {
               SensorDuration{0});
     EXPECT_EQ(apart({events_at(0), image_at(kDays), events_at(kDays + 10)}), SensorDuration{0})
         << "it was one all along";
+    EXPECT_EQ(apart({events_at(0), image_at(10), image_at(kDays)}), SensorDuration{0})
+        << "known once and for all";
+}
+
+TEST(ImageClock, IsThatOfTheEventsBehindTheLastOfSeveralImages) {
+    Batch images = image_at(0);
+    images.images.push_back(image_at(100 * kSecond).images.front());
+    EXPECT_EQ(apart({images, events_at(101 * kSecond)}), SensorDuration{0});
 }
 
 }  // namespace

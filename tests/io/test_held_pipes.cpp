@@ -23,6 +23,14 @@ protected:
         EXPECT_EQ(::mkfifo(path.c_str(), 0600), 0);
         return path;
     }
+    /// Nobody has it open for writing.
+    static bool is_at_its_end(const std::string& path) {
+        const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);
+        char byte = 0;
+        const bool is_end = ::read(file, &byte, 1) == 0;
+        ::close(file);
+        return is_end;
+    }
     test::TempFolder temp_;
 };
 
@@ -40,6 +48,7 @@ TEST_F(HeldPipesTest, HaveTheirReadersInWhateverOrderTheyCome) {
     }};
     const HeldPipes held{{first, second}, {}};
     for (const std::string& path : {first, second}) {
+        EXPECT_FALSE(is_at_its_end(path)) << "until somebody else writes to it";
         const int file = ::open(path.c_str(), O_WRONLY | O_NONBLOCK);
         ASSERT_GE(file, 0) << path << ": its reader is there";
         EXPECT_EQ(::write(file, "x", 1), 1);

@@ -5,9 +5,11 @@
 #include "tests/system/process.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <vector>
 
 namespace eventide {
 namespace {
@@ -53,6 +55,16 @@ TEST_F(NamedFilesTest, TwoOutputsAreTwoFiles) {
     EXPECT_NE(refusal([&] { files_.reads("--state-in", temp_ / "d/new"); }), "");
     files_.writes("--stats", "/dev/null");
     EXPECT_EQ(refusal([&] { files_.writes("--record", "/dev/null"); }), "");
+}
+
+TEST_F(NamedFilesTest, OutputsThatAreNamedPipesFromTheBeginningAreKnown) {
+    const std::string pipe = temp_ / "pipe", later = temp_ / "later";
+    for (const std::string& path : {pipe, later}) ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+    files_.writes("--out", pipe);
+    files_.writes("--out", temp_ / "d/new");
+    files_.writes("--record", "-");
+    files_.writes_when_done("--state-out", later);
+    EXPECT_EQ(files_.pipes(), std::vector<fs::path>{pipe});
 }
 
 TEST_F(NamedFilesTest, NothingElseIsReadOrWrittenInAFolderThatIsTakenWhole) {
