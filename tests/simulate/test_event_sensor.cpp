@@ -125,6 +125,27 @@ TEST(EventSensor, FollowsARampByItsTimeConstantLateHoweverItIsCut) {
     }
 }
 
+TEST(EventSensor, ApproachesLightThatStaysExponentiallyInAStepOfAnyLength) {
+    SensorTraits traits = plain(.005);
+    traits.threshold_min = .005;
+    traits.bandwidth_hz = 20;
+    const double tau_us = 1e6 / (2 * std::numbers::pi * 20), jump = .3;
+    for (const double taus : {.1, .4, 1., 1.5, 2.5, 4., 8.}) {
+        EventSensor sensor{traits, 4, 1, Random{7}};
+        Array2<float> lux(1, 4);
+        std::ranges::fill(lux.values(), 100.F);
+        sensor.settle(lux, 1);
+        std::vector<Event> events;
+        // So short a step that none has followed yet.
+        sensor.step(from_us(0), from_us(1), lux, std::exp(jump), events);
+        ASSERT_TRUE(events.empty());
+        sensor.step(from_us(1), from_us(1 + std::llround(taus * tau_us)), lux, std::exp(jump),
+                    events);
+        const double way = double(events.size()) / 4 * .005 + .0025;
+        EXPECT_NEAR(way / jump, 1 - std::exp(-taus), .012 + .0025 / jump) << taus;
+    }
+}
+
 TEST(EventSensor, IsSlowerInTheDark) {
     const double tau_after = 1 / (2 * std::numbers::pi) * (1. / 300 + 1. / (10 * std::exp(1.0)));
     EXPECT_NEAR(step_response(10), tau_after, .03 * tau_after);

@@ -113,6 +113,11 @@ double rate_before_growing_light(double shot_hz, int step_us) {
         traits, 4, [](double t) { return 5 + 2 * t; }, step_us);
     for (const auto& [pixel, times] : times_by_pixel(events))
         for (std::size_t i = 1; i < times.size(); ++i) EXPECT_GE(times[i] - times[i - 1], 499);
+    for (const auto& [pixel, list] : polarities_by_pixel(events)) {
+        const auto on = std::ranges::count(list, Polarity::on);
+        EXPECT_NEAR(double(2 * on - std::ptrdiff_t(list.size())), 4 / .0055, 4)
+            << "what is not the light's adds up to nothing";
+    }
     return double(events.size()) / kPixels / 4;
 }
 

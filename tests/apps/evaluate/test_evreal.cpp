@@ -215,6 +215,24 @@ TEST(Evreal, NamesEventTimesThatDoNotAscend) {
     }
 }
 
+TEST(Evreal, NamesArraysThatDoNotBelongTogether) {
+    const auto refused = [](const std::string& file, const std::string& shape, std::size_t n) {
+        const fs::path folder = write_arrays("apart", {.1, .2, .3}, {.1, .2, .3});
+        write_npy(folder / file, "<i8", shape, std::vector<std::int64_t>(n));
+        try {
+            read_evreal_sequence(folder, {}, {});
+            ADD_FAILURE() << file << " of " << shape << " was taken";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("of as many rows"), std::string::npos)
+                << error.what();
+        }
+    };
+    refused("events_xy.npy", "2, 2", 4);
+    refused("events_p.npy", "2,", 2);
+    refused("events_xy.npy", "3, 3", 9);
+    refused("events_p.npy", "3, 2", 6);
+}
+
 TEST(Evreal, TakesEventsOfOneTimeInTheirOrder) {
     const auto sequence =
         read_evreal_sequence(write_arrays("together", {.1, .2, .2}, {.1, .2, .3}), {}, .2);
