@@ -70,9 +70,9 @@ TEST(Mask, DoublingReachesEveryPixelThatASampleIsReadFor) {
 }
 
 TEST(Mask, GroupsOfATilesRowsAreFilledWhereOnePixelIsSet) {
-    const std::vector<Tile> tiles = tiles_of(2, 13, 7);  // columns 0 to 5 and 6 to 12
-    Mask mask{2, 13};
-    mask(0, 5) = mask(0, 6) = mask(1, 12) = 1;
+    const std::vector<Tile> tiles = tiles_of(3, 13, 7);  // columns 0 to 5 and 6 to 12
+    Mask mask{3, 13};
+    mask(0, 5) = mask(0, 6) = mask(1, 5) = mask(2, 12) = 1;
     fill_groups(mask, tiles, 4);
     const auto row = [&](int y) {
         std::string text;
@@ -81,7 +81,8 @@ TEST(Mask, GroupsOfATilesRowsAreFilledWhereOnePixelIsSet) {
     };
     EXPECT_EQ(row(0), "....111111...")
         << "4 and 5 end the first tile's row, 6 to 9 begin the second";
-    EXPECT_EQ(row(1), "..........111");
+    EXPECT_EQ(row(1), "....11.......") << "the first tile's alone";
+    EXPECT_EQ(row(2), "..........111");
 }
 
 }  // namespace

@@ -130,5 +130,46 @@ TEST(UpSampling, KeepsTheSamplesOfTheStridedConvolution) {
     EXPECT_EQ(even(5, 7, 0), a(2, 3, 0)) << "past the last sample it is repeated";
 }
 
+/// What the next layer reads: the same numbers rounded, with a zero beside the last of an odd
+/// number.
+TEST(PackedConv, OutputsInBf16AreThoseInFloatRounded) {
+    constexpr int kHeight = 3, kWidth = 7, kInputs = 6, kRow = kWidth + 2;
+    test::Numbers numbers{4};
+    const auto in = numbers.many(std::size_t((kHeight + 2) * kRow * kInputs), Fill::ordinary);
+    for (const Backend& backend : all_backends())
+        for (const int outputs : {1, 3, 5, 6, 8, 16, 17}) {
+            if (backend.bf16 == nullptr) continue;
+            const PackedConv conv{random_conv<float>(outputs, kInputs, numbers),
+                                  1,
+                                  true,
+                                  backend,
+                                  {{kHeight, kWidth}}};
+            const int units = conv.numbers().units(outputs);
+            std::vector<float> scratch(conv.scratch_size(kHeight, kWidth)),
+                wide(std::size_t(kHeight * kWidth * outputs));
+            conv.run({in.data(), kRow * kInputs, wide.data(), kWidth * outputs, outputs, kHeight,
+                      kWidth},
+                     scratch.data());
+            std::vector<float> map(in.size());
+            conv.numbers().from_float(in.data(), std::size_t((kHeight + 2) * kRow), kInputs,
+                                      map.data());
+            test::Guarded rounded{std::size_t(kHeight * kWidth * units)};
+            conv.run(ConvArea{.in = {{{map.data(), kRow * conv.numbers().units(kInputs)}}},
+                              .out = rounded.data(),
+                              .out_pitch = kWidth * units,
+                              .to_bf16 = true,
+                              .height = kHeight,
+                              .width = kWidth},
+                     scratch.data());
+            EXPECT_TRUE(rounded.intact());
+            const auto* values = reinterpret_cast<const std::uint16_t*>(rounded.data());
+            for (int pixel = 0; pixel < kHeight * kWidth; ++pixel)
+                for (int o = 0; o < 2 * units; ++o)
+                    ASSERT_EQ(values[2 * pixel * units + o],
+                              o < outputs ? to_bf16(wide[std::size_t(pixel * outputs + o)]) : 0)
+                        << name_of(backend) << ", " << outputs;
+        }
+}
+
 }  // namespace
 }  // namespace eventide

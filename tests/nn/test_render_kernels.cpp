@@ -1,6 +1,7 @@
 // What the renderer does around its hidden layers, against double.
 #include "src/kernels/bf16_kernels.h"
 #include "src/kernels/vector_kernels.h"
+#include "src/nn/packed_weights.h"
 #include "tests/nn/fills.h"
 #include "tests/nn/instruction_sets.h"
 
@@ -307,6 +308,24 @@ TEST(RenderKernels, HiddenRowsOfBf16RefuseLayersTheyAreNotMadeFor) {
             EXPECT_EQ(mu, 7);
             EXPECT_EQ(log_sigma, 7);
         }
+}
+
+/// In float32 all layers go through one kernel where weights lie as it reads them.
+TEST(RenderKernels, HiddenRowsReadWholeVectorsOfOutputs) {
+    constexpr int kWidth = 16;
+    const std::vector<float> last(2 * 32);
+    with_each([&](const VectorKernels& k) {
+        for (const int outputs : {8, 32})
+            for (const bool relu : {false, true}) {
+                const std::vector<float> weight(std::size_t(kWidth * outputs)),
+                    bias(std::size_t(outputs), 0.0F);
+                const PackedWeights layer{1, 1, kWidth, outputs, weight, bias, relu, {&k}};
+                HiddenRows none;  // of no pixel
+                none.offset.width = kWidth;
+                none.last_weight = none.last_bias = last.data();
+                EXPECT_EQ(layer.run(none), relu && dot_lanes(k, outputs) == k.lanes) << outputs;
+            }
+    });
 }
 
 }  // namespace
