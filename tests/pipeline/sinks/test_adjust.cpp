@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace eventide {
 namespace {
@@ -47,6 +48,7 @@ TEST(Adjustment, CropsTheBorderOrSaysThatNothingIsLeft) {
     EXPECT_EQ(shown.sigma(0, 0), frame.sigma(2, 2));
     Adjustment too_much{{.crop_px = 4}};
     EXPECT_THROW(too_much.apply(frame), Error);
+    EXPECT_THROW(too_much.apply(test::ramp_frame(9, 8, 2, from_us(0))), Error);
 }
 
 TEST(Adjustment, AutoHdrFillsTheRangeAndScalesSigmaAlike) {
@@ -104,6 +106,16 @@ TEST(Adjustment, AutoHdrDoesNotStretchTheFirstHalfSecondByTheFirstFrame) {
     }
 }
 
+TEST(Adjustment, AutoHdrLeavesOutWhatIsNoNumber) {
+    Array2<float> image{10, 10}, whole{10, 10};
+    for (int i = 0; i < 100; ++i)
+        image.values()[std::size_t(i)] = whole.values()[std::size_t(i)] = float(i % 10) / 20;
+    for (float& v : image.row(0)) v = std::numeric_limits<float>::quiet_NaN();
+    AutoRange range, expected;
+    EXPECT_EQ(range.update(from_us(0), image).low, expected.update(from_us(0), whole).low);
+    EXPECT_EQ(range.update(from_us(0), image).high, expected.update(from_us(0), whole).high);
+}
+
 TEST(Adjustment, AutoHdrSmoothsFromTheFirstFramesOn) {
     Array2<float> dark{10, 10}, bright{10, 10};
     for (float& v : bright.values()) v = 1;
@@ -119,6 +131,7 @@ TEST(Adjustment, AutoHdrBeginsAnewWhereTheSensorsClockGoesBack) {
     for (float& v : bright.values()) v = 1;
     AutoRange range, fresh;
     range.update(from_us(10'000'000), dark);
+    range.update(from_us(11'000'000), dark);
     const AutoRange::Range after = range.update(from_us(0), bright),
                            expected = fresh.update(from_us(0), bright);
     EXPECT_EQ(after.low, expected.low);
