@@ -161,10 +161,6 @@ TEST_F(Colour, IsMissedWhereAFormatCannotSayIt) {
     EXPECT_THAT(recorded("c.h5"), HasSubstr("--record c.h5: its format cannot say the images' "
                                             "colour filter, gbrg: --bayer states it"));
     EXPECT_THAT(recorded("c.aedat4"), Not(HasSubstr("colour filter")));
-    const Result simulated = eventide({"simulate", "--seconds", "0.1", "--size", "64x48", "--bayer",
-                                       "gbrg", "--textures", "textures", "--out", "d.h5"});
-    EXPECT_THAT(simulated.error,
-                HasSubstr("d.h5: its format cannot say the images' colour filter"));
 }
 
 TEST_F(Colour, GoesOnFromAStateWithTheColours) {

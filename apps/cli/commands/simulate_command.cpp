@@ -4,7 +4,6 @@
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
-#include "apps/cli/run/colour_lost.h"
 #include "apps/cli/settings/words.h"
 #include "apps/cli/terminal.h"
 #include "pipeline/sinks/folder.h"
@@ -228,8 +227,6 @@ int SimulateCommand::run(Program& program) {
     RecordingOut out{out_, output, format_of(out_), header};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);
-    const std::string colour_lost = colour_lost_text(out_, format_of(out_), bayer_);
-    if (what.images_per_second > 0 && !colour_lost.empty()) spdlog::warn("{}", colour_lost);
     std::unique_ptr<FolderSink> truth;
     if (!truth_.empty())
         truth = std::make_unique<FolderSink>(FolderSettings{
