@@ -6,7 +6,6 @@
 #include "apps/cli/commands/recording_out.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/run/colour.h"
-#include "apps/cli/run/colour_lost.h"
 #include "apps/cli/run/events_out.h"
 #include "apps/cli/settings/time_point.h"
 #include "apps/cli/terminal.h"
@@ -50,6 +49,11 @@ StreamHeader header_behind(const FilterChain& filters, StreamHeader header) {
     header.height = filters.size().height;
     header.colour_filter = filters.pattern(header.colour_filter);
     return header;
+}
+
+/// AEDAT 3 with each image, AEDAT 4 at its beginning.
+bool says_colour_filter(const Format* format) {
+    return format != nullptr && (format->name == "aedat3" || format->name == "aedat4");
 }
 
 void say(const std::string& source, const std::string& source_format, const std::string& file,
@@ -165,12 +169,14 @@ int ConvertCommand::run(Program& program) {
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(from_file_, recording->info().format, to_file_, report);
     if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());
-    const std::string colour_lost = to_udp || report.written.images == 0
-                                        ? ""
-                                        : colour_lost_text(to_file_, format, header.colour_filter);
-    if (!colour_lost.empty()) spdlog::warn("{}", colour_lost);
-    const bool incomplete = report.damaged.total() > 0 || report.lost > 0 ||
-                            !report.data.is_whole() || !colour_lost.empty();
+    const bool colours_lost = report.written.images > 0 &&
+                              header.colour_filter != ColourFilter::none &&
+                              !says_colour_filter(format);
+    if (colours_lost)
+        spdlog::warn("{}: its format cannot say the images' colour filter, {}: --bayer states it",
+                     to_file_, name_of(header.colour_filter));
+    const bool incomplete =
+        report.damaged.total() > 0 || report.lost > 0 || !report.data.is_whole() || colours_lost;
     return strict_ && incomplete ? exit_data_lost : exit_done;
 }
 

@@ -1,7 +1,6 @@
 // A source whose data are also written down.
 #include "apps/cli/run/recorded_source.h"
 
-#include "apps/cli/run/colour_lost.h"
 #include "replay/convert.h"
 #include "src/core/error.h"
 
@@ -30,8 +29,6 @@ RecordedSource::RecordedSource(Source& source, const std::string& path, OutputOp
     header.format = format_.name;
     file_ = std::make_unique<RecordingFile>(path, options, format_, header);
     parser_ = source.make_parser();
-    if (const auto lost = colour_lost_text(path, &format_, header.colour_filter); !lost.empty())
-        spdlog::warn("--record {} (.aedat4 can)", lost);
 }
 
 RecordedSource::~RecordedSource() = default;
