@@ -124,11 +124,10 @@ std::string source_suggestion(std::string_view source) {
 std::unique_ptr<Camera> open_camera(std::string_view source, const CameraOptions& options) {
     const Kind* kind = kind_of(source);
     if (kind == nullptr)
-        throw Error(
-            ErrorKind::usage,
-            "source '" + std::string{source} +
-                "' names no camera: expected davis:, dvxplorer:, dvs128:, v4l2:, ros2: or udp:" +
-                source_suggestion(source));
+        throw Error(ErrorKind::usage, "source '" + std::string{source} +
+                                          "' names no camera: expected davis:, dvxplorer:, "
+                                          "dvs128:, v4l2:, ros2:, udp: or sim:" +
+                                          source_suggestion(source));
     if (kind->open == nullptr)
         throw Error(ErrorKind::usage, "source '" + std::string{source} +
                                           "': this eventide was built without " +

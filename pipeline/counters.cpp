@@ -32,6 +32,7 @@ Snapshot Counters::snapshot() const {
     s.images = bin.images.value();
     s.imu = bin.imu.value();
     s.triggers = bin.triggers.value();
+    s.images_apart = SensorDuration{std::int64_t(bin.images_apart_us.value())};
     s.filtered_events = bin.filtered_events.value();
     s.flicker = {double(bin.flicker_millihertz.value()) / 1000,
                  double(bin.last_flicker_millihertz.value()) / 1000, bin.flicker_events.value()};

@@ -28,8 +28,9 @@ struct Snapshot {
     std::uint64_t parsed_bytes = 0;
     std::uint64_t gaps = 0;  ///< places where bytes are missing, here or already at the source
     std::uint64_t events = 0, images = 0, imu = 0, triggers = 0;  ///< parsed
-    std::uint64_t filtered_events = 0;                            ///< skipped by the event filter
-    FlickerFound flicker;                                         ///< by the event filter
+    SensorDuration images_apart{0};     ///< from events; 0 where one clock tells both (ImageClock)
+    std::uint64_t filtered_events = 0;  ///< skipped by the event filter
+    FlickerFound flicker;               ///< by the event filter
     Damage damaged;
     SlicerCounters slicing;
     std::uint64_t event_windows = 0, silent_windows = 0;  ///< silent: of those, without events
@@ -67,7 +68,7 @@ struct Counters {
         Counter packets, bytes, lost_packets, lost_bytes;
     } read;
     struct alignas(64) {
-        Counter bytes, gaps, events, images, imu, triggers, filtered_events;
+        Counter bytes, gaps, events, images, imu, triggers, images_apart_us, filtered_events;
         std::array<Counter, kDamageReasons> damaged;
         Counter flicker_millihertz, last_flicker_millihertz, flicker_events;
         Counter before_begin, after_end, too_many, late, late_references, time_resets;

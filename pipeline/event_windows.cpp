@@ -56,8 +56,10 @@ void EventWindows::finish(End end) {
             flush_filtered(slicer_, *filter_, released_, last_data_.value_or(HostTime{})));
         counters_.note(filter_->flicker());
     }
-    // A stream without any event has no frames, even though its clock ran.
-    if (const auto clock = parser_->clock(); clock && slicer_.has_begun())
+    // A stream without any event has no frames, even though its clock ran; and images that have
+    // another clock do not tell how long it went on in silence.
+    const bool one_clock = image_clock_.apart() == SensorDuration{0};
+    if (const auto clock = parser_->clock(); clock && slicer_.has_begun() && one_clock)
         slicer_.advance(*clock, last_data_.value_or(HostTime{}));
     slicer_.finish();
     counters_.note(parser_->damaged(), slicer_.counters());
@@ -73,6 +75,8 @@ void EventWindows::pass_on_piece(HostTime arrived) {
     counters_.bin.images.add(piece_.images.size());
     counters_.bin.imu.add(piece_.imu.size());
     counters_.bin.triggers.add(piece_.triggers.size());
+    image_clock_.see(piece_);
+    counters_.bin.images_apart_us.set(std::uint64_t(image_clock_.apart().count()));
     if (observer_) observer_->see(piece_);
     images_since_.insert(images_since_.end(), piece_.images.size(), slicer_.heard());
     for (const ReferenceImage& image : piece_.images) slicer_.push_reference(image.t);

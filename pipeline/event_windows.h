@@ -7,6 +7,7 @@
 #include "pipeline/stages.h"
 #include "src/binning/slicer.h"
 #include "src/core/batch_pieces.h"
+#include "src/core/image_clock.h"
 
 #include <cstdint>
 #include <deque>
@@ -21,8 +22,9 @@ namespace eventide {
 ///
 /// What closes event windows: in a recording the events alone (and at the end the parser's clock),
 /// so that frames do not depend on how the file was split: in a file, what tells the clock may lie
-/// before events that are older. On a live source the parser's clock, too; and where the camera
-/// says nothing at all, the host's clock from the last word on, less a margin.
+/// before events that are older, and images may have another clock. On a live source the parser's
+/// clock, too; and where the camera says nothing at all, the host's clock from the last word on,
+/// less a margin.
 class EventWindows {
 public:
     struct Settings {
@@ -60,6 +62,7 @@ public:
     /// late it was, the same.
     std::uint64_t images() const { return images_; }
     bool is_past_end() const { return slicer_.is_past_end(); }
+    std::optional<SensorTime> end() const { return slicer_.end(); }  ///< Slicer::end()
 
 private:
     void pass_on(HostTime arrived);
@@ -80,6 +83,7 @@ private:
     Counters& counters_;
     Batch batch_, piece_;
     BatchPieces pieces_;
+    ImageClock image_clock_;
     std::deque<Slicer::Position> images_since_;  // what was known before each that no window knows
     std::uint64_t images_ = 0;
     std::optional<SensorTime> resumed_at_;  // until an event after it has come

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace eventide {
 
@@ -57,9 +58,10 @@ public:
         RenderRequest request = request_;
         request.width = width;
         request.height = height;
-        frame = renderer_.make_output(request);
+        Frame changed = renderer_.make_output(request);
         if (fused_) fused_->prepare(request);
         request_ = request;
+        frame = std::move(changed);
         return true;
     }
 

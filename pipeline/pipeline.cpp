@@ -89,8 +89,8 @@ void Pipeline::bin() {  // bytes -> events -> grids
         keeper_,
         {grid_pool_.size(), settings_.event_windows.slicer.max_events, settings_.reset_on_gap},
         [this] { return grid_pool_.lent(); },
-        [this](const EventWindow& event_window) { hand_on(event_window); }};
-    const auto take = [&](const EventWindow& event_window) { gate.take(event_window); };
+        [this](const CutWindow& event_window) { hand_on(event_window); }};
+    const auto take = [&](const CutWindow& event_window) { gate.take(event_window); };
     const bool complete = for_each(packets_, [&](const RawPacket& packet) {
         const HostTime begun = Clock::now();
         cut(packet);
@@ -154,7 +154,7 @@ void Pipeline::run_sequential() {
     VoxelGrid grid = binner_.make_output();
     Encoded encoded = make_encoded();
     bool presenting = true;
-    const auto hand_on = [&](const EventWindow& event_window) {
+    const auto hand_on = [&](const CutWindow& event_window) {
         bin_one(event_window, grid);
         encode_one(grid, encoded);
         presenting = presenting && guarded([&] { present_one(encoded); });
@@ -204,7 +204,7 @@ bool Pipeline::start(std::jthread& thread, const char* name, void (Pipeline::*wo
 template <typename Body>
 void Pipeline::for_each_event_window(Body body) {
     for (EventWindow event_window; event_windows_.next(event_window) && !stop_.is_overdue();)
-        body(event_window);
+        body(CutWindow{event_window, event_windows_.images()});
     if (event_windows_.is_past_end()) parts_.source.stop();
 }
 

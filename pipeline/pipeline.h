@@ -8,6 +8,7 @@
 #include "pipeline/frame_output.h"
 #include "pipeline/link.h"
 #include "pipeline/pace/latency_keeper.h"
+#include "pipeline/pace/window_merger.h"
 #include "pipeline/pipeline_state.h"
 #include "pipeline/pool.h"
 #include "pipeline/sink.h"
@@ -103,6 +104,8 @@ public:
     bool is_whole() const { return !stop_.is_set() && !error_.is_there(); }
 
     Snapshot snapshot() const { return counters_.snapshot(); }  ///< Thread: any, at any time
+    /// Slicer::end(). Thread: that of filter and observer.
+    std::optional<SensorTime> end() const { return event_windows_.end(); }
 
 private:
     // The four threads.
@@ -114,10 +117,10 @@ private:
     // One step of each, for both kinds of run.
     bool read_one(RawPacket& into);
     Pool<RawPacket>::Handle packet_to_fill();
-    void hand_on(const EventWindow& event_window);
+    void hand_on(const CutWindow& event_window);
     void cut(const RawPacket& packet);
     void keep_state(SensorTime t);
-    void bin_one(const EventWindow& event_window, VoxelGrid& grid);
+    void bin_one(const CutWindow& event_window, VoxelGrid& grid);
     void encode_one(const VoxelGrid& grid, Encoded& encoded);
     void present_one(Encoded& encoded);
     template <typename Body>

@@ -36,7 +36,7 @@ Pool<RawPacket>::Handle Pipeline::packet_to_fill() {
                                                     : Pool<RawPacket>::Handle{};
 }
 
-void Pipeline::hand_on(const EventWindow& event_window) {
+void Pipeline::hand_on(const CutWindow& event_window) {
     auto grid = grid_pool_.acquire();
     bin_one(event_window, *grid);
     grids_.push(std::move(grid));
@@ -62,12 +62,12 @@ void Pipeline::keep_state(SensorTime t) {
     settings_.state_stops.keep({t, *slicer, binner_.ages()});
 }
 
-void Pipeline::bin_one(const EventWindow& event_window, VoxelGrid& grid) {
+void Pipeline::bin_one(const CutWindow& event_window, VoxelGrid& grid) {
     const HostTime begun = Clock::now();
     if (event_window.reset_before || (event_window.gap_before && settings_.reset_on_gap))
         binner_.reset();
     binner_.process(event_window, grid);
-    grid.images = event_windows_.images();
+    grid.images = event_window.images;
     if (counters_.bin.event_windows.value() == 0)
         counters_.bin.begin_us.set(std::uint64_t(to_us(event_window.window.begin)));
     counters_.bin.event_windows.add();

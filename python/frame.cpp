@@ -6,9 +6,9 @@ namespace eventide::python {
 
 namespace py = pybind11;
 
-py::object sigma_of(const FramePointer& frame, py::handle owner) {
-    if (frame->sigma.empty()) return py::none();
-    return array_of(frame->sigma, owner);
+py::object sigma_of(const Frame& frame, py::handle owner) {
+    if (frame.sigma.empty()) return py::none();
+    return array_of(frame.sigma, owner);
 }
 
 void add_frame(py::module_& module) {
@@ -27,12 +27,12 @@ void add_frame(py::module_& module) {
         .def_property_readonly(
             "intensity",
             [](const py::object& self) {
-                return array_of(self.cast<FramePointer>()->intensity, self);
+                return array_of(self.cast<const Frame&>().intensity, self);
             },
             "float32 [y, x], 0 black to 1 white; may lie a little outside")
         .def_property_readonly(
             "sigma",
-            [](const py::object& self) { return sigma_of(self.cast<FramePointer>(), self); },
+            [](const py::object& self) { return sigma_of(self.cast<const Frame&>(), self); },
             "float32 [y, x], standard deviation of intensity; None where not asked for");
 }
 

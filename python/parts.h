@@ -61,8 +61,8 @@ ReconstructorOptions options_of(const pybind11::dict& given);
 
 using FramePointer = std::shared_ptr<Frame>;
 
-/// The array, which keeps `owner`, or None where sigma was not asked for.
-pybind11::object sigma_of(const FramePointer& frame, pybind11::handle owner);
+/// The array, which keeps `owner` of the frame, or None where sigma was not asked for.
+pybind11::object sigma_of(const Frame& frame, pybind11::handle owner);
 
 void add_errors(pybind11::module_& module);
 void add_frame(pybind11::module_& module);

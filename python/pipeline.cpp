@@ -61,7 +61,9 @@ private:
     bool call(const Frame& frame) {
         const py::gil_scoped_acquire locked;
         check_signals();
-        return !callable_(std::make_shared<Frame>(frame)).is(py::bool_(false));
+        const py::object answer = callable_(std::make_shared<Frame>(frame));
+        py::detail::make_caster<bool> said;  // without conversion: True, False, or one of NumPy's
+        return !said.load(answer, false) || bool(said);
     }
 
     py::object callable_;

@@ -85,7 +85,7 @@ py::tuple render(GuardedReconstructor& self, std::int64_t t, const Size& size, c
     const FrameSize wanted = size_of(size, roi, self.size);
     self.with([&](Reconstructor& it) { it.render(from_us(t), wanted, *frame); });
     const py::object owner = py::cast(frame);
-    return py::make_tuple(array_of(frame->intensity, owner), sigma_of(frame, owner));
+    return py::make_tuple(array_of(frame->intensity, owner), sigma_of(*frame, owner));
 }
 
 std::map<std::string, std::uint64_t> counters(GuardedReconstructor& self) {

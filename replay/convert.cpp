@@ -76,7 +76,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     if (options.from) recording.seek(*options.from);
     const auto parser = recording.make_parser();
     Batch batch;
-    report.data = WrittenData{target.holds()};
+    report.data = WrittenData{target.holds(), options.colours};
     std::optional<SensorTime> last_event;
     const auto pass_on = [&] {
         if (!batch.events.empty()) last_event = batch.events.back().t;

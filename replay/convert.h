@@ -15,7 +15,8 @@ namespace eventide {
 struct ConvertOptions {
     std::optional<SensorTime> from{}, to{};  ///< both included
     bool overwrite = false;
-    std::function<void(Batch&)> filter = {};  ///< of what lies between the limits; may be empty
+    std::function<void(Batch&)> filter = {};    ///< of what lies between the limits; may be empty
+    ColourFilter colours = ColourFilter::none;  ///< of the images behind it, where that is known
 };
 
 struct ConvertReport {

@@ -75,7 +75,15 @@ constexpr FormatHolds kAedat4Holds{
     .triggers = true,
     .trigger = [](const Trigger& t) { return aedat4_trigger_number(t) >= 0; },
     .clock_resets = true,
-    .streams = true};
+    .streams = true,
+    .colour_filter = true};
+constexpr FormatHolds kAedat3Holds{.events = true,
+                                   .images = true,
+                                   .imu = true,
+                                   .triggers = true,
+                                   .clock_resets = true,
+                                   .streams = true,
+                                   .colour_filter = true};
 constexpr FormatHolds with_streams(FormatHolds holds) {
     holds.streams = true;
     return holds;
@@ -86,8 +94,8 @@ constexpr FormatHolds kEvt3Holds{true, false, false, true, evt3_holds, true};
 const std::array kFormats{
     Format{"aedat4", "AEDAT 4", ".aedat4", kAedat4Holds, has_magic<kAedat4FirstLine>, open_aedat4,
            make<Aedat4Writer>},
-    Format{"aedat3", "AEDAT 3.1", ".aedat", with_streams(kEverything), has_magic<kAedat3Magic>,
-           open_aedat3, make<Aedat3Writer>},
+    Format{"aedat3", "AEDAT 3.1", ".aedat", kAedat3Holds, has_magic<kAedat3Magic>, open_aedat3,
+           make<Aedat3Writer>},
     Format{"aedat2", "AEDAT 2.0", ".aedat2", kEverything, has_magic<kAedat2Magic>, open_aedat2,
            nullptr},
     Format{"evt3", "Prophesee RAW EVT3", ".raw", kEvt3Holds, is_evt<kEvt3>, open_evt3,

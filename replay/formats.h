@@ -28,6 +28,8 @@ struct FormatHolds {
     bool clock_resets = false;
     /// Of several cameras, where it is read (OpenOptions::stream).
     bool streams = false;
+    /// Says which colour filter was before the sensor of images that are mosaics.
+    bool colour_filter = false;
 };
 
 struct DataCounts {

@@ -2,6 +2,7 @@
 #include "replay/written_data.h"
 
 #include "src/codec/batch_parts.h"
+#include "src/core/bayer.h"
 #include "src/core/number_text.h"
 
 #include <algorithm>
@@ -29,6 +30,8 @@ struct Seam {
 
 void WrittenData::fit(Batch& batch) {
     left_out_ += remove_not_held(batch, holds_);
+    if (!batch.images.empty() && colours_ != ColourFilter::none && !holds_.colour_filter)
+        colours_lost_ = true;
     const SensorTime written = newest_;
     if (!holds_.clock_resets) move(batch);
     if (holds_.in_time_order)
@@ -74,6 +77,9 @@ std::vector<std::string> WrittenData::remarks(const std::string& file) const {
     if (late_triggers_ > 0)
         remarks.push_back(file + ": " + counted(late_triggers_, "trigger") +
                           " came behind later events and have the time of those");
+    if (colours_lost_)
+        remarks.push_back(file + ": its format cannot say the images' colour filter, " +
+                          std::string{name_of(colours_)} + ": --bayer states it");
     return remarks;
 }
 

@@ -12,10 +12,12 @@ namespace eventide {
 /// What a file's format has no record for is left out and counted. Where it cannot say that the
 /// sensor's clock began anew (a sender was started again), the times behind it go on from those
 /// before: its readers would leave the events out, and a writer may refuse them. Triggers that come
-/// behind later events are counted.
+/// behind later events are counted, and mosaics whose colour filter it cannot say are noticed.
 class WrittenData {
 public:
-    explicit WrittenData(const FormatHolds& holds) : holds_{holds} {}
+    /// `colours`: of the sensor that made the images; none where it is not known.
+    explicit WrittenData(const FormatHolds& holds, ColourFilter colours = ColourFilter::none)
+        : holds_{holds}, colours_{colours} {}
 
     /// To a batch as it is written, one after the other.
     void fit(Batch& batch);
@@ -26,7 +28,9 @@ public:
     std::uint64_t late_triggers() const { return late_triggers_; }
 
     /// Whether all is in the file, with its time but for that of a clock that began anew.
-    bool is_whole() const { return left_out_ == DataCounts{} && late_triggers_ == 0; }
+    bool is_whole() const {
+        return left_out_ == DataCounts{} && late_triggers_ == 0 && !colours_lost_;
+    }
     /// What there is to say of `file`: sentences for people.
     std::vector<std::string> remarks(const std::string& file) const;
 
@@ -35,6 +39,8 @@ private:
     void move(Batch& batch);
 
     FormatHolds holds_;
+    ColourFilter colours_;
+    bool colours_lost_ = false;  // images were written to what cannot say their filter
     DataCounts left_out_;
     SensorDuration later_{0};                // than the stream says
     SensorTime newest_ = SensorTime::min();  // of the events, as written

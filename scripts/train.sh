@@ -28,5 +28,5 @@ export GOMP_SPINCOUNT=0 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 jemalloc=$(ldconfig -p | awk '/libjemalloc\.so\.2/ { path = $NF } END { print path }')
 exec nice -n 10 env ${jemalloc:+LD_PRELOAD=$jemalloc MALLOC_CONF=dirty_decay_ms:20000,muzzy_decay_ms:20000,narenas:4,oversize_threshold:0,thp:always} \
   "$train" --resume "$checkpoint" --minutes "$minutes" --steps 0 --clock wall --constant-share "${CONSTANT:-.999}" \
-  --checkpoint-minutes 10 --validate-minutes 20 --validation-scenes 24 --out "$out" --keep "$checkpoint" --export "$out/model.safetensors" \
+  --checkpoint-minutes 10 --validate-minutes 20 --validation-scenes 24 --out "$out" --keep "$checkpoint" --export "$out/model.safetensors" --overwrite 1 \
   --textures "$packs/train.pack" --validation-textures "$packs/held_out.pack" --lpips "$out/lpips_squeeze_v0.1.npz" "${@:3}"

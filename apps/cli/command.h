@@ -1,10 +1,11 @@
 // What every subcommand is: a name, its settings, and what it does.
 #pragma once
 
-#include "apps/cli/named_files.h"
 #include "apps/cli/signals.h"
+#include "src/io/named_files.h"
 #include "src/settings/setting.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,15 @@ namespace eventide::app {
 /// Exit codes beyond those of ErrorKind.
 enum ExitCode { exit_done = 0, exit_data_lost = 5 };
 
+/// Keys of settings.
+using FlagKeys = std::set<std::string>;
+
 /// What the program knows and commands need.
 struct Program {
     Signals& signals;
     std::vector<std::string> arguments;  ///< as typed, without the program's name
     bool quiet = false;
+    FlagKeys flags{};    ///< of the command's settings, those that flags say
     NamedFiles files{};  ///< the configuration, and what the command adds
 };
 

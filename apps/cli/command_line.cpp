@@ -224,6 +224,7 @@ Parsed parse_command_line(const std::vector<std::string>& given, const SettingTa
     const CLI::Option* const config =
         app.add_option("--config", invocation.config_file, "TOML file with settings")
             ->type_name("FILE")
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
             ->envname("EVENTIDE_CONFIG");
     app.add_flag("--print-config", invocation.print_config,
                  wrapped("Show each value of the command and where it comes from, and exit"));

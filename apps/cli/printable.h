@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdio>
 #include <string>
 #include <string_view>
 
@@ -18,5 +19,10 @@ std::string printable(std::string_view text, Lines lines = Lines::escape);
 
 /// JSON in ASCII; bytes that are no UTF-8 become U+FFFD. `indent` as of nlohmann's dump().
 std::string json_text(const nlohmann::ordered_json& json, int indent = 2);
+
+/// Where a table for people goes: to standard error where standard output is for the same as data.
+inline std::FILE* table_beside(const std::string& data) {
+    return data == "-" ? stderr : stdout;
+}
 
 }  // namespace eventide::app

@@ -94,6 +94,7 @@ int run_parsed(Signals& signals, std::vector<std::string> arguments) {
                                               positional.name +
                                               help_hint(invocation->command->name()));
     Program program{signals, std::move(arguments), common.log.quiet};
+    for (const auto& [key, values] : invocation->command_flags) program.flags.insert(key);
     program.files.reads("--config", invocation->config_file);
     return invocation->command->run(program);
 }

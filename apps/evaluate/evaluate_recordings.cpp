@@ -146,7 +146,7 @@ EvaluateReport evaluate_recordings(const RecordingSettings& what, const Evaluate
     return evaluation.finish("windows " + window + ", first " +
                              (what.skip_images == RecordingSettings::kSkipHalf
                                   ? std::string{"half of the images"}
-                                  : std::to_string(what.skip_images) + " images") +
+                                  : counted(std::uint64_t(what.skip_images), "image")) +
                              " not scored" +
                              (what.given_images > 0
                                   ? ", one image of " + std::to_string(what.given_images) + " given"

@@ -2,6 +2,7 @@
 #include "apps/evaluate/evaluation.h"
 #include "apps/evaluate/simulated_sequence.h"
 #include "src/core/error.h"
+#include "src/core/number_text.h"
 #include "src/simulate/presets.h"
 #include "src/simulate/scene/textures_folder.h"
 
@@ -104,9 +105,9 @@ EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateS
             });
         return judged.finish();
     });
-    return evaluation.finish(std::to_string(what.sequences) + " sequences of " +
-                             std::to_string(what.event_windows) + " event windows, one in " +
-                             std::to_string(what.score_every) + " scored, " +
+    return evaluation.finish(counted(std::uint64_t(what.sequences), "sequence") + " of " +
+                             counted(std::uint64_t(what.event_windows), "event window") +
+                             ", one in " + std::to_string(what.score_every) + " scored, " +
                              std::to_string(what.width) + "x" + std::to_string(what.height) +
                              ", frames " + std::to_string(width) + "x" + std::to_string(height));
 }

@@ -16,6 +16,7 @@ namespace {
 
 // Of the drawing; the legend stands to the right of it.
 constexpr double kWidth = 640, kHeight = 400, kLeft = 72, kRight = 16, kTop = 36, kBottom = 52;
+constexpr double kName = 24, kTickGap = 6;  // of the y axis
 constexpr double kLegendMark = 28, kCharacterWidth = 6.6;
 constexpr std::array<const char*, 6> kColours{"#1b6ca8", "#d1495b", "#2e8b57",
                                               "#8a5cb8", "#c77d0a", "#555555"};
@@ -102,8 +103,12 @@ Axes axes_of(const Plot& plot) {
         x1 = plot.log_x ? x1 * room : x1 + room;
     }
     const double margin = .04 * (y1 - y0);
-    return {{x0, x1, kLeft, kWidth - kRight, plot.log_x},
-            {y0 == 0 ? 0 : y0 - margin, y1 + margin, kHeight - kBottom, kTop, false}};
+    Axes axes{{x0, x1, kLeft, kWidth - kRight, plot.log_x},
+              {y0 == 0 ? 0 : y0 - margin, y1 + margin, kHeight - kBottom, kTop, false}};
+    for (const double v : axes.y.ticks())  // room for long numbers beside the axis' name
+        axes.x.from =
+            std::max(axes.x.from, kName + kCharacterWidth * double(number(v).size()) + kTickGap);
+    return axes;
 }
 
 std::string line(double x1, double y1, double x2, double y2, const std::string& style) {
@@ -118,6 +123,7 @@ std::string text(double x, double y, const std::string& what, const std::string&
 
 std::string frame_of(const Plot& plot, const Axes& axes) {
     std::string out;
+    const double left = axes.x.from, right = axes.x.to;
     for (const double v : axes.x.ticks()) {
         const double x = axes.x.at(v);
         out += line(x, kTop, x, kHeight - kBottom, "stroke='#e4e4e4'");
@@ -125,12 +131,11 @@ std::string frame_of(const Plot& plot, const Axes& axes) {
     }
     for (const double v : axes.y.ticks()) {
         const double y = axes.y.at(v);
-        out += line(kLeft, y, kWidth - kRight, y, "stroke='#e4e4e4'");
-        out += text(kLeft - 6, y + 4, number(v), "text-anchor='end'");
+        out += line(left, y, right, y, "stroke='#e4e4e4'");
+        out += text(left - kTickGap, y + 4, number(v), "text-anchor='end'");
     }
-    out += text((kLeft + kWidth - kRight) / 2, 22, plot.title,
-                "text-anchor='middle' font-weight='bold'");
-    out += text((kLeft + kWidth - kRight) / 2, kHeight - 14, plot.x_label, "text-anchor='middle'");
+    out += text((left + right) / 2, 22, plot.title, "text-anchor='middle' font-weight='bold'");
+    out += text((left + right) / 2, kHeight - 14, plot.x_label, "text-anchor='middle'");
     const double middle = (kTop + kHeight - kBottom) / 2;
     return out + text(18, middle, plot.y_label,
                       "text-anchor='middle' transform='rotate(-90 18 " + number(middle) + ")'");

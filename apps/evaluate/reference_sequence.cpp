@@ -7,6 +7,7 @@
 #include "src/binning/push_filtered.h"
 #include "src/core/error.h"
 #include "src/core/grey.h"
+#include "src/core/image_clock.h"
 #include "src/core/sensor_limits.h"
 
 #include <algorithm>
@@ -28,6 +29,7 @@ public:
         : into_(into), from_s_(from_s), to_s_(to_s) {}
 
     void take(Batch& batch) {
+        image_clock_.see(batch);
         events_ += batch.events.size();
         if (!begun_ && !batch.events.empty()) begin(batch);
         if (!batch.events.empty()) last_event_ = batch.events.back().t;
@@ -45,6 +47,7 @@ public:
     }
     /// Of the recording, inside and outside those times.
     std::uint64_t events() const { return events_; }
+    const ImageClock& image_clock() const { return image_clock_; }
 
 private:
     void begin(const Batch& batch) {
@@ -61,8 +64,10 @@ private:
             return image.t < from_ || image.t > to_;
         });
     }
+
     ReferenceSequence& into_;
     std::optional<double> from_s_, to_s_;
+    ImageClock image_clock_;
     SensorTime from_ = SensorTime::min(), to_ = SensorTime::max();
     SensorTime last_event_ = SensorTime::min();
     std::uint64_t events_ = 0;
@@ -114,6 +119,8 @@ ReferenceSequence read_reference_sequence(const std::filesystem::path& path,
     const auto refuse = [&](const std::string& what) {
         throw Error(ErrorKind::input, path.string() + ": " + what);
     };
+    if (const SensorDuration apart = keeper.image_clock().apart(); apart > SensorDuration{0})
+        refuse(image_clock_text(apart));
     if (sequence.events.empty()) refuse("expected events, found none in the time asked for");
     if (sequence.images.empty())
         refuse("expected reference images to compare with, found none in the time asked for");

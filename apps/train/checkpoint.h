@@ -11,10 +11,13 @@
 
 namespace eventide {
 
+/// The score of a run that was never validated: above all others.
+inline constexpr double kNotJudged = 1e9;
+
 struct Checkpoint {
     std::int64_t segment = 0;  ///< the next one; as many steps are done
     double elapsed_minutes = 0;
-    double best_score = 1e9;                       ///< of the validations so far
+    double best_score = kNotJudged;                ///< of the validations so far
     std::string options;                           ///< OptionTable::record()
     std::vector<RecurrentState> recurrent_states;  ///< of each group's and thread's streams
     std::vector<RecurrentState> teacher_states;    ///< the same of a teacher, view by view

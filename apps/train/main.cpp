@@ -1,10 +1,10 @@
 // eventide-train: makes the models that eventide runs. docs/training.md tells how.
 #include "apps/train/trainer.h"
 #include "src/core/error.h"
+#include "src/io/output_file.h"
 #include "src/simulate/scene/texture_pack.h"
 
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <sstream>
 
@@ -43,10 +43,11 @@ void read_options(const std::vector<std::string>& words, OptionTable& table,
 void train(const TrainOptions& options, const std::string& record) {
     Trainer trainer{options, library(options.textures, 1), library(options.validation_textures, 2),
                     [](const std::string& line) { std::cout << line << std::endl; }};
-    std::ofstream{std::filesystem::path{options.out} / "options.txt"} << record;
+    write_file(std::filesystem::path{options.out} / "options.txt", record, true);
     trainer.run(stop_asked);
     if (!options.keep.empty()) trainer.keep(options.keep);
-    if (!options.export_file.empty()) save_model(options.export_file, trainer.finished_model());
+    if (!options.export_file.empty())
+        save_model(options.export_file, trainer.finished_model(), options.overwrite);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 void check_weights(const std::vector<WeightedModel>& models) {
     double sum = 0;
     for (const WeightedModel& one : models) sum += one.weight;
-    if (models.empty() || std::abs(sum - 1) > 1e-6)
+    if (!(std::abs(sum - 1) <= 1e-6))
         throw Error(ErrorKind::usage,
                     "expected weights that add up to 1, found " + std::to_string(sum));
 }

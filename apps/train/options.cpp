@@ -103,6 +103,8 @@ OptionTable::OptionTable(TrainOptions& o) {
         "checkpoint to write at the end without the states of streams, which fill again: for a "
         "repository",
         Use::once);
+    add("overwrite", o.overwrite,
+        "1: --export and --keep may replace files; --keep also that of --resume", Use::once);
     add("card", o.card, "what the model card says first", Use::run);
     add("device", o.device, "cpu or cuda", Use::run);
     add_choice("precision", o.precision, "of activations; auto: bf16 where it is quick",
@@ -188,6 +190,9 @@ OptionTable::OptionTable(TrainOptions& o) {
     add("contrast", o.loss.contrast, "weight in the loss");
     add("lpips-weight", o.loss.lpips, "weight in the loss");
     add("lpips-frames", o.lpips_frames, "of the rendered ones, the last, that LPIPS looks at");
+    add("lpips-on-pixels", o.lpips_on_pixels,
+        "1: LPIPS looks at all patches; 0: at those between the pixels, so that frames of the "
+        "sensor's size stay as they are drawn to the teacher's");
     add("nll", o.loss.nll, "weight in the loss");
     add("temporal", o.loss.temporal, "weight in the loss");
     add("teacher", o.teacher,
@@ -215,6 +220,9 @@ OptionTable::OptionTable(TrainOptions& o) {
 }
 
 void OptionTable::set(const std::string& name, const std::string& value) {
+    // A checkpoint records a line for each.
+    if (value.find('\n') != value.npos)
+        throw Error(ErrorKind::usage, "--" + name + ": expected one line, found more");
     for (const Option& option : options_)
         if (option.setting.key == name) return set_from("--" + name, option.setting, value);
     throw Error(ErrorKind::usage, "expected one of the options of --help, found '--" + name + "'");

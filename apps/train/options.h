@@ -24,16 +24,18 @@ struct TrainOptions {
     std::string out = "out/train";
     std::string textures, validation_textures, lpips;
     std::string resume, initial, export_file, keep, card;
-    std::string teacher;  ///< model whose frames mu learns from, beside the truth; empty: none
+    bool overwrite = false;  ///< of export_file and keep
+    std::string teacher;     ///< model whose frames mu learns from, beside the truth; empty: none
     double teacher_share = .8;  ///< of them in what mu is drawn to; the rest is the truth
     int teacher_views = 2;
     std::vector<std::string> train_only;  ///< beginnings of names of weights that learn; empty: all
     std::string device = "cpu";
     Precision precision = Precision::automatic;  ///< of activations
     double minutes = 60;
-    std::string clock = "wall";  ///< that minutes go by: wall, or cpu
-    int steps = 0;               ///< where not 0, the budget instead of `minutes`
-    int lpips_frames = 1 << 20;  ///< of the rendered ones, the last, that LPIPS looks at
+    std::string clock = "wall";   ///< that minutes go by: wall, or cpu
+    int steps = 0;                ///< where not 0, the budget instead of `minutes`
+    int lpips_frames = 1 << 20;   ///< of the rendered ones, the last, that LPIPS looks at
+    bool lpips_on_pixels = true;  ///< LPIPS looks also at patches whose points are pixels
     int threads = 1, streams = 2, groups = 4;
     double learning_rate = 1e-3, final_rate = 0.02, constant_share = 0.6;
     int warm_up = 100;

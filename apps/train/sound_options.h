@@ -11,5 +11,6 @@ const TrainOptions& sound(const TrainOptions& options);
 
 /// In `--out`.
 inline constexpr const char* kCheckpoint = "checkpoint.safetensors";
+inline constexpr const char* kBest = "best.safetensors";
 
 }  // namespace eventide

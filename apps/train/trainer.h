@@ -41,6 +41,7 @@ private:
         Parameters gradients;
         LossTerms terms;
     };
+    void resume();
     void leave_out_inputs();
     void begin_states();
     void begin_teacher_states(std::size_t places);
@@ -52,7 +53,13 @@ private:
     torch::Tensor taught(const torch::Tensor& truth, const TrainingBatch& batch,
                          const SegmentPlan& plan, int place);
     Share run_share(const TrainingBatch& batch, const SegmentPlan& plan, int place);
+    std::vector<Share> run_shares(const std::vector<TrainingBatch>& batches,
+                                  const SegmentPlan& plan, int first_place);
+    static Share mean_of(std::vector<Share> shares);
     Mark mark() const { return {progress_.segment, progress_.elapsed_minutes}; }
+    Validation::Scores scores_of(const Parameters& weights) const;
+    void judge_again();
+    bool has_best() const;
     void validate();
     void checkpoint();
     std::filesystem::path file(const char* name) const;

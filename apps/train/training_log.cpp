@@ -9,12 +9,21 @@
 namespace eventide {
 namespace {
 
+/// What a new row needs before it: the header of an empty file, and an end of a line that a full
+/// disk or a killed run cut short.
+std::string before_row(const std::filesystem::path& path, const std::string& header) {
+    std::ifstream in{path, std::ios::binary | std::ios::ate};
+    if (!in || in.tellg() <= 0) return header + "\n";
+    in.seekg(-1, std::ios::end);
+    return in.get() == '\n' ? "" : "\n";
+}
+
 void append_row(const std::filesystem::path& path, const std::string& header,
                 const std::string& row) {
-    const bool begin = !std::filesystem::exists(path);
+    const std::string before = before_row(path, header);
     std::ofstream out{path, std::ios::app};
-    if (begin) out << header << "\n";
-    out << row << "\n";
+    out << before << row << "\n";
+    out.flush();
     if (!out) throw Error(ErrorKind::failed, path.string() + ": cannot be written");
 }
 

@@ -13,10 +13,11 @@ Validation::Validation(const ValidationSettings& settings, DataSettings data,
     : data_(std::move(data)) {
     data_.crop = data_.patch = settings.crop;
     data_.event_windows = settings.event_windows;
-    data_.rendered = std::max(1, settings.event_windows - data_.warm_windows);
+    data_.rendered = settings.event_windows;  // fewer would be any of them, some that count nothing
     data_.episode = {double(settings.event_windows), double(settings.event_windows)};
     data_.whole_probability = 1;
     data_.seed = settings.seed;
+    data_.teacher_bins = 0;  // nobody is taught by them
     plan_ = segment_plan(data_, 0);
     for (int scene = 0; scene < settings.scenes; ++scene) {
         const StreamSegment segment = SceneStream{data_, textures, {.stream = scene}, 0}.next();

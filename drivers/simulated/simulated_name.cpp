@@ -42,10 +42,11 @@ void set(SimulatedSourceSettings& s, std::string_view key, std::string_view valu
         s.recording.images_per_second = number<double>(key, value);
     } else if (key == "seconds") {
         s.recording.seconds = number<double>(key, value);
-        if (!(s.recording.seconds > 0)) refuse(key, "a number above 0", value);
+        if (!(s.recording.seconds >= 0.001)) refuse(key, "a number from 0.001 up", value);
     } else if (key == "speed") {
         s.speed = value == "max" ? 0 : number<double>(key, value);
-        if (value != "max" && !(s.speed > 0)) refuse(key, "a number above 0, or max", value);
+        if (value != "max" && !(s.speed >= 0.001 && s.speed <= 1000))
+            refuse(key, "a number from 0.001 to 1000, or max", value);
     } else if (key == "textures") {
         s.textures = value;
     } else {
@@ -72,7 +73,7 @@ SimulatedSourceSettings parse_simulated_name(std::string_view source) {
     for (auto rest = keys; rest;) {
         const auto [item, more] = split(*rest, '&');
         const auto [key, value] = split(item, '=');
-        if (!value) refuse(key, "KEY=VALUE", item);
+        if (!value) refuse("key", "KEY=VALUE", item);
         set(settings, key, *value);
         rest = more;
     }

@@ -24,8 +24,8 @@ bool names_simulation(std::string_view source);
 ///   seed=N         number of the scene; the preset's own where not given
 ///   size=WxH       px, 240x180
 ///   images=N       reference images per second, 25; 0 for none
-///   seconds=N      length; endless in real time, 4 with speed=max
-///   speed=N|max    1 is real time; max is not live: nothing is lost, and it ends
+///   seconds=N      length, from 0.001 up; endless in real time, 4 with speed=max
+///   speed=N|max    0.001 to 1000, 1 is real time; max is not live: nothing is lost, and it ends
 ///   textures=PATH  folder of images or pack of textures
 /// Throws Error (usage) naming the key, what it expects and what was found.
 SimulatedSourceSettings parse_simulated_name(std::string_view source);

@@ -239,7 +239,8 @@ typedef struct eventide_callbacks {
 typedef struct eventide_recording_options {
     size_t struct_size; /**< sizeof(eventide_recording_options) */
     const char* format; /**< "aedat4", "evt3", "text", ...; NULL: found from the content */
-    int width, height;  /**< px, of the sensor; both or neither */
+    int width;          /**< px, of the sensor; both or neither */
+    int height;         /**< px */
     /** Of a recording with events of several cameras, whose are read, as eventide_callbacks.warn is
      * told their names: the topic of a bag, "davis/right" of an HDF5 file, the number of a source
      * of AEDAT 3 or of a stream of AEDAT 4. NULL: the first. */

@@ -30,7 +30,7 @@ public:
           hand_on_(hand_on) {}
 
     /// One more window, in order.
-    void take(const EventWindow& event_window) {
+    void take(const CutWindow& event_window) {
         if (!keeper_.is_bound()) return hand_on_(event_window);
         keeper_.adapt(lent_());
         if (!merger_.takes(event_window, settings_.new_state_after_gaps)) flush();

@@ -8,6 +8,13 @@
 
 namespace eventide {
 
+struct CutWindow : EventWindow {
+    std::uint64_t images = 0;  ///< that the stream had given when it was cut
+
+    CutWindow() = default;
+    CutWindow(const EventWindow& cut, std::uint64_t known = 0) : EventWindow{cut}, images{known} {}
+};
+
 /// Keeps the events of consecutive windows; the window of all of them begins with the first and
 /// ends with the last. Bin thread.
 class WindowMerger {
@@ -25,7 +32,7 @@ public:
                events_.size() + event_window.events.size() <= most_events_;
     }
 
-    void add(const EventWindow& event_window) {
+    void add(const CutWindow& event_window) {
         if (empty()) {
             merged_ = event_window;
             events_.clear();
@@ -34,11 +41,12 @@ public:
         merged_.window.end = event_window.window.end;
         merged_.gap_before = merged_.gap_before || event_window.gap_before;
         merged_.arrived = event_window.arrived;
+        merged_.images = event_window.images;
         ++windows_;
     }
 
     /// All that is kept, borrowed until the next add(); nothing is kept any more.
-    EventWindow take() {
+    CutWindow take() {
         merged_.events = events_;
         windows_ = 0;
         return merged_;
@@ -47,7 +55,7 @@ public:
 private:
     std::uint64_t most_events_;
     std::vector<Event> events_;
-    EventWindow merged_;
+    CutWindow merged_;
     std::uint64_t windows_ = 0;
 };
 

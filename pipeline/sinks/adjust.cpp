@@ -78,11 +78,13 @@ bool AdjustSettings::changes_nothing() const {
 
 AutoRange::Range AutoRange::update(SensorTime t, const Array2<float>& intensity) {
     const Range now = percentiles(intensity);
-    const double passed = std::chrono::duration<double>(t - last_).count();
-    // A jump backwards begins anew.
-    const float old = begun_ && passed >= 0 ? float(std::exp(-passed / kSeconds)) : 0.0f;
-    smooth_.low = old * smooth_.low + (1 - old) * now.low;
-    smooth_.high = old * smooth_.high + (1 - old) * now.high;
+    double passed = begun_ ? std::chrono::duration<double>(t - last_).count() : 0;
+    if (passed < 0) weight_ = passed = 0;  // begins anew
+    const double old = std::exp(-passed / kSeconds);
+    weight_ = old * weight_ + (1 - old);
+    const auto share = float(weight_ > 0 ? (1 - old) / weight_ : 1);
+    smooth_.low += share * (now.low - smooth_.low);
+    smooth_.high += share * (now.high - smooth_.high);
     last_ = t;
     begun_ = true;
     const float middle = (smooth_.low + smooth_.high) / 2;

@@ -7,6 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <span>
@@ -29,8 +30,16 @@ cv::Mat fitted(const cv::Mat& image, cv::Size size) {
     return scaled;
 }
 
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX, kIndent = 2;
+constexpr double kFontScale = 0.5;
+
 void caption(cv::Mat& sheet, const std::string& text, int x, int y) {
-    cv::putText(sheet, text, {x + 2, y + 16}, cv::FONT_HERSHEY_SIMPLEX, 0.5, kInk, 1, cv::LINE_AA);
+    cv::putText(sheet, text, {x + kIndent, y + 16}, kFont, kFontScale, kInk, 1, cv::LINE_AA);
+}
+
+int width_of(const std::string& caption) {
+    int below = 0;
+    return kIndent + cv::getTextSize(caption, kFont, kFontScale, 1, &below).width;
 }
 
 }  // namespace
@@ -98,12 +107,15 @@ cv::Mat ContactSheetSink::lay_out(const std::vector<Row>& rows) const {
                 break;
             }
     const cv::Size cell = rows.front().intensity.size();
-    const int width = int(columns.size()) * (cell.width + kGap) + kGap;
+    int column_width = cell.width;  // of a small sensor captions are wider than images
+    for (const Column& column : columns)
+        column_width = std::max(column_width, width_of(column.first));
+    const int width = int(columns.size()) * (column_width + kGap) + kGap;
     const int pitch = cell.height + kCaption + kRowGap;
     const int height = kCaption + int(rows.size()) * pitch - kRowGap;
     cv::Mat sheet(height, width, CV_8UC3, kPaper);
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        const int x = kGap + int(c) * (cell.width + kGap);
+        const int x = kGap + int(c) * (column_width + kGap);
         caption(sheet, columns[c].first, x, 0);
         for (std::size_t r = 0; r < rows.size(); ++r) {
             const int y = kCaption + int(r) * pitch;

@@ -106,6 +106,8 @@ public:
 
     bool has_begun() const { return begin_.has_value(); }
     bool is_past_end() const { return past_end_; }  ///< SlicerSettings::end was reached
+    /// The last time that was asked for, of the clock at hand; empty: all, or not known yet.
+    std::optional<SensorTime> end() const { return end_; }
     const SlicerCounters& counters() const { return counters_; }
 
     /// As constructed; counters stay.
@@ -177,7 +179,7 @@ private:
     std::optional<HostTime> behind_since_;  // the stream is far behind newest_
     bool reset_ = false, anew_ = false, finished_ = false, past_end_ = false;
     bool first_stream_ = true;       // settings_.begin and end are times of the first stream only
-    std::optional<SensorTime> end_;  // of this stream
+    std::optional<SensorTime> end_;  // of the clock at hand
     SlicerCounters counters_;
 };
 

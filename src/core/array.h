@@ -99,13 +99,13 @@ private:
 
 /// No NaN, no infinity.
 inline bool is_finite(const Array2<float>& map) {
-    // Numbers without their sign, as integers, are as large as they are. No branches: compilers
-    // make vectors of it.
-    constexpr std::int32_t kLargest = 0x7F7F'FFFF;
-    bool found = false;
+    // Their exponents, all ones, carry one step further into the sign's place. Neither branches
+    // nor comparisons: compilers make vectors of it.
+    constexpr std::uint32_t kWithoutSign = 0x7FFF'FFFF, kStep = 0x0080'0000;
+    std::uint32_t carried = 0;
     for (const float value : map.values())
-        found |= (std::bit_cast<std::int32_t>(value) & 0x7FFF'FFFF) > kLargest;
-    return !found;
+        carried |= (std::bit_cast<std::uint32_t>(value) & kWithoutSign) + kStep;
+    return (carried & ~kWithoutSign) == 0;
 }
 
 }  // namespace eventide

@@ -87,9 +87,4 @@ inline F4 inverse_sqrt(F4 x) {
     return y * (1.5f - .5f * x * y * y);
 }
 
-/// e^-x for x >= 0, within .012 and falling from 1 to 0: good enough for a filter's coefficient.
-inline F4 decay(F4 x) {
-    return 1.f / (1.f + x * (1.f + x * (.5f + x * (1.f / 6 + x * (1.f / 24)))));
-}
-
 }  // namespace eventide::lanes

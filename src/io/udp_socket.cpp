@@ -97,6 +97,10 @@ UdpSocket UdpSocket::listening(const UdpName& name) {
 }
 
 UdpSocket UdpSocket::sending(const UdpName& name) {
+    // Connecting there succeeds, and every datagram is lost.
+    if (number_in<std::uint16_t>(name.port) == 0)
+        throw Error(ErrorKind::usage,
+                    name.text() + ": expected a port from 1 to 65535 to send to, found 0");
     return {open_with(name, addresses_of(name, 0), "send there", ::connect), name.text()};
 }
 

@@ -26,7 +26,7 @@ public:
     /// Listens at the address; port 0 takes a free one. Throws Error (device) where it is taken or
     /// none of this machine's.
     static UdpSocket listening(const UdpName& name);
-    /// Sends to the address. Throws Error (device) where there is no such host.
+    /// Sends to the address. Throws Error: usage for port 0, device where there is no such host.
     static UdpSocket sending(const UdpName& name);
 
     UdpSocket(UdpSocket&& other) noexcept;

@@ -168,7 +168,8 @@ EVENTIDE_BF16 void compress_row(const CompressRow& r) {
     for (int p = 0; p < r.pixels; p += most) {
         const int pixels = std::min(most, r.pixels - p);
         compress(r.in + std::ptrdiff_t{p} * r.channels, pixels * r.channels, r.ahead, room);
-        for (int c = 0; c < r.size * r.maps; c += 2 * kLanes)
+        // Several maps are one round: at most 4 of 8.
+        for (int c = 0; c < r.size; c += 2 * kLanes)
             narrow_pixels(r, room + c, pixels, c, out + std::ptrdiff_t{p} * r.size / 2 + c / 2);
     }
 }

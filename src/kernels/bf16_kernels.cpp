@@ -64,10 +64,10 @@ struct Narrow {
         return _mm256_dpbf16_ps(sum, (__m256bh)a, (__m256bh)b);
     }
     EVENTIDE_BF16_INLINE static void store(float* to, int n, Sum v, Sum floor) {
-        _mm256_mask_storeu_ps(to, __mmask8(first_lanes(std::min(n, 8))), _mm256_max_ps(v, floor));
+        _mm256_mask_storeu_ps(to, __mmask8(first_lanes(n)), _mm256_max_ps(v, floor));
     }
     EVENTIDE_BF16_INLINE static void store(std::uint16_t* to, int n, Sum v, Sum floor) {
-        _mm_mask_storeu_epi16(to, __mmask8(first_lanes(std::min(n, 8))),
+        _mm_mask_storeu_epi16(to, __mmask8(first_lanes(n)),
                               (__m128i)_mm256_cvtneps_pbh(_mm256_max_ps(v, floor)));
     }
 };

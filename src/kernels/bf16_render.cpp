@@ -147,8 +147,7 @@ EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
     const OffsetRows& offset = r.offset;
     if (r.outputs <= kTileOutputs) return narrow_rows(r, kTiles);
     // One row of A holds a pixel's numbers, in pairs; two tiles of sums its 17 to 32 outputs.
-    if (offset.width % 2 != 0 || offset.width < 2 || offset.width > kMaxNumbers ||
-        r.outputs > 2 * kTileOutputs)
+    if (offset.width % 2 != 0 || offset.width > kMaxNumbers || r.outputs > 2 * kTileOutputs)
         return false;
     if (kTiles) start_tiles(r);
     Offsets offsets{offset, false};

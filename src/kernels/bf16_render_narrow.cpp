@@ -135,9 +135,8 @@ EVENTIDE_AMX void run_rows(const HiddenRows& r) {
 
 bool narrow_rows(const HiddenRows& r, bool by_tiles) {
     // Weights of 8 outputs or fewer lie in half vectors.
-    const bool fits = r.offset.width % 2 == 0 && r.offset.width >= 2 &&
-                      r.offset.width <= kMaxNumbers && r.outputs > kTileOutputs / 2 &&
-                      r.outputs <= kTileOutputs;
+    const bool fits = r.offset.width % 2 == 0 && r.offset.width <= kMaxNumbers &&
+                      r.outputs > kTileOutputs / 2 && r.outputs <= kTileOutputs;
     if (!fits) return false;
     if (r.offset.pixels > 0) by_tiles ? run_rows<true>(r) : run_rows<false>(r);
     return true;

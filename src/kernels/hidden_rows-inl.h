@@ -42,7 +42,14 @@ HWY_INLINE V shift_of(const OffsetRows& r, int c, V dx) {
 
 /// Whether all pixels have the same dx, as in frames of the sensor's size.
 HWY_INLINE bool is_shifted_alike(const OffsetRows& r) {
-    return std::all_of(r.dx, r.dx + r.pixels, [&](float dx) { return dx == r.dx[0]; });
+    const D d;
+    const V first = hn::Set(d, r.dx[0]);
+    int p = 0;
+    for (; p + kRowLanes <= r.pixels; p += kRowLanes)
+        if (!hn::AllTrue(d, hn::Eq(hn::LoadU(d, r.dx + p), first))) return false;
+    for (; p < r.pixels; ++p)
+        if (r.dx[p] != r.dx[0]) return false;
+    return true;
 }
 
 /// The first layer of a group from pixel p on; past the last pixel the last again.

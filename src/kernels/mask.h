@@ -52,35 +52,34 @@ void reach(int radius, Step step) {
     }
 }
 
-/// out = 1 where `in` has a 1 within the (2 radius + 1)^2 square around the pixel. `scratch` has
-/// the size of `in`; `out` may be `in`. First rows, then columns: one copy reaches to the right
-/// (down), one to the left (up), doubling with each step.
+/// 1 where the mask has a 1 within the (2 radius + 1)^2 square around the pixel. `scratch` has its
+/// size. First rows, then columns: one copy reaches to the right (down), one to the left (up),
+/// doubling with each step.
 ///
-///     in           0 0 0 0 1 0 0 0 0
+///     mask         0 0 0 0 1 0 0 0 0
 ///     right        0 0 0 0 1 1 1 0 0      radius 2
 ///     left         0 0 1 1 1 0 0 0 0
 ///     both         0 0 1 1 1 1 1 0 0
-inline void dilate(const Mask& in, int radius, Mask& scratch, Mask& out) {
-    const int height = in.height(), width = in.width();
+inline void dilate(Mask& mask, int radius, Mask& scratch) {
+    const int height = mask.height(), width = mask.width();
     for (int y = 0; y < height; ++y) {
-        std::uint8_t *right = scratch.row(y).data(), *left = out.row(y).data();
-        std::ranges::copy(in.row(y), right);
-        if (left != in.row(y).data()) std::ranges::copy(in.row(y), left);
-        if (!any_in_row(scratch, y)) continue;
+        std::uint8_t *right = scratch.row(y).data(), *left = mask.row(y).data();
+        std::ranges::copy(mask.row(y), right);
+        if (!any_in_row(mask, y)) continue;
         reach(std::min(radius, width - 1), [&](int shift) {
             join_bytes(right, right + shift, width - shift, true);
             join_bytes(left + shift, left, width - shift, false);
         });
         join_bytes(left, right, width, false);
     }
-    std::ranges::copy(scratch.values(), out.values().begin());
+    std::ranges::copy(scratch.values(), mask.values().begin());
     reach(std::min(radius, height - 1), [&](int shift) {
         for (int y = height - 1; y >= shift; --y)
             join_bytes(scratch.row(y - shift).data(), scratch.row(y).data(), width, false);
         for (int y = 0; y + shift < height; ++y)
-            join_bytes(out.row(y + shift).data(), out.row(y).data(), width, false);
+            join_bytes(mask.row(y + shift).data(), mask.row(y).data(), width, false);
     });
-    join_bytes(scratch.values().data(), out.values().data(), int(out.values().size()), false);
+    join_bytes(scratch.values().data(), mask.values().data(), int(mask.values().size()), false);
 }
 
 /// out[y][x] = max of in[2 y - 1 .. 2 y + 1][2 x - 1 .. 2 x + 1], as far as they are there. That is
@@ -107,14 +106,23 @@ inline void halve(const Mask& in, Mask& out) {
 /// out = 1 where `mask` has a 1, or any of the samples of `below`, of half the size, that up2
 /// makes the pixel of (docs/model.md).
 inline void join_doubled(const Mask& mask, const Mask& below, Mask& out) {
+    const int width = mask.width(), last = below.width() - 1;
     for (int y = 0; y < mask.height(); ++y) {
         std::ranges::copy(mask.row(y), out.row(y).begin());
         if (all_in_row(mask, y)) continue;
-        for (const int from : {y / 2, std::min((y + 1) / 2, below.height() - 1)}) {
-            if (!any_in_row(below, from)) continue;
-            for (int x = 0; x < mask.width(); ++x)
-                out(y, x) |= std::uint8_t(below(from, x / 2) |
-                                          below(from, std::min((x + 1) / 2, below.width() - 1)));
+        const int above = y / 2, under = std::min((y + 1) / 2, below.height() - 1);
+        if (!any_in_row(below, above) && !any_in_row(below, under)) continue;
+        std::uint8_t* const row = out.row(y).data();
+        const auto either = [upper = below.row(above).data(), lower = below.row(under).data()](
+                                int x) { return std::uint8_t(upper[x] | lower[x]); };
+        // Sample by sample, for the two pixels that it is left of: the one on it, and the one
+        // before the next.
+        std::uint8_t left = either(0);
+        for (int x = 0; x < width; x += 2) {
+            const std::uint8_t right = either(std::min(x / 2 + 1, last));
+            row[x] |= left;
+            if (x + 1 < width) row[x + 1] |= std::uint8_t(left | right);
+            left = right;
         }
     }
 }

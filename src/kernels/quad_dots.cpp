@@ -193,7 +193,7 @@ EVENTIDE_QUADS void dot_block(const DotArea& r, int y, int x, int back) {
         const Stretch& stretch = r.stretches[s];
         if (stretch.step == 4)
             block.template add<Beside>(stretch, y);
-        else if (stretch.step == 8 && stretch.length % 8 == 0)
+        else if (stretch.step == 8)
             block.template add<InTwos>(stretch, y);
         else
             block.template add<Apart>(stretch, y);

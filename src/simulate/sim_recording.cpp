@@ -2,6 +2,7 @@
 #include "src/simulate/sim_recording.h"
 
 #include "src/core/error.h"
+#include "src/core/sensor_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +33,9 @@ const SimRecordingSettings& checked(const SimRecordingSettings& s) {
 }  // namespace
 
 std::optional<SensorTime> SimRecording::Ticks::next() const {
-    if (per_second <= 0) return {};
-    return from_us(std::llround(double(number) * 1e6 / per_second));
+    const double us = double(number) * 1e6 / per_second;
+    if (per_second <= 0 || us > double(kFarthestUs)) return {};
+    return from_us(std::llround(us));
 }
 
 SimRecording::SimRecording(const SimRecordingSettings& settings,

@@ -107,6 +107,23 @@ TEST(DavisTransfers, AnEndpointThatHaltsAgainAndAgainIsAnError) {
                 HasSubstr("stalls again each time"));
 }
 
+TEST(DavisTransfers, AnEndpointThatWasLeftHaltedIsClearedBeforeTheStart) {
+    PluggedIn camera_side;
+    RawPacket packet;
+    {
+        DavisCamera camera{at_once()};
+        ASSERT_EQ(camera.read(packet), ReadStatus::data);
+        camera_side.bed.halt_data(1000);
+        EXPECT_FALSE(failure_of([&] {
+                         while (camera.read(packet) != ReadStatus::end) continue;
+                     }).empty());
+    }
+    camera_side.bed.halt_data(0);
+    DavisCamera camera{at_once()};
+    EXPECT_EQ(camera.read(packet), ReadStatus::data);
+    EXPECT_EQ(camera.counters()[CameraCount::stalls], 0U);
+}
+
 TEST(DavisTransfers, MoreTransfersThanTheKernelHasMemoryForAreRefusedWithTheWayOut) {
     PluggedIn camera_side;
     camera_side.bed.limit_memory(100 << 10);

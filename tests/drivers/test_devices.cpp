@@ -33,7 +33,9 @@ TEST(Devices, ANameThatIsNoCameraSaysWhatWasMeant) {
         FAIL() << "nothing was thrown";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::usage);
-        EXPECT_THAT(error.what(), HasSubstr("names no camera: expected davis:"));
+        EXPECT_THAT(error.what(),
+                    HasSubstr("names no camera: expected davis:, dvxplorer:, dvs128:, v4l2:, "
+                              "ros2:, udp: or sim:"));
         EXPECT_THAT(error.what(), HasSubstr("; did you mean dvxplorer:?"));
     }
 }

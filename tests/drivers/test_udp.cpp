@@ -196,6 +196,7 @@ TEST(Udp, NamesThatMakeNoSenseAreRefused) {
     EXPECT_THAT(
         refusal("//127.0.0.1:" + std::to_string(source.port()) + "?size=4x4", ErrorKind::device),
         HasSubstr("in use"));
+    EXPECT_THROW(UdpTarget("udp://127.0.0.1:0", {}), Error) << "nobody listens at port 0";
 }
 
 TEST(Udp, WhatTheRecordsCannotHoldIsRefused) {

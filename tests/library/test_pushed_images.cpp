@@ -7,6 +7,7 @@
 
 #include <eventide/error.h>
 
+#include <algorithm>
 #include <climits>
 
 namespace eventide {
@@ -38,6 +39,19 @@ TEST(Mosaic, OfOneColourIsOneGreyUpToTheEdges) {
             for (const std::uint16_t value : grey.pixels.values())
                 EXPECT_EQ(value, 26000) << height << "x" << width;
         }
+}
+
+TEST(Mosaic, GreyIsRoundedToTheNearest) {
+    ReferenceImage image;
+    image.filter = ColourFilter::rggb;
+    image.pixels = Array2<std::uint16_t>(5, 5);
+    image.pixels(2, 2) = 6;  // 4, 2 and 1 sixteenths of it: 1.5, .75 and .375
+    const ReferenceImage grey = without_mosaic(image);
+    EXPECT_EQ(grey.pixels(2, 2), 2);
+    EXPECT_EQ(grey.pixels(2, 1), 1);
+    EXPECT_EQ(grey.pixels(1, 1), 0);
+    std::ranges::fill(image.pixels.values(), std::uint16_t{65535});
+    EXPECT_EQ(without_mosaic(image).pixels, image.pixels) << "the brightest there is";
 }
 
 TEST(Mosaic, WhatIsNoneStaysAsItIs) {

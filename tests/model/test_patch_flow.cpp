@@ -151,6 +151,35 @@ TEST(PatchFlow, FindsTwoMotionsBesideEachOther) {
     }
 }
 
+/// Patches at its edge lie on the surface, which tells nothing, and on what moves.
+TEST(PatchFlow, WhatHasTextureOutweighsThePlainSurfaceItMovesOver) {
+    constexpr int kWidth = 160, kHeight = 120, kRadius = 14;
+    constexpr double kX = 80, kY = 60, kDx = 6, kDy = 4;
+    const auto distance = [](int x, int y, double dx, double dy) {
+        return std::hypot(x - kX - dx, y - kY - dy);
+    };
+    const auto disc = [&](double dx, double dy) {
+        Array2<float> map = events(kWidth, kHeight, .5F);
+        const Array2<float> inside = texture(kWidth, kHeight, dx, dy);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                if (distance(x, y, dx, dy) < kRadius) map(y, x) = inside(y, x);
+        return map;
+    };
+    PatchFlow flow{kWidth, kHeight};
+    MotionField motion{kWidth, kHeight};
+    flow.find(disc(kDx, kDy), disc(0, 0), events(kWidth, kHeight), motion);
+    double sum = 0;
+    int pixels = 0;
+    for (int y = 0; y < motion.dx.height(); ++y)
+        for (int x = 0; x < motion.dx.width(); ++x) {
+            if (distance(2 * x, 2 * y, kDx, kDy) >= kRadius - 2) continue;
+            sum += std::hypot(motion.dx(y, x) + kDx, motion.dy(y, x) + kDy);
+            ++pixels;
+        }
+    EXPECT_LT(sum / pixels, .25);
+}
+
 TEST(PatchFlow, FindsHowFarThingsWereOverWideDistances) {
     constexpr int kWidth = 158, kHeight = 122;
     PatchFlow flow{kWidth, kHeight};

@@ -172,53 +172,61 @@ TEST(Bf16Gates, SaturateWithoutLosingTheState) {
     });
 }
 
+/// Few, and more than kernels take at a time.
+constexpr std::size_t kCompressed[] = {kPixels, 1100};
+
 TEST(Bf16Gates, CompressTheInputIntoOneMap) {
     with_each_bf16([](const Bf16Kernels& k, int channels) {
         const auto c = std::size_t(channels), size = even(channels) + 6;
-        for (const Fill fill : test::kFills) {
-            test::Numbers numbers{29};
-            const auto in = numbers.many(c * kPixels, fill);
-            std::vector<std::uint16_t> out(size * kPixels + 1, kMark);
-            k.compress_row({.in = in.data(),
-                            .pixels = kPixels,
-                            .channels = channels,
-                            .out = out.data(),
-                            .size = int(size)});
-            EXPECT_EQ(out.back(), kMark);
-            for (std::size_t i = 0; i < size * kPixels; ++i) {
-                const float v = i % size < c ? in[i / size * c + i % size] : 0;
-                const double exact = plain::compress(double(v));
-                ASSERT_NEAR(from_bf16(out[i]), exact, std::abs(exact) / 256 + 1e-7) << v;
-                EXPECT_TRUE(v != 0 || from_bf16(out[i]) == 0) << "nothing happened there";
+        for (const std::size_t pixels : kCompressed)
+            for (const Fill fill : test::kFills) {
+                test::Numbers numbers{29};
+                const auto in = numbers.many(c * pixels, fill);
+                std::vector<std::uint16_t> out(size * pixels + 1, kMark);
+                k.compress_row({.in = in.data(),
+                                .pixels = int(pixels),
+                                .channels = channels,
+                                .out = out.data(),
+                                .size = int(size)});
+                EXPECT_EQ(out.back(), kMark);
+                for (std::size_t i = 0; i < size * pixels; ++i) {
+                    const float v = i % size < c ? in[i / size * c + i % size] : 0;
+                    const double exact = plain::compress(double(v));
+                    ASSERT_NEAR(from_bf16(out[i]), exact, std::abs(exact) / 256 + 1e-7) << v;
+                    ASSERT_TRUE(v != 0 || from_bf16(out[i]) == 0) << "nothing happened there";
+                }
             }
-        }
     });
 }
 
 TEST(Bf16Gates, CompressTheInputIntoSeveralMaps) {
     with_each_bf16([](const Bf16Kernels& k, int channels) {
         constexpr std::size_t kSize = 8;
-        const std::size_t maps = (std::size_t(channels) + kSize - 1) / kSize,
-                          plane = kPixels * kSize;
+        const std::size_t maps = (std::size_t(channels) + kSize - 1) / kSize;
         if (maps > 4) return;
-        test::Numbers numbers{31};
-        const auto in = numbers.many(std::size_t(channels) * kPixels, Fill::mixed);
-        std::vector<std::uint16_t> one(maps * plane), several(maps * plane);
-        CompressRow row{.in = in.data(),
-                        .pixels = kPixels,
-                        .channels = channels,
-                        .out = one.data(),
-                        .size = int(maps * kSize)};
-        k.compress_row(row);
-        row.out = several.data();
-        row.size = kSize;
-        row.maps = int(maps);
-        row.plane = std::ptrdiff_t(plane / 2);
-        k.compress_row(row);
-        for (std::size_t p = 0; p < kPixels; ++p)
-            for (std::size_t i = 0; i < maps * kSize; ++i)
-                ASSERT_EQ(several[i / kSize * plane + p * kSize + i % kSize],
-                          one[p * maps * kSize + i]);
+        for (const std::size_t pixels : kCompressed) {
+            const std::size_t plane = pixels * kSize;
+            test::Numbers numbers{31};
+            const auto in = numbers.many(std::size_t(channels) * pixels, Fill::mixed);
+            std::vector<std::uint16_t> one(maps * plane), several(4 * plane, kMark);
+            CompressRow row{.in = in.data(),
+                            .pixels = int(pixels),
+                            .channels = channels,
+                            .out = one.data(),
+                            .size = int(maps * kSize)};
+            k.compress_row(row);
+            row.out = several.data();
+            row.size = kSize;
+            row.maps = int(maps);
+            row.plane = std::ptrdiff_t(plane / 2);
+            k.compress_row(row);
+            for (std::size_t p = 0; p < pixels; ++p)
+                for (std::size_t i = 0; i < maps * kSize; ++i)
+                    ASSERT_EQ(several[i / kSize * plane + p * kSize + i % kSize],
+                              one[p * maps * kSize + i]);
+            EXPECT_EQ(std::ranges::count(several, kMark), std::ptrdiff_t((4 - maps) * plane))
+                << "behind the last map";
+        }
     });
 }
 

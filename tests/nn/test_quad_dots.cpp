@@ -107,6 +107,7 @@ TEST(Quads, Bf16ProductsAreThePlainOnes) {
 TEST(Quads, AreNotTakenOfWhatTheyDoNotFit) {
     const Work work{16, 8, 8, false};
     EXPECT_TRUE(avx512::takes_quads(work.area(false, false)));
+    EXPECT_TRUE(avx512::takes_quads(work.area(true, false)));
     EXPECT_FALSE(avx512::takes_quads(Work(3, 8, 8, false).area(false, false))) << "3 pixels";
     DotArea apart = work.area(false, false);
     apart.out_step = 12;
@@ -114,6 +115,32 @@ TEST(Quads, AreNotTakenOfWhatTheyDoNotFit) {
     DotArea six = work.area(false, false);
     six.outputs = 6;
     EXPECT_FALSE(avx512::takes_quads(six));
+    Work odd{16, 8, 8, false};
+    odd.stretches[1].length = 12;
+    EXPECT_FALSE(avx512::takes_quads(odd.area(false, false))) << "half of a pixel's quads";
+}
+
+TEST(Quads, PixelsAreSplitIntoMapsAndNothingIsWrittenBesideThem) {
+    if (!vector_kernels().by_quads) GTEST_SKIP() << "this processor has no AVX-512";
+    constexpr std::size_t kPixels = 5, kBeside = 8;
+    constexpr float kMark = 7;
+    for (const auto& [channels, size, maps] :
+         {std::array<std::size_t, 3>{9, 4, 3}, {8, 4, 2}, {21, 8, 3}, {5, 8, 2}}) {
+        const std::size_t plane = kPixels * size + kBeside;
+        test::Numbers numbers{3};
+        const auto in = numbers.many(kPixels * channels, Fill::ordinary);
+        std::vector<float> out(maps * plane, kMark);
+        avx512::split_pixels({in.data(), int(kPixels), int(channels), int(size), int(maps),
+                              out.data(), std::ptrdiff_t(plane)});
+        for (std::size_t map = 0; map < maps; ++map)
+            for (std::size_t i = 0; i < plane; ++i) {
+                const std::size_t pixel = i / size, channel = map * size + i % size;
+                float expected = pixel < kPixels ? 0 : kMark;
+                if (pixel < kPixels && channel < channels)
+                    expected = in[pixel * channels + channel];
+                ASSERT_EQ(out[map * plane + i], expected) << channels;
+            }
+    }
 }
 
 /// A layer whose channels lie in three maps sums them up as if they lay in one.

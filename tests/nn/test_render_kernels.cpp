@@ -127,7 +127,7 @@ void expect_hidden_rows(const Bf16Kernels& kernels, Places how) {
     constexpr int kColumns = 9;
     for (const auto& [width, outputs] :
          {std::pair{12, 20}, {12, 32}, {32, 20}, {32, 32}, {16, 16}, {6, 16}, {16, 9}})
-        for (const int pixels : {1, 16, 17, 32, 61}) {
+        for (const int pixels : {0, 1, 16, 17, 32, 61}) {
             test::Numbers numbers{4};
             const auto n = std::size_t(width), o = std::size_t(outputs),
                        count = std::size_t(pixels), lanes = std::size_t(outputs > 16 ? 32 : 16);
@@ -288,6 +288,25 @@ TEST(RenderKernels, HiddenRowsRefuseLayersTheyAreNotMadeFor) {
         EXPECT_EQ(mu, 7);
         EXPECT_EQ(log_sigma, 7);
     });
+}
+
+TEST(RenderKernels, HiddenRowsOfBf16RefuseLayersTheyAreNotMadeFor) {
+    if (bf16_kernels() == nullptr) GTEST_SKIP() << "this processor has no bf16 products";
+    const std::vector<std::uint32_t> sums(64), weight(64 * 64);
+    const std::vector<float> numbers(256);
+    const int column = 0;
+    for (const Bf16Kernels* kernels : test::all_bf16_kernels())
+        for (const auto& [width, outputs] :
+             {std::pair{34, 32}, {7, 32}, {32, 40}, {18, 16}, {7, 16}, {16, 8}}) {
+            float mu = 7, log_sigma = 7;
+            const OffsetRows offset{sums.data(),    0, &column, numbers.data(), numbers.data(),
+                                    numbers.data(), 1, width,   nullptr};
+            EXPECT_FALSE(kernels->hidden_rows({offset, weight.data(), numbers.data(), outputs,
+                                               numbers.data(), numbers.data(), &mu, &log_sigma}))
+                << width << " " << outputs;
+            EXPECT_EQ(mu, 7);
+            EXPECT_EQ(log_sigma, 7);
+        }
 }
 
 }  // namespace

@@ -217,5 +217,15 @@ TEST(VectorKernels, DoubledRowsAreMeansOfSamples) {
     }
 }
 
+TEST(VectorKernels, HaveNoMoreInstructionsThanTheyMay) {
+    EXPECT_LE(vector_kernels(Instructions::sse4).lanes, 4);
+    EXPECT_LE(vector_kernels(Instructions::avx2).lanes, 8);
+    for (const Instructions most : {Instructions::sse4, Instructions::avx2}) {
+        EXPECT_FALSE(vector_kernels(most).by_quads);
+        EXPECT_EQ(bf16_kernels(most), nullptr);
+    }
+    EXPECT_EQ(amx_kernels(Instructions::avx512), nullptr);
+}
+
 }  // namespace
 }  // namespace eventide

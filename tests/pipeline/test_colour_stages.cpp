@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -55,6 +56,12 @@ public:
                 frame.sigma(y, x) = .125F;
             }
     }
+    bool change_size(int width, int height, Frame& frame) override {
+        out_width_ = width;
+        out_height_ = height;
+        frame = make_output();
+        return true;
+    }
 
 private:
     int height_, width_, out_height_, out_width_;
@@ -91,9 +98,11 @@ TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
     EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
         red{kHeight / 2, kWidth / 2};
     ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
-    for (const int scale : {1, 3}) {
-        const int width = (kWidth - 1) * scale + 1, height = (kHeight - 1) * scale + 1;
-        EchoRenderer whole{kHeight, kWidth, height, width};
+    // Frames may be given another size between two of them.
+    for (const auto& [first_scale, scale] : {std::pair{1, 1}, {3, 3}, {1, 3}, {3, 1}}) {
+        const auto across = [](int factor) { return (kWidth - 1) * factor + 1; };
+        const auto down = [](int factor) { return (kHeight - 1) * factor + 1; };
+        EchoRenderer whole{kHeight, kWidth, down(first_scale), across(first_scale)};
         std::array<EchoRenderer, 3> parts{
             EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
             EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
@@ -101,11 +110,16 @@ TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
         LatentMap latent = encode.make_output();
         ColourRenderStage render{whole,      {&parts[0], &parts[1], &parts[2]},
                                  GetParam(), kWidth,
-                                 kHeight,    {width, height, 0, 0},
+                                 kHeight,    {across(first_scale), down(first_scale), 0, 0},
                                  latent};
         encode.encode(grid(), latent);
         render.take(latent);
         Frame frame = render.make_output();
+        const int width = across(scale), height = down(scale);
+        if (scale != first_scale) {
+            render.render({}, {}, frame);
+            ASSERT_TRUE(render.change_size(width, height, frame));
+        }
         render.render({}, {}, frame);
         ASSERT_EQ(frame.colour[0].width(), width);
         EXPECT_EQ(frame.sigma(0, 0), .125F) << "one map, that of all pixels";

@@ -71,6 +71,23 @@ TEST(EncoderGate, NothingIsMergedOverAGapWhereStateBeginsAnew) {
     }
 }
 
+TEST(EncoderGate, AWindowThatWaitsKnowsNoImageOfTheClockThatBeginsAnew) {
+    LatencyKeeper keeper{200ms};
+    std::vector<std::uint64_t> images;
+    EncoderGate gate{keeper,
+                     {.most = 1},
+                     [] { return std::size_t{1}; },
+                     [&](const CutWindow& event_window) { images.push_back(event_window.images); }};
+    CutWindow anew{event_window_of(0, 10, {}), 5};
+    anew.reset_before = true;
+    gate.take({event_window_of(500, 510, {}), 1});
+    gate.take({event_window_of(510, 520, {}), 2});
+    gate.take(anew);
+    EXPECT_EQ(images, (std::vector<std::uint64_t>{2})) << "as the last of those that became one";
+    gate.flush();
+    EXPECT_EQ(images.back(), 5U);
+}
+
 TEST(WindowMerger, IsAllItsWindowsAndNothingElse) {
     const std::vector<Event> first{{from_us(3), 1, 2, Polarity::on}},
         second{{from_us(15), 3, 4, Polarity::off}};

@@ -62,6 +62,17 @@ TEST(EventWindows, OfAStreamWithoutEventsAreNone) {
     EXPECT_TRUE(b.edges.empty());
 }
 
+TEST(EventWindows, OfARecordingEndWithItsEventsWhereImagesHaveAnotherClock) {
+    constexpr std::int64_t kSince1970 = 1'633'953'690'000'000;
+    Beginning b(false);
+    b.give(record(ToyKind::event, 1), 0);
+    b.give(record(ToyKind::image, kSince1970), 0);
+    b.give(record(ToyKind::event, 12), 0);
+    b.finish();
+    EXPECT_EQ(b.edges, (Edges{{0, 10}, {10, 12}})) << "not in the year of the images";
+    EXPECT_EQ(b.counters.snapshot().images_apart, SensorDuration{kSince1970 - 12});
+}
+
 TEST(EventWindows, CarryAGapAndTheParserTakesUpAfterIt) {
     Beginning b(true);
     auto half = record(ToyKind::event, 1);

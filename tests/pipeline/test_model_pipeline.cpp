@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <new>
 #include <random>
 #include <vector>
 
@@ -142,6 +144,40 @@ TEST(ModelRenderStage, CountsTheImagesThatCorrectNothing) {
     EXPECT_EQ(stage.used_images(), 2U);
     stage.reset();
     EXPECT_EQ(stage.dropped_images(), 2U) << "it was still waiting for its time";
+}
+
+TEST(ModelRenderStage, GoesOnInTheSizeItHasWhereThereIsNoMemoryForAnother) {
+    if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
+    const Model model = test::random_model(small_config(), 1);
+    Encoder encoder(model, kWidth, kHeight);
+    Renderer renderer(model, kWidth, kHeight);
+    ImagesOnTheWay images;
+    ModelRenderStage stage(renderer, ModelRun::request(0), kWidth, kHeight, images);
+    ReferenceImage white;
+    white.pixels = Array2<std::uint16_t>(kHeight, kWidth);
+    std::ranges::fill(white.pixels.values(), std::uint16_t{50'000});
+    images.put({white});
+    LatentMap latent = encoder.make_output();
+    latent.window = {from_us(0), from_us(20'000)};
+    latent.events_per_pixel = Array2<float>(kHeight, kWidth);
+    latent.images = 1;
+    stage.take(latent);
+    ASSERT_EQ(stage.used_images(), 1U);
+    const auto shown = [&](Frame& frame) {
+        stage.render(from_us(20'000), latent.window, frame);
+        return frame.intensity;
+    };
+    Frame frame = stage.make_output();
+    const Array2<float> before = shown(frame);
+    {
+        // Enough for a small frame, and not for what is shown at the sensor's size beside it.
+        const test::MemoryShortage shortage{kWidth * kHeight * sizeof(float)};
+        EXPECT_THROW(stage.change_size(kWidth / 3, kHeight / 3, frame), std::bad_alloc);
+    }
+    EXPECT_EQ(frame.intensity, before);
+    EXPECT_EQ(shown(frame), before);
+    EXPECT_TRUE(stage.change_size(kWidth / 3, kHeight / 3, frame));
+    EXPECT_EQ(shown(frame).width(), kWidth / 3);
 }
 
 TEST(ModelLine, ImagesOfTheCameraCorrectTheSameFramesThreadedAsSequential) {

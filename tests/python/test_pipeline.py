@@ -186,6 +186,17 @@ class Pipelines(RecordedTest):
         with self.assertRaisesRegex(OSError, "disk"):
             eventide.Pipeline(eventide.open(self.recording), full, "small").run()
 
+    def test_false_ends_a_run_and_so_does_numpys(self):
+        for no, ends in ((False, True), (np.False_, True), (None, False), (0, False)):
+            seen = []
+
+            def sink(frame):
+                seen.append(frame)
+                return no if len(seen) == 2 else None
+
+            eventide.Pipeline(eventide.open(self.recording), sink, "small", sequential=True, fps=100).run()
+            self.assertEqual(len(seen) == 2, ends, repr(no))
+
     def test_sinks_are_called_on_the_thread_of_run(self):
         for sequential in (False, True):
             threads = []

@@ -108,6 +108,23 @@ TEST(EventSensor, FollowsLightWithTheTimeConstantOfItsBandwidth) {
     EXPECT_NEAR(step_response(bright), 1 / (2 * std::numbers::pi * 300), .00005);
 }
 
+TEST(EventSensor, FollowsARampByItsTimeConstantLateHoweverItIsCut) {
+    SensorTraits traits = plain(.1);
+    traits.bandwidth_hz = 20;
+    const double tau_us = 1e6 / (2 * std::numbers::pi * 20);
+    for (const int step_us : {500, 2000, 10'000, 50'000}) {
+        const auto times =
+            times_by_pixel(watch(
+                               traits, 1, [](double t) { return 3 + 2 * t; }, step_us))
+                .begin()
+                ->second;
+        ASSERT_EQ(times.size(), 19u) << step_us;
+        // From the fourth on the ramp's beginning is forgotten.
+        for (std::size_t i = 3; i < times.size(); ++i)
+            EXPECT_NEAR(double(times[i]), 50'000. * double(i + 1) + tau_us, 500) << step_us;
+    }
+}
+
 TEST(EventSensor, IsSlowerInTheDark) {
     const double tau_after = 1 / (2 * std::numbers::pi) * (1. / 300 + 1. / (10 * std::exp(1.0)));
     EXPECT_NEAR(step_response(10), tau_after, .03 * tau_after);

@@ -54,6 +54,60 @@ TEST(Exposure, GivesTheMeanAndTheDeviationAskedFor) {
     EXPECT_NEAR(near.bright, .15 + .25 * 1.5, 1e-3);
 }
 
+TEST(Exposure, IsMeteredAllOverTheImage) {
+    for (int side = 0; side < 4; ++side) {
+        Array2<float> light(32, 32);
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 32; ++x) {
+                const int from_side[] = {y, 31 - y, x, 31 - x};
+                light(y, x) = from_side[side] < 2 ? .4F : .1F;
+            }
+        SceneSettings settings = exposed(.4, .1);
+        settings.target_black = {0, 0};
+        Exposure exposure{settings, Random{1}};
+        exposure.meter(0, light, 1);
+        exposure.develop(0, 1, light);
+        double mean = 0;
+        for (const float v : light.values()) mean += double(v) / (32 * 32);
+        EXPECT_NEAR(mean, .4, 1e-3) << "brighter at side " << side;
+    }
+}
+
+TEST(Exposure, TheMeanIsThatOfWhatIsCutOffAtWhiteAndAtBlack) {
+    // A sixteenth is a lamp: by the plain mean all else would be black.
+    Array2<float> light(32, 32);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x) light(y, x) = x < 30 ? 10 : 4e3F;
+    SceneSettings settings = exposed(.4, .1);
+    settings.target_black = {0, 0};
+    Exposure lit{settings, Random{1}};
+    lit.meter(0, light, 1);
+    const Levels levels = developed(lit, 0, 1, light);
+    EXPECT_NEAR(levels.dark, (.4 - 1. / 16) * 16 / 15, 2e-3);
+    lit.develop(0, 1, light);
+    EXPECT_EQ(light(9, 31), 1);
+    // Half of it is below a black of -.25, and is 0.
+    settings.target_black = {-.25, -.25};
+    settings.target_mean = {.2, .2};
+    Exposure dim{settings, Random{1}};
+    const Array2<float> dark_half = halves(1, 200);
+    dim.meter(0, dark_half, 1);
+    const Levels cut = developed(dim, 0, 1, dark_half);
+    EXPECT_EQ(cut.dark, 0);
+    EXPECT_NEAR(cut.bright, .4, 2e-3);
+}
+
+TEST(Exposure, BlackIsAtMostHalfOfTheMean) {
+    SceneSettings settings = exposed(.2, .02);
+    settings.target_black = {.3, .4};
+    const Array2<float> light = halves(50, 150);
+    Exposure exposure{settings, Random{1}};
+    exposure.meter(0, light, 1);
+    const Levels levels = developed(exposure, 0, 1, light);
+    EXPECT_NEAR(levels.dark, .1 + .1 * .5, 1e-3);
+    EXPECT_NEAR(levels.bright, .1 + .1 * 1.5, 1e-3);
+}
+
 TEST(Exposure, NoSensorThatSaturatesEarlyIsBright) {
     SceneSettings settings = exposed(.54, .1);
     settings.target_white_below_one = 1;
@@ -94,6 +148,24 @@ TEST(Exposure, FollowsTheLightWithItsLagAndAnImageHasThatOfItsTime) {
                 1e-3);
     EXPECT_NEAR(developed(exposure, .4, 1, halves(50, 150)).bright, before, 1e-6)
         << "of a time before it was metered again";
+    exposure.meter(1, halves(50, 150), 2);
+    exposure.forget(.7);
+    EXPECT_NEAR(developed(exposure, 1, 1, halves(50, 150)).bright / before,
+                std::pow(.5, 1 - std::exp(-1)), 1e-3);
+    EXPECT_NEAR(developed(exposure, .8, 1, halves(50, 150)).bright / before, std::pow(.5, share),
+                1e-3)
+        << "metered before what was forgotten";
+}
+
+TEST(Exposure, DevelopsImagesOfAnyNumberOfPixels) {
+    Exposure exposure{exposed(.3, .15), Random{1}};
+    exposure.meter(0, halves(50, 150), 1);
+    for (const int width : {1, 2, 3, 4, 5, 7, 8}) {
+        Array2<float> image(1, width);
+        std::ranges::fill(image.values(), 150.F);
+        exposure.develop(0, 1, image);
+        for (const float v : image.values()) EXPECT_NEAR(v, .45, 1e-3) << width;
+    }
 }
 
 TEST(Exposure, ThatIsFixedStaysAsItBegan) {

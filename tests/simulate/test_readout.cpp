@@ -84,6 +84,22 @@ TEST(Readout, CarriesNoMoreThanTheBusAllowsAndDropsWhatWouldWaitTooLong) {
     EXPECT_EQ(events.size() + readout.dropped(), 10000u);
 }
 
+TEST(Readout, ABurstWaitsForTheBusAsLongAsItMay) {
+    SensorTraits traits;
+    traits.arbiter_hz_per_pixel = 500;
+    traits.arbiter_wait_s = .002;
+    Readout readout{traits, 100, Random{4}};  // 20 us for each event
+    std::vector<Event> burst(300, Event{from_us(7), 0, 0, Polarity::on}), out;
+    readout.take(from_us(0), from_us(1000), burst, out);
+    ASSERT_EQ(out.size(), 101u);
+    for (std::size_t i = 0; i < out.size(); ++i)
+        EXPECT_EQ(to_us(out[i].t), 7 + 20 * std::int64_t(i));
+    EXPECT_EQ(readout.dropped(), 199u);
+    std::vector<Event> later{{from_us(5000), 0, 0, Polarity::on}};
+    readout.take(from_us(1000), from_us(6000), later, out);
+    EXPECT_EQ(to_us(out.back().t), 5000) << "the bus has been free for long";
+}
+
 TEST(Readout, LetsASlowStreamPassTheBusUnchanged) {
     SensorTraits traits;
     traits.arbiter_hz_per_pixel = 500;

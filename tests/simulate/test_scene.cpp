@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace eventide {
 namespace {
@@ -159,6 +160,7 @@ TEST(Scene, PinnedThingsStandStillWithTheBackground) {
         scene.render(.06, {}, Scene::Show::light, first);
         scene.render(9.9, {}, Scene::Show::light, later);
         EXPECT_EQ(difference(first, later), 0);
+        EXPECT_EQ(scene.step(.06), settings.step_s.high) << "nothing moves";
         settings.pinned_max = 0;
         make_scene(settings, seed).render(.06, {}, Scene::Show::light, bare);
         settings.pinned_max = 12;
@@ -191,6 +193,38 @@ TEST(Scene, PinnedThingsGoWhereTheBackgroundGoes) {
                 best = std::min(best, total / double(same.values().size()));
             }
         EXPECT_LT(best, .02 * scene.white_lux());
+    }
+}
+
+/// Mean change of grey in 10 x 10 px around a place.
+double change_at(const Scene& scene, double x, double y) {
+    Array2<float> before(10, 10), after(10, 10);
+    const Affine place = Affine::translation(x - 4.5, y - 4.5);
+    scene.render(1, place, Scene::Show::grey, before);
+    scene.render(1.1, place, Scene::Show::grey, after);
+    double total = 0;
+    for (std::size_t i = 0; i < before.values().size(); ++i)
+        total += std::abs(double(before.values()[i] - after.values()[i]));
+    return total / double(before.values().size());
+}
+
+TEST(Scene, SpinsAndZoomsAboutTheMiddleOfTheView) {
+    SceneSettings settings;
+    settings.objects_max = 0;
+    settings.still_background = settings.pause_start = settings.faint_probability = 0;
+    settings.view_share = {.3, .3};
+    settings.wander.speed = settings.wander.usual_speed = {1, 1};
+    for (const auto& [spin, zoom] : {std::pair{60., 0.}, {0., 60.}}) {
+        settings.wander.spin_share = {spin, spin};
+        settings.wander.zoom_share = {zoom, zoom};
+        double middle = 0, corners = 0;
+        for (std::uint64_t seed = 0; seed < 16; ++seed) {
+            const Scene scene = make_scene(settings, seed, 121, 91);
+            middle += change_at(scene, 60, 45);
+            for (const double x : {0., 120.})
+                for (const double y : {0., 90.}) corners += change_at(scene, x, y) / 4;
+        }
+        EXPECT_GT(corners, 4 * middle) << spin << " " << zoom;
     }
 }
 

@@ -103,5 +103,29 @@ TEST(ShotNoise, TakesNothingOfTheLight) {
     }
 }
 
+/// Events per pixel and second of light that grows, which fires every 5.5 ms. None is nearer to
+/// another of its pixel than the refractory time.
+double rate_before_growing_light(double shot_hz, int step_us) {
+    SensorTraits traits = noisy(shot_hz, 1e9);
+    traits.threshold_on = .01;
+    traits.refractory_s = .0005;
+    const auto events = watch(
+        traits, 4, [](double t) { return 5 + 2 * t; }, step_us);
+    for (const auto& [pixel, times] : times_by_pixel(events))
+        for (std::size_t i = 1; i < times.size(); ++i) EXPECT_GE(times[i] - times[i - 1], 499);
+    return double(events.size()) / kPixels / 4;
+}
+
+TEST(ShotNoise, ComesBetweenTheEventsOfTheLightHoweverLongAStepIs) {
+    for (const int step_us : {200, 2000, 10'000}) {
+        const double light = rate_before_growing_light(0, step_us);
+        EXPECT_NEAR(light, 1 / .0055, 1);
+        // A sixth is nearer than .5 ms to an event of the light, and less begins while a swing
+        // lasts.
+        const double noise = rate_before_growing_light(20, step_us) - light;
+        EXPECT_NEAR(noise, 16.5, 2) << step_us;
+    }
+}
+
 }  // namespace
 }  // namespace eventide::watched_sensor

@@ -110,6 +110,15 @@ TEST(SimRecording, StopsWhenToldToAndRunsOnWithoutAnEnd) {
     EXPECT_EQ(batches, 100);
 }
 
+TEST(SimRecording, OfOneImageInMoreTimeThanThereIsHasEventsAllTheSame) {
+    SimRecordingSettings settings = small();
+    settings.images_per_second = 1e-300;
+    const Whole whole = record(settings);
+    EXPECT_EQ(whole.batch.images.size(), 1u) << "that of its first microsecond";
+    settings.images_per_second = 0;
+    EXPECT_EQ(whole.batch.events, record(settings).batch.events);
+}
+
 TEST(SimRecording, OfTheDemoMovesAndPausesInItsFourSeconds) {
     const SimulationPreset& demo = simulation_preset("demo");
     SimRecordingSettings settings = small();

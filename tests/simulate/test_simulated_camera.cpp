@@ -40,7 +40,9 @@ TEST(SimulatedName, IsRefusedWhereItMakesNoSense) {
     for (const char* name :
          {"demo", "sim:nothing", "sim:demo?", "sim:demo?seed", "sim:demo?seed=x",
           "sim:demo?size=10", "sim:demo?size=10x", "sim:demo?speed=0", "sim:demo?speed=-1",
-          "sim:demo?colour=red", "sim:demo?seconds=0", "sim:demo?seed=1&", "sim:demo?seed=1.5"})
+          "sim:demo?colour=red", "sim:demo?seconds=0", "sim:demo?seed=1&", "sim:demo?seed=1.5",
+          // What no clock can hold, or gives a recording without any event.
+          "sim:demo?speed=1e-300", "sim:demo?speed=1e300", "sim:demo?seconds=1e-300"})
         EXPECT_THROW(parse_simulated_name(name), Error) << name;
     EXPECT_THROW(open_simulation("sim:demo?size=1x1"), Error);
     EXPECT_THROW(open_simulation("sim:demo?textures=/nowhere/at/all"), Error);

@@ -34,16 +34,6 @@ TEST(Lanes, ExpAndLogAreTheMathLibrarysWithinTheirPromise) {
     }
 }
 
-TEST(Lanes, DecayFallsFromOneToZero) {
-    float last = 1.1f;
-    for (double x = 0; x < 50; x += .05) {
-        const float d = lanes::decay(lanes::splat(float(x)))[2];
-        EXPECT_LT(d, last);
-        EXPECT_NEAR(d, std::exp(-x), .012);
-        last = d;
-    }
-}
-
 TEST(Texture, StretchesGreyValuesToTheWholeRange) {
     GreyImage image(16, 16);
     for (int y = 0; y < 16; ++y)

@@ -1,9 +1,10 @@
-// Stands before glibc's malloc and counts.
+// Stands before glibc's malloc, counts, and refuses.
 #include "tests/support/allocation_counter.h"
 
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define EVENTIDE_SANITIZED 1
@@ -18,15 +19,18 @@ namespace {
 
 std::atomic<std::int64_t> allocations{0};
 std::atomic<bool> counting{false};
+std::atomic<std::size_t> too_many_bytes{SIZE_MAX};
 
 }  // namespace
 
 #if !defined(EVENTIDE_SANITIZED) && defined(__GLIBC__)
 
 namespace {
-void count() {
+/// Whether there is memory for n bytes.
+bool count(std::size_t n) {
     if (counting.load(std::memory_order_relaxed))
         allocations.fetch_add(1, std::memory_order_relaxed);
+    return n < too_many_bytes.load(std::memory_order_relaxed);
 }
 }  // namespace
 
@@ -38,28 +42,22 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 
 void* malloc(std::size_t n) {
-    count();
-    return __libc_malloc(n);
+    return count(n) ? __libc_malloc(n) : nullptr;
 }
 void* calloc(std::size_t n, std::size_t size) {
-    count();
-    return __libc_calloc(n, size);
+    return count(n * size) ? __libc_calloc(n, size) : nullptr;
 }
 void* realloc(void* p, std::size_t n) {
-    count();
-    return __libc_realloc(p, n);
+    return count(n) ? __libc_realloc(p, n) : nullptr;
 }
 void* memalign(std::size_t alignment, std::size_t n) {
-    count();
-    return __libc_memalign(alignment, n);
+    return count(n) ? __libc_memalign(alignment, n) : nullptr;
 }
 void* aligned_alloc(std::size_t alignment, std::size_t n) {
-    count();
-    return __libc_memalign(alignment, n);
+    return memalign(alignment, n);
 }
 int posix_memalign(void** p, std::size_t alignment, std::size_t n) {
-    count();
-    *p = __libc_memalign(alignment, n);
+    *p = memalign(alignment, n);
     return *p == nullptr ? ENOMEM : 0;
 }
 }
@@ -98,6 +96,14 @@ AllocationCount::~AllocationCount() {
 
 std::int64_t AllocationCount::stop() {
     return stop_counting_allocations();
+}
+
+MemoryShortage::MemoryShortage(std::size_t bytes) {
+    too_many_bytes = bytes;
+}
+
+MemoryShortage::~MemoryShortage() {
+    too_many_bytes = SIZE_MAX;
 }
 
 }  // namespace eventide::test

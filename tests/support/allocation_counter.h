@@ -1,6 +1,7 @@
-// Counts allocations of the whole process, on all threads, while asked to.
+// Counts allocations of the whole process, on all threads, while asked to; or refuses large ones.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace eventide::test {
@@ -23,5 +24,15 @@ public:
 /// The same without an object, for counting between two moments on different threads.
 void start_counting_allocations();
 std::int64_t stop_counting_allocations();
+
+/// From construction to destruction no thread is given so many bytes at once, or more. One at a
+/// time, where allocations can be counted.
+class MemoryShortage {
+public:
+    explicit MemoryShortage(std::size_t bytes);
+    ~MemoryShortage();
+    MemoryShortage(const MemoryShortage&) = delete;
+    MemoryShortage& operator=(const MemoryShortage&) = delete;
+};
 
 }  // namespace eventide::test

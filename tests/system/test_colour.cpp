@@ -154,6 +154,25 @@ TEST_F(Colour, IsMissedWhereAFormatCannotSayIt) {
     }
     for (const char* to : {"a.aedat", "b.aedat4"})
         EXPECT_EQ(converted(to).exit_code, 0) << to << ": it says it";
+
+    const Result recorded = eventide({"run", "a.aedat", "--out", "null", "--record", "b.h5",
+                                      "--events-out", "events/", "--strict"});
+    EXPECT_EQ(recorded.exit_code, 5);
+    for (const char* to : {"b.h5", "events/"})
+        EXPECT_THAT(recorded.error,
+                    HasSubstr(std::string{to} + ": its format cannot say the images' colour"));
+    const Result simulated = eventide({"simulate", "--seconds", ".1", "--size", "64x48", "--bayer",
+                                       "rggb", "--textures", "textures", "--out", "simulated/"});
+    EXPECT_EQ(simulated.exit_code, 0);
+    EXPECT_THAT(simulated.error, HasSubstr("colour filter, rggb: --bayer states it"));
+}
+
+TEST_F(Colour, IsKeptByARecordingOfARecording) {
+    simulate("gbrg", "gbrg.aedat");
+    ASSERT_EQ(eventide({"run", "gbrg.aedat", "--out", "null", "--record", "gbrg.aedat4"}).exit_code,
+              0);
+    const Result made = eventide({"run", "gbrg.aedat4", "--colour", "--out", "null"});
+    EXPECT_EQ(made.exit_code, 0) << made.error;
 }
 
 TEST_F(Colour, GoesOnFromAStateWithTheColours) {

@@ -143,6 +143,39 @@ TEST_F(Run, BeginsAndEndsWhereItIsTold) {
     EXPECT_NEAR(double(times.size()), 11, 1);
 }
 
+TEST_F(Run, WritesNoEventsBehindADurationThatBeginsWithTheFirst) {
+    const Result result = in_shell(
+        "eventide run - --duration 100ms --noise-filter off --out null --events-out a.txt "
+        "< recording");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const Result info = eventide({"info", "a.txt", "--json"});
+    const Json json = Json::parse(info.output);
+    const double seconds = (json["last_us"].get<double>() - json["first_us"].get<double>()) / 1e6;
+    EXPECT_LE(seconds, .1) << "what was read already is left out";
+    EXPECT_GT(seconds, .095);
+}
+
+TEST_F(Run, SaysThatImagesHaveAnotherClockAndRendersTheEvents) {
+    ASSERT_EQ(eventide({"convert", recording(), "a/"}).exit_code, 0);
+    const Result made = in_shell(
+        "awk '{ printf \"%.6f %s\\n\", $1 + 1633953690, $2 }' a/images.txt > later && "
+        "mv later a/images.txt && eventide convert a b.aedat4");
+    ASSERT_EQ(made.exit_code, 0) << made.error;
+    const Result of_events =
+        eventide({"run", recording(), "--frames", "ignore", "--fps", "100", "--out", "events/"});
+    ASSERT_EQ(of_events.exit_code, 0) << of_events.error;
+    const auto times = column(temp_ / "events/timestamps.csv", 2);
+    for (const std::string source : {"a", "b.aedat4"}) {
+        const Result result =
+            eventide({"run", source, "--fps", "100", "--out", source + ".frames/"});
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.error, HasSubstr("expected one clock for images and events, found them "
+                                            "at least 1633953689 s apart"));
+        const auto found = column(temp_ / (source + ".frames/timestamps.csv"), 2);
+        EXPECT_NEAR(double(found.size()), double(times.size()), 1) << source;
+    }
+}
+
 TEST_F(Run, TheFirstFrameOfAPartIsAsGoodAsThatOfTheWhole) {
     const auto frame_at = [&](const std::string& folder, long long t_us) {
         const auto times = column(temp_ / (folder + "timestamps.csv"), 2);
@@ -192,6 +225,18 @@ TEST_F(Run, GoesThroughANamedPipe) {
     EXPECT_EQ(process.wait().exit_code, 0);
     EXPECT_GE(bytes.size(), 7U * 64 * 48);
     EXPECT_EQ(bytes.size() % (64 * 48), 0U);
+}
+
+TEST_F(Run, GoesThroughSeveralNamedPipesInWhateverOrderTheyAreOpened) {
+    for (const std::string opens : {"exec 3<frames 4<events", "exec 4<events 3<frames"}) {
+        const Result result = in_shell(
+            "rm -f frames events; mkfifo frames events; "
+            "eventide run recording --fps 10 --out gray8:frames --events-out text:events & " +
+            opens + "; cat <&4 > events.txt & wc -c <&3; wait");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_NE(result.output, "0\n") << opens;
+        EXPECT_GT(std::filesystem::file_size(temp_ / "events.txt"), 1000U) << opens;
+    }
 }
 
 TEST_F(Run, KeepsItsStateInAFileOfThisModelOnly) {

@@ -46,6 +46,9 @@ TEST_F(WrongUsage, IsRefused) {
            "--events: expected the window, a video or a folder to show them in, found none");
     expect(2, {"run", recording(), "--out", "a.mp4", "--video-preset", "quick"}, "quick");
     expect(2, {"run", recording(), "--out", "null", "--from", "2s", "--to", "1s"}, "--to");
+    for (const char* views : {"0", "3", "5", "2.0"})
+        expect(2, {"run", recording(), "--out", "null", "--self-ensemble", views},
+               std::string{"flag --self-ensemble: expected 1, 2 or 4, found '"} + views + "'");
     expect(2, {"run", recording(), "--out", "window"}, "display");
     expect(2, {"bench", "--peers", "peers.csv"}, "expected --report");
     expect(2, {"bench", "--report", "r/", "--json", "a"}, "--json a: expected no --report");
@@ -92,6 +95,65 @@ TEST_F(WrongUsage, IsRefused) {
     for (const std::string output : {"--json", "--csv", "--frame-csv", "--calibrated"})
         expect(2, {"evaluate", "--figure", "silence", output, "a"},
                output + " a: expected an evaluation, found --figure silence");
+}
+
+TEST_F(WrongUsage, AFlagThatWouldChangeNothing) {
+    const auto run = [&](std::vector<std::string> flags, const std::string& words) {
+        flags.insert(flags.begin(), {"run", recording(), "--out", "x.gif"});
+        expect(2, flags, words);
+    };
+    run({"--warmup", "1s"}, "--warmup: expected --from, before which it lies, found none");
+    run({"--sheet-rows", "4"}, "--sheet-rows: expected contact-sheet:x.png as --out, found none");
+    run({"--video-crf", "20"}, "--video-crf: expected x.mp4 or x.mkv as --out, found none");
+    run({"--video-preset", "fast"}, "--video-preset: expected x.mp4 or x.mkv as --out");
+    run({"--overload", "skip"}, "--overload: expected a raw stream or Y4M as --out, found none");
+    run({"--http-token", "a"}, "--http-token: expected http:ADDRESS:PORT as --out, found none");
+    run({"--http-name", "a"}, "--http-name: expected http:ADDRESS:PORT as --out, found none");
+    run({"--engine", "plain", "--precision", "bf16"},
+        "--precision: expected f32 with --engine plain, found bf16");
+    run({"--engine", "plain", "--kernels", "onednn"},
+        "--kernels: expected own with --engine plain, found onednn");
+    for (const auto& [flag, value] :
+         {std::pair{"--input-columns", "txyp"}, {"--input-time-unit", "us"}, {"--reorder", "1ms"}})
+        expect(2, {"run", "sim:demo", "--out", "null", flag, value},
+               std::string{flag} + ": expected a recording as SOURCE, found sim:demo");
+    expect(2, {"run", "davis:", "--out", "null", "--input-dvs128-one-is-on"},
+           "--input-dvs128-one-is-on: expected a recording as SOURCE, found davis:");
+    expect(2, {"simulate", "--out", "a.aedat4", "--truth-scale", "2"},
+           "--truth-scale: expected --truth FOLDER, found none");
+    expect(2, {"bench", "--still-time", "1"},
+           "--still-time: expected --activity or --report FOLDER, found none");
+    expect(2, {"stress", "--soak", "1", "--cases", "on*"},
+           "--cases: expected no --soak, which runs no cases, found 1 h");
+    // Of other runs, too.
+    write_text(temp_ / "my.toml",
+               "[run]\nwarmup = '1s'\nsheet_rows = 3\nvideo_crf = 20\nhttp_token = 'a'\n"
+               "[evaluate]\nsequences = 3\ncalibration = 'cautious'\n");
+    for (const auto& command : {std::vector<std::string>{"run", recording(), "--out", "null"},
+                                {"evaluate", recording()}}) {
+        const Result result =
+            eventide(command, {.environment = {{"EVENTIDE_CONFIG", temp_ / "my.toml"}}});
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+    }
+}
+
+TEST_F(WrongUsage, AFlagOfAnotherProtocol) {
+    expect(2, {"evaluate", "--protocol", "simulated", "--window", "50ms"},
+           "--window: expected --protocol recordings, found simulated");
+    expect(2, {"evaluate", "--protocol", "simulated", "--input-size", "64x48"},
+           "--input-size: expected --protocol recordings, found simulated");
+    expect(2, {"evaluate", "--protocol", "simulated", "--lamp-flicker", "off"},
+           "--lamp-flicker: expected --protocol recordings or evreal, found simulated");
+    expect(2, {"evaluate", recording(), "--sequences", "3"},
+           "--sequences: expected --protocol simulated, found recordings");
+    expect(2, {"evaluate", "a", "--protocol", "evreal", "--skip", "3"},
+           "--skip: expected --protocol recordings, found evreal");
+    expect(2, {"evaluate", "a", "b", "--protocol", "folders", "--lookahead", "2"},
+           "--lookahead: expected --protocol recordings, evreal or simulated, found folders");
+    expect(2, {"evaluate", "--figure", "silence", "--window", "50ms"},
+           "--window: expected --protocol recordings, found --figure silence");
+    expect(2, {"evaluate", recording(), "--calibration", "cautious"},
+           "--calibration: expected --calibrated FILE, found none");
 }
 
 TEST_F(WrongUsage, AListThatWasLeftEmpty) {
@@ -220,6 +282,11 @@ TEST_F(WrongUsage, TheLastFlagCountsAndAFlagTakesBackWhatTheEnvironmentSays) {
     EXPECT_EQ(shown.exit_code, 0) << shown.error;
     for (const char* line : {"\nfps = \"60\"", "\noverwrite = false"})
         EXPECT_NE(shown.output.find(line), std::string::npos) << line << "\n" << shown.output;
+    write_text(temp_ / "a.toml", "[run]\nfps = 10\n");
+    write_text(temp_ / "b.toml", "[run]\nfps = 30\n");
+    const Result of_files =
+        eventide({"run", "--config", "a.toml", "--config", "b.toml", "--print-config"});
+    EXPECT_NE(of_files.output.find("\nfps = \"30\""), std::string::npos) << of_files.error;
     expect(2,
            {"run", recording(), "--out", "null", "--states-out", "states/", "--states-at", "100ms",
             "--states-at", "100ms"},

@@ -14,16 +14,16 @@
 
 namespace eventide::app {
 
-void print_bench_table(const std::vector<BenchRow>& rows) {
-    std::printf("%-12s %-28s %-10s %11s %9s %9s %7s %16s %8s\n", "model", "engine", "sensor",
-                "events/s", "ms/window", "ms/frame", "x real", "latency p50/p99", "MSE");
+void print_bench_table(const std::vector<BenchRow>& rows, std::FILE* to) {
+    std::fprintf(to, "%-12s %-28s %-10s %11s %9s %9s %7s %16s %8s\n", "model", "engine", "sensor",
+                 "events/s", "ms/window", "ms/frame", "x real", "latency p50/p99", "MSE");
     for (const BenchRow& row : rows) {
         char mse[16] = "-";
         if (std::isfinite(row.mse)) std::snprintf(mse, sizeof mse, "%.4f", row.mse);
-        std::printf("%-12s %-28s %-10s %11.0f %9.2f %9.2f %7.2f %8.1f/%-7.1f %8s\n",
-                    printable(row.model).c_str(), row.engine.c_str(), show_size(row.sensor).c_str(),
-                    row.event_rate, row.encode_ms, row.render_ms, row.times_real_time,
-                    row.latency_p50_ms, row.latency_p99_ms, mse);
+        std::fprintf(to, "%-12s %-28s %-10s %11.0f %9.2f %9.2f %7.2f %8.1f/%-7.1f %8s\n",
+                     printable(row.model).c_str(), row.engine.c_str(),
+                     show_size(row.sensor).c_str(), row.event_rate, row.encode_ms, row.render_ms,
+                     row.times_real_time, row.latency_p50_ms, row.latency_p99_ms, mse);
     }
 }
 

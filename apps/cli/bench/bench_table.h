@@ -7,6 +7,7 @@
 #include "apps/evaluate/plot.h"
 #include "src/settings/values.h"
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct BenchRow {
     double mse = 0;
 };
 
-void print_bench_table(const std::vector<BenchRow>& rows);
+void print_bench_table(const std::vector<BenchRow>& rows, std::FILE* to);
 
 /// All that was measured, and on which machine; ends with a line feed.
 std::string bench_json(const std::vector<bench::StageRow>& stages,

@@ -4,6 +4,7 @@
 #include "apps/bench/stage_table.h"
 #include "apps/cli/bench/bench_table.h"
 #include "apps/cli/bench/report.h"
+#include "apps/cli/idle_flag.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
@@ -118,7 +119,8 @@ void BenchCommand::add_measured(SettingTable& table) {
 
 void BenchCommand::add_outputs(SettingTable& table) {
     const auto add = [&](Setting setting) { table.settings.push_back(std::move(setting)); };
-    add(path_setting("json", json_, "FILE", "Also as JSON."));
+    add(path_setting("json", json_, "FILE",
+                     "Also as JSON; -: on standard output, and the table on standard error."));
     add(path_setting("plots", plots_, "FOLDER", "Also as a plot, SVG and CSV."));
     add(path_setting("report", report_, "FOLDER",
                      "Instead of all this: a page, index.html, of speed against error for models, "
@@ -266,35 +268,40 @@ int BenchCommand::report(Program& program) const {
 
 int BenchCommand::run(Program& program) {
     check_settings();
+    if (!activity_ && report_.empty())
+        for (const char* key : {"still_codes", "still_time"})
+            refuse_idle_flag(program.flags, key, "--activity or --report FOLDER");
     name_bench_files(program.files);
     if (!report_.empty()) return report(program);
-    std::printf("%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
-                version().c_str(), compiler_text().c_str(), settings_.scene.c_str(),
-                settings_.lookahead);
+    std::FILE* const table = table_beside(json_);
+    std::fprintf(table, "%s; eventide %s, %s; scene %s, lookahead %d\n", processor_text().c_str(),
+                 version().c_str(), compiler_text().c_str(), settings_.scene.c_str(),
+                 settings_.lookahead);
     const bench::Peaks peaks = bench::measure_peaks(settings_.instructions);
-    std::fputs(bench::peaks_text(peaks).c_str(), stdout);
+    std::fputs(bench::peaks_text(peaks).c_str(), table);
     std::vector<bench::StageRow> stages;
     std::vector<bench::ActivityRow> activity;
     std::vector<BenchRow> rows;
     if (activity_) {
-        std::printf(
+        std::fprintf(
+            table,
             "anywhere: frames at changing places in the window; copied where codes changed "
             "by at most %g and the place by %g windows\n",
             settings_.still_codes, settings_.still_time);
         activity = measure_activity(program);
-        std::fputs(bench::activity_text(activity).c_str(), stdout);
+        std::fputs(bench::activity_text(activity).c_str(), table);
     }
     if (stages_ || !activity_) {
         stages = measure_stages(peaks, program);
-        std::fputs(bench::stages_text(stages).c_str(), stdout);
+        std::fputs(bench::stages_text(stages).c_str(), table);
     }
     refuse_partial(program);
     if (!stages_ && !activity_) {
-        std::printf("\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
-                    settings_.threads == 0 ? "all" : std::to_string(settings_.threads).c_str(),
-                    settings_.seconds);
+        std::fprintf(table, "\nthe pipeline: threads %s, %g s, latency at lookahead 0\n",
+                     settings_.threads == 0 ? "all" : std::to_string(settings_.threads).c_str(),
+                     settings_.seconds);
         rows = measure_pipelines(program);
-        print_bench_table(rows);
+        print_bench_table(rows, table);
     }
     refuse_partial(program);
     if (!json_.empty()) write_file(json_, bench_json(stages, activity, peaks, rows), overwrite_);

@@ -1,8 +1,8 @@
 // Inputs and outputs that are more than one file, named file by file.
 #pragma once
 
-#include "apps/cli/named_files.h"
 #include "pipeline/sinks/run_folder.h"
+#include "src/io/named_files.h"
 
 #include <filesystem>
 #include <string>

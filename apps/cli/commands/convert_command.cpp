@@ -51,11 +51,6 @@ StreamHeader header_behind(const FilterChain& filters, StreamHeader header) {
     return header;
 }
 
-/// AEDAT 3 with each image, AEDAT 4 at its beginning.
-bool says_colour_filter(const Format* format) {
-    return format != nullptr && (format->name == "aedat3" || format->name == "aedat4");
-}
-
 void say(const std::string& source, const std::string& source_format, const std::string& file,
          const ConvertReport& report) {
     if (report.reader_gone)
@@ -148,6 +143,7 @@ int ConvertCommand::run(Program& program) {
     if (holds_images && header.colour_filter == ColourFilter::none)
         header.colour_filter = filter_of_images(from_file_, recording->info().format, options);
     header = header_behind(filters, header);
+    how.colours = header.colour_filter;
     if (!filters.empty() && how.from && !is_read_once(from_file_))
         filters.count_from(times.time_of({}));
     if (!filters.empty()) how.filter = [&filters](Batch& batch) { filters.process(batch); };
@@ -169,14 +165,8 @@ int ConvertCommand::run(Program& program) {
         spdlog::warn("{}: stopped before the end; it holds what was read until then", to_file_);
     say(from_file_, recording->info().format, to_file_, report);
     if (!filters.empty()) spdlog::info("filters left out: {}", filters.report());
-    const bool colours_lost = report.written.images > 0 &&
-                              header.colour_filter != ColourFilter::none &&
-                              !says_colour_filter(format);
-    if (colours_lost)
-        spdlog::warn("{}: its format cannot say the images' colour filter, {}: --bayer states it",
-                     to_file_, name_of(header.colour_filter));
     const bool incomplete =
-        report.damaged.total() > 0 || report.lost > 0 || !report.data.is_whole() || colours_lost;
+        report.damaged.total() > 0 || report.lost > 0 || !report.data.is_whole();
     return strict_ && incomplete ? exit_data_lost : exit_done;
 }
 

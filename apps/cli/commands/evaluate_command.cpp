@@ -129,6 +129,11 @@ bool EvaluateCommand::evaluates() const {
     return figures_.empty() || std::ranges::any_of(figures_, is_report_figure);
 }
 
+bool EvaluateCommand::simulates() const {
+    return (evaluates() && protocol_ == Protocol::simulated) ||
+           !std::ranges::all_of(figures_, is_report_figure);
+}
+
 EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
     switch (protocol_) {
         case Protocol::evreal:
@@ -225,6 +230,7 @@ int EvaluateCommand::run(Program& program) {
     require_figures_that_fit();
     require_outputs_that_fit();
     require_inputs();
+    refuse_idle_flags(program.flags);
     make_simulated_figures(settings);
     if (!evaluates()) return exit_done;
     const EvaluateReport report = evaluate(settings);

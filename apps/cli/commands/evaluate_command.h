@@ -22,6 +22,11 @@ public:
 
 private:
     enum class Protocol { recordings, evreal, simulated, folders };
+    static inline const std::vector<Word<Protocol>> kProtocolWords{
+        {Protocol::recordings, "recordings"},
+        {Protocol::evreal, "evreal"},
+        {Protocol::simulated, "simulated"},
+        {Protocol::folders, "folders"}};
 
     EvaluateSettings how(Program& program) const;
     SimulatedSettings simulated() const;
@@ -30,6 +35,9 @@ private:
     void require_figures_that_fit() const;
     void require_outputs_that_fit() const;
     bool evaluates() const;
+    bool simulates() const;
+    static std::vector<Protocol> protocols_of(const std::string& key);
+    void refuse_idle_flags(const FlagKeys& flags) const;
     void name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const;
     void name_plots(NamedFiles& files) const;
     void write_plots(const std::vector<Plot>& plots) const;

@@ -1,11 +1,14 @@
 // What `eventide evaluate` can be told.
 #include "apps/cli/commands/evaluate_command.h"
+#include "apps/cli/idle_flag.h"
 #include "apps/cli/settings/words.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/list_text.h"
 #include "src/core/sensor_limits.h"
 #include "src/settings/setting.h"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 namespace eventide::app {
@@ -51,10 +54,7 @@ SettingTable EvaluateCommand::settings() {
                        "recordings: between their reference images; evreal: ECD, MVSEC and HQF as "
                        "EVREAL does; simulated: the project's test set; folders: images against "
                        "images.",
-                       {{Protocol::recordings, "recordings"},
-                        {Protocol::evreal, "evreal"},
-                        {Protocol::simulated, "simulated"},
-                        {Protocol::folders, "folders"}}));
+                       kProtocolWords));
     add(path_setting("model", model_, "NAME|FILE", "As in eventide run."));
     add(text_setting(
         "lpips", lpips_, "FILE",
@@ -88,7 +88,7 @@ SettingTable EvaluateCommand::settings() {
     add(choice_setting("precision", precision_, "As in eventide run.", kPrecisionWords));
     add(choice_setting("engine", engine_, "As in eventide run.", kEngineWords));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
-    add(whole_setting("self_ensemble", self_ensemble_, "1|2|4", "As in eventide run.", 1, 4));
+    add(self_ensemble_setting(self_ensemble_, "As in eventide run."));
 
     add(text_setting("images", images_, "FOLDER",
                      "simulated: photographs to draw scenes from; empty: procedural textures."));
@@ -100,7 +100,7 @@ SettingTable EvaluateCommand::settings() {
     add(parsed_setting<Size>("size", size_, "WxH", "simulated: sensor size in pixels.", parse_size,
                              show_size));
     add(number_setting("scale", scale_, "S", "simulated: size of the frames, times the sensor's.",
-                       0.1, 16));
+                       1, 8));
     add(whole_setting("seed", seed_, "N", "simulated: which sequences.", 0, 2147483647));
 
     add(path_setting("json", json_, "FILE",
@@ -126,6 +126,44 @@ SettingTable EvaluateCommand::settings() {
     add(flag_setting("overwrite", overwrite_, "Replace files that exist."));
     input_.add_to(table);
     return table;
+}
+
+/// Which take an option; empty: all.
+std::vector<EvaluateCommand::Protocol> EvaluateCommand::protocols_of(const std::string& key) {
+    using enum Protocol;
+    static const std::set<std::string> of_recordings{"window", "skip", "frames",
+                                                     "from",   "to",   "reorder"};
+    static const std::set<std::string> of_simulated{
+        "images", "last_images", "sequences", "size", "event_windows", "scale", "seed"};
+    static const std::set<std::string> of_models{
+        "model",        "lookahead",  "precision",     "engine",      "threads",
+        "noise_filter", "sigma_rule", "self_ensemble", "calibration", "calibrated"};
+    if (of_recordings.contains(key) || key.starts_with("input_")) return {recordings};
+    if (of_simulated.contains(key)) return {simulated};
+    if (key == "lamp_flicker") return {recordings, evreal};
+    if (of_models.contains(key)) return {recordings, evreal, simulated};
+    return {};
+}
+
+void EvaluateCommand::refuse_idle_flags(const FlagKeys& flags) const {
+    const std::string found = evaluates()
+                                  ? show_word(protocol_, kProtocolWords)
+                                  : "--figure " + figures_.front() + ", which makes only figures";
+    for (const std::string& key : flags) {
+        const std::vector<Protocol> of = protocols_of(key);
+        const auto is_of = [&](Protocol protocol) {
+            return std::ranges::find(of, protocol) != of.end();
+        };
+        if (of.empty() || (evaluates() && is_of(protocol_)) ||
+            (simulates() && is_of(Protocol::simulated)))
+            continue;
+        std::vector<std::string> names;
+        for (const Protocol protocol : of) names.push_back(show_word(protocol, kProtocolWords));
+        refuse_idle_flag(flags, key, "--protocol " + alternatives(names), found);
+    }
+    if (calibrated_.empty()) refuse_idle_flag(flags, "calibration", "--calibrated FILE");
+    if (engine_ == Engine::plain && precision_ == Precision::bf16)
+        refuse_idle_flag(flags, "precision", "f32 with --engine plain", "bf16");
 }
 
 }  // namespace eventide::app

@@ -1,6 +1,7 @@
 // eventide run: what it is called with.
 #include "apps/cli/commands/run_command.h"
 
+#include "apps/cli/run/idle_flags.h"
 #include "apps/cli/run/run.h"
 #include "apps/cli/run/run_files.h"
 #include "src/core/error.h"
@@ -35,6 +36,7 @@ int RunCommand::run(Program& program) {
         throw Error(ErrorKind::usage,
                     "expected at least one --out, such as --out video.mp4 or --out window");
     name_run_files(settings_, program.files);
+    refuse_idle_flags(settings_, program.flags);
     std::optional<Run> run;
     try {
         run.emplace(program, settings_);

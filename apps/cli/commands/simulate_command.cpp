@@ -3,6 +3,7 @@
 
 #include "apps/cli/commands/command_files.h"
 #include "apps/cli/commands/recording_out.h"
+#include "apps/cli/idle_flag.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/words.h"
 #include "apps/cli/terminal.h"
@@ -210,6 +211,9 @@ int SimulateCommand::run(Program& program) {
     if (out_.empty())
         throw Error(ErrorKind::usage, "expected --out, such as --out recording.aedat4");
     name_output_files(program.files);
+    if (truth_.empty())
+        for (const char* key : {"truths_per_second", "truth_scale"})
+            refuse_idle_flag(program.flags, key, "--truth FOLDER");
     const SimRecordingSettings what = plan();
     if (bayer_ != ColourFilter::none && !std::filesystem::is_directory(textures_))
         throw Error(ErrorKind::usage, "--bayer " + std::string{name_of(bayer_)} +
@@ -227,6 +231,10 @@ int SimulateCommand::run(Program& program) {
     RecordingOut out{out_, output, format_of(out_), header};
     if (!out.holds().images && what.images_per_second > 0)
         spdlog::warn("{}: its format cannot hold reference images", out_);
+    if (out.holds().images && !out.holds().colour_filter && bayer_ != ColourFilter::none &&
+        what.images_per_second > 0)
+        spdlog::warn("{}: its format cannot say the images' colour filter, {}: --bayer states it",
+                     out_, name_of(bayer_));
     std::unique_ptr<FolderSink> truth;
     if (!truth_.empty())
         truth = std::make_unique<FolderSink>(FolderSettings{

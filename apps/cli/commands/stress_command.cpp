@@ -1,6 +1,7 @@
 // eventide stress: hard cases through the whole pipeline.
 #include "apps/cli/commands/stress_command.h"
 
+#include "apps/cli/idle_flag.h"
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
 #include "apps/cli/settings/model_path.h"
@@ -35,19 +36,20 @@ std::string number_or_dash(const std::optional<double>& number) {
     return number ? short_number(*number) : "-";
 }
 
-void print_head() {
-    std::printf(
+void print_head(std::FILE* to) {
+    std::fputs(
         "| case | model | what happened | worst error | bound | verdict |\n"
-        "|---|---|---|---|---|---|\n");
+        "|---|---|---|---|---|---|\n",
+        to);
 }
 
 /// Also a row of a table in Markdown.
-void print_row(const StressRow& row) {
-    std::printf("| %s | %s | %s | %s | %s | %s |\n", row.title.c_str(),
-                printable(row.model).c_str(), printable(row.result.happened).c_str(),
-                number_or_dash(row.result.error).c_str(), number_or_dash(row.result.bound).c_str(),
-                verdict(row.result));
-    std::fflush(stdout);
+void print_row(const StressRow& row, std::FILE* to) {
+    std::fprintf(to, "| %s | %s | %s | %s | %s | %s |\n", row.title.c_str(),
+                 printable(row.model).c_str(), printable(row.result.happened).c_str(),
+                 number_or_dash(row.result.error).c_str(), number_or_dash(row.result.bound).c_str(),
+                 verdict(row.result));
+    std::fflush(to);
 }
 
 nlohmann::ordered_json json_of(const std::vector<StressRow>& rows) {
@@ -145,7 +147,8 @@ SettingTable StressCommand::settings() {
                        0, 1e4));
     add(choice_setting("instructions", instructions_, "As in eventide bench.", kInstructionWords));
     add(whole_setting("threads", threads_, "N", "As in eventide run.", 0, kMaxThreads));
-    add(path_setting("json", json_, "FILE", "Also as JSON."));
+    add(path_setting("json", json_, "FILE",
+                     "Also as JSON; -: on standard output, and the table on standard error."));
     add(path_setting("plots", plots_, "FOLDER",
                      "Of --soak: memory, latency and states, SVG and "
                      "CSV."));
@@ -192,6 +195,11 @@ int StressCommand::run(Program& program) {
     require_some("--models", models_);
     if (soak_hours_ <= 0 && !plots_.empty())
         throw Error(ErrorKind::usage, "--plots " + plots_ + ": expected --soak HOURS, found none");
+    if (soak_hours_ > 0)
+        for (const char* key : {"cases", "quick", "minutes"})
+            refuse_idle_flag(program.flags, key, "no --soak, which runs no cases",
+                             short_number(soak_hours_) + " h");
+    if (quick_) refuse_idle_flag(program.flags, "minutes", "no --quick", "both");
     name_stress_files(program.files);
     return soak_hours_ > 0 ? run_soak(program) : run_cases(program);
 }
@@ -226,9 +234,10 @@ int StressCommand::run_cases(Program& program) {
     const std::vector<stress::Case> cases = chosen();
     std::vector<Model> models;
     for (const std::string& name : models_) models.push_back(load_tried(name));
-    std::printf("%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
-                compiler_text().c_str());
-    print_head();
+    std::FILE* const table = table_beside(json_);
+    std::fprintf(table, "%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
+                 compiler_text().c_str());
+    print_head(table);
     Progress progress{program.quiet};
     std::vector<StressRow> rows;
     for (std::size_t c = 0; c < cases.size() && !program.signals.stopping(); ++c)
@@ -239,7 +248,7 @@ int StressCommand::run_cases(Program& program) {
                        {models[m], engine_with(threads_, instructions_), budget(program)});
             progress.clear();
             if (program.signals.stopping()) break;  // it did not come to its end
-            print_row(row);
+            print_row(row, table);
             rows.push_back(std::move(row));
         }
     refuse_partial(program);
@@ -248,8 +257,8 @@ int StressCommand::run_cases(Program& program) {
         std::ranges::count_if(rows, [](const StressRow& row) { return !row.result.passed; });
     const auto left_out =
         std::ranges::count_if(rows, [](const StressRow& row) { return !row.result.ran; });
-    std::printf("\n%zu rows, %zu failed, %zu not run\n", rows.size(), std::size_t(failed),
-                std::size_t(left_out));
+    std::fprintf(table, "\n%zu rows, %zu failed, %zu not run\n", rows.size(), std::size_t(failed),
+                 std::size_t(left_out));
     return failed == 0 ? exit_done : int(ErrorKind::failed);
 }
 
@@ -259,9 +268,10 @@ int StressCommand::run_soak(Program& program) {
                     "--soak with --plots: expected one model (--models NAME), "
                     "found " +
                         std::to_string(models_.size()));
-    std::printf("%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
-                compiler_text().c_str());
-    print_head();
+    std::FILE* const table = table_beside(json_);
+    std::fprintf(table, "%s; eventide %s, %s\n\n", processor_text().c_str(), version().c_str(),
+                 compiler_text().c_str());
+    print_head(table);
     std::vector<StressRow> rows;
     Progress progress{program.quiet};
     for (const std::string& name : models_) {
@@ -276,7 +286,7 @@ int StressCommand::run_soak(Program& program) {
         progress.clear();
         rows.push_back({"soak", short_number(soak_hours_) + " h of pauses and bursts", name,
                         stress::soak_verdict(samples), 0});
-        print_row(rows.back());
+        print_row(rows.back(), table);
         if (plots_.empty()) continue;
         for (const Plot& plot : plots_of(samples))
             spdlog::info("{}", write_plot(plot, plots_, overwrite_).string());

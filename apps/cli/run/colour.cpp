@@ -70,21 +70,26 @@ ColourFilter filter_of_images(const std::string& source, std::string_view format
     return ColourFilter::none;
 }
 
-ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& source,
-                              const SensorInfo& sensor, const FilterChain& filters, bool live) {
-    ColourFilter before = settings.bayer.value_or(source.colour_filter);
+ColourFilter source_colours_of(const RunSettings& settings, const SensorInfo& source, bool live) {
+    if (settings.bayer) return *settings.bayer;
     // Else each image is taken at its word (demosaiced()), and nothing is read twice.
-    const bool needed = settings.colour || !settings.filter.empty() || !settings.events_out.empty();
-    if (needed && !settings.bayer && before == ColourFilter::none && !live &&
-        !names_simulation(settings.source))
-        before = filter_of_images(settings.source, source.format, settings.input.options());
-    const ColourFilter filter = filters.pattern(before);
-    if (filter == ColourFilter::none && before != ColourFilter::none)
+    const bool needed = settings.colour || !settings.filter.empty() ||
+                        !settings.events_out.empty() || !settings.record.empty();
+    if (!needed || source.colour_filter != ColourFilter::none || live ||
+        names_simulation(settings.source))
+        return source.colour_filter;
+    return filter_of_images(settings.source, source.format, settings.input.options());
+}
+
+ColourFilter colour_filter_of(const RunSettings& settings, ColourFilter source,
+                              const SensorInfo& sensor, const FilterChain& filters) {
+    const ColourFilter filter = filters.pattern(source);
+    if (filter == ColourFilter::none && source != ColourFilter::none)
         for (const std::string& text : settings.filter)
             if (text.starts_with("subsample:"))
                 throw Error(ErrorKind::usage,
                             "--filter " + text + ": leaves no square of colours of the " +
-                                std::string{name_of(before)} +
+                                std::string{name_of(source)} +
                                 " sensor whole; expected odd steps, such as subsample:3x3, or "
                                 "--bayer none");
     if (settings.colour) check_colour(settings, sensor, filter);

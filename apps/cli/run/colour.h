@@ -23,12 +23,15 @@ namespace eventide::app {
 ColourFilter filter_of_images(const std::string& source, std::string_view format,
                               const OpenOptions& options);
 
-/// --bayer, else what the camera, recording or its images say, as it is behind the filters of
-/// events. Throws Error (usage) where those leave no such pattern, where --colour finds no colours,
-/// or contradicts something else that was asked for. `source` is before the filters, `sensor`
-/// behind them.
-ColourFilter colour_filter_of(const RunSettings& settings, const SensorInfo& source,
-                              const SensorInfo& sensor, const FilterChain& filters, bool live);
+/// --bayer, else what the camera, recording or its images say: of the source, before all filters of
+/// events. None, too, where nobody needs to know beforehand.
+ColourFilter source_colours_of(const RunSettings& settings, const SensorInfo& source, bool live);
+
+/// The same behind the filters. Throws Error (usage) where those leave no such pattern, where
+/// --colour finds no colours, or contradicts something else that was asked for. `source` is before
+/// the filters, `sensor` behind them.
+ColourFilter colour_filter_of(const RunSettings& settings, ColourFilter source,
+                              const SensorInfo& sensor, const FilterChain& filters);
 
 /// A mosaic as BGR (OpenCV, bilinear); images that are none stay as they are. An image that says
 /// its own filter is taken at its word where `filter` is none.

@@ -22,11 +22,13 @@ const Format& format_of(const std::string& path) {
 
 }  // namespace
 
-RecordedSource::RecordedSource(Source& source, const std::string& path, OutputOptions options)
-    : source_{source}, path_{path}, format_{format_of(path)}, data_{format_.holds} {
+RecordedSource::RecordedSource(Source& source, const std::string& path, ColourFilter colours,
+                               OutputOptions options)
+    : source_{source}, path_{path}, format_{format_of(path)}, data_{format_.holds, colours} {
     options.appears = Appears::growing;
     StreamHeader header = header_of(source.info());
     header.format = format_.name;
+    header.colour_filter = colours;
     file_ = std::make_unique<RecordingFile>(path, options, format_, header);
     parser_ = source.make_parser();
 }

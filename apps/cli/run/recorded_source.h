@@ -17,9 +17,11 @@ namespace eventide::app {
 /// in the format of its extension, less the kinds of data that format has no record for.
 class RecordedSource : public Source {
 public:
-    /// `source` is borrowed. Throws Error (usage) for an extension that is no format and for a file
+    /// `source` is borrowed; `colours` is the filter before its sensor, none where it is not known.
+    /// Throws Error (usage) for an extension that is no format and for a file
     /// that exists, (failed) when it cannot be made.
-    RecordedSource(Source& source, const std::string& path, OutputOptions options);
+    RecordedSource(Source& source, const std::string& path, ColourFilter colours,
+                   OutputOptions options);
     ~RecordedSource() override;
 
     const SensorInfo& info() const override { return source_.info(); }

@@ -11,6 +11,7 @@
 #include "pipeline/first_error.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
+#include "src/io/held_pipes.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
 
@@ -24,9 +25,9 @@ namespace eventide::app {
 namespace {
 
 std::unique_ptr<RecordedSource> recorder_of(const RunSettings& settings, Source& source,
-                                            const OutputOptions& growing) {
+                                            ColourFilter colours, const OutputOptions& growing) {
     if (settings.record.empty()) return nullptr;
-    return std::make_unique<RecordedSource>(source, settings.record, growing);
+    return std::make_unique<RecordedSource>(source, settings.record, colours, growing);
 }
 
 SensorPixels size_of(const Source& source) {
@@ -35,7 +36,7 @@ SensorPixels size_of(const Source& source) {
 
 /// Null: not asked for.
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
-                                         ColourFilter colours, const Span& span,
+                                         ColourFilter colours, const Span& span, EventsOut::End end,
                                          EventFilter* filter, const OutputOptions& growing) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
@@ -46,7 +47,7 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
     header.colour_filter = colours;
     return std::make_unique<EventsOut>(filter,
                                        open_event_target(settings.events_out, growing, header),
-                                       span.frames_from, span.end);
+                                       span.frames_from, std::move(end), colours);
 }
 
 std::optional<TensorFile> state_in_of(const RunSettings& settings) {
@@ -95,7 +96,8 @@ Run::Run(Program& program, RunSettings& settings)
       rate_{rate_of(settings, slicer_)},
       lookahead_{lookahead_of(settings, network_.config(), as_live())},
       undistortion_{undistortion_of(settings, sensor_)},
-      colour_filter_{colour_filter_of(settings, opened_.source->info(), sensor_, filters_, live())},
+      source_colours_{source_colours_of(settings, opened_.source->info(), live())},
+      colour_filter_{colour_filter_of(settings, source_colours_, sensor_, filters_)},
       sheet_{std::ranges::any_of(settings.out, is_contact_sheet)},
       page_{std::ranges::any_of(settings.out, is_http)},
       begun_{std::chrono::steady_clock::now()},
@@ -153,10 +155,13 @@ void Run::open_outputs() {
             start_.goes_on();
             return program_.signals.stopping();
         }};
+    const HeldPipes readers{program_.files.pipes(), growing.give_up};
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
-    recorded_ = recorder_of(settings_, *opened_.source, growing);
-    events_out_ = events_out_of(settings_, sensor_, colour_filter_, span_, filter_.get(), growing);
+    recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
+    events_out_ = events_out_of(
+        settings_, sensor_, colour_filter_, span_, [this] { return pipeline_->end(); },
+        filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) {
         if (settings_.overwrite) earlier_states(settings_.states_out);  // or a refusal

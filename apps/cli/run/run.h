@@ -87,7 +87,8 @@ private:
     const FrameRate rate_;
     const int lookahead_;
     const std::optional<UndistortionPlan> undistortion_;
-    const ColourFilter colour_filter_;
+    const ColourFilter source_colours_;  // before all filters, ...
+    const ColourFilter colour_filter_;   // ... and behind them
     const bool sheet_, page_;
     const std::chrono::steady_clock::time_point begun_;
     std::uint64_t bytes_to_read_ = 0;  // of a recording; 0: not known

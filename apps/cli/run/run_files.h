@@ -1,8 +1,8 @@
 // Every file that eventide run was told to read or to write.
 #pragma once
 
-#include "apps/cli/named_files.h"
 #include "apps/cli/settings/run_settings.h"
+#include "src/io/named_files.h"
 
 namespace eventide::app {
 

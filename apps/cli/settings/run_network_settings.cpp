@@ -48,10 +48,9 @@ void RunSettings::add_network(SettingTable& table) {
     add(whole_setting("threads", threads, "N",
                       "Threads the network may use; 0: as many as this process may run on.", 0,
                       kMaxThreads));
-    add(whole_setting("self_ensemble", self_ensemble, "1|2|4",
-                      "Average the frames of so many networks that see the scene mirrored: a "
-                      "smaller error for that many times the work.",
-                      1, 4));
+    add(self_ensemble_setting(self_ensemble,
+                              "Average the frames of so many networks that see the scene "
+                              "mirrored: a smaller error for that many times the work."));
     add(path_setting("state_in", state_in, "FILE",
                      "Continue from the state that an earlier run saved: the network's "
                      "(--state-out) or the complete one (--states-out)."));

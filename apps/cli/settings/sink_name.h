@@ -1,9 +1,9 @@
 // SINK as it is written on the command line, taken apart.
 #pragma once
 
-#include "apps/cli/named_files.h"
 #include "apps/cli/settings/run_settings.h"
 #include "pipeline/sinks/raw_stream.h"
+#include "src/io/named_files.h"
 
 #include <string>
 

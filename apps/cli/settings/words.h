@@ -5,11 +5,14 @@
 #include "src/core/bayer.h"
 #include "src/core/error.h"
 #include "src/core/instructions.h"
+#include "src/core/number_text.h"
 #include "src/model/engine.h"
+#include "src/settings/setting.h"
 #include "src/settings/words.h"
 
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace eventide::app {
@@ -41,6 +44,18 @@ inline void require_some(const char* option, const std::vector<std::string>& lis
     if (list.empty())
         throw Error(ErrorKind::usage,
                     std::string{option} + ": expected one or more, found an empty list");
+}
+
+/// --self-ensemble.
+inline Setting self_ensemble_setting(int& views, std::string help) {
+    Setting setting = whole_setting("self_ensemble", views, "1|2|4", std::move(help), 1, 4);
+    setting.set = [&views](const SettingValue& given) {
+        const auto asked = number_in<int>(given.text);
+        if (!given.may_be(ValueKind::number) || (asked != 1 && asked != 2 && asked != 4))
+            given.refuse("1, 2 or 4");
+        views = *asked;
+    };
+    return setting;
 }
 
 }  // namespace eventide::app

@@ -41,12 +41,12 @@ SegmentPlan segment_plan(const DataSettings& settings, std::int64_t segment) {
     plan.first_rendered = random.integer(0, settings.event_windows - settings.rendered);
     const double whole = settings.crop - 1;
     const double one_to_one = std::min(whole, settings.patch - 1.0);
-    const bool on_pixels = random.chance(settings.whole_probability);
+    plan.on_pixels = random.chance(settings.whole_probability);
     plan.span = one_to_one;
-    if (!on_pixels) plan.span /= random.log_uniform({1, settings.span_scale_max});
+    if (!plan.on_pixels) plan.span /= random.log_uniform({1, settings.span_scale_max});
     plan.y0 = random.uniform() * (whole - plan.span);
     plan.x0 = random.uniform() * (whole - plan.span);
-    if (on_pixels) {
+    if (plan.on_pixels) {
         plan.y0 = std::round(plan.y0);
         plan.x0 = std::round(plan.x0);
     }

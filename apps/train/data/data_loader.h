@@ -4,7 +4,7 @@
 #include "src/core/array.h"
 #include "src/simulate/scene/scene_settings.h"
 #include "src/simulate/scene/textures.h"
-#include "src/simulate/sensor/event_sensor.h"
+#include "src/simulate/sensor/sensor_settings.h"
 
 #include <condition_variable>
 #include <cstdint>
@@ -50,6 +50,7 @@ struct DataSettings {
 /// What all streams of one segment share, so that they are computed together.
 struct SegmentPlan {
     int first_rendered = 0;           ///< of its event windows
+    bool on_pixels = true;            ///< the patch's points are pixels
     double y0 = 0, x0 = 0, span = 0;  ///< px, of the patch
     std::vector<int> lookahead;       ///< per rendered one: 0, 1 or 2
 };

@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <string_view>
 #include <utility>
@@ -103,7 +104,7 @@ void HttpServer::accept_all() {
 
 void HttpServer::take(int file) {
     prepare(file);
-    if (connections() >= kMaxConnections) return turn_away(file);
+    if (connections() >= kMaxConnections && !end_oldest_silent()) return turn_away(file);
     const std::lock_guard lock{mutex_};
     try {
         Worker& worker = workers_.emplace_back();
@@ -113,6 +114,32 @@ void HttpServer::take(int file) {
         if (!workers_.empty() && !workers_.back().thread.joinable()) workers_.pop_back();
         turn_away(file);
     }
+}
+
+/// Clients send their request at once: who holds a place without one keeps others out. False where
+/// nobody does.
+bool HttpServer::end_oldest_silent() {
+    std::list<Worker> ended;  // and joined, without the lock
+    const std::lock_guard lock{mutex_};
+    const auto oldest = std::ranges::find_if(
+        workers_, [](const Worker& worker) { return !worker.done && !worker.answers; });
+    if (oldest == workers_.end()) return false;
+    oldest->gives_way = true;
+    ::shutdown(oldest->file, SHUT_RDWR);
+    ended.splice(ended.end(), workers_, oldest);
+    return true;
+}
+
+/// Throws where the connection has just been ended for another one.
+void HttpServer::begin_answer(Worker& worker) {
+    const std::lock_guard lock{mutex_};
+    if (worker.gives_way) throw Error(ErrorKind::failed, "live page: the connection gave way");
+    worker.answers = true;
+}
+
+void HttpServer::end_answer(Worker& worker) {
+    const std::lock_guard lock{mutex_};
+    worker.answers = false;
 }
 
 void HttpServer::serve(Worker& worker) noexcept {
@@ -128,9 +155,11 @@ void HttpServer::serve(Worker& worker) noexcept {
         // One request for each connection: whatever follows a request that was refused unread is
         // never taken for another one.
         bool closed = false;
-        process_request(connection, true, closed, [](httplib::Request& request) {
+        process_request(connection, true, closed, [&](httplib::Request& request) {
+            begin_answer(worker);
             request.ranges.clear();  // no part of a frame is of use; players ask for them
         });
+        end_answer(worker);
         if (!stopping_) connection.end();
     } catch (...) {  // of one viewer, who sees his connection closed
     }

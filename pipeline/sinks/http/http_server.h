@@ -16,7 +16,8 @@ namespace eventide {
 
 class HttpServer final : private httplib::Server {
 public:
-    /// More than this many at once are told 503 and closed.
+    /// Of more than this many at once the one that has longest not sent its request gives way;
+    /// where all have, the new one is told 503 and closed.
     static constexpr std::size_t kMaxConnections = 64;
 
     /// Called for each request, on its connection's thread; also at the same time. `head` sees all,
@@ -46,17 +47,22 @@ public:
 private:
     struct Worker {
         int file = -1;
+        bool answers = false;    // its request has come, and the answer is not yet complete
+        bool gives_way = false;  // it was ended for another one
         std::atomic<bool> done{false};
         std::jthread thread;
     };
     void accept_all();
     void take(int file);
+    bool end_oldest_silent();
+    void begin_answer(Worker& worker);
+    void end_answer(Worker& worker);
     void serve(Worker& worker) noexcept;
     void reap();
 
     HttpAddress address_;
     int listening_ = -1, wake_ = -1;
-    mutable std::mutex mutex_;  // guards workers_ and each one's file
+    mutable std::mutex mutex_;  // guards workers_ and what each one has but its thread
     std::list<Worker> workers_;
     std::atomic<bool> stopping_{false};
     std::mutex ending_;  // one stop() at a time

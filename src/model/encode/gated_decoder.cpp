@@ -100,7 +100,7 @@ void GatedDecoder::convolve(const PackedConv& conv, const PaddedMap& from, Padde
 }
 
 void GatedDecoder::spread(Level& level) noexcept {
-    dilate(level.touched, 1, level.room, level.touched);
+    dilate(level.touched, 1, level.room);
 }
 
 /// d_l, as layers read it.

@@ -91,11 +91,11 @@ bool GatedEncoder::mark_events(const VoxelGrid& grid) noexcept {
             }
         }
     const bool any = std::memchr(top.values().data(), 1, top.values().size()) != nullptr;
-    if (any) dilate(top, config_.gate_radius, top_room_, top);
+    if (any) dilate(top, config_.gate_radius, top_room_);
     for (std::size_t l = 1; l < levels_.size(); ++l)
         halve(levels_[l - 1].mask(), levels_[l].mask());
     Mask& deepest = levels_.back().mask();
-    if (any) dilate(deepest, config_.gate_spread, deepest_room_, deepest);
+    if (any) dilate(deepest, config_.gate_spread, deepest_room_);
     return any;
 }
 

@@ -70,7 +70,7 @@ private:
     void advance(const Array3<T>& grid) {
         Mask mask = event_mask(grid, config_.bins);
         Mask scratch = mask;
-        dilate(mask, config_.gate_radius, scratch, mask);
+        dilate(mask, config_.gate_radius, scratch);
         for (std::size_t l = 0; l < states_.size(); ++l) {
             Array3<T>& h = states_[l];
             if (l > 0) {
@@ -80,7 +80,7 @@ private:
             }
             if (l + 1 == states_.size()) {
                 scratch = mask;
-                dilate(mask, config_.gate_spread, scratch, mask);
+                dilate(mask, config_.gate_spread, scratch);
             }
             const Array3<T> a = l == 0 ? each(conv(in_, each(grid, compress<T>)), relu<T>)
                                        : each(conv(down_[l], states_[l - 1], 2), relu<T>);

@@ -18,18 +18,21 @@ FusedRenderer::FusedRenderer(Renderer& renderer, int sensor_width, int sensor_he
                     "lookahead: expected 0, 1 or 2, found " + std::to_string(lookahead));
 }
 
+/// All or nothing.
 void FusedRenderer::prepare(const RenderRequest& request) {
+    if (fusion_) {
+        Frame shown = renderer_.make_output(shown_for(request, {}));
+        fusion_->prepare(request);
+        shown_ = std::move(shown);
+    }
     prepared_ = request;
-    if (!fusion_) return;
-    fusion_->prepare(request);
-    shown_ = renderer_.make_output(request_at({}));
 }
 
 /// All or nothing.
 void FusedRenderer::begin() {
     ImageFusion fusion{width_, height_};
     fusion.prepare(prepared_);
-    shown_ = renderer_.make_output(request_at({}));
+    shown_ = renderer_.make_output(shown_for(prepared_, {}));
     for (Waiting& waiting : waiting_) waiting.events = Array2<float>(height_, width_);
     fusion_.emplace(std::move(fusion));
 }
@@ -113,11 +116,11 @@ void FusedRenderer::use_until(const Window& window) noexcept {
 
 /// With the sigma that frames have: the renderer keeps what it rendered, and a frame asked for at
 /// that time is a copy.
-RenderRequest FusedRenderer::request_at(SensorTime t) const {
+RenderRequest FusedRenderer::shown_for(const RenderRequest& request, SensorTime t) const {
     return {.t = t,
             .lookahead = lookahead_,
-            .sigma_rule = prepared_.sigma_rule,
-            .want_sigma = prepared_.want_sigma};
+            .sigma_rule = request.sigma_rule,
+            .want_sigma = request.want_sigma};
 }
 
 bool FusedRenderer::is_sensors(const RenderRequest& request) const {
@@ -125,7 +128,7 @@ bool FusedRenderer::is_sensors(const RenderRequest& request) const {
 }
 
 void FusedRenderer::show(SensorTime t) noexcept {
-    renderer_.render(request_at(t), shown_);
+    renderer_.render(shown_for(prepared_, t), shown_);
 }
 
 void FusedRenderer::use(const ReferenceImage& image, const Window& window) noexcept {

@@ -40,7 +40,8 @@ public:
     /// 0, 1 or 2, as of the next window pushed.
     void change_lookahead(int lookahead) noexcept { lookahead_ = lookahead; }
 
-    /// The memory that the correction takes for requests of this size and region.
+    /// The memory that the correction takes for requests of this size and region. Throws
+    /// std::bad_alloc, and is then prepared as it was.
     void prepare(const RenderRequest& request);
 
     /// As Renderer::render() of a request that was prepared for, for times that do not decrease by
@@ -65,7 +66,7 @@ private:
         bool is_silent = false;
     };
     void begin();
-    RenderRequest request_at(SensorTime t) const;
+    RenderRequest shown_for(const RenderRequest& request, SensorTime t) const;
     bool is_sensors(const RenderRequest& request) const;
     void settle_oldest() noexcept;
     bool shows_as_before(const Waiting& settled) const;

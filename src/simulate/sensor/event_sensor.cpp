@@ -32,6 +32,18 @@ struct Photoreceptor {
         tau_per_light = tau(t.bandwidth_hz_per_lux);
     }
     bool instant() const { return tau_bright == 0 && tau_per_light == 0; }
+
+    /// Where `value` has gone after `dt` in which ln light went straight from one value to another,
+    /// `light` at the end.
+    lanes::F4 follow(lanes::F4 value, lanes::F4 from, lanes::F4 to, lanes::F4 light,
+                     float dt) const {
+        const lanes::F4 r = dt / (tau_bright + tau_per_light / light);
+        // Within .012 kept is e^-r; q kept is (1 - e^-r) / r, without the difference of two
+        // numbers that are nearly 1.
+        const lanes::F4 q = 1.f + r * (.5f + r * (1.f / 6 + r * (1.f / 24)));
+        const lanes::F4 kept = 1.f / (1.f + r * q);
+        return to + kept * (value - from - q * (to - from));
+    }
 };
 
 /// How long leaks are added up before the references take them over: what leaks in a step may be
@@ -55,7 +67,8 @@ EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Rand
       random_(random),
       noise_(traits, pixels_, random_.fork()) {
     const std::size_t n = whole_lanes(pixels_);
-    for (std::vector<float>* values : {&now_, &before_, &reference_, &leak_}) values->assign(n, 0);
+    for (std::vector<float>* values : {&ln_light_, &now_, &before_, &reference_, &leak_})
+        values->assign(n, 0);
     on_.assign(n, kHeld);  // what pads the last lanes never fires
     off_.assign(n, kHeld);
     ready_s_.assign(n, -1);
@@ -82,6 +95,7 @@ EventSensor::EventSensor(const SensorTraits& traits, int width, int height, Rand
 void EventSensor::settle(const Array2<float>& lux, double gain) {
     for (std::size_t i = 0; i < pixels_; ++i) {
         now_[i] = std::log(lux.values()[i] * float(gain) + float(traits_.dark_lux));
+        ln_light_[i] = now_[i];
         const double phase = traits_.random_phase ? random_.uniform() : 0;
         reference_[i] = now_[i] + float(phase) * off_[i];
         if (random_.chance(.5)) reference_[i] = now_[i] - float(phase) * on_[i];
@@ -100,6 +114,7 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
     const Photoreceptor receptor{traits_};
     const auto dt = float(step.seconds), light_gain = float(gain), dark = float(traits_.dark_lux);
     for (HotPixel& hot : hot_) hot.ready_s = ready_s_[hot.pixel];
+    lit_.clear();
     std::swap(now_, before_);
     leaking_s_ += step.seconds;
     const auto leaking = float(leaking_s_);
@@ -109,8 +124,9 @@ void EventSensor::step(SensorTime begin, SensorTime end, const Array2<float>& lu
         const F4 before = load(&before_[i]);
         F4 now = log(light);
         if (!receptor.instant()) {
-            const F4 tau = receptor.tau_bright + receptor.tau_per_light / light;
-            now += (before - now) * decay(dt / tau);
+            const F4 lit_before = load(&ln_light_[i]);
+            store(&ln_light_[i], now);
+            now = receptor.follow(before, lit_before, now, light, dt);
         }
         store(&now_[i], now);
         const F4 change = now - (load(&reference_[i]) - load(&leak_[i]) * leaking);
@@ -150,6 +166,7 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
         share = (ready_s_[pixel] - step.begin_s) / step.seconds;
     }
     if (reference_[pixel] == kHeld) reference = v0 + slope * share;
+    Lit lit{std::uint32_t(pixel), ready_s_[pixel], events.size(), events.size()};
     for (int n = 0;; ++n) {
         const bool rises = v1 >= reference + on;
         if (!rises && v1 > reference - off) break;
@@ -170,23 +187,33 @@ void EventSensor::cross(const Step& step, std::size_t pixel, std::vector<Event>&
         reference = v0 + slope * share;
     }
     reference_[pixel] = float(reference + leaked);
+    lit.end = events.size();
+    if (lit.end > lit.begin) lit_.push_back(lit);
 }
 
 /// The light's own events go on from the reference they had: noise swings about the light and takes
-/// nothing of it. A noise event only keeps its pixel busy, like any other.
+/// nothing of it. A noise event only keeps its pixel busy, like any other. Events of the light in
+/// the same step are there already, also those that are later.
 void EventSensor::add_shot_noise(const Step& step, std::span<const float> lux, double gain,
                                  std::vector<Event>& events) {
     const auto fire = [&](std::size_t pixel, double t_s, Polarity polarity) {
-        if (t_s < ready_s_[pixel]) return false;
-        events.push_back(event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity));
-        ready_s_[pixel] = t_s + traits_.refractory_s;
+        const Event fired = event(step, pixel, (t_s - step.begin_s) / step.seconds, polarity);
+        const auto lit = std::ranges::lower_bound(lit_, pixel, {}, &Lit::pixel);
+        const bool is_lit = lit != lit_.end() && lit->pixel == pixel;
+        double& ready_s = is_lit ? lit->ready_s : ready_s_[pixel];
+        if (t_s < ready_s) return false;
+        if (is_lit && !is_free(fired, std::span{events}.subspan(lit->begin, lit->end - lit->begin)))
+            return false;
+        events.push_back(fired);
+        ready_s = t_s + traits_.refractory_s;
+        ready_s_[pixel] = std::max(ready_s_[pixel], ready_s);
         return true;
     };
     noise_.until(
         step.end_s, [&](std::size_t pixel) { return double(lux[pixel]) * gain; }, fire);
 }
 
-/// Also before events of the light in the same step, of which there are many where a pixel is busy.
+/// Also before other events of the same step.
 void EventSensor::add_hot_pixels(const Step& step, std::vector<Event>& events) {
     for (HotPixel& hot : hot_) {
         double& ready_s = ready_s_[hot.pixel];
@@ -194,7 +221,8 @@ void EventSensor::add_hot_pixels(const Step& step, std::vector<Event>& events) {
             const double share = (hot.next_s - step.begin_s) / step.seconds;
             const Polarity polarity = random_.chance(hot.on_share) ? Polarity::on : Polarity::off;
             const Event fired = event(step, hot.pixel, share, polarity);
-            if (hot.next_s < ready_s && (hot.next_s < hot.ready_s || !is_free(step, fired, events)))
+            if (hot.next_s < ready_s && (hot.next_s < hot.ready_s ||
+                                         !is_free(fired, std::span{events}.subspan(step.first))))
                 continue;
             events.push_back(fired);
             ready_s = std::max(ready_s, hot.next_s + traits_.refractory_s);
@@ -202,10 +230,9 @@ void EventSensor::add_hot_pixels(const Step& step, std::vector<Event>& events) {
     }
 }
 
-/// Whether no event of its pixel in this step is nearer than the refractory time.
-bool EventSensor::is_free(const Step& step, const Event& fired,
-                          const std::vector<Event>& events) const {
-    return std::ranges::none_of(std::span{events}.subspan(step.first), [&](const Event& other) {
+/// Whether none of the others of its pixel is nearer than the refractory time.
+bool EventSensor::is_free(const Event& fired, std::span<const Event> others) const {
+    return std::ranges::none_of(others, [&](const Event& other) {
         const double apart_us = std::abs(double((other.t - fired.t).count()));
         return other.x == fired.x && other.y == fired.y && apart_us < 1e6 * traits_.refractory_s;
     });

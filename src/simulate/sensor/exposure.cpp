@@ -45,7 +45,7 @@ Exposure::Exposure(const SceneSettings& settings, Random random) {
 }
 
 /// The gain that gives the wanted mean after clipping, found by repeated correction.
-double Exposure::gain_for_mean(std::vector<float>& signal, double gain) const {
+double Exposure::gain_for_mean(const std::vector<float>& signal, double gain) const {
     for (int i = 0; i < 8; ++i) {
         double sum = 0;
         for (const float v : signal) sum += std::clamp(black_ + gain * double(v), 0.0, white_);
@@ -61,14 +61,15 @@ bool Exposure::due(double t_s) const {
 
 void Exposure::meter(double t_s, const Array2<float>& light, double light_gain) {
     if (!due(t_s)) return;
-    std::vector<float> signal = metered(light, light_gain, gamma_);
+    const std::vector<float> signal = metered(light, light_gain, gamma_);
     const double mean = mean_of(signal);
     if (history_.empty()) {
         double square = 0;
         for (const float v : signal) square += (double(v) - mean) * (double(v) - mean);
         const double deviation = std::sqrt(square / double(signal.size()));
         black_ = mean_ - deviation_ / std::max(deviation, 1e-6 * mean) * mean;
-        black_ = std::clamp(black_, black_range_.low, std::min(black_range_.high, .5 * mean_));
+        const double most = std::min(black_range_.high, .5 * mean_);
+        black_ = std::clamp(black_, std::min(black_range_.low, most), most);
         const double gain = gain_for_mean(signal, (mean_ - black_) / mean);
         history_.push_back({t_s, std::log(gain)});
         return;

@@ -29,7 +29,7 @@ private:
     struct Setting {
         double t_s = 0, log_gain = 0;
     };
-    double gain_for_mean(std::vector<float>& signal, double gain) const;
+    double gain_for_mean(const std::vector<float>& signal, double gain) const;
 
     double mean_ = .4, deviation_ = .2, black_ = 0, white_ = 1, gamma_ = 1;
     Range black_range_;

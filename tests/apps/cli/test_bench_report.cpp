@@ -72,7 +72,8 @@ TEST(BenchReport, ComparesTheArithmeticThatWasAskedForAndThatTheProcessorHas) {
 TEST(BenchTable, HasADashWhereFramesHaveNoTruthOfTheirSize) {
     testing::internal::CaptureStdout();
     print_bench_table({{.model = "default", .engine = {}, .sensor = {}, .mse = std::nan("")},
-                       {.model = "small", .engine = {}, .sensor = {}, .mse = .0123}});
+                       {.model = "small", .engine = {}, .sensor = {}, .mse = .0123}},
+                      stdout);
     const std::string table = testing::internal::GetCapturedStdout();
     EXPECT_NE(table.find(" -\n"), std::string::npos) << table;
     EXPECT_NE(table.find(" 0.0123\n"), std::string::npos) << table;

@@ -43,13 +43,16 @@ TEST(ColourFilterOf, ABagIsWhatItsImagesTell) {
                               message(kImages, image(mosaic(4, 6), "bayer_grbg8")))));
     const SensorInfo sensor{.name = "", .serial = "", .format = "rosbag", .width = 6, .height = 4};
     const auto filter = [&] {
-        return colour_filter_of(settings, sensor, sensor, FilterChain{settings.filter, {6, 4}},
-                                false);
+        return colour_filter_of(settings, source_colours_of(settings, sensor, false), sensor,
+                                FilterChain{settings.filter, {6, 4}});
     };
     EXPECT_EQ(filter(), ColourFilter::none) << "nobody asks";
     settings.events_out = "a.aedat4";  // says it in its header
     EXPECT_EQ(filter(), ColourFilter::grbg);
     settings.events_out.clear();
+    settings.record = "a.aedat4";
+    EXPECT_EQ(filter(), ColourFilter::grbg);
+    settings.record.clear();
     settings.colour = true;
     EXPECT_EQ(filter(), ColourFilter::grbg);
     settings.bayer = ColourFilter::bggr;

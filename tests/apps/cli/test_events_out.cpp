@@ -32,6 +32,10 @@ Batch image_at(std::int64_t us) {
     return batch;
 }
 
+EventsOut::End until(std::optional<SensorTime> end) {
+    return [end] { return end; };
+}
+
 TEST(EventsOut, TheFileIsBehindAFormatAloneAndMayHaveAColon) {
     for (const auto& [to, file] : {std::pair{"aedat4:x", "x"},
                                    {"text:-", "-"},
@@ -45,7 +49,7 @@ TEST(EventsOut, TheFileIsBehindAFormatAloneAndMayHaveAColon) {
 
 TEST(EventsOut, ImagesDoNotWaitForEvents) {
     std::vector<Batch> written;
-    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), {}, {}};
+    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), {}, until({})};
     for (int n = 0; n < 3; ++n) {
         out.see(image_at(n));
         EXPECT_EQ(written.size(), std::size_t(n + 1)) << "nothing is kept";
@@ -85,7 +89,7 @@ TEST(EventsOut, ImagesWaitForEventsThatAFilterHolds) {
     for (const bool flushed : {true, false}) {
         HoldsAll filter;
         std::vector<Batch> written;
-        EventsOut out{&filter, std::make_unique<KeptBatches>(written), {}, {}};
+        EventsOut out{&filter, std::make_unique<KeptBatches>(written), {}, until({})};
         see_event(out, 10);
         out.see(image_at(9));
         ASSERT_EQ(written.size(), 1U) << "before what is held";
@@ -102,7 +106,7 @@ TEST(EventsOut, ImagesWaitForEventsThatAFilterHolds) {
 
 TEST(EventsOut, WhatLiesOutsideOfThePartIsNotWritten) {
     std::vector<Batch> written;
-    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), from_us(10), from_us(20)};
+    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), from_us(10), until(from_us(20))};
     for (const std::int64_t us : {9, 10, 20, 21}) {
         out.see(image_at(us));
         see_event(out, us);

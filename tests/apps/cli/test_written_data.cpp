@@ -87,6 +87,25 @@ TEST(WrittenData, AreTakenOutWhereTheFormatHasNoRecordForThem) {
                 ElementsAre("x.txt: left out what its format cannot hold: 2 images, 1 trigger"));
 }
 
+TEST(WrittenData, LoseTheColourFilterWhereTheFormatCannotSayIt) {
+    const auto remarks_of = [](const char* format, ColourFilter colours, std::size_t images) {
+        WrittenData data{find_format(format)->holds, colours};
+        Batch batch;
+        batch.events = {at(5)};
+        batch.images.resize(images);
+        data.fit(batch);
+        EXPECT_EQ(data.is_whole(), data.remarks("x").empty());
+        return data.remarks("x");
+    };
+    EXPECT_THAT(remarks_of("hdf5", ColourFilter::gbrg, 1),
+                ElementsAre("x: its format cannot say the images' colour filter, gbrg: --bayer "
+                            "states it"));
+    EXPECT_THAT(remarks_of("hdf5", ColourFilter::gbrg, 0), IsEmpty()) << "there is no mosaic";
+    EXPECT_THAT(remarks_of("hdf5", ColourFilter::none, 1), IsEmpty());
+    EXPECT_THAT(remarks_of("aedat3", ColourFilter::gbrg, 1), IsEmpty());
+    EXPECT_THAT(remarks_of("aedat4", ColourFilter::gbrg, 1), IsEmpty());
+}
+
 TEST(WrittenData, CountTriggersBehindLaterEvents) {
     for (const char* const format : {"evt3", "aedat4"}) {
         WrittenData data{find_format(format)->holds};
@@ -140,7 +159,7 @@ TEST(RecordedSource, GoesOnWhereASenderIsStartedAgain) {
         const TestFolder folder;
         const std::string file = folder.path(name);
         RestartedSender sender;
-        RecordedSource recorded{sender, file, {}};
+        RecordedSource recorded{sender, file, ColourFilter::none, {}};
         for (RawPacket packet; recorded.read(packet) == ReadStatus::data;) continue;
         recorded.finish();
         const std::size_t known_as_old = UdpRecordsParser::kEventsOfAnother - 1;
@@ -158,7 +177,8 @@ struct KeepsTriggers final : ConvertTarget {
 };
 
 TEST(EventsOut, CountsTriggersBehindLaterEvents) {
-    EventsOut out{nullptr, std::make_unique<KeepsTriggers>(), {}, {}};
+    EventsOut out{
+        nullptr, std::make_unique<KeepsTriggers>(), {}, [] { return std::optional<SensorTime>{}; }};
     Batch batch;
     batch.events = {at(100)};
     out.see(batch);

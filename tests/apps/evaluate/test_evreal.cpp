@@ -66,6 +66,25 @@ TEST(Evreal, StartsEachSequenceAnew) {
     EXPECT_EQ(report.sequences[0].scores.raw.mse, report.sequences[1].scores.raw.mse);
 }
 
+TEST(Evreal, TakesFoldersAndFilesThatBringImagesAlongByName) {
+    const fs::path dataset = fresh_folder("evreal_kinds");
+    for (const char* file :
+         {"hqf.bag", "mvsec_data.hdf5", "davis.aedat4", "notes.txt", "sheet.png"})
+        std::ofstream{dataset / file} << "x";
+    for (const char* folder : {"arrays", "ecd", "half", "pictures"})
+        fs::create_directories(dataset / folder);
+    for (const char* file : {"arrays/events_ts.npy", "ecd/events.txt", "ecd/images.txt",
+                             "half/events.txt", "pictures/images.txt"})
+        std::ofstream{dataset / file} << "x";
+    const std::vector<fs::path> expected{dataset / "arrays", dataset / "davis.aedat4",
+                                         dataset / "ecd", dataset / "hqf.bag",
+                                         dataset / "mvsec_data.hdf5"};
+    EXPECT_EQ(evreal_sequences(dataset), expected);
+    EXPECT_EQ(evreal_sequences(dataset / "hqf.bag"), std::vector{dataset / "hqf.bag"});
+    EXPECT_THROW(evreal_sequences(dataset / "half"), Error);
+    EXPECT_THROW(evreal_sequences(dataset / "notes.txt"), Error);
+}
+
 /// An .npy file of these bytes per number.
 template <typename T>
 void write_npy(const fs::path& path, const std::string& kind, const std::string& shape,
@@ -194,6 +213,15 @@ TEST(Evreal, NamesEventTimesThatDoNotAscend) {
                   std::string::npos)
             << error.what();
     }
+}
+
+TEST(Evreal, TakesEventsOfOneTimeInTheirOrder) {
+    const auto sequence =
+        read_evreal_sequence(write_arrays("together", {.1, .2, .2}, {.1, .2, .3}), {}, .2);
+    ASSERT_EQ(sequence.events.size(), 3U) << "the end of the time asked for included";
+    EXPECT_EQ(sequence.events[1], (Event{from_us(200'000), 1, 1, Polarity::on}));
+    EXPECT_EQ(sequence.events[2], (Event{from_us(200'000), 2, 1, Polarity::off}));
+    EXPECT_EQ(sequence.images.size(), 2U);
 }
 
 TEST(Evreal, RefusesSensorsLargerThanAny) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <regex>
 
 namespace eventide {
 namespace {
@@ -51,6 +52,19 @@ TEST(Plot, IsFlatWhereValuesDifferByRoundingAlone) {
     const std::string drawn = svg(plot);
     EXPECT_EQ(count(drawn, "<circle"), 2);
     EXPECT_LT(count(drawn, "text-anchor='end'"), 20) << "ticks of the y axis";
+}
+
+/// At 12 px a digit is 6.6 px wide, and the name, which runs upwards, ends at 22.
+TEST(Plot, HasRoomForLongNumbersBesideTheNameOfTheirAxis) {
+    for (const double base : {.5, .157, -.157}) {
+        const Plot plot{.name = "p",
+                        .y_label = "mean sigma",
+                        .series = {{"s", {1, 2}, {base, base + .0002 * std::abs(base)}, {}}}};
+        const std::string drawn = svg(plot), tick = "<text x='([0-9.]+)'[^>]*'end'>([^<]*)<";
+        const std::regex pattern{tick};
+        for (std::sregex_iterator it{drawn.begin(), drawn.end(), pattern}, end; it != end; ++it)
+            EXPECT_GT(std::stod((*it)[1]) - 6.6 * double((*it)[2].length()), 22) << (*it)[2];
+    }
 }
 
 TEST(Plot, NamesSeriesBesideTheDrawingAndPointsInIt) {

@@ -1,9 +1,10 @@
 // Recordings with reference images, as they are read and cut into event windows.
 #include "apps/evaluate/reference_sequence.h"
 #include "pipeline/filters/event_filter.h"
+#include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cstdint>
 #include <fstream>
@@ -57,6 +58,20 @@ TEST(ReferenceSequence, CountsTimesFromItsFirstEventOrImage) {
     EXPECT_EQ(part.images[0].t, from_us(200'000));
     ASSERT_EQ(part.events.size(), 1U);
     EXPECT_EQ(part.events[0].t, from_us(250'000));
+}
+
+TEST(ReferenceSequence, WhoseImagesHaveAnotherClockIsRefused) {
+    const fs::path folder = write_recording(fresh_folder("clocks"), .5, .001, .1);
+    std::ofstream events{folder / "events.txt"};
+    for (int ms = 0; ms < 400; ++ms) events << 1'633'953'690'000 + ms << "e-3 1 2 1\n";
+    events.close();
+    try {
+        read_reference_sequence(folder);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+        EXPECT_THAT(error.what(), testing::HasSubstr("one clock for images and events, found"));
+    }
 }
 
 std::vector<std::int64_t> mended(const std::vector<std::int64_t>& times) {

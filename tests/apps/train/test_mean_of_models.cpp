@@ -73,6 +73,7 @@ TEST(MeanOfModels, RefusesOtherShapesAndOtherSums) {
     const Model one = test::random_model(tiny(), 1), other = test::random_model(wider, 1);
     EXPECT_THROW(mean_of({{one, .5}, {other, .5}}), Error);
     EXPECT_THROW(mean_of({{one, .5}, {one, .4}}), Error);
+    EXPECT_THROW(mean_of({{one, .5}, {one, std::nan("")}}), Error);
     EXPECT_THROW(mean_of({}), Error);
 }
 

@@ -1,17 +1,22 @@
 // The command line of eventide-train.
 #include "apps/train/options.h"
+#include "apps/train/sound_options.h"
 #include "src/core/error.h"
 #include "src/nn/safetensors.h"
+#include "tests/apps/train/tiny_run.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
 
 namespace eventide {
 namespace {
+
+using testing::HasSubstr;
 
 TEST(Options, WhatIsRecordedCanBeReadBack) {
     TrainOptions first, second;
@@ -47,8 +52,10 @@ TEST(Options, NumbersAreRecordedToTheirLastDigit) {
 TEST(Options, AWrongWordIsRefusedByName) {
     TrainOptions options;
     OptionTable table{options};
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"--streams", "many"}, {"--nonsense", "1"}, {"--rate"}}) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"--streams", "many"},
+                                                  {"--nonsense", "1"},
+                                                  {"--rate"},
+                                                  {"--card", "two\nlines"}}) {
         try {
             table.parse(words);
             ADD_FAILURE() << words[0] << " was taken";
@@ -76,6 +83,71 @@ TEST(Options, ThoseOfTheRepositorysCheckpointsAreKnown) {
     }
     EXPECT_EQ(checkpoints,
               (std::set<std::string>{"default", "default_up", "small", "small_up", "thesis"}));
+}
+
+/// What a run with these files says; empty where it takes them.
+std::string refusal(TrainOptions options, const fs::path& folder) {
+    options.out = folder / "run";
+    try {
+        sound(options);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Options, WhatARunWritesIsNothingThatItReads) {
+    const fs::path folder = empty_folder("files");
+    const std::string teacher = folder / "teacher", link = folder / "link";
+    std::ofstream{teacher} << "a model";
+    fs::create_hard_link(teacher, link);
+    TrainOptions options = tiny_options(folder / "run");
+    options.overwrite = true;
+    for (std::string TrainOptions::*output : {&TrainOptions::export_file, &TrainOptions::keep})
+        for (std::string TrainOptions::*input :
+             {&TrainOptions::teacher, &TrainOptions::initial, &TrainOptions::lpips,
+              &TrainOptions::textures, &TrainOptions::validation_textures}) {
+            TrainOptions both = options;
+            both.*output = link;
+            EXPECT_EQ(refusal(both, folder), "");
+            both.*input = teacher;
+            EXPECT_THAT(refusal(both, folder), HasSubstr(link + ": is the same file as --"));
+        }
+    options.export_file = options.keep = folder / "new";
+    EXPECT_THAT(refusal(options, folder), HasSubstr("--keep " + options.keep + ": is the same"));
+    options.export_file = folder / "run" / "best.safetensors";
+    EXPECT_THAT(refusal(options, folder), HasSubstr("is the same file as --out"));
+}
+
+TEST(Options, ACheckpointThatARunGoesOnFromMayBeKeptAnew) {
+    const fs::path folder = empty_folder("goes_on");
+    TrainOptions options = tiny_options(folder / "run");
+    options.resume = options.keep = folder / "kept";
+    std::ofstream{options.keep} << "a checkpoint";
+    EXPECT_THAT(refusal(options, folder), HasSubstr("kept"));
+    options.overwrite = true;
+    EXPECT_EQ(refusal(options, folder), "");
+    options.export_file = options.resume;
+    options.keep = "";
+    EXPECT_THAT(refusal(options, folder), HasSubstr("is the same file as --resume"));
+    fs::create_directory(folder / "run");
+    options.resume = folder / "run" / "checkpoint.safetensors";
+    std::ofstream{options.resume} << "a checkpoint";
+    EXPECT_EQ(refusal(options, folder), "") << "of its own folder";
+}
+
+TEST(Options, FilesAreReplacedOnlyWhereThatIsAskedFor) {
+    const fs::path folder = empty_folder("replaces");
+    TrainOptions options = tiny_options(folder / "run");
+    options.export_file = folder / "model";
+    EXPECT_EQ(refusal(options, folder), "");
+    std::ofstream{options.export_file} << "a model";
+    EXPECT_THAT(refusal(options, folder), HasSubstr(options.export_file));
+    options.overwrite = true;
+    EXPECT_EQ(refusal(options, folder), "");
+    options.export_file = folder / "nowhere" / "model";
+    EXPECT_THAT(refusal(options, folder), HasSubstr("expected a folder that exists")) << "in time";
 }
 
 }  // namespace

@@ -160,6 +160,73 @@ TEST(Training, WeightsOfAnotherNetworkAreRefused) {
     }
 }
 
+/// Judged every step and at the end.
+TrainOptions judged_options(const fs::path& out) {
+    TrainOptions options = tiny_options(out);
+    options.threads = 1;
+    options.validation_scenes = 1;
+    options.validation_windows = 8;
+    options.validation_crop = 32;
+    options.validate_minutes = 0;
+    return options;
+}
+
+TEST(Training, ARunThatNobodyJudgesGivesItsOwnWeightsNotTheBestOfBefore) {
+    TrainOptions options = judged_options(empty_folder("unjudged"));
+    options.steps = 2;
+    train(*trainer(options));
+    options.resume = (fs::path{options.out} / "checkpoint.safetensors").string();
+    options.validation_scenes = 0;
+    options.steps = 6;
+    const auto resumed = trainer(options);
+    train(*resumed);
+    const Tensors best = load_model(fs::path{options.out} / "best.safetensors").weights;
+    const std::string name = "encoder.in.weight";
+    EXPECT_NE(resumed->finished_model().weights.at(name).values, best.at(name).values);
+}
+
+TEST(Training, ARunThatGoesOnKeepsTheBestOfBefore) {
+    TrainOptions options = judged_options(empty_folder("keeps_best"));
+    options.steps = 4;
+    train(*trainer(options));
+    const fs::path best = fs::path{options.out} / "best.safetensors";
+    const std::string name = "encoder.in.weight";
+    const auto good = load_model(best).weights.at(name).values;
+    options.resume = (fs::path{options.out} / "checkpoint.safetensors").string();
+    options.learning_rate = 1;  // it only gets worse
+    for (const int steps : {6, 8}) {
+        options.steps = steps;
+        const auto resumed = trainer(options);
+        train(*resumed);
+        EXPECT_EQ(load_model(best).weights.at(name).values, good) << steps;
+        EXPECT_EQ(resumed->finished_model().weights.at(name).values, good) << steps;
+    }
+}
+
+/// As a repository's checkpoints do (scripts/train.sh).
+TEST(Training, ARunThatGoesOnElsewhereHasNothingOfTheFolder) {
+    TrainOptions options = judged_options(empty_folder("another_best"));
+    options.steps = 2;
+    const auto first = trainer(options);
+    train(*first);
+    const fs::path kept = fs::path{options.out} / "kept.safetensors";
+    first->keep(kept);
+    TrainOptions other = judged_options(empty_folder("has_a_best"));
+    other.learning_rate = .01;
+    other.steps = 4;
+    train(*trainer(other));
+    const std::string name = "encoder.in.weight";
+    const auto best = load_model(fs::path{other.out} / "best.safetensors").weights.at(name).values;
+    options.out = other.out;
+    options.resume = kept.string();
+    for (const int scenes : {0, 1}) {
+        options.validation_scenes = scenes;
+        const auto over = trainer(options);  // nothing is left to do but to write the model
+        train(*over);
+        EXPECT_NE(over->finished_model().weights.at(name).values, best) << scenes;
+    }
+}
+
 TEST(Training, ANewRunIsNotWrittenOverAnother) {
     const fs::path out = empty_folder("other");
     TrainOptions options = tiny_options(out);

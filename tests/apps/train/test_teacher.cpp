@@ -13,12 +13,16 @@ namespace {
 
 constexpr int kStreams = 2;
 
-fs::path teacher_file(const std::string& folder, int bins = 2) {
-    ModelConfig config = tiny_options({}).model;
-    config.bins = bins;
+fs::path file_of(const ModelConfig& config, const std::string& folder) {
     const fs::path file = empty_folder(folder) / "teacher.safetensors";
     save_model(file, {config, to_tensors(initial_parameters(config, 7, torch::kCPU))});
     return file;
+}
+
+fs::path teacher_file(const std::string& folder, int bins = 2) {
+    ModelConfig config = tiny_options({}).model;
+    config.bins = bins;
+    return file_of(config, folder);
 }
 
 DataSettings tiny_data() {
@@ -132,8 +136,7 @@ TEST(Teacher, ForgetsASceneThatIsOver) {
 TEST(Teacher, OfAMemoryAtHalfTheResolutionIsRefused) {
     ModelConfig config = tiny_options({}).model;
     config.latent_stride = 2;
-    const fs::path file = empty_folder("teaches_half") / "half.safetensors";
-    save_model(file, {config, to_tensors(initial_parameters(config, 7, torch::kCPU))});
+    const fs::path file = file_of(config, "teaches_half");
     try {
         const Teacher teacher{file, 2, torch::kCPU, torch::kFloat};
         FAIL() << "taken";
@@ -177,6 +180,27 @@ TEST(Training, ATaughtRunThatStoppedGoesOnAsIfItHadNot) {
     options.teacher = teacher_file("teaches_twice", 3).string();
     options.steps = 8;
     expect_stopping_changes_nothing(options, 5);
+}
+
+TEST(Training, ATaughtRunGoesOnWithAnotherTeacher) {
+    TrainOptions options = tiny_options(empty_folder("taught_by_another"));
+    options.teacher = teacher_file("teaches_first").string();
+    options.threads = 1;
+    options.steps = 2;
+    train(*trainer(options));
+    options.resume = (fs::path{options.out} / "checkpoint.safetensors").string();
+    options.steps = 4;
+    // The same codes, made by a wider network and by a deeper one.
+    ModelConfig wider = tiny_options({}).model, deeper = wider;
+    wider.widths = {8, 12};
+    deeper.widths = {8, 8, 8};
+    deeper.recurrent = {1, 1, 1};
+    for (const ModelConfig& config : {wider, deeper}) {
+        options.teacher = file_of(config, "teaches_then").string();
+        const auto run = trainer(options);
+        train(*run);
+        EXPECT_EQ(run->steps(), 4);
+    }
 }
 
 }  // namespace

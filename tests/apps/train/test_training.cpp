@@ -92,6 +92,16 @@ TEST(Training, WhatNoRunCanBeMadeOfIsRefusedBeforeItBegins) {
              {"--latent-stride", "3"},
              {"--teacher-views", "3"},
              {"--teacher-share", "1.5"},
+             {"--steps", "-1"},
+             {"--minutes", "-1"},
+             {"--rate", "-0.001"},
+             {"--final-rate", "1.5"},
+             {"--constant-share", "1.5"},
+             {"--warm-up", "-2"},
+             {"--clip", "0"},
+             {"--ema", "1.5"},
+             {"--log-every", "0"},
+             {"--lpips-frames", "0"},
              {"--unfold", "2"}}) {
         TrainOptions options = good;
         OptionTable{options}.parse(words);
@@ -125,6 +135,42 @@ TEST(Training, AnInputThatIsNotUsedHasNoWeightInTheModel) {
         EXPECT_EQ(per_channel[channel].item<float>(), 0) << channel;
     options.inputs = {"colour"};
     EXPECT_THROW(trainer(options), Error);
+}
+
+/// The first four event windows count nothing.
+TEST(Training, AShortSceneIsJudgedByTheFramesThatCount) {
+    const TrainOptions options = tiny_options("");
+    DataSettings data = options.data;
+    data.bins = options.model.bins;
+    const Parameters parameters = initial_parameters(options.model, 1, torch::kCPU);
+    for (const int event_windows : {5, 6}) {
+        const Validation validation{{.scenes = 1, .event_windows = event_windows, .crop = 32},
+                                    data,
+                                    few_textures(),
+                                    torch::kCPU};
+        const auto scores = validation.judge(options.model, parameters, 0, options.loss, nullptr);
+        EXPECT_GT(scores.means[0], 0) << event_windows;
+    }
+}
+
+/// As a full disk and a killed run leave it.
+TEST(Training, ALogThatWasCutShortGoesOnInALineOfItsOwn) {
+    for (const std::string left : {"", "step,minutes,rate,l1\n1,0.1,0."}) {
+        const fs::path out = empty_folder("cut_log");
+        std::ofstream{out / "log.csv"} << left;
+        TrainOptions options = tiny_options(out);
+        options.log_every = 1;
+        options.steps = 2;
+        train(*trainer(options));
+        std::ifstream in{out / "log.csv"};
+        std::vector<std::string> begins;
+        for (std::string line; std::getline(in, line);)
+            begins.push_back(line.substr(0, line.find(',')));
+        const std::vector<std::string> expected =
+            left.empty() ? std::vector<std::string>{"step", "1", "2"}
+                         : std::vector<std::string>{"step", "1", "1", "2"};
+        EXPECT_EQ(begins, expected);
+    }
 }
 
 /// Streams of one share or of two, of which all images count.

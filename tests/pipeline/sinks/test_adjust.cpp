@@ -88,6 +88,32 @@ TEST(Adjustment, AutoHdrForgetsBySensorTimeWhateverTheFrameRate) {
     EXPECT_GT(after_a_second(10).low, 0.4);
 }
 
+/// A network begins with grey.
+TEST(Adjustment, AutoHdrDoesNotStretchTheFirstHalfSecondByTheFirstFrame) {
+    Array2<float> grey{10, 10}, full{10, 10};
+    for (int i = 0; i < 100; ++i) {
+        grey.values()[std::size_t(i)] = 0.5f;
+        full.values()[std::size_t(i)] = float(i % 10) / 9;
+    }
+    AutoRange range;
+    range.update(from_us(0), grey);
+    for (int frame = 1; frame < 4; ++frame) {
+        const AutoRange::Range found = range.update(from_us(33'333 * frame), full);
+        EXPECT_NEAR(found.low, 0, 0.01);
+        EXPECT_NEAR(found.high, 1, 0.01);
+    }
+}
+
+TEST(Adjustment, AutoHdrSmoothsFromTheFirstFramesOn) {
+    Array2<float> dark{10, 10}, bright{10, 10};
+    for (float& v : bright.values()) v = 1;
+    AutoRange range;
+    range.update(from_us(0), dark);
+    range.update(from_us(10'000), dark);
+    const AutoRange::Range found = range.update(from_us(20'000), bright);
+    EXPECT_NEAR((found.low + found.high) / 2, 0.5, 0.01);  // the mean of two frames
+}
+
 TEST(Adjustment, AutoHdrBeginsAnewWhereTheSensorsClockGoesBack) {
     Array2<float> dark{10, 10}, bright{10, 10};
     for (float& v : bright.values()) v = 1;

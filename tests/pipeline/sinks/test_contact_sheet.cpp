@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <utility>
 
@@ -21,7 +22,7 @@ cv::Mat sheet_of(int frames, ContactSheetSettings settings, bool with_events = f
     const auto path = settings.path;
     ContactSheetSink sink{std::move(settings)};
     for (int n = 0; n < frames; ++n) {
-        Frame frame = test::ramp_frame(40, 30, n, from_us(1000 * n));
+        Frame frame = test::ramp_frame(80, 30, n, from_us(1000 * n));
         if (with_events) frame.event_preview = frame.intensity;
         sink.write(frame);
     }
@@ -61,16 +62,36 @@ TEST(ContactSheet, ShowsOfEventsAndTruthThePartThatFramesShow) {
     };
     settings.part = {.left = .5, .top = .25, .width = .5, .height = .5};
     ContactSheetSink sink{settings};
-    Frame frame = test::ramp_frame(40, 30, 0, from_us(0));
+    Frame frame = test::ramp_frame(80, 30, 0, from_us(0));
     frame.event_preview = Array2<float>(60, 80);
     for (int y = 0; y < 60; ++y)
         for (int x = 40; x < 80; ++x) frame.event_preview(y, x) = 1;
     sink.write(frame);
     sink.close();
     const cv::Mat sheet = cv::imread(settings.path.string());
-    for (const int x : {6, 40}) {  // of the cell's 40, which begin at 4
+    for (const int x : {6, 80}) {  // of the cell's 80, which begin at 4
         EXPECT_EQ(sheet.at<cv::Vec3b>(30, x), cv::Vec3b(60, 60, 220));
         EXPECT_EQ(sheet.at<cv::Vec3b>(30, sheet.cols - x - 1), cv::Vec3b(200, 200, 200));
+    }
+}
+
+/// A caption is wider than the image of a small sensor.
+TEST(ContactSheet, HasRoomForTheCaptionsOfImagesHoweverSmall) {
+    const TempFolder temp;
+    ContactSheetSink sink{{.path = temp / "small.png", .rows = 1}};
+    Frame frame = test::ramp_frame(16, 12, 0, from_us(0));
+    frame.event_preview = frame.intensity;
+    sink.write(frame);
+    sink.close();
+    const cv::Mat sheet = cv::imread(temp / "small.png");
+    const int column = (sheet.cols - 4) / 3;
+    for (int c = 0; c < 3; ++c) {
+        const std::string name = std::array{"events", "intensity", "sigma"}[std::size_t(c)];
+        cv::Mat caption(22, column, CV_8UC3, cv::Scalar{255, 255, 255});
+        cv::putText(caption, name, {2, 16}, cv::FONT_HERSHEY_SIMPLEX, 0.5, {40, 40, 40}, 1,
+                    cv::LINE_AA);
+        const cv::Mat found = sheet(cv::Rect{4 + c * column, 0, column, 22});
+        EXPECT_EQ(cv::norm(found, caption, cv::NORM_INF), 0) << name;
     }
 }
 

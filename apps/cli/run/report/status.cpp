@@ -1,6 +1,8 @@
 // While a run goes on: the moving line on a terminal, and the JSON lines of --stats.
 #include "apps/cli/run/report/status.h"
 
+#include "src/core/image_clock.h"
+
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -46,6 +48,7 @@ void Status::tick() {
         if (ended_.wait_for(lock, kTick, [this] { return end_; })) return;
         const Snapshot now = snapshot_();
         note_flicker(now.flicker);
+        note_image_clock(now.images_apart);
         if (quality_) fixed_.quality = quality_(now, Clock::now() - begun_);
         const RunProgress state = progress(now);
         line_.show(status_line(now, state, line_.columns()));
@@ -60,6 +63,12 @@ void Status::note_flicker(const FlickerFound& flicker) {
     flicker_said_ = true;
     spdlog::info("light flickers at {} Hz: the events it adds are left out (--lamp-flicker)",
                  std::lround(flicker.hz));
+}
+
+void Status::note_image_clock(SensorDuration apart) {
+    if (apart <= SensorDuration{0} || image_clock_said_) return;
+    image_clock_said_ = true;
+    spdlog::warn("{}; the images correct no frame", image_clock_text(apart));
 }
 
 /// The watchdog hears of work that was done since it heard last: a camera gives event windows in
@@ -116,6 +125,7 @@ RunProgress Status::finish() {
     manager_.stopping();
     line_.clear();
     const Snapshot now = snapshot_();
+    note_image_clock(now.images_apart);
     write_stats(now, true);
     if (stats_failure_) std::rethrow_exception(stats_failure_);
     RunProgress state = fixed_;

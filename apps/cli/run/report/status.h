@@ -40,7 +40,9 @@ private:
     void tick();
     RunProgress progress(const Snapshot& now);
     void write_stats(const Snapshot& now, bool final);
-    void note_flicker(const FlickerFound& flicker);  ///< says it once
+    // Each says it once.
+    void note_flicker(const FlickerFound& flicker);
+    void note_image_clock(SensorDuration apart);
     void tell_manager(const Snapshot& now, const RunProgress& state, bool also_status);
 
     std::function<Snapshot()> snapshot_;
@@ -51,7 +53,7 @@ private:
     const bool live_;
     ProgressLine line_;
     ServiceManager& manager_;
-    bool flicker_said_ = false;
+    bool flicker_said_ = false, image_clock_said_ = false;
     std::uint64_t last_work_ = 0;  // packets, event windows and frames when the manager was told
     std::chrono::steady_clock::time_point begun_;
     std::uint64_t last_events_ = 0;

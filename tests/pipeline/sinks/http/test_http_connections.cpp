@@ -1,4 +1,5 @@
 // Clients that are many, slow, gone, or up to no good: every byte of theirs is ours.
+#include "pipeline/sinks/http/http_server.h"
 #include "tests/pipeline/sinks/http/served.h"
 #include "tests/support/holdings.h"
 
@@ -133,18 +134,41 @@ TEST(HttpConnections, HundredsOpenedAndDroppedLeaveNothingBehind) {
     EXPECT_LT(mappings(), mapped + std::size_t(connections) / 2);
 }
 
-TEST(HttpConnections, MoreThanThereIsRoomForAreTurnedAway) {
+/// Without a request, in the middle of a request, and after a refusal that nobody reads.
+TEST(HttpConnections, WhoeverSendsNoRequestGivesWayToOthers) {
     const auto sink = open_page();
     std::vector<RawClient> idle;
-    bool turned_away = false;
-    for (int i = 0; i < 100; ++i) idle.emplace_back(*sink);
-    for (const RawClient& client : idle) {
-        client.send(request("GET /controls"));
-        const int status = status_of(client.receive_all());
-        EXPECT_TRUE(status == 200 || status == 503) << status;
-        turned_away = turned_away || status == 503;
+    for (int i = 0; i < 100; ++i) {
+        idle.emplace_back(*sink).send(i % 3 == 0   ? ""
+                                      : i % 3 == 1 ? "GET / HT"
+                                                   : "GET / HTTP/1.1\r\n\r\n");
+        EXPECT_LE(sink->connections(), HttpServer::kMaxConnections);
     }
-    EXPECT_TRUE(turned_away);
+    for (int i = 0; i < 100; ++i)
+        ASSERT_EQ(status_of(answer_to(*sink, request("GET /controls"))), 200) << i;
+    idle.clear();
+    EXPECT_TRUE(becomes_true([&] { return sink->connections() == 0; }));
+}
+
+/// A POST that is allowed and whose body is on its way: the server has asked for it.
+RawClient posting(const HttpSink& sink) {
+    RawClient client{sink};
+    client.send(request("POST /controls",
+                        "Content-Type: application/json\r\nContent-Length: 2\r\n"
+                        "Expect: 100-continue\r\n"));
+    EXPECT_EQ(status_of(client.receive(21)), 100);
+    return client;
+}
+
+TEST(HttpConnections, WhereAllAreAnsweredOneMoreIsTurnedAway) {
+    const auto sink = open_page();
+    std::vector<RawClient> busy;
+    for (std::size_t i = 0; i < HttpServer::kMaxConnections; ++i) busy.push_back(posting(*sink));
+    EXPECT_EQ(status_of(answer_to(*sink, request("GET /controls"))), 503);
+    for (const RawClient& client : busy) {
+        client.send("{}");
+        EXPECT_NE(client.receive_all().find("HTTP/1.1 200"), std::string::npos);
+    }
     EXPECT_TRUE(becomes_true([&] { return sink->connections() == 0; }));
 }
 

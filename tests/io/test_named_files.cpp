@@ -1,5 +1,5 @@
 // No output lands on an input or on another output.
-#include "apps/cli/named_files.h"
+#include "src/io/named_files.h"
 
 #include "src/core/error.h"
 #include "tests/system/process.h"
@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace eventide::app {
+namespace eventide {
 namespace {
 
 namespace fs = std::filesystem;
@@ -131,4 +131,4 @@ TEST_F(NamedFilesTest, WhatExistsIsNotReplacedUnasked) {
 }
 
 }  // namespace
-}  // namespace eventide::app
+}  // namespace eventide

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace eventide::app {
+namespace eventide {
 
 /// Files are compared as the system knows them, so that links do not hide that two names are one
 /// file. All are named before anything is opened for writing.
@@ -35,6 +35,8 @@ public:
     /// (kind failed).
     void writes_when_done(const std::string& option, const std::filesystem::path& path,
                           const std::string& said = {});
+    /// Of the outputs of writes(), those that are named pipes.
+    const std::vector<std::filesystem::path>& pipes() const { return pipes_; }
     /// A folder, of which the files are named one by one.
     void writes_folder(const std::string& option, const std::filesystem::path& folder);
     /// A folder for what a command makes when all its work is done, which may hold other things,
@@ -56,6 +58,8 @@ private:
         FileIdentity identity;
         bool whole_folder = false;
     };
+    void name_output(const std::string& option, const std::filesystem::path& path,
+                     const std::string& said);
     static Named named(std::string text, const std::filesystem::path& path);
     static void refuse_overlap(const Named& named, const std::vector<Named>& others);
     void add(Named named, std::vector<Named>& to);
@@ -64,6 +68,7 @@ private:
     bool overwrite_ = false;
     std::string standard_output_;  ///< which output has it
     std::vector<Named> inputs_, outputs_;
+    std::vector<std::filesystem::path> pipes_;
 };
 
-}  // namespace eventide::app
+}  // namespace eventide

@@ -1,5 +1,5 @@
 // The files a command was told to read and to write.
-#include "apps/cli/named_files.h"
+#include "src/io/named_files.h"
 
 #include "src/core/error.h"
 #include "src/io/output_file.h"
@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-namespace eventide::app {
+namespace eventide {
 
 namespace fs = std::filesystem;
 
@@ -66,6 +66,13 @@ void NamedFiles::reads_all(const std::string& option, const fs::path& folder) {
 }
 
 void NamedFiles::writes(const std::string& option, const fs::path& path, const std::string& said) {
+    name_output(option, path, said);
+    std::error_code none;
+    if (fs::is_fifo(path, none)) pipes_.push_back(path);
+}
+
+void NamedFiles::name_output(const std::string& option, const fs::path& path,
+                             const std::string& said) {
     if (path.empty()) return;
     if (path == "-") {
         if (!standard_output_.empty())
@@ -82,7 +89,7 @@ void NamedFiles::writes(const std::string& option, const fs::path& path, const s
 
 void NamedFiles::writes_when_done(const std::string& option, const fs::path& path,
                                   const std::string& said) {
-    writes(option, path, said);
+    name_output(option, path, said);
     if (!path.empty() && path != "-")
         expect_room_for(option + " " + (said.empty() ? path.string() : said), path);
 }
@@ -132,4 +139,4 @@ void NamedFiles::writes_all(const std::string& option, const fs::path& folder) {
     add(std::move(all), outputs_);
 }
 
-}  // namespace eventide::app
+}  // namespace eventide
