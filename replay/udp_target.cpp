@@ -4,6 +4,7 @@
 #include "src/core/error.h"
 
 #include <algorithm>
+#include <string>
 
 namespace eventide {
 
@@ -35,8 +36,19 @@ const FormatHolds& UdpTarget::holds() const {
     return only_events;
 }
 
+/// Of 64 bits without a sign; those of 32 wrap.
+void UdpTarget::refuse_negative_times(std::span<const Event> events) const {
+    if (records_ != UdpRecords::t64) return;
+    const auto negative =
+        std::ranges::find_if(events, [](const Event& event) { return to_us(event.t) < 0; });
+    if (negative != events.end())
+        throw Error(ErrorKind::usage, name_.text() + ": expected times from 0 us, found " +
+                                          std::to_string(to_us(negative->t)) + " us");
+}
+
 void UdpTarget::write(const Batch& batch) {
     const std::span<const Event> events = batch.events;
+    refuse_negative_times(events);
     for (std::size_t i = 0; i < events.size(); i += kEventsAtATime) {
         datagram_.clear();
         append_udp_records(records_, events.subspan(i, std::min(kEventsAtATime, events.size() - i)),

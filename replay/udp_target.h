@@ -6,6 +6,7 @@
 #include "src/io/udp_socket.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ public:
     std::uint64_t lost() const override { return lost_; }
 
 private:
+    void refuse_negative_times(std::span<const Event> events) const;
+
     UdpName name_;
     UdpRecords records_ = UdpRecords::t64;
     UdpSocket socket_;

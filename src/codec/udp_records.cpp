@@ -101,11 +101,9 @@ void UdpRecordsParser::take_record(Batch& into) {
     take(t, word >> 16 & 0x7FFF, word & 0x7FFF, (word >> 15 & 1) != 0, into);
 }
 
-std::int64_t UdpRecordsParser::unwrapped(std::uint32_t stamp) {
-    const std::int64_t last = last_stamp_us_.value_or(std::int64_t{stamp});
-    const std::int64_t t = nearest_time(stamp, last);
-    last_stamp_us_ = std::max(last, t);
-    return t;
+/// Near the times that were believed: stamps that lie would lead from one range into the next.
+std::int64_t UdpRecordsParser::unwrapped(std::uint32_t stamp) const {
+    return nearest_time(stamp, validator_.newest_us().value_or(std::int64_t{stamp}));
 }
 
 void UdpRecordsParser::take(std::int64_t t_us, unsigned x, unsigned y, bool on, Batch& into) {
@@ -114,7 +112,6 @@ void UdpRecordsParser::take(std::int64_t t_us, unsigned x, unsigned y, bool on, 
     if (early_ >= kEventsOfAnother) {
         validator_.finish(into, damage_);
         validator_.resync(damage_);
-        last_stamp_us_ = t_us;
         early_ = 0;
         into.triggers.push_back({from_us(t_us), Trigger::Kind::timestamp_reset, 0});
     }

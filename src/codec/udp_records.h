@@ -55,14 +55,13 @@ private:
     std::size_t record_bytes() const;
     void take_record(Batch& into);
     void take(std::int64_t t_us, unsigned x, unsigned y, bool on, Batch& into);
-    std::int64_t unwrapped(std::uint32_t stamp);
+    std::int64_t unwrapped(std::uint32_t stamp) const;
 
     UdpRecords kind_;
     EventValidator validator_;
     Damage damage_;
     std::array<std::byte, 13> record_{};
     std::size_t n_ = 0;  ///< of its bytes
-    std::optional<std::int64_t> last_stamp_us_;
     std::optional<HostTime> first_arrival_;
     std::int64_t arrival_us_ = 0;
     int early_ = 0;  ///< events in a row that lie far before what came

@@ -61,7 +61,7 @@ UdpName UdpName::parse(const std::string& text) {
     const std::size_t question = std::min(text.find('?'), text.size());
     const std::string address = text.substr(2, question - 2);
     const std::size_t colon = address.rfind(':');
-    if (colon == address.npos || colon == 0 || colon + 1 == address.size()) refuse(text);
+    if (colon == address.npos || colon == 0) refuse(text);
     UdpName name;
     name.host = address.substr(0, colon);
     name.port = address.substr(colon + 1);

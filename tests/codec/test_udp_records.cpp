@@ -1,5 +1,6 @@
 // Records of UDP datagrams: any split, wraps, senders that begin anew.
 #include "src/codec/udp_records.h"
+#include "src/core/byte_order.h"
 #include "tests/codec/parser_checks.h"
 
 #include <gtest/gtest.h>
@@ -46,6 +47,33 @@ TEST(UdpRecords, AnEventOutOfOrderAcrossAWrapShiftsNothing) {
     EXPECT_EQ(parsed.damage[DamageReason::time_backwards], 2U);
 }
 
+TEST(UdpRecords, StampsThatLieMoveNoTimesBehindThem) {
+    std::vector<Event> events;
+    for (int i = 0; i < 40; ++i) events.push_back({from_us(1000 * i), 1, 2, Polarity::on});
+    std::vector<Event> sent = events;
+    sent[10].t = from_us(1'500'000'000);
+    sent[20].t = from_us(3'000'000'000);
+    for (const UdpRecords kind : {UdpRecords::t32, UdpRecords::spif}) {
+        Bytes bytes;
+        append_udp_records(kind, sent, bytes);
+        const Parsed parsed =
+            parse_whole([&] { return std::make_unique<UdpRecordsParser>(kind, 8, 8); }, bytes);
+        EXPECT_EQ(parsed.data.events.size(), 38U);
+        EXPECT_EQ(parsed.data.events.back(), events.back());
+        EXPECT_EQ(parsed.damage[DamageReason::bad_record], 1U);
+    }
+}
+
+TEST(UdpRecords, TimesOf64BitsHaveNoSign) {
+    Bytes bytes;
+    append_udp_records(UdpRecords::t64, std::vector<Event>(3, {from_us(-7), 1, 2, Polarity::on}),
+                       bytes);
+    const Parsed parsed = parse_whole(
+        [] { return std::make_unique<UdpRecordsParser>(UdpRecords::t64, 8, 8); }, bytes);
+    EXPECT_TRUE(parsed.data.events.empty());
+    EXPECT_EQ(parsed.damage[DamageReason::bad_record], 3U);
+}
+
 TEST(UdpRecords, ASenderThatBeginsAnewIsFollowed) {
     const auto late = random_events(1, 50, 8, 8, 900'000'000, 100);
     const auto early = random_events(2, 50, 8, 8, 1'000'000, 100);
@@ -59,6 +87,77 @@ TEST(UdpRecords, ASenderThatBeginsAnewIsFollowed) {
               std::uint64_t(UdpRecordsParser::kEventsOfAnother - 1));
     ASSERT_EQ(parsed.data.triggers.size(), 1U);
     EXPECT_EQ(parsed.data.triggers[0].kind, Trigger::Kind::timestamp_reset);
+}
+
+/// Events at these times, in ms, read from t64.
+Parsed parsed_at(const std::vector<int>& times_ms) {
+    std::vector<Event> events;
+    for (const int ms : times_ms) events.push_back({from_us(1000 * ms), 1, 2, Polarity::on});
+    Bytes bytes;
+    append_udp_records(UdpRecords::t64, events, bytes);
+    return parse_whole([] { return std::make_unique<UdpRecordsParser>(UdpRecords::t64, 8, 8); },
+                       bytes);
+}
+
+TEST(UdpRecords, OnlyManyEventsInARowFarInThePastAreAnotherBeginning) {
+    constexpr int kNow = 5000, kFewer = UdpRecordsParser::kEventsOfAnother - 1;
+    std::vector<int> somewhat(40, kNow - 900), interrupted(kFewer, 10);
+    somewhat.insert(somewhat.begin(), {kNow, kNow});
+    interrupted.insert(interrupted.begin(), {kNow, kNow});
+    interrupted.push_back(kNow);
+    interrupted.insert(interrupted.end(), kFewer, 10);
+    for (const auto& times : {somewhat, interrupted}) {
+        const Parsed parsed = parsed_at(times);
+        EXPECT_TRUE(parsed.data.triggers.empty());
+        EXPECT_EQ(parsed.data.events.back().t, from_us(1000 * kNow));
+    }
+}
+
+TEST(UdpRecords, AStrayEventBehindABeginningIsNoOther) {
+    std::vector<int> times(UdpRecordsParser::kEventsOfAnother, 3000);
+    times.insert(times.begin(), {9000, 9000});
+    times.insert(times.end(), {10, 3001, 3002});
+    const Parsed parsed = parsed_at(times);
+    EXPECT_EQ(parsed.data.triggers.size(), 1U);
+    EXPECT_EQ(parsed.data.events.back().t, from_us(3'002'000));
+}
+
+TEST(UdpRecords, HalfARecordIsCountedOrLeftBehindAtAGap) {
+    for (const UdpRecords kind : {UdpRecords::t64, UdpRecords::t32, UdpRecords::spif}) {
+        Bytes bytes;
+        append_udp_records(kind, random_events(1, 3, 640, 480, 0, 100), bytes);
+        UdpRecordsParser parser{kind, 640, 480};
+        Batch batch;
+        parser.parse(std::span(bytes).first(5), batch);
+        parser.resync();
+        parser.parse(bytes, batch);
+        ASSERT_FALSE(batch.events.empty());
+        EXPECT_EQ(parser.clock(), batch.events.back().t);
+        EXPECT_EQ(parser.damaged().total(), 0U);
+        parser.parse(std::span(bytes).first(5), batch);
+        parser.finish(batch);
+        EXPECT_EQ(parser.damaged()[DamageReason::truncated], 1U);
+        EXPECT_EQ(batch.events.size(), 3U);
+    }
+}
+
+TEST(UdpRecords, OfSpifSomeMayHaveATimeAndOthersNone) {
+    Bytes bytes;
+    const Event timed{from_us(20), 3, 4, Polarity::off};
+    for (int i = 0; i < 3; ++i) {
+        append_udp_records(UdpRecords::spif, std::vector<Event>{timed}, bytes);
+        append_little(bytes, std::uint32_t{0x80000000U | 5U << 16 | 0x8000U | 7U});
+    }
+    UdpRecordsParser parser{UdpRecords::spif, 640, 480};
+    const HostTime begin{std::chrono::seconds(9)};
+    parser.arrives(begin);
+    parser.arrives(begin + SensorDuration{20});
+    Batch batch;
+    parser.parse(bytes, batch);
+    parser.finish(batch);
+    ASSERT_EQ(batch.events.size(), 6U);
+    EXPECT_EQ(batch.events[4], timed);
+    EXPECT_EQ(batch.events[5], (Event{from_us(20), 5, 7, Polarity::on}));
 }
 
 TEST(UdpRecords, SpifWithoutTimesHasThatOfTheArrival) {

@@ -135,6 +135,11 @@ TEST(Dvs128Camera, ShippedFileSaysTheDefaults) {
     EXPECT_THAT(words_of(ErrorKind::usage,
                          [] { load_dvs128_settings(written("master = true\nroi = 1\n")); }),
                 HasSubstr(":2: unknown key 'roi'"));
+    EXPECT_EQ(load_dvs128_settings(written("[biases]\npuX = 16777215\n")).biases.at("puX"),
+              0xFFFFFFU);
+    EXPECT_THAT(words_of(ErrorKind::usage,
+                         [] { load_dvs128_settings(written("[biases]\npuX = 16777216\n")); }),
+                HasSubstr("16777216"));
 }
 
 TEST(Dvs128Camera, UnpluggedItComesBackBehindAGap) {

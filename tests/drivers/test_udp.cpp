@@ -1,6 +1,7 @@
 // UDP over this machine's loopback: what is sent is what is read.
 #include "drivers/udp/udp_source.h"
 #include "replay/udp_target.h"
+#include "replay/written_data.h"
 #include "src/core/error.h"
 #include "tests/support/holdings.h"
 
@@ -53,7 +54,9 @@ Batch receive(UdpSource& source, std::size_t events) {
 
 class Udp : public testing::TestWithParam<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Formats, Udp, testing::Values("t64", "t32", "spif", "t32_x16_y15_on1"),
+INSTANTIATE_TEST_SUITE_P(Formats, Udp,
+                         testing::Values("t64", "t32", "spif", "t64_x16_y16_on8",
+                                         "t32_x16_y15_on1"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST_P(Udp, EventsAreReadAsTheyWereSent) {
@@ -72,6 +75,23 @@ TEST_P(Udp, EventsAreReadAsTheyWereSent) {
     EXPECT_EQ(target.lost(), 0U);
 }
 
+TEST(Udp, AClockThatBeganAnewIsSentAsItIs) {
+    UdpSource source = source_of("t64");
+    UdpTarget target(name_of(source, "t64"), {});
+    Batch sent;
+    sent.events = random_events(1, 100, 9'000'000);
+    for (const Event& event : random_events(2, 100)) sent.events.push_back(event);
+    WrittenData data{target.holds()};
+    data.fit(sent);
+    EXPECT_EQ(data.restarts(), 0U);
+    target.write(sent);
+    const std::size_t taken_for_late = UdpRecordsParser::kEventsOfAnother - 1;
+    const Batch heard = receive(source, sent.events.size() - taken_for_late);
+    EXPECT_EQ(heard.events.back(), sent.events.back());
+    ASSERT_EQ(heard.triggers.size(), 1U);
+    EXPECT_EQ(heard.triggers[0].kind, Trigger::Kind::timestamp_reset);
+}
+
 TEST(Udp, ADatagramThatEndsWithinARecordIsCountedAndItsWholeOnesRead) {
     UdpSource source = source_of("t64");
     UdpSocket socket =
@@ -86,6 +106,17 @@ TEST(Udp, ADatagramThatEndsWithinARecordIsCountedAndItsWholeOnesRead) {
                 std::vector<Event>(events.begin(), events.begin() + 2));
     EXPECT_EQ(source.counters()[CameraCount::cut_transfers], 2U);
     EXPECT_EQ(source.counters()[CameraCount::transfers], 1U) << "the other one gave nothing";
+}
+
+TEST(Udp, AFloodOfPiecesOfRecordsDoesNotHoldUpARead) {
+    UdpSource source = source_of("t64");
+    UdpSocket socket =
+        UdpSocket::sending(UdpName::parse("//127.0.0.1:" + std::to_string(source.port())));
+    const std::vector<std::byte> piece(5);
+    for (int i = 0; i < 2000; ++i) socket.send(piece);
+    RawPacket packet;
+    EXPECT_EQ(source.read(packet), ReadStatus::timeout);
+    EXPECT_LE(source.counters()[CameraCount::cut_transfers], 1024U);
 }
 
 TEST(Udp, WhatComesTogetherIsOnePacket) {
@@ -147,11 +178,16 @@ TEST(Udp, NamesThatMakeNoSenseAreRefused) {
         }
         return "nothing was refused";
     };
-    EXPECT_THAT(refusal("127.0.0.1:0", ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
-    EXPECT_THAT(refusal("//127.0.0.1", ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
+    for (const std::string name :
+         {"127.0.0.1:0", "//127.0.0.1", "//:0", "//127.0.0.1:0?size", "//127.0.0.1:0?=4x4"})
+        EXPECT_THAT(refusal(name, ErrorKind::usage), HasSubstr("udp://HOST:PORT"));
     EXPECT_THAT(refusal("//127.0.0.1:0", ErrorKind::usage), HasSubstr("?size=640x480"));
-    EXPECT_THAT(refusal("//127.0.0.1:0?size=4", ErrorKind::usage), HasSubstr("found '4'"));
-    for (const std::string port : {"65536", "99999", "-1", "5x", "dns"})
+    for (const std::string size : {"4", "0x4", "4x0", "4097x4", "4x4097"})
+        EXPECT_THAT(refusal("//127.0.0.1:0?size=" + size, ErrorKind::usage),
+                    HasSubstr("found '" + size + "'"));
+    EXPECT_THAT(refusal("//127.0.0.1:0?size=4x4&speed=2", ErrorKind::usage),
+                HasSubstr("expected size=WxH and format=, found 'speed'"));
+    for (const std::string port : {"65536", "99999", "-1", "5x", "dns", ""})
         EXPECT_THAT(refusal("//127.0.0.1:" + port + "?size=4x4", ErrorKind::usage),
                     HasSubstr("from 0 to 65535, found '" + port + "'"));
     EXPECT_THAT(refusal("//127.0.0.1:0?size=4x4&format=t16", ErrorKind::usage),
@@ -160,8 +196,33 @@ TEST(Udp, NamesThatMakeNoSenseAreRefused) {
     EXPECT_THAT(
         refusal("//127.0.0.1:" + std::to_string(source.port()) + "?size=4x4", ErrorKind::device),
         HasSubstr("in use"));
-    EXPECT_THROW(UdpTarget("udp://127.0.0.1:9?format=t16", {}), Error);
     EXPECT_THROW(UdpTarget("udp://127.0.0.1:0", {}), Error) << "nobody listens at port 0";
+}
+
+TEST(Udp, WhatTheRecordsCannotHoldIsRefused) {
+    const auto refusal = [](const std::string& query, const StreamHeader& header,
+                            std::int64_t first_us) -> std::string {
+        try {
+            UdpTarget target("udp://127.0.0.1:9" + query, header);
+            Batch batch;
+            batch.events = random_events(1, 10, first_us);
+            target.write(batch);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::usage) << error.what();
+            return error.what();
+        }
+        return "nothing was refused";
+    };
+    StreamHeader small, large;
+    large.height = 32769;
+    EXPECT_THAT(refusal("?format=t16", small, 0), HasSubstr("found 'format=t16'"));
+    EXPECT_THAT(refusal("?size=4x4", small, 0), HasSubstr("found 'size=4x4'"));
+    EXPECT_THAT(refusal("?format=t32", large, 0), HasSubstr("at most 32768 px"));
+    EXPECT_THAT(refusal("?format=t64", large, 0), HasSubstr("nothing"));
+    large.height = 32768;
+    EXPECT_THAT(refusal("?format=spif", large, 0), HasSubstr("nothing"));
+    EXPECT_THAT(refusal("", small, -7), HasSubstr("expected times from 0 us, found -7 us"));
+    EXPECT_THAT(refusal("?format=t32", small, -7), HasSubstr("nothing"));
 }
 
 TEST(Udp, OpenedAndClosedLeavesNothingBehind) {

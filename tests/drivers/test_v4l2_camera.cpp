@@ -143,6 +143,19 @@ TEST(V4l2Camera, NoMaskOfColumnsEndsTheData) {
     }
 }
 
+TEST(V4l2Camera, TheMarkersOtherBitsMayBeAnything) {
+    constexpr std::uint64_t kOthers = 0x1ABCDE0012345678;
+    for (const std::uint32_t fourcc : {kEvt21, kEvt21Swapped}) {
+        V4l2Testbed bed{sensor(fourcc)};
+        auto camera = open();
+        bed.give({evt21_bytes({evt21_time_high(3), evt21_on(5, 32, 7, 1), kEvt21EndOfData | kOthers,
+                               evt21_on(7, 32, 7, 1)},
+                              fourcc == kEvt21Swapped)});
+        EXPECT_EQ(read_all(camera, bed).events.size(), 1U);
+        EXPECT_EQ(camera.counters()[CameraCount::bytes], 16U) << "before the marker";
+    }
+}
+
 TEST(V4l2Camera, TheSubdeviceKnowsTheSensorsSize) {
     V4l2NodeSettings settings = sensor(V4L2_PIX_FMT_GREY);  // of the Raspberry Pi's receiver
     settings.width = 4096;
@@ -160,6 +173,23 @@ TEST(V4l2Camera, TheSubdeviceKnowsTheSensorsSize) {
         {evt21_time_high(0), evt21_on(1, 0, 719, 1), kEvt21EndOfData, evt21_on(2, 0, 1, 1)},
         false)});
     EXPECT_EQ(read_all(camera, bed).events.size(), 1U) << "behind the marker is no data";
+}
+
+TEST(V4l2Camera, ASizeThatIsStatedCountsAndOneThatNoSensorHasIsRefused) {
+    V4l2NodeSettings settings = sensor();
+    settings.width = 5000;
+    settings.sensor_width = 1280;
+    settings.sensor_height = 720;
+    V4l2Testbed bed{settings};
+    EXPECT_THAT(failure_of([] { open(); }),
+                HasSubstr("says its sensor is 5000x320 px: state size"));
+    V4l2Settings wanted;
+    wanted.subdevice = "/dev/v4l-subdev0";
+    wanted.width = 640;
+    wanted.height = 480;
+    auto camera = open(wanted);
+    EXPECT_EQ(camera.info().width, 640);
+    EXPECT_EQ(camera.info().height, 480);
 }
 
 /// The words of a Prophesee file without its header, in buffers of one size.

@@ -45,11 +45,24 @@ TEST_F(ServiceManagerTest, HearsEachMessageAndNothingThatATerminalWouldObey) {
     EXPECT_EQ(socket.next(), "nothing");
 }
 
+TEST_F(ServiceManagerTest, HearsAtAnAbstractNameThatItIsReadyOnce) {
+    const std::string name = "@eventide-test-" + std::to_string(getpid());
+    test::ManagerSocket socket{name};
+    setenv("NOTIFY_SOCKET", name.c_str(), 1);
+    ServiceManager manager;
+    manager.ready();
+    manager.ready();
+    EXPECT_EQ(socket.next(), "READY=1");
+    EXPECT_EQ(socket.next(), "nothing");
+}
+
 TEST_F(ServiceManagerTest, WhereNobodyAskedNothingIsSaid) {
     EXPECT_FALSE(ServiceManager{}.is_there());
     for (const std::string& bad : {std::string{"relative"}, std::string(200, '/')}) {
         setenv("NOTIFY_SOCKET", bad.c_str(), 1);
-        EXPECT_FALSE(ServiceManager{}.is_there()) << bad;
+        ServiceManager manager;
+        EXPECT_FALSE(manager.is_there()) << bad;
+        manager.ready();  // nowhere
     }
     setenv("NOTIFY_SOCKET", (temp_ / "nobody").c_str(), 1);
     ServiceManager nobody_listens;
@@ -63,8 +76,13 @@ TEST_F(ServiceManagerTest, TheWatchdogOfAnotherProcessIsNotOurs) {
     setenv("WATCHDOG_PID", "1", 1);
     EXPECT_FALSE(ServiceManager{}.watchdog());
     setenv("WATCHDOG_PID", std::to_string(getpid()).c_str(), 1);
-    setenv("WATCHDOG_USEC", "often", 1);
-    EXPECT_FALSE(ServiceManager{}.watchdog());
+    for (const char* never : {"often", "0"}) {
+        setenv("WATCHDOG_USEC", never, 1);
+        EXPECT_FALSE(ServiceManager{}.watchdog()) << never;
+    }
+    unsetenv("WATCHDOG_PID");
+    setenv("WATCHDOG_USEC", "500", 1);
+    EXPECT_EQ(ServiceManager{}.watchdog(), std::chrono::microseconds{500}) << "of any process";
 }
 
 TEST_F(ServiceManagerTest, AStartIsAliveBehindAWaitForItsSourceButNotForEver) {
@@ -87,6 +105,18 @@ TEST_F(ServiceManagerTest, AStartIsAliveBehindAWaitForItsSourceButNotForEver) {
     StartWatch hangs{manager, "events.fifo", std::chrono::milliseconds{0}};
     hangs.source_is_waited_for();
     hangs.end();
+    EXPECT_EQ(socket.next(), "STATUS=waiting for events.fifo");
+    EXPECT_EQ(socket.next(), "nothing");
+}
+
+TEST_F(ServiceManagerTest, AStartIsNotAliveWhereNobodyWatches) {
+    test::ManagerSocket socket{temp_ / "notify"};
+    setenv("NOTIFY_SOCKET", (temp_ / "notify").c_str(), 1);
+    ServiceManager manager;
+    StartWatch start{manager, "events.fifo"};
+    start.source_is_waited_for();
+    start.end();
+    EXPECT_EQ(socket.next(), "READY=1");
     EXPECT_EQ(socket.next(), "STATUS=waiting for events.fifo");
     EXPECT_EQ(socket.next(), "nothing");
 }
