@@ -179,7 +179,6 @@ void draw_events_beside(const Frame& frame, const ShownPart& part, cv::Mat& imag
     cv::resize(part_of(events, part), scaled, {frame.intensity.width(), frame.intensity.height()},
                0, 0, cv::INTER_NEAREST);
     if (image.channels() == 1) cv::cvtColor(image, coloured, cv::COLOR_GRAY2BGR);
-    if (image.channels() == 4) cv::cvtColor(image, coloured, cv::COLOR_BGRA2BGR);
     cv::hconcat(scaled, coloured, image);
 }
 

@@ -57,8 +57,9 @@ struct ShownPart {
 cv::Mat part_of(const cv::Mat& sensor, const ShownPart& part);
 
 /// Puts the frame's events, of the part it shows, left of `image`, what draw() made of the frame:
-/// as colours and at the intensity's size, so that single events stay visible. `image` becomes
-/// CV_8UC3. Where the frame has no Frame::event_preview nothing changes.
+/// as colours and at the intensity's size, so that single events stay visible. `image`, grey or
+/// colour without transparency, becomes CV_8UC3. Where the frame has no Frame::event_preview
+/// nothing changes.
 void draw_events_beside(const Frame& frame, const ShownPart& part, cv::Mat& image);
 
 /// Draws sigma alone: CV_8UC1.

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
 #include <string>
 #include <utility>
 
@@ -162,6 +163,32 @@ TEST(ContactSheet, KeepsOneSizeHoweverLongTheRun) {
               sheet_of(1000, {.path = temp / "b.png"}).size());
     EXPECT_LT(sheet_of(1, {.path = temp / "c.png"}).rows,
               sheet_of(5, {.path = temp / "d.png"}).rows);
+}
+
+TEST(ContactSheet, ShowsTheSigmaThatIsAskedForAsWhite) {
+    const TempFolder temp;
+    for (const float white : {.1f, .2f}) {
+        const std::string file = temp / ("white" + std::to_string(white) + ".png");
+        ContactSheetSink sink{{.path = file, .sigma_white = white, .rows = 1}};
+        Frame frame = test::ramp_frame(80, 30, 0, from_us(0));
+        for (float& v : frame.sigma.values()) v = .1f;
+        sink.write(frame);
+        sink.close();
+        const cv::Mat sheet = cv::imread(file);
+        EXPECT_EQ(int(sheet.at<cv::Vec3b>(30, sheet.cols - 20)[0]), white == .1f ? 255 : 128);
+    }
+}
+
+TEST(ContactSheet, KeepsAFileThatAppearedWhileItWasMade) {
+    const TempFolder temp;
+    const std::string file = temp / "a.png";
+    ContactSheetSink sink{{.path = file}};
+    sink.write(test::ramp_frame(80, 30, 0, from_us(0)));
+    std::ofstream{file} << "another's";
+    EXPECT_THROW(sink.close(), Error);
+    std::string kept;
+    std::getline(std::ifstream{file}, kept);
+    EXPECT_EQ(kept, "another's");
 }
 
 TEST(ContactSheet, WantsTheImageFormatsName) {
