@@ -31,6 +31,21 @@ TEST(SegmentPlan, LooksAheadAsOftenAsAModelWillBeUsedSo) {
     EXPECT_NEAR(first, .5 * (settings.event_windows - settings.rendered), .1) << "anywhere";
 }
 
+TEST(SegmentPlan, SaysWhichPatchesLieOnPixels) {
+    DataSettings settings;
+    settings.whole_probability = .3;
+    constexpr int kPlans = 2000;
+    int on_pixels = 0;
+    for (int segment = 0; segment < kPlans; ++segment) {
+        const SegmentPlan plan = segment_plan(settings, segment);
+        const bool one_to_one = plan.span == settings.patch - 1.0;
+        EXPECT_EQ(plan.on_pixels,
+                  one_to_one && plan.x0 == std::round(plan.x0) && plan.y0 == std::round(plan.y0));
+        on_pixels += plan.on_pixels;
+    }
+    EXPECT_NEAR(double(on_pixels) / kPlans, .3, .03);
+}
+
 TEST(SceneStream, ImagesLieAtTheirWindowsEndsOrAnywhereInThem) {
     DataSettings settings = tiny_options({}).data;
     settings.edge_probability = .4;

@@ -174,6 +174,26 @@ TEST(Training, ALogThatWasCutShortGoesOnInALineOfItsOwn) {
 }
 
 /// Streams of one share or of two, of which all images count.
+TEST(Training, LpipsLooksAtPatchesBetweenThePixelsAloneWhereItIsToldTo) {
+    const fs::path npz =
+        fs::path{EVENTIDE_SOURCE_DIR} / "../shared/data/perceptual/lpips_squeeze_v0.1.npz";
+    if (!fs::exists(npz)) GTEST_SKIP() << "needs " << npz;
+    const auto lpips_of = [&](bool looks_on_pixels, double on_pixels) {
+        const fs::path out = empty_folder("looks");
+        TrainOptions options = tiny_options(out);
+        options.steps = 5;
+        options.lpips = npz;
+        options.lpips_on_pixels = looks_on_pixels;
+        options.data.whole_probability = on_pixels;
+        train(*trainer(options));
+        return logged(out, 5).front();
+    };
+    EXPECT_GT(lpips_of(true, 1), 0);
+    EXPECT_EQ(lpips_of(false, 1), 0);
+    EXPECT_EQ(lpips_of(false, 0), lpips_of(true, 0));
+    EXPECT_GT(lpips_of(false, 0), 0);
+}
+
 TEST(Training, SharesOfAStepAreItsBatch) {
     const auto run = [](const char* name, int threads, int streams) {
         TrainOptions options = tiny_options(empty_folder(name));
