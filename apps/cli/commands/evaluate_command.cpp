@@ -225,7 +225,7 @@ int EvaluateCommand::run(Program& program) {
     const EvaluateSettings settings = how(program);
     name_evaluation_files(settings, program.files);
     std::ranges::sort(figures_);
-    figures_.erase(std::ranges::unique(figures_).begin(),
+    figures_.erase(std::unique(figures_.begin(), figures_.end()),
                    figures_.end());  // named twice, made once
     require_figures_that_fit();
     require_outputs_that_fit();

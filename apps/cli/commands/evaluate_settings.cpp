@@ -15,7 +15,8 @@ namespace eventide::app {
 
 namespace {
 
-Setting seconds_setting(std::string key, std::string& value, std::string help, std::string open) {
+Setting seconds_setting(std::string key, std::string& value, std::string help,
+                        const std::string& open) {
     return parsed_setting<std::string>(
         std::move(key), value, "TIME", std::move(help),
         [open](const std::string& text) {
@@ -157,8 +158,10 @@ void EvaluateCommand::refuse_idle_flags(const FlagKeys& flags) const {
         if (of.empty() || (evaluates() && is_of(protocol_)) ||
             (simulates() && is_of(Protocol::simulated)))
             continue;
-        std::vector<std::string> names;
-        for (const Protocol protocol : of) names.push_back(show_word(protocol, kProtocolWords));
+        std::vector<std::string> names(of.size());
+        std::ranges::transform(of, names.begin(), [](Protocol protocol) {
+            return std::string{show_word(protocol, kProtocolWords)};
+        });
         refuse_idle_flag(flags, key, "--protocol " + alternatives(names), found);
     }
     if (calibrated_.empty()) refuse_idle_flag(flags, "calibration", "--calibrated FILE");
