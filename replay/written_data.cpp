@@ -77,10 +77,13 @@ std::vector<std::string> WrittenData::remarks(const std::string& file) const {
     if (late_triggers_ > 0)
         remarks.push_back(file + ": " + counted(late_triggers_, "trigger") +
                           " came behind later events and have the time of those");
-    if (colours_lost_)
-        remarks.push_back(file + ": its format cannot say the images' colour filter, " +
-                          std::string{name_of(colours_)} + ": --bayer states it");
+    if (colours_lost_) remarks.push_back(colours_lost_text(file, colours_));
     return remarks;
+}
+
+std::string WrittenData::colours_lost_text(const std::string& file, ColourFilter filter) {
+    return file + ": its format cannot say the images' colour filter, " +
+           std::string{name_of(filter)} + ": --bayer states it";
 }
 
 }  // namespace eventide

@@ -34,6 +34,9 @@ public:
     /// What there is to say of `file`: sentences for people.
     std::vector<std::string> remarks(const std::string& file) const;
 
+    /// Of a file whose format cannot say the filter before the sensor of its images.
+    static std::string colours_lost_text(const std::string& file, ColourFilter filter);
+
 private:
     bool begins_anew(SensorTime t, SensorTime newest) const;
     void move(Batch& batch);

@@ -3,6 +3,7 @@
 
 #include "apps/cli/command.h"
 #include "src/core/error.h"
+#include "src/model/engine.h"
 
 #include <algorithm>
 #include <string>
@@ -18,6 +19,12 @@ inline void refuse_idle_flag(const FlagKeys& flags, const std::string& key,
     std::string flag = "--" + key;
     std::ranges::replace(flag, '_', '-');
     throw Error(ErrorKind::usage, flag + ": expected " + expected + ", found " + found);
+}
+
+/// The plain engine has float32 alone.
+inline void refuse_idle_precision(const FlagKeys& flags, Engine engine, Precision precision) {
+    if (engine == Engine::plain && precision == Precision::bf16)
+        refuse_idle_flag(flags, "precision", "f32 with --engine plain", "bf16");
 }
 
 }  // namespace eventide::app

@@ -1,5 +1,6 @@
 // Which camera is taken for the DAVIS that was pulled out, and what is told until it is back.
 #include "tests/drivers/davis_streams.h"
+#include "tests/drivers/usb_sessions.h"
 #include "tests/support/keep_in.h"
 
 #include <gmock/gmock.h>
@@ -26,9 +27,7 @@ TEST(DavisReturn, OnlyTheSameCameraIsTakenBack) {
     options.reconnect = true;
     DavisCamera camera{options};
     RawPacket packet;
-    while (camera.read(packet) != ReadStatus::data) continue;
-    bed.unplug();
-    while (camera.read(packet) != ReadStatus::timeout) continue;
+    test::unplug_while_sending(camera, bed);
     DavisModelSettings other;
     other.serial = "00000007";
     bed.plug_in(std::make_shared<DavisModel>(other));
@@ -49,9 +48,7 @@ TEST(DavisReturn, WhyItIsNotBackIsToldOnce) {
     const auto look = [&] {
         for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
     };
-    while (camera.read(packet) != ReadStatus::data) continue;
-    bed.unplug();
-    while (camera.read(packet) != ReadStatus::timeout) continue;
+    test::unplug_while_sending(camera, bed);
     look();
     EXPECT_THAT(warnings, ElementsAre(HasSubstr("no DAVIS with serial '00000042' found")));
     DavisModelSettings other;
@@ -72,9 +69,7 @@ TEST(DavisReturn, WhyItIsNotBackIsToldOnce) {
                 HasSubstr("is a DAVIS346B of 346x260 px, found a DAVIS240C of 240x180"));
     bed.unplug();
     bed.plug_in(camera_before(2'000));
-    while (camera.read(packet) != ReadStatus::data) continue;
-    bed.unplug();
-    while (camera.read(packet) != ReadStatus::timeout) continue;
+    test::unplug_while_sending(camera, bed);
     look();
     ASSERT_EQ(warnings.size(), 4U);
     EXPECT_EQ(warnings[3], warnings[0]) << "it is gone once more";
@@ -88,9 +83,7 @@ TEST(DavisReturn, WithASerialNumberItIsTakenBackAtAnyPortHoweverItWasNamed) {
         if (by_place) std::tie(options.bus, options.address) = std::pair{1, 5};
         DavisCamera camera{options};
         RawPacket packet;
-        while (camera.read(packet) != ReadStatus::data) continue;
-        bed.unplug();
-        while (camera.read(packet) != ReadStatus::timeout) continue;
+        test::unplug_while_sending(camera, bed);
         bed.plug_in(camera_before(2'000), {.port = 3, .address = 6});
         for (int look = 0; look < 5 && packet.bytes.empty(); ++look) camera.read(packet);
         EXPECT_TRUE(packet.gap_before) << by_place;
@@ -114,9 +107,7 @@ TEST(DavisReturn, WithoutASerialNumberItIsTakenBackAtItsPort) {
     DavisCamera camera{options};
     EXPECT_EQ(camera.info().serial, "TMP00261") << "bus 1, address 5";
     RawPacket packet;
-    while (camera.read(packet) != ReadStatus::data) continue;
-    bed.unplug();
-    while (camera.read(packet) != ReadStatus::timeout) continue;
+    test::unplug_while_sending(camera, bed);
     plug_in({.port = 3, .address = 6});
     for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);
     EXPECT_EQ(camera.counters()[CameraCount::reconnects], 0U);
@@ -163,9 +154,7 @@ TEST(DavisReturn, OneWithoutASerialNumberThatSpeaksOtherwiseIsNotTakenForIt) {
         options.warn = keep_in(warnings);
         DavisCamera camera{options};
         RawPacket packet;
-        while (camera.read(packet) != ReadStatus::data) continue;
-        bed.unplug();
-        while (camera.read(packet) != ReadStatus::timeout) continue;
+        test::unplug_while_sending(camera, bed);
         const DavisSensor sensor = settings.sensor;
         change(settings.sensor);
         const auto other = plug_in();

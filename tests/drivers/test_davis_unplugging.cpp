@@ -51,17 +51,8 @@ TEST(DavisUnplugged, ACameraThatIsStoppedBeforeItBeginsAgainHasNotComeBack) {
 
 /// Opens, starts, streams to the scene's end, stops; the words of the error, or nothing.
 std::string session(UsbTestbed& bed, const DavisModel& model) {
-    try {
-        DavisCamera camera{small_transfers(false)};
-        stream(camera, bed, model);
-        camera.stop();
-        RawPacket packet;
-        camera.read(packet);
-        return "";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::device);
-        return error.what();
-    }
+    return test::end_of_session<DavisCamera>(
+        small_transfers(false), [&](DavisCamera& camera) { stream(camera, bed, model); });
 }
 
 /// Of the two hundred requests of a session, so many are not tried: each takes a session of its

@@ -90,17 +90,8 @@ TEST(DvxplorerFaults, CountsWhatTheCameraItselfDropped) {
 
 /// Opens, starts, streams to the scene's end, stops; the words of the error, or nothing.
 std::string session(PluggedIn& side) {
-    try {
-        DvxplorerCamera camera{at_once()};
-        stream_scene(camera, side.bed, *side.model);
-        camera.stop();
-        RawPacket packet;
-        camera.read(packet);
-        return "";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::device);
-        return error.what();
-    }
+    return end_of_session<DvxplorerCamera>(
+        at_once(), [&](DvxplorerCamera& camera) { stream_scene(camera, side.bed, *side.model); });
 }
 
 TEST(DvxplorerFaults, UnpluggedAtAnyMomentItEndsWithTheRightWords) {
@@ -143,9 +134,7 @@ TEST(DvxplorerFaults, ACameraThatComesBackAndStaysSilentIsLeftWithoutPower) {
     options.warn = keep_in(warnings);
     DvxplorerCamera camera{options};
     RawPacket packet;
-    while (camera.read(packet) != ReadStatus::data) continue;
-    side.bed.unplug();
-    while (camera.read(packet) != ReadStatus::timeout) continue;
+    unplug_while_sending(camera, side.bed);
     settings.deaf = davis::kUsbRun;
     const auto silent = std::make_shared<testing_support::DvxplorerModel>(settings);
     side.bed.plug_in(silent);
@@ -164,9 +153,7 @@ TEST(DvxplorerFaults, OneWithoutASerialNumberOfAnotherOrientationIsNotTakenForIt
     options.warn = keep_in(warnings);
     DvxplorerCamera camera{options};
     RawPacket packet;
-    while (camera.read(packet) != ReadStatus::data) continue;
-    side.bed.unplug();
-    while (camera.read(packet) != ReadStatus::timeout) continue;
+    unplug_while_sending(camera, side.bed);
     settings.sensor.swapped = true;
     side.bed.plug_in(std::make_shared<testing_support::DvxplorerModel>(settings));
     for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.read(packet), ReadStatus::timeout);

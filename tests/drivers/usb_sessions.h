@@ -50,6 +50,30 @@ Batch stream_scene(Camera& camera, testing_support::UsbTestbed& bed, const Model
     return data;
 }
 
+/// Opens, does `stream`, stops; the words of the Error that ended it, or nothing.
+template <typename SomeCamera, typename Options, typename Stream>
+std::string end_of_session(const Options& options, const Stream& stream) {
+    try {
+        SomeCamera camera{options};
+        stream(camera);
+        camera.stop();
+        RawPacket packet;
+        camera.read(packet);
+        return "";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::device);
+        return error.what();
+    }
+}
+
+/// A camera that reconnects is unplugged once it sends; returns when it is missed.
+inline void unplug_while_sending(Camera& camera, testing_support::UsbTestbed& bed) {
+    RawPacket packet;
+    while (camera.read(packet) != ReadStatus::data) continue;
+    bed.unplug();
+    while (camera.read(packet) != ReadStatus::timeout) continue;
+}
+
 /// Reads so many events; those of each transfer lie within less than `most`.
 inline void expect_events_held_back_less_than(SensorDuration most, Camera& camera,
                                               std::size_t events) {

@@ -119,6 +119,15 @@ struct FusedRun : DataObserver {
     Pipeline pipeline;
 };
 
+/// Of the first 20 ms, in which the stream gave so many images.
+LatentMap first_latent(const Encoder& encoder, std::uint64_t images) {
+    LatentMap latent = encoder.make_output();
+    latent.window = {from_us(0), from_us(20'000)};
+    latent.events_per_pixel = Array2<float>(kHeight, kWidth);
+    latent.images = images;
+    return latent;
+}
+
 TEST(ModelRenderStage, CountsTheImagesThatCorrectNothing) {
     const Model model = test::random_model(small_config(), 1);
     Encoder encoder(model, kWidth, kHeight);
@@ -130,10 +139,7 @@ TEST(ModelRenderStage, CountsTheImagesThatCorrectNothing) {
     for (ReferenceImage& image : three) image.pixels = Array2<std::uint16_t>(kHeight, kWidth);
     images.put(three);
     EXPECT_EQ(stage.dropped_images(), 1U) << "more than may be on their way";
-    LatentMap latent = encoder.make_output();
-    latent.window = {from_us(0), from_us(20'000)};
-    latent.events_per_pixel = Array2<float>(kHeight, kWidth);
-    latent.images = 2;
+    LatentMap latent = first_latent(encoder, 2);
     stage.take(latent);
     EXPECT_EQ(stage.used_images(), 1U);
     three[2].t = from_us(30'000);
@@ -157,10 +163,7 @@ TEST(ModelRenderStage, GoesOnInTheSizeItHasWhereThereIsNoMemoryForAnother) {
     white.pixels = Array2<std::uint16_t>(kHeight, kWidth);
     std::ranges::fill(white.pixels.values(), std::uint16_t{50'000});
     images.put({white});
-    LatentMap latent = encoder.make_output();
-    latent.window = {from_us(0), from_us(20'000)};
-    latent.events_per_pixel = Array2<float>(kHeight, kWidth);
-    latent.images = 1;
+    LatentMap latent = first_latent(encoder, 1);
     stage.take(latent);
     ASSERT_EQ(stage.used_images(), 1U);
     const auto shown = [&](Frame& frame) {

@@ -4,6 +4,7 @@
 #include "drivers/ros2/ros2_source.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
+#include "tests/ros2/error_of.h"
 #include "tests/ros2/topics.h"
 #include "tests/support/keep_in.h"
 
@@ -89,14 +90,7 @@ protected:
     }
 
     std::string error_of(const std::function<void()>& call, ErrorKind kind = ErrorKind::device) {
-        try {
-            call();
-        } catch (const Error& error) {
-            EXPECT_EQ(error.kind(), kind);
-            return error.what();
-        }
-        ADD_FAILURE() << "nothing was thrown";
-        return {};
+        return test::error_of(call, kind);
     }
 
     const std::string name_ =

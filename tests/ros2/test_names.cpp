@@ -6,6 +6,7 @@
 #include "pipeline/ros2/ros2_name.h"
 #include "pipeline/ros2/socket_buffer.h"
 #include "src/core/error.h"
+#include "tests/ros2/error_of.h"
 #include "tests/system/process.h"
 
 #include <gmock/gmock.h>
@@ -22,14 +23,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string error_of(const std::function<void()>& call, ErrorKind kind = ErrorKind::usage) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind);
-        return error.what();
-    }
-    ADD_FAILURE() << "nothing was thrown";
-    return {};
+    return test::error_of(call, kind);
 }
 
 TEST(Ros2Name, ASinkIsANameSpaceAndKeys) {

@@ -165,8 +165,7 @@ void EvaluateCommand::refuse_idle_flags(const FlagKeys& flags) const {
         refuse_idle_flag(flags, key, "--protocol " + alternatives(names), found);
     }
     if (calibrated_.empty()) refuse_idle_flag(flags, "calibration", "--calibrated FILE");
-    if (engine_ == Engine::plain && precision_ == Precision::bf16)
-        refuse_idle_flag(flags, "precision", "f32 with --engine plain", "bf16");
+    refuse_idle_precision(flags, engine_, precision_);
 }
 
 }  // namespace eventide::app

@@ -9,6 +9,7 @@
 #include "apps/cli/terminal.h"
 #include "pipeline/sinks/folder.h"
 #include "replay/formats.h"
+#include "replay/written_data.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
 #include "src/simulate/colour_recording.h"
@@ -233,8 +234,7 @@ int SimulateCommand::run(Program& program) {
         spdlog::warn("{}: its format cannot hold reference images", out_);
     if (out.holds().images && !out.holds().colour_filter && bayer_ != ColourFilter::none &&
         what.images_per_second > 0)
-        spdlog::warn("{}: its format cannot say the images' colour filter, {}: --bayer states it",
-                     out_, name_of(bayer_));
+        spdlog::warn("{}", WrittenData::colours_lost_text(out_, bayer_));
     std::unique_ptr<FolderSink> truth;
     if (!truth_.empty())
         truth = std::make_unique<FolderSink>(FolderSettings{

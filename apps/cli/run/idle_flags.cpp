@@ -63,10 +63,8 @@ void refuse_idle_flags(const RunSettings& settings, const FlagKeys& flags) {
     refuse_without_recording(settings, flags);
     if (settings.warmup && !settings.from)
         refuse_idle_flag(flags, "warmup", "--from, before which it lies");
-    if (settings.engine != Engine::plain) return;
-    if (settings.precision == Precision::bf16)
-        refuse_idle_flag(flags, "precision", "f32 with --engine plain", "bf16");
-    if (settings.kernels == Kernels::onednn)
+    refuse_idle_precision(flags, settings.engine, settings.precision);
+    if (settings.engine == Engine::plain && settings.kernels == Kernels::onednn)
         refuse_idle_flag(flags, "kernels", "own with --engine plain", "onednn");
 }
 
