@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -24,12 +25,27 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// How many numbered files of each kind are an earlier run's.
-using Owned = std::map<std::string, std::uint64_t>;
+/// What is an earlier run's.
+struct Owned {
+    std::map<std::string, std::uint64_t> numbered;  // how many of each kind
+    std::set<std::string> single;
+};
 
 std::uint64_t lines_in(const fs::path& file) {
     std::ifstream stream{file};
     return std::uint64_t(std::count(std::istreambuf_iterator<char>{stream}, {}, '\n'));
+}
+
+std::set<std::string> single_in(const Json& record, const RunFolderFiles& files) {
+    if (const Json named = record.value("single", Json{}); named.is_array()) {
+        std::set<std::string> names;
+        for (const Json& name : named)
+            if (name.is_string()) names.insert(name.get<std::string>());
+        return names;
+    }
+    std::set<std::string> names{files.single.begin(), files.single.end()};
+    for (const std::string& name : files.since_named) names.erase(name);
+    return names;
 }
 
 /// What the record says; nothing where there is none, or one of another program or another kind of
@@ -44,12 +60,13 @@ std::optional<Owned> read_record(const fs::path& folder, const RunFolderFiles& f
     const std::string& first = files.numbered.front().folder;
     // Records without counts are of runs that wrote frames.
     if (counts.is_object() ? !counts.contains(first) : first != "frames") return std::nullopt;
-    Owned owned;
+    Owned owned{.numbered = {}, .single = single_in(record, files)};
     for (const NumberedFiles& kind : files.numbered) {
         const Json count = counts.is_object() ? counts.value(kind.folder, Json{}) : Json{};
-        owned[kind.folder] = record.value("finished", Json{}) == true && count.is_number_unsigned()
-                                 ? count.get<std::uint64_t>()
-                                 : lines_in(folder / files.list);
+        owned.numbered[kind.folder] =
+            record.value("finished", Json{}) == true && count.is_number_unsigned()
+                ? count.get<std::uint64_t>()
+                : lines_in(folder / files.list);
     }
     return owned;
 }
@@ -92,13 +109,14 @@ std::vector<fs::path> earlier_files(const fs::path& folder, const RunFolderFiles
         found.push_back(file);
     };
     for (const std::string& name : files.single) {
-        if (fs::exists(fs::symlink_status(folder / name))) take(folder / name, bool(owned));
-        if (owned && fs::exists(folder / (name + ".part")))
+        const bool is_ours = owned && owned->single.contains(name);
+        if (fs::exists(fs::symlink_status(folder / name))) take(folder / name, is_ours);
+        if (is_ours && fs::exists(folder / (name + ".part")))
             found.push_back(folder / (name + ".part"));
     }
     for (const NumberedFiles& kind : files.numbered)
         for (const auto& [n, file] : numbered_in(folder, kind))
-            take(file, owned && n < owned->at(kind.folder));
+            take(file, owned && n < owned->numbered.at(kind.folder));
     if (!owned && fs::exists(fs::symlink_status(folder / kRunRecord))) refuse(folder / kRunRecord);
     return found;
 }
@@ -176,6 +194,10 @@ void RunFolder::write_record(const std::string& about, bool finished) const {
     if (!record.contains("program")) record["program"] = "eventide";
     for (std::size_t i = 0; i < written_.size(); ++i)
         record["files"][files_.numbered[i].folder] = written_[i];
+    // Of a run that is killed, all that it may write: nothing else has such a name when it begins.
+    record["single"] = Json::array();
+    for (const std::string& name : files_.single)
+        if (!finished || fs::exists(folder_ / name)) record["single"].push_back(name);
     record["finished"] = finished;
     write_file(folder_ / kRunRecord,
                record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", true);

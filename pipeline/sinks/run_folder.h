@@ -11,7 +11,8 @@
 
 namespace eventide {
 
-/// The record: JSON with "program", "files" (how many of each numbered kind) and "finished".
+/// The record: JSON with "program", "files" (how many of each numbered kind), "single" (names of
+/// the others) and "finished".
 constexpr const char* kRunRecord = "run.json";
 
 /// Files numbered from 0, such as frames/frame_0000000000.png.
@@ -31,6 +32,8 @@ struct RunFolderFiles {
     std::vector<std::string> single;
     /// One of `single` with a line at least for each number: says how far a killed run came.
     std::string list;
+    /// Those of `single` that records without "single" do not mean: earlier versions wrote none.
+    std::vector<std::string> since_named = {};
 };
 
 class RunFolder {

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 RunFolderFiles EcdWriter::files() {
     return {{{"images", "frame_", 8, ".png"}},
             {"events.txt", "images.txt", "exposure.txt"},
-            "images.txt"};
+            "images.txt",
+            {"exposure.txt"}};
 }
 
 EcdWriter::EcdWriter(const fs::path& folder, bool overwrite, int width, int height)
