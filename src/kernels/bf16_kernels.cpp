@@ -4,6 +4,7 @@
 #include "src/kernels/bf16_kernels.h"
 
 #include "src/kernels/bf16_render.h"
+#include "src/kernels/bf16_winograd.h"
 #include "src/kernels/dot_blocks.h"
 #include "src/kernels/pixels_to_bf16.h"
 #include "src/kernels/quad_dots.h"
@@ -287,6 +288,8 @@ const Bf16Kernels& bf16_kernels() {
                                       .update_row = update_row,
                                       .double_row = double_row,
                                       .offset_rows = offset_rows,
+                                      .winograd_input = winograd_input,
+                                      .winograd_output = winograd_output,
                                       .hidden_rows = hidden_rows};
     return kKernels;
 #else

@@ -39,6 +39,10 @@ struct Bf16Kernels {
     void (*double_row)(const DoubleRow&);
     /// As VectorKernels::offset_rows, of bf16 numbers.
     void (*offset_rows)(const OffsetRows&);
+    /// The sums of winograd.h, of an even number of channels or outputs; positions and outputs are
+    /// bf16, products float32. Null where half of the products saves less than they cost.
+    void (*winograd_input)(const WinogradInput&) = nullptr;
+    void (*winograd_output)(const WinogradOutput&) = nullptr;
     /// Null where it would gain nothing; false, and nothing done, for layers it is not made for.
     bool (*hidden_rows)(const HiddenRows&);
 };

@@ -57,9 +57,9 @@ HWY_INLINE void group_input(Tag d, const At& at, std::ptrdiff_t plane, float* ou
 template <class Tag>
 void winograd_input_by(Tag d, const WinogradInput& r) {
     const std::ptrdiff_t channels = r.channels;
-    float* out = r.out;
+    auto* out = static_cast<float*>(r.out);
     for (int x = 0; x + kWinogradTaps <= r.pixels; x += kWinogradOutputs) {
-        const float* in = r.in + x * channels;
+        const float* in = static_cast<const float*>(r.in) + x * channels;
         const std::ptrdiff_t last = r.pixels - 1 - x;
         for (int y = 0; y < r.rows; ++y, in += r.pitch, out += r.step)
             channel_vectors(d, r.channels, [&](int c) HWY_ATTR {
@@ -104,7 +104,7 @@ void winograd_output_by(Tag d, const WinogradOutput& r) {
     const float* in = r.in;
     for (int x = 0; x < r.width; x += kWinogradOutputs) {
         const int pixels = std::min(kWinogradOutputs, r.width - x);
-        float* out = r.out + x * r.out_step;
+        float* out = static_cast<float*>(r.out) + x * r.out_step;
         for (int y = 0; y < r.rows; ++y, in += r.outputs, out += r.out_pitch)
             channel_vectors(d, r.outputs,
                             [&](int c) HWY_ATTR { group_output(d, r, in, c, pixels, out); });

@@ -30,13 +30,14 @@ constexpr double kWinogradA = 0.70710678118654752440, kWinogradB = 1.41421356237
 
 /// v of rows of one source, [group][row][step] in each position's plane, so that what a product
 /// sums up, three rows of all channels, lies one after the other.
+/// Units of 4 bytes are float32 numbers, or pairs of bf16 numbers, which are summed up in float32.
 struct WinogradInput {
-    const float* in = nullptr;  ///< [row][pixel][channel]: up and left of the first output
-    std::ptrdiff_t pitch = 0;   ///< numbers from one row to the next
-    int rows = 0, pixels = 0;   ///< pixels past the last of a row are read as the last
+    const void* in = nullptr;  ///< [row][pixel][channel]: up and left of the first output
+    std::ptrdiff_t pitch = 0;  ///< units from one row to the next
+    int rows = 0, pixels = 0;  ///< pixels past the last of a row are read as the last
     int channels = 0;
-    float* out = nullptr;                ///< of position 0, group 0, row 0
-    std::ptrdiff_t plane = 0, step = 0;  ///< numbers from position to position, row to row
+    void* out = nullptr;                 ///< of position 0, group 0, row 0
+    std::ptrdiff_t plane = 0, step = 0;  ///< units from position to position, row to row
 };
 
 /// y = act(A m + bias) of rows of products, which lie [group][row][output] in each plane.
@@ -45,9 +46,9 @@ struct WinogradOutput {
     std::ptrdiff_t plane = 0;
     const float* bias = nullptr;  ///< [outputs]
     bool relu = false;
-    int rows = 0, width = 0, outputs = 0;  ///< width: pixels of a row
-    float* out = nullptr;
-    std::ptrdiff_t out_pitch = 0, out_step = 0;  ///< numbers between rows, pixels
+    int rows = 0, width = 0, outputs = 0;        ///< width: pixels of a row
+    void* out = nullptr;                         ///< float32, or bf16 by the kernels that say so
+    std::ptrdiff_t out_pitch = 0, out_step = 0;  ///< units between rows, pixels
 };
 
 }  // namespace eventide

@@ -12,12 +12,18 @@ namespace eventide {
 
 namespace {
 
-/// Fewer channels cost more in sums than they save in products.
+/// Fewer channels cost more in sums than they save in products, which are cheaper in bf16.
 bool pays_by_winograd(const plain::ConvWeights<float>& weights, int stride,
-                      const Backend& backend) {
-    constexpr int kLeast = 4;
-    return !backend.onednn && backend.bf16 == nullptr && stride == 1 && weights.side == 3 &&
-           weights.in >= kLeast && weights.out >= kLeast;
+                      const std::vector<int>& sources, const Backend& backend) {
+    if (backend.onednn || stride != 1 || weights.side != 3) return false;
+    if (backend.bf16 == nullptr) {
+        constexpr int kLeast = 4;
+        return weights.in >= kLeast && weights.out >= kLeast;
+    }
+    constexpr int kLeastWeights = 512;  // of a tap
+    const auto is_even = [](int channels) { return channels % 2 == 0; };
+    return backend.bf16->winograd_input != nullptr && weights.in * weights.out >= kLeastWeights &&
+           is_even(weights.out) && std::ranges::all_of(sources, is_even);
 }
 
 }  // namespace
@@ -41,7 +47,7 @@ PackedConv::PackedConv(const plain::ConvWeights<float>& weights, int stride, boo
                                                      std::move(extents));
         return;
     }
-    if (summation != Summation::by_pixel && pays_by_winograd(weights, stride, backend)) {
+    if (summation != Summation::by_pixel && pays_by_winograd(weights, stride, sources_, backend)) {
         winograd_ = std::make_shared<const WinogradConv>(weights, sources_, relu, backend);
         return;
     }
@@ -115,18 +121,16 @@ std::size_t PackedConv::scratch_size(int height, int width) const {
     if (onednn_ != nullptr)
         return onednn_->scratch_size() + area * std::size_t(inputs_) +
                std::size_t(height) * std::size_t(width) * std::size_t(outputs_);
-    if (winograd_ != nullptr) return winograd_->scratch_size(height, width);
-    if (numbers().bf16() == nullptr) return 0;
-    return area * std::size_t(numbers().units(inputs_));
+    const std::size_t converted =
+        numbers().bf16() != nullptr ? area * std::size_t(numbers().units(inputs_)) : 0;
+    return converted + (winograd_ != nullptr ? winograd_->scratch_size(height, width) : 0);
 }
 
 void PackedConv::run(const ConvArea& area, float* scratch) const noexcept {
     if (onednn_ != nullptr)
         run_onednn(area, scratch);
-    else if (winograd_ != nullptr)
-        winograd_->run(area, outputs_, scratch);
     else
-        run_own(area, area.to_bf16 ? numbers().units(outputs_) : outputs_);
+        run_own(area, area.to_bf16 ? numbers().units(outputs_) : outputs_, scratch);
 }
 
 void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
@@ -147,18 +151,21 @@ void PackedConv::run(const ConvCall& call, float* scratch) const noexcept {
             numbers().from_float(call.in + y * call.in_pitch, std::size_t(columns), inputs_,
                                  scratch + y * pitch);
         area.in[0] = {scratch, pitch};
+        scratch += rows * pitch;
     }
-    if (winograd_ != nullptr)
-        winograd_->run(area, call.out_step, scratch);
-    else
-        run_own(area, call.out_step);
+    run_own(area, call.out_step, scratch);
 }
 
 /// Pairs of outputs where there are weights for them. A row of 5:
 ///
 ///     outputs    0 1 | 2 3 |
 ///                          3 4
-void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step) const noexcept {
+void PackedConv::run_own(const ConvArea& area, std::ptrdiff_t out_step,
+                         float* scratch) const noexcept {
+    if (winograd_ != nullptr) {
+        winograd_->run(area, out_step, scratch);
+        return;
+    }
     const bool is_dense = out_step == (area.to_bf16 ? numbers().units(outputs_) : outputs_);
     if (pair_.empty() || !is_dense || area.width < 2) {
         run_part(area, out_step, 0, area.width, 1);

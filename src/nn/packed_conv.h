@@ -43,7 +43,7 @@ public:
 private:
     PackedWeights packed(const plain::ConvWeights<float>& weights, int pixels, bool relu,
                          const Backend& backend) const;
-    void run_own(const ConvArea& area, std::ptrdiff_t out_step) const noexcept;
+    void run_own(const ConvArea& area, std::ptrdiff_t out_step, float* scratch) const noexcept;
     void run_part(const ConvArea& area, std::ptrdiff_t out_step, int first, int count,
                   int at_once) const noexcept;
     void run_onednn(const ConvArea& area, float* scratch) const noexcept;
@@ -60,7 +60,7 @@ private:
     /// The weights of direct sums, empty where one of the two below does them: for one output
     /// pixel; and for two beside each other, where the outputs of one fill but half a vector.
     PackedWeights single_, pair_;
-    // Or null. In float32 the first does layers of 3x3 and stride 1 that are wide enough.
+    // Or null. The first does layers of 3x3 and stride 1 that are wide enough.
     std::shared_ptr<const WinogradConv> winograd_;
     std::shared_ptr<const OnednnConv> onednn_;
 };

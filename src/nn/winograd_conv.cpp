@@ -2,7 +2,7 @@
 //
 //     scratch      numbers                                read by
 //     pixels v     6 planes of groups x (rows + 2) x C    products: three rows of a group
-//     products m   6 planes of groups x rows x outputs    outputs
+//     products m   6 planes of groups x rows x outputs    outputs; always float32
 //
 // To the kernel a group's rows are the pixels of a row: it reads stretches that overlap, as those
 // of a convolution do.
@@ -10,6 +10,8 @@
 //     v of a group     row 0    row 1    row 2    row 3 ...     C numbers a row
 //     m of row 0       [------ length 3 C ------]
 //     m of row 1                [------ length 3 C ------]      step C
+//
+// With bf16 numbers it is units of two of them that lie so, C / 2 a row.
 #include "src/nn/winograd_conv.h"
 
 #include "src/kernels/winograd.h"
@@ -55,7 +57,8 @@ WinogradConv::WinogradConv(const plain::ConvWeights<float>& weights,
       sources_(sources),
       relu_(relu),
       bias_(weights.bias.begin(), weights.bias.end()) {
-    assert(weights.side == kSide && backend.bf16 == nullptr);
+    assert(weights.side == kSide);
+    assert(backend.bf16 == nullptr || backend.bf16->winograd_input != nullptr);
     const std::vector<float> none(weights.bias.size());
     for (int position = 0; position < kWinogradPositions; ++position) {
         const auto weight = [&](int, int row, int channel, int output) {
@@ -71,7 +74,7 @@ std::size_t WinogradConv::scratch_size(int height, int width) const {
     const auto rows = std::size_t(std::min(height, kMaxRows)),
                groups = std::size_t(groups_of(width));
     return kWinogradPositions * groups *
-           ((rows + kSide - 1) * std::size_t(inputs_) + rows * std::size_t(outputs_));
+           ((rows + kSide - 1) * std::size_t(units()) + rows * std::size_t(outputs_));
 }
 
 void WinogradConv::run(const ConvArea& area, std::ptrdiff_t out_step,
@@ -94,23 +97,13 @@ void WinogradConv::run(const ConvArea& area, std::ptrdiff_t out_step,
 
 void WinogradConv::run_band(const ConvArea& band, std::ptrdiff_t out_step,
                             float* scratch) const noexcept {
-    const VectorKernels& kernels = positions_.front().numbers().kernels();
     const int rows = band.height, read = rows + kSide - 1, groups = groups_of(band.width);
-    const std::ptrdiff_t group = std::ptrdiff_t(read) * inputs_, plane = groups * group,
+    const std::ptrdiff_t group = std::ptrdiff_t(read) * units(), plane = groups * group,
                          products_plane = std::ptrdiff_t(groups) * rows * outputs_;
     float* products = scratch + kWinogradPositions * plane;
-    float* channels = scratch;
-    for (std::size_t i = 0; i < sources_.size(); channels += sources_[i++])
-        kernels.winograd_input({.in = static_cast<const float*>(band.in[i].in),
-                                .pitch = band.in[i].pitch,
-                                .rows = read,
-                                .pixels = band.width + kSide - 1,
-                                .channels = sources_[i],
-                                .out = channels,
-                                .plane = plane,
-                                .step = inputs_});
+    sum_pixels(band, plane, scratch);
     for (int position = 0; position < kWinogradPositions; ++position) {
-        const Stretch stretch{scratch + position * plane, inputs_, group, kSide * inputs_};
+        const Stretch stretch{scratch + position * plane, units(), group, kSide * units()};
         DotArea dots;
         dots.stretches = &stretch;
         dots.count = 1;
@@ -121,16 +114,38 @@ void WinogradConv::run_band(const ConvArea& band, std::ptrdiff_t out_step,
         dots.out_pitch = std::ptrdiff_t(rows) * outputs_;
         positions_[std::size_t(position)].run(dots);
     }
-    kernels.winograd_output({.in = products,
-                             .plane = products_plane,
-                             .bias = bias_.data(),
-                             .relu = relu_,
-                             .rows = rows,
-                             .width = band.width,
-                             .outputs = outputs_,
-                             .out = static_cast<float*>(band.out),
-                             .out_pitch = band.out_pitch,
-                             .out_step = out_step});
+    const WinogradOutput output{.in = products,
+                                .plane = products_plane,
+                                .bias = bias_.data(),
+                                .relu = relu_,
+                                .rows = rows,
+                                .width = band.width,
+                                .outputs = outputs_,
+                                .out = band.out,
+                                .out_pitch = band.out_pitch,
+                                .out_step = out_step};
+    if (numbers().bf16() != nullptr && band.to_bf16)
+        numbers().bf16()->winograd_output(output);
+    else
+        numbers().kernels().winograd_output(output);
+}
+
+/// The channels of all sources side by side.
+void WinogradConv::sum_pixels(const ConvArea& band, std::ptrdiff_t plane,
+                              float* channels) const noexcept {
+    const Bf16Kernels* bf16 = numbers().bf16();
+    const auto sum = bf16 != nullptr ? bf16->winograd_input : numbers().kernels().winograd_input;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        sum({.in = band.in[i].in,
+             .pitch = band.in[i].pitch,
+             .rows = band.height + kSide - 1,
+             .pixels = band.width + kSide - 1,
+             .channels = sources_[i],
+             .out = channels,
+             .plane = plane,
+             .step = units()});
+        channels += numbers().units(sources_[i]);
+    }
 }
 
 }  // namespace eventide

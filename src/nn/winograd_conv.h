@@ -1,4 +1,4 @@
-// 3x3 convolutions in float32 with half of the products (src/kernels/winograd.h says how).
+// 3x3 convolutions with half of the products (src/kernels/winograd.h says how).
 #pragma once
 
 #include "src/kernels/plain/conv.h"
@@ -9,11 +9,12 @@
 
 namespace eventide {
 
-/// Stride 1, by our own kernels in float32. Outputs go by groups of four, counted from a region's
-/// first pixel: a region comes out to the same bits each time, a part of it to other last bits.
+/// Stride 1, by our own kernels in float32, or in bf16 where those have the sums. Outputs go by
+/// groups of four, counted from a region's first pixel: a region comes out to the same bits each
+/// time, a part of it to other last bits.
 class WinogradConv {
 public:
-    /// `sources`: how many of the input's channels lie in which map.
+    /// `sources`: how many of the input's channels lie in which map; in bf16 even numbers.
     WinogradConv(const plain::ConvWeights<float>& weights, const std::vector<int>& sources,
                  bool relu, const Backend& backend);
 
@@ -24,7 +25,10 @@ public:
     void run(const ConvArea& area, std::ptrdiff_t out_step, float* scratch) const noexcept;
 
 private:
-    void run_band(const ConvArea& area, std::ptrdiff_t out_step, float* scratch) const noexcept;
+    const Numbers& numbers() const { return positions_.front().numbers(); }
+    int units() const { return numbers().units(inputs_); }
+    void run_band(const ConvArea& band, std::ptrdiff_t out_step, float* scratch) const noexcept;
+    void sum_pixels(const ConvArea& band, std::ptrdiff_t plane, float* channels) const noexcept;
 
     int inputs_, outputs_;
     std::vector<int> sources_;

@@ -1,4 +1,5 @@
 // Winograd's products against those of the definition, at every width and across bands of rows.
+#include "src/nn/packed_conv.h"
 #include "src/nn/winograd_conv.h"
 #include "tests/nn/fills.h"
 #include "tests/nn/instruction_sets.h"
@@ -14,7 +15,7 @@ using test::Fill;
 /// A layer that reads two maps, and one region of its input: rows are longer than the region, and
 /// what lies beside it is NaN.
 struct Layer {
-    static constexpr int kFirst = 5, kSecond = 8, kOutputs = 12, kBeside = 3;
+    static constexpr int kFirst = 6, kSecond = 8, kOutputs = 12, kBeside = 3;
     int height, width;
     plain::ConvWeights<float> weights{kOutputs, kFirst + kSecond, {}, {}};
     std::vector<float> first, second;
@@ -37,19 +38,60 @@ struct Layer {
         values.resize(values.size() - std::size_t(kBeside * channels));
         return values;
     }
-    std::vector<float> run(const Backend& backend) const {
+    /// What comes out, in float32; `to_bf16`: rounded to what layers read.
+    std::vector<float> run(const Backend& backend, bool to_bf16 = false) const {
         const WinogradConv conv{weights, {kFirst, kSecond}, true, backend};
-        test::Guarded out{std::size_t(height * width * kOutputs)},
+        return run(conv, backend, to_bf16, [&](const ConvArea& area, int out_step, float* scratch) {
+            conv.run(area, out_step, scratch);
+        });
+    }
+    /// By the definition's products.
+    std::vector<float> run_direct(const Backend& backend) const {
+        const PackedConv conv{
+            weights, 1, true, backend, {}, {kFirst, kSecond}, Summation::by_pixel};
+        return run(conv, backend, false,
+                   [&](const ConvArea& area, int, float* scratch) { conv.run(area, scratch); });
+    }
+    template <typename Conv, typename Run>
+    std::vector<float> run(const Conv& conv, const Backend& backend, bool to_bf16,
+                           const Run& run_conv) const {
+        const Numbers numbers{backend};
+        const std::vector<float> a = as_read(numbers, first, kFirst),
+                                 b = as_read(numbers, second, kSecond);
+        const int units = to_bf16 ? numbers.units(kOutputs) : kOutputs;
+        test::Guarded out{std::size_t(height * width * units)},
             scratch{conv.scratch_size(height, width)};
-        conv.run({.in = {{{first.data(), std::ptrdiff_t(pitch()) * kFirst},
-                          {second.data(), std::ptrdiff_t(pitch()) * kSecond}}},
+        run_conv({.in = {{{a.data(), std::ptrdiff_t(pitch()) * numbers.units(kFirst)},
+                          {b.data(), std::ptrdiff_t(pitch()) * numbers.units(kSecond)}}},
                   .out = out.data(),
-                  .out_pitch = std::ptrdiff_t(width) * kOutputs,
+                  .out_pitch = std::ptrdiff_t(width) * units,
+                  .to_bf16 = to_bf16,
                   .height = height,
                   .width = width},
-                 kOutputs, scratch.data());
+                 units, scratch.data());
         EXPECT_TRUE(out.intact() && scratch.intact()) << "written outside";
-        return {out.data(), out.data() + height * width * kOutputs};
+        std::vector<float> values(out.data(), out.data() + height * width * units);
+        if (!to_bf16) return values;
+        std::vector<float> wide(std::size_t(height * width * kOutputs));
+        numbers.to_float(values.data(), std::size_t(height * width), kOutputs, wide.data());
+        return wide;
+    }
+    static std::vector<float> as_read(const Numbers& numbers, const std::vector<float>& map,
+                                      int channels) {
+        const std::size_t pixels = map.size() / std::size_t(channels);
+        std::vector<float> read(pixels * std::size_t(numbers.units(channels)));
+        numbers.from_float(map.data(), pixels, channels, read.data());
+        return read;
+    }
+    /// Root of the mean squared error, of outputs of about 6.
+    double error_of(const std::vector<float>& out) const {
+        double squares = 0;
+        for (int i = 0; const float v : out) {
+            const int pixel = i / kOutputs;
+            squares += std::pow(v - exact(pixel / width, pixel % width, i % kOutputs), 2);
+            ++i;
+        }
+        return std::sqrt(squares / double(out.size()));
     }
     /// Of output o at (y, x), by the definition in double precision.
     double exact(int y, int x, int o) const {
@@ -65,24 +107,22 @@ struct Layer {
     }
 };
 
+/// body(layer) of every width, of one band of rows and of several.
+template <typename Body>
+void with_layers(const Body& body) {
+    for (const int height : {1, 11, 12, 13, 26})
+        for (int width = 1; width <= 13; ++width) {
+            SCOPED_TRACE(std::to_string(height) + "x" + std::to_string(width));
+            body(Layer{height, width});
+        }
+}
+
 TEST(WinogradConv, IsTheConvolutionAtEveryWidthAndAcrossBandsOfRows) {
-    // Root of the mean square, of outputs of about 6: direct sums come to some 4e-7.
-    constexpr double kMostRms = 2e-6;
+    constexpr double kMostRms = 2e-6;  // direct sums come to some 4e-7
     test::with_each([&](const VectorKernels& kernels) {
-        for (const int height : {1, 11, 12, 13, 26})
-            for (int width = 1; width <= 13; ++width) {
-                const Layer layer{height, width};
-                const std::vector<float> out = layer.run({&kernels});
-                double squares = 0;
-                for (int i = 0; const float v : out) {
-                    const int pixel = i / Layer::kOutputs;
-                    squares += std::pow(
-                        v - layer.exact(pixel / width, pixel % width, i % Layer::kOutputs), 2);
-                    ++i;
-                }
-                EXPECT_LT(std::sqrt(squares / double(out.size())), kMostRms)
-                    << height << "x" << width;
-            }
+        with_layers([&](const Layer& layer) {
+            EXPECT_LT(layer.error_of(layer.run({&kernels})), kMostRms);
+        });
     });
 }
 
@@ -90,6 +130,65 @@ TEST(WinogradConv, GivesTheSameBitsByAvx2AndAvx512) {
     const Layer layer{15, 22};
     EXPECT_EQ(layer.run({&vector_kernels(Instructions::avx2)}),
               layer.run({&vector_kernels(Instructions::avx512)}));
+}
+
+std::vector<const Bf16Kernels*> bf16_kernels_with_sums() {
+    std::vector<const Bf16Kernels*> found;
+    for (const Bf16Kernels* kernels : test::all_bf16_kernels())
+        if (kernels->winograd_input != nullptr) found.push_back(kernels);
+    return found;
+}
+
+TEST(WinogradConv, InBf16IsTheConvolutionWithinItsRounding) {
+    constexpr double kMostTimes = 4;  // what direct products in bf16 come to
+    for (const Bf16Kernels* kernels : bf16_kernels_with_sums())
+        with_layers([&](const Layer& layer) {
+            const std::vector<float> out = layer.run({.bf16 = kernels}),
+                                     rounded = layer.run({.bf16 = kernels}, true);
+            EXPECT_LT(layer.error_of(out),
+                      kMostTimes * layer.error_of(layer.run_direct({.bf16 = kernels})));
+            for (std::size_t i = 0; i < out.size(); ++i)
+                ASSERT_EQ(rounded[i], from_bf16(to_bf16(out[i])));
+        });
+}
+
+TEST(WinogradConv, PositionsOfBf16AreThoseOfFloat32RoundedOnce) {
+    test::Numbers random{7};
+    for (const Bf16Kernels* kernels : bf16_kernels_with_sums())
+        for (const int channels : {2, 8, 14, 16, 18, 32, 48})
+            for (int pixels = 3; pixels <= 12; ++pixels) {
+                constexpr int kRows = 4;
+                const int groups = (pixels - 3) / kWinogradOutputs + 1;
+                const std::size_t read = std::size_t(kRows * pixels * channels),
+                                  plane = std::size_t(groups * kRows * channels),
+                                  written = kWinogradPositions * plane;
+                std::vector<float> in = random.many(read, Fill::mixed);
+                std::vector<std::uint16_t> narrow(read);
+                for (std::size_t i = 0; i < read; ++i)
+                    in[i] = from_bf16(narrow[i] = to_bf16(in[i]));
+                std::vector<float> positions(written);
+                test::Guarded out{written / 2};
+                WinogradInput input{.in = in.data(),
+                                    .pitch = std::ptrdiff_t(pixels) * channels,
+                                    .rows = kRows,
+                                    .pixels = pixels,
+                                    .channels = channels,
+                                    .out = positions.data(),
+                                    .plane = std::ptrdiff_t(plane),
+                                    .step = channels};
+                vector_kernels(Instructions::avx2).winograd_input(input);
+                input.in = narrow.data();
+                input.out = out.data();
+                input.pitch /= 2;
+                input.plane /= 2;
+                input.step /= 2;
+                kernels->winograd_input(input);
+                ASSERT_TRUE(out.intact());
+                const auto* rounded = reinterpret_cast<const std::uint16_t*>(out.data());
+                for (std::size_t i = 0; i < written; ++i)
+                    ASSERT_EQ(rounded[i], to_bf16(positions[i]))
+                        << channels << " channels, " << pixels << " pixels, number " << i;
+            }
 }
 
 }  // namespace
