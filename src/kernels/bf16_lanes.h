@@ -83,6 +83,11 @@ private:
 struct PairOfSums {
     __m512 first, second;
 };
+/// Of twice as many pixels, in as many lanes.
+EVENTIDE_AMX_INLINE PairOfSums joined(const PairOfSums& a, const PairOfSums& b) {
+    return {add_neighbours(a.first, b.first), add_neighbours(a.second, b.second)};
+}
+
 /// products(p) of kCount pixels from p on, each in its share of the lanes; see two_outputs in
 /// render_kernels-inl.h.
 template <int kCount, typename Products>
@@ -90,18 +95,15 @@ EVENTIDE_AMX_INLINE PairOfSums sums_of(const Products& products, int p) {
     if constexpr (kCount == 1) {
         return products(p);
     } else {
-        const PairOfSums a = sums_of<kCount / 2>(products, p),
-                         b = sums_of<kCount / 2>(products, p + kCount / 2);
-        return {add_neighbours(a.first, b.first), add_neighbours(a.second, b.second)};
+        return joined(sums_of<kCount / 2>(products, p),
+                      sums_of<kCount / 2>(products, p + kCount / 2));
     }
 }
 
 /// mu and log sigma of a run, in 16 lanes: the products of each pixel added up, plus the bias. Only
 /// the first `count` are pixels of the frame.
-template <typename Products>
-EVENTIDE_AMX_INLINE void put_outputs(const HiddenRows& r, const Products& products, int first,
+EVENTIDE_AMX_INLINE void put_outputs(const HiddenRows& r, const PairOfSums& sums, int first,
                                      int count) {
-    const PairOfSums sums = sums_of<kRun>(products, 0);
     const __mmask16 mask = first_lanes(count);
     _mm512_mask_storeu_ps(r.mu + first, mask,
                           _mm512_add_ps(sums.first, _mm512_set1_ps(r.last_bias[0])));

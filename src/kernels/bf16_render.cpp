@@ -61,22 +61,12 @@ struct LastLayer {
         second_high = _mm512_maskz_loadu_ps(high, second + kTileOutputs);
     }
 };
-/// relu(sums) times its rows, of the pixels of a run.
-struct Products {
-    const LastLayer& last;
-    const float (*low)[kTileOutputs];
-    const float (*high)[kTileOutputs];
-    EVENTIDE_AMX_INLINE PairOfSums operator()(int p) const {
-        const __m512 a = _mm512_max_ps(_mm512_load_ps(low[p]), _mm512_setzero_ps()),
-                     b = _mm512_max_ps(_mm512_load_ps(high[p]), _mm512_setzero_ps());
-        return {_mm512_fmadd_ps(a, last.first_low, _mm512_mul_ps(b, last.first_high)),
-                _mm512_fmadd_ps(a, last.second_low, _mm512_mul_ps(b, last.second_high))};
-    }
-};
-
-EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int run, int first,
-                              int count, const Room& room) {
-    put_outputs(r, Products{last, room.sums[2 * run], room.sums[2 * run + 1]}, first, count);
+/// relu(sums) times its rows, of a pixel's sums in two vectors.
+EVENTIDE_AMX_INLINE PairOfSums products(const LastLayer& last, __m512 low, __m512 high) {
+    const __m512 a = _mm512_max_ps(low, _mm512_setzero_ps()),
+                 b = _mm512_max_ps(high, _mm512_setzero_ps());
+    return {_mm512_fmadd_ps(a, last.first_low, _mm512_mul_ps(b, last.first_high)),
+            _mm512_fmadd_ps(a, last.second_low, _mm512_mul_ps(b, last.second_high))};
 }
 
 /// sums = bias + numbers x hidden weights:
@@ -102,34 +92,50 @@ EVENTIDE_AMX_INLINE void multiply_tiles(const HiddenRows& r, Room& room) {
     store_tile<3>(room.sums[3], kSums);
 }
 
-/// The same by vectors: eight pixels x 2 x 16 sums at a time.
-EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
-    // 8 x 2 sums, 2 weights and a pair: 19 of 32 registers.
-    constexpr int kPixels = 8;
+/// Both runs' outputs from their tiles of sums.
+EVENTIDE_AMX void outputs_of_tiles(const HiddenRows& r, const LastLayer& last, int first, int count,
+                                   Room& room) {
+    multiply_tiles(r, room);
+    for (int run = 0; run * kRun < count; ++run) {
+        const auto of_pixel = [&](int p) EVENTIDE_AMX {
+            return products(last, _mm512_load_ps(room.sums[2 * run][p]),
+                            _mm512_load_ps(room.sums[2 * run + 1][p]));
+        };
+        put_outputs(r, sums_of<kRun>(of_pixel, 0), first + run * kRun, count - run * kRun);
+    }
+}
+
+/// Eight pixels by vectors: 2 x 16 sums of each stay in registers until they are products of the
+/// last layer. 8 x 2 sums, 2 weights and a pair: 19 of 32 registers.
+EVENTIDE_AMX_INLINE PairOfSums multiply_eight(const HiddenRows& r, const LastLayer& last,
+                                              const std::uint16_t (*numbers)[kMaxNumbers]) {
+    constexpr int kPixels = kRun / 2;
     const auto* weight = static_cast<const std::uint32_t*>(r.weight);
-    for (int first = 0; first < kBoth; first += kPixels) {
-        __m512 low[kPixels], high[kPixels];
-        for (int p = 0; p < kPixels; ++p) {
-            low[p] = _mm512_loadu_ps(r.bias);
-            high[p] = _mm512_loadu_ps(r.bias + kTileOutputs);
-        }
-        for (int k = 0; k < r.offset.width / 2; ++k) {
-            const auto* at = weight + std::ptrdiff_t(k) * 2 * kTileOutputs;
-            const auto weight_low = (__m512bh)_mm512_loadu_si512(at),
-                       weight_high = (__m512bh)_mm512_loadu_si512(at + kTileOutputs);
+    __m512 low[kPixels], high[kPixels];
+    for (int p = 0; p < kPixels; ++p) {
+        low[p] = _mm512_loadu_ps(r.bias);
+        high[p] = _mm512_loadu_ps(r.bias + kTileOutputs);
+    }
+    for (int k = 0; k < r.offset.width / 2; ++k) {
+        const auto* at = weight + std::ptrdiff_t(k) * 2 * kTileOutputs;
+        const auto weight_low = (__m512bh)_mm512_loadu_si512(at),
+                   weight_high = (__m512bh)_mm512_loadu_si512(at + kTileOutputs);
 #pragma GCC unroll 8
-            for (int p = 0; p < kPixels; ++p) {
-                const auto pair = (__m512bh)_mm512_set1_epi32(unit_at(room.numbers[first + p], k));
-                low[p] = _mm512_dpbf16_ps(low[p], pair, weight_low);
-                high[p] = _mm512_dpbf16_ps(high[p], pair, weight_high);
-            }
-        }
-        const int run = first / kRun;
         for (int p = 0; p < kPixels; ++p) {
-            _mm512_store_ps(room.sums[2 * run][first % kRun + p], low[p]);
-            _mm512_store_ps(room.sums[2 * run + 1][first % kRun + p], high[p]);
+            const auto pair = (__m512bh)_mm512_set1_epi32(unit_at(numbers[p], k));
+            low[p] = _mm512_dpbf16_ps(low[p], pair, weight_low);
+            high[p] = _mm512_dpbf16_ps(high[p], pair, weight_high);
         }
     }
+    return sums_of<kPixels>([&](int p) EVENTIDE_AMX { return products(last, low[p], high[p]); }, 0);
+}
+EVENTIDE_AMX void outputs_by_vectors(const HiddenRows& r, const LastLayer& last, int first,
+                                     int count, const Room& room) {
+    for (int p = 0; p < count; p += kRun)
+        put_outputs(r,
+                    joined(multiply_eight(r, last, room.numbers + p),
+                           multiply_eight(r, last, room.numbers + p + kRun / 2)),
+                    first + p, count - p);
 }
 
 /// The hidden layer's weights, which stay in tiles 6 and 7 for all pixels: one product takes the
@@ -160,9 +166,8 @@ EVENTIDE_AMX bool run_rows(const HiddenRows& r) {
         const int count = std::min(kBoth, offset.pixels - first);
         is_same ? offset_pixels<true>(offset, offsets, first, count, room)
                 : offset_pixels<false>(offset, offsets, first, count, room);
-        kTiles ? multiply_tiles(r, room) : multiply_vectors(r, room);
-        two_outputs(r, last, 0, first, count, room);
-        if (count > kRun) two_outputs(r, last, 1, first + kRun, count - kRun, room);
+        kTiles ? outputs_of_tiles(r, last, first, count, room)
+               : outputs_by_vectors(r, last, first, count, room);
     }
     if (kTiles) _tile_release();
     return true;

@@ -64,43 +64,50 @@ EVENTIDE_AMX_INLINE void multiply_tiles(const HiddenRows& r, Room& room) {
     store_tile<2>(room.sums[1], kSums);
 }
 
-/// The same by vectors: eight pixels' sums at a time.
-EVENTIDE_AMX void multiply_vectors(const HiddenRows& r, Room& room) {
-    constexpr int kPixels = 8;
-    const auto* weight = static_cast<const std::uint32_t*>(r.weight);
-    for (int first = 0; first < kBoth; first += kPixels) {
-        __m512 sums[kPixels];
-        for (__m512& sum : sums) sum = _mm512_loadu_ps(r.bias);
-        for (int k = 0; k < r.offset.width / 2; ++k) {
-            const auto of_pair = (__m512bh)_mm512_loadu_si512(weight + k * kTileOutputs);
-#pragma GCC unroll 8
-            for (int p = 0; p < kPixels; ++p) {
-                const auto pair = (__m512bh)_mm512_set1_epi32(unit_at(room.numbers[first + p], k));
-                sums[p] = _mm512_dpbf16_ps(sums[p], pair, of_pair);
-            }
-        }
-        for (int p = 0; p < kPixels; ++p)
-            _mm512_store_ps(room.sums[first / kRun][first % kRun + p], sums[p]);
-    }
-}
-
 /// The two rows of the last layer.
 struct LastLayer {
     __m512 first, second;
 };
-/// relu(sums) times its rows, of the pixels of a run.
-struct Products {
-    const LastLayer& last;
-    const float (*sums)[kTileOutputs];
-    EVENTIDE_AMX_INLINE PairOfSums operator()(int p) const {
-        const __m512 in = _mm512_max_ps(_mm512_load_ps(sums[p]), _mm512_setzero_ps());
-        return {_mm512_mul_ps(in, last.first), _mm512_mul_ps(in, last.second)};
-    }
-};
+/// relu(sums) times its rows, of a pixel's sums.
+EVENTIDE_AMX_INLINE PairOfSums products(const LastLayer& last, __m512 sums) {
+    const __m512 in = _mm512_max_ps(sums, _mm512_setzero_ps());
+    return {_mm512_mul_ps(in, last.first), _mm512_mul_ps(in, last.second)};
+}
 
-EVENTIDE_AMX void two_outputs(const HiddenRows& r, const LastLayer& last, int first, int count,
-                              const float (*sums)[kTileOutputs]) {
-    put_outputs(r, Products{last, sums}, first, count);
+/// As in bf16_render.cpp.
+EVENTIDE_AMX void outputs_of_tiles(const HiddenRows& r, const LastLayer& last, int first, int count,
+                                   Room& room) {
+    multiply_tiles(r, room);
+    for (int run = 0; run * kRun < count; ++run) {
+        const auto of_pixel = [&](int p) EVENTIDE_AMX {
+            return products(last, _mm512_load_ps(room.sums[run][p]));
+        };
+        put_outputs(r, sums_of<kRun>(of_pixel, 0), first + run * kRun, count - run * kRun);
+    }
+}
+EVENTIDE_AMX_INLINE PairOfSums multiply_eight(const HiddenRows& r, const LastLayer& last,
+                                              const std::uint16_t (*numbers)[kMaxNumbers]) {
+    constexpr int kPixels = kRun / 2;
+    const auto* weight = static_cast<const std::uint32_t*>(r.weight);
+    __m512 sums[kPixels];
+    for (__m512& sum : sums) sum = _mm512_loadu_ps(r.bias);
+    for (int k = 0; k < r.offset.width / 2; ++k) {
+        const auto of_pair = (__m512bh)_mm512_loadu_si512(weight + k * kTileOutputs);
+#pragma GCC unroll 8
+        for (int p = 0; p < kPixels; ++p) {
+            const auto pair = (__m512bh)_mm512_set1_epi32(unit_at(numbers[p], k));
+            sums[p] = _mm512_dpbf16_ps(sums[p], pair, of_pair);
+        }
+    }
+    return sums_of<kPixels>([&](int p) EVENTIDE_AMX { return products(last, sums[p]); }, 0);
+}
+EVENTIDE_AMX void outputs_by_vectors(const HiddenRows& r, const LastLayer& last, int first,
+                                     int count, const Room& room) {
+    for (int p = 0; p < count; p += kRun)
+        put_outputs(r,
+                    joined(multiply_eight(r, last, room.numbers + p),
+                           multiply_eight(r, last, room.numbers + p + kRun / 2)),
+                    first + p, count - p);
 }
 
 EVENTIDE_AMX void start_tiles(const HiddenRows& r) {
@@ -124,9 +131,8 @@ EVENTIDE_AMX void run_rows(const HiddenRows& r) {
         // Rows past the last pixel hold what was there before; their sums are not stored.
         const int count = std::min(kBoth, offset.pixels - first);
         offset_pixels(offset, offsets, is_same, first, count, room);
-        kTiles ? multiply_tiles(r, room) : multiply_vectors(r, room);
-        two_outputs(r, last, first, count, room.sums[0]);
-        if (count > kRun) two_outputs(r, last, first + kRun, count - kRun, room.sums[1]);
+        kTiles ? outputs_of_tiles(r, last, first, count, room)
+               : outputs_by_vectors(r, last, first, count, room);
     }
     if (kTiles) _tile_release();
 }
