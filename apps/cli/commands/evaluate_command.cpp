@@ -141,7 +141,7 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
         case Protocol::simulated:
             return evaluate_simulated(simulated(), how);
         case Protocol::folders:
-            return evaluate_folders(inputs_[0], inputs_[1], lpips_);
+            return evaluate_folders(inputs_[0], inputs_[1], lpips_, how.warn);
         case Protocol::recordings:
             break;
     }
