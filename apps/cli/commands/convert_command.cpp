@@ -132,6 +132,7 @@ int ConvertCommand::run(Program& program) {
         name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
     const auto recording =
         open_input(from_file_, input_, [&program] { return program.signals.stopping(); });
+    refuse_idle_input_flags(program.flags, {recording->info().format});
     const TimePointReader times{from_file_, options};
     ConvertOptions how;
     if (from_) how.from = times.time_of(*from_);

@@ -111,6 +111,7 @@ int InfoCommand::run(Program& program) {
         return describe_model(model);
     const auto recording =
         open_input(file_, input_, [&program] { return program.signals.stopping(); });
+    refuse_idle_input_flags(program.flags, {recording->info().format});
     Progress progress{program.quiet};
     const Summary summary = summarize(*recording, [&] {
         if (recording->size_bytes() > 0)

@@ -105,6 +105,8 @@ Run::Run(Program& program, RunSettings& settings)
       observers_{sheet_ ? &references_ : nullptr,
                  settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
       render_{render_stage()} {
+    if (opened_.recording != nullptr)
+        refuse_idle_input_flags(program.flags, {opened_.recording->info().format});
     const AskedPart part{settings.source, settings.input.options(), settings.from,
                          span_.frames_from, span_.end};
     check_part(part);
