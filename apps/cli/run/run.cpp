@@ -36,8 +36,9 @@ SensorPixels size_of(const Source& source) {
 
 /// Null: not asked for.
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
-                                         ColourFilter colours, const Span& span, EventsOut::End end,
-                                         EventFilter* filter, const OutputOptions& growing) {
+                                         ColourFilter colours, EventsOut::Limit from,
+                                         EventsOut::Limit to, EventFilter* filter,
+                                         const OutputOptions& growing) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
@@ -47,7 +48,7 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
     header.colour_filter = colours;
     return std::make_unique<EventsOut>(filter,
                                        open_event_target(settings.events_out, growing, header),
-                                       span.frames_from, std::move(end), colours);
+                                       std::move(from), std::move(to), colours);
 }
 
 std::optional<TensorFile> state_in_of(const RunSettings& settings) {
@@ -161,8 +162,11 @@ void Run::open_outputs() {
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
     recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
+    const auto from = [this] {
+        return pipeline_->clock_began_anew() ? std::nullopt : span_.frames_from;
+    };
     events_out_ = events_out_of(
-        settings_, sensor_, colour_filter_, span_, [this] { return pipeline_->end(); },
+        settings_, sensor_, colour_filter_, from, [this] { return pipeline_->end(); },
         filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) {

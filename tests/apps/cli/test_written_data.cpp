@@ -177,8 +177,8 @@ struct KeepsTriggers final : ConvertTarget {
 };
 
 TEST(EventsOut, CountsTriggersBehindLaterEvents) {
-    EventsOut out{
-        nullptr, std::make_unique<KeepsTriggers>(), {}, [] { return std::optional<SensorTime>{}; }};
+    const EventsOut::Limit none = [] { return std::optional<SensorTime>{}; };
+    EventsOut out{nullptr, std::make_unique<KeepsTriggers>(), none, none};
     Batch batch;
     batch.events = {at(100)};
     out.see(batch);
