@@ -224,7 +224,7 @@ TEST(Convert, AClockThatBeganAnewGoesOnWhereTheFormatCannotSayIt) {
 /// Ten events 10 ms apart from each of `begins` on, in ms, each time of a clock that began anew.
 std::string write_clocks(const std::string& path, const std::vector<int>& begins_ms) {
     StreamHeader header{.format = "aedat4", .width = 240, .height = 180};
-    RecordingFile file{path, {}, *find_format("aedat4"), header};
+    RecordingFile file{path, OutputOptions{.overwrite = true}, *find_format("aedat4"), header};
     for (const int begin : begins_ms) {
         Batch batch;
         for (int i = 0; i < 10; ++i)
@@ -254,6 +254,8 @@ TEST(Convert, APartIsOneOfTheClockThatTheRecordingBeginsWith) {
     EXPECT_EQ(part(5020, 5040), Counts(3, 0)) << "which comes behind the end";
     EXPECT_EQ(part({}, 6000), Counts(20, 2)) << "which was not reached";
     EXPECT_EQ(part(6000, {}), Counts(0, 0)) << "which no clock reached";
+    write_clocks(source, {1000, 1050});
+    EXPECT_EQ(part(1100, {}), Counts(5, 0)) << "which only the second reached";
 }
 
 TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {
