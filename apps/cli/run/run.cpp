@@ -11,7 +11,6 @@
 #include "pipeline/first_error.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
-#include "src/io/held_pipes.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
 
@@ -84,6 +83,7 @@ Run::Run(Program& program, RunSettings& settings)
       settings_{settings},
       speed_{speed_of(settings)},
       start_{manager_, settings.source},
+      readers_{program.files.pipes()},
       opened_{open_source(settings, speed_, give_up_waiting())},
       filters_{settings.filter, size_of(*opened_.source)},
       sensor_{filters_.behind(opened_.source->info())},
@@ -133,6 +133,7 @@ std::function<bool()> Run::give_up_waiting() {
     const bool has_limit = names_camera(settings_.source) && !settings_.reconnect;
     return [this, has_limit] {
         if (!has_limit) start_.source_is_waited_for();
+        readers_.look();
         return program_.signals.stopping();
     };
 }
@@ -158,7 +159,7 @@ void Run::open_outputs() {
             start_.goes_on();
             return program_.signals.stopping();
         }};
-    const HeldPipes readers{program_.files.pipes(), growing.give_up};
+    readers_.wait(growing.give_up);
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
     recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
@@ -174,6 +175,7 @@ void Run::open_outputs() {
         create_folder(settings_.states_out);
     }
     stats_ = stats_of(settings_, growing);
+    readers_.let_go();
 }
 
 void Run::make_pipeline() {
