@@ -79,7 +79,8 @@ ColourRenderStage::ColourRenderStage(RenderStage& all, std::array<RenderStage*, 
         static_cast<LatentCodes&>(codes_[c]) = codes.channels[c];
         codes_[c].events_per_pixel = Array2<float>(sensor_height / 2, sensor_width / 2);
     }
-    make_taps(all_.make_output());
+    const Frame frame = all_.make_output();
+    make_taps(frame.intensity.height(), frame.intensity.width(), view_, rows_, columns_);
 }
 
 Frame ColourRenderStage::make_output() const {
@@ -103,11 +104,12 @@ std::vector<ColourRenderStage::Tap> ColourRenderStage::taps(int count, int offse
     return taps;
 }
 
-void ColourRenderStage::make_taps(const Frame& frame) {
+void ColourRenderStage::make_taps(int height, int width, const View& view, Taps& rows,
+                                  Taps& columns) const {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         const BayerSite site = site_of(filter_, kColourChannels[c]);
-        rows_[c] = taps(frame.intensity.height(), view_.top, view_.height, sensor_height_, site.y);
-        columns_[c] = taps(frame.intensity.width(), view_.left, view_.width, sensor_width_, site.x);
+        rows[c] = taps(height, view.top, view.height, sensor_height_, site.y);
+        columns[c] = taps(width, view.left, view.width, sensor_width_, site.x);
     }
 }
 
@@ -139,9 +141,6 @@ void ColourRenderStage::render(SensorTime t, const Window& window, Frame& frame)
     all_.render(t, window, frame);
     for (std::size_t c = 0; c < channels_.size(); ++c) channels_[c]->render(t, window, parts_[c]);
     const int height = frame.intensity.height(), width = frame.intensity.width();
-    for (Array2<float>& plane : frame.colour)
-        if (plane.height() != height || plane.width() != width)
-            plane = Array2<float>(height, width);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             std::array<float, 3> colour;
@@ -169,11 +168,19 @@ bool ColourRenderStage::change_lookahead(int lookahead) {
 }
 
 bool ColourRenderStage::change_size(int width, int height, Frame& frame) {
+    // Memory first: once the stage for all pixels has changed, nothing fails.
+    Taps rows, columns;
+    View view = view_;
+    view.width = width;
+    view.height = height;
+    make_taps(height, width, view, rows, columns);
+    std::array<Array2<float>, 3> colour;
+    for (Array2<float>& plane : colour) plane = Array2<float>(height, width);
     if (!all_.change_size(width, height, frame)) return false;
-    view_.width = width;
-    view_.height = height;
-    for (Array2<float>& plane : frame.colour) plane = Array2<float>(height, width);
-    make_taps(frame);
+    view_ = view;
+    rows_ = std::move(rows);
+    columns_ = std::move(columns);
+    frame.colour = std::move(colour);
     return true;
 }
 

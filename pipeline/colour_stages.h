@@ -63,7 +63,8 @@ private:
         int first = 0, second = 0;
         float share = 0;  ///< of the second
     };
-    void make_taps(const Frame& frame);
+    using Taps = std::array<std::vector<Tap>, 3>;
+    void make_taps(int height, int width, const View& view, Taps& rows, Taps& columns) const;
     static std::vector<Tap> taps(int count, int offset, int whole, int sensor, int site);
 
     RenderStage& all_;
@@ -73,7 +74,7 @@ private:
     View view_;
     std::array<LatentMap, 3> codes_;
     std::array<Frame, 3> parts_;
-    std::array<std::vector<Tap>, 3> rows_, columns_;
+    Taps rows_, columns_;
 };
 
 }  // namespace eventide

@@ -63,6 +63,7 @@ public:
     std::uint64_t images() const { return images_; }
     bool is_past_end() const { return slicer_.is_past_end(); }
     std::optional<SensorTime> end() const { return slicer_.end(); }  ///< Slicer::end()
+    bool clock_began_anew() const { return slicer_.began_anew(); }   ///< Slicer::began_anew()
 
 private:
     void pass_on(HostTime arrived);

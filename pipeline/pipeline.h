@@ -106,6 +106,8 @@ public:
     Snapshot snapshot() const { return counters_.snapshot(); }  ///< Thread: any, at any time
     /// Slicer::end(). Thread: that of filter and observer.
     std::optional<SensorTime> end() const { return event_windows_.end(); }
+    /// Slicer::began_anew(). Thread: likewise.
+    bool clock_began_anew() const { return event_windows_.clock_began_anew(); }
 
 private:
     // The four threads.

@@ -2,6 +2,7 @@
 #include "replay/convert.h"
 
 #include "replay/recording_file.h"
+#include "src/codec/batch_parts.h"
 #include "src/core/error.h"
 
 #include <algorithm>
@@ -14,20 +15,61 @@ namespace {
 // anyway.
 constexpr SensorDuration kLatestData = std::chrono::milliseconds(500);
 
-template <typename T>
-void keep_inside(std::vector<T>& items, const ConvertOptions& options) {
-    std::erase_if(items, [&](const T& item) {
-        return (options.from && item.t < *options.from) || (options.to && item.t > *options.to);
-    });
-}
+/// The part between two times of the clock that the stream begins with. Where that begins anew, all
+/// that follows lies behind `from`, once that was reached, and nothing before a `to` that was; as
+/// in the slicer of a run.
+class AskedPart {
+public:
+    AskedPart(std::optional<SensorTime> from, std::optional<SensorTime> to)
+        : from_{from}, to_{to} {}
 
-void keep_inside(Batch& batch, const ConvertOptions& options) {
-    if (!options.from && !options.to) return;
-    keep_inside(batch.events, options);
-    keep_inside(batch.images, options);
-    keep_inside(batch.imu, options);
-    keep_inside(batch.triggers, options);
-}
+    /// To the batches one after the other.
+    void keep(Batch& batch) {
+        if (!from_ && !to_) return;
+        const bool was_anew = is_anew_;
+        SensorTime last = newest_, first = newest_;
+        std::erase_if(batch.events, [&](const Event& event) {
+            if (event.t < newest_) {
+                last = newest_;
+                first = event.t;
+                begin_anew();
+            }
+            newest_ = event.t;
+            return !holds(event.t, is_anew_);
+        });
+        const auto keep_inside = [&](auto& items) {
+            std::erase_if(items, [&](const auto& item) {
+                const bool before = first < last && !is_of_new_clock(item.t, last, first);
+                return !holds(item.t, before ? was_anew : is_anew_);
+            });
+        };
+        keep_inside(batch.images);
+        keep_inside(batch.imu);
+        keep_inside(batch.triggers);
+    }
+
+    /// By the events that came out, not by the parser's clock: that may run ahead of them, and one
+    /// wrong stamp moves it. Those up to `to` are all out then, and none is still held.
+    bool is_over() const {
+        if (is_anew_ || !to_ || newest_ == SensorTime::min()) return is_over_;
+        return newest_ - kLatestData > *to_;
+    }
+
+private:
+    void begin_anew() {
+        if (from_ && newest_ < *from_) return;
+        is_over_ = is_over_ || (!is_anew_ && to_ && newest_ > *to_);
+        is_anew_ = true;
+    }
+    bool holds(SensorTime t, bool is_anew) const {
+        if (is_anew) return !is_over_;
+        return (!from_ || t >= *from_) && (!to_ || t <= *to_);
+    }
+
+    std::optional<SensorTime> from_, to_;
+    SensorTime newest_ = SensorTime::min();  // event
+    bool is_anew_ = false, is_over_ = false;
+};
 
 DataCounts counts_of(const Batch& batch) {
     return {batch.events.size(), batch.images.size(), batch.imu.size(), batch.triggers.size()};
@@ -77,11 +119,10 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     const auto parser = recording.make_parser();
     Batch batch;
     report.data = WrittenData{target.holds(), options.colours};
-    std::optional<SensorTime> last_event;
+    AskedPart part{options.from, options.to};
     const auto pass_on = [&] {
-        if (!batch.events.empty()) last_event = batch.events.back().t;
         report.events_read += batch.events.size();
-        keep_inside(batch, options);
+        part.keep(batch);
         if (options.filter) options.filter(batch);
         report.data.fit(batch);
         report.written += counts_of(batch);
@@ -93,10 +134,7 @@ ConvertReport convert(Recording& recording, ConvertTarget& target, const Convert
     while (!enough && recording.read(packet) == ReadStatus::data) {
         parser->parse(packet.bytes, batch);
         pass_on();
-        // By the events that came out, not by the parser's clock: that may run ahead of them, and
-        // one wrong stamp moves it. Those up to `to` are all out then, and none is still held.
-        const bool past_end = options.to && last_event && *last_event - kLatestData > *options.to;
-        enough = past_end || target.reader_gone() || (progress && !progress());
+        enough = part.is_over() || target.reader_gone() || (progress && !progress());
     }
     // Where nobody wanted more, half a record in hand is no damage of the recording's.
     if (!enough) parser->finish(batch);

@@ -13,7 +13,9 @@
 namespace eventide {
 
 struct ConvertOptions {
-    std::optional<SensorTime> from{}, to{};  ///< both included
+    /// Both included; of the clock that the recording begins with. Where that begins anew, what
+    /// follows lies between them.
+    std::optional<SensorTime> from{}, to{};
     bool overwrite = false;
     std::function<void(Batch&)> filter = {};    ///< of what lies between the limits; may be empty
     ColourFilter colours = ColourFilter::none;  ///< of the images behind it, where that is known

@@ -83,7 +83,8 @@ constexpr FormatHolds kAedat3Holds{.events = true,
                                    .triggers = true,
                                    .clock_resets = true,
                                    .streams = true,
-                                   .colour_filter = true};
+                                   .colour_filter = true,
+                                   .colour_filter_of_each = true};
 constexpr FormatHolds with_streams(FormatHolds holds) {
     holds.streams = true;
     return holds;

@@ -30,6 +30,8 @@ struct FormatHolds {
     bool streams = false;
     /// Says which colour filter was before the sensor of images that are mosaics.
     bool colour_filter = false;
+    /// With each image; else for all, before the first.
+    bool colour_filter_of_each = false;
 };
 
 struct DataCounts {

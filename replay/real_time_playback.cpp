@@ -16,8 +16,12 @@ constexpr std::size_t kPieceBytes = 256;
 
 }  // namespace
 
-RealTimePlayback::RealTimePlayback(std::unique_ptr<Recording> recording, double speed)
-    : recording_(std::move(recording)), clock_(recording_->make_clock()), speed_(speed) {
+RealTimePlayback::RealTimePlayback(std::unique_ptr<Recording> recording, double speed,
+                                   std::function<HostTime()> now)
+    : recording_(std::move(recording)),
+      now_(std::move(now)),
+      clock_(recording_->make_clock()),
+      speed_(speed) {
     if (!(speed > 0) || !std::isfinite(speed))
         throw Error(ErrorKind::usage,
                     "speed: expected a number above 0, found " + std::to_string(speed));
@@ -70,7 +74,7 @@ bool RealTimePlayback::wait_until_due(SensorTime t) {
             changed_.wait(lock);
             continue;
         }
-        const HostTime now = std::chrono::steady_clock::now();
+        const HostTime now = now_();
         if (needs_anchor(t, now)) anchor_ = {now, t};
         const HostTime when = due(t);
         last_ = t;
@@ -90,8 +94,8 @@ ReadStatus RealTimePlayback::read(RawPacket& into) {
             if (!first) {
                 const std::lock_guard lock(mutex_);
                 const bool early = start_at_ && *t < *start_at_;
-                const bool is_due = anchor_ && speed_ > 0 && (!last_ || *t >= *last_) &&
-                                    due(*t) <= std::chrono::steady_clock::now();
+                const bool is_due =
+                    anchor_ && speed_ > 0 && (!last_ || *t >= *last_) && due(*t) <= now_();
                 if (!early && (!is_due || start_at_)) break;
                 last_ = t;
             }
@@ -102,7 +106,7 @@ ReadStatus RealTimePlayback::read(RawPacket& into) {
         given_ = parsed_;
         if (parsed_ == chunk_.bytes.size() || !next_piece()) break;
     }
-    into.arrived = std::chrono::steady_clock::now();
+    into.arrived = now_();
     into.gap_before = std::exchange(chunk_.gap_before, false);
     into.sequence = chunk_.sequence;
     note_position();

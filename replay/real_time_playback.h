@@ -6,6 +6,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -24,8 +25,9 @@ public:
     static constexpr SensorDuration kLongestWait = std::chrono::seconds(60);
     static constexpr std::chrono::milliseconds kMaxLateness{200};
 
-    /// `speed` above zero: 1 is real time. Throws Error (usage) otherwise.
-    RealTimePlayback(std::unique_ptr<Recording> recording, double speed);
+    /// `speed` above zero: 1 is real time. Throws Error (usage) otherwise. `now`: the host's clock.
+    RealTimePlayback(std::unique_ptr<Recording> recording, double speed,
+                     std::function<HostTime()> now = std::chrono::steady_clock::now);
 
     const SensorInfo& info() const override { return recording_->info(); }
     ReadStatus read(RawPacket& into) override;
@@ -56,6 +58,7 @@ private:
     bool needs_anchor(SensorTime t, HostTime now) const;
 
     std::unique_ptr<Recording> recording_;
+    const std::function<HostTime()> now_;
 
     // Source thread.
     std::unique_ptr<Parser> clock_;

@@ -30,14 +30,20 @@ struct Seam {
 
 void WrittenData::fit(Batch& batch) {
     left_out_ += remove_not_held(batch, holds_);
-    if (!batch.images.empty() && colours_ != ColourFilter::none && !holds_.colour_filter)
-        colours_lost_ = true;
+    if (!says_colours())
+        for (const ReferenceImage& image : batch.images)
+            if (image.channels == 1 && colours_lost_ == ColourFilter::none)
+                colours_lost_ = colours_ != ColourFilter::none ? colours_ : image.filter;
     const SensorTime written = newest_;
     if (!holds_.clock_resets) move(batch);
     if (holds_.in_time_order)
         late_triggers_ += std::uint64_t(std::ranges::count_if(
             batch.triggers, [&](const Trigger& trigger) { return trigger.t < written; }));
     if (!batch.events.empty()) newest_ = batch.events.back().t;
+}
+
+bool WrittenData::says_colours() const {
+    return holds_.colour_filter_of_each || (holds_.colour_filter && colours_ != ColourFilter::none);
 }
 
 bool WrittenData::begins_anew(SensorTime t, SensorTime newest) const {
@@ -77,13 +83,20 @@ std::vector<std::string> WrittenData::remarks(const std::string& file) const {
     if (late_triggers_ > 0)
         remarks.push_back(file + ": " + counted(late_triggers_, "trigger") +
                           " came behind later events and have the time of those");
-    if (colours_lost_) remarks.push_back(colours_lost_text(file, colours_));
+    if (colours_lost_ != ColourFilter::none)
+        remarks.push_back(holds_.colour_filter ? colours_late_text(file, colours_lost_)
+                                               : colours_lost_text(file, colours_lost_));
     return remarks;
 }
 
 std::string WrittenData::colours_lost_text(const std::string& file, ColourFilter filter) {
     return file + ": its format cannot say the images' colour filter, " +
            std::string{name_of(filter)} + ": --bayer states it";
+}
+
+std::string WrittenData::colours_late_text(const std::string& file, ColourFilter filter) {
+    return file + ": its format says the images' colour filter before the first of them, which " +
+           "told it, " + std::string{name_of(filter)} + ": --bayer states it";
 }
 
 }  // namespace eventide

@@ -29,7 +29,8 @@ public:
 
     /// Whether all is in the file, with its time but for that of a clock that began anew.
     bool is_whole() const {
-        return left_out_ == DataCounts{} && late_triggers_ == 0 && !colours_lost_;
+        return left_out_ == DataCounts{} && late_triggers_ == 0 &&
+               colours_lost_ == ColourFilter::none;
     }
     /// What there is to say of `file`: sentences for people.
     std::vector<std::string> remarks(const std::string& file) const;
@@ -38,12 +39,14 @@ public:
     static std::string colours_lost_text(const std::string& file, ColourFilter filter);
 
 private:
+    static std::string colours_late_text(const std::string& file, ColourFilter filter);
+    bool says_colours() const;
     bool begins_anew(SensorTime t, SensorTime newest) const;
     void move(Batch& batch);
 
     FormatHolds holds_;
     ColourFilter colours_;
-    bool colours_lost_ = false;  // images were written to what cannot say their filter
+    ColourFilter colours_lost_ = ColourFilter::none;  // of images, that the file does not say
     DataCounts left_out_;
     SensorDuration later_{0};                // than the stream says
     SensorTime newest_ = SensorTime::min();  // of the events, as written

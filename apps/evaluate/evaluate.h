@@ -75,10 +75,12 @@ struct SimulatedSettings {
 EvaluateReport evaluate_simulated(const SimulatedSettings& what, const EvaluateSettings& how);
 
 /// Images in one folder against those of the same rank (by name) in another; sizes must agree.
-/// Sub-folders are sequences where both have them.
+/// Sub-folders are sequences where both have them; `warn`, which may be empty, is told of those of
+/// the references that the frames lack.
 EvaluateReport evaluate_folders(const std::filesystem::path& frames,
                                 const std::filesystem::path& references,
-                                const std::filesystem::path& lpips);
+                                const std::filesystem::path& lpips,
+                                const std::function<void(const std::string&)>& warn = {});
 
 /// The EVREAL protocol (Ercan et al. 2023) on one sequence or a folder of them, in the
 /// layouts of evreal_sequence.h: cuts by the sequence's name, state reset per sequence, inference

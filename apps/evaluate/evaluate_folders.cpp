@@ -31,9 +31,17 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     return found;
 }
 
+/// Their names.
+std::vector<fs::path> folders_in(const fs::path& folder) {
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator{folder})
+        if (entry.is_directory()) found.push_back(entry.path().filename());
+    std::ranges::sort(found);
+    return found;
+}
+
 SequenceReport compare(const std::string& name, const std::vector<fs::path>& frames,
-                       const fs::path& references, Judge& judge) {
-    const std::vector<fs::path> truths = images_in(references);
+                       const std::vector<fs::path>& truths, Judge& judge) {
     if (truths.size() != frames.size())
         throw Error(ErrorKind::input, name + ": expected as many images as references, found " +
                                           std::to_string(frames.size()) + " and " +
@@ -49,7 +57,8 @@ SequenceReport compare(const std::string& name, const std::vector<fs::path>& fra
 }  // namespace
 
 EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& references,
-                                const fs::path& lpips_file) {
+                                const fs::path& lpips_file,
+                                const std::function<void(const std::string&)>& warn) {
     for (const fs::path& folder : {frames, references})
         if (!fs::is_directory(folder))
             throw Error(ErrorKind::input, folder.string() + ": expected a folder of images");
@@ -58,16 +67,21 @@ EvaluateReport evaluate_folders(const fs::path& frames, const fs::path& referenc
     EvaluateReport report;
     report.subject = "folders " + frames.string() + " against " + references.string();
     if (lpips) report.lpips_name = lpips->name();
-    std::vector<fs::path> both;
-    for (const fs::directory_entry& entry : fs::directory_iterator{references})
-        if (entry.is_directory() && fs::is_directory(frames / entry.path().filename()))
-            both.push_back(entry.path().filename());
-    std::ranges::sort(both);
-    for (const fs::path& name : both)
-        if (const auto images = images_in(frames / name); !images.empty())
-            report.sequences.push_back(compare(name.string(), images, references / name, judge));
+    for (const fs::path& name : folders_in(references)) {
+        const auto truths = images_in(references / name);
+        if (!fs::is_directory(frames / name)) {
+            if (warn && !truths.empty())
+                warn((references / name).string() + ": is left out, as there is no folder " +
+                     (frames / name).string());
+            continue;
+        }
+        const auto images = images_in(frames / name);
+        if (!images.empty() || !truths.empty())
+            report.sequences.push_back(compare(name.string(), images, truths, judge));
+    }
     if (const auto images = images_in(frames); !images.empty())
-        report.sequences.push_back(compare(sequence_name(frames), images, references, judge));
+        report.sequences.push_back(
+            compare(sequence_name(frames), images, images_in(references), judge));
     if (report.sequences.empty())
         throw Error(ErrorKind::input, frames.string() + ": expected images, found none");
     report.overall = overall_scores(report.sequences);

@@ -44,20 +44,34 @@ struct Axis {
         const double a = scaled(low), b = scaled(high);
         return from + (to - from) * (b > a ? (scaled(v) - a) / (b - a) : .5);
     }
+    /// None where the range is empty or endless.
     std::vector<double> ticks() const {
+        if (!(high > low) || !std::isfinite(high - low)) return {};
+        return logarithmic ? ticks_of_decades() : even_ticks();
+    }
+
+private:
+    std::vector<double> ticks_of_decades() const {
+        if (low <= 0) return {};
+        const bool wide = high > 100 * low;
+        const int first = int(std::floor(std::log10(low))), last = int(std::ceil(std::log10(high)));
         std::vector<double> out;
-        if (logarithmic) {
-            const bool wide = high > 100 * low;
-            for (double v = std::pow(10, std::floor(std::log10(low))); v <= high * 1.001; v *= 10)
-                for (const double m : wide ? std::vector{1., 3.} : std::vector{1., 2., 5.})
-                    if (v * m >= low * .999 && v * m <= high * 1.001) out.push_back(v * m);
-            return out;
-        }
+        for (int decade = first; decade <= last; ++decade)
+            for (const double m : wide ? std::vector{1., 3.} : std::vector{1., 2., 5.})
+                if (const double v = m * std::pow(10, decade); v >= low * .999 && v <= high * 1.001)
+                    out.push_back(v);
+        return out;
+    }
+    std::vector<double> even_ticks() const {
+        constexpr double kMost = 12;  // of steps of a sixth of the range, rounded
         const double rough = (high - low) / 6, power = std::pow(10, std::floor(std::log10(rough)));
         const double m = rough / power;
         const double step = power * (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10);
-        for (double v = std::ceil(low / step) * step; v <= high + step * 1e-6; v += step)
-            out.push_back(std::abs(v) < step * 1e-6 ? 0 : v);
+        if (!(step > 0)) return {};
+        const double first = std::ceil(low / step), last = std::floor(high / step + 1e-6);
+        std::vector<double> out;
+        for (int i = 0, count = int(std::min(last - first + 1, kMost)); i < count; ++i)
+            out.push_back((first + i) * step);
         return out;
     }
 };

@@ -108,6 +108,7 @@ void need_own_files(const TrainOptions& options) {
     if (!options.resume.empty() && !goes_on_in(checkpoint) && !goes_on_in(options.keep))
         files.reads("--resume", options.resume);
     files.may_replace(true);
+    files.expect_folder("--out", out);
     for (const std::filesystem::path& own : {checkpoint, out / kBest}) files.writes("--out", own);
     files.may_replace(options.overwrite);
     files.writes_when_done("--export", options.export_file);

@@ -108,6 +108,8 @@ public:
     bool is_past_end() const { return past_end_; }  ///< SlicerSettings::end was reached
     /// The last time that was asked for, of the clock at hand; empty: all, or not known yet.
     std::optional<SensorTime> end() const { return end_; }
+    /// Since SlicerSettings::begin, a time of the clock before.
+    bool began_anew() const { return !first_stream_; }
     const SlicerCounters& counters() const { return counters_; }
 
     /// As constructed; counters stay.

@@ -46,6 +46,16 @@ void NamedFiles::refuse_overlap(const Named& named, const std::vector<Named>& ot
     }
 }
 
+/// Which have a place of their own in the file, and write over what the output writes there.
+void NamedFiles::refuse_standard_streams(const std::string& said, const fs::path& path) {
+    const FileIdentity file = FileIdentity::of(path);
+    for (const auto& [descriptor, name] :
+         {std::pair{STDOUT_FILENO, "standard output"}, {STDERR_FILENO, "standard error"}})
+        if (file.is_same_file(FileIdentity::of_descriptor(descriptor)))
+            throw Error(ErrorKind::usage,
+                        said + ": is the same file as " + name + "; expected a file of its own");
+}
+
 void NamedFiles::add(Named named, std::vector<Named>& to) {
     if (&to == &outputs_) refuse_overlap(named, inputs_);
     refuse_overlap(named, outputs_);
@@ -83,8 +93,21 @@ void NamedFiles::name_output(const std::string& option, const fs::path& path,
     }
     const std::string text = option + " " + (said.empty() ? path.string() : said);
     refuse_home_sign(text, path);
+    if (!names_open_file(path)) refuse_standard_streams(text, path);
     add(named(text, path), outputs_);
     refuse_existing(path, overwrite_);
+    expect_folder_of(text, path);
+}
+
+void NamedFiles::expect_folder_of(const std::string& said, const fs::path& file) const {
+    const fs::path folder = resolved(file).parent_path();
+    std::error_code none;
+    const auto status = fs::status(folder, none);
+    const bool may_be_there = status.type() == fs::file_type::none || fs::is_directory(status);
+    const auto holds_it = [&](const fs::path& made) { return lies_in(made, folder); };
+    if (!may_be_there && std::ranges::none_of(made_, holds_it))
+        throw Error(ErrorKind::usage,
+                    said + ": expected a folder that exists, found no " + folder.string());
 }
 
 void NamedFiles::writes_when_done(const std::string& option, const fs::path& path,
@@ -94,29 +117,24 @@ void NamedFiles::writes_when_done(const std::string& option, const fs::path& pat
         expect_room_for(option + " " + (said.empty() ? path.string() : said), path);
 }
 
-void NamedFiles::expect_room_for(const std::string& said, const fs::path& path) const {
-    const fs::path file = resolved(path), folder = file.parent_path();
+void NamedFiles::expect_room_for(const std::string& said, const fs::path& path) {
+    // Files are written beside their place; devices and pipes are where they are. The system
+    // itself follows links such as /dev/stdout, which name no path.
     std::error_code none;
-    if (!fs::is_directory(folder, none)) {
-        const bool made_later = std::ranges::any_of(outputs_, [&](const Named& other) {
-            return other.path != file && other.path.parent_path() == folder;
-        });
-        if (made_later) return;
-        throw Error(ErrorKind::usage,
-                    said + ": expected a folder that exists, found no " + folder.string());
-    }
-    // Files are written beside their place; devices and pipes are where they are.
-    const auto status = fs::status(file, none);
+    const auto status = fs::status(path, none);
     if (none == std::errc::filename_too_long)
         throw Error(ErrorKind::failed, said + ": cannot be created: " + system_words(none.value()));
-    const bool is_file = !fs::exists(status) || fs::is_regular_file(status);
-    if (is_file && ::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0)
+    if (fs::exists(status) && !fs::is_regular_file(status)) return;
+    const fs::path folder = resolved(path).parent_path();
+    // What another output makes is not there yet.
+    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0 && errno != ENOENT)
         throw Error(ErrorKind::failed, said + ": cannot be created: " + system_words(errno));
 }
 
 void NamedFiles::writes_folder(const std::string& option, const fs::path& folder) {
     refuse_home_sign(option + " " + folder.string(), folder);
     add(named(option + " " + folder.string(), folder), outputs_);
+    made_.push_back(resolved(folder));
 }
 
 void NamedFiles::expect_folder(const std::string& option, const fs::path& folder) {
@@ -130,6 +148,7 @@ void NamedFiles::expect_folder(const std::string& option, const fs::path& folder
                     said + ": expected a folder, found a file, " + there.string());
     if (::faccessat(AT_FDCWD, there.c_str(), W_OK, AT_EACCESS) != 0)
         throw Error(ErrorKind::failed, said + ": cannot be written to: " + system_words(errno));
+    made_.push_back(resolved(folder));
 }
 
 void NamedFiles::writes_all(const std::string& option, const fs::path& folder) {

@@ -121,6 +121,7 @@ void OutputFile::open_growing(bool overwrite) {
         ::close(std::exchange(file_, -1));
         throw existing_file(name_);
     }
+    has_other_names_ = facts.st_nlink > 1;
 }
 
 void OutputFile::open_beside(bool overwrite) {
@@ -141,10 +142,18 @@ void OutputFile::open_beside(bool overwrite) {
     replaces_ = replaces_ || overwrite;
 }
 
-/// What the file held goes with the first byte that takes its place.
+/// What the file held goes with the first byte that takes its place; under its other names (hard
+/// links) it stays.
 void OutputFile::begin() {
     if (std::exchange(begun_, true) || !owned_ || !seekable_ || made_ || !part_.empty()) return;
-    if (::ftruncate(file_, 0) != 0) fail("emptied", errno);
+    if (has_other_names_) {
+        ::close(std::exchange(file_, -1));
+        replaces_ = true;
+        open_beside(true);
+        publish();
+    } else if (::ftruncate(file_, 0) != 0) {
+        fail("emptied", errno);
+    }
 }
 
 void OutputFile::hold_at_most(std::size_t bytes) {
@@ -254,6 +263,10 @@ void refuse_existing(const fs::path& path, bool overwrite) {
         throw Error(ErrorKind::usage, path.string() + ": expected a file, found a folder");
     if (overwrite || !fs::is_regular_file(status) || descriptor_named(path)) return;
     if (fs::file_size(path, none) > 0) throw existing_file(path.string());
+}
+
+bool names_open_file(const fs::path& path) {
+    return descriptor_named(path).has_value();
 }
 
 bool create_folder(const fs::path& path) {

@@ -87,14 +87,18 @@ private:
     int file_ = -1;
     bool owned_ = true;  // standard output is not ours to close
     bool seekable_ = false, reader_gone_ = false;
-    bool replaces_ = false;  // a file was there, and may go
-    bool made_ = false;      // by us, under its own name
-    bool begun_ = false;     // it got a byte
+    bool replaces_ = false;         // a file was there, and may go
+    bool has_other_names_ = false;  // what was there: hard links
+    bool made_ = false;             // by us, under its own name
+    bool begun_ = false;            // it got a byte
 };
 
 /// Throws Error (usage) when `path` is a folder, or a file with something in it and `overwrite` is
 /// not set: for a word early in long work, since OutputFile asks again.
 void refuse_existing(const std::filesystem::path& path, bool overwrite);
+
+/// Whether the path stands for a file that is open already: "-", /dev/stdout, /dev/fd/3.
+bool names_open_file(const std::filesystem::path& path);
 
 /// A folder and those above it; false where it exists already. Throws Error (failed) with the
 /// system's words.

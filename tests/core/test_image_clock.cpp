@@ -44,6 +44,13 @@ TEST(ImageClock, IsAnotherWhereNoImageIsNearAnEvent) {
         << "images behind all events, as they come of a folder";
 }
 
+TEST(ImageClock, IsAnotherFromAMinuteOnUntilAnEventComesBesideAnImage) {
+    EXPECT_EQ(apart({events_at(0), image_at(60 * kSecond)}), SensorDuration{0});
+    EXPECT_EQ(apart({events_at(0), image_at(61 * kSecond)}), SensorDuration{61 * kSecond - 5});
+    EXPECT_EQ(apart({events_at(0), image_at(61 * kSecond), events_at(61 * kSecond)}),
+              SensorDuration{0});
+}
+
 TEST(ImageClock, IsNotKnownWithoutImagesAndEvents) {
     EXPECT_EQ(apart({events_at(0), events_at(kSince1970)}), SensorDuration{0});
     EXPECT_EQ(apart({image_at(0), image_at(kSince1970)}), SensorDuration{0});

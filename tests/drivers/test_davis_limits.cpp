@@ -62,7 +62,7 @@ TEST(DavisLimits, ThatTheLogicOrTheSensorDoesNotHaveAreRefused) {
     const auto refusal = [](auto change, const DavisFeatures& features = {}) {
         DavisSettings settings;
         change(settings);
-        return words_of(ErrorKind::usage, [&] { registers_of(settings, features); });
+        return error_of([&] { registers_of(settings, features); }, ErrorKind::usage);
     };
     EXPECT_THAT(refusal([](auto& s) {
                     s.roi = SensorRegion{300, 0, 47, 10};

@@ -118,11 +118,11 @@ TEST(Dvs128Camera, NoTransferHoldsBackEventsForLong) {
 
 TEST(Dvs128Camera, OldFirmwareAndUnknownBiasesAreRefused) {
     const PluggedIn side{1, 13};
-    EXPECT_THAT(words_of(ErrorKind::device, [] { Dvs128Camera{at_once()}; }),
+    EXPECT_THAT(error_of([] { Dvs128Camera{at_once()}; }, ErrorKind::device),
                 HasSubstr("the DVS128 'DVS00128' has firmware 13, at least 14"));
     Dvs128Settings settings;
     settings.biases["DiffBn"] = 1;
-    EXPECT_THAT(words_of(ErrorKind::usage, [&] { bias_bytes(settings); }),
+    EXPECT_THAT(error_of([&] { bias_bytes(settings); }, ErrorKind::usage),
                 HasSubstr("no bias 'DiffBn'"));
 }
 
@@ -132,13 +132,13 @@ TEST(Dvs128Camera, ShippedFileSaysTheDefaults) {
     EXPECT_EQ(file.master, code.master);
     EXPECT_EQ(file.transfers.bytes, code.transfers.bytes);
     EXPECT_EQ(file.transfers.transfers, code.transfers.transfers);
-    EXPECT_THAT(words_of(ErrorKind::usage,
-                         [] { load_dvs128_settings(written("master = true\nroi = 1\n")); }),
+    EXPECT_THAT(error_of([] { load_dvs128_settings(written("master = true\nroi = 1\n")); },
+                         ErrorKind::usage),
                 HasSubstr(":2: unknown key 'roi'"));
     EXPECT_EQ(load_dvs128_settings(written("[biases]\npuX = 16777215\n")).biases.at("puX"),
               0xFFFFFFU);
-    EXPECT_THAT(words_of(ErrorKind::usage,
-                         [] { load_dvs128_settings(written("[biases]\npuX = 16777216\n")); }),
+    EXPECT_THAT(error_of([] { load_dvs128_settings(written("[biases]\npuX = 16777216\n")); },
+                         ErrorKind::usage),
                 HasSubstr("16777216"));
 }
 

@@ -141,7 +141,7 @@ TEST(DvxplorerCamera, IsListedAndOpenedByItsNameOnTheCommandLine) {
     EXPECT_EQ(cameras[0].problem, "");
     for (const char* source : {"dvxplorer:", "dvxplorer:DVX00001", "dvxplorer:1:1"})
         EXPECT_EQ(open_camera(source, {})->info().serial, "DVX00001") << source;
-    EXPECT_THAT(words_of(ErrorKind::device, [] { open_camera("dvxplorer:other", {}); }),
+    EXPECT_THAT(error_of([] { open_camera("dvxplorer:other", {}); }, ErrorKind::device),
                 HasSubstr("serial 'other'"));
 }
 

@@ -35,7 +35,7 @@ TEST(DvxplorerFaults, SaysWhatToDoWhenItCannotStart) {
         DvxplorerModelSettings settings;
         change(settings);
         const PluggedIn side{settings, 1};
-        return words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; });
+        return error_of([] { DvxplorerCamera{at_once()}; }, ErrorKind::device);
     };
     EXPECT_THAT(with([](auto& s) { s.firmware = 7; }), HasSubstr("firmware 7, at least 8"));
     EXPECT_THAT(with([](auto& s) {
@@ -54,7 +54,7 @@ TEST(DvxplorerFaults, ASettingThatTheCameraDoesNotTakeIsNamed) {
     DvxplorerModelSettings settings;
     settings.deaf = davis::Register{davis::chip, 0x001E};
     const PluggedIn side{settings, 1};
-    EXPECT_THAT(words_of(ErrorKind::device, [] { DvxplorerCamera{at_once()}; }),
+    EXPECT_THAT(error_of([] { DvxplorerCamera{at_once()}; }, ErrorKind::device),
                 HasSubstr("register CHIP.30 was set to 8 and says 0"));
     DvxplorerOptions trusting = at_once();
     trusting.settings.verify = false;
@@ -169,10 +169,11 @@ TEST(DvxplorerFaults, UnpluggedWithoutReconnectIsAnErrorThatNamesTheWayOut) {
     RawPacket packet;
     while (camera.read(packet) != ReadStatus::data) continue;
     side.bed.unplug();
-    EXPECT_THAT(words_of(ErrorKind::device,
-                         [&] {
-                             while (camera.read(packet) != ReadStatus::end) continue;
-                         }),
+    EXPECT_THAT(error_of(
+                    [&] {
+                        while (camera.read(packet) != ReadStatus::end) continue;
+                    },
+                    ErrorKind::device),
                 HasSubstr("the DVXplorer 'DVX00001' was unplugged; --reconnect"));
 }
 

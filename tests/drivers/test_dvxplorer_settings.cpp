@@ -70,19 +70,20 @@ verify = false
 
 TEST(DvxplorerSettings, RefusesWhatItDoesNotKnowWithItsLine) {
     const auto refusal = [](const std::string& text) {
-        return words_of(ErrorKind::usage, [&] { load_dvxplorer_settings(written(text)); });
+        return error_of([&] { load_dvxplorer_settings(written(text)); }, ErrorKind::usage);
     };
     EXPECT_THAT(refusal("imu = true\nexposure_us = 3\n"),
                 HasSubstr("usb_camera.toml:2: unknown key 'exposure_us'"));
     EXPECT_THAT(refusal("contrast_on = 18"), HasSubstr("from 0 to 17, found 18"));
     EXPECT_THAT(refusal("polarity = 'up'"), HasSubstr("expected \"both\""));
     EXPECT_THAT(refusal("roi = [1, 2]"), HasSubstr("[x, y, width, height]"));
-    EXPECT_THAT(words_of(ErrorKind::usage,
-                         [] {
-                             DvxplorerSettings settings;
-                             settings.roi = SensorRegion{600, 0, 100, 10};
-                             configuration(settings, {}, {});
-                         }),
+    EXPECT_THAT(error_of(
+                    [] {
+                        DvxplorerSettings settings;
+                        settings.roi = SensorRegion{600, 0, 100, 10};
+                        configuration(settings, {}, {});
+                    },
+                    ErrorKind::usage),
                 HasSubstr("reaches to 700,10, this sensor has 640x480"));
 }
 
@@ -134,12 +135,13 @@ TEST(DvxplorerSettings, ALiteCountsItsSubsamplingAsLibcaerDoes) {
         EXPECT_EQ(registers.at(chip(0x3204)), ratio << 3 | ratio) << subsample;
         EXPECT_EQ(registers.count(chip(0x3202)), 0U) << "it has no dual binning";
     }
-    EXPECT_THAT(words_of(ErrorKind::usage,
-                         [&] {
-                             DvxplorerSettings settings;
-                             settings.subsample = 8;
-                             configuration(settings, {}, lite);
-                         }),
+    EXPECT_THAT(error_of(
+                    [&] {
+                        DvxplorerSettings settings;
+                        settings.subsample = 8;
+                        configuration(settings, {}, lite);
+                    },
+                    ErrorKind::usage),
                 HasSubstr("subsample: expected 1, 2 or 4 for a DVXplorer Lite, found 8"));
 }
 

@@ -6,6 +6,7 @@
 #include "src/codec/parser.h"
 #include "src/core/error.h"
 #include "src/core/event.h"
+#include "tests/support/error_of.h"
 #include "tests/support/usb/usb_testbed.h"
 
 #include <gtest/gtest.h>
@@ -21,17 +22,6 @@ namespace eventide::test {
 /// A camera in software needs no time to settle.
 inline constexpr UsbWaits kNoWaits{std::chrono::milliseconds{0}, std::chrono::milliseconds{0},
                                    std::chrono::milliseconds{0}};
-
-/// The words of an Error of this kind; "nothing was thrown" where there was none.
-inline std::string words_of(ErrorKind kind, const std::function<void()>& what) {
-    try {
-        what();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind);
-        return error.what();
-    }
-    return "nothing was thrown";
-}
 
 /// Reads until the model's scene is over and nothing more comes; no byte of it is damaged.
 template <typename Model>

@@ -46,7 +46,8 @@ TEST_F(HeldPipesTest, HaveTheirReadersInWhateverOrderTheyCome) {
         ::close(of_first);
         ::close(of_second);
     }};
-    const HeldPipes held{{first, second}, {}};
+    HeldPipes held{{first, second}};
+    held.wait({});
     for (const std::string& path : {first, second}) {
         EXPECT_FALSE(is_at_its_end(path)) << "until somebody else writes to it";
         const int file = ::open(path.c_str(), O_WRONLY | O_NONBLOCK);
@@ -58,12 +59,29 @@ TEST_F(HeldPipesTest, HaveTheirReadersInWhateverOrderTheyCome) {
 
 TEST_F(HeldPipesTest, AreGivenUpWhereSomebodySaysSo) {
     int asked = 0;
-    const HeldPipes held{{pipe("pipe")}, [&] { return ++asked == 2; }};
+    HeldPipes held{{pipe("pipe")}};
+    held.wait([&] { return ++asked == 2; });
     EXPECT_EQ(asked, 2);
 }
 
 TEST_F(HeldPipesTest, WhatCannotBeOpenedIsNotWaitedFor) {
-    const HeldPipes held{{temp_ / "nothing"}, {}};
+    HeldPipes held{{temp_ / "nothing"}};
+    held.wait({});
+}
+
+TEST_F(HeldPipesTest, AreLookedForWhileSomethingElseIsWaitedFor) {
+    const std::string early = pipe("early"), late = pipe("late");
+    HeldPipes held{{early, late}};
+    held.look();
+    const int of_early = ::open(early.c_str(), O_RDONLY | O_NONBLOCK);
+    char byte = 0;
+    EXPECT_EQ(::read(of_early, &byte, 1), 0) << "nobody has it open for writing";
+    held.look();
+    EXPECT_LT(::read(of_early, &byte, 1), 0) << "nothing yet";
+    EXPECT_TRUE(is_at_its_end(late));
+    held.let_go();
+    EXPECT_EQ(::read(of_early, &byte, 1), 0);
+    ::close(of_early);
 }
 
 }  // namespace

@@ -71,29 +71,39 @@ TEST_F(NamedFilesTest, NothingElseIsReadOrWrittenInAFolderThatIsTakenWhole) {
     files_.reads_all("INPUT", temp_ / "d");
     files_.writes_all("--out", temp_ / "frames");
     EXPECT_NE(refusal([&] { files_.writes("--json", temp_ / "d/in"); }), "");
-    EXPECT_NE(refusal([&] { files_.writes("--json", temp_ / "frames/a/b"); }), "");
+    EXPECT_NE(refusal([&] { files_.writes("--json", temp_ / "frames/a/b"); }).find("--out"),
+              std::string::npos);
     EXPECT_NE(refusal([&] { files_.writes_all("--truth", temp_.path()); }), "");
     EXPECT_EQ(refusal([&] { files_.writes("--json", temp_ / "scores"); }), "");
 }
 
-TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneHasAFolderFromTheBeginning) {
+TEST_F(NamedFilesTest, AnOutputLiesInAFolderThatExistsOrThatOneBeforeMakes) {
+    const std::string here = fs::canonical(temp_.path());
+    EXPECT_EQ(refusal([&] { files_.writes("--record", temp_ / "no/events"); }),
+              "--record " + temp_ / "no/events" + ": expected a folder that exists, found no " +
+                  here + "/no");
     EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "no/scores"); }),
               "--json " + temp_ / "no/scores" + ": expected a folder that exists, found no " +
-                  fs::canonical(temp_.path()).string() + "/no");
-    EXPECT_NE(refusal([&] { files_.writes_when_done("--json", temp_ / "d/in/scores"); }), "")
+                  here + "/no");
+    EXPECT_NE(refusal([&] { files_.writes("--record", temp_ / "d/in/events"); }), "")
         << "a file is no folder";
-    EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "d/scores"); }), "");
-    EXPECT_EQ(refusal([&] { files_.writes_when_done("--csv", "-"); }), "");
+    EXPECT_EQ(refusal([&] { files_.writes("--record", temp_ / "d/events"); }), "");
+    EXPECT_EQ(refusal([&] { files_.writes("--csv", "-"); }), "");
     EXPECT_EQ(refusal([&] { files_.writes_when_done("--frame-csv", ""); }), "");
-    files_.writes("--plots", temp_ / "plots/figure.svg");
-    EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "plots/scores"); }), "")
-        << "another output makes it";
+    files_.expect_folder("--plots", temp_ / "plots");
+    files_.writes_folder("--out", temp_ / "new/frames/");
+    for (const char* file : {"plots/scores", "new/events", "new/frames/states"})
+        EXPECT_EQ(refusal([&] { files_.writes("--record", temp_ / file); }), "") << file;
+    EXPECT_EQ(refusal([&] { files_.writes_when_done("--json", temp_ / "new/scores"); }), "");
+    EXPECT_NE(refusal([&] { files_.writes("--record", temp_ / "new/other/events"); }), "");
 }
 
 TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneGoesWhereFilesCanBeMade) {
     const fs::perms look = fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
                            fs::perms::others_exec;
     fs::permissions(temp_ / "d", fs::perms::owner_read | fs::perms::owner_exec | look);
+    fs::create_directory(temp_ / "locked");
+    fs::permissions(temp_ / "locked", fs::perms::none);
     const uid_t self = geteuid();
     if (self == 0) {  // who may write anywhere
         for (const fs::path& part : {temp_.path(), temp_.path().parent_path()})
@@ -106,17 +116,23 @@ TEST_F(NamedFilesTest, WhatIsWrittenWhenAllIsDoneGoesWhereFilesCanBeMade) {
     EXPECT_EQ(named(temp_ / "d/scores.json"),
               "--json " + temp_ / "d/scores.json" + ": cannot be created: Permission denied");
     EXPECT_EQ(named("/dev/null"), "") << "a device is there already";
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    EXPECT_EQ(named("/dev/fd/" + std::to_string(ends[1])), "") << "and so is a pipe";
+    for (const int end : ends) ::close(end);
+    EXPECT_EQ(refusal([&] { files_.writes("--record", temp_ / "locked/d/events"); }), "")
+        << "opening it says what is wrong";
     EXPECT_EQ(seteuid(self), 0);
 }
 
 TEST_F(NamedFilesTest, AFolderForWhatIsMadeInTheEndIsNoFile) {
     for (const char* name : {"d/in", "d/in/", "d/in/more"})
-        EXPECT_EQ(refusal([&] { NamedFiles::expect_folder("--plots", temp_ / name); }),
+        EXPECT_EQ(refusal([&] { files_.expect_folder("--plots", temp_ / name); }),
                   "--plots " + temp_ / name + ": expected a folder, found a file, " +
                       fs::canonical(temp_.path()).string() + "/d/in");
     for (const char* name : {"d", "d/", "new", "new/more/"})
-        EXPECT_EQ(refusal([&] { NamedFiles::expect_folder("--plots", temp_ / name); }), "") << name;
-    EXPECT_EQ(refusal([&] { NamedFiles::expect_folder("--plots", "plots"); }), "");
+        EXPECT_EQ(refusal([&] { files_.expect_folder("--plots", temp_ / name); }), "") << name;
+    EXPECT_EQ(refusal([&] { files_.expect_folder("--plots", "plots"); }), "");
 }
 
 TEST_F(NamedFilesTest, AnOutputBelowTheHomeSignIsRefused) {
@@ -129,7 +145,7 @@ TEST_F(NamedFilesTest, AnOutputBelowTheHomeSignIsRefused) {
                   std::string::npos);
         EXPECT_NE(refusal([&] { files_.writes_all("--out", path); }).find("found ~"),
                   std::string::npos);
-        EXPECT_NE(refusal([&] { NamedFiles::expect_folder("--plots", path); }).find("found ~"),
+        EXPECT_NE(refusal([&] { files_.expect_folder("--plots", path); }).find("found ~"),
                   std::string::npos);
     }
     EXPECT_EQ(refusal([&] { files_.writes("--out", temp_ / "~"); }), "");

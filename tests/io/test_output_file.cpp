@@ -102,6 +102,27 @@ TEST(OutputFile, AFullDiskLeavesTheOldFile) {
     EXPECT_EQ(files_in(temp), 1U);
 }
 
+TEST(OutputFile, WhatAFileHeldStaysUnderItsOtherNames) {
+    for (const OutputOptions& options : {kReplace, kReplaceGrowing}) {
+        const TempFolder temp;
+        write_text(temp / "a", "precious");
+        fs::create_hard_link(temp / "a", temp / "backup");
+        fs::permissions(temp / "a", fs::perms::owner_read | fs::perms::owner_write);
+        OutputFile file{temp / "a", options};
+        EXPECT_EQ(read_text(temp / "a"), "precious") << "until the first byte";
+        file.write("new");
+        if (options.appears == Appears::growing) {
+            EXPECT_EQ(read_text(temp / "a"), "new");
+        }
+        file.close();
+        EXPECT_EQ(read_text(temp / "a"), "new");
+        EXPECT_EQ(read_text(temp / "backup"), "precious");
+        EXPECT_EQ(fs::status(temp / "a").permissions(),
+                  fs::perms::owner_read | fs::perms::owner_write);
+        EXPECT_EQ(files_in(temp), 2U);
+    }
+}
+
 TEST(OutputFile, AFileWithSomethingInItIsKeptUnlessItMayBeReplaced) {
     const TempFolder temp;
     write_text(temp / "a", "precious");

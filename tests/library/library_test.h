@@ -1,6 +1,7 @@
 // The library as a program uses it, beside the program that it must agree with.
 #pragma once
 
+#include "tests/support/error_of.h"
 #include "tests/system/program_test.h"
 
 #include <eventide/eventide.hpp>
@@ -33,17 +34,5 @@ void append_frame(const Frame& frame, std::string& bytes);
 
 /// What next() gives now.
 void append_frames(Reconstructor& reconstructor, std::string& bytes);
-
-/// The words of the error that `body` must throw.
-template <typename Body>
-std::string error_of(Body body, ErrorKind kind = ErrorKind::usage) {
-    try {
-        body();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind) << error.what();
-        return error.what();
-    }
-    return "no error";
-}
 
 }  // namespace eventide::test

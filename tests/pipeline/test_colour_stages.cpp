@@ -2,10 +2,13 @@
 // they are.
 #include "pipeline/colour_stages.h"
 #include "src/core/grey.h"
+#include "tests/support/allocation_counter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <new>
+#include <optional>
 #include <utility>
 
 namespace eventide {
@@ -60,8 +63,11 @@ public:
         out_width_ = width;
         out_height_ = height;
         frame = make_output();
+        if (takes_the_last_memory) shortage.emplace(1);
         return true;
     }
+    bool takes_the_last_memory = false;
+    std::optional<test::MemoryShortage> shortage;
 
 private:
     int height_, width_, out_height_, out_width_;
@@ -140,6 +146,37 @@ TEST_P(ColourStages, PutEachColourWhereItsPixelsAre) {
     }
     encode.reset();
     EXPECT_EQ(all.resets + blue.resets + green.resets + red.resets, 4);
+}
+
+TEST_P(ColourStages, ChangeTheSizeOfAllColoursOrOfNone) {
+    if (!test::can_count_allocations()) GTEST_SKIP() << "sanitizers bring their own malloc";
+    EchoEncoder all{kHeight, kWidth}, blue{kHeight / 2, kWidth / 2}, green{kHeight / 2, kWidth / 2},
+        red{kHeight / 2, kWidth / 2};
+    ColourEncodeStage encode{all, {&blue, &green, &red}, GetParam(), kWidth, kHeight, kBins};
+    EchoRenderer whole{kHeight, kWidth, kHeight, kWidth};
+    std::array<EchoRenderer, 3> parts{
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2},
+        EchoRenderer{kHeight / 2, kWidth / 2, kHeight / 2, kWidth / 2}};
+    LatentMap latent = encode.make_output();
+    ColourRenderStage render{whole,   {&parts[0], &parts[1], &parts[2]}, GetParam(), kWidth,
+                             kHeight, {kWidth, kHeight, 0, 0},           latent};
+    encode.encode(grid(), latent);
+    render.take(latent);
+    Frame frame = render.make_output();
+    {
+        const test::MemoryShortage shortage{1};
+        EXPECT_THROW(render.change_size(2 * kWidth, 2 * kHeight, frame), std::bad_alloc);
+    }
+    render.render({}, {}, frame);
+    EXPECT_EQ(frame.intensity.width(), kWidth);
+    EXPECT_EQ(frame.colour[0].width(), kWidth);
+    whole.takes_the_last_memory = true;
+    EXPECT_TRUE(render.change_size(2 * kWidth, 2 * kHeight, frame));
+    whole.shortage.reset();
+    render.render({}, {}, frame);
+    EXPECT_EQ(frame.intensity.width(), 2 * kWidth);
+    EXPECT_EQ(frame.colour[2].width(), 2 * kWidth);
 }
 
 TEST_P(ColourStages, ImagesComeApartByTheirPlaceOnTheSensor) {

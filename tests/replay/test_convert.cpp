@@ -221,6 +221,43 @@ TEST(Convert, AClockThatBeganAnewGoesOnWhereTheFormatCannotSayIt) {
     }
 }
 
+/// Ten events 10 ms apart from each of `begins` on, in ms, each time of a clock that began anew.
+std::string write_clocks(const std::string& path, const std::vector<int>& begins_ms) {
+    StreamHeader header{.format = "aedat4", .width = 240, .height = 180};
+    RecordingFile file{path, OutputOptions{.overwrite = true}, *find_format("aedat4"), header};
+    for (const int begin : begins_ms) {
+        Batch batch;
+        for (int i = 0; i < 10; ++i)
+            batch.events.push_back({from_us(1000 * (begin + 10 * i)), 1, 1, Polarity::on});
+        batch.triggers = {{batch.events.front().t, Trigger::Kind::timestamp_reset, 0}};
+        file.write(batch);
+    }
+    file.finish();
+    return path;
+}
+
+TEST(Convert, APartIsOneOfTheClockThatTheRecordingBeginsWith) {
+    const TestFolder folder;
+    const std::string source = write_clocks(folder.path("a.aedat4"), {5000, 1000});
+    const auto part = [&](std::optional<int> from_ms, std::optional<int> to_ms) {
+        ConvertOptions how{.overwrite = true};
+        if (from_ms) how.from = from_us(1000 * *from_ms);
+        if (to_ms) how.to = from_us(1000 * *to_ms);
+        const std::string file = folder.path("b.aedat4");
+        convert(*open_recording(source), file, *find_format("aedat4"), how);
+        const Batch batch = read_everything(*open_recording(file));
+        return std::pair{batch.events.size(), batch.triggers.size()};
+    };
+    using Counts = std::pair<std::size_t, std::size_t>;
+    EXPECT_EQ(part({}, {}), Counts(20, 2));
+    EXPECT_EQ(part(5020, {}), Counts(18, 1)) << "and all of the clock that began anew";
+    EXPECT_EQ(part(5020, 5040), Counts(3, 0)) << "which comes behind the end";
+    EXPECT_EQ(part({}, 6000), Counts(20, 2)) << "which was not reached";
+    EXPECT_EQ(part(6000, {}), Counts(0, 0)) << "which no clock reached";
+    write_clocks(source, {1000, 1050});
+    EXPECT_EQ(part(1100, {}), Counts(5, 0)) << "which only the second reached";
+}
+
 TEST(Convert, AFileThatExistsIsNotReplacedUnlessTold) {
     const TestFolder folder;
     const std::string source = folder.write("a.txt", "240 180\n0.100000 1 2 1\n");

@@ -6,6 +6,8 @@
 #include "tests/replay/recording_files.h"
 #include "tests/replay/some_bags.h"
 
+#include <chrono>
+#include <cstdio>
 #include <limits>
 #include <thread>
 
@@ -69,6 +71,60 @@ TEST(RealTimePlayback, APauseOfAnHourIsNotWaitedFor) {
     const std::string path = write_recording(folder.path("a"), "text", events);
     RealTimePlayback paced(open_recording(path), 1);
     EXPECT_EQ(all_bytes(paced).size(), all_bytes(*open_recording(path)).size());
+}
+
+/// Events 10 ms apart, each in a packet of its own, by a host's clock that goes a millisecond
+/// further each time somebody looks at it.
+class PacedByMilliseconds {
+public:
+    explicit PacedByMilliseconds(const TestFolder& folder)
+        : playback_{open(folder), 1, [this] { return now_ += std::chrono::milliseconds{1}; }} {
+        for (RawPacket packet; given_ == 0;) read(packet);
+        begin_ = now_;
+    }
+    /// Until a packet of the event has come. How long after the first, in ms by the host's clock.
+    double when(int event) {
+        for (RawPacket packet; given_ <= event;) read(packet);
+        return std::chrono::duration<double, std::milli>(now_ - begin_).count();
+    }
+    void is_busy(std::chrono::milliseconds time) { now_ += time; }
+
+private:
+    static std::unique_ptr<Recording> open(const TestFolder& folder) {
+        OpenOptions as_they_come;
+        as_they_come.text.reorder = SensorDuration{0};
+        std::string rows = "240 180\n";
+        for (int i = 0; i < 200; ++i) {
+            char row[32];
+            std::snprintf(row, sizeof row, "%.6f 1 2 1\n", 1 + .01 * i);
+            // So long that each row is a piece, whose time is known with its last byte.
+            rows += "#" + std::string(256 - 2 - std::string{row}.size(), ' ') + "\n" + row;
+        }
+        return open_recording(folder.write("paced.txt", rows), as_they_come);
+    }
+    void read(RawPacket& packet) {
+        ASSERT_EQ(playback_.read(packet), ReadStatus::data);
+        bytes_ += packet.bytes.size();
+        given_ = int(bytes_ / 256);
+    }
+
+    HostTime now_{};  // long past: nothing is waited for
+    HostTime begin_{};
+    RealTimePlayback playback_;
+    std::size_t bytes_ = 0;
+    int given_ = 0;
+};
+
+TEST(RealTimePlayback, WhatIsALittleLateIsMadeUpForAndWhatIsMoreIsNot) {
+    const TestFolder folder;
+    PacedByMilliseconds reader{folder};
+    EXPECT_NEAR(reader.when(20), 200, 5);
+    reader.is_busy(std::chrono::milliseconds{150});
+    EXPECT_NEAR(reader.when(40), 400, 5) << "on time again";
+    reader.is_busy(std::chrono::milliseconds{1000});
+    const double late = reader.when(41);
+    EXPECT_NEAR(late, 1400, 15);
+    EXPECT_NEAR(reader.when(61), late + 200, 15) << "at its pace from there";
 }
 
 TEST(RealTimePlayback, StopEndsAWait) {

@@ -4,8 +4,8 @@
 #include "drivers/ros2/ros2_source.h"
 #include "src/core/byte_order.h"
 #include "src/core/error.h"
-#include "tests/ros2/error_of.h"
 #include "tests/ros2/topics.h"
+#include "tests/support/error_of.h"
 #include "tests/support/keep_in.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include "pipeline/ros2/ros2_name.h"
 #include "pipeline/ros2/socket_buffer.h"
 #include "src/core/error.h"
-#include "tests/ros2/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/system/process.h"
 
 #include <gmock/gmock.h>
@@ -22,9 +22,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string error_of(const std::function<void()>& call, ErrorKind kind = ErrorKind::usage) {
-    return test::error_of(call, kind);
-}
+using test::error_of;
 
 TEST(Ros2Name, ASinkIsANameSpaceAndKeys) {
     const Ros2SinkName plain = parse_ros2_sink_name("/camera");

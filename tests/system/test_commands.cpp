@@ -24,6 +24,14 @@ TEST_F(Commands, InfoDescribesAModel) {
     EXPECT_EQ(Json::parse(eventide({"info", model(), "--json"}).output)["bins"], "2");
 }
 
+TEST_F(Commands, InfoDescribesAModelByTheNameThatRunsGiveIt) {
+    const Result small = eventide({"info", "small"});
+    EXPECT_EQ(small.exit_code, 0) << small.error;
+    EXPECT_NE(small.output.find("weights"), std::string::npos);
+    write_text(temp_ / "small", "64 48\n0.1 1 2 1\n0.2 1 2 0\n");
+    EXPECT_EQ(info("small")["events"], 2) << "a file of that name comes first";
+}
+
 TEST_F(Commands, RunSaysWhatItsRecordingHasNoPlaceFor) {
     const auto run = [&](const char* option, const char* file) {
         return eventide({"run", recording(), "--out", "null", option, file, "--strict"});

@@ -151,22 +151,70 @@ TEST_F(Outputs, WhatWasAskedForIsReplaced) {
     EXPECT_EQ(eventide({"run", "rec.aedat4", "--out", "null", "--state-in", "state"}).exit_code, 0);
 }
 
-TEST_F(Outputs, WorkIsNotDoneForWhatCannotBeWrittenInTheEnd) {
-    expect_refused({"evaluate", "rec.aedat4", "--json", "nodir/scores"}, "--json nodir/scores",
-                   "expected a folder that exists");
-    expect_refused({"evaluate", "rec.aedat4", "--calibrated", "nodir/model"},
-                   "--calibrated nodir/model", "expected a folder that exists");
-    expect_refused({"run", "rec.aedat4", "--out", "null", "--state-out", "nodir/state"},
-                   "--state-out nodir/state", "expected a folder that exists");
+TEST_F(Outputs, TexturesOfASimulationAreInputs) {
+    fs::create_directory(temp_ / "textures");
+    write_text(temp_ / "textures/a.png", "a photograph");
+    expect_refused({"run", "sim:demo?textures=textures", "--out", "null", "--overwrite", "--stats",
+                    "textures/a.png"},
+                   "--stats textures/a.png", "SOURCE textures");
+}
+
+TEST_F(Outputs, WhatAKilledConversionLeftIsNoInputOfTheOneThatRemovesIt) {
+    fs::create_directory(temp_ / "d");
+    write_text(temp_ / "d/events.txt.part", "64 48\n0.1 1 2 1\n");
+    write_text(temp_ / "d/run.json",
+               R"({"program": "eventide", "files": {"images": 0}, "single": ["events.txt"],)"
+               R"( "finished": false})");
+    expect_refused({"convert", "d/events.txt.part", "d/", "--overwrite"}, "TO d/events.txt.part",
+                   "FROM d/events.txt.part");
+}
+
+TEST_F(Outputs, APlotIsAnOutputToo) {
+    expect_refused({"evaluate", "rec.aedat4", "--overwrite", "--figure", "sigma", "--plots", ".",
+                    "--csv", "sigma_error.csv"},
+                   "--plots sigma_error.csv", "--csv sigma_error.csv");
+}
+
+TEST_F(Outputs, StandardOutputAndStandardErrorAreOutputsToo) {
+    const Result table = in_shell("eventide evaluate rec.aedat4 --json scores > scores");
+    EXPECT_EQ(table.exit_code, 2);
+    EXPECT_NE(table.error.find("--json scores: is the same file as standard output"),
+              std::string::npos)
+        << table.error;
+    EXPECT_EQ(in_shell("eventide run rec.aedat4 --out null --stats log 2> log").exit_code, 2);
+    EXPECT_NE(read_text(temp_ / "log").find("--stats log: is the same file as standard error"),
+              std::string::npos);
     EXPECT_EQ(
-        eventide({"run", "rec.aedat4", "--out", "new/", "--state-out", "new/state"}).exit_code, 0);
-    EXPECT_TRUE(fs::exists(temp_ / "new/state"));
-    expect_refused({"run", "rec.aedat4", "--out", "contact-sheet:nodir/x.png"},
-                   "--out contact-sheet:nodir/x.png", "expected a folder that exists");
-    EXPECT_EQ(eventide({"run", "rec.aedat4", "--out", "contact-sheet:more/x.png", "--out", "more/"})
+        in_shell("eventide run rec.aedat4 --duration 20ms --out null --stats /dev/fd/2 2> log")
+            .exit_code,
+        0);
+}
+
+TEST_F(Outputs, AnOutputInAFolderThatIsNotThereIsRefused) {
+    for (const auto& command : {std::vector<std::string>{"evaluate", "rec.aedat4", "--json", "x"},
+                                {"evaluate", "rec.aedat4", "--calibrated", "x"},
+                                {"convert", "rec.aedat4", "x.txt"},
+                                {"simulate", "--out", "x.txt"},
+                                {"run", "rec.aedat4", "--out", "x.mp4"},
+                                {"run", "rec.aedat4", "--out", "gray8:x"},
+                                {"run", "rec.aedat4", "--out", "contact-sheet:x.png"},
+                                {"run", "rec.aedat4", "--out", "null", "--record", "x.txt"},
+                                {"run", "rec.aedat4", "--out", "null", "--events-out", "x.txt"},
+                                {"run", "rec.aedat4", "--out", "null", "--stats", "x"},
+                                {"run", "rec.aedat4", "--out", "null", "--state-out", "x"}}) {
+        std::vector<std::string> words = command;
+        words.back().insert(words.back().find('x'), "nodir/");
+        expect_refused(words, words.back(), "expected a folder that exists");
+    }
+    EXPECT_EQ(eventide({"run", "rec.aedat4", "--out", "contact-sheet:new/x.png", "--out", "null",
+                        "--out", "new/", "--stats", "new/stats", "--state-out", "new/state"})
                   .exit_code,
               0);
-    EXPECT_TRUE(fs::exists(temp_ / "more/x.png"));
+    for (const char* file : {"x.png", "stats", "state", "timestamps.csv"})
+        EXPECT_TRUE(fs::exists(temp_.path() / "new" / file)) << file;
+}
+
+TEST_F(Outputs, WorkIsNotDoneForWhatCannotBeWrittenInTheEnd) {
     const std::string long_name(252, 'x');
     for (const auto& command :
          {std::vector<std::string>{"convert", "rec.aedat4", long_name + ".txt"},

@@ -174,6 +174,16 @@ TEST_F(Run, GoesThroughSeveralNamedPipesInWhateverOrderTheyAreOpened) {
     }
 }
 
+TEST_F(Run, OpensAPipeForItsReaderBeforeAnythingIsWrittenToItsSource) {
+    for (const std::string command :
+         {"run in --fps 10 --out gray8:out", "convert in out --to-format text"}) {
+        const Result result = in_shell("rm -f in out; mkfifo in out; eventide " + command +
+                                       " & exec 3<out; cat recording > in; wc -c <&3; wait");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_GT(std::stol(result.output), 1000) << command;
+    }
+}
+
 TEST_F(Run, KeepsItsStateInAFileOfThisModelOnly) {
     ASSERT_EQ(eventide({"run", recording(), "--out", "null", "--state-out", "state"}).exit_code, 0);
     const std::vector<std::string> common{"run", recording(), "--to", "60ms", "--out"};

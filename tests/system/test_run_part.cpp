@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -36,6 +37,61 @@ TEST_F(RunPart, WritesNoEventsBehindADurationThatBeginsWithTheFirst) {
     const double seconds = (json["last_us"].get<double>() - json["first_us"].get<double>()) / 1e6;
     EXPECT_LE(seconds, .1) << "what was read already is left out";
     EXPECT_GT(seconds, .095);
+}
+
+std::string words(const std::vector<std::uint32_t>& values) {
+    std::string bytes;
+    for (const std::uint32_t value : values)
+        for (int shift = 0; shift < 32; shift += 8) bytes += char(value >> shift);
+    return bytes;
+}
+
+/// AEDAT 3.1, times in ms: 400 events 1 ms apart from each of two on; before the second the clock
+/// was reset.
+std::string two_clocks(std::uint32_t first_ms, std::uint32_t second_ms) {
+    std::string bytes = "#!AER-DAT3.1\r\n#Format: RAW\r\n#Source 1: DVS128\r\n#!END-HEADER\r\n";
+    const auto add = [&](std::uint32_t type, const std::vector<std::uint32_t>& events) {
+        const auto n = std::uint32_t(events.size() / 2);
+        bytes += words({type | 1U << 16, 8, 4, 0, n, n, n}) + words(events);
+    };
+    const auto add_events = [&](std::uint32_t begin_ms) {
+        std::vector<std::uint32_t> events;
+        for (std::uint32_t i = 0; i < 400; ++i)
+            events.insert(events.end(), {3U | i % 128 << 17, 1000 * (begin_ms + i)});
+        add(1, events);
+    };
+    add_events(first_ms);
+    constexpr std::uint32_t kTimestampReset = 1U | 1U << 1;
+    add(0, {kTimestampReset, 0x7FFFFFFF});
+    add_events(second_ms);
+    return bytes;
+}
+
+TEST_F(RunPart, IsOneOfTheClockThatTheRecordingBeginsWith) {
+    write_text(temp_ / "two.aedat", two_clocks(5000, 1000));
+    const auto events_in = [&](const std::vector<std::string>& command) {
+        const Result result = eventide(command);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return Json::parse(eventide({"info", "o.aedat4", "--json"}).output)["events"].get<int>();
+    };
+    const auto run = [&](std::vector<std::string> part) {
+        std::vector<std::string> all{"run",   "two.aedat",    "--noise-filter", "off",
+                                     "--out", "null",         "--lamp-flicker", "off",
+                                     "--fps", "10",           "--overwrite",    "--warmup",
+                                     "0s",    "--events-out", "o.aedat4"};
+        all.insert(all.end(), part.begin(), part.end());
+        return events_in(all);
+    };
+    const auto convert = [&](std::vector<std::string> part) {
+        std::vector<std::string> all{"convert", "two.aedat", "o.aedat4", "--overwrite"};
+        all.insert(all.end(), part.begin(), part.end());
+        return events_in(all);
+    };
+    EXPECT_EQ(run({"--from", "200ms"}), 200 + 400);
+    EXPECT_EQ(convert({"--from", "200ms"}), 200 + 400);
+    EXPECT_EQ(run({"--from", "200ms", "--to", "299ms"}), 100);
+    EXPECT_EQ(convert({"--from", "200ms", "--to", "299ms"}), 100);
+    EXPECT_EQ(convert({"--to", "500ms"}), 400 + 400) << "which the first did not reach";
 }
 
 TEST_F(RunPart, TheFirstFrameOfAPartIsAsGoodAsThatOfTheWhole) {

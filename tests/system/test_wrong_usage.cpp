@@ -113,10 +113,23 @@ TEST_F(WrongUsage, AFlagThatWouldChangeNothing) {
         "--precision: expected f32 with --engine plain, found bf16");
     run({"--engine", "plain", "--kernels", "onednn"},
         "--kernels: expected own with --engine plain, found onednn");
-    for (const auto& [flag, value] :
-         {std::pair{"--input-columns", "txyp"}, {"--input-time-unit", "us"}, {"--reorder", "1ms"}})
+    for (const auto& [flag, value] : {std::pair{"--input-columns", "txyp"},
+                                      {"--input-time-unit", "us"},
+                                      {"--reorder", "1ms"}}) {
+        for (const auto& command : {std::vector<std::string>{"run", recording(), "--out", "null"},
+                                    {"info", recording()},
+                                    {"convert", recording(), "a.txt"},
+                                    {"evaluate", recording()}}) {
+            std::vector<std::string> words = command;
+            words.insert(words.end(), {flag, value});
+            expect(2, words, std::string{flag} + ": expected a recording in the format text");
+        }
         expect(2, {"run", "sim:demo", "--out", "null", flag, value},
                std::string{flag} + ": expected a recording as SOURCE, found sim:demo");
+    }
+    expect(2, {"info", recording(), "--input-dvs128-one-is-on"},
+           "--input-dvs128-one-is-on: expected a recording in the format aedat1 or aedat2, found "
+           "aedat4");
     expect(2, {"run", "davis:", "--out", "null", "--input-dvs128-one-is-on"},
            "--input-dvs128-one-is-on: expected a recording as SOURCE, found davis:");
     expect(2, {"simulate", "--out", "a.aedat4", "--truth-scale", "2"},

@@ -186,8 +186,8 @@ void BenchCommand::name_bench_files(NamedFiles& files) const {
     for (const std::string& model : settings_.models) files.reads("--models", find_model(model));
     files.reads("--lpips", settings_.lpips);
     files.reads("--peers", peers_);
-    if (!report_.empty()) NamedFiles::expect_folder("--report", report_);
-    if (!plots_.empty()) NamedFiles::expect_folder("--plots", plots_);
+    if (!report_.empty()) files.expect_folder("--report", report_);
+    if (!plots_.empty()) files.expect_folder("--plots", plots_);
     if (!report_.empty())
         for (const std::filesystem::path& name : report_files())
             files.writes("--report", std::filesystem::path{report_} / name);

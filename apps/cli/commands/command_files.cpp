@@ -37,7 +37,13 @@ void name_filter_files(const std::vector<std::string>& filters, NamedFiles& file
 void name_run_folder(const std::string& option, const fs::path& folder,
                      const RunFolderFiles& written, NamedFiles& files) {
     files.writes_folder(option, folder);
-    for (const std::string& name : written.single) files.writes(option, folder / name);
+    std::error_code none;
+    for (const std::string& name : written.single) {
+        files.writes(option, folder / name);
+        // What a killed run left goes, too.
+        if (const fs::path part = folder / (name + ".part"); fs::exists(part, none))
+            files.writes(option, part);
+    }
     files.writes(option, folder / kRunRecord);
     for (const NumberedFiles& numbered : written.numbered)
         files.writes_all(option, folder / numbered.folder);

@@ -15,6 +15,7 @@
 #include "replay/left_out.h"
 #include "src/core/error.h"
 #include "src/core/number_text.h"
+#include "src/io/held_pipes.h"
 
 #include <spdlog/spdlog.h>
 
@@ -130,8 +131,12 @@ int ConvertCommand::run(Program& program) {
         program.files.writes("TO", to_file_);
     else if (!to_udp)
         name_run_folder("TO", to_file_, EcdWriter::files(), program.files);
-    const auto recording =
-        open_input(from_file_, input_, [&program] { return program.signals.stopping(); });
+    HeldPipes readers{program.files.pipes()};
+    const auto recording = open_input(from_file_, input_, [&] {
+        readers.look();
+        return program.signals.stopping();
+    });
+    refuse_idle_input_flags(program.flags, {recording->info().format});
     const TimePointReader times{from_file_, options};
     ConvertOptions how;
     if (from_) how.from = times.time_of(*from_);
@@ -154,6 +159,7 @@ int ConvertCommand::run(Program& program) {
         target = open_event_target(to_file_, output, header);
     else
         target = std::make_unique<RecordingOut>(to_file_, output, format, header);
+    readers.let_go();
     Progress progress{program.quiet};
     const ConvertReport report = convert(*recording, *target, how, [&] {
         if (recording->size_bytes() > 0)

@@ -141,7 +141,7 @@ EvaluateReport EvaluateCommand::evaluate(const EvaluateSettings& how) const {
         case Protocol::simulated:
             return evaluate_simulated(simulated(), how);
         case Protocol::folders:
-            return evaluate_folders(inputs_[0], inputs_[1], lpips_);
+            return evaluate_folders(inputs_[0], inputs_[1], lpips_, how.warn);
         case Protocol::recordings:
             break;
     }
@@ -191,17 +191,21 @@ void EvaluateCommand::calibrate(const EvaluateReport& report, const EvaluateSett
 
 /// What the figures' names begin with in --plots; the rest depends on what is measured.
 void EvaluateCommand::name_plots(NamedFiles& files) const {
-    if (!figures_.empty()) NamedFiles::expect_folder("--plots", plots_);
+    if (!figures_.empty()) files.expect_folder("--plots", plots_);
+    const auto may_be_plot = [this](const std::filesystem::path& file) {
+        const std::string kind = file.extension(), stem = file.stem();
+        return (kind == ".svg" || kind == ".csv") &&
+               std::ranges::any_of(figures_, [&](std::string figure) {
+                   std::ranges::replace(figure, '-', '_');
+                   return stem == figure || stem.starts_with(figure + "_");
+               });
+    };
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator{plots_, none})
-        for (std::string figure : figures_) {
-            std::ranges::replace(figure, '-', '_');
-            const std::string kind = entry.path().extension();
-            if ((kind == ".svg" || kind == ".csv") &&
-                (entry.path().stem() == figure ||
-                 entry.path().stem().string().starts_with(figure + "_")))
-                files.writes("--plots", entry.path());
-        }
+        if (may_be_plot(entry.path())) files.writes("--plots", entry.path());
+    for (const std::filesystem::path other : {json_, csv_, frame_csv_, calibrated_})
+        if (may_be_plot(other) && resolved(other).parent_path() == resolved(plots_))
+            files.writes("--plots", other);
 }
 
 void EvaluateCommand::name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const {

@@ -38,6 +38,7 @@ private:
     bool simulates() const;
     static std::vector<Protocol> protocols_of(const std::string& key);
     void refuse_idle_flags(const FlagKeys& flags) const;
+    void refuse_flags_of_other_formats(const FlagKeys& flags) const;
     void name_evaluation_files(const EvaluateSettings& how, NamedFiles& files) const;
     void name_plots(NamedFiles& files) const;
     void write_plots(const std::vector<Plot>& plots) const;

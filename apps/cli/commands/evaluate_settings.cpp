@@ -1,7 +1,9 @@
 // What `eventide evaluate` can be told.
 #include "apps/cli/commands/evaluate_command.h"
 #include "apps/cli/idle_flag.h"
+#include "apps/cli/settings/time_point.h"
 #include "apps/cli/settings/words.h"
+#include "replay/formats.h"
 #include "src/binning/slicer_settings.h"
 #include "src/core/list_text.h"
 #include "src/core/sensor_limits.h"
@@ -164,8 +166,21 @@ void EvaluateCommand::refuse_idle_flags(const FlagKeys& flags) const {
         });
         refuse_idle_flag(flags, key, "--protocol " + alternatives(names), found);
     }
+    refuse_flags_of_other_formats(flags);
     if (calibrated_.empty()) refuse_idle_flag(flags, "calibration", "--calibrated FILE");
     refuse_idle_precision(flags, engine_, precision_);
+}
+
+void EvaluateCommand::refuse_flags_of_other_formats(const FlagKeys& flags) const {
+    const auto is_of_input = [](const std::string& key) {
+        return key.starts_with("input_") || key == "reorder";
+    };
+    if (std::ranges::none_of(flags, is_of_input) || std::ranges::any_of(inputs_, is_read_once))
+        return;
+    std::vector<std::string> formats;
+    for (const std::string& input : inputs_)
+        formats.push_back(open_recording(input, input_.options())->info().format);
+    if (!formats.empty()) refuse_idle_input_flags(flags, formats);
 }
 
 }  // namespace eventide::app

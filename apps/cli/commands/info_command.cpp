@@ -3,6 +3,7 @@
 
 #include "apps/cli/printable.h"
 #include "apps/cli/progress.h"
+#include "apps/cli/settings/model_path.h"
 #include "replay/formats.h"
 #include "replay/left_out.h"
 #include "replay/summary.h"
@@ -16,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 
 namespace eventide::app {
@@ -65,8 +67,8 @@ void print_table(const SensorInfo& sensor, const Summary& summary, std::uint64_t
 }  // namespace
 
 /// What a model is, from its own metadata.
-int InfoCommand::describe_model() const {
-    const Model model = load_model(file_);
+int InfoCommand::describe_model(const std::filesystem::path& file) const {
+    const Model model = load_model(file);
     std::size_t weights = 0;
     for (const auto& [name, tensor] : model.weights) weights += tensor.values.size();
     std::map<std::string, std::string> facts = format_metadata(model.config);
@@ -83,13 +85,14 @@ int InfoCommand::describe_model() const {
 }
 
 std::string InfoCommand::examples() const {
-    return "Examples:\n  eventide info recording.aedat4\n  eventide info model.safetensors\n  "
+    return "Examples:\n  eventide info recording.aedat4\n  eventide info default\n  "
            "eventide info recording.raw --json | jq "
            ".events";
 }
 
 std::vector<Positional> InfoCommand::positionals() {
-    return {{"FILE", "Recording, - for standard input, or a model", &file_}};
+    return {
+        {"FILE", "Recording, - for standard input, or a model, by its file or its name", &file_}};
 }
 
 SettingTable InfoCommand::settings() {
@@ -102,9 +105,13 @@ SettingTable InfoCommand::settings() {
 }
 
 int InfoCommand::run(Program& program) {
-    if (file_.ends_with(".safetensors")) return describe_model();
+    if (file_.ends_with(".safetensors")) return describe_model(file_);
+    // As of --model; a file of that name comes first.
+    if (const auto model = found_model(file_); !model.empty() && !std::filesystem::exists(file_))
+        return describe_model(model);
     const auto recording =
         open_input(file_, input_, [&program] { return program.signals.stopping(); });
+    refuse_idle_input_flags(program.flags, {recording->info().format});
     Progress progress{program.quiet};
     const Summary summary = summarize(*recording, [&] {
         if (recording->size_bytes() > 0)

@@ -16,7 +16,7 @@ public:
     int run(Program& program) override;
 
 private:
-    int describe_model() const;
+    int describe_model(const std::filesystem::path& file) const;
 
     std::string file_;
     InputSettings input_;

@@ -46,7 +46,8 @@ SensorTime first_event(const AskedPart& part) {
 void check_from(const AskedPart& part) {
     SensorTime last = SensorTime::min();
     const auto reaches_it = [&](const Batch& batch) {
-        if (!batch.events.empty()) last = batch.events.back().t;
+        // Of a clock that began anew, later events may have earlier times.
+        for (const Event& event : batch.events) last = std::max(last, event.t);
         return last >= *part.from;
     };
     if (read_until(part, part.from, reaches_it)) return;

@@ -159,7 +159,7 @@ SettingTable StressCommand::settings() {
 void StressCommand::name_stress_files(NamedFiles& files) const {
     files.may_replace(overwrite_);
     for (const std::string& model : models_) files.reads("--models", found_model(model));
-    if (!plots_.empty()) NamedFiles::expect_folder("--plots", plots_);
+    if (!plots_.empty()) files.expect_folder("--plots", plots_);
     if (!plots_.empty())
         for (const Plot& plot : plots_of({}))
             for (const char* extension : {".svg", ".csv"})

@@ -102,9 +102,9 @@ void EventsOut::write(std::span<const Event> events) {
         keep_for_later(batch_.imu, later_.imu);
         keep_for_later(batch_.triggers, later_.triggers);
     }
-    const std::optional<SensorTime> to = to_();
+    const std::optional<SensorTime> from = from_(), to = to_();
     const auto outside = [&](const auto& item) {
-        return (from_ && item.t < *from_) || (to && item.t > *to);
+        return (from && item.t < *from) || (to && item.t > *to);
     };
     std::erase_if(batch_.events, outside);
     std::erase_if(batch_.images, outside);

@@ -29,17 +29,17 @@ std::string lost_datagrams(std::uint64_t lost);
 /// The last of the filters. Bin thread; it holds up the pipeline for as long as writing takes.
 class EventsOut final : public EventFilter, public DataObserver {
 public:
-    /// The last time that is written; empty: all, or not known yet. Of a stream that is to last for
-    /// so long it is known with the first event.
-    using End = std::function<std::optional<SensorTime>()>;
+    /// The first or last time that is written; empty: all, or not known yet. Of the clock at hand,
+    /// which may begin anew; and how long a stream is to last is known with its first event.
+    using Limit = std::function<std::optional<SensorTime>()>;
     /// `filter` may be null; it is borrowed. Events outside of [from, to] are not written.
     /// `colours` as of WrittenData.
-    EventsOut(EventFilter* filter, std::unique_ptr<ConvertTarget> target,
-              std::optional<SensorTime> from, End to, ColourFilter colours = ColourFilter::none)
+    EventsOut(EventFilter* filter, std::unique_ptr<ConvertTarget> target, Limit from, Limit to,
+              ColourFilter colours = ColourFilter::none)
         : filter_(filter),
           target_(std::move(target)),
           data_(target_->holds(), colours),
-          from_(from),
+          from_(std::move(from)),
           to_(std::move(to)) {}
 
     /// Images and the rest, of which what the target holds is written with the events they came
@@ -65,8 +65,7 @@ private:
     EventFilter* filter_;
     std::unique_ptr<ConvertTarget> target_;
     WrittenData data_;
-    std::optional<SensorTime> from_;
-    End to_;
+    Limit from_, to_;
     Batch batch_;
     Batch later_;                            // than events that the filter holds back
     SensorTime newest_ = SensorTime::min();  // event

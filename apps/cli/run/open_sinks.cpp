@@ -184,15 +184,17 @@ std::unique_ptr<Sink> open_sheet(const std::string& path, const RunSettings& set
     sheet.rows = settings.sheet_rows;
     sheet.truth_caption = plan.reference_caption;
     sheet.part = rendered_part(settings, plan.sensor, plan.undistortion);
+    // Beside frames in colour, else in grey.
+    const auto shows =
+        settings.colour ? ReferenceImages::Shows::colours : ReferenceImages::Shows::grey;
     if (plan.references != nullptr)
-        sheet.draw_truth = [references = plan.references, sensor = plan.sensor](
+        sheet.draw_truth = [references = plan.references, sensor = plan.sensor, shows](
                                SensorTime t, const Window& window, cv::Mat& image) {
-            references->draw_nearest(t, window, {sensor.width, sensor.height}, image);
+            references->draw_nearest(t, window, {sensor.width, sensor.height}, shows, image);
         };
     return std::make_unique<ContactSheetSink>(std::move(sheet));
 }
 
-/// The contact sheet shows intensity all the same.
 bool takes_colour(const SinkName& sink) {
     switch (sink.kind) {
         case SinkKind::stream:

@@ -10,16 +10,21 @@ namespace eventide::app {
 
 namespace {
 
-/// 8-bit grey; colour sensors' images are weighed as cvtColor does.
-cv::Mat grey_of(const ReferenceImage& image) {
+/// 8-bit BGR or grey, for which colours are weighed as cvtColor does.
+cv::Mat shown_of(const ReferenceImage& image, ReferenceImages::Shows shows) {
+    using Shows = ReferenceImages::Shows;
     const int width = image.pixels.width() / image.channels;
     const cv::Mat wide(image.pixels.height(), width, CV_MAKETYPE(CV_16U, image.channels),
                        const_cast<std::uint16_t*>(image.pixels.values().data()));
-    cv::Mat narrow, grey;
+    cv::Mat narrow, changed;
     wide.convertTo(narrow, CV_8U, 1.0 / 257);
-    if (image.channels == 1) return narrow;
-    cv::cvtColor(narrow, grey, image.channels == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
-    return grey;
+    const bool has_alpha = image.channels == 4;
+    if (image.channels == 1 || (shows == Shows::colours && !has_alpha)) return narrow;
+    cv::cvtColor(narrow, changed,
+                 shows == Shows::colours ? cv::COLOR_BGRA2BGR
+                 : has_alpha             ? cv::COLOR_BGRA2GRAY
+                                         : cv::COLOR_BGR2GRAY);
+    return changed;
 }
 
 std::size_t bytes_of(const ReferenceImage& image) {
@@ -69,25 +74,26 @@ void ReferenceImages::draw(SensorTime t, const Window& window, cv::Size sensor,
     const std::lock_guard lock{mutex_};
     const auto image = nearest_to(t);
     if (image && 2 * std::chrono::abs(images_[*image].t - t) <= window.width())
-        draw(images_[*image], sensor, shown);
+        draw(images_[*image], sensor, Shows::grey, shown);
 }
 
-void ReferenceImages::draw_nearest(SensorTime t, const Window& window, cv::Size sensor,
+void ReferenceImages::draw_nearest(SensorTime t, const Window& window, cv::Size sensor, Shows shows,
                                    cv::Mat& shown) const {
     const std::lock_guard lock{mutex_};
     const auto image = nearest_to(t);
     if (image &&
         2 * std::chrono::abs(images_[*image].t - t) <= std::max(window.width(), spacing_at(*image)))
-        draw(images_[*image], sensor, shown);
+        draw(images_[*image], sensor, shows, shown);
 }
 
-void ReferenceImages::draw(const ReferenceImage& image, cv::Size sensor, cv::Mat& shown) const {
-    const cv::Mat grey = grey_of(image);
-    shown = cv::Mat::zeros(sensor, CV_8UC1);
+void ReferenceImages::draw(const ReferenceImage& image, cv::Size sensor, Shows shows,
+                           cv::Mat& shown) const {
+    const cv::Mat all = shown_of(image, shows);
+    shown = cv::Mat::zeros(sensor, all.type());
     const cv::Rect whole{{0, 0}, sensor};
-    const cv::Rect place = cv::Rect{image.x0, image.y0, grey.cols, grey.rows} & whole;
+    const cv::Rect place = cv::Rect{image.x0, image.y0, all.cols, all.rows} & whole;
     if (place.empty()) return;  // nothing of it lies on the sensor
-    grey(place - cv::Point{image.x0, image.y0}).copyTo(shown(place));
+    all(place - cv::Point{image.x0, image.y0}).copyTo(shown(place));
 }
 
 }  // namespace eventide::app

@@ -17,6 +17,8 @@ namespace eventide::app {
 /// Thread: any; see() is called on the bin thread, draw() on the render thread.
 class ReferenceImages : public DataObserver {
 public:
+    enum class Shows { grey, colours };  ///< of images that have some
+
     /// Longer than the contact sheet waits and event windows lie between the two threads, however
     /// many images that is; but no more memory than that for images beyond the first few.
     static constexpr SensorDuration kKept = 4 * kTruthDelay;
@@ -28,13 +30,15 @@ public:
     /// black where it does not cover the sensor (CV_8UC1); leaves `shown` empty where there is
     /// none.
     void draw(SensorTime t, const Window& window, cv::Size sensor, cv::Mat& shown) const;
-    /// To be looked at beside the frame: also where it is as near as half the time between images.
-    void draw_nearest(SensorTime t, const Window& window, cv::Size sensor, cv::Mat& shown) const;
+    /// To be looked at beside the frame: also where it is as near as half the time between images;
+    /// CV_8UC3 where it has colours that are asked for.
+    void draw_nearest(SensorTime t, const Window& window, cv::Size sensor, Shows shows,
+                      cv::Mat& shown) const;
 
 private:
     /// Empty where there is none.
     std::optional<std::size_t> nearest_to(SensorTime t) const;
-    void draw(const ReferenceImage& image, cv::Size sensor, cv::Mat& shown) const;
+    void draw(const ReferenceImage& image, cv::Size sensor, Shows shows, cv::Mat& shown) const;
     /// Between it and the nearer of its neighbours; 0 where it has none.
     SensorDuration spacing_at(std::size_t image) const;
 

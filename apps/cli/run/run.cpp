@@ -11,7 +11,6 @@
 #include "pipeline/first_error.h"
 #include "replay/formats.h"
 #include "src/core/error.h"
-#include "src/io/held_pipes.h"
 #include "src/io/output_file.h"
 #include "src/settings/values.h"
 
@@ -36,8 +35,9 @@ SensorPixels size_of(const Source& source) {
 
 /// Null: not asked for.
 std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const SensorInfo& sensor,
-                                         ColourFilter colours, const Span& span, EventsOut::End end,
-                                         EventFilter* filter, const OutputOptions& growing) {
+                                         ColourFilter colours, EventsOut::Limit from,
+                                         EventsOut::Limit to, EventFilter* filter,
+                                         const OutputOptions& growing) {
     if (settings.events_out.empty()) return nullptr;
     StreamHeader header;
     header.width = sensor.width;
@@ -47,7 +47,7 @@ std::unique_ptr<EventsOut> events_out_of(const RunSettings& settings, const Sens
     header.colour_filter = colours;
     return std::make_unique<EventsOut>(filter,
                                        open_event_target(settings.events_out, growing, header),
-                                       span.frames_from, std::move(end), colours);
+                                       std::move(from), std::move(to), colours);
 }
 
 std::optional<TensorFile> state_in_of(const RunSettings& settings) {
@@ -83,6 +83,7 @@ Run::Run(Program& program, RunSettings& settings)
       settings_{settings},
       speed_{speed_of(settings)},
       start_{manager_, settings.source},
+      readers_{program.files.pipes()},
       opened_{open_source(settings, speed_, give_up_waiting())},
       filters_{settings.filter, size_of(*opened_.source)},
       sensor_{filters_.behind(opened_.source->info())},
@@ -105,6 +106,8 @@ Run::Run(Program& program, RunSettings& settings)
       observers_{sheet_ ? &references_ : nullptr,
                  settings.frames == CameraFrames::ignore ? nullptr : &images_, colour_filter_},
       render_{render_stage()} {
+    if (opened_.recording != nullptr)
+        refuse_idle_input_flags(program.flags, {opened_.recording->info().format});
     const AskedPart part{settings.source, settings.input.options(), settings.from,
                          span_.frames_from, span_.end};
     check_part(part);
@@ -130,6 +133,7 @@ std::function<bool()> Run::give_up_waiting() {
     const bool has_limit = names_camera(settings_.source) && !settings_.reconnect;
     return [this, has_limit] {
         if (!has_limit) start_.source_is_waited_for();
+        readers_.look();
         return program_.signals.stopping();
     };
 }
@@ -155,12 +159,15 @@ void Run::open_outputs() {
             start_.goes_on();
             return program_.signals.stopping();
         }};
-    const HeldPipes readers{program_.files.pipes(), growing.give_up};
+    readers_.wait(growing.give_up);
     sinks_ = open_sinks(settings_, sink_plan());
     // Behind them: other files may lie in a folder that a sink makes.
     recorded_ = recorder_of(settings_, *opened_.source, source_colours_, growing);
+    const auto from = [this] {
+        return pipeline_->clock_began_anew() ? std::nullopt : span_.frames_from;
+    };
     events_out_ = events_out_of(
-        settings_, sensor_, colour_filter_, span_, [this] { return pipeline_->end(); },
+        settings_, sensor_, colour_filter_, from, [this] { return pipeline_->end(); },
         filter_.get(), growing);
     observers_.hand_all_to(events_out_.get());
     if (!settings_.states_out.empty()) {
@@ -168,6 +175,7 @@ void Run::open_outputs() {
         create_folder(settings_.states_out);
     }
     stats_ = stats_of(settings_, growing);
+    readers_.let_go();
 }
 
 void Run::make_pipeline() {

@@ -19,6 +19,7 @@
 #include "pipeline/filters/filter_chain.h"
 #include "pipeline/model_render_stage.h"
 #include "pipeline/pipeline.h"
+#include "src/io/held_pipes.h"
 
 #include <atomic>
 #include <chrono>
@@ -73,7 +74,8 @@ private:
     RunSettings& settings_;
     ServiceManager manager_;
     const double speed_;
-    StartWatch start_;  // until run()
+    StartWatch start_;   // until run()
+    HeldPipes readers_;  // of outputs, until those are open
     OpenedSource opened_;
     FilterChain filters_;
     const SensorInfo sensor_;

@@ -26,11 +26,24 @@ void name_events_out(const std::string& to, bool force, NamedFiles& files) {
         files.writes("--events-out", file, to);
 }
 
+void name_states_out(const RunSettings& settings, NamedFiles& files) {
+    if (settings.states_out.empty()) return;
+    files.writes_folder("--states-out", settings.states_out);
+    // Those of an earlier run, which go, are no input of this.
+    for (std::size_t i = 0;
+         i < settings.states_at.size() ||
+         (settings.overwrite && std::filesystem::exists(state_file(settings.states_out, i)));
+         ++i)
+        files.writes("--states-out", state_file(settings.states_out, i));
+}
+
 }  // namespace
 
 void name_run_files(const RunSettings& settings, NamedFiles& files) {
     files.may_replace(settings.overwrite);
-    if (!names_simulation(settings.source) && !names_camera(settings.source))
+    if (names_simulation(settings.source))
+        name_files("SOURCE", parse_simulated_name(settings.source).textures, files);
+    else if (!names_camera(settings.source))
         name_recording("SOURCE", settings.source, files);
     files.reads("--camera", settings.camera);
     if (settings.hot_pixels != "off" && settings.hot_pixels != "learn")
@@ -41,20 +54,16 @@ void name_run_files(const RunSettings& settings, NamedFiles& files) {
         files.reads("--model", found_model(model));
     files.reads("--state-in", settings.state_in);
 
+    name_filter_files(settings.filter, files);
+
+    // Outputs in the order in which they are opened: each may lie in a folder that one before
+    // makes.
     name_sink_files(settings, files);
     files.writes("--record", settings.record);
     name_events_out(settings.events_out, settings.force, files);
-    name_filter_files(settings.filter, files);
+    name_states_out(settings, files);
     if (settings.stats != "-") files.writes("--stats", settings.stats);  // else standard error
     files.writes_when_done("--state-out", settings.state_out);
-    if (settings.states_out.empty()) return;
-    files.writes_folder("--states-out", settings.states_out);
-    // Those of an earlier run, which go, are no input of this.
-    for (std::size_t i = 0;
-         i < settings.states_at.size() ||
-         (settings.overwrite && std::filesystem::exists(state_file(settings.states_out, i)));
-         ++i)
-        files.writes("--states-out", state_file(settings.states_out, i));
 }
 
 }  // namespace eventide::app

@@ -1,6 +1,7 @@
 // What the user may say about an input.
 #include "apps/cli/settings/input_settings.h"
 
+#include "apps/cli/idle_flag.h"
 #include "drivers/devices.h"
 #include "pipeline/filters/data_filter.h"
 #include "replay/formats.h"
@@ -9,6 +10,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace eventide::app {
@@ -22,6 +26,12 @@ Setting text_or_auto(std::string key, std::string& value, std::string argument, 
         [](const std::string& text) { return text == "auto" ? std::string{} : text; },
         [](const std::string& text) { return text.empty() ? "auto" : text; });
 }
+
+/// What only some formats leave open.
+struct InputFlag {
+    const char* key;
+    std::vector<std::string_view> formats;
+};
 
 }  // namespace
 
@@ -81,6 +91,23 @@ OpenOptions InputSettings::options() const {
         options.height = size->height;
     }
     return options;
+}
+
+void refuse_idle_input_flags(const FlagKeys& flags, const std::vector<std::string>& formats) {
+    static const InputFlag kInputFlags[]{{"input_columns", {"text", "npy", "npz"}},
+                                         {"input_time_unit", {"text", "npy", "npz"}},
+                                         {"reorder", {"text"}},
+                                         {"input_dvs128_one_is_on", {"aedat1", "aedat2"}}};
+    for (const InputFlag& flag : kInputFlags) {
+        const auto leaves_open = [&](const std::string& format) {
+            return std::ranges::find(flag.formats, format) != flag.formats.end();
+        };
+        if (std::ranges::any_of(formats, leaves_open)) continue;
+        refuse_idle_flag(
+            flags, flag.key,
+            "a recording in the format " + alternatives({flag.formats.begin(), flag.formats.end()}),
+            formats.front());
+    }
 }
 
 Setting filter_setting(std::vector<std::string>& filters) {

@@ -1,6 +1,7 @@
 // What the user may say about an input, the same for every command that reads one.
 #pragma once
 
+#include "apps/cli/command.h"
 #include "replay/open_options.h"
 #include "replay/recording.h"
 #include "src/settings/setting.h"
@@ -10,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace eventide::app {
 
@@ -24,6 +26,10 @@ struct InputSettings {
 
 /// --filter, for every command that hands events on.
 Setting filter_setting(std::vector<std::string>& filters);
+
+/// For recordings in `formats`: throws Error (usage) for a flag about what none of them leaves
+/// open, such as the order of columns in AEDAT 4.
+void refuse_idle_input_flags(const FlagKeys& flags, const std::vector<std::string>& formats);
 
 /// For commands that read recordings alone. Throws Error (usage) for the name of a camera or a
 /// simulation where there is no such file.

@@ -72,6 +72,31 @@ void check_effects(const RunSettings& settings) {
                     "none; --events-out writes the events themselves");
 }
 
+void name_sink(const std::string& text, const SinkName& sink, const RunSettings& settings,
+               NamedFiles& files) {
+    switch (sink.kind) {
+        case SinkKind::folder:
+            return name_run_folder("--out", sink.path, FolderSink::files(), files);
+        case SinkKind::video:
+            files.writes("--out", sink.path, text);
+            if (settings.uncertainty == Uncertainty::separate)
+                files.writes("--out", sigma_path(sink.path));
+            return;
+        case SinkKind::stream:
+            refuse_terminal("--out " + text, sink.path, settings.force);
+            return files.writes("--out", sink.path, text);
+        case SinkKind::sheet:
+            return files.writes_when_done("--out", sink.path, text);
+        case SinkKind::ros2:
+            return files.reads("--out", parse_ros2_sink_name(sink.path).calibration);
+        case SinkKind::nothing:
+        case SinkKind::window:
+        case SinkKind::v4l2:
+        case SinkKind::http:
+            return;
+    }
+}
+
 }  // namespace
 
 SinkName parse_sink(const std::string& sink) {
@@ -102,36 +127,10 @@ SinkName parse_sink(const std::string& sink) {
 
 void name_sink_files(const RunSettings& settings, NamedFiles& files) {
     check_effects(settings);
-    for (const std::string& text : settings.out) {
-        const SinkName sink = parse_sink(text);
-        switch (sink.kind) {
-            case SinkKind::folder:
-                name_run_folder("--out", sink.path, FolderSink::files(), files);
-                break;
-            case SinkKind::video:
-                files.writes("--out", sink.path, text);
-                if (settings.uncertainty == Uncertainty::separate)
-                    files.writes("--out", sigma_path(sink.path));
-                break;
-            case SinkKind::stream:
-                refuse_terminal("--out " + text, sink.path, settings.force);
-                files.writes("--out", sink.path, text);
-                break;
-            case SinkKind::ros2:
-                files.reads("--out", parse_ros2_sink_name(sink.path).calibration);
-                break;
-            case SinkKind::sheet:
-            case SinkKind::nothing:
-            case SinkKind::window:
-            case SinkKind::v4l2:
-            case SinkKind::http:
-                break;
-        }
-    }
-    // Last: they may lie in a folder that another sink makes.
-    for (const std::string& text : settings.out)
-        if (const SinkName sink = parse_sink(text); sink.kind == SinkKind::sheet)
-            files.writes_when_done("--out", sink.path, text);
+    for (const bool folders : {true, false})  // as they are opened: others may lie in one
+        for (const std::string& text : settings.out)
+            if (const SinkName sink = parse_sink(text); folders == (sink.kind == SinkKind::folder))
+                name_sink(text, sink, settings, files);
 }
 
 }  // namespace eventide::app

@@ -32,8 +32,8 @@ Batch image_at(std::int64_t us) {
     return batch;
 }
 
-EventsOut::End until(std::optional<SensorTime> end) {
-    return [end] { return end; };
+EventsOut::Limit at(std::optional<SensorTime> t) {
+    return [t] { return t; };
 }
 
 TEST(EventsOut, TheFileIsBehindAFormatAloneAndMayHaveAColon) {
@@ -49,7 +49,7 @@ TEST(EventsOut, TheFileIsBehindAFormatAloneAndMayHaveAColon) {
 
 TEST(EventsOut, ImagesDoNotWaitForEvents) {
     std::vector<Batch> written;
-    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), {}, until({})};
+    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), at({}), at({})};
     for (int n = 0; n < 3; ++n) {
         out.see(image_at(n));
         EXPECT_EQ(written.size(), std::size_t(n + 1)) << "nothing is kept";
@@ -89,7 +89,7 @@ TEST(EventsOut, ImagesWaitForEventsThatAFilterHolds) {
     for (const bool flushed : {true, false}) {
         HoldsAll filter;
         std::vector<Batch> written;
-        EventsOut out{&filter, std::make_unique<KeptBatches>(written), {}, until({})};
+        EventsOut out{&filter, std::make_unique<KeptBatches>(written), at({}), at({})};
         see_event(out, 10);
         out.see(image_at(9));
         ASSERT_EQ(written.size(), 1U) << "before what is held";
@@ -106,7 +106,8 @@ TEST(EventsOut, ImagesWaitForEventsThatAFilterHolds) {
 
 TEST(EventsOut, WhatLiesOutsideOfThePartIsNotWritten) {
     std::vector<Batch> written;
-    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), from_us(10), until(from_us(20))};
+    EventsOut out{nullptr, std::make_unique<KeptBatches>(written), at(from_us(10)),
+                  at(from_us(20))};
     for (const std::int64_t us : {9, 10, 20, 21}) {
         out.see(image_at(us));
         see_event(out, us);

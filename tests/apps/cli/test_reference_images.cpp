@@ -24,7 +24,8 @@ void show_images(ReferenceImages& references, int from_ms, int to_ms) {
 cv::Mat truth_at(const ReferenceImages& references, int ms) {
     cv::Mat shown;
     const SensorTime t = from_us(1000 * ms);
-    references.draw_nearest(t, {t - SensorDuration{1000}, t}, {3, 2}, shown);
+    references.draw_nearest(t, {t - SensorDuration{1000}, t}, {3, 2}, ReferenceImages::Shows::grey,
+                            shown);
     return shown;
 }
 
@@ -54,6 +55,31 @@ TEST(ReferenceImages, OfAClockThatBeganAnewAreTheNewOnes) {
     show_images(references, 0, 100);
     EXPECT_TRUE(truth_at(references, 10'010).empty());
     EXPECT_FALSE(truth_at(references, 10).empty());
+}
+
+TEST(ReferenceImages, AreInColourWhereThatIsAskedForAndTheyAre) {
+    using Shows = ReferenceImages::Shows;
+    for (const int channels : {1, 3, 4}) {
+        ReferenceImages references;
+        Batch batch;
+        ReferenceImage& image = batch.images.emplace_back();
+        image.channels = channels;
+        image.pixels = Array2<std::uint16_t>(2, 3 * channels);
+        for (int y = 0; y < 2; ++y)
+            for (int x = 0; x < 3; ++x) image.pixels(y, channels * x) = 257 * 200;
+        references.see(batch);
+        cv::Mat grey, colours;
+        references.draw_nearest({}, {}, {3, 2}, Shows::grey, grey);
+        references.draw_nearest({}, {}, {3, 2}, Shows::colours, colours);
+        EXPECT_EQ(grey.type(), CV_8UC1);
+        if (channels == 1) {
+            EXPECT_EQ(colours.type(), CV_8UC1);
+            EXPECT_EQ(colours.at<std::uint8_t>(1, 2), 200);
+            continue;
+        }
+        EXPECT_EQ(grey.at<std::uint8_t>(1, 2), 23) << "blue weighs little";
+        EXPECT_EQ(colours.at<cv::Vec3b>(1, 2), cv::Vec3b(200, 0, 0)) << channels;
+    }
 }
 
 TEST(ReferenceImages, OneBesideTheSensorShowsNothingOfIt) {

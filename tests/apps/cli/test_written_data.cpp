@@ -106,6 +106,29 @@ TEST(WrittenData, LoseTheColourFilterWhereTheFormatCannotSayIt) {
     EXPECT_THAT(remarks_of("aedat4", ColourFilter::gbrg, 1), IsEmpty());
 }
 
+/// As a topic's messages do.
+TEST(WrittenData, LoseTheColourFilterThatImagesAloneTell) {
+    const auto remarks_of = [](const char* format, ColourFilter colours, int channels) {
+        WrittenData data{find_format(format)->holds, colours};
+        Batch batch;
+        batch.images.resize(1);
+        batch.images[0].filter = ColourFilter::gbrg;
+        batch.images[0].channels = channels;
+        data.fit(batch);
+        EXPECT_EQ(data.is_whole(), data.remarks("x").empty());
+        return data.remarks("x");
+    };
+    EXPECT_THAT(remarks_of("hdf5", ColourFilter::none, 1),
+                ElementsAre("x: its format cannot say the images' colour filter, gbrg: --bayer "
+                            "states it"));
+    EXPECT_THAT(remarks_of("aedat4", ColourFilter::none, 1),
+                ElementsAre("x: its format says the images' colour filter before the first of "
+                            "them, which told it, gbrg: --bayer states it"));
+    EXPECT_THAT(remarks_of("aedat4", ColourFilter::gbrg, 1), IsEmpty());
+    EXPECT_THAT(remarks_of("aedat3", ColourFilter::none, 1), IsEmpty());
+    EXPECT_THAT(remarks_of("aedat4", ColourFilter::none, 3), IsEmpty()) << "no mosaic";
+}
+
 TEST(WrittenData, CountTriggersBehindLaterEvents) {
     for (const char* const format : {"evt3", "aedat4"}) {
         WrittenData data{find_format(format)->holds};
@@ -177,8 +200,8 @@ struct KeepsTriggers final : ConvertTarget {
 };
 
 TEST(EventsOut, CountsTriggersBehindLaterEvents) {
-    EventsOut out{
-        nullptr, std::make_unique<KeepsTriggers>(), {}, [] { return std::optional<SensorTime>{}; }};
+    const EventsOut::Limit none = [] { return std::optional<SensorTime>{}; };
+    EventsOut out{nullptr, std::make_unique<KeepsTriggers>(), none, none};
     Batch batch;
     batch.events = {at(100)};
     out.see(batch);

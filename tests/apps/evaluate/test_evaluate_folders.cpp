@@ -2,6 +2,7 @@
 #include "apps/evaluate/evaluate.h"
 #include "src/core/error.h"
 #include "tests/apps/evaluate/recordings.h"
+#include "tests/support/error_of.h"
 
 #include <gtest/gtest.h>
 
@@ -36,6 +37,27 @@ TEST(EvaluateFolders, FindNothingBetweenEqualFolders) {
         << "16 bits are as white as 8";
     write_image(folder / "frames" / "one" / "9.png", test_image(kHeight, kWidth, 9));
     EXPECT_THROW(evaluate_folders(folder / "frames", folder / "references", {}), Error);
+}
+
+TEST(EvaluateFolders, LeaveOutNoSequenceInSilence) {
+    const fs::path folder = fresh_folder("unequal");
+    for (const char* sequence :
+         {"frames/one", "references/one", "references/two", "frames/nothing", "references/nothing"})
+        fs::create_directories(folder / sequence);
+    for (const char* image : {"frames/one/0.png", "references/one/0.png", "references/two/0.png"})
+        write_image(folder / image, test_image(kHeight, kWidth, 0));
+    std::vector<std::string> warnings;
+    const auto evaluate = [&] {
+        return evaluate_folders(folder / "frames", folder / "references", {},
+                                [&](const std::string& text) { warnings.push_back(text); });
+    };
+    EXPECT_EQ(evaluate().overall.frames, 1);
+    EXPECT_EQ(warnings, std::vector<std::string>{(folder / "references/two").string() +
+                                                 ": is left out, as there is no folder " +
+                                                 (folder / "frames/two").string()});
+    fs::create_directory(folder / "frames/two");
+    EXPECT_EQ(error_of(evaluate, ErrorKind::input),
+              "two: expected as many images as references, found 0 and 1");
 }
 
 TEST(EvaluateFolders, TakeImagesWhoseExtensionIsInCapitals) {

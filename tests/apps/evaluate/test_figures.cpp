@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <regex>
 
 namespace eventide {
@@ -52,6 +53,33 @@ TEST(Plot, IsFlatWhereValuesDifferByRoundingAlone) {
     const std::string drawn = svg(plot);
     EXPECT_EQ(count(drawn, "<circle"), 2);
     EXPECT_LT(count(drawn, "text-anchor='end'"), 20) << "ticks of the y axis";
+}
+
+std::vector<std::string> ticks_of_x(std::vector<double> x, bool log_x) {
+    const std::string drawn = svg(
+        {.name = "p", .series = {{"", x, std::vector<double>(x.size(), 1), {}}}, .log_x = log_x});
+    const std::regex pattern{"<text x='[0-9.]+' y='364' text-anchor='middle'>([^<]*)<"};
+    std::vector<std::string> ticks;
+    for (std::sregex_iterator it{drawn.begin(), drawn.end(), pattern}, end; it != end; ++it)
+        ticks.push_back((*it)[1]);
+    return ticks;
+}
+
+TEST(Plot, HasTicksAtRoundNumbers) {
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(ticks_of_x({-1, 1.1}, false), (Texts{"-1", "-0.5", "0", "0.5", "1"}));
+    EXPECT_EQ(ticks_of_x({0, 60}, false), (Texts{"0", "10", "20", "30", "40", "50", "60"}));
+    EXPECT_EQ(ticks_of_x({2, 60}, true), (Texts{"2", "5", "10", "20", "50"}));
+    EXPECT_EQ(ticks_of_x({1, 1000}, true), (Texts{"1", "3", "10", "30", "100", "300", "1000"}));
+}
+
+TEST(Plot, HasNoTicksOfARangeThatIsEmptyOrEndless) {
+    constexpr double kMost = std::numeric_limits<double>::max();
+    EXPECT_TRUE(ticks_of_x({-kMost, kMost}, false).empty());
+    EXPECT_EQ(ticks_of_x({5, 5}, false).size(), 6U) << "has a width of its own";
+    for (const bool log_x : {true, false})
+        EXPECT_LT(ticks_of_x({std::numeric_limits<double>::denorm_min(), kMost}, log_x).size(),
+                  1300U);
 }
 
 /// At 12 px a digit is 6.6 px wide, and the name, which runs upwards, ends at 22.

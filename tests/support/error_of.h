@@ -11,11 +11,11 @@
 namespace eventide::test {
 
 /// What the Error of this kind says that `call` must throw.
-inline std::string error_of(const std::function<void()>& call, ErrorKind kind) {
+inline std::string error_of(const std::function<void()>& call, ErrorKind kind = ErrorKind::usage) {
     try {
         call();
     } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), kind);
+        EXPECT_EQ(error.kind(), kind) << error.what();
         return error.what();
     }
     ADD_FAILURE() << "nothing was thrown";
