@@ -220,14 +220,10 @@ Affine Scene::to_local(const Layer& layer, double scene_s) const {
             .after(scale)
             .inverse();
     }
-    const Affine shrink = Affine::scale(1 / pose.scale_x, 1 / pose.scale_y);
-    if (thesis_)  // A = S D R
-        return shrink.after(Affine::translation(-pose.x, -pose.y))
-            .after(Affine::rotation(-pose.angle))
-            .after(normalised(width_, height_));
+    if (thesis_) return thesis_transform(pose).after(normalised(width_, height_));
     // Spin and zoom are about the view's centre, wherever it has wandered to.
     return Affine::translation(pose.x, pose.y)
-        .after(shrink)
+        .after(Affine::scale(1 / pose.scale_x, 1 / pose.scale_y))
         .after(Affine::rotation(-pose.angle))
         .after(Affine::translation(-(width_ - 1) / 2.0, -(height_ - 1) / 2.0));
 }
